@@ -1,0 +1,5 @@
+//! Suite + options → plan.
+
+mod types;
+
+pub use types::*;

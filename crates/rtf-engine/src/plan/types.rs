@@ -1,0 +1,204 @@
+//! What will be done: suites, fixtures and tests with every plug-in and host found.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use rtf_model::{FixtureId, SuiteId, TestId};
+
+/// Everything that a run will do. Nothing in it can fail to be understood
+/// any more; what can still fail is the world.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    /// The suites, in the order in which they run; the index is the [`SuiteId`].
+    pub suites: Vec<SuitePlan>,
+    /// The number of fixtures over all suites.
+    pub fixtures: u32,
+    /// The number of tests over all suites.
+    pub tests: u32,
+}
+
+/// One suite.
+#[derive(Clone, Debug)]
+pub struct SuitePlan {
+    /// Its id.
+    pub id: SuiteId,
+    /// Its name, unique in the run.
+    pub name: String,
+    /// Its file as the user named it; empty for plug-ins given on the command line.
+    pub file: String,
+    /// The working folder of its processes: the suite file's, or the current one.
+    pub folder: PathBuf,
+    /// Its description, white space folded.
+    pub description: String,
+    /// Its environment string.
+    pub environment: String,
+    /// Environment variables for all its processes, in order.
+    pub env: Arc<Vec<(String, String)>>,
+    /// The limit for the whole suite, set-up and tear-down of fixtures included.
+    pub timeout: Option<Duration>,
+    /// Whether a fixture's collapse leaves the suite green.
+    pub tolerates_collapse: bool,
+    /// The fixtures, in the order of set-up.
+    pub fixtures: Vec<FixturePlan>,
+    /// The tests, in the order in which they run.
+    pub tests: Vec<TestPlan>,
+}
+
+/// One fixture.
+#[derive(Clone, Debug)]
+pub struct FixturePlan {
+    /// Its id.
+    pub id: FixtureId,
+    /// Its name, unique in the suite.
+    pub name: String,
+    /// What it is.
+    pub body: FixtureBody,
+    /// Environment variables beside the suite's.
+    pub env: Vec<(String, String)>,
+    /// The limits of its phases.
+    pub limits: FixtureLimits,
+    /// How often it may be started again after a collapse.
+    pub restarts: u32,
+    /// How often `check` (or `<alive>`) is asked while tests run; `None`: only before each test.
+    pub check_every: Option<Duration>,
+}
+
+/// The limits of a fixture's phases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FixtureLimits {
+    /// From the start of its process to ready.
+    pub setup: Duration,
+    /// For one `check`.
+    pub check: Duration,
+    /// From the request to stop to the end of its process.
+    pub teardown: Duration,
+}
+
+/// What a fixture is.
+#[derive(Clone, Debug)]
+pub enum FixtureBody {
+    /// A fixture plug-in in a host.
+    Plugin(PluginPlan),
+    /// The built-in `type="process"`.
+    Process(Box<ProcessPlan>),
+}
+
+/// One declared test.
+#[derive(Clone, Debug)]
+pub struct TestPlan {
+    /// Its id.
+    pub id: TestId,
+    /// Its name, unique in the suite.
+    pub name: String,
+    /// The plug-in.
+    pub plugin: PluginPlan,
+    /// Environment variables beside the suite's.
+    pub env: Vec<(String, String)>,
+    /// How often it runs.
+    pub repetitions: u32,
+    /// The limits of its phases, shared between tests that have the same.
+    pub limits: Arc<TestLimits>,
+    /// What happens to it when a fixture collapses while it runs.
+    pub after_collapse: AfterCollapse,
+    /// Whether the rest of the suite is skipped when it does not pass.
+    pub critical: bool,
+    /// The tags given in the suite.
+    pub tags: Vec<String>,
+}
+
+/// The limits of a test's phases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct TestLimits {
+    /// From the start of its process to `setup`.
+    pub load: Duration,
+    /// For `setup`.
+    pub setup: Duration,
+    /// For `run`.
+    pub run: Duration,
+    /// For `tearDown`, and then for the end of the process.
+    pub teardown: Duration,
+    /// After this long in `run` the test is reported as slow.
+    pub slow: Duration,
+    /// From the request to stop to the use of force.
+    pub grace: Duration,
+}
+
+/// What happens to a test when a fixture collapses while it runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum AfterCollapse {
+    /// It is `collapsed`; the suite goes on with the next test.
+    #[default]
+    Fail,
+    /// It is run again once the fixture is back.
+    Rerun,
+    /// It is `skipped`.
+    Skip,
+}
+
+/// A plug-in and the host that runs it.
+#[derive(Clone, Debug)]
+pub struct PluginPlan {
+    /// The type as in the suite: `dll`, `lua`, `python`.
+    pub plugin_type: Arc<str>,
+    /// The plug-in's file, absolute.
+    pub file: PathBuf,
+    /// The parameter string as in the suite.
+    pub param: String,
+    /// The parameter string, split into arguments.
+    pub args: Vec<String>,
+    /// The host, shared between all plug-ins of a type.
+    pub host: Arc<HostPlan>,
+}
+
+/// How to start a host.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct HostPlan {
+    /// The program and its arguments.
+    pub command: Vec<String>,
+    /// Environment variables that it needs.
+    pub env: Vec<(String, String)>,
+}
+
+/// The built-in `type="process"` fixture.
+#[derive(Clone, Debug)]
+pub struct ProcessPlan {
+    /// The program (absolute or found in the path) and its arguments.
+    pub command: Vec<String>,
+    /// The folder it runs in.
+    pub folder: PathBuf,
+    /// All must hold before it is ready; empty: ready once it was started.
+    pub ready: Vec<Probe>,
+    /// Each must hold while it is ready.
+    pub alive: Vec<Probe>,
+    /// The signal that asks it to stop, 15 (SIGTERM) unless told.
+    pub stop_signal: i32,
+    /// How long it may take to stop before it is killed.
+    pub stop_grace: Duration,
+}
+
+/// A question about a process fixture.
+#[derive(Clone, Debug)]
+pub struct Probe {
+    /// What is asked.
+    pub kind: ProbeKind,
+    /// How often it is asked.
+    pub every: Duration,
+    /// How long one answer may take.
+    pub timeout: Duration,
+}
+
+/// What a [`Probe`] asks.
+#[derive(Clone, Debug)]
+pub enum ProbeKind {
+    /// Whether a TCP connection to `host:port` is accepted.
+    Tcp(String),
+    /// Whether an HTTP GET of the URL answers with a 2xx status.
+    Http(String),
+    /// Whether a line of its output matches (for `alive`: whether none does).
+    Log(regex::Regex),
+    /// Whether the program ends with exit code 0.
+    Command(Vec<String>),
+    /// Whether the file exists.
+    File(PathBuf),
+}

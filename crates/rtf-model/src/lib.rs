@@ -1,0 +1,35 @@
+//! The vocabulary that every other part of the Robot Testing Framework shares.
+//!
+//! An [`Event`] is the only thing that travels from a run to whoever wants to
+//! know about it; [`Record::apply`] is the only place that counts events;
+//! [`OrderChecker`] says which sequences of events are legal. The
+//! [`protocol`] module holds the messages between the runner and the host
+//! processes that load plug-ins.
+//!
+//! This crate is plain data: no I/O, no threads, no clock.
+
+mod diagnostic;
+mod event;
+mod ids;
+mod order;
+pub mod protocol;
+mod record;
+mod report;
+mod verdict;
+
+pub use diagnostic::{Diagnostic, Label, Severity};
+pub use event::{
+    Event, EventKind, ExitStatus, FixturePlanned, LeftProcess, Output, Phase, RunStarted, Source,
+    StopCause, Stream, SuitePlanned, TestFinished, TestPlanned,
+};
+pub use ids::{FixtureId, Micros, SuiteId, TestId};
+pub use order::{OrderChecker, OrderError};
+pub use record::{
+    AttemptRecord, FixtureRecord, FixtureState, Record, RunState, SuiteRecord, TestRecord, Totals,
+};
+pub use report::{Attachment, Comparison, Location, Measurement, Message, MessageKind};
+pub use verdict::{Outcome, Verdict};
+
+/// The version of the event stream that this crate reads and writes. It grows
+/// when a reader of the old version could misunderstand a new stream.
+pub const EVENTS_VERSION: u32 = 1;

@@ -1,0 +1,321 @@
+//! The grammar of an event stream: which event may follow which.
+
+use crate::{Event, EventKind, FixtureId, Source, SuiteId, TestId};
+
+/// An event that may not come where it came.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OrderError {
+    /// The event's number.
+    pub seq: u64,
+    /// Which rule it breaks.
+    pub rule: String,
+}
+
+impl std::fmt::Display for OrderError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "event {}: {}", self.seq, self.rule)
+    }
+}
+
+impl std::error::Error for OrderError {}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    Before,
+    Planning,
+    Running,
+    After,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Bracket {
+    Planned,
+    Open,
+    Closed,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum FixtureStage {
+    Stopped,
+    Starting,
+    Ready,
+    Collapsed,
+    Stopping,
+}
+
+#[derive(Clone, Debug)]
+struct Fixture {
+    suite: SuiteId,
+    stage: FixtureStage,
+    attempt: u32,
+    broken: bool,
+}
+
+#[derive(Clone, Debug)]
+struct Test {
+    suite: SuiteId,
+    open: bool,
+    last: Option<(u32, u32)>,
+    skipped: bool,
+}
+
+/// Checks a stream event by event. [`OrderChecker::finish`] then tells whether
+/// everything that began also ended.
+#[derive(Clone, Debug)]
+pub struct OrderChecker {
+    next_seq: u64,
+    last_at: u64,
+    stage: Stage,
+    suites: Vec<Bracket>,
+    fixtures: Vec<Fixture>,
+    tests: Vec<Test>,
+}
+
+impl Default for OrderChecker {
+    fn default() -> Self {
+        Self {
+            next_seq: 0,
+            last_at: 0,
+            stage: Stage::Before,
+            suites: Vec::new(),
+            fixtures: Vec::new(),
+            tests: Vec::new(),
+        }
+    }
+}
+
+type Rule = Result<(), String>;
+
+fn ensure(holds: bool, rule: impl FnOnce() -> String) -> Rule {
+    if holds { Ok(()) } else { Err(rule()) }
+}
+
+impl OrderChecker {
+    /// Checks the next event of the stream.
+    ///
+    /// # Errors
+    /// The first rule that the event breaks.
+    pub fn check(&mut self, event: &Event) -> Result<(), OrderError> {
+        self.check_envelope(event)
+            .and_then(|()| self.check_kind(&event.kind))
+            .map_err(|rule| OrderError { seq: event.seq, rule })
+    }
+
+    /// Checks that the stream is complete.
+    ///
+    /// # Errors
+    /// The stream does not end with `run-finished`.
+    pub fn finish(&self) -> Result<(), OrderError> {
+        ensure(self.stage == Stage::After, || "the stream does not end with run-finished".into())
+            .map_err(|rule| OrderError { seq: self.next_seq, rule })
+    }
+
+    fn check_envelope(&mut self, event: &Event) -> Rule {
+        ensure(event.seq == self.next_seq, || format!("expected number {}", self.next_seq))?;
+        ensure(event.at.0 >= self.last_at, || "time runs backwards".into())?;
+        self.next_seq += 1;
+        self.last_at = event.at.0;
+        let first = matches!(event.kind, EventKind::RunStarted(_));
+        ensure(first == (self.stage == Stage::Before), || {
+            "run-started comes first and only once".into()
+        })?;
+        ensure(self.stage != Stage::After, || "nothing follows run-finished".into())
+    }
+
+    fn check_kind(&mut self, kind: &EventKind) -> Rule {
+        match kind {
+            EventKind::RunStarted(_) => {
+                self.stage = Stage::Planning;
+                Ok(())
+            }
+            EventKind::SuitePlanned(plan) => self.plan_suite(plan.suite),
+            EventKind::FixturePlanned(plan) => self.plan_fixture(plan.fixture, plan.suite),
+            EventKind::TestPlanned(plan) => self.plan_test(plan.test, plan.suite),
+            EventKind::Warning { .. } => Ok(()),
+            EventKind::SuiteStarted { suite } => self.start_suite(*suite),
+            EventKind::FixtureStarting { fixture, attempt } => self.start(*fixture, *attempt),
+            EventKind::FixtureReady { fixture } => {
+                self.advance(*fixture, &[FixtureStage::Starting], FixtureStage::Ready)
+            }
+            EventKind::FixtureCollapsed { fixture, .. } => {
+                self.advance(*fixture, &[FixtureStage::Ready], FixtureStage::Collapsed)
+            }
+            EventKind::FixtureStopping { fixture } => {
+                use FixtureStage::{Collapsed, Ready, Starting, Stopping};
+                self.advance(*fixture, &[Starting, Ready, Collapsed], Stopping)
+            }
+            EventKind::FixtureStopped { fixture, .. } => {
+                self.advance(*fixture, &[FixtureStage::Stopping], FixtureStage::Stopped)
+            }
+            EventKind::FixtureBroken { fixture, .. } => self.break_fixture(*fixture),
+            EventKind::TestStarted { test, repetition, attempt } => {
+                self.start_test(*test, (*repetition, *attempt))
+            }
+            EventKind::TestPhase { test, .. }
+            | EventKind::Measured { test, .. }
+            | EventKind::Attached { test, .. }
+            | EventKind::TestSlow { test }
+            | EventKind::TestStopping { test, .. } => self.inside_test(*test),
+            EventKind::Message { source, .. }
+            | EventKind::StackDumped { source, .. }
+            | EventKind::ProcessesLeft { source, .. } => self.inside(*source),
+            EventKind::Output(output) => self.inside(output.source),
+            EventKind::TestFinished(finished) => self.finish_test(finished.test),
+            EventKind::TestSkipped { test, .. } => self.skip_test(*test),
+            EventKind::SuiteFinished { suite } => self.finish_suite(*suite),
+            EventKind::RunFinished { .. } => self.finish_run(),
+        }
+    }
+
+    fn plan_suite(&mut self, suite: SuiteId) -> Rule {
+        ensure(self.stage == Stage::Planning, || "plans come before the first suite starts".into())?;
+        ensure(suite.index() == self.suites.len(), || format!("suite {suite} out of order"))?;
+        self.suites.push(Bracket::Planned);
+        Ok(())
+    }
+
+    fn planned_last(&self, suite: SuiteId) -> Rule {
+        ensure(self.stage == Stage::Planning, || "plans come before the first suite starts".into())?;
+        ensure(suite.index() + 1 == self.suites.len(), || {
+            format!("suite {suite} is not the one planned last")
+        })
+    }
+
+    fn plan_fixture(&mut self, fixture: FixtureId, suite: SuiteId) -> Rule {
+        self.planned_last(suite)?;
+        ensure(fixture.index() == self.fixtures.len(), || format!("fixture {fixture} out of order"))?;
+        let stage = FixtureStage::Stopped;
+        self.fixtures.push(Fixture { suite, stage, attempt: 0, broken: false });
+        Ok(())
+    }
+
+    fn plan_test(&mut self, test: TestId, suite: SuiteId) -> Rule {
+        self.planned_last(suite)?;
+        ensure(test.index() == self.tests.len(), || format!("test {test} out of order"))?;
+        self.tests.push(Test { suite, open: false, last: None, skipped: false });
+        Ok(())
+    }
+
+    fn start_suite(&mut self, suite: SuiteId) -> Rule {
+        self.stage = Stage::Running;
+        let bracket = self.suites.get_mut(suite.index());
+        ensure(bracket.as_deref() == Some(&Bracket::Planned), || {
+            format!("suite {suite} was not planned, or started twice")
+        })?;
+        if let Some(bracket) = bracket {
+            *bracket = Bracket::Open;
+        }
+        Ok(())
+    }
+
+    fn suite_open(&self, suite: SuiteId) -> Rule {
+        ensure(self.suites.get(suite.index()) == Some(&Bracket::Open), || {
+            format!("suite {suite} is not running")
+        })
+    }
+
+    fn fixture(&mut self, fixture: FixtureId) -> Result<&mut Fixture, String> {
+        let suite = self.fixtures.get(fixture.index()).map(|f| f.suite);
+        let suite = suite.ok_or_else(|| format!("fixture {fixture} was not planned"))?;
+        self.suite_open(suite)?;
+        Ok(&mut self.fixtures[fixture.index()])
+    }
+
+    fn start(&mut self, id: FixtureId, attempt: u32) -> Rule {
+        let fixture = self.fixture(id)?;
+        ensure(fixture.stage == FixtureStage::Stopped, || format!("fixture {id} started twice"))?;
+        ensure(!fixture.broken, || format!("fixture {id} started although broken"))?;
+        ensure(attempt == fixture.attempt + 1, || format!("fixture {id}: attempt out of order"))?;
+        fixture.attempt = attempt;
+        fixture.stage = FixtureStage::Starting;
+        Ok(())
+    }
+
+    fn advance(&mut self, id: FixtureId, from: &[FixtureStage], to: FixtureStage) -> Rule {
+        let fixture = self.fixture(id)?;
+        let stage = fixture.stage;
+        ensure(from.contains(&stage), || format!("fixture {id} goes from {stage:?} to {to:?}"))?;
+        fixture.stage = to;
+        Ok(())
+    }
+
+    fn break_fixture(&mut self, id: FixtureId) -> Rule {
+        let fixture = self.fixture(id)?;
+        ensure(!fixture.broken, || format!("fixture {id} broke twice"))?;
+        fixture.broken = true;
+        Ok(())
+    }
+
+    fn test(&mut self, test: TestId) -> Result<&mut Test, String> {
+        let suite = self.tests.get(test.index()).map(|t| t.suite);
+        let suite = suite.ok_or_else(|| format!("test {test} was not planned"))?;
+        self.suite_open(suite)?;
+        Ok(&mut self.tests[test.index()])
+    }
+
+    fn start_test(&mut self, id: TestId, number: (u32, u32)) -> Rule {
+        let test = self.test(id)?;
+        ensure(!test.open, || format!("test {id} started twice"))?;
+        ensure(!test.skipped, || format!("test {id} started although skipped"))?;
+        let (repetition, attempt) = number;
+        let follows = match test.last {
+            None => number == (1, 1),
+            Some((r, a)) => number == (r, a + 1) || (repetition == r + 1 && attempt == 1),
+        };
+        ensure(follows, || format!("test {id}: repetition or attempt out of order"))?;
+        test.last = Some(number);
+        test.open = true;
+        Ok(())
+    }
+
+    fn inside_test(&mut self, id: TestId) -> Rule {
+        let open = self.test(id)?.open;
+        ensure(open, || format!("test {id} is not running"))
+    }
+
+    fn inside(&mut self, source: Source) -> Rule {
+        match source {
+            Source::Test(test) => self.inside_test(test),
+            Source::Fixture(id) => {
+                let stage = self.fixture(id)?.stage;
+                ensure(stage != FixtureStage::Stopped, || format!("fixture {id} is not running"))
+            }
+        }
+    }
+
+    fn finish_test(&mut self, id: TestId) -> Rule {
+        self.inside_test(id)?;
+        self.test(id)?.open = false;
+        Ok(())
+    }
+
+    fn skip_test(&mut self, id: TestId) -> Rule {
+        let test = self.test(id)?;
+        ensure(!test.open, || format!("test {id} skipped while it runs"))?;
+        ensure(!test.skipped, || format!("test {id} skipped twice"))?;
+        test.skipped = true;
+        Ok(())
+    }
+
+    fn finish_suite(&mut self, suite: SuiteId) -> Rule {
+        self.suite_open(suite)?;
+        for (index, test) in self.tests.iter().enumerate().filter(|(_, t)| t.suite == suite) {
+            ensure(!test.open, || format!("test {index} still runs"))?;
+            ensure(test.skipped || test.last.is_some(), || format!("test {index} has no verdict"))?;
+        }
+        for (index, fixture) in self.fixtures.iter().enumerate().filter(|(_, f)| f.suite == suite) {
+            let stopped = fixture.stage == FixtureStage::Stopped;
+            ensure(stopped, || format!("fixture {index} still runs"))?;
+        }
+        self.suites[suite.index()] = Bracket::Closed;
+        Ok(())
+    }
+
+    fn finish_run(&mut self) -> Rule {
+        for (index, bracket) in self.suites.iter().enumerate() {
+            ensure(*bracket == Bracket::Closed, || format!("suite {index} did not finish"))?;
+        }
+        self.stage = Stage::After;
+        Ok(())
+    }
+}

@@ -1,0 +1,118 @@
+//! What is known of one fixture.
+
+use crate::{EventKind, FixturePlanned, LeftProcess, Message, MessageKind, Micros};
+
+/// Where a fixture is in its life.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FixtureState {
+    /// Not started yet.
+    #[default]
+    Pending,
+    /// Being set up.
+    Starting,
+    /// Set up and watched.
+    Ready,
+    /// It was ready and is not there any more.
+    Collapsed,
+    /// Being torn down.
+    Stopping,
+    /// Torn down.
+    Stopped,
+    /// It will not be started again.
+    Broken,
+}
+
+/// What is known of one fixture.
+#[derive(Clone, Debug)]
+pub struct FixtureRecord {
+    /// How it was planned.
+    pub plan: FixturePlanned,
+    /// Where it is in its life.
+    pub state: FixtureState,
+    /// How often it was started.
+    pub starts: u32,
+    /// Its collapses: when, and why.
+    pub collapses: Vec<(Micros, String)>,
+    /// The first cause, once it broke.
+    pub broken: Option<String>,
+    /// What went wrong in set-ups and tear-downs: when, and what.
+    pub problems: Vec<(Micros, String)>,
+    /// The last lines that it printed before something went wrong last.
+    pub log_tail: Vec<String>,
+    /// Its failures and errors.
+    pub messages: Vec<Message>,
+    /// Processes of it that had to be killed.
+    pub left: Vec<LeftProcess>,
+}
+
+impl FixtureRecord {
+    pub(super) fn new(plan: FixturePlanned) -> Self {
+        Self {
+            plan,
+            state: FixtureState::Pending,
+            starts: 0,
+            collapses: Vec::new(),
+            broken: None,
+            problems: Vec::new(),
+            log_tail: Vec::new(),
+            messages: Vec::new(),
+            left: Vec::new(),
+        }
+    }
+
+    pub(super) fn apply(&mut self, at: Micros, kind: &EventKind) {
+        match kind {
+            EventKind::FixtureStarting { attempt, .. } => {
+                self.starts = *attempt;
+                self.state = FixtureState::Starting;
+            }
+            EventKind::FixtureReady { .. } => self.state = FixtureState::Ready,
+            EventKind::FixtureCollapsed { reason, log_tail, .. } => {
+                self.state = FixtureState::Collapsed;
+                self.collapses.push((at, reason.clone()));
+                self.log_tail.clone_from(log_tail);
+            }
+            EventKind::FixtureStopping { .. } => self.state = FixtureState::Stopping,
+            EventKind::FixtureStopped { problem, log_tail, .. } => {
+                self.state = FixtureState::Stopped;
+                if let Some(problem) = problem {
+                    self.problems.push((at, problem.clone()));
+                    self.log_tail.clone_from(log_tail);
+                }
+            }
+            EventKind::FixtureBroken { reason, .. } => {
+                self.state = FixtureState::Broken;
+                self.broken = Some(reason.clone());
+            }
+            EventKind::Message { message, .. } => self.keep(message),
+            EventKind::ProcessesLeft { processes, .. } => self.left.extend_from_slice(processes),
+            _ => {}
+        }
+    }
+
+    fn keep(&mut self, message: &Message) {
+        if matches!(message.kind, MessageKind::Failure | MessageKind::Error) {
+            self.messages.push(message.clone());
+        }
+    }
+
+    /// What speaks against the suite being green, in words.
+    pub(super) fn problems(&self, tolerates_collapse: bool) -> Vec<String> {
+        let name = &self.plan.name;
+        let mut problems = Vec::new();
+        if let Some(reason) = &self.broken {
+            problems.push(format!("fixture `{name}` is broken: {reason}"));
+        }
+        if !tolerates_collapse {
+            for (_, reason) in &self.collapses {
+                problems.push(format!("fixture `{name}` collapsed: {reason}"));
+            }
+        }
+        for (_, problem) in &self.problems {
+            if self.broken.as_ref() != Some(problem) {
+                problems.push(format!("fixture `{name}`: {problem}"));
+            }
+        }
+        problems
+    }
+}

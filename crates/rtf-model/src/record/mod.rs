@@ -1,0 +1,234 @@
+//! What is known of a run: the fold over its events.
+//!
+//! [`Record::apply`] is the only place that counts. The console's summary, the
+//! JUnit file and every other report read a `Record`; none keeps a state of its own.
+
+mod fixture;
+mod suite;
+mod test;
+
+pub use fixture::{FixtureRecord, FixtureState};
+pub use suite::SuiteRecord;
+pub use test::{AttemptRecord, TestRecord};
+
+use crate::{
+    Diagnostic, Event, EventKind, FixtureId, Micros, RunStarted, Source, SuiteId, TestId, Verdict,
+};
+
+/// How far a run is.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum RunState {
+    /// No `run-finished` was seen: the run goes on, or it was killed.
+    #[default]
+    Running,
+    /// The run came to its end.
+    Finished {
+        /// The signal or request that cut it short, in words.
+        interrupted: Option<String>,
+    },
+}
+
+/// How many tests are in which state.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Totals {
+    /// Tests that were declared.
+    pub planned: u32,
+    /// Tests whose last word is not spoken yet and that do not run.
+    pub pending: u32,
+    /// Tests that run now.
+    pub running: u32,
+    counts: [u32; Verdict::ALL.len()],
+}
+
+impl Totals {
+    /// How many tests ended with this verdict.
+    #[must_use]
+    pub fn of(&self, verdict: Verdict) -> u32 {
+        self.counts[verdict as usize]
+    }
+
+    /// How many tests have their last word.
+    #[must_use]
+    pub fn done(&self) -> u32 {
+        self.counts.iter().sum()
+    }
+}
+
+/// Everything that reports need to know of a run.
+#[derive(Clone, Debug, Default)]
+pub struct Record {
+    /// The first event, once it was seen.
+    pub run: Option<RunStarted>,
+    /// Whether the run came to its end.
+    pub state: RunState,
+    /// When the last event happened.
+    pub last_at: Micros,
+    /// How many events were applied.
+    pub events: u64,
+    /// The suites, by their ids.
+    pub suites: Vec<SuiteRecord>,
+    /// The fixtures, by their ids.
+    pub fixtures: Vec<FixtureRecord>,
+    /// The tests, by their ids.
+    pub tests: Vec<TestRecord>,
+    /// What the user should look at.
+    pub warnings: Vec<Diagnostic>,
+}
+
+impl Record {
+    /// Takes in the next event. An event about something that was never
+    /// planned is ignored: [`crate::OrderChecker`] is there to complain.
+    pub fn apply(&mut self, event: &Event) {
+        self.last_at = event.at;
+        self.events += 1;
+        let at = event.at;
+        match &event.kind {
+            EventKind::RunStarted(run) => self.run = Some(run.clone()),
+            EventKind::Warning { diagnostic } => self.warnings.push(diagnostic.clone()),
+            EventKind::RunFinished { interrupted } => {
+                self.state = RunState::Finished { interrupted: interrupted.clone() };
+            }
+            EventKind::SuitePlanned(plan) => self.suites.push(SuiteRecord::new(plan.clone())),
+            EventKind::SuiteStarted { suite } => self.suite(*suite, |s| s.started = Some(at)),
+            EventKind::SuiteFinished { suite } => self.suite(*suite, |s| s.finished = Some(at)),
+            EventKind::FixturePlanned(plan) => {
+                self.suite(plan.suite, |s| s.fixtures.push(plan.fixture));
+                self.fixtures.push(FixtureRecord::new(plan.clone()));
+            }
+            EventKind::TestPlanned(plan) => {
+                self.suite(plan.suite, |s| s.tests.push(plan.test));
+                self.tests.push(TestRecord::new(plan.clone()));
+            }
+            kind => self.apply_to_source(at, kind),
+        }
+    }
+
+    fn apply_to_source(&mut self, at: Micros, kind: &EventKind) {
+        match source_of(kind) {
+            Some(Source::Test(id)) => {
+                if let Some(test) = self.tests.get_mut(id.index()) {
+                    test.apply(at, kind);
+                }
+            }
+            Some(Source::Fixture(id)) => {
+                if let Some(fixture) = self.fixtures.get_mut(id.index()) {
+                    fixture.apply(at, kind);
+                }
+            }
+            None => {}
+        }
+    }
+
+    fn suite(&mut self, id: SuiteId, change: impl FnOnce(&mut SuiteRecord)) {
+        if let Some(suite) = self.suites.get_mut(id.index()) {
+            change(suite);
+        }
+    }
+
+    /// Whether the run came to its end, by itself or by request. A run that
+    /// was killed never does.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.state != RunState::Running
+    }
+
+    /// The signal or request that cut the run short.
+    #[must_use]
+    pub fn interrupted(&self) -> Option<&str> {
+        match &self.state {
+            RunState::Finished { interrupted } => interrupted.as_deref(),
+            RunState::Running => None,
+        }
+    }
+
+    /// A test's last word. While the run goes on it is `None` for a test that
+    /// is not over; see [`Record::final_verdict`] for a run that will not go on.
+    #[must_use]
+    pub fn verdict(&self, test: TestId) -> Option<Verdict> {
+        self.tests.get(test.index()).and_then(TestRecord::verdict)
+    }
+
+    /// A test's last word in a run that will not go on: a test that had begun
+    /// was interrupted, one that had not was skipped.
+    #[must_use]
+    pub fn final_verdict(&self, test: TestId) -> Verdict {
+        self.tests.get(test.index()).map_or(Verdict::Skipped, TestRecord::final_verdict)
+    }
+
+    /// How many tests are in which state.
+    #[must_use]
+    pub fn totals(&self) -> Totals {
+        totals(self.tests.iter())
+    }
+
+    /// How many tests of a suite are in which state.
+    #[must_use]
+    pub fn suite_totals(&self, suite: SuiteId) -> Totals {
+        let tests = self.suites.get(suite.index()).map_or(&[][..], |s| &s.tests);
+        totals(tests.iter().filter_map(|id| self.tests.get(id.index())))
+    }
+
+    /// What went wrong in a suite beside its tests, in words: fixtures that
+    /// collapsed, broke, or could not be torn down.
+    #[must_use]
+    pub fn suite_problems(&self, suite: SuiteId) -> Vec<String> {
+        let Some(suite) = self.suites.get(suite.index()) else { return Vec::new() };
+        let tolerant = suite.plan.tolerates_collapse;
+        let fixtures = suite.fixtures.iter().filter_map(|id| self.fixtures.get(id.index()));
+        fixtures.flat_map(|fixture| fixture.problems(tolerant)).collect()
+    }
+
+    /// Whether nothing at all speaks against the robot or the bench: the run
+    /// came to its end, has tests, each of them passed, and no fixture failed.
+    #[must_use]
+    pub fn is_green(&self) -> bool {
+        self.state == RunState::Finished { interrupted: None }
+            && !self.tests.is_empty()
+            && self.tests.iter().all(|test| test.verdict().is_some_and(Verdict::is_green))
+            && self.suites.iter().all(|s| self.suite_problems(s.plan.suite).is_empty())
+    }
+
+    /// The fixture with this id.
+    #[must_use]
+    pub fn fixture(&self, id: FixtureId) -> Option<&FixtureRecord> {
+        self.fixtures.get(id.index())
+    }
+}
+
+fn totals<'a>(tests: impl Iterator<Item = &'a TestRecord>) -> Totals {
+    let mut totals = Totals::default();
+    for test in tests {
+        totals.planned += 1;
+        match test.verdict() {
+            Some(verdict) => totals.counts[verdict as usize] += 1,
+            None if test.is_running() => totals.running += 1,
+            None => totals.pending += 1,
+        }
+    }
+    totals
+}
+
+/// Whose event it is, for the events that belong to a test or a fixture.
+fn source_of(kind: &EventKind) -> Option<Source> {
+    match kind {
+        EventKind::FixtureStarting { fixture, .. }
+        | EventKind::FixtureReady { fixture }
+        | EventKind::FixtureCollapsed { fixture, .. }
+        | EventKind::FixtureStopping { fixture }
+        | EventKind::FixtureStopped { fixture, .. }
+        | EventKind::FixtureBroken { fixture, .. } => Some(Source::Fixture(*fixture)),
+        EventKind::TestStarted { test, .. }
+        | EventKind::TestPhase { test, .. }
+        | EventKind::Measured { test, .. }
+        | EventKind::Attached { test, .. }
+        | EventKind::TestSlow { test }
+        | EventKind::TestStopping { test, .. }
+        | EventKind::TestSkipped { test, .. } => Some(Source::Test(*test)),
+        EventKind::TestFinished(finished) => Some(Source::Test(finished.test)),
+        EventKind::Message { source, .. }
+        | EventKind::StackDumped { source, .. }
+        | EventKind::ProcessesLeft { source, .. } => Some(*source),
+        EventKind::Output(output) => Some(output.source),
+        _ => None,
+    }
+}

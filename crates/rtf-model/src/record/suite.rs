@@ -1,0 +1,24 @@
+//! What is known of one suite.
+
+use crate::{FixtureId, Micros, SuitePlanned, TestId};
+
+/// What is known of one suite.
+#[derive(Clone, Debug)]
+pub struct SuiteRecord {
+    /// How it was planned.
+    pub plan: SuitePlanned,
+    /// Its fixtures, in the order of the plan.
+    pub fixtures: Vec<FixtureId>,
+    /// Its tests, in the order of the plan.
+    pub tests: Vec<TestId>,
+    /// When it started.
+    pub started: Option<Micros>,
+    /// When it ended.
+    pub finished: Option<Micros>,
+}
+
+impl SuiteRecord {
+    pub(super) fn new(plan: SuitePlanned) -> Self {
+        Self { plan, fixtures: Vec::new(), tests: Vec::new(), started: None, finished: None }
+    }
+}

@@ -1,0 +1,224 @@
+//! What is known of one test and of each of its attempts.
+
+use std::time::Duration;
+
+use crate::{
+    Attachment, EventKind, LeftProcess, Measurement, Message, MessageKind, Micros, Phase,
+    TestFinished, TestPlanned, Verdict,
+};
+
+/// What is known of one test.
+#[derive(Clone, Debug)]
+pub struct TestRecord {
+    /// How it was planned.
+    pub plan: TestPlanned,
+    /// Its attempts, the oldest first.
+    pub attempts: Vec<AttemptRecord>,
+    /// Why it (or what is left of its repetitions) was not started.
+    pub skipped: Option<String>,
+}
+
+/// What is known of one attempt of a test.
+#[derive(Clone, Debug)]
+pub struct AttemptRecord {
+    /// The repetition, from 1.
+    pub repetition: u32,
+    /// The attempt at this repetition, from 1.
+    pub attempt: u32,
+    /// When it started.
+    pub started: Micros,
+    /// The phases it entered, and when.
+    pub phases: Vec<(Phase, Micros)>,
+    /// Its end: when, and the judgement.
+    pub finished: Option<(Micros, TestFinished)>,
+    /// What it reported, up to [`AttemptRecord::MESSAGES_KEPT`] of each kind.
+    pub messages: Vec<Message>,
+    /// How many messages were counted and not kept; the journal has them.
+    pub messages_omitted: u64,
+    /// What it measured.
+    pub measurements: Vec<Measurement>,
+    /// What it attached.
+    pub attachments: Vec<Attachment>,
+    /// What it printed; dropped when it passed, the journal has it.
+    pub output: String,
+    /// Where it was before it was stopped by force.
+    pub stacks: Vec<String>,
+    /// Processes of it that had to be killed.
+    pub left: Vec<LeftProcess>,
+    /// Whether it took longer than its `slow` limit.
+    pub slow: bool,
+    kept: [u32; 4],
+}
+
+impl TestRecord {
+    pub(super) fn new(plan: TestPlanned) -> Self {
+        Self { plan, attempts: Vec::new(), skipped: None }
+    }
+
+    pub(super) fn apply(&mut self, at: Micros, kind: &EventKind) {
+        match kind {
+            EventKind::TestStarted { repetition, attempt, .. } => {
+                self.attempts.push(AttemptRecord::new(*repetition, *attempt, at));
+            }
+            EventKind::TestSkipped { reason, .. } => self.skipped = Some(reason.clone()),
+            kind => {
+                if let Some(attempt) = self.attempts.last_mut() {
+                    attempt.apply(at, kind);
+                }
+            }
+        }
+    }
+
+    /// Whether an attempt runs now.
+    #[must_use]
+    pub fn is_running(&self) -> bool {
+        self.attempts.last().is_some_and(|attempt| attempt.finished.is_none())
+    }
+
+    /// The attempts that count: the last one of each repetition.
+    pub fn deciding_attempts(&self) -> impl Iterator<Item = &AttemptRecord> {
+        let next = self.attempts.iter().skip(1).map(Some).chain([None]);
+        self.attempts.iter().zip(next).filter_map(|(attempt, next)| {
+            next.is_none_or(|next| next.repetition != attempt.repetition).then_some(attempt)
+        })
+    }
+
+    /// The attempt that explains the verdict: the first that counts and did
+    /// not pass, or else the last.
+    #[must_use]
+    pub fn decisive_attempt(&self) -> Option<&AttemptRecord> {
+        self.deciding_attempts()
+            .find(|attempt| attempt.verdict().is_some_and(|verdict| !verdict.is_green()))
+            .or(self.attempts.last())
+    }
+
+    /// The last word, `None` while there is none.
+    #[must_use]
+    pub fn verdict(&self) -> Option<Verdict> {
+        let failed = || self.deciding_attempts().filter_map(AttemptRecord::verdict).find(|v| !v.is_green());
+        if self.skipped.is_some() {
+            return Some(failed().unwrap_or(Verdict::Skipped));
+        }
+        let last = self.attempts.last()?;
+        let (_, finished) = last.finished.as_ref()?;
+        if finished.rerun || last.repetition < self.plan.repetitions {
+            return None;
+        }
+        Some(failed().unwrap_or(Verdict::Passed))
+    }
+
+    /// The last word when nothing more will come.
+    #[must_use]
+    pub fn final_verdict(&self) -> Verdict {
+        self.verdict().unwrap_or(if self.attempts.is_empty() {
+            Verdict::Skipped
+        } else {
+            Verdict::Interrupted
+        })
+    }
+
+    /// Why it did not pass, in words.
+    #[must_use]
+    pub fn reason(&self) -> Option<&str> {
+        let finished = self.decisive_attempt().and_then(|a| a.finished.as_ref());
+        let failed = finished.filter(|(_, finished)| !finished.verdict.is_green());
+        failed.and_then(|(_, finished)| finished.reason.as_deref()).or(self.skipped.as_deref())
+    }
+
+    /// The time spent in all attempts that ended.
+    #[must_use]
+    pub fn duration(&self) -> Duration {
+        self.attempts.iter().filter_map(AttemptRecord::duration).sum()
+    }
+}
+
+impl AttemptRecord {
+    /// How many messages of each kind are kept in memory.
+    pub const MESSAGES_KEPT: u32 = 1000;
+
+    fn new(repetition: u32, attempt: u32, started: Micros) -> Self {
+        Self {
+            repetition,
+            attempt,
+            started,
+            phases: Vec::new(),
+            finished: None,
+            messages: Vec::new(),
+            messages_omitted: 0,
+            measurements: Vec::new(),
+            attachments: Vec::new(),
+            output: String::new(),
+            stacks: Vec::new(),
+            left: Vec::new(),
+            slow: false,
+            kept: [0; 4],
+        }
+    }
+
+    fn apply(&mut self, at: Micros, kind: &EventKind) {
+        match kind {
+            EventKind::TestPhase { phase, .. } => self.phases.push((*phase, at)),
+            EventKind::Message { message, .. } => self.keep(message),
+            EventKind::Measured { measurement, .. } => self.measurements.push(measurement.clone()),
+            EventKind::Attached { attachment, .. } => self.attachments.push(attachment.clone()),
+            EventKind::Output(output) => {
+                if output.omitted > 0 {
+                    self.output += &format!("\n[… {} bytes left out …]\n", output.omitted);
+                }
+                self.output += &output.text;
+            }
+            EventKind::TestSlow { .. } => self.slow = true,
+            EventKind::StackDumped { text, .. } => self.stacks.push(text.clone()),
+            EventKind::ProcessesLeft { processes, .. } => self.left.extend_from_slice(processes),
+            EventKind::TestFinished(finished) => self.finish(at, finished),
+            _ => {}
+        }
+    }
+
+    fn keep(&mut self, message: &Message) {
+        let kept = &mut self.kept[match message.kind {
+            MessageKind::Report => 0,
+            MessageKind::Check => 1,
+            MessageKind::Failure => 2,
+            MessageKind::Error => 3,
+        }];
+        if *kept < Self::MESSAGES_KEPT {
+            *kept += 1;
+            self.messages.push(message.clone());
+        } else {
+            self.messages_omitted += 1;
+        }
+    }
+
+    fn finish(&mut self, at: Micros, finished: &TestFinished) {
+        if finished.verdict.is_green() {
+            self.output = String::new();
+        }
+        self.messages.shrink_to_fit();
+        self.phases.shrink_to_fit();
+        self.finished = Some((at, finished.clone()));
+    }
+
+    /// The judgement, `None` while it runs.
+    #[must_use]
+    pub fn verdict(&self) -> Option<Verdict> {
+        self.finished.as_ref().map(|(_, finished)| finished.verdict)
+    }
+
+    /// How long it took, `None` while it runs.
+    #[must_use]
+    pub fn duration(&self) -> Option<Duration> {
+        self.finished.as_ref().map(|(at, _)| at.since(self.started))
+    }
+
+    /// The failures and errors that were kept.
+    pub fn failures(&self) -> impl Iterator<Item = &Message> {
+        let fails = |m: &&Message| matches!(m.kind, MessageKind::Failure | MessageKind::Error);
+        self.messages.iter().filter(fails)
+    }
+
+    /// The measurements outside their limits.
+    pub fn violations(&self) -> impl Iterator<Item = &Measurement> {
+        self.measurements.iter().filter(|measurement| !measurement.is_within_limits())
+    }
+}

@@ -1,0 +1,141 @@
+//! What a plug-in reports while it runs.
+
+use serde::{Deserialize, Serialize};
+
+/// A place in a plug-in's source.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Location {
+    /// The file, as the plug-in's compiler or interpreter names it.
+    pub file: String,
+    /// The line, from 1; 0 when it is unknown.
+    #[serde(default)]
+    pub line: u32,
+}
+
+impl std::fmt::Display for Location {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if self.line == 0 {
+            f.write_str(&self.file)
+        } else {
+            write!(f, "{}:{}", self.file, self.line)
+        }
+    }
+}
+
+/// What a [`Message`] means for the verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum MessageKind {
+    /// Information only.
+    Report,
+    /// A check held.
+    Check,
+    /// A check or an assertion did not hold: the robot is wrong.
+    Failure,
+    /// The plug-in could not do its work: the bench is wrong.
+    Error,
+}
+
+/// One message of a plug-in. Its text is never cut.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Message {
+    /// What it means for the verdict.
+    pub kind: MessageKind,
+    /// The text, possibly of several lines.
+    pub text: String,
+    /// Where in the plug-in it was written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub location: Option<Location>,
+    /// The numbers behind a near-equality check.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub comparison: Option<Comparison>,
+    /// Whether going on would be unsafe: the rest of the suite is skipped.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub critical: bool,
+}
+
+/// The numbers behind a near-equality check of a scalar (one entry) or a vector.
+/// A number that JSON cannot carry (NaN, infinities) is `null`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Comparison {
+    /// What was expected.
+    pub expected: Vec<Option<f64>>,
+    /// What was found.
+    pub got: Vec<Option<f64>>,
+    /// The largest absolute difference that is accepted.
+    pub tolerance: f64,
+    /// The index with the largest difference, from 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub worst: Option<u64>,
+}
+
+/// A number that a test measured, with the limits that it must keep.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Measurement {
+    /// What was measured.
+    pub name: String,
+    /// The value; `null` when it is not a finite number, which no limit accepts.
+    pub value: Option<f64>,
+    /// The unit, empty for a pure number.
+    #[serde(default)]
+    pub unit: String,
+    /// The smallest accepted value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub low: Option<f64>,
+    /// The largest accepted value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub high: Option<f64>,
+    /// Where in the plug-in it was taken.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub location: Option<Location>,
+}
+
+impl Measurement {
+    /// Whether the value lies within its limits. A value without limits does,
+    /// a value that is not a finite number does not.
+    #[must_use]
+    pub fn is_within_limits(&self) -> bool {
+        self.value.is_some_and(|value| {
+            self.low.is_none_or(|low| value >= low) && self.high.is_none_or(|high| value <= high)
+        })
+    }
+
+    /// The limits as text: `0.5 … 2`, `≥ 0.5`, `≤ 2`; empty without limits.
+    #[must_use]
+    pub fn limits(&self) -> String {
+        match (self.low, self.high) {
+            (Some(low), Some(high)) => format!("{low} … {high}"),
+            (Some(low), None) => format!("≥ {low}"),
+            (None, Some(high)) => format!("≤ {high}"),
+            (None, None) => String::new(),
+        }
+    }
+
+    /// The value with its unit: `1.25 rad`, `not a number`.
+    #[must_use]
+    pub fn value_with_unit(&self) -> String {
+        match self.value {
+            Some(value) if self.unit.is_empty() => value.to_string(),
+            Some(value) => format!("{value} {}", self.unit),
+            None => "not a finite number".to_owned(),
+        }
+    }
+}
+
+/// A file that a test keeps with its result.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Attachment {
+    /// The name under which reports show it.
+    pub name: String,
+    /// Where it is: from a host, any path; in an event, relative to the run's folder.
+    pub path: String,
+    /// Its media type (`image/png`), empty when unknown.
+    #[serde(default)]
+    pub media_type: String,
+}

@@ -1,0 +1,85 @@
+//! What can be said of a test when it is over.
+
+use serde::{Deserialize, Serialize};
+
+/// The judgement of the runner over one attempt of a test.
+///
+/// A failure says that the robot is wrong, an error that the bench is wrong;
+/// the two are never mixed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// The host said at the end of its protocol that everything held.
+    Passed,
+    /// The robot is wrong: a check, an assertion or a measurement's limit did not hold.
+    Failed,
+    /// The bench is wrong: the plug-in, its set-up, its tear-down or its protocol.
+    Error,
+    /// The test's process died: a signal, or an exit before the end of its protocol.
+    Crashed,
+    /// A phase of the test did not end within its limit.
+    TimedOut,
+    /// A fixture collapsed while the test ran.
+    Collapsed,
+    /// The test was never started.
+    Skipped,
+    /// The user stopped the run while the test ran.
+    Interrupted,
+}
+
+impl Verdict {
+    /// Every verdict, in the order in which summaries list them.
+    pub const ALL: [Self; 8] = [
+        Self::Passed,
+        Self::Failed,
+        Self::Error,
+        Self::Crashed,
+        Self::TimedOut,
+        Self::Collapsed,
+        Self::Skipped,
+        Self::Interrupted,
+    ];
+
+    /// The word for this verdict, as in the event stream.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Passed => "passed",
+            Self::Failed => "failed",
+            Self::Error => "error",
+            Self::Crashed => "crashed",
+            Self::TimedOut => "timed-out",
+            Self::Collapsed => "collapsed",
+            Self::Skipped => "skipped",
+            Self::Interrupted => "interrupted",
+        }
+    }
+
+    /// Whether a run in which this is a test's last word can be green.
+    #[must_use]
+    pub fn is_green(self) -> bool {
+        self == Self::Passed
+    }
+}
+
+impl std::fmt::Display for Verdict {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+/// What a host says of a request that it carried out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Outcome {
+    /// Everything held.
+    Passed,
+    /// A check, an assertion or a measurement's limit did not hold.
+    Failed,
+    /// The plug-in could not do its work.
+    Error,
+    /// The plug-in stopped early because it was asked to.
+    Interrupted,
+}
