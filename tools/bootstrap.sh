@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# Installs what a goal needs and this machine lacks. What is there is left alone.
+#
+#   tools/bootstrap.sh build|demo|test
+#
+# Programs and libraries come from Debian or Ubuntu; on other systems the
+# script says what is missing. Python packages go into a virtual environment
+# in the user's cache, see tools/venv.sh.
+
+. "$(dirname "$0")/env.sh"
+
+goal=${1:?goal: build, demo or test}
+
+# The Debian packages of each goal.
+case $goal in
+  build) packages=() ;;
+  demo) packages=(cmake g++ lua-socket python3-venv) ;;
+  test) packages=(cmake g++ lua-socket python3-venv libxml2-utils gdb shellcheck clang-format
+    procps) ;;
+  *) die "no goal \`$goal\`: build, demo or test" ;;
+esac
+
+# Whether a package is needed is asked of the machine, not of dpkg: a Python
+# from elsewhere brings its own venv, a compiler may come from elsewhere too.
+is_there() {
+  case $1 in
+    g++) have c++ ;;
+    libxml2-utils) have xmllint ;;
+    procps) have pgrep ;;
+    python3-venv) python3 -c 'import ensurepip, venv' 2>/dev/null ;;
+    lua-socket) compgen -G '/usr/lib/*/lua/5.4/socket/core.so' >/dev/null ||
+      [ -e /usr/lib/lua/5.4/socket/core.so ] || [ -e /usr/local/lib/lua/5.4/socket/core.so ] ;;
+    *) have "$1" ;;
+  esac
+}
+
+find_missing() {
+  missing=()
+  for package in "${packages[@]}"; do
+    is_there "$package" || missing+=("$package")
+  done
+}
+
+# Runs apt-get as root, by sudo if need be. A password is asked for only where
+# somebody can type it.
+apt() {
+  local root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    have sudo || return 1
+    root=(sudo -n)
+    [ ! -t 0 ] || sudo -v || return 1
+  fi
+  quietly "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq "$@"
+}
+
+have cargo || die "cargo is missing" \
+  "the Rust toolchain, version 1.95 or later, comes from https://rustup.rs"
+
+find_missing
+if [ ${#missing[@]} -gt 0 ]; then
+  by_hand="sudo apt-get install ${missing[*]}"
+  have apt-get || die "missing: ${missing[*]} (Debian's names)" \
+    "install what this system calls them, then try again"
+  say "installing: ${missing[*]}"
+  apt install -y --no-install-recommends "${missing[@]}" ||
+    { apt update && apt install -y --no-install-recommends "${missing[@]}"; } ||
+    die "missing and could not be installed: ${missing[*]}" "as root: $by_hand"
+  find_missing
+  [ ${#missing[@]} -eq 0 ] || die "still missing after apt-get install: ${missing[*]}"
+fi

@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# Installs rtf below PREFIX; with DESTDIR, below DESTDIR/PREFIX (for packages).
+# What it installs is listed in share/rtf/manifest.txt, for tools/uninstall.sh.
+
+. "$(dirname "$0")/env.sh"
+
+PREFIX=${PREFIX:-/usr/local}
+DESTDIR=${DESTDIR:-}
+case $PREFIX in
+  /*) ;;
+  *) die "PREFIX is \`$PREFIX\`, which is not an absolute path" ;;
+esac
+top=$DESTDIR$PREFIX
+release=$TARGET/release
+
+stage=$(mktemp -d)
+trap 'rm -rf "$stage"' EXIT
+
+# Installs one file: mode, source, destination below the prefix.
+put() {
+  install -D -m "$1" "$2" "$top/$3"
+  printf '%s\n' "$3" >>"$stage/manifest.txt"
+}
+
+# Installs the files of a folder whose names match one of the patterns.
+put_tree() {
+  local source=$1 destination=$2 names=() file
+  shift 2
+  for pattern in "$@"; do
+    names+=(-o -name "$pattern")
+  done
+  while IFS= read -r file; do
+    put 644 "$file" "$destination/${file#"$source"/}"
+  done < <(find "$source" -type f \( "${names[@]:1}" \) | sort)
+}
+
+# Under sudo nothing is built: root would leave its files in the checkout.
+if [ -z "${SUDO_USER:-}" ]; then
+  tools/bootstrap.sh build
+  tools/build.sh
+fi
+for program in rtf rtf-host-native rtf-host-lua; do
+  [ -x "$release/$program" ] || die "$release/$program is missing" "run \`make build\` first"
+done
+if [ -e "$top" ] && [ ! -w "$top" ]; then
+  die "$top cannot be written" "sudo make install, or choose another PREFIX"
+fi
+if [ -e "$top/share/rtf/manifest.txt" ]; then
+  tools/uninstall.sh # files of an older version that the new one does not have
+fi
+
+"$release/rtf" man "$stage/man"
+for shell in bash zsh fish; do
+  "$release/rtf" completions "$shell" >"$stage/rtf.$shell"
+done
+
+put 755 "$release/rtf" bin/rtf
+put 755 "$release/rtf-host-native" libexec/rtf/rtf-host-native
+put 755 "$release/rtf-host-lua" libexec/rtf/rtf-host-lua
+put_tree sdk/c/include include '*.h'
+put_tree sdk/cpp/include include '*.h' '*.hpp'
+put_tree sdk/cpp/cmake lib/cmake/RobotTestingFramework '*.cmake'
+put_tree sdk/python/rtf share/rtf/python/rtf '*.py' py.typed
+if [ -d sdk/lua ]; then
+  put_tree sdk/lua share/rtf/lua '*.lua'
+fi
+put_tree spec share/rtf/spec '*.md' '*.xsd' '*.json'
+put_tree "$stage/man" share/man/man1 '*.1'
+put 644 "$stage/rtf.bash" share/bash-completion/completions/rtf
+put 644 "$stage/rtf.zsh" share/zsh/site-functions/_rtf
+put 644 "$stage/rtf.fish" share/fish/vendor_completions.d/rtf.fish
+for page in README.md CHANGELOG.md LICENSE; do
+  put 644 "$page" "share/doc/rtf/$page"
+done
+put_tree docs share/doc/rtf/docs '*.md'
+put_tree examples share/doc/rtf/examples '*'
+
+install -D -m 644 "$stage/manifest.txt" "$top/share/rtf/manifest.txt"
+say "installed $(wc -l <"$stage/manifest.txt") files below $top"
