@@ -1,0 +1,85 @@
+//! What a host has to be able to do.
+
+use rtf_model::Location;
+use rtf_model::protocol::{Initialize, Initialized, Plugin};
+
+use crate::Session;
+
+/// As what a plug-in is loaded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// As a test: `setup`, `run`, `tearDown`.
+    Test,
+    /// As a fixture: `setup`, `check` as often as the runner asks, `tearDown`.
+    Fixture,
+}
+
+/// One function of the loaded plug-in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// `setup`, with the arguments of [`Plugin::args`].
+    Setup,
+    /// `run` of a test.
+    Run,
+    /// `check` of a fixture. A plug-in that has none is well.
+    Check,
+    /// `tearDown`.
+    TearDown,
+}
+
+/// How a function of the plug-in ended. What it reported meanwhile has gone
+/// through the [`Session`], which knows about failures and errors by itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum StepEnd {
+    /// It returned.
+    Done,
+    /// It returned false.
+    Refused,
+    /// An assertion or an error that it reported stopped it, or it unwound
+    /// because it was asked to stop.
+    Stopped,
+    /// It ended in a way that is not the SDK's: an exception, with its type
+    /// and text, and the place where it came from if that is known.
+    Broken(String, Option<Location>),
+}
+
+/// Why a plug-in could not be loaded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LoadError {
+    /// What is wrong, with the loader's or interpreter's own words.
+    pub message: String,
+    /// Where, when it is a place in the plug-in's source.
+    pub location: Option<Location>,
+}
+
+/// Makes the host tell where the plug-in is, by [`Session::stack`]. Called on
+/// the thread that reads the channel, while the plug-in runs on another.
+pub type StackDumper = Box<dyn Fn(&Session) + Send>;
+
+/// A host. All functions are called on the thread that called [`crate::serve`].
+pub trait HostPlugin {
+    /// The host's name and version, and how it dumps stacks.
+    fn describe(&self) -> Initialized;
+
+    /// Called once, with the runner's first request, before anything is loaded.
+    fn prepare(&mut self, _initialize: &Initialize) {}
+
+    /// Loads a plug-in. At most one is loaded at a time.
+    ///
+    /// # Errors
+    /// The plug-in cannot be loaded; nothing is loaded then.
+    fn load(&mut self, role: Role, plugin: &Plugin) -> Result<(), LoadError>;
+
+    /// Calls a function of the loaded plug-in.
+    fn step(&mut self, step: Step) -> StepEnd;
+
+    /// Forgets the loaded plug-in after its `tearDown`.
+    fn unload(&mut self) -> StepEnd {
+        StepEnd::Done
+    }
+
+    /// What to do when the runner sends `dump-stack`.
+    fn stack_dumper(&self) -> Option<StackDumper> {
+        None
+    }
+}

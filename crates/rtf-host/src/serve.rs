@@ -1,0 +1,227 @@
+//! The host's work: one request after the other, in order.
+
+use rtf_model::protocol::{
+    Answer, Initialize, PROTOCOL_VERSION, Plugin, Request, RpcError, VERSION_MISMATCH,
+};
+use rtf_model::{Message, MessageKind, Outcome, Phase};
+
+use crate::decode::{INVALID_REQUEST, Incoming};
+use crate::{HostPlugin, Role, Session, Step, StepEnd, reader};
+
+/// Serves the runner until it has got its last answer or has closed the
+/// channel. The caller then ends the process the ordinary way, so that what
+/// the plug-in left for the end of the process is done.
+///
+/// While a plug-in is loaded, the end of the channel ends the process at once.
+///
+/// # Errors
+/// The thread that reads the channel cannot be started.
+pub fn serve(session: &Session, host: impl HostPlugin) -> std::io::Result<()> {
+    reader::spawn(session.clone(), host.stack_dumper())?;
+    let mut server = Server {
+        session,
+        host,
+        initialized: false,
+        loaded: None,
+    };
+    while let Some(incoming) = session.next() {
+        match incoming {
+            Incoming::Refused { id, error } => {
+                session.pass();
+                session.refuse(id, error);
+            }
+            Incoming::Request { id, request } => {
+                if server.carry_out(id, request) {
+                    break;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+struct Server<'a, H> {
+    session: &'a Session,
+    host: H,
+    initialized: bool,
+    loaded: Option<Role>,
+}
+
+impl<H: HostPlugin> Server<'_, H> {
+    /// Carries out a request; true when it was the last one.
+    fn carry_out(&mut self, id: Option<u64>, request: Request) -> bool {
+        if let Request::Initialize(initialize) = request {
+            self.session.pass();
+            self.initialize(id, &initialize);
+            return false;
+        }
+        if !self.initialized {
+            self.session.pass();
+            let message = "the first request must be `initialize`".to_owned();
+            self.session.refuse(
+                id,
+                RpcError {
+                    code: INVALID_REQUEST,
+                    message,
+                },
+            );
+            return false;
+        }
+        let mut last = false;
+        match request {
+            Request::RunTest(plugin) => {
+                last = plugin.last;
+                self.run_test(&plugin);
+            }
+            Request::SetUpFixture(plugin) => self.set_up_fixture(&plugin),
+            Request::CheckFixture {} => self.check_fixture(),
+            Request::TearDownFixture {} => self.tear_down_fixture(),
+            // Heard by the thread that reads the channel, and by nobody else.
+            Request::Initialize(_) | Request::Interrupt { .. } | Request::DumpStack {} => {}
+        }
+        // The answer may make the runner close the channel at once. Only a
+        // fixture that is still up makes that a reason to end the hard way.
+        self.session.engage(self.loaded.is_some());
+        let answer = self.session.conclude();
+        self.answer(id, answer);
+        last
+    }
+
+    fn initialize(&mut self, id: Option<u64>, initialize: &Initialize) {
+        if initialize.protocol != PROTOCOL_VERSION {
+            let message = format!(
+                "rtf {} speaks version {} of the host protocol, this host version {PROTOCOL_VERSION}",
+                initialize.rtf, initialize.protocol
+            );
+            self.session.refuse(
+                id,
+                RpcError {
+                    code: VERSION_MISMATCH,
+                    message,
+                },
+            );
+            return;
+        }
+        self.host.prepare(initialize);
+        self.initialized = true;
+        self.session.answer(id, self.host.describe());
+    }
+
+    /// Sends the answer. A reason that does not fit on a line was sent as a
+    /// message before; what is left here names it.
+    fn answer(&self, id: Option<u64>, answer: Answer) {
+        if !self.session.answer(id, &answer) {
+            let reason = answer
+                .reason
+                .map(|reason| reason.chars().take(10_000).collect());
+            self.session.answer(id, Answer { reason, ..answer });
+        }
+    }
+
+    fn run_test(&mut self, plugin: &Plugin) {
+        if !self.load(Role::Test, plugin) {
+            return;
+        }
+        self.session.phase(Phase::Setup);
+        self.step(Step::Setup, true);
+        if self.session.judge(|judge| judge.all_holds()) {
+            self.session.phase(Phase::Run);
+            self.step(Step::Run, false);
+        }
+        self.session.phase(Phase::TearDown);
+        self.tear_down();
+    }
+
+    fn set_up_fixture(&mut self, plugin: &Plugin) {
+        if self.load(Role::Fixture, plugin) {
+            self.step(Step::Setup, true);
+        }
+    }
+
+    fn check_fixture(&mut self) {
+        if self.loaded.is_some() {
+            self.step(Step::Check, false);
+        } else {
+            self.session
+                .judge(|judge| judge.note(Outcome::Error, "no fixture is set up"));
+        }
+    }
+
+    /// A fixture that could not be loaded has nothing to tear down.
+    fn tear_down_fixture(&mut self) {
+        if self.loaded.is_some() {
+            self.tear_down();
+        }
+    }
+
+    fn load(&mut self, role: Role, plugin: &Plugin) -> bool {
+        if self.loaded.is_some() {
+            let reason = "a fixture is still set up in this host";
+            self.session
+                .judge(|judge| judge.note(Outcome::Error, reason));
+            return false;
+        }
+        self.session.engage(true);
+        match self.host.load(role, plugin) {
+            Ok(()) => {
+                self.loaded = Some(role);
+                true
+            }
+            Err(error) => {
+                self.error(error.message, error.location);
+                false
+            }
+        }
+    }
+
+    fn tear_down(&mut self) {
+        self.session.clear_stop();
+        self.step(Step::TearDown, true);
+        let end = self.host.unload();
+        self.judge_end(end, "unloading");
+        self.loaded = None;
+    }
+
+    fn step(&mut self, step: Step, failures_are_errors: bool) {
+        self.session
+            .judge(|judge| judge.failures_are_errors = failures_are_errors);
+        let end = self.host.step(step);
+        self.judge_end(end, name(step));
+    }
+
+    fn judge_end(&self, end: StepEnd, what: &str) {
+        match end {
+            StepEnd::Done => {}
+            StepEnd::Refused => {
+                self.session
+                    .judge(|judge| judge.note_failure(&format!("{what} returned false")));
+            }
+            // Whatever stopped it was reported; a host that forgot must not pass.
+            StepEnd::Stopped => self.session.judge(|judge| {
+                judge.note(Outcome::Error, &format!("{what} stopped without a reason"));
+            }),
+            StepEnd::Broken(text, location) => self.error(text, location),
+        }
+    }
+
+    fn error(&self, text: String, location: Option<rtf_model::Location>) {
+        let kind = MessageKind::Error;
+        self.session.message(Message {
+            kind,
+            text,
+            location,
+            comparison: None,
+            critical: false,
+        });
+    }
+}
+
+/// The function's name, as plug-ins spell it.
+fn name(step: Step) -> &'static str {
+    match step {
+        Step::Setup => "setup",
+        Step::Run => "run",
+        Step::Check => "check",
+        Step::TearDown => "tearDown",
+    }
+}

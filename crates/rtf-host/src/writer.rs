@@ -1,0 +1,86 @@
+//! Lines that leave the host: each complete, in one piece, before the call returns.
+
+use std::os::unix::net::UnixStream;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use rtf_model::Message;
+use rtf_model::protocol::{Line, Notification};
+use serde::Serialize;
+
+use crate::unix;
+
+/// The longest line that the runner accepts, its end included.
+pub(crate) const LINE_LIMIT: usize = 16 * 1024 * 1024;
+
+/// The channel's sending side. Nothing is held back: a process that crashes
+/// right after a report has reported it.
+#[derive(Debug)]
+pub(crate) struct Writer {
+    channel: Arc<UnixStream>,
+    line: Mutex<Vec<u8>>,
+}
+
+impl Writer {
+    pub(crate) fn new(channel: Arc<UnixStream>) -> Self {
+        Self {
+            channel,
+            line: Mutex::new(Vec::with_capacity(512)),
+        }
+    }
+
+    /// Sends a notification. A message that is too long for a line is sent in
+    /// several, for its text must not be cut.
+    pub(crate) fn notify(&self, notification: &Notification) {
+        if self.send(None, notification) {
+            return;
+        }
+        if let Notification::Message(message) = notification {
+            for part in halves(message) {
+                self.notify(&Notification::Message(part));
+            }
+        }
+    }
+
+    /// Sends a line; false when it would be too long and was not sent. Without
+    /// a runner there is nothing to do any more, so that the process ends.
+    pub(crate) fn send<T: Serialize>(&self, id: Option<u64>, body: &T) -> bool {
+        let mut line = self.line.lock().unwrap_or_else(PoisonError::into_inner);
+        line.clear();
+        if serde_json::to_writer(&mut *line, &Line::new(id, body)).is_err() {
+            return false;
+        }
+        line.push(b'\n');
+        let fits = line.len() <= LINE_LIMIT;
+        if fits && unix::send_all(&self.channel, &line).is_err() {
+            unix::end_now();
+        }
+        if line.capacity() > 64 * 1024 {
+            *line = Vec::with_capacity(512);
+        }
+        fits
+    }
+}
+
+/// The two halves of a message's text, as messages of their own.
+fn halves(message: &Message) -> Vec<Message> {
+    let text = &message.text;
+    let middle = (text.len() / 2..text.len())
+        .find(|&at| text.is_char_boundary(at))
+        .unwrap_or(0);
+    if middle == 0 {
+        return Vec::new();
+    }
+    let (first, second) = text.split_at(middle);
+    let part = |text: &str| Message {
+        text: text.to_owned(),
+        comparison: None,
+        ..message.clone()
+    };
+    vec![
+        Message {
+            comparison: message.comparison.clone(),
+            ..part(first)
+        },
+        part(second),
+    ]
+}
