@@ -102,7 +102,8 @@ impl HostPlugin for Script {
     }
 }
 
-/// The runner's end.
+/// The runner's end. A test takes every answer before it drops it: the end of
+/// the channel under a loaded plug-in ends the whole process.
 struct Runner {
     channel: UnixStream,
     lines: std::io::Lines<BufReader<UnixStream>>,
@@ -255,6 +256,7 @@ fn set_up_that_fails_leaves_out_run_but_not_tear_down() {
         "{phases:?}"
     );
     assert!(phases[2].contains("torn down"), "{phases:?}");
+    assert!(runner.result().contains("setup returned false"));
 }
 
 #[test]
