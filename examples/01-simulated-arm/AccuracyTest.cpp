@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ArmClient.hpp"
@@ -65,11 +68,16 @@ private:
         }
         const auto started = std::chrono::steady_clock::now();
         RTF_REQUIRE_UNTIL(distance(pose(), target) < 2 * tolerance_, 5s, "the arm near its pose");
-        Pose before = target;
-        RTF_REQUIRE_UNTIL(distance(std::exchange(before, pose()), before) < 1e-4, 5s,
-                          "the arm to stand still");
+        Pose before(target.size(), std::numeric_limits<double>::infinity());
+        RTF_REQUIRE_UNTIL(moved(before) < 1e-4, 5s, "the arm to stand still");
         const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - started;
         return taken.count();
+    }
+
+    // How far the arm has moved from `before`, which becomes its pose now.
+    double moved(Pose& before) {
+        const Pose now = pose();
+        return distance(std::exchange(before, now), now);
     }
 
     Pose pose() {

@@ -20,6 +20,7 @@ class RateTest(rtf.TestCase):
 
     def setup(self, args: list[str]) -> bool:
         self.seconds = float(args[args.index("--seconds") + 1]) if "--seconds" in args else 3.0
+        self.folder = tempfile.TemporaryDirectory()  # goes when this process ends
         self.arm = Arm()
         self.require("shoulder" in self.arm.joints(), "the arm has a shoulder")
         return True
@@ -55,7 +56,7 @@ class RateTest(rtf.TestCase):
 
     def keep(self, samples: list[tuple[float, float, float]]) -> None:
         """Keeps the samples with the test's result, for a plot."""
-        path = Path(tempfile.mkdtemp()) / "shoulder.csv"
+        path = Path(self.folder.name) / "shoulder.csv"
         with path.open("w", newline="") as file:
             table = csv.writer(file)
             table.writerow(["seconds", "shoulder_rad", "latency_s"])

@@ -92,9 +92,10 @@ class LineServer:
     def close(self) -> None:
         """Ends all connections."""
         for key in list(self._selector.get_map().values()):
-            self._selector.unregister(key.fileobj)
-            key.fileobj.close()
+            if key.data is not None:
+                self._drop(key.data)
         self._selector.close()
+        self._listener.close()
 
     def _accept(self) -> None:
         try:

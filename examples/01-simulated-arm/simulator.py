@@ -97,7 +97,8 @@ class Arm:
         due = int((elapsed - self.data.time) / STEP_SECS)
         if due > 0:
             mujoco.mj_step(self.model, self.data, nstep=min(due, BURST_STEPS))
-        return max(0.0, self.data.time + STEP_SECS - (time.monotonic() - self._started))
+        next_step = self._started + float(self.data.time) + STEP_SECS
+        return max(0.0, next_step - time.monotonic())
 
     def position(self, joint: str) -> float:
         """What the joint's encoder says, in radians."""

@@ -1,0 +1,110 @@
+#!/usr/bin/env bash
+# Runs every check there is. A step that fails does not stop the others; its
+# whole output is shown. The last line counts the steps.
+#
+#   tools/test.sh             all steps
+#   tools/test.sh lint sdk    the steps whose names contain one of these words
+
+. "$(dirname "$0")/env.sh"
+
+wanted=("$@")
+logs=$BUILD/test-logs
+mkdir -p "$logs"
+passed=0
+failed=()
+
+is_wanted() {
+  local word
+  [ ${#wanted[@]} -gt 0 ] || return 0
+  for word in "${wanted[@]}"; do
+    [[ $1 != *"$word"* ]] || return 0
+  done
+  return 1
+}
+
+# Runs one step: its name, then its command.
+step() {
+  local name=$1 log started=$EPOCHREALTIME seconds verdict
+  shift
+  is_wanted "$name" || return 0
+  log=$logs/${name// /-}.log
+  # In the background, because in a condition bash goes on after an error.
+  "$@" >"$log" 2>&1 </dev/null &
+  if wait $!; then
+    passed=$((passed + 1))
+    verdict=ok
+  else
+    failed+=("$name")
+    verdict=FAILED
+    cat "$log"
+  fi
+  seconds=$(((${EPOCHREALTIME/./} - ${started/./}) / 100000))
+  printf '%-6s  %-28s %4d.%d s\n' "$verdict" "$name" $((seconds / 10)) $((seconds % 10))
+}
+
+lint_shell() {
+  shellcheck tools/*.sh tests/install/*.sh .ci/run
+}
+
+lint_cpp() {
+  find sdk/c sdk/cpp examples conformance tests \
+    \( -name '*.h' -o -name '*.hpp' -o -name '*.cpp' \) -print0 |
+    xargs -0 clang-format --dry-run --Werror
+}
+
+lint_python() {
+  "$checkers/ruff" check examples tools tests
+  "$checkers/ruff" format --check examples tools tests
+  "$checkers/mypy" examples/*/*.py tools/*.py
+}
+
+sdk_python() {
+  cd sdk/python
+  "$checkers/ruff" check .
+  "$checkers/ruff" format --check .
+  "$checkers/mypy"
+  "$checkers/pytest"
+}
+
+sdk_cpp() {
+  tools/plugins.sh sdk/cpp
+  ctest --test-dir "$BUILD/sdk/cpp" --output-on-failure --parallel "$JOBS"
+}
+
+suites_are_valid() {
+  find examples tests/install -name '*.xml' -print0 |
+    xargs -0 xmllint --noout --schema spec/suite.xsd
+}
+
+example_01() {
+  PATH="$simulation:$PATH" RTF_PLUGIN_PATH=$BUILD/examples/01-simulated-arm \
+    python3 tools/check_example_01.py "$TARGET/release/rtf" examples/01-simulated-arm/arm.xml
+}
+
+tools/bootstrap.sh test
+checkers=$(tools/venv.sh test)
+simulation=$(tools/venv.sh demo)
+
+step 'lint shell' lint_shell
+step 'lint rust format' cargo fmt --all --check
+step 'lint c++ format' lint_cpp
+step 'lint python' lint_python
+step 'lint suites' suites_are_valid
+step 'lint rust' cargo clippy --workspace --all-targets --locked -- -D warnings
+step 'generated schemas' cargo run --quiet --locked -p xtask -- schemas --check
+step 'generated c header' cargo run --quiet --locked -p xtask -- header --check
+step 'build' cargo build --workspace --locked
+step 'sdk c++' sdk_cpp
+step 'sdk python' sdk_python
+step 'conformance plug-ins' tools/plugins.sh conformance
+step 'rust tests' cargo test --workspace --locked --no-fail-fast
+step 'build release' tools/build.sh
+step 'example 01 plug-ins' tools/plugins.sh examples/01-simulated-arm
+step 'example 01' example_01
+step 'installed copy' tests/install/run.sh
+
+for name in "${failed[@]}"; do
+  printf 'failed: %s\n' "$name"
+done
+printf '%d passed, %d failed\n' "$passed" ${#failed[@]}
+[ ${#failed[@]} -eq 0 ] && [ "$passed" -gt 0 ]
