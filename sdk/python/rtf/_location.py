@@ -1,0 +1,64 @@
+"""Where in the plug-in something was written."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+
+class Location:
+    """A line of a source file."""
+
+    __slots__ = ("file", "line")
+
+    def __init__(self, file: str, line: int) -> None:
+        """Name the place; lines count from 1."""
+        self.file = file
+        self.line = line
+
+    def as_json(self) -> dict[str, object]:
+        """Return the form that the protocol gives it."""
+        return {"file": self.file, "line": self.line}
+
+
+def caller() -> Location | None:
+    """Return the innermost place outside this package: the plug-in's own line."""
+    frame = sys._getframe(1)
+    while frame is not None:
+        if not _is_ours(frame.f_globals):
+            return Location(frame.f_code.co_filename, frame.f_lineno)
+        if frame.f_back is None:
+            return None
+        frame = frame.f_back
+    return None
+
+
+def of_exception(trace: TracebackType | None, file: str) -> Location | None:
+    """Return the innermost line of `file` in a traceback, or else its innermost line."""
+    in_file = None
+    last = None
+    while trace is not None:
+        if not _is_ours(trace.tb_frame.f_globals):
+            last = Location(trace.tb_frame.f_code.co_filename, trace.tb_lineno)
+            if last.file == file:
+                in_file = last
+        trace = trace.tb_next
+    return in_file or last
+
+
+def without_host(trace: TracebackType | None) -> TracebackType | None:
+    """Return the traceback from the plug-in's first line on."""
+    while trace is not None and _is_ours(trace.tb_frame.f_globals):
+        trace = trace.tb_next
+    return trace
+
+
+def _is_ours(names: dict[str, object]) -> bool:
+    module = names.get("__name__")
+    if module == "__main__":
+        # `python3 -m rtf.host` runs under this name.
+        return names.get("__package__") == "rtf.host"
+    return isinstance(module, str) and (module == "rtf" or module.startswith("rtf."))

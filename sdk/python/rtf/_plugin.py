@@ -1,0 +1,84 @@
+"""What tests and fixtures have in common."""
+
+from __future__ import annotations
+
+import time
+from typing import Callable, NoReturn
+
+from rtf import _session, _text
+from rtf._stop import AssertionEnded, Interrupted
+
+_POLL_SECONDS = 0.01
+
+
+class Plugin:
+    """The part of the interface that tests and fixtures share."""
+
+    @property
+    def name(self) -> str:
+        """The name under which the suite knows this plug-in."""
+        return _session.current().task.name
+
+    @property
+    def param(self) -> str:
+        """The parameter string as it stands in the suite."""
+        return _session.current().task.param
+
+    @property
+    def environment(self) -> str:
+        """The suite's environment string."""
+        return _session.current().task.environment
+
+    @property
+    def repetition(self) -> int:
+        """The repetition that runs, from 1."""
+        return _session.current().task.repetition
+
+    def report(self, text: object) -> None:
+        """Tell the user something; it does not change the verdict."""
+        _session.current().message("report", str(text))
+
+    def fail(self, text: object) -> NoReturn:
+        """Say that the robot is wrong, and end this step."""
+        _session.current().failure(str(text))
+        raise AssertionEnded(str(text))
+
+    def error(self, text: object) -> NoReturn:
+        """Say that the bench is wrong (no network, no calibration file), and end this step."""
+        _session.current().error(str(text))
+        raise AssertionEnded(str(text))
+
+    def require(self, condition: object, text: object) -> None:
+        """Assert that `condition` holds; if it does not, this step ends."""
+        if not condition:
+            self.fail(text)
+        _session.current().message("check", str(text))
+
+    def sleep(self, seconds: float) -> None:
+        """Sleep, but wake at once when the runner asks to stop; then this step ends."""
+        judge = _session.current().judge
+        if judge.wait_for_stop(seconds):
+            raise Interrupted(judge.stop_reason())
+
+    def wait_until(self, condition: Callable[[], object], timeout: float, what: object) -> bool:
+        """Wait until `condition()` is true, asking every 10 ms for `timeout` seconds.
+
+        When the time is over this is a failed assertion, which tells `what`
+        was waited for and the last value.
+        """
+        end = time.monotonic() + timeout
+        while True:
+            value = condition()
+            if value:
+                return True
+            left = end - time.monotonic()
+            if left <= 0:
+                self.fail(
+                    f"{what}: not within {_text.number(timeout)} s"
+                    f" (last value: {_text.value(value)})"
+                )
+            self.sleep(min(_POLL_SECONDS, left))
+
+    def interrupted(self) -> bool:
+        """Whether the runner has asked to stop; a loop that runs long should look at it."""
+        return _session.current().judge.stop_requested()

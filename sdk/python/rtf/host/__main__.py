@@ -1,0 +1,27 @@
+"""The command ``python3 -m rtf.host``: serve the runner, or ``--check FILE…``."""
+
+import os
+import sys
+
+# `-m` puts the working folder first, and there a `json.py` of the user's would
+# take the place of the library's. The plug-in's own folder is put in when it
+# is loaded, after the host has imported what it needs.
+if sys.path[:1] == [os.getcwd()]:
+    del sys.path[0]
+
+from rtf.host import check, serve
+
+
+def main(arguments: list[str]) -> int:
+    """Do what the command line says and return the exit code."""
+    if arguments[:1] == ["--check"]:
+        check.check_files(arguments[1:])
+        return 0
+    if arguments:
+        sys.stderr.write("usage: python3 -m rtf.host [--check FILE...]\n")
+        return 2
+    return serve.serve()
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,122 @@
+"""The channel to the runner: JSON-RPC 2.0, one message a line."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import sys
+import threading
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+CHANNEL_VARIABLE = "RTF_CHANNEL"
+
+_READ_BYTES = 65536
+
+# The longest line that the runner accepts, its end included.
+LINE_LIMIT = 16 * 1024 * 1024
+
+_REASON_LIMIT = 10_000
+
+
+class Channel:
+    """Reads and writes lines; any thread may write."""
+
+    def __init__(self, descriptor: int) -> None:
+        """Take over the descriptor, and keep it from the plug-in's children."""
+        self.descriptor = descriptor
+        os.set_inheritable(descriptor, False)  # noqa: FBT003 - the library's signature
+        self._renew_lock()
+        # A forked child must not wait for a lock that another thread held.
+        os.register_at_fork(after_in_child=self._renew_lock)
+
+    @classmethod
+    def from_environment(cls) -> Channel:
+        """Open the channel that the runner named, and take its name away."""
+        place = os.environ.pop(CHANNEL_VARIABLE, "")
+        scheme, _, number = place.partition(":")
+        if scheme != "fd" or not number.isdecimal():
+            raise ValueError(f"{CHANNEL_VARIABLE} is `{place}`, expected `fd:N`")
+        return cls(int(number))
+
+    def _renew_lock(self) -> None:
+        self._lock = threading.Lock()
+
+    def lines(self) -> Iterator[bytes]:
+        """Yield each line until the runner has gone."""
+        rest = b""
+        while True:
+            try:
+                data = os.read(self.descriptor, _READ_BYTES)
+            except ConnectionResetError:
+                return
+            if not data:
+                return
+            *whole, rest = (rest + data).split(b"\n")
+            yield from whole
+
+    def notify(self, method: str, params: dict[str, object]) -> None:
+        """Tell the runner something. A text that is too long for a line is sent in parts."""
+        data = encode({"jsonrpc": "2.0", "method": method, "params": params})
+        text = params.get("text")
+        if len(data) <= LINE_LIMIT or not isinstance(text, str):
+            self._write(data)
+            return
+        middle = len(text) // 2
+        for part in (text[:middle], text[middle:]):
+            self.notify(method, {**params, "text": part})
+
+    def answer(self, number: object, result: dict[str, object]) -> None:
+        """Answer a request that was carried out."""
+        data = encode({"jsonrpc": "2.0", "id": number, "result": result})
+        if len(data) > LINE_LIMIT:
+            # The whole reason was sent as a message before; what is left names it.
+            result = {**result, "reason": str(result.get("reason"))[:_REASON_LIMIT]}
+            data = encode({"jsonrpc": "2.0", "id": number, "result": result})
+        self._write(data)
+
+    def refuse(self, number: object, code: int, text: str) -> None:
+        """Answer a request that cannot be carried out."""
+        error = {"code": code, "message": text}
+        self._write(encode({"jsonrpc": "2.0", "id": number, "error": error}))
+
+    def _write(self, data: bytes) -> None:
+        try:
+            with self._lock:
+                while data:
+                    data = data[os.write(self.descriptor, data) :]
+        except (BrokenPipeError, ConnectionResetError):
+            end_without_runner()
+
+
+def encode(line: dict[str, object]) -> bytes:
+    """Write one line. JSON has no numbers that are not finite: they become ``null``."""
+    try:
+        text = json.dumps(line, ensure_ascii=False, allow_nan=False)
+    except ValueError:
+        text = json.dumps(_finite(line), ensure_ascii=False, allow_nan=False)
+    # A file name that is not UTF-8 holds lone surrogates, which JSON cannot carry.
+    return text.encode("utf-8", "replace") + b"\n"
+
+
+def _finite(value: object) -> object:
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: _finite(entry) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [_finite(entry) for entry in value]
+    return value
+
+
+def end_without_runner() -> None:
+    """End the process at once: nobody is left to run tests for."""
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except (OSError, ValueError):  # whoever read it is gone too
+            continue
+    os._exit(1)

@@ -1,0 +1,61 @@
+"""Loads a plug-in: a file with one class of ours."""
+
+from __future__ import annotations
+
+import os
+import sys
+from types import ModuleType
+from typing import TypeVar
+
+from rtf._plugin import Plugin
+
+_P = TypeVar("_P", bound=Plugin)
+
+
+class LoadError(Exception):
+    """The file was read, but is no plug-in."""
+
+
+def load(file: str, base: type[_P]) -> _P:
+    """Run the file as a module of its own and make an object of its one class."""
+    module = _run_file(file)
+    found = _classes(module, base)
+    if len(found) == 1:
+        return found[0]()
+    wanted = f"rtf.{base.__name__}"
+    if found:
+        names = ", ".join(f"`{one.__name__}`" for one in found)
+        raise LoadError(f"`{file}` has several classes that derive from {wanted}: {names}")
+    others = ", ".join(f"`{one.__name__}`" for one in _classes(module, Plugin))
+    hint = f"; it has {others}" if others else ""
+    raise LoadError(f"`{file}` has no class that derives from {wanted}{hint}")
+
+
+def _run_file(file: str) -> ModuleType:
+    # Not by `importlib`: that leaves a `__pycache__` beside the user's files
+    # and insists on file names that are Python's own.
+    with open(file, "rb") as stream:
+        code = compile(stream.read(), file, "exec", dont_inherit=True)
+    stem = os.path.splitext(os.path.basename(file))[0]
+    name = f"rtf_plugin_{stem}"
+    while name in sys.modules:
+        name += "_"
+    module = ModuleType(name)
+    module.__file__ = file
+    sys.modules[name] = module
+    sys.path.insert(0, os.path.dirname(os.path.abspath(file)))
+    exec(code, module.__dict__)  # noqa: S102 - running the user's file is what a host is for
+    return module
+
+
+def _classes(module: ModuleType, base: type[_P]) -> list[type[_P]]:
+    """Find the classes that the file itself defines and from which it derives no other."""
+    own = {
+        entry
+        for entry in vars(module).values()
+        if isinstance(entry, type)
+        and issubclass(entry, base)
+        and entry.__module__ == module.__name__
+    }
+    leaves = [one for one in own if not any(one in other.__mro__[1:] for other in own)]
+    return sorted(leaves, key=lambda one: one.__name__)

@@ -1,0 +1,231 @@
+"""Serves the runner: one thread reads, the main thread carries out what it asks.
+
+The plug-in runs in the main thread, as in any Python program: signals, GUI
+tool kits and robot middleware count on that.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import json
+import os
+import platform
+import signal
+import sys
+import threading
+from queue import SimpleQueue
+from typing import TYPE_CHECKING, TextIO
+
+from rtf import _session
+from rtf._session import Judge, Session, Task
+from rtf._stop import StepEnded
+from rtf.host import channel, steps
+
+if TYPE_CHECKING:
+    from rtf._fixture import FixtureManager
+
+PROTOCOL_VERSION = 1
+
+PARSE_ERROR = -32700
+INVALID_REQUEST = -32600
+METHOD_NOT_FOUND = -32601
+INVALID_PARAMS = -32602
+VERSION_MISMATCH = -32001
+
+# A plug-in that looks at `interrupted()` gets this long to end by itself. Then
+# it gets what Ctrl-C does to a Python program, so that its tear-down still runs.
+_POLITE_SECONDS = 0.5
+
+
+class Request:
+    """What the runner waits for an answer to."""
+
+    def __init__(self, message: dict[str, object]) -> None:
+        """Take a message that has a number and a method."""
+        self.number = message["id"]
+        self.method = message.get("method")
+        params = message.get("params", {})
+        self.params: dict[str, object] = params if isinstance(params, dict) else {}
+        self.judge = Judge()
+        self.done = threading.Event()
+
+
+class Reader:
+    """Reads the channel; requests to stop get through while a plug-in runs."""
+
+    def __init__(self, line: channel.Channel) -> None:
+        """Start reading `line` in a thread that does not keep the process alive."""
+        self.requests: SimpleQueue[Request | None] = SimpleQueue()
+        # A fixture that is up: without the runner nobody would stop it.
+        self.fixture_is_up = False
+        self._channel = line
+        self._open: list[Request] = []
+        self._lock = threading.Lock()
+        threading.Thread(target=self._read, name="rtf channel", daemon=True).start()
+
+    def finish(self, request: Request, *, fixture_is_up: bool) -> None:
+        """Forget a request that is about to be answered: the runner may go then."""
+        request.done.set()
+        with self._lock:
+            self._open.remove(request)
+            self.fixture_is_up = fixture_is_up
+
+    def _read(self) -> None:
+        for line in self._channel.lines():
+            try:
+                message = json.loads(line)
+            except ValueError as problem:
+                self._channel.refuse(None, PARSE_ERROR, f"not a JSON text: {problem}")
+                continue
+            if isinstance(message, dict) and isinstance(message.get("method"), str):
+                self._take(message)
+            else:
+                self._channel.refuse(None, INVALID_REQUEST, "not a request")
+        with self._lock:
+            if self._open or self.fixture_is_up:
+                channel.end_without_runner()
+        self.requests.put(None)
+
+    def _take(self, message: dict[str, object]) -> None:
+        if message.get("method") == "interrupt":
+            params = message.get("params")
+            reason = params.get("reason") if isinstance(params, dict) else None
+            self._interrupt(str(reason or "asked to stop"))
+        elif message.get("id") is not None:
+            request = Request(message)
+            with self._lock:
+                self._open.append(request)
+            self.requests.put(request)
+
+    def _interrupt(self, reason: str) -> None:
+        with self._lock:
+            waiting = list(self._open)
+        for request in waiting:
+            request.judge.request_stop(reason)
+        if waiting:
+            insist = threading.Thread(target=_insist, args=(waiting[0],), daemon=True)
+            insist.start()
+
+
+def _insist(request: Request) -> None:
+    if not request.done.wait(_POLITE_SECONDS):
+        request.judge.insist()
+        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+
+
+class Host:
+    """Carries out requests in order."""
+
+    def __init__(self, line: channel.Channel) -> None:
+        """Answer on `line`."""
+        self._channel = line
+        self._process = os.getpid()
+        self._is_initialized = False
+        self._fixture: FixtureManager | None = None
+        self._task: Task | None = None
+        self._stack_file: TextIO | None = None
+
+    def carry_out(self, request: Request, reader: Reader) -> bool:
+        """Do what is asked and answer; whether there may be a further request."""
+        last = False
+        try:
+            if request.method == "initialize":
+                result = self._initialize(request.params)
+            elif not self._is_initialized:
+                raise _Refused(INVALID_REQUEST, "the first request must be `initialize`")
+            else:
+                result, last = self._do(request)
+        except _Refused as refused:
+            reader.finish(request, fixture_is_up=self._fixture is not None)
+            self._channel.refuse(request.number, refused.code, refused.text)
+            return True
+        if os.getpid() != self._process:
+            # A forked child came back from the plug-in; its parent serves the runner.
+            os._exit(0)
+        reader.finish(request, fixture_is_up=self._fixture is not None)
+        self._channel.answer(request.number, result)
+        return not last
+
+    def _do(self, request: Request) -> tuple[steps.Answer, bool]:
+        if request.method == "run-test":
+            task = _task(request.params)
+            return steps.run_test(self._enter(task, request)), task.last
+        if request.method == "set-up-fixture":
+            task = _task(request.params)
+            session = self._enter(task, request)
+            self._fixture, answer = steps.set_up_fixture(session, self._fixture)
+            self._task = task
+            return answer, False
+        if request.method not in {"check-fixture", "tear-down-fixture"}:
+            raise _Refused(METHOD_NOT_FOUND, f"unknown method `{request.method}`")
+        session = self._enter(self._task or Task({"file": "", "name": ""}), request)
+        if request.method == "check-fixture":
+            return steps.check_fixture(session, self._fixture), False
+        fixture, self._fixture = self._fixture, None
+        return steps.tear_down_fixture(session, fixture), False
+
+    def _initialize(self, params: dict[str, object]) -> dict[str, object]:
+        if params.get("protocol") != PROTOCOL_VERSION:
+            raise _Refused(
+                VERSION_MISMATCH,
+                f"rtf {params.get('rtf')} speaks version {params.get('protocol')} of the host"
+                f" protocol, this host version {PROTOCOL_VERSION}",
+            )
+        stack_file = params.get("stack_file")
+        stack = "none"
+        if isinstance(stack_file, str):
+            self._stack_file = open(stack_file, "a", encoding="utf-8")  # noqa: SIM115
+            faulthandler.register(signal.SIGUSR2, file=self._stack_file, all_threads=True)
+            stack = "signal"
+        self._is_initialized = True
+        name = sys.implementation.name.replace("cpython", "python")
+        host = f"{name} {platform.python_version()}"
+        return {"protocol": PROTOCOL_VERSION, "host": host, "stack": stack}
+
+    def _enter(self, task: Task, request: Request) -> Session:
+        session = Session(task, request.judge, self._channel.notify)
+        _session.enter(session)
+        return session
+
+
+class _Refused(Exception):  # noqa: N818 - refusing is what the protocol calls it
+    def __init__(self, code: int, text: str) -> None:
+        super().__init__(text)
+        self.code = code
+        self.text = text
+
+
+def _task(params: dict[str, object]) -> Task:
+    try:
+        return Task(params)
+    except TypeError as problem:
+        raise _Refused(INVALID_PARAMS, str(problem)) from None
+
+
+def _thread_ended_by(raised: threading.ExceptHookArgs) -> None:
+    """Make an error of what ends a plug-in's thread: nobody else would notice."""
+    session = _session.running()
+    problem = raised.exc_value
+    if session is not None and problem is not None and not isinstance(problem, StepEnded):
+        steps.record_exception(session, problem)
+
+
+def serve() -> int:
+    """Serve the runner and return the exit code."""
+    try:
+        line = channel.Channel.from_environment()
+    except (ValueError, OSError) as problem:
+        sys.stderr.write(f"error: this is a host, which `rtf` starts by itself: {problem}\n")
+        return 2
+    faulthandler.enable()
+    signal.signal(signal.SIGINT, steps.stop_by_signal)
+    threading.excepthook = _thread_ended_by
+    for stream in (sys.stdout, sys.stderr):
+        # What was printed before a crash must not be lost with the buffer.
+        stream.reconfigure(line_buffering=True)  # type: ignore[union-attr]
+    reader = Reader(line)
+    host = Host(line)
+    while True:
+        request = reader.requests.get()
+        if request is None or not host.carry_out(request, reader):
+            return 0

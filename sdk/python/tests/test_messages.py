@@ -1,0 +1,164 @@
+"""What the messages say."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+from driver import arm, run
+
+
+@pytest.mark.parametrize(
+    ("call", "text"),
+    [
+        ("check_near(1.25, 1.0, 0.1, 'gain')", "gain: got 1.25, expected 1 ± 0.1 (off by 0.25)"),
+        ("check_near([1, 2, 3.5], (1, 2, 3), 0.1, 'pose')",
+         "pose: got 3.5, expected 3 ± 0.1 (off by 0.5) at index 2"),
+        ("check_near(Array([[1, 2], [3, 9]]), Array([[1, 2], [3, 4]]), 0.1, 'pose')",
+         "pose: got 9, expected 4 ± 0.1 (off by 5) at index 3"),
+        ("check_near([1, 2], [1, 2, 3], 0.1, 'pose')", "pose: got 2 values, expected 3"),
+        ("check_near(float('nan'), 1, 0.1, 'gain')", "gain: got nan, expected 1 ± 0.1"),
+        ("check_near([0, float('inf')], [5, float('inf')], 9, 'gain')",
+         "gain: got inf, expected inf ± 9 at index 1"),
+        ("check_angle_near(0, 1, 0.1, 'yaw')", "yaw: got 0, expected 1 ± 0.1 (off by 1)"),
+        ("check_angle_near([0, 6.5], [0, 0], 0.1, 'yaw')",
+         "yaw: got 6.5, expected 0 ± 0.1 (off by 0.216815) at index 1"),
+    ],
+)  # fmt: skip
+def test_what_is_not_near_is_told_with_its_numbers(tmp_path: Path, call: str, text: str) -> None:
+    array = (
+        "class Array:\n"
+        "    def __init__(self, rows): self.rows = rows\n"
+        "    def tolist(self): return self.rows\n"
+    )
+    ran = run(tmp_path, array + arm(f"self.{call}"))
+    assert ran.texts == [("failure", text)]
+    assert ran.result == {"outcome": "failed", "reason": text}
+
+
+def test_what_is_near_is_a_check_with_its_numbers(tmp_path: Path) -> None:
+    ran = run(tmp_path, arm("self.check_angle_near(3.1, -3.1, 0.1, 'heading')"))
+    (message,) = ran.host.of("message")
+    assert (message["kind"], message["text"]) == ("check", "heading")
+    assert message["comparison"] == {"expected": [-3.1], "got": [3.1], "tolerance": 0.1}
+
+
+def test_a_vector_names_its_worst_element_and_carries_no_nan(tmp_path: Path) -> None:
+    ran = run(tmp_path, arm("self.check_near([1, float('nan')], [1, 2], 0.1, 'pose')"))
+    comparison = ran.host.of("message")[0]["comparison"]
+    assert comparison == {"expected": [1, 2], "got": [1, None], "tolerance": 0.1, "worst": 1}
+
+
+@pytest.mark.parametrize(
+    "call",
+    ["check_near('1', 1, 0.1, 'x')", "check_near(1, 1, -1, 'x')", "measure('x', 1, '', math.nan)"],
+)
+def test_wrong_use_is_an_error(tmp_path: Path, call: str) -> None:
+    ran = run(tmp_path, "import math\n" + arm(f"self.{call}"))
+    assert ran.result is not None
+    assert ran.result["outcome"] == "error"
+
+
+def test_a_measurement_has_a_place_unit_and_limits(tmp_path: Path) -> None:
+    ran = run(tmp_path, arm("self.report(self.measure('error', 0.02, 'rad', None, 0.05))"))
+    assert ran.texts == [("report", "True")]
+    assert ran.host.of("measured") == [
+        {
+            "name": "error",
+            "value": 0.02,
+            "unit": "rad",
+            "high": 0.05,
+            "location": {"file": str(tmp_path / "plugin.py"), "line": 4},
+        }
+    ]
+
+
+def test_a_measurement_that_is_not_finite_fails_and_is_sent_as_null(tmp_path: Path) -> None:
+    ran = run(tmp_path, arm("self.measure('rate', float('nan'), 'Hz', 95)"))
+    assert ran.host.of("measured")[0]["value"] is None
+    assert ran.result == {
+        "outcome": "failed",
+        "reason": "rate: not a finite number is outside ≥ 95",
+    }
+
+
+def test_a_message_names_the_line_of_the_plugin_also_from_a_helper(tmp_path: Path) -> None:
+    helper = "def helper(test):\n    test.check(True, 'in a helper')\n"
+    ran = run(tmp_path, helper + arm("helper(self)\nself.report('here')"))
+    lines = [message["location"]["line"] for message in ran.host.of("message")]
+    assert lines == [3, 7]
+
+
+@pytest.mark.parametrize("text", ["50% ä 🤖\nsecond line", "x" * (17 * 1024 * 1024)])
+def test_text_is_never_cut(tmp_path: Path, text: str) -> None:
+    source = repr(text) if len(text) < 100 else f"'x' * {len(text)}"
+    ran = run(tmp_path, arm(f"self.report({source})"))
+    assert "".join(part for _, part in ran.texts) == text
+    assert ran.result == {"outcome": "passed"}
+
+
+def test_what_is_not_unicode_does_not_break_the_channel(tmp_path: Path) -> None:
+    ran = run(tmp_path, arm(r"self.report('a\udcffb')"))
+    assert ran.texts == [("report", "a?b")]
+
+
+def test_a_file_is_attached_by_its_full_path(tmp_path: Path) -> None:
+    (tmp_path / "trace.csv").write_text("t,q\n0,1\n")
+    ran = run(tmp_path, arm("self.attach('trace.csv', media_type='text/csv')"))
+    expected = {
+        "name": "trace.csv",
+        "path": str(tmp_path / "trace.csv"),
+        "media_type": "text/csv",
+    }
+    assert ran.host.of("attached") == [expected]
+
+
+def test_a_file_that_is_not_there_is_an_error(tmp_path: Path) -> None:
+    ran = run(tmp_path, arm("self.attach('trace.csv')"))
+    assert ran.result is not None
+    assert ran.result["reason"].startswith("FileNotFoundError: there is no file `")
+
+
+def test_a_plugin_knows_what_the_suite_says_of_it(tmp_path: Path) -> None:
+    body = (
+        "self.report([self.name, self.param, self.environment, self.repetition,\n"
+        "             self.interrupted(), self.args])"
+    )
+    setup = "    def setup(self, args):\n        self.args = args\n"
+    more: dict[str, Any] = {"param": "--rate 100", "environment": "--robot sim", "repetition": 3}
+    ran = run(tmp_path, arm(body, setup), **more)
+    expected = ["Arm", "--rate 100", "--robot sim", 3, False, ["--rate", "100"]]
+    assert ran.texts == [("report", str(expected))]
+
+
+def test_wait_until_names_what_it_waited_for_and_the_last_value(tmp_path: Path) -> None:
+    body = "self.position = 0.5\nself.wait_until(lambda: None, 0.05, 'the door to open')"
+    ran = run(tmp_path, arm(body + "\nself.report('never')"))
+    text = "the door to open: not within 0.05 s (last value: None)"
+    assert ran.texts == [("failure", text)]
+
+
+def test_wait_until_asks_before_it_sleeps_and_returns_true(tmp_path: Path) -> None:
+    ran = run(tmp_path, arm("self.report(self.wait_until(lambda: 7, 0, 'nothing'))"))
+    assert ran.texts == [("report", "True")]
+
+
+def test_messages_from_threads_do_not_mix(tmp_path: Path) -> None:
+    body = (
+        "import threading\n"
+        "def tell(): [self.report('x' * 5000) for _ in range(50)]\n"
+        "threads = [threading.Thread(target=tell) for _ in range(8)]\n"
+        "[thread.start() for thread in threads]\n"
+        "[thread.join() for thread in threads]"
+    )
+    ran = run(tmp_path, arm(body))
+    assert ran.texts == [("report", "x" * 5000)] * 400
+
+
+def test_angles_differ_by_less_than_half_a_turn() -> None:
+    from rtf._near import Comparison
+
+    far = Comparison(math.pi * 3, 0.0, math.pi * 1.01, angle=True)
+    assert far.problem() is None
