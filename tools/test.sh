@@ -101,6 +101,8 @@ step 'rust tests' cargo test --workspace --locked --no-fail-fast
 step 'build release' tools/build.sh
 step 'example 01 plug-ins' tools/plugins.sh examples/01-simulated-arm
 step 'example 01' example_01
+step 'guide' tools/check_docs.py "$TARGET/release/rtf" README.md docs/getting-started.md \
+  docs/writing-tests.md
 step 'installed copy' tests/install/run.sh
 
 for name in "${failed[@]}"; do

@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""Runs what the user's guide shows: every file in it, every suite.
+
+    check_docs.py RTF PAGE…
+
+A code block whose first line is a comment with a file name is that file. All
+files of a page go into one folder; its C++ plug-ins are built, and its suites
+must pass.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parent.parent
+
+FILE_BLOCK = re.compile(r"^```\w+\n((?://|--|#|<!--) (\S+\.\w+)(?: -->)?\n.*?)^```$", re.M | re.S)
+
+CMAKE_HEADER = """\
+cmake_minimum_required(VERSION 3.16)
+project(Page LANGUAGES CXX)
+find_package(RobotTestingFramework REQUIRED)
+"""
+
+
+def main() -> None:
+    """Checks each page."""
+    rtf = Path(sys.argv[1]).resolve()
+    for page in map(Path, sys.argv[2:]):
+        with tempfile.TemporaryDirectory() as folder:
+            check(rtf, page, Path(folder))
+
+
+def check(rtf: Path, page: Path, folder: Path) -> None:
+    """Builds and runs what one page shows."""
+    for text, name in FILE_BLOCK.findall(page.read_text()):
+        if (folder / name).exists():
+            raise SystemExit(f"{page}: {name} is shown twice")
+        (folder / name).write_text(text)
+    suites = sorted(folder.glob("*.xml"))
+    if not suites:
+        raise SystemExit(f"{page}: no block is a suite: was the page's form changed?")
+    build(folder)
+    for suite in suites:
+        print(f"{page}: {suite.name}", flush=True)
+        call(folder, str(rtf), "run", suite.name)
+
+
+def build(folder: Path) -> None:
+    """Builds the page's C++ plug-ins by its own CMakeLists.txt, or by the obvious one."""
+    sources = sorted(folder.glob("*.cpp"))
+    if not sources:
+        return
+    cmake = folder / "CMakeLists.txt"
+    if not cmake.exists():
+        plugins = [
+            f"robottestingframework_add_plugin({source.stem} SOURCES {source.name})\n"
+            for source in sources
+        ]
+        cmake.write_text(CMAKE_HEADER + "".join(plugins))
+    package = TOP / "sdk" / "cpp" / "cmake"
+    call(folder, "cmake", "-S", ".", "-B", "build", f"-DRobotTestingFramework_DIR={package}")
+    call(folder, "cmake", "--build", "build")
+
+
+def call(folder: Path, *command: str) -> None:
+    """Runs a command that must succeed."""
+    environment = os.environ | {"RTF_PLUGIN_PATH": str(folder / "build")}
+    subprocess.run(command, cwd=folder, env=environment, check=True)
+
+
+if __name__ == "__main__":
+    main()
