@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
 
+# As `typing.TYPE_CHECKING`, without the time that its import takes.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from types import TracebackType
 

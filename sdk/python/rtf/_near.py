@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from rtf import _text
+
+# As `typing.TYPE_CHECKING`, without the time that its import takes.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 # Above this many numbers a comparison is told in words only: a line of the
 # protocol has an upper limit, and nobody reads a million numbers.

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import time
-from typing import Callable, NoReturn
 
 from rtf import _session, _text
 from rtf._stop import AssertionEnded, Interrupted
+
+# As `typing.TYPE_CHECKING`, without the time that its import takes.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Callable, NoReturn
 
 _POLL_SECONDS = 0.01
 

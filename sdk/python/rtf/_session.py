@@ -8,11 +8,15 @@ from __future__ import annotations
 
 import math
 import threading
-from typing import Callable
 
 from rtf import _location, _text
 
-Notify = Callable[[str, "dict[str, object]"], None]
+# As `typing.TYPE_CHECKING`, without the time that its import takes.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Callable
+
+    Notify = Callable[[str, dict[str, object]], None]
 
 
 class Judge:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import math
 import os
-from typing import Any
 
 from rtf import _session
 from rtf._near import Comparison
 from rtf._plugin import Plugin
 from rtf._stop import AssertionEnded
+
+# As `typing.TYPE_CHECKING`, without the time that its import takes.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 
 class TestCase(Plugin):

@@ -25,6 +25,8 @@ class Host:
         self.channel = ours
         self._lines = ours.makefile("rb")
         environment = {**os.environ, "PYTHONPATH": str(PACKAGE)}
+        # What the host does must not depend on how the tests are run.
+        environment.pop("PYTHONUNBUFFERED", None)
         environment["RTF_CHANNEL"] = f"fd:{theirs.fileno()}"
         self.process = subprocess.Popen(
             [sys.executable, "-m", "rtf.host"],

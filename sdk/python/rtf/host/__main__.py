@@ -9,17 +9,20 @@ import sys
 if sys.path[:1] == [os.getcwd()]:
     del sys.path[0]
 
-from rtf.host import check, serve
-
 
 def main(arguments: list[str]) -> int:
     """Do what the command line says and return the exit code."""
+    # Only one of the two is needed, and both take time to import.
     if arguments[:1] == ["--check"]:
+        from rtf.host import check  # noqa: PLC0415
+
         check.check_files(arguments[1:])
         return 0
     if arguments:
         sys.stderr.write("usage: python3 -m rtf.host [--check FILE...]\n")
         return 2
+    from rtf.host import serve  # noqa: PLC0415
+
     return serve.serve()
 
 

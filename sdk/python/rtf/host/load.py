@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import os
 import sys
-from types import ModuleType
-from typing import TypeVar
 
 from rtf._plugin import Plugin
 
-_P = TypeVar("_P", bound=Plugin)
+# As `typing.TYPE_CHECKING`, without the time that its import takes.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from types import ModuleType
+    from typing import TypeVar
+
+    _P = TypeVar("_P", bound=Plugin)
 
 
 class LoadError(Exception):
@@ -40,7 +44,7 @@ def _run_file(file: str) -> ModuleType:
     name = f"rtf_plugin_{stem}"
     while name in sys.modules:
         name += "_"
-    module = ModuleType(name)
+    module = type(sys)(name)
     module.__file__ = file
     sys.modules[name] = module
     sys.path.insert(0, os.path.dirname(os.path.abspath(file)))

@@ -9,19 +9,21 @@ from __future__ import annotations
 import faulthandler
 import json
 import os
-import platform
 import signal
 import sys
 import threading
 from queue import SimpleQueue
-from typing import TYPE_CHECKING, TextIO
 
 from rtf import _session
 from rtf._session import Judge, Session, Task
 from rtf._stop import StepEnded
 from rtf.host import channel, steps
 
+# As `typing.TYPE_CHECKING`, without the time that its import takes.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import TextIO
+
     from rtf._fixture import FixtureManager
 
 PROTOCOL_VERSION = 1
@@ -179,7 +181,7 @@ class Host:
             stack = "signal"
         self._is_initialized = True
         name = sys.implementation.name.replace("cpython", "python")
-        host = f"{name} {platform.python_version()}"
+        host = f"{name} {'.'.join(map(str, sys.version_info[:3]))}"
         return {"protocol": PROTOCOL_VERSION, "host": host, "stack": stack}
 
     def _enter(self, task: Task, request: Request) -> Session:

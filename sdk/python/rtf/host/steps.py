@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import signal
 import sys
-from typing import TYPE_CHECKING, Callable
 
 from rtf import _location, _session
 from rtf._fixture import FixtureManager
@@ -12,8 +11,11 @@ from rtf._stop import Interrupted, StepEnded
 from rtf._test import TestCase
 from rtf.host import load
 
+# As `typing.TYPE_CHECKING`, without the time that its import takes.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from types import FrameType
+    from typing import Callable
 
     from rtf._session import Session
 
