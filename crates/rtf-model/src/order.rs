@@ -54,9 +54,20 @@ struct Fixture {
 #[derive(Clone, Debug)]
 struct Test {
     suite: SuiteId,
+    repetitions: u32,
     open: bool,
     last: Option<(u32, u32)>,
+    /// Whether the last attempt's end announced another one.
+    rerun: bool,
     skipped: bool,
+}
+
+impl Test {
+    /// Whether its last word is spoken.
+    fn is_decided(&self) -> bool {
+        let all_done = self.last.is_some_and(|(repetition, _)| repetition == self.repetitions);
+        self.skipped || (all_done && !self.rerun)
+    }
 }
 
 /// Checks a stream event by event. [`OrderChecker::finish`] then tells whether
@@ -130,7 +141,7 @@ impl OrderChecker {
             }
             EventKind::SuitePlanned(plan) => self.plan_suite(plan.suite),
             EventKind::FixturePlanned(plan) => self.plan_fixture(plan.fixture, plan.suite),
-            EventKind::TestPlanned(plan) => self.plan_test(plan.test, plan.suite),
+            EventKind::TestPlanned(plan) => self.plan_test(plan.test, plan.suite, plan.repetitions),
             EventKind::Warning { .. } => Ok(()),
             EventKind::SuiteStarted { suite } => self.start_suite(*suite),
             EventKind::FixtureStarting { fixture, attempt } => self.start(*fixture, *attempt),
@@ -160,7 +171,7 @@ impl OrderChecker {
             | EventKind::StackDumped { source, .. }
             | EventKind::ProcessesLeft { source, .. } => self.inside(*source),
             EventKind::Output(output) => self.inside(output.source),
-            EventKind::TestFinished(finished) => self.finish_test(finished.test),
+            EventKind::TestFinished(finished) => self.finish_test(finished.test, finished.rerun),
             EventKind::TestSkipped { test, .. } => self.skip_test(*test),
             EventKind::SuiteFinished { suite } => self.finish_suite(*suite),
             EventKind::RunFinished { .. } => self.finish_run(),
@@ -189,10 +200,11 @@ impl OrderChecker {
         Ok(())
     }
 
-    fn plan_test(&mut self, test: TestId, suite: SuiteId) -> Rule {
+    fn plan_test(&mut self, test: TestId, suite: SuiteId, repetitions: u32) -> Rule {
         self.planned_last(suite)?;
         ensure(test.index() == self.tests.len(), || format!("test {test} out of order"))?;
-        self.tests.push(Test { suite, open: false, last: None, skipped: false });
+        let last = None;
+        self.tests.push(Test { suite, repetitions, open: false, last, rerun: false, skipped: false });
         Ok(())
     }
 
@@ -257,12 +269,13 @@ impl OrderChecker {
         let test = self.test(id)?;
         ensure(!test.open, || format!("test {id} started twice"))?;
         ensure(!test.skipped, || format!("test {id} started although skipped"))?;
-        let (repetition, attempt) = number;
         let follows = match test.last {
             None => number == (1, 1),
-            Some((r, a)) => number == (r, a + 1) || (repetition == r + 1 && attempt == 1),
+            Some((r, a)) if test.rerun => number == (r, a + 1),
+            Some((r, _)) => number == (r + 1, 1),
         };
         ensure(follows, || format!("test {id}: repetition or attempt out of order"))?;
+        ensure(number.0 <= test.repetitions, || format!("test {id}: more repetitions than planned"))?;
         test.last = Some(number);
         test.open = true;
         Ok(())
@@ -283,9 +296,11 @@ impl OrderChecker {
         }
     }
 
-    fn finish_test(&mut self, id: TestId) -> Rule {
+    fn finish_test(&mut self, id: TestId, rerun: bool) -> Rule {
         self.inside_test(id)?;
-        self.test(id)?.open = false;
+        let test = self.test(id)?;
+        test.open = false;
+        test.rerun = rerun;
         Ok(())
     }
 
@@ -301,7 +316,7 @@ impl OrderChecker {
         self.suite_open(suite)?;
         for (index, test) in self.tests.iter().enumerate().filter(|(_, t)| t.suite == suite) {
             ensure(!test.open, || format!("test {index} still runs"))?;
-            ensure(test.skipped || test.last.is_some(), || format!("test {index} has no verdict"))?;
+            ensure(test.is_decided(), || format!("test {index} has no verdict"))?;
         }
         for (index, fixture) in self.fixtures.iter().enumerate().filter(|(_, f)| f.suite == suite) {
             let stopped = fixture.stage == FixtureStage::Stopped;

@@ -31,6 +31,10 @@ pub struct FixtureRecord {
     pub state: FixtureState,
     /// How often it was started.
     pub starts: u32,
+    /// When it was started last.
+    pub started: Option<Micros>,
+    /// When the set-up of its last start succeeded.
+    pub ready: Option<Micros>,
     /// Its collapses: when, and why.
     pub collapses: Vec<(Micros, String)>,
     /// The first cause, once it broke.
@@ -51,6 +55,8 @@ impl FixtureRecord {
             plan,
             state: FixtureState::Pending,
             starts: 0,
+            started: None,
+            ready: None,
             collapses: Vec::new(),
             broken: None,
             problems: Vec::new(),
@@ -64,9 +70,14 @@ impl FixtureRecord {
         match kind {
             EventKind::FixtureStarting { attempt, .. } => {
                 self.starts = *attempt;
+                self.started = Some(at);
+                self.ready = None;
                 self.state = FixtureState::Starting;
             }
-            EventKind::FixtureReady { .. } => self.state = FixtureState::Ready,
+            EventKind::FixtureReady { .. } => {
+                self.state = FixtureState::Ready;
+                self.ready = Some(at);
+            }
             EventKind::FixtureCollapsed { reason, log_tail, .. } => {
                 self.state = FixtureState::Collapsed;
                 self.collapses.push((at, reason.clone()));
@@ -74,7 +85,8 @@ impl FixtureRecord {
             }
             EventKind::FixtureStopping { .. } => self.state = FixtureState::Stopping,
             EventKind::FixtureStopped { problem, log_tail, .. } => {
-                self.state = FixtureState::Stopped;
+                let broken = self.broken.is_some();
+                self.state = if broken { FixtureState::Broken } else { FixtureState::Stopped };
                 if let Some(problem) = problem {
                     self.problems.push((at, problem.clone()));
                     self.log_tail.clone_from(log_tail);
@@ -97,7 +109,8 @@ impl FixtureRecord {
     }
 
     /// What speaks against the suite being green, in words.
-    pub(super) fn problems(&self, tolerates_collapse: bool) -> Vec<String> {
+    #[must_use]
+    pub fn problems(&self, tolerates_collapse: bool) -> Vec<String> {
         let name = &self.plan.name;
         let mut problems = Vec::new();
         if let Some(reason) = &self.broken {

@@ -4,6 +4,7 @@
 //! JUnit file and every other report read a `Record`; none keeps a state of its own.
 
 mod fixture;
+mod gap;
 mod suite;
 mod test;
 
@@ -88,16 +89,30 @@ impl Record {
             EventKind::RunFinished { interrupted } => {
                 self.state = RunState::Finished { interrupted: interrupted.clone() };
             }
-            EventKind::SuitePlanned(plan) => self.suites.push(SuiteRecord::new(plan.clone())),
+            EventKind::SuitePlanned(plan) => {
+                if gap::fill(&mut self.suites, plan.suite.index(), gap::suite) {
+                    self.suites.push(SuiteRecord::new(plan.clone()));
+                }
+            }
             EventKind::SuiteStarted { suite } => self.suite(*suite, |s| s.started = Some(at)),
             EventKind::SuiteFinished { suite } => self.suite(*suite, |s| s.finished = Some(at)),
             EventKind::FixturePlanned(plan) => {
-                self.suite(plan.suite, |s| s.fixtures.push(plan.fixture));
-                self.fixtures.push(FixtureRecord::new(plan.clone()));
+                let missing = |index| gap::fixture(index, plan.suite);
+                let known = self.fixtures.len() as u32;
+                if gap::fill(&mut self.fixtures, plan.fixture.index(), missing) {
+                    let ids = (known..=plan.fixture.0).map(FixtureId);
+                    self.suite(plan.suite, |s| s.fixtures.extend(ids));
+                    self.fixtures.push(FixtureRecord::new(plan.clone()));
+                }
             }
             EventKind::TestPlanned(plan) => {
-                self.suite(plan.suite, |s| s.tests.push(plan.test));
-                self.tests.push(TestRecord::new(plan.clone()));
+                let missing = |index| gap::test(index, plan.suite);
+                let known = self.tests.len() as u32;
+                if gap::fill(&mut self.tests, plan.test.index(), missing) {
+                    let ids = (known..=plan.test.0).map(TestId);
+                    self.suite(plan.suite, |s| s.tests.extend(ids));
+                    self.tests.push(TestRecord::new(plan.clone()));
+                }
             }
             kind => self.apply_to_source(at, kind),
         }
@@ -166,6 +181,28 @@ impl Record {
     pub fn suite_totals(&self, suite: SuiteId) -> Totals {
         let tests = self.suites.get(suite.index()).map_or(&[][..], |s| &s.tests);
         totals(tests.iter().filter_map(|id| self.tests.get(id.index())))
+    }
+
+    /// How the tests ended in a run that will not go on: none is pending or
+    /// runs, see [`Record::final_verdict`].
+    #[must_use]
+    pub fn final_totals(&self) -> Totals {
+        let mut totals = Totals::default();
+        for test in &self.tests {
+            totals.planned += 1;
+            totals.counts[test.final_verdict() as usize] += 1;
+        }
+        totals
+    }
+
+    /// A test's name with its suite's: `arm/EncoderTest`.
+    #[must_use]
+    pub fn full_name(&self, test: TestId) -> String {
+        let Some(test) = self.tests.get(test.index()) else { return format!("test {test}") };
+        match self.suites.get(test.plan.suite.index()) {
+            Some(suite) => format!("{}/{}", suite.plan.name, test.plan.name),
+            None => test.plan.name.clone(),
+        }
     }
 
     /// What went wrong in a suite beside its tests, in words: fixtures that

@@ -1,0 +1,53 @@
+//! Stand-ins for plans whose events were lost with a damaged line of a journal,
+//! so that what is known of later suites, fixtures and tests keeps its place.
+
+use super::{FixtureRecord, SuiteRecord, TestRecord};
+use crate::{FixtureId, FixturePlanned, SuiteId, SuitePlanned, TestId, TestPlanned};
+
+/// A gap larger than this is not believed: the number itself is damaged.
+const LARGEST: usize = 1000;
+
+/// Makes `list` as long as `index` says; false when the entry that is to come
+/// has no place in it.
+pub(super) fn fill<T>(list: &mut Vec<T>, index: usize, missing: impl Fn(u32) -> T) -> bool {
+    if index < list.len() || index - list.len() > LARGEST {
+        return false;
+    }
+    while list.len() < index {
+        let Ok(number) = u32::try_from(list.len()) else { return false };
+        list.push(missing(number));
+    }
+    true
+}
+
+pub(super) fn suite(index: u32) -> SuiteRecord {
+    SuiteRecord::new(SuitePlanned {
+        suite: SuiteId(index),
+        name: format!("unknown-suite-{index}"),
+        file: String::new(),
+        description: String::new(),
+        environment: String::new(),
+        tolerates_collapse: false,
+    })
+}
+
+pub(super) fn fixture(index: u32, suite: SuiteId) -> FixtureRecord {
+    FixtureRecord::new(FixturePlanned {
+        fixture: FixtureId(index),
+        suite,
+        name: format!("unknown-fixture-{index}"),
+        plugin_type: String::new(),
+    })
+}
+
+pub(super) fn test(index: u32, suite: SuiteId) -> TestRecord {
+    TestRecord::new(TestPlanned {
+        test: TestId(index),
+        suite,
+        name: format!("unknown-test-{index}"),
+        plugin_type: String::new(),
+        plugin: String::new(),
+        repetitions: 1,
+        tags: Vec::new(),
+    })
+}

@@ -1,0 +1,93 @@
+//! Short ways to write event streams.
+
+use rtf_model::{
+    Event, EventKind, FixtureId, FixturePlanned, Micros, Phase, RunStarted, SuiteId, SuitePlanned,
+    TestFinished, TestId, TestPlanned, Verdict,
+};
+
+pub const SUITE: SuiteId = SuiteId(0);
+pub const SIMULATOR: FixtureId = FixtureId(0);
+pub const TEST: TestId = TestId(0);
+
+pub fn run_started() -> EventKind {
+    EventKind::RunStarted(RunStarted {
+        version: 1,
+        run: "run".into(),
+        rtf: "0.1.0".into(),
+        started_at: "2026-11-21T06:30:12+00:00".into(),
+        command: vec!["rtf".into()],
+        folder: "/robot".into(),
+        suites: 1,
+        tests: 1,
+    })
+}
+
+pub fn suite(id: u32) -> EventKind {
+    EventKind::SuitePlanned(SuitePlanned {
+        suite: SuiteId(id),
+        name: format!("suite-{id}"),
+        file: String::new(),
+        description: String::new(),
+        environment: String::new(),
+        tolerates_collapse: false,
+    })
+}
+
+pub fn fixture(id: u32, suite: u32) -> EventKind {
+    EventKind::FixturePlanned(FixturePlanned {
+        fixture: FixtureId(id),
+        suite: SuiteId(suite),
+        name: format!("fixture-{id}"),
+        plugin_type: "process".into(),
+    })
+}
+
+pub fn test(id: u32, suite: u32, repetitions: u32) -> EventKind {
+    EventKind::TestPlanned(TestPlanned {
+        test: TestId(id),
+        suite: SuiteId(suite),
+        name: format!("test-{id}"),
+        plugin_type: "lua".into(),
+        plugin: format!("/robot/test-{id}.lua"),
+        repetitions,
+        tags: Vec::new(),
+    })
+}
+
+pub fn started(repetition: u32, attempt: u32) -> EventKind {
+    EventKind::TestStarted { test: TEST, repetition, attempt }
+}
+
+pub fn finished(verdict: Verdict) -> EventKind {
+    finish(verdict, false)
+}
+
+pub fn rerun(verdict: Verdict) -> EventKind {
+    finish(verdict, true)
+}
+
+fn finish(verdict: Verdict, rerun: bool) -> EventKind {
+    let reason = (!verdict.is_green()).then(|| format!("{verdict} for a reason"));
+    let phase = Phase::Run;
+    EventKind::TestFinished(TestFinished { test: TEST, verdict, reason, phase, exit: None, rerun })
+}
+
+pub fn skipped(test: u32) -> EventKind {
+    EventKind::TestSkipped { test: TestId(test), reason: "no robot".into() }
+}
+
+/// Numbers the events and gives each the time of its number in milliseconds.
+pub fn stream(kinds: impl IntoIterator<Item = EventKind>) -> Vec<Event> {
+    let number = |(seq, kind)| Event { seq, at: Micros(seq * 1000), kind };
+    (0..).zip(kinds).map(number).collect()
+}
+
+/// A run of one suite with one fixture and one test, the suite already started.
+pub fn opened(repetitions: u32) -> Vec<EventKind> {
+    let planned = [run_started(), suite(0), fixture(0, 0), test(0, 0, repetitions)];
+    planned.into_iter().chain([EventKind::SuiteStarted { suite: SUITE }]).collect()
+}
+
+pub fn closed() -> [EventKind; 2] {
+    [EventKind::SuiteFinished { suite: SUITE }, EventKind::RunFinished { interrupted: None }]
+}
