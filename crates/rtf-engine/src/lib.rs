@@ -8,4 +8,5 @@
 pub mod host;
 pub mod plan;
 pub mod run;
+pub mod signal;
 pub mod suite;

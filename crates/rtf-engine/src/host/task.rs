@@ -1,0 +1,366 @@
+//! The task around one process: from its start to the sweep of what it left.
+//!
+//! It carries orders to the process, and tells the suite's task what the
+//! process said, printed, and how it ended. Everything that the process said
+//! and printed is delivered before its end is told.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, SystemTime};
+
+use rtf_model::protocol::{Notification, Request, SCOPE_VARIABLE, StackSupport};
+use rtf_model::{Attachment, ExitStatus, Source, Stream};
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::sync::mpsc;
+use tokio::task::JoinSet;
+
+use super::codec::{self, FromHost, LINE_LIMIT};
+use super::spawner::{End, Process, SpawnRequest, Spawner};
+use super::{stack, tree, unix};
+use crate::plan::ProcessPlan;
+use crate::run::Sink;
+use crate::run::machine::{HostId, HostInput};
+use crate::run::probe;
+
+/// After its end, a process's outputs are read for this long at the most: a
+/// descendant that could not be found may hold them open.
+const DRAIN_LIMIT: Duration = Duration::from_millis(500);
+/// How often a task that waits for slow reporters looks again.
+const CONGESTED_WAIT: Duration = Duration::from_millis(1);
+const READ_BYTES: usize = 64 * 1024;
+
+/// What the suite's task asks of a process's task.
+#[derive(Debug)]
+pub enum Order {
+    /// Write a request.
+    Send(Option<u64>, Request),
+    /// Write no more.
+    CloseChannel,
+    /// Get the stacks of its threads.
+    TakeStack(StackSupport),
+    /// Send a signal to its group.
+    Signal(i32),
+    /// Kill it and everything below it.
+    KillTree,
+    /// Ask the `alive` probes from now on.
+    WatchAlive,
+}
+
+/// What all processes of a run share.
+#[derive(Debug)]
+pub struct Shared {
+    /// The thread that starts processes.
+    pub spawner: Spawner,
+    /// Where events go.
+    pub sink: Arc<dyn Sink>,
+    /// The folder of the run, to which paths of attachments are relative.
+    pub run_folder: PathBuf,
+    /// A folder for files that are gone when the run is over.
+    pub scratch: PathBuf,
+}
+
+/// What one process is.
+#[derive(Debug)]
+pub struct Job {
+    /// Its id in the suite.
+    pub host: HostId,
+    /// Whose it is.
+    pub source: Source,
+    /// The value of the scope variable: unique on this machine.
+    pub scope: String,
+    /// How to start it.
+    pub request: SpawnRequest,
+    /// Its probes, when it is a process fixture.
+    pub process: Option<Arc<ProcessPlan>>,
+}
+
+/// Where a process's task tells what happened.
+pub type Inputs = mpsc::Sender<(HostId, HostInput)>;
+
+/// Runs a process to its end.
+pub async fn run(
+    mut job: Job,
+    shared: Arc<Shared>,
+    orders: mpsc::UnboundedReceiver<Order>,
+    inputs: Inputs,
+) {
+    let host = job.host;
+    if let Some(taken) = probe::already_answers(job.process.as_deref()).await {
+        let reason = format!("{taken} answers already, before the fixture was started");
+        return drop(inputs.send((host, HostInput::SpawnFailed(reason))).await);
+    }
+    job.request
+        .env
+        .push((SCOPE_VARIABLE.to_owned(), job.scope.clone()));
+    let started_at = SystemTime::now();
+    match shared.spawner.spawn(job.request.clone()).await {
+        Ok(process) => {
+            let mut task = Task::new(job, shared, process, inputs);
+            task.watch_ready(started_at);
+            task.run(orders).await;
+        }
+        Err(error) => {
+            let program = job.request.command.first().map_or("", String::as_str);
+            let reason = format!("`{program}` cannot be started: {error}");
+            drop(inputs.send((host, HostInput::SpawnFailed(reason))).await);
+        }
+    }
+}
+
+struct Task {
+    job: Job,
+    shared: Arc<Shared>,
+    process: Process,
+    inputs: Inputs,
+    line: Vec<u8>,
+    stack_file: PathBuf,
+    /// Probes and stack dumps; they end with the task.
+    side: JoinSet<()>,
+}
+
+impl Task {
+    fn new(job: Job, shared: Arc<Shared>, process: Process, inputs: Inputs) -> Self {
+        let stack_file = shared.scratch.join(format!("{}.stack", process.pid));
+        Self {
+            job,
+            shared,
+            process,
+            inputs,
+            line: Vec::new(),
+            stack_file,
+            side: JoinSet::new(),
+        }
+    }
+
+    fn watch_ready(&mut self, started_at: SystemTime) {
+        if let Some(plan) = self.job.process.clone() {
+            let (inputs, host) = (self.inputs.clone(), self.job.host);
+            let spawner = self.shared.spawner.clone();
+            self.side.spawn(async move {
+                probe::wait_until_ready(&plan.ready, started_at, &spawner).await;
+                drop(inputs.send((host, HostInput::ProbesHold)).await);
+            });
+        }
+    }
+
+    async fn run(&mut self, mut orders: mpsc::UnboundedReceiver<Order>) {
+        let (mut from_channel, mut stdout, mut stderr) = buffers();
+        let status = loop {
+            let congested = self.shared.sink.is_congested();
+            let process = &mut self.process;
+            tokio::select! {
+                biased;
+                Some(order) = orders.recv() => self.obey(order).await,
+                Ok(count) = read(&mut process.channel, &mut from_channel), if !congested =>
+                    self.heard(&from_channel[..count]).await,
+                Ok(count) = read(&mut process.stdout, &mut stdout), if !congested =>
+                    self.printed(Stream::Stdout, &stdout[..count]).await,
+                Ok(count) = read(&mut process.stderr, &mut stderr), if !congested =>
+                    self.printed(Stream::Stderr, &stderr[..count]).await,
+                status = wait(&mut process.end) => break status,
+                () = tokio::time::sleep(CONGESTED_WAIT), if congested => {}
+            }
+        };
+        self.end(status).await;
+    }
+
+    /// The process has ended: kill what it left, deliver what it said.
+    async fn end(&mut self, status: ExitStatus) {
+        self.side.abort_all();
+        let left = tree::sweep(&self.job.scope);
+        let _ = tokio::time::timeout(DRAIN_LIMIT, self.drain()).await;
+        let _ = std::fs::remove_file(&self.stack_file);
+        self.tell(HostInput::Exited(status, left)).await;
+    }
+
+    async fn drain(&mut self) {
+        let (mut from_channel, mut stdout, mut stderr) = buffers();
+        while self.is_open() {
+            let process = &mut self.process;
+            tokio::select! {
+                Ok(count) = read(&mut process.channel, &mut from_channel) =>
+                    self.heard(&from_channel[..count]).await,
+                Ok(count) = read(&mut process.stdout, &mut stdout) =>
+                    self.printed(Stream::Stdout, &stdout[..count]).await,
+                Ok(count) = read(&mut process.stderr, &mut stderr) =>
+                    self.printed(Stream::Stderr, &stderr[..count]).await,
+            }
+        }
+    }
+
+    fn is_open(&self) -> bool {
+        let Process {
+            channel,
+            stdout,
+            stderr,
+            ..
+        } = &self.process;
+        channel.is_some() || stdout.is_some() || stderr.is_some()
+    }
+
+    async fn obey(&mut self, order: Order) {
+        let pid = self.process.pid;
+        match order {
+            Order::Send(id, request) => self.send(id, request).await,
+            Order::CloseChannel => {
+                if let Some(channel) = &mut self.process.channel {
+                    let _ = channel.shutdown().await;
+                }
+            }
+            Order::Signal(signal) => {
+                unix::signal_group(pid, signal);
+            }
+            Order::KillTree => tree::kill_tree(pid),
+            Order::TakeStack(support) => self.take_stack(support).await,
+            Order::WatchAlive => self.watch_alive(),
+        }
+    }
+
+    async fn send(&mut self, id: Option<u64>, mut request: Request) {
+        if let Request::Initialize(initialize) = &mut request {
+            initialize.stack_file = Some(self.stack_file.to_string_lossy().into_owned());
+        }
+        if let (Ok(line), Some(channel)) = (codec::encode(id, request), &mut self.process.channel) {
+            // A host that is gone or does not read is noticed by its exit or its limit.
+            let _ = tokio::time::timeout(DRAIN_LIMIT, channel.write_all(&line)).await;
+        }
+    }
+
+    async fn take_stack(&mut self, support: StackSupport) {
+        if support == StackSupport::Message {
+            self.send(None, Request::DumpStack {}).await;
+        }
+        let (inputs, host, pid) = (self.inputs.clone(), self.job.host, self.process.pid);
+        let (spawner, file) = (self.shared.spawner.clone(), self.stack_file.clone());
+        self.side.spawn(async move {
+            let text = stack::dump(pid, support, &file, &spawner).await;
+            drop(inputs.send((host, HostInput::StackTaken(text))).await);
+        });
+    }
+
+    fn watch_alive(&mut self) {
+        let Some(plan) = self.job.process.clone() else {
+            return;
+        };
+        let (inputs, host) = (self.inputs.clone(), self.job.host);
+        let spawner = self.shared.spawner.clone();
+        self.side.spawn(async move {
+            let reason = probe::wait_until_unwell(&plan.alive, &spawner).await;
+            drop(inputs.send((host, HostInput::ProbeFailed(reason))).await);
+        });
+    }
+
+    /// Bytes came over the channel; none when it was closed.
+    async fn heard(&mut self, bytes: &[u8]) {
+        if bytes.is_empty() {
+            self.process.channel = None;
+            if !self.line.is_empty() {
+                let line = std::mem::take(&mut self.line);
+                self.understand(&line).await;
+            }
+            return;
+        }
+        for piece in bytes.split_inclusive(|byte| *byte == b'\n') {
+            match piece.strip_suffix(b"\n") {
+                Some(end) if self.line.is_empty() => self.understand(end).await,
+                Some(end) => {
+                    let mut line = std::mem::take(&mut self.line);
+                    line.extend_from_slice(end);
+                    self.understand(&line).await;
+                }
+                None => self.line.extend_from_slice(piece),
+            }
+        }
+        if self.line.len() > LINE_LIMIT {
+            self.line = Vec::new();
+            let what = format!("it wrote a line of more than {LINE_LIMIT} bytes");
+            self.tell(HostInput::Garbage(what)).await;
+        }
+    }
+
+    async fn understand(&mut self, line: &[u8]) {
+        let input = match codec::decode(line) {
+            Ok(FromHost::Told(Notification::Attached(attachment))) => {
+                HostInput::Attached(self.keep(attachment).await)
+            }
+            Ok(FromHost::Told(notification)) => HostInput::Told(notification),
+            Ok(FromHost::Answered(id, reply)) => HostInput::Answered(id, reply),
+            Err(what) => HostInput::Garbage(what),
+        };
+        self.tell(input).await;
+    }
+
+    /// Copies an attached file into the run's folder.
+    async fn keep(&self, attachment: Attachment) -> Result<Attachment, String> {
+        let Source::Test(test) = self.job.source else {
+            return Err("a fixture has no result to attach a file to".to_owned());
+        };
+        let name: String = attachment.name.chars().map(safe).collect();
+        let path = format!("attachments/{test}/{}-{name}", self.job.host.0);
+        let target = self.shared.run_folder.join(&path);
+        let source = self
+            .job
+            .request
+            .folder
+            .clone()
+            .unwrap_or_default()
+            .join(&attachment.path);
+        let copy = async {
+            if let Some(folder) = target.parent() {
+                tokio::fs::create_dir_all(folder).await?;
+            }
+            tokio::fs::copy(&source, &target).await
+        };
+        match copy.await {
+            Ok(_) => Ok(Attachment { path, ..attachment }),
+            Err(error) => Err(format!("`{}` cannot be attached: {error}", attachment.path)),
+        }
+    }
+
+    async fn printed(&mut self, stream: Stream, bytes: &[u8]) {
+        if bytes.is_empty() {
+            match stream {
+                Stream::Stdout => self.process.stdout = None,
+                Stream::Stderr => self.process.stderr = None,
+            }
+        } else {
+            self.tell(HostInput::Printed(stream, bytes.to_vec())).await;
+        }
+    }
+
+    async fn tell(&self, input: HostInput) {
+        drop(self.inputs.send((self.job.host, input)).await);
+    }
+}
+
+fn safe(character: char) -> char {
+    if character.is_alphanumeric() || matches!(character, '.' | '-' | '_') {
+        character
+    } else {
+        '_'
+    }
+}
+
+fn buffers() -> (Vec<u8>, Vec<u8>, Vec<u8>) {
+    (
+        vec![0; READ_BYTES],
+        vec![0; READ_BYTES],
+        vec![0; READ_BYTES],
+    )
+}
+
+/// Reads from a stream that may be closed already: then it never answers.
+/// An error counts as the end of the stream.
+async fn read<R: tokio::io::AsyncRead + Unpin>(
+    stream: &mut Option<R>,
+    buffer: &mut [u8],
+) -> Result<usize, std::convert::Infallible> {
+    match stream {
+        Some(stream) => Ok(stream.read(buffer).await.unwrap_or(0)),
+        None => std::future::pending().await,
+    }
+}
+
+async fn wait(end: &mut End) -> ExitStatus {
+    end.wait().await.unwrap_or(ExitStatus::Code(-1))
+}

@@ -1,0 +1,66 @@
+//! Numbers and times the events of a run, and hands them out.
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use rtf_model::{Event, EventKind, Micros};
+
+/// Takes the events of a run.
+pub trait Sink: Send + Sync + std::fmt::Debug {
+    /// Takes an event. Must not wait.
+    fn emit(&self, event: Event);
+
+    /// Whether so many events wait that processes should wait, too.
+    fn is_congested(&self) -> bool {
+        false
+    }
+}
+
+/// The source of all events of a run.
+#[derive(Debug)]
+pub struct Events {
+    start: Instant,
+    token: String,
+    next: Mutex<u64>,
+    sink: Arc<dyn Sink>,
+}
+
+impl Events {
+    /// Starts the run's clock. `token` is unique on this machine.
+    pub fn new(token: String, sink: Arc<dyn Sink>) -> Self {
+        Self {
+            start: Instant::now(),
+            token,
+            next: Mutex::new(0),
+            sink,
+        }
+    }
+
+    /// When the run started.
+    pub fn start(&self) -> Instant {
+        self.start
+    }
+
+    /// The time since the run started.
+    pub fn now(&self) -> Duration {
+        self.start.elapsed()
+    }
+
+    /// What tells this run's processes from those of others.
+    pub fn run_token(&self) -> &str {
+        &self.token
+    }
+
+    /// Reports something.
+    pub fn emit(&self, kind: EventKind) {
+        // The number, the time and the place in the queue are taken together.
+        let mut next = self.next.lock().unwrap_or_else(PoisonError::into_inner);
+        let event = Event {
+            seq: *next,
+            at: Micros::from(self.now()),
+            kind,
+        };
+        *next += 1;
+        self.sink.emit(event);
+    }
+}

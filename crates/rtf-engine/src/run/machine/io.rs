@@ -1,0 +1,150 @@
+//! What goes into the state machine and what comes out of it.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use rtf_model::protocol::{Notification, Reply, Request, StackSupport};
+use rtf_model::{Attachment, EventKind, ExitStatus, LeftProcess, Source, Stream};
+
+use crate::plan::{HostPlan, ProcessPlan};
+
+/// One process that the machine asked for. Never used twice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct HostId(pub u64);
+
+/// What happened.
+#[derive(Debug)]
+pub enum Input {
+    /// Begin. The first input, and given once.
+    Start,
+    /// Something about a process.
+    Host(HostId, HostInput),
+    /// A deadline that was set has passed.
+    Deadline(Deadline),
+    /// The suite must end early.
+    Stop(Stop),
+}
+
+/// What happened to a process.
+#[derive(Debug)]
+pub enum HostInput {
+    /// It could not be started.
+    SpawnFailed(String),
+    /// It told something.
+    Told(Notification),
+    /// It attached a file, which was copied into the run's folder (or not).
+    Attached(Result<Attachment, String>),
+    /// It answered a request.
+    Answered(u64, Reply<serde_json::Value>),
+    /// It wrote something that is not a message of the protocol.
+    Garbage(String),
+    /// It printed something.
+    Printed(Stream, Vec<u8>),
+    /// All probes that are asked from outside hold: a process fixture is ready.
+    ProbesHold,
+    /// A probe of a process fixture does not hold any more.
+    ProbeFailed(String),
+    /// The stacks of its threads, or why there are none.
+    StackTaken(String),
+    /// It ended, everything that it printed was delivered, and what it left
+    /// behind was killed. Nothing follows.
+    Exited(ExitStatus, Vec<LeftProcess>),
+}
+
+/// How quickly a suite must end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum StopLevel {
+    /// Stop the test, tear down.
+    TearDown,
+    /// Kill everything now.
+    Kill,
+}
+
+/// A request to end the suite early.
+#[derive(Clone, Debug)]
+pub struct Stop {
+    /// How quickly.
+    pub level: StopLevel,
+    /// Why, in words: `SIGINT`.
+    pub reason: String,
+}
+
+/// A point in time that the machine waits for. Setting it again moves it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Deadline {
+    /// The suite's own limit.
+    Suite,
+    /// About the running test.
+    Test(TestTimer),
+    /// About the fixture at this place of the suite's plan.
+    Fixture(usize, FixtureTimer),
+}
+
+/// What is waited for in a test.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum TestTimer {
+    /// The end of the phase, or of the step of its stop.
+    Limit,
+    /// The moment from which it counts as slow.
+    Slow,
+}
+
+/// What is waited for in a fixture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum FixtureTimer {
+    /// The end of set-up or tear-down, or of a step of its stop.
+    Limit,
+    /// The answer to `check`.
+    Check,
+    /// The next `check`.
+    CheckDue,
+}
+
+/// How to start a process.
+#[derive(Clone, Debug)]
+pub enum SpawnPlan {
+    /// A host with a channel.
+    Host(Arc<HostPlan>),
+    /// A process fixture, with its probes.
+    Process(Arc<ProcessPlan>),
+}
+
+/// What is to be done.
+#[derive(Debug)]
+pub enum Effect {
+    /// Start a process.
+    Spawn {
+        /// Its id from now on.
+        host: HostId,
+        /// Whose it is.
+        source: Source,
+        /// What to start.
+        plan: SpawnPlan,
+        /// Environment variables, later ones win.
+        env: Vec<(String, String)>,
+        /// Its working folder.
+        folder: PathBuf,
+    },
+    /// Send a request or a notification.
+    Send(HostId, Option<u64>, Request),
+    /// No request will follow: the host ends when it is done.
+    CloseChannel(HostId),
+    /// Ask for a stack dump; answered by [`HostInput::StackTaken`] or a
+    /// `stack` notification.
+    TakeStack(HostId, StackSupport),
+    /// Send a signal to the process and its group.
+    Signal(HostId, i32),
+    /// Kill the process and everything below it.
+    KillTree(HostId),
+    /// Ask the `alive` probes of a process fixture from now on.
+    WatchAlive(HostId),
+    /// Wait for a moment, in the time of `now`.
+    SetDeadline(Deadline, Duration),
+    /// Do not wait for it any more.
+    ClearDeadline(Deadline),
+    /// Something to report.
+    Emit(EventKind),
+    /// The suite is over. Nothing follows.
+    Done,
+}

@@ -1,0 +1,27 @@
+//! The state machine of one suite: (state, input, now) → effects.
+//!
+//! No I/O, no clock, no threads. Inputs say what happened, effects say what is
+//! to be done; [`crate::run::suite_task`] is the task that connects the two
+//! with the world.
+//!
+//! - [`suite`]: which fixture or test is next, and what a collapse, a stop
+//!   request or the suite's limit change about that.
+//! - [`fixture`]: one fixture from set-up to tear-down.
+//! - [`test`]: one attempt of a test, its phases, limits, and its stop by force.
+//! - [`judge`]: the verdict over one attempt.
+//! - [`capture`]: what is kept of what a process prints.
+
+mod capture;
+mod fixture;
+mod io;
+mod judge;
+mod log_watch;
+mod suite;
+mod test;
+#[cfg(test)]
+mod tests;
+
+pub use io::{
+    Deadline, Effect, FixtureTimer, HostId, HostInput, Input, SpawnPlan, Stop, StopLevel, TestTimer,
+};
+pub use suite::SuiteMachine;

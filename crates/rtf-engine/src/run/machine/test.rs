@@ -1,0 +1,482 @@
+//! One attempt of a test: its phases, its limits, and its stop by force.
+//!
+//! The steps of a stop: a stack dump (when a limit was reached), the request
+//! to stop, its grace, a stack dump (when there is none yet), SIGTERM, one
+//! second, SIGKILL of the whole tree.
+
+use std::time::Duration;
+
+use rtf_model::protocol::{
+    Answer, Initialize, Initialized, Notification, PROTOCOL_VERSION, Plugin, Reply, Request,
+    StackSupport,
+};
+use rtf_model::{
+    EventKind, ExitStatus, LeftProcess, Measurement, Message, MessageKind, Phase, Source,
+    StopCause, Stream, TestFinished, Verdict,
+};
+
+use super::capture::Capture;
+use super::io::{Deadline, Effect, HostId, HostInput, SpawnPlan, TestTimer};
+use super::judge::{Evidence, Problem, judge};
+use super::suite::Context;
+use crate::plan::{SuitePlan, TestPlan};
+
+/// The number of `initialize` on a host's channel.
+pub const INITIALIZE: u64 = 1;
+/// The number of `run-test` on a host's channel.
+const RUN_TEST: u64 = 2;
+
+const SIGTERM: i32 = 15;
+/// From SIGTERM to SIGKILL.
+pub const TERM_GRACE: Duration = Duration::from_secs(1);
+/// A stack dump takes no longer than this; the shell answers earlier.
+const STACK_LIMIT: Duration = Duration::from_secs(15);
+/// The process is killed again when it is still there after this time.
+const KILL_AGAIN: Duration = Duration::from_secs(5);
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Step {
+    /// A stack dump is being taken; then the test is asked to stop.
+    DumpThenAsk,
+    /// It was asked to stop.
+    Asked,
+    /// Its grace is over, a stack dump is being taken.
+    DumpThenForce,
+    /// It got SIGTERM.
+    Terminated,
+    /// It got SIGKILL.
+    Killed,
+}
+
+/// What an attempt that is over means for the suite.
+#[derive(Debug)]
+pub struct Ended {
+    /// The judgement.
+    pub verdict: Verdict,
+    /// Why it did not pass.
+    pub reason: Option<String>,
+    /// Where it was decided.
+    pub phase: Phase,
+    /// How the process ended.
+    pub exit: Option<ExitStatus>,
+    /// A critical assertion that did not hold: its text.
+    pub critical: Option<String>,
+}
+
+/// One attempt of a test.
+#[derive(Debug)]
+pub struct TestRun<'p> {
+    plan: &'p TestPlan,
+    host: HostId,
+    phase: Phase,
+    evidence: Evidence,
+    stack: StackSupport,
+    stack_taken: bool,
+    step: Option<Step>,
+    captures: [Capture; 2],
+    critical: Option<String>,
+}
+
+impl<'p> TestRun<'p> {
+    /// Starts an attempt: emits `test-started`, starts the host, and asks it
+    /// for everything at once.
+    pub fn start(
+        suite: &SuitePlan,
+        plan: &'p TestPlan,
+        (repetition, attempt): (u32, u32),
+        cx: &mut Context<'_>,
+    ) -> Self {
+        let host = cx.new_host();
+        let source = Source::Test(plan.id);
+        cx.emit(EventKind::TestStarted {
+            test: plan.id,
+            repetition,
+            attempt,
+        });
+        let env = suite.env.iter().chain(&plan.env).cloned().collect();
+        let spawn = SpawnPlan::Host(plan.plugin.host.clone());
+        cx.out(Effect::Spawn {
+            host,
+            source,
+            plan: spawn,
+            env,
+            folder: suite.folder.clone(),
+        });
+        cx.out(Effect::Send(host, Some(INITIALIZE), initialize()));
+        let plugin = Plugin {
+            file: plan.plugin.file.to_string_lossy().into_owned(),
+            name: plan.name.clone(),
+            param: plan.plugin.param.clone(),
+            args: plan.plugin.args.clone(),
+            environment: suite.environment.clone(),
+            repetition,
+            last: true,
+        };
+        cx.out(Effect::Send(host, Some(RUN_TEST), Request::RunTest(plugin)));
+        cx.set(Deadline::Test(TestTimer::Limit), plan.limits.load);
+        Self {
+            plan,
+            host,
+            phase: Phase::Load,
+            evidence: Evidence::default(),
+            stack: StackSupport::None,
+            stack_taken: false,
+            step: None,
+            captures: [
+                Capture::new(source, Stream::Stdout),
+                Capture::new(source, Stream::Stderr),
+            ],
+            critical: None,
+        }
+    }
+
+    /// The process of this attempt.
+    pub fn host(&self) -> HostId {
+        self.host
+    }
+
+    /// Takes in what its process did; `Some` when the attempt is over. The
+    /// caller then emits `test-finished` with [`finished`].
+    pub fn handle(&mut self, input: HostInput, cx: &mut Context<'_>) -> Option<Ended> {
+        match input {
+            HostInput::SpawnFailed(reason) => {
+                self.note(Verdict::Error, reason);
+                return Some(self.end(None, Vec::new(), cx));
+            }
+            HostInput::Exited(status, left) => return Some(self.end(Some(status), left, cx)),
+            HostInput::Told(notification) => self.told(notification, cx),
+            HostInput::Attached(Ok(attachment)) => {
+                cx.emit(EventKind::Attached {
+                    test: self.plan.id,
+                    attachment,
+                });
+            }
+            HostInput::Attached(Err(reason)) => self.own_error(reason, cx),
+            HostInput::Answered(INITIALIZE, reply) => self.initialized(reply, cx),
+            HostInput::Answered(RUN_TEST, reply) => self.answered(reply, cx),
+            HostInput::Answered(id, _) => self.broke_protocol(format!("answered request {id}"), cx),
+            HostInput::Garbage(what) => self.broke_protocol(what, cx),
+            HostInput::Printed(stream, bytes) => {
+                if let Some(output) = self.captures[stream as usize].push(&bytes) {
+                    cx.emit(EventKind::Output(output));
+                }
+            }
+            HostInput::StackTaken(text) => self.stack_taken(text, cx),
+            HostInput::ProbesHold | HostInput::ProbeFailed(_) => {}
+        }
+        None
+    }
+
+    fn told(&mut self, notification: Notification, cx: &mut Context<'_>) {
+        match notification {
+            Notification::Phase { phase } => self.enter(phase, cx),
+            Notification::Message(message) => self.message(message, cx),
+            Notification::Measured(measurement) => self.measured(measurement, cx),
+            Notification::Stack { text } => self.stack_taken(text, cx),
+            Notification::Attached(_) => {}
+            Notification::Collapsed { .. } => {
+                self.broke_protocol("sent `collapsed`, which is for fixtures".to_owned(), cx);
+            }
+        }
+    }
+
+    fn enter(&mut self, phase: Phase, cx: &mut Context<'_>) {
+        if phase <= self.phase || phase == Phase::Exit || self.evidence.answer.is_some() {
+            let what = format!("entered {phase} after {}", self.phase);
+            return self.broke_protocol(what, cx);
+        }
+        self.phase = phase;
+        cx.emit(EventKind::TestPhase {
+            test: self.plan.id,
+            phase,
+        });
+        if self.step.is_some() {
+            return;
+        }
+        let limits = &self.plan.limits;
+        let limit = match phase {
+            Phase::Setup => limits.setup,
+            Phase::Run => limits.run,
+            _ => limits.teardown,
+        };
+        cx.set(Deadline::Test(TestTimer::Limit), limit);
+        if phase == Phase::Run && limits.slow < limits.run {
+            cx.set(Deadline::Test(TestTimer::Slow), limits.slow);
+        } else {
+            cx.clear(Deadline::Test(TestTimer::Slow));
+        }
+    }
+
+    fn message(&mut self, message: Message, cx: &mut Context<'_>) {
+        match message.kind {
+            MessageKind::Failure => self.note(Verdict::Failed, message.text.clone()),
+            MessageKind::Error => self.note(Verdict::Error, message.text.clone()),
+            MessageKind::Report | MessageKind::Check => {}
+        }
+        if message.critical && message.kind != MessageKind::Check && self.critical.is_none() {
+            self.critical = Some(message.text.clone());
+        }
+        cx.emit(EventKind::Message {
+            source: Source::Test(self.plan.id),
+            message,
+        });
+    }
+
+    fn measured(&mut self, measurement: Measurement, cx: &mut Context<'_>) {
+        if !measurement.is_within_limits() {
+            let value = measurement.value_with_unit();
+            let reason = match measurement.limits() {
+                limits if limits.is_empty() => format!("`{}` is {value}", measurement.name),
+                limits => format!("`{}` is {value}, its limits are {limits}", measurement.name),
+            };
+            self.note(Verdict::Failed, reason);
+        }
+        cx.emit(EventKind::Measured {
+            test: self.plan.id,
+            measurement,
+        });
+    }
+
+    fn own_error(&mut self, text: String, cx: &mut Context<'_>) {
+        let kind = MessageKind::Error;
+        self.message(
+            Message {
+                kind,
+                text,
+                location: None,
+                comparison: None,
+                critical: false,
+            },
+            cx,
+        );
+    }
+
+    /// Remembers the first failure or error. Only `run` can show that the
+    /// robot is wrong; what goes wrong around it is the bench's.
+    fn note(&mut self, verdict: Verdict, reason: String) {
+        let verdict = if self.phase == Phase::Run {
+            verdict
+        } else {
+            Verdict::Error
+        };
+        let phase = self.phase;
+        self.evidence.first_problem.get_or_insert(Problem {
+            verdict,
+            reason,
+            phase,
+        });
+    }
+
+    fn initialized(&mut self, reply: Reply<serde_json::Value>, cx: &mut Context<'_>) {
+        match parse_initialized(reply) {
+            Ok(stack) => self.stack = stack,
+            Err(what) => self.broke_protocol(what, cx),
+        }
+    }
+
+    fn answered(&mut self, reply: Reply<serde_json::Value>, cx: &mut Context<'_>) {
+        if self.evidence.answer.is_some() {
+            return self.broke_protocol("answered the same request twice".to_owned(), cx);
+        }
+        match parse_answer(reply) {
+            Ok(answer) => {
+                self.evidence.answer = Some(answer);
+                self.phase = Phase::Exit;
+                cx.out(Effect::CloseChannel(self.host));
+                cx.clear(Deadline::Test(TestTimer::Slow));
+                if self.step.is_none() {
+                    cx.set(Deadline::Test(TestTimer::Limit), self.plan.limits.teardown);
+                }
+            }
+            Err(what) => self.broke_protocol(what, cx),
+        }
+    }
+
+    fn broke_protocol(&mut self, what: String, cx: &mut Context<'_>) {
+        let reason = format!("the host broke the protocol: {what}");
+        self.stop(StopCause::Protocol, reason, cx);
+    }
+
+    /// Asks the test to stop. The first cause is the one that counts.
+    pub fn stop(&mut self, cause: StopCause, reason: String, cx: &mut Context<'_>) {
+        if self.evidence.stopped.is_some() {
+            return;
+        }
+        cx.emit(EventKind::TestStopping {
+            test: self.plan.id,
+            cause,
+            reason: reason.clone(),
+        });
+        cx.clear(Deadline::Test(TestTimer::Slow));
+        self.evidence.stopped = Some((cause, reason, self.phase));
+        if cause == StopCause::Timeout {
+            self.dump_stack(Step::DumpThenAsk, cx);
+        } else {
+            self.ask(cx);
+        }
+    }
+
+    fn dump_stack(&mut self, step: Step, cx: &mut Context<'_>) {
+        self.step = Some(step);
+        cx.out(Effect::TakeStack(self.host, self.stack));
+        cx.set(Deadline::Test(TestTimer::Limit), STACK_LIMIT);
+    }
+
+    fn ask(&mut self, cx: &mut Context<'_>) {
+        self.step = Some(Step::Asked);
+        let reason = self
+            .evidence
+            .stopped
+            .as_ref()
+            .map(|(_, reason, _)| reason.clone());
+        let reason = reason.unwrap_or_default();
+        cx.out(Effect::Send(self.host, None, Request::Interrupt { reason }));
+        cx.set(Deadline::Test(TestTimer::Limit), self.plan.limits.grace);
+    }
+
+    fn stack_taken(&mut self, text: String, cx: &mut Context<'_>) {
+        if !self.stack_taken {
+            self.stack_taken = true;
+            cx.emit(EventKind::StackDumped {
+                source: Source::Test(self.plan.id),
+                text,
+            });
+        }
+        match self.step {
+            Some(Step::DumpThenAsk) => self.ask(cx),
+            Some(Step::DumpThenForce) => self.terminate(cx),
+            _ => {}
+        }
+    }
+
+    fn terminate(&mut self, cx: &mut Context<'_>) {
+        self.step = Some(Step::Terminated);
+        cx.out(Effect::Signal(self.host, SIGTERM));
+        cx.set(Deadline::Test(TestTimer::Limit), TERM_GRACE);
+    }
+
+    /// Kills its process and everything below it, now.
+    pub fn kill(&mut self, cx: &mut Context<'_>) {
+        self.step = Some(Step::Killed);
+        cx.out(Effect::KillTree(self.host));
+        cx.set(Deadline::Test(TestTimer::Limit), KILL_AGAIN);
+    }
+
+    /// A deadline about this test has passed.
+    pub fn deadline(&mut self, timer: TestTimer, cx: &mut Context<'_>) {
+        if timer == TestTimer::Slow {
+            return cx.emit(EventKind::TestSlow { test: self.plan.id });
+        }
+        match self.step {
+            None => {
+                let reason = self.limit_reached();
+                self.stop(StopCause::Timeout, reason, cx);
+            }
+            Some(Step::DumpThenAsk) => self.ask(cx),
+            Some(Step::Asked) if !self.stack_taken => self.dump_stack(Step::DumpThenForce, cx),
+            Some(Step::Asked | Step::DumpThenForce) => self.terminate(cx),
+            Some(Step::Terminated | Step::Killed) => self.kill(cx),
+        }
+    }
+
+    fn limit_reached(&self) -> String {
+        let limits = &self.plan.limits;
+        match self.phase {
+            Phase::Load => format!("the plug-in was not loaded within {:?}", limits.load),
+            Phase::Setup => format!("set-up did not end within {:?}", limits.setup),
+            Phase::Run => format!("run did not end within {:?}", limits.run),
+            Phase::TearDown => format!("tear-down did not end within {:?}", limits.teardown),
+            Phase::Exit => format!(
+                "the process did not end within {:?} after the test",
+                limits.teardown
+            ),
+        }
+    }
+
+    fn end(
+        &mut self,
+        exit: Option<ExitStatus>,
+        left: Vec<LeftProcess>,
+        cx: &mut Context<'_>,
+    ) -> Ended {
+        cx.clear(Deadline::Test(TestTimer::Limit));
+        cx.clear(Deadline::Test(TestTimer::Slow));
+        for capture in &mut self.captures {
+            if let Some(output) = capture.finish() {
+                cx.emit(EventKind::Output(output));
+            }
+        }
+        if !left.is_empty() {
+            let source = Source::Test(self.plan.id);
+            cx.emit(EventKind::ProcessesLeft {
+                source,
+                processes: left,
+            });
+        }
+        self.evidence.exit = exit;
+        let (verdict, reason, phase) = judge(&self.evidence, self.phase);
+        Ended {
+            verdict,
+            reason,
+            phase,
+            exit,
+            critical: self.critical.take(),
+        }
+    }
+
+    /// The last event of this attempt.
+    pub fn finished(&self, ended: &Ended, rerun: bool) -> EventKind {
+        EventKind::TestFinished(TestFinished {
+            test: self.plan.id,
+            verdict: ended.verdict,
+            reason: ended.reason.clone(),
+            phase: ended.phase,
+            exit: ended.exit,
+            rerun,
+        })
+    }
+}
+
+/// The first request on every channel.
+pub fn initialize() -> Request {
+    Request::Initialize(Initialize {
+        protocol: PROTOCOL_VERSION,
+        rtf: env!("CARGO_PKG_VERSION").to_owned(),
+        stack_file: None,
+    })
+}
+
+/// Reads the answer to `initialize`.
+pub fn parse_initialized(reply: Reply<serde_json::Value>) -> Result<StackSupport, String> {
+    let value = match reply {
+        Reply::Result(value) => value,
+        Reply::Error(error) => {
+            return Err(format!(
+                "it does not speak protocol {PROTOCOL_VERSION}: {}",
+                error.message
+            ));
+        }
+    };
+    let initialized: Initialized = serde_json::from_value(value)
+        .map_err(|error| format!("its answer to `initialize` is not understood: {error}"))?;
+    if initialized.protocol == PROTOCOL_VERSION {
+        Ok(initialized.stack)
+    } else {
+        Err(format!(
+            "{} speaks protocol {}",
+            initialized.host, initialized.protocol
+        ))
+    }
+}
+
+/// Reads an answer to a request that carries out something.
+pub fn parse_answer(
+    reply: Reply<serde_json::Value>,
+) -> Result<Result<Answer, rtf_model::protocol::RpcError>, String> {
+    match reply {
+        Reply::Error(error) => Ok(Err(error)),
+        Reply::Result(value) => serde_json::from_value(value)
+            .map(Ok)
+            .map_err(|error| format!("an answer is not understood: {error}")),
+    }
+}

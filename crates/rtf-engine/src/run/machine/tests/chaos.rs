@@ -1,0 +1,143 @@
+//! Random hosts: whatever they do and whenever they die, the events are in
+//! order, each test has exactly one last word, and nothing overlaps a collapse
+//! and is green.
+
+use proptest::prelude::*;
+use rtf_model::protocol::{Notification, Reply};
+use rtf_model::{ExitStatus, Message, MessageKind, Phase, Verdict};
+
+use super::world::{World, suite};
+use crate::plan::AfterCollapse;
+use crate::run::machine::{HostInput, Input, StopLevel};
+
+fn act(world: &mut World<'_>, choice: u8, which: usize) {
+    let alive: Vec<_> = world
+        .hosts
+        .iter()
+        .map(|(host, source)| (*host, *source))
+        .collect();
+    let Some((host, source)) = alive.get(which % alive.len().max(1)).copied() else {
+        if !world.deadlines.is_empty() {
+            world.next_deadline();
+        }
+        return;
+    };
+    let answerable = |world: &World<'_>| {
+        world
+            .sent
+            .iter()
+            .rev()
+            .find(|(to, id, _)| *to == host && id.is_some())
+            .and_then(|s| s.1)
+    };
+    let told = |notification| Input::Host(host, HostInput::Told(notification));
+    match choice % 16 {
+        0 | 1 | 2 | 3 | 4 => {
+            if let Some(id) = answerable(world) {
+                let outcome = if choice > 200 { "failed" } else { "passed" };
+                let value = serde_json::json!({ "outcome": outcome });
+                world.feed(Input::Host(
+                    host,
+                    HostInput::Answered(id, Reply::Result(value)),
+                ));
+            }
+        }
+        5 => world.feed(told(Notification::Phase {
+            phase: Phase::Setup,
+        })),
+        6 | 7 => world.feed(told(Notification::Phase { phase: Phase::Run })),
+        8 => world.feed(told(Notification::Phase {
+            phase: Phase::TearDown,
+        })),
+        9 => world.feed(told(Notification::Collapsed {
+            reason: "gone".to_owned(),
+        })),
+        10 => world.exit(source, ExitStatus::Signal(9)),
+        11 | 12 => world.exit(source, ExitStatus::Code(0)),
+        13 => {
+            let kind = MessageKind::Failure;
+            let text = "no".to_owned();
+            let message = Message {
+                kind,
+                text,
+                location: None,
+                comparison: None,
+                critical: choice > 240,
+            };
+            world.feed(told(Notification::Message(message)));
+        }
+        14 => drop((!world.deadlines.is_empty()).then(|| world.next_deadline())),
+        _ if choice == 255 => world.stop(StopLevel::Kill),
+        _ if choice == 239 => world.stop(StopLevel::TearDown),
+        _ => world.feed(Input::Host(
+            host,
+            HostInput::Garbage("it wrote `x`".to_owned()),
+        )),
+    }
+}
+
+fn settle(world: &mut World<'_>) {
+    for _ in 0..2000 {
+        if world.done {
+            return;
+        }
+        match world.hosts.values().next().copied() {
+            Some(source) => world.exit(source, ExitStatus::Code(0)),
+            None => drop(world.next_deadline()),
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
+    #[test]
+    fn whatever_happens_every_test_has_one_last_word(
+        steps in prop::collection::vec((any::<u8>(), 0..4usize), 0..200),
+        fixtures in 0..3usize,
+        tests in 1..5usize,
+        restarts in 0..4u32,
+    ) {
+        let mut plan = suite(fixtures, tests);
+        for fixture in &mut plan.fixtures {
+            fixture.restarts = restarts;
+        }
+        plan.tests[0].after_collapse = AfterCollapse::Rerun;
+        plan.tests[tests - 1].repetitions = 2;
+        let mut world = World::new(&plan);
+        world.start();
+        for (choice, which) in steps {
+            if world.done {
+                break;
+            }
+            act(&mut world, choice, which);
+        }
+        settle(&mut world);
+        world.finish();
+        let totals = world.record.totals();
+        prop_assert_eq!(totals.done() as usize, tests);
+        check_overlaps(&world);
+    }
+}
+
+/// No attempt during which a fixture collapsed is green.
+fn check_overlaps(world: &World<'_>) {
+    let collapses: Vec<_> = world
+        .record
+        .fixtures
+        .iter()
+        .flat_map(|f| f.collapses.iter().map(|(at, _)| *at))
+        .collect();
+    for test in &world.record.tests {
+        for attempt in &test.attempts {
+            let Some((end, finished)) = &attempt.finished else {
+                continue;
+            };
+            let overlaps = collapses.iter().any(|at| *at > attempt.started && at < end);
+            assert!(
+                !(overlaps && finished.verdict == Verdict::Passed),
+                "{:#?}",
+                world.log
+            );
+        }
+    }
+}

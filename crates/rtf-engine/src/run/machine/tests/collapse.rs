@@ -1,0 +1,254 @@
+//! Fixtures that collapse: in a test, in set-up, between tests, in tear-down.
+
+use insta::assert_snapshot;
+use rtf_model::protocol::Notification;
+use rtf_model::{ExitStatus, FixtureId, Phase, Source, TestId, Verdict};
+
+use super::world::{World, suite};
+use crate::plan::{AfterCollapse, SuitePlan};
+use crate::run::machine::HostInput;
+
+const FIXTURE: Source = Source::Fixture(FixtureId(0));
+const TEST: Source = Source::Test(TestId(0));
+
+fn collapse(world: &mut World<'_>, source: Source) {
+    let reason = "the motor driver is gone".to_owned();
+    world.input(source, HostInput::Told(Notification::Collapsed { reason }));
+}
+
+fn until_test_runs(plan: &SuitePlan) -> World<'_> {
+    let mut world = World::new(plan);
+    world.start();
+    ready(&mut world, plan.fixtures.len());
+    world.phase(TEST, Phase::Setup);
+    world.phase(TEST, Phase::Run);
+    world
+}
+
+fn ready(world: &mut World<'_>, fixtures: usize) {
+    for _ in ["set-up", "check"] {
+        for fixture in 0..fixtures {
+            world.answer(
+                Source::Fixture(FixtureId(u32::try_from(fixture).unwrap())),
+                "passed",
+            );
+        }
+    }
+}
+
+/// Defect 4 of the predecessor: a collapse during the only test was never reported.
+#[test]
+fn a_collapse_during_the_only_test_interrupts_it() {
+    let plan = suite(1, 1);
+    let mut world = until_test_runs(&plan);
+    collapse(&mut world, FIXTURE);
+    world.answer(TEST, "interrupted");
+    world.exit(TEST, ExitStatus::Code(0));
+    world.tear_down(0);
+    world.finish();
+    assert_snapshot!(world.story(), @"
+    0.0  suite-started
+    0.0  fixture-starting attempt=1 fixture=0
+    0.0  fixture-ready fixture=0
+    0.0  test-started attempt=1 repetition=1 test=0
+    0.0  test-phase phase=setup test=0
+    0.0  test-phase phase=run test=0
+    0.0  fixture-collapsed fixture=0 reason=the motor driver is gone
+    0.0  test-stopping cause=collapse reason=fixture `fixture0` collapsed: the motor driver is gone test=0
+    0.0    → close the channel
+    0.0  test-finished exit={code:0} phase=run reason=fixture `fixture0` collapsed: the motor driver is gone test=0 verdict=collapsed
+    0.0  fixture-stopping fixture=0
+    0.0    → close the channel
+    0.0  fixture-stopped fixture=0
+    0.0  suite-finished
+    ");
+    assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Collapsed));
+    assert!(!world.record.is_green());
+}
+
+#[test]
+fn after_the_restart_the_suite_goes_on() {
+    let plan = suite(2, 2);
+    let mut world = until_test_runs(&plan);
+    world.exit(FIXTURE, ExitStatus::Signal(9));
+    world.answer(TEST, "passed");
+    world.exit(TEST, ExitStatus::Code(0));
+    world.tear_down(1);
+    ready(&mut world, 2);
+    world.pass(1);
+    world.tear_down(1);
+    world.tear_down(0);
+    world.finish();
+    assert_snapshot!(world.story(), @"
+    0.0  suite-started
+    0.0  fixture-starting attempt=1 fixture=0
+    0.0  fixture-ready fixture=0
+    0.0  fixture-starting attempt=1 fixture=1
+    0.0  fixture-ready fixture=1
+    0.0  test-started attempt=1 repetition=1 test=0
+    0.0  test-phase phase=setup test=0
+    0.0  test-phase phase=run test=0
+    0.0  fixture-collapsed fixture=0 reason=its process ended with signal 9 (SIGKILL)
+    0.0  test-stopping cause=collapse reason=fixture `fixture0` collapsed: its process ended with signal 9 (SIGKILL) test=0
+    0.0    → close the channel
+    0.0  test-finished exit={code:0} phase=run reason=fixture `fixture0` collapsed: its process ended with signal 9 (SIGKILL) test=0 verdict=collapsed
+    0.0  fixture-stopping fixture=1
+    0.0    → close the channel
+    0.0  fixture-stopped fixture=1
+    0.0  fixture-stopping fixture=0
+    0.0  fixture-stopped fixture=0
+    0.0  fixture-starting attempt=2 fixture=0
+    0.0  fixture-ready fixture=0
+    0.0  fixture-starting attempt=2 fixture=1
+    0.0  fixture-ready fixture=1
+    0.0  test-started attempt=1 repetition=1 test=1
+    0.0  test-phase phase=setup test=1
+    0.0  test-phase phase=run test=1
+    0.0  test-phase phase=tear-down test=1
+    0.0    → close the channel
+    0.0  test-finished exit={code:0} phase=exit test=1 verdict=passed
+    0.0  fixture-stopping fixture=1
+    0.0    → close the channel
+    0.0  fixture-stopped fixture=1
+    0.0  fixture-stopping fixture=0
+    0.0    → close the channel
+    0.0  fixture-stopped fixture=0
+    0.0  suite-finished
+    ");
+    assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Collapsed));
+    assert_eq!(world.record.verdict(TestId(1)), Some(Verdict::Passed));
+}
+
+#[test]
+fn a_rerun_keeps_both_attempts_and_the_last_one_counts() {
+    let mut plan = suite(1, 1);
+    plan.tests[0].after_collapse = AfterCollapse::Rerun;
+    let mut world = until_test_runs(&plan);
+    collapse(&mut world, FIXTURE);
+    world.answer(TEST, "interrupted");
+    world.exit(TEST, ExitStatus::Code(0));
+    world.tear_down(0);
+    ready(&mut world, 1);
+    world.pass(0);
+    world.tear_down(0);
+    world.finish();
+    let test = &world.record.tests[0];
+    let verdicts: Vec<_> = test.attempts.iter().filter_map(|a| a.verdict()).collect();
+    assert_eq!(verdicts, [Verdict::Collapsed, Verdict::Passed]);
+    assert_eq!(test.verdict(), Some(Verdict::Passed));
+    assert!(
+        !world.record.is_green(),
+        "a collapse is not green unless it is tolerated"
+    );
+}
+
+#[test]
+fn when_the_restarts_are_used_up_the_rest_is_skipped_with_the_first_cause() {
+    let mut plan = suite(1, 3);
+    plan.fixtures[0].restarts = 0;
+    let mut world = until_test_runs(&plan);
+    collapse(&mut world, FIXTURE);
+    world.answer(TEST, "interrupted");
+    world.exit(TEST, ExitStatus::Code(0));
+    world.tear_down(0);
+    world.finish();
+    assert_eq!(world.record.totals().of(Verdict::Skipped), 2);
+    assert_eq!(
+        world.record.tests[2].reason(),
+        Some("fixture `fixture0` is broken: the motor driver is gone")
+    );
+}
+
+#[test]
+fn a_collapse_while_another_fixture_is_set_up_tears_both_down_and_starts_again() {
+    let plan = suite(2, 1);
+    let mut world = World::new(&plan);
+    world.start();
+    world.answer(FIXTURE, "passed");
+    collapse(&mut world, FIXTURE);
+    world.tear_down(1);
+    world.tear_down(0);
+    ready(&mut world, 2);
+    world.pass(0);
+    world.tear_down(1);
+    world.tear_down(0);
+    world.finish();
+    assert_snapshot!(world.story(), @"
+    0.0  suite-started
+    0.0  fixture-starting attempt=1 fixture=0
+    0.0  fixture-ready fixture=0
+    0.0  fixture-starting attempt=1 fixture=1
+    0.0  fixture-collapsed fixture=0 reason=the motor driver is gone
+    0.0  fixture-stopping fixture=1
+    0.0    → close the channel
+    0.0  fixture-stopped fixture=1
+    0.0  fixture-stopping fixture=0
+    0.0    → close the channel
+    0.0  fixture-stopped fixture=0
+    0.0  fixture-starting attempt=2 fixture=0
+    0.0  fixture-ready fixture=0
+    0.0  fixture-starting attempt=2 fixture=1
+    0.0  fixture-ready fixture=1
+    0.0  test-started attempt=1 repetition=1 test=0
+    0.0  test-phase phase=setup test=0
+    0.0  test-phase phase=run test=0
+    0.0  test-phase phase=tear-down test=0
+    0.0    → close the channel
+    0.0  test-finished exit={code:0} phase=exit test=0 verdict=passed
+    0.0  fixture-stopping fixture=1
+    0.0    → close the channel
+    0.0  fixture-stopped fixture=1
+    0.0  fixture-stopping fixture=0
+    0.0    → close the channel
+    0.0  fixture-stopped fixture=0
+    0.0  suite-finished
+    ");
+}
+
+#[test]
+fn a_check_that_fails_before_a_test_restarts_the_fixture_first() {
+    let plan = suite(1, 1);
+    let mut world = World::new(&plan);
+    world.start();
+    world.answer(FIXTURE, "passed");
+    world.answer(FIXTURE, "failed");
+    world.tear_down(0);
+    ready(&mut world, 1);
+    world.pass(0);
+    world.tear_down(0);
+    world.finish();
+    assert_eq!(
+        world.record.fixtures[0].collapses[0].1,
+        "check failed: says failed"
+    );
+    assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Passed));
+}
+
+#[test]
+fn a_fixture_that_dies_between_tests_is_restarted() {
+    let plan = suite(1, 1);
+    let mut world = World::new(&plan);
+    world.start();
+    world.answer(FIXTURE, "passed");
+    world.exit(FIXTURE, ExitStatus::Code(0));
+    ready(&mut world, 1);
+    world.pass(0);
+    world.tear_down(0);
+    world.finish();
+    assert_eq!(world.record.fixtures[0].starts, 2);
+}
+
+#[test]
+fn a_collapse_during_the_last_tear_down_is_not_green() {
+    let plan = suite(2, 1);
+    let mut world = World::new(&plan);
+    world.start();
+    ready(&mut world, 2);
+    world.pass(0);
+    collapse(&mut world, FIXTURE);
+    world.tear_down(1);
+    world.tear_down(0);
+    world.finish();
+    assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Passed));
+    assert!(!world.record.is_green());
+}

@@ -1,0 +1,7 @@
+//! The state machine with invented times: no processes, no sleeps.
+
+mod chaos;
+mod collapse;
+mod flow;
+mod limits;
+mod world;

@@ -1,0 +1,328 @@
+//! A world for the machine: plans, hosts that do what a test says, and time.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use rtf_model::protocol::{Notification, Reply, Request};
+use rtf_model::{
+    Event, EventKind, ExitStatus, FixtureId, FixturePlanned, Message, MessageKind, Micros,
+    OrderChecker, Phase, Record, RunStarted, Source, SuiteId, SuitePlanned, TestId, TestPlanned,
+};
+
+use crate::plan::*;
+use crate::run::machine::{
+    Deadline, Effect, HostId, HostInput, Input, Stop, StopLevel, SuiteMachine,
+};
+
+pub const SECOND: Duration = Duration::from_secs(1);
+
+pub fn suite(fixtures: usize, tests: usize) -> SuitePlan {
+    SuitePlan {
+        id: SuiteId(0),
+        name: "arm".to_owned(),
+        file: "arm.xml".to_owned(),
+        folder: PathBuf::from("."),
+        description: String::new(),
+        environment: String::new(),
+        env: Arc::default(),
+        timeout: None,
+        tolerates_collapse: false,
+        fixtures: (0..fixtures).map(fixture).collect(),
+        tests: (0..tests).map(test).collect(),
+    }
+}
+
+fn plugin() -> PluginPlan {
+    PluginPlan {
+        plugin_type: "dll".into(),
+        file: PathBuf::from("plugin.so"),
+        param: String::new(),
+        args: Vec::new(),
+        host: Arc::new(HostPlan {
+            command: vec!["host".to_owned()],
+            env: Vec::new(),
+        }),
+    }
+}
+
+fn fixture(index: usize) -> FixturePlan {
+    FixturePlan {
+        id: FixtureId(u32::try_from(index).unwrap()),
+        name: format!("fixture{index}"),
+        body: FixtureBody::Plugin(plugin()),
+        env: Vec::new(),
+        limits: FixtureLimits {
+            setup: 10 * SECOND,
+            check: SECOND,
+            teardown: 3 * SECOND,
+        },
+        restarts: 1,
+        check_every: None,
+    }
+}
+
+fn test(index: usize) -> TestPlan {
+    let limits = TestLimits {
+        load: 10 * SECOND,
+        setup: 10 * SECOND,
+        run: 5 * SECOND,
+        teardown: 3 * SECOND,
+        slow: 2 * SECOND,
+        grace: SECOND,
+    };
+    TestPlan {
+        id: TestId(u32::try_from(index).unwrap()),
+        name: format!("test{index}"),
+        plugin: plugin(),
+        env: Vec::new(),
+        repetitions: 1,
+        limits: Arc::new(limits),
+        after_collapse: AfterCollapse::Fail,
+        critical: false,
+        tags: Vec::new(),
+    }
+}
+
+/// The machine, what it asked for, and what it reported.
+pub struct World<'p> {
+    pub now: Duration,
+    pub machine: SuiteMachine<'p>,
+    pub record: Record,
+    pub hosts: BTreeMap<HostId, Source>,
+    pub sent: Vec<(HostId, Option<u64>, Request)>,
+    pub log: Vec<String>,
+    pub deadlines: BTreeMap<Deadline, Duration>,
+    pub done: bool,
+    order: OrderChecker,
+    seq: u64,
+}
+
+impl<'p> World<'p> {
+    pub fn new(plan: &'p SuitePlan) -> Self {
+        let mut world = Self {
+            now: Duration::ZERO,
+            machine: SuiteMachine::new(plan),
+            record: Record::default(),
+            hosts: BTreeMap::new(),
+            sent: Vec::new(),
+            log: Vec::new(),
+            deadlines: BTreeMap::new(),
+            done: false,
+            order: OrderChecker::default(),
+            seq: 0,
+        };
+        world.announce(plan);
+        world
+    }
+
+    fn announce(&mut self, plan: &SuitePlan) {
+        self.emit(EventKind::RunStarted(RunStarted {
+            version: 1,
+            run: "r".to_owned(),
+            rtf: "0".to_owned(),
+            started_at: String::new(),
+            command: Vec::new(),
+            folder: String::new(),
+            suites: 1,
+            tests: u32::try_from(plan.tests.len()).unwrap(),
+        }));
+        self.emit(EventKind::SuitePlanned(SuitePlanned {
+            suite: plan.id,
+            name: plan.name.clone(),
+            file: plan.file.clone(),
+            description: String::new(),
+            environment: String::new(),
+            tolerates_collapse: false,
+        }));
+        for fixture in &plan.fixtures {
+            let (fixture, suite, name) = (fixture.id, plan.id, fixture.name.clone());
+            let plugin_type = "dll".to_owned();
+            self.emit(EventKind::FixturePlanned(FixturePlanned {
+                fixture,
+                suite,
+                name,
+                plugin_type,
+            }));
+        }
+        for test in &plan.tests {
+            self.emit(EventKind::TestPlanned(TestPlanned {
+                test: test.id,
+                suite: plan.id,
+                name: test.name.clone(),
+                plugin_type: "dll".to_owned(),
+                plugin: String::new(),
+                repetitions: test.repetitions,
+                tags: Vec::new(),
+            }));
+        }
+    }
+
+    fn emit(&mut self, kind: EventKind) {
+        let event = Event {
+            seq: self.seq,
+            at: Micros::from(self.now),
+            kind,
+        };
+        self.seq += 1;
+        self.order
+            .check(&event)
+            .unwrap_or_else(|error| panic!("{error}\n{event:?}\n{:#?}", self.log));
+        self.record.apply(&event);
+        let json = serde_json::to_value(&event.kind).unwrap();
+        self.log.push(format!(
+            "{:>5.1}  {}",
+            self.now.as_secs_f64(),
+            line_of(&json)
+        ));
+    }
+
+    pub fn feed(&mut self, input: Input) {
+        let mut effects = Vec::new();
+        self.machine.handle(input, self.now, &mut effects);
+        for effect in effects {
+            match effect {
+                Effect::Emit(kind) => self.emit(kind),
+                Effect::Spawn { host, source, .. } => drop(self.hosts.insert(host, source)),
+                Effect::Send(host, id, request) => self.sent.push((host, id, request)),
+                Effect::SetDeadline(deadline, at) => drop(self.deadlines.insert(deadline, at)),
+                Effect::ClearDeadline(deadline) => drop(self.deadlines.remove(&deadline)),
+                Effect::Done => self.done = true,
+                other => self.log.push(format!(
+                    "{:>5.1}    {}",
+                    self.now.as_secs_f64(),
+                    effect_of(&other)
+                )),
+            }
+        }
+    }
+
+    pub fn start(&mut self) {
+        self.feed(Input::Start);
+    }
+
+    pub fn stop(&mut self, level: StopLevel) {
+        self.feed(Input::Stop(Stop {
+            level,
+            reason: "SIGINT".to_owned(),
+        }));
+    }
+
+    /// The host of a source that is alive.
+    pub fn host_of(&self, source: Source) -> HostId {
+        let host = self.hosts.iter().find(|(_, of)| **of == source);
+        *host
+            .unwrap_or_else(|| panic!("no host of {source:?}\n{:#?}", self.log))
+            .0
+    }
+
+    pub fn input(&mut self, source: Source, input: HostInput) {
+        let host = self.host_of(source);
+        if matches!(input, HostInput::Exited(..) | HostInput::SpawnFailed(_)) {
+            self.hosts.remove(&host);
+        }
+        self.feed(Input::Host(host, input));
+    }
+
+    pub fn exit(&mut self, source: Source, status: ExitStatus) {
+        self.input(source, HostInput::Exited(status, Vec::new()));
+    }
+
+    /// Answers the request that was sent last to a host and waits for an answer.
+    pub fn answer(&mut self, source: Source, outcome: &str) {
+        let host = self.host_of(source);
+        let asked = self
+            .sent
+            .iter()
+            .rev()
+            .find(|(to, id, _)| *to == host && id.is_some());
+        let id = asked.and_then(|(_, id, _)| *id).expect("a request");
+        let value = serde_json::json!({ "outcome": outcome, "reason": format!("says {outcome}") });
+        self.input(source, HostInput::Answered(id, Reply::Result(value)));
+    }
+
+    pub fn phase(&mut self, source: Source, phase: Phase) {
+        self.input(source, HostInput::Told(Notification::Phase { phase }));
+    }
+
+    pub fn failure(&mut self, source: Source, text: &str, critical: bool) {
+        let kind = MessageKind::Failure;
+        let message = Message {
+            kind,
+            text: text.to_owned(),
+            location: None,
+            comparison: None,
+            critical,
+        };
+        self.input(source, HostInput::Told(Notification::Message(message)));
+    }
+
+    /// A test that goes through all its phases and ends well.
+    pub fn pass(&mut self, test: u32) {
+        let source = Source::Test(TestId(test));
+        for phase in [Phase::Setup, Phase::Run, Phase::TearDown] {
+            self.phase(source, phase);
+        }
+        self.answer(source, "passed");
+        self.exit(source, ExitStatus::Code(0));
+    }
+
+    /// A fixture that is torn down and ends well.
+    pub fn tear_down(&mut self, fixture: u32) {
+        let source = Source::Fixture(FixtureId(fixture));
+        self.answer(source, "passed");
+        self.exit(source, ExitStatus::Code(0));
+    }
+
+    /// Lets time pass up to the next deadline, which then passes.
+    pub fn next_deadline(&mut self) -> Deadline {
+        let next = self.deadlines.iter().min_by_key(|(_, at)| **at);
+        let (deadline, at) = next
+            .map(|(deadline, at)| (*deadline, *at))
+            .expect("a deadline");
+        self.now = self.now.max(at);
+        self.deadlines.remove(&deadline);
+        self.feed(Input::Deadline(deadline));
+        deadline
+    }
+
+    pub fn finish(&mut self) {
+        assert!(self.done, "the suite is not over\n{:#?}", self.log);
+        assert!(
+            self.deadlines.is_empty(),
+            "deadlines are left: {:?}",
+            self.deadlines
+        );
+        self.emit(EventKind::RunFinished { interrupted: None });
+    }
+
+    /// What happened after the plan.
+    pub fn story(&self) -> String {
+        let story = self
+            .log
+            .iter()
+            .filter(|line| !line.contains("-planned") && !line.contains("run-"));
+        story.cloned().collect::<Vec<_>>().join("\n")
+    }
+}
+
+fn line_of(json: &serde_json::Value) -> String {
+    let mut line = json["type"].as_str().unwrap_or_default().to_owned();
+    for (key, value) in json.as_object().unwrap() {
+        if key != "type" && key != "suite" && key != "log_tail" && key != "message" {
+            line += &format!(" {key}={}", value.to_string().replace('"', ""));
+        }
+    }
+    line
+}
+
+fn effect_of(effect: &Effect) -> String {
+    match effect {
+        Effect::CloseChannel(_) => "→ close the channel".to_owned(),
+        Effect::TakeStack(..) => "→ take a stack dump".to_owned(),
+        Effect::Signal(_, signal) => format!("→ signal {signal}"),
+        Effect::KillTree(_) => "→ kill the tree".to_owned(),
+        other => format!("→ {other:?}"),
+    }
+}

@@ -1,0 +1,204 @@
+//! The task around a suite's state machine: it carries out the effects and
+//! brings the inputs.
+
+use std::collections::{BTreeMap, HashMap};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use rtf_model::Source;
+use rtf_model::protocol::ENVIRONMENT_VARIABLE;
+use tokio::sync::{mpsc, watch};
+use tokio::time::Instant;
+
+use super::events::Events;
+use super::machine::{Deadline, Effect, HostId, HostInput, Input, SpawnPlan, Stop, SuiteMachine};
+use crate::host::spawner::{SpawnRequest, Streams};
+use crate::host::task::{self, Job, Order, Shared};
+use crate::plan::SuitePlan;
+
+/// How many inputs may wait; then processes wait.
+const INPUTS: usize = 1024;
+
+/// Runs a suite to its end.
+pub async fn run_suite(
+    plan: &SuitePlan,
+    shared: &Arc<Shared>,
+    events: &Events,
+    stops: watch::Receiver<Option<Stop>>,
+) {
+    let (inputs, queue) = mpsc::channel(INPUTS);
+    let mut task = SuiteTask {
+        plan,
+        shared,
+        events,
+        inputs,
+        machine: SuiteMachine::new(plan),
+        effects: Vec::new(),
+        orders: HashMap::new(),
+        deadlines: BTreeMap::new(),
+        over: false,
+    };
+    task.run(queue, stops).await;
+}
+
+struct SuiteTask<'a> {
+    plan: &'a SuitePlan,
+    shared: &'a Arc<Shared>,
+    events: &'a Events,
+    inputs: task::Inputs,
+    machine: SuiteMachine<'a>,
+    effects: Vec<Effect>,
+    orders: HashMap<HostId, mpsc::UnboundedSender<Order>>,
+    deadlines: BTreeMap<Deadline, Duration>,
+    over: bool,
+}
+
+impl SuiteTask<'_> {
+    async fn run(
+        &mut self,
+        mut queue: mpsc::Receiver<(HostId, HostInput)>,
+        mut stops: watch::Receiver<Option<Stop>>,
+    ) {
+        let stop = stops.borrow_and_update().clone();
+        if let Some(stop) = stop {
+            self.feed(Input::Stop(stop));
+        }
+        self.feed(Input::Start);
+        while !self.over {
+            let next = self.deadlines.values().min().copied();
+            tokio::select! {
+                biased;
+                Ok(()) = stops.changed() => {
+                    let stop = stops.borrow_and_update().clone();
+                    if let Some(stop) = stop {
+                        self.feed(Input::Stop(stop));
+                    }
+                }
+                () = self.sleep_until(next) => self.deadlines_passed(),
+                Some((host, input)) = queue.recv() => self.host_input(host, input),
+            }
+        }
+    }
+
+    async fn sleep_until(&self, next: Option<Duration>) {
+        match next {
+            Some(next) => {
+                tokio::time::sleep_until(Instant::from_std(self.events.start() + next)).await
+            }
+            None => std::future::pending().await,
+        }
+    }
+
+    fn deadlines_passed(&mut self) {
+        let now = self.events.now();
+        let passed: Vec<Deadline> = self
+            .deadlines
+            .iter()
+            .filter(|(_, at)| **at <= now)
+            .map(|(deadline, _)| *deadline)
+            .collect();
+        for deadline in passed {
+            // An earlier one of these may have moved or cleared it.
+            if self.deadlines.get(&deadline).is_some_and(|at| *at <= now) {
+                self.deadlines.remove(&deadline);
+                self.feed(Input::Deadline(deadline));
+            }
+        }
+    }
+
+    fn host_input(&mut self, host: HostId, input: HostInput) {
+        if matches!(input, HostInput::Exited(..) | HostInput::SpawnFailed(_)) {
+            self.orders.remove(&host);
+        }
+        self.feed(Input::Host(host, input));
+    }
+
+    fn feed(&mut self, input: Input) {
+        let mut effects = std::mem::take(&mut self.effects);
+        self.machine.handle(input, self.events.now(), &mut effects);
+        for effect in effects.drain(..) {
+            self.carry_out(effect);
+        }
+        self.effects = effects;
+    }
+
+    fn carry_out(&mut self, effect: Effect) {
+        match effect {
+            Effect::Emit(kind) => self.events.emit(kind),
+            Effect::SetDeadline(deadline, at) => drop(self.deadlines.insert(deadline, at)),
+            Effect::ClearDeadline(deadline) => drop(self.deadlines.remove(&deadline)),
+            Effect::Spawn {
+                host,
+                source,
+                plan,
+                env,
+                folder,
+            } => {
+                self.spawn(host, source, plan, env, folder);
+            }
+            Effect::Send(host, id, request) => self.order(host, Order::Send(id, request)),
+            Effect::CloseChannel(host) => self.order(host, Order::CloseChannel),
+            Effect::TakeStack(host, support) => self.order(host, Order::TakeStack(support)),
+            Effect::Signal(host, signal) => self.order(host, Order::Signal(signal)),
+            Effect::KillTree(host) => self.order(host, Order::KillTree),
+            Effect::WatchAlive(host) => self.order(host, Order::WatchAlive),
+            Effect::Done => self.over = true,
+        }
+    }
+
+    fn order(&self, host: HostId, order: Order) {
+        if let Some(orders) = self.orders.get(&host) {
+            // A task that has ended has told so; its input is on the way.
+            let _ = orders.send(order);
+        }
+    }
+
+    fn spawn(
+        &mut self,
+        host: HostId,
+        source: Source,
+        plan: SpawnPlan,
+        mut env: Vec<(String, String)>,
+        folder: PathBuf,
+    ) {
+        env.insert(
+            0,
+            (
+                ENVIRONMENT_VARIABLE.to_owned(),
+                self.plan.environment.clone(),
+            ),
+        );
+        let (command, channel, process) = match plan {
+            SpawnPlan::Host(plan) => {
+                env.splice(0..0, plan.env.iter().cloned());
+                (plan.command.clone(), true, None)
+            }
+            SpawnPlan::Process(plan) => (plan.command.clone(), false, Some(plan)),
+        };
+        let folder = Some(folder);
+        let request = SpawnRequest {
+            command,
+            env,
+            folder,
+            channel,
+            streams: Streams::Both,
+        };
+        let scope = format!("{}.{}.{}", self.events.run_token(), self.plan.id, host.0);
+        let (orders, queue) = mpsc::unbounded_channel();
+        self.orders.insert(host, orders);
+        let job = Job {
+            host,
+            source,
+            scope,
+            request,
+            process,
+        };
+        tokio::spawn(task::run(
+            job,
+            self.shared.clone(),
+            queue,
+            self.inputs.clone(),
+        ));
+    }
+}

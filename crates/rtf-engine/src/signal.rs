@@ -1,0 +1,59 @@
+//! Signals that end a run: the first asks, the second insists, the third kills.
+
+use std::io;
+
+use tokio::signal::unix::{Signal, SignalKind, signal};
+use tokio::sync::watch;
+
+use crate::host::tree;
+use crate::run::{Stop, StopLevel};
+
+/// The signals that end a run, by number and name.
+const ENDING: [(i32, &str); 3] = [(2, "SIGINT"), (15, "SIGTERM"), (1, "SIGHUP")];
+
+/// Turns signals into stop requests, for as long as it is polled:
+///
+/// 1. stop the test, tear down, report;
+/// 2. kill everything, report;
+/// 3. kill everything and return the signal's number: the process should end.
+///
+/// # Errors
+/// A signal's handler cannot be installed.
+pub async fn forward(stops: &watch::Sender<Option<Stop>>) -> io::Result<i32> {
+    let mut signals = Signals::install()?;
+    for level in [StopLevel::TearDown, StopLevel::Kill] {
+        let (_, name) = signals.next().await;
+        stops.send_replace(Some(Stop {
+            level,
+            reason: name.to_owned(),
+        }));
+    }
+    let (number, _) = signals.next().await;
+    let _ = tree::kill_everything();
+    Ok(number)
+}
+
+struct Signals([Signal; 3]);
+
+impl Signals {
+    fn install() -> io::Result<Self> {
+        let [int, term, hup] = ENDING.map(|(number, _)| signal(SignalKind::from_raw(number)));
+        Ok(Self([int?, term?, hup?]))
+    }
+
+    async fn next(&mut self) -> (i32, &'static str) {
+        let [int, term, hup] = &mut self.0;
+        tokio::select! {
+            _ = int.recv() => ENDING[0],
+            _ = term.recv() => ENDING[1],
+            _ = hup.recv() => ENDING[2],
+        }
+    }
+}
+
+/// The exit code of a run that this signal (by name) ended: 128 + its number.
+#[must_use]
+pub fn exit_code(name: &str) -> Option<u8> {
+    let (number, _) = ENDING.iter().find(|(_, known)| *known == name)?;
+    u8::try_from(128 + number).ok()
+}
