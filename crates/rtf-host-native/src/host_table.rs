@@ -1,0 +1,196 @@
+//! The functions that a plug-in gets from its host.
+#![expect(unsafe_code, reason = "called by foreign code with its pointers")]
+
+use std::ffi::{CStr, c_char, c_int, c_void};
+use std::time::Duration;
+
+use ::rtf_host::Session;
+use rtf_model::protocol::Plugin;
+use rtf_model::{Attachment, Comparison, Location, Measurement, Message, MessageKind};
+
+use crate::abi::{
+    RTF_ABI_MAJOR, RTF_ABI_MINOR, RTF_MESSAGE_CHECK, RTF_MESSAGE_ERROR, RTF_MESSAGE_FAILURE,
+    RTF_MESSAGE_REPORT, rtf_attachment, rtf_comparison, rtf_host, rtf_measurement, rtf_message,
+    rtf_text,
+};
+
+/// What the functions work on: one for each loaded plug-in, kept until the
+/// process ends, because the plug-in's threads may still use it.
+#[derive(Debug)]
+struct Context {
+    session: Session,
+    plugin: Plugin,
+}
+
+/// Makes the table for a plug-in.
+pub(crate) fn for_plugin(session: &Session, plugin: &Plugin) -> &'static rtf_host {
+    let context = Context { session: session.clone(), plugin: plugin.clone() };
+    let context = Box::into_raw(Box::new(context)).cast::<c_void>();
+    Box::leak(Box::new(rtf_host {
+        abi_major: RTF_ABI_MAJOR,
+        abi_minor: RTF_ABI_MINOR,
+        size: size_of::<rtf_host>(),
+        context,
+        message,
+        measure,
+        attach,
+        collapsed,
+        interrupted,
+        wait,
+        name,
+        param,
+        environment,
+        repetition,
+    }))
+}
+
+unsafe extern "C" fn message(context: *mut c_void, message: *const rtf_message) {
+    // SAFETY: all pointers are as spec/plugin-abi.md says.
+    unsafe {
+        let message = &*message;
+        let kind = match message.kind {
+            RTF_MESSAGE_REPORT => MessageKind::Report,
+            RTF_MESSAGE_CHECK => MessageKind::Check,
+            RTF_MESSAGE_FAILURE => MessageKind::Failure,
+            RTF_MESSAGE_ERROR => MessageKind::Error,
+            // A kind that this host does not know must not look harmless.
+            _ => MessageKind::Error,
+        };
+        self::context(context).session.message(Message {
+            kind,
+            text: text(message.text),
+            location: location(message.file, message.line),
+            comparison: message.comparison.as_ref().map(|numbers| comparison(numbers)),
+            critical: message.critical != 0,
+        });
+    }
+}
+
+unsafe extern "C" fn measure(context: *mut c_void, measurement: *const rtf_measurement) -> c_int {
+    // SAFETY: all pointers are as spec/plugin-abi.md says.
+    unsafe {
+        let measurement = &*measurement;
+        let holds = self::context(context).session.measure(Measurement {
+            name: text(measurement.name),
+            value: finite(measurement.value),
+            unit: text(measurement.unit),
+            low: measurement.low.as_ref().copied().filter(|low| *low != f64::NEG_INFINITY),
+            high: measurement.high.as_ref().copied().filter(|high| *high != f64::INFINITY),
+            location: location(measurement.file, measurement.line),
+        });
+        c_int::from(holds)
+    }
+}
+
+unsafe extern "C" fn attach(context: *mut c_void, attachment: *const rtf_attachment) {
+    // SAFETY: all pointers are as spec/plugin-abi.md says.
+    unsafe {
+        let attachment = &*attachment;
+        let path = text(attachment.path);
+        let mut name = text(attachment.name);
+        if name.is_empty() {
+            let last = std::path::Path::new(&path).file_name();
+            name = last.map_or_else(|| path.clone(), |last| last.to_string_lossy().into_owned());
+        }
+        let media_type = text(attachment.media_type);
+        self::context(context).session.attach(Attachment { name, path, media_type });
+    }
+}
+
+unsafe extern "C" fn collapsed(context: *mut c_void, reason: rtf_text) {
+    // SAFETY: all pointers are as spec/plugin-abi.md says.
+    unsafe { self::context(context).session.collapsed(&text(reason)) }
+}
+
+unsafe extern "C" fn interrupted(context: *mut c_void) -> c_int {
+    // SAFETY: the context is the one that was given out.
+    c_int::from(unsafe { self::context(context) }.session.interrupted())
+}
+
+unsafe extern "C" fn wait(context: *mut c_void, seconds: f64) -> c_int {
+    let at_least_zero = if seconds > 0.0 { seconds } else { 0.0 };
+    let duration = Duration::try_from_secs_f64(at_least_zero).unwrap_or(Duration::MAX);
+    // SAFETY: the context is the one that was given out.
+    c_int::from(unsafe { self::context(context) }.session.wait(duration))
+}
+
+unsafe extern "C" fn name(context: *mut c_void) -> rtf_text {
+    // SAFETY: the context is the one that was given out.
+    lend(&unsafe { self::context(context) }.plugin.name)
+}
+
+unsafe extern "C" fn param(context: *mut c_void) -> rtf_text {
+    // SAFETY: the context is the one that was given out.
+    lend(&unsafe { self::context(context) }.plugin.param)
+}
+
+unsafe extern "C" fn environment(context: *mut c_void) -> rtf_text {
+    // SAFETY: the context is the one that was given out.
+    lend(&unsafe { self::context(context) }.plugin.environment)
+}
+
+unsafe extern "C" fn repetition(context: *mut c_void) -> u32 {
+    // SAFETY: the context is the one that was given out.
+    unsafe { self::context(context) }.plugin.repetition.max(1)
+}
+
+/// # Safety
+/// The pointer is the `context` of a table that [`for_plugin`] made.
+unsafe fn context(context: *mut c_void) -> &'static Context {
+    // SAFETY: it was made from such a box, which is never freed.
+    unsafe { &*context.cast::<Context>() }
+}
+
+/// # Safety
+/// `text` points to `length` bytes, or `length` is 0.
+unsafe fn text(text: rtf_text) -> String {
+    if text.length == 0 || text.data.is_null() {
+        return String::new();
+    }
+    // SAFETY: the caller's promise.
+    let bytes = unsafe { std::slice::from_raw_parts(text.data.cast::<u8>(), text.length) };
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn lend(text: &'static str) -> rtf_text {
+    rtf_text { data: text.as_ptr().cast(), length: text.len() }
+}
+
+/// # Safety
+/// `file` is null or a string that ends with a zero.
+unsafe fn location(file: *const c_char, line: u32) -> Option<Location> {
+    if file.is_null() {
+        return None;
+    }
+    // SAFETY: the caller's promise.
+    let file = unsafe { CStr::from_ptr(file) }.to_string_lossy().into_owned();
+    Some(Location { file, line })
+}
+
+/// # Safety
+/// The arrays have as many entries as they say.
+unsafe fn comparison(numbers: &rtf_comparison) -> Comparison {
+    // SAFETY: the caller's promise.
+    let (expected, got) = unsafe {
+        (list(numbers.expected, numbers.expected_count), list(numbers.got, numbers.got_count))
+    };
+    // JSON carries finite numbers only. A tolerance without limit accepts any.
+    let tolerance = if numbers.tolerance.is_nan() { 0.0 } else { numbers.tolerance };
+    let tolerance = tolerance.clamp(f64::MIN, f64::MAX);
+    Comparison { expected, got, tolerance, worst: u64::try_from(numbers.worst).ok() }
+}
+
+/// # Safety
+/// `numbers` points to `count` numbers, or `count` is 0.
+unsafe fn list(numbers: *const f64, count: usize) -> Vec<Option<f64>> {
+    if count == 0 || numbers.is_null() {
+        return Vec::new();
+    }
+    // SAFETY: the caller's promise.
+    let numbers = unsafe { std::slice::from_raw_parts(numbers, count) };
+    numbers.iter().copied().map(finite).collect()
+}
+
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}

@@ -1,0 +1,106 @@
+//! The loaded plug-in, as the shared part of all hosts wants to call it.
+#![expect(unsafe_code, reason = "calling foreign code")]
+
+use std::ffi::{CString, NulError, c_char, c_int, c_void};
+use std::path::Path;
+
+use rtf_host::{HostPlugin, LoadError, Role, Session, Step, StepEnd};
+use rtf_model::protocol::{Initialized, PROTOCOL_VERSION, Plugin, StackSupport};
+
+use crate::abi::{RTF_DONE, RTF_REFUSED, RTF_STOPPED, rtf_plugin_table};
+use crate::host_table;
+use crate::library::Table;
+
+/// The native host with at most one plug-in.
+#[derive(Debug)]
+pub(crate) struct NativeHost {
+    session: Session,
+    loaded: Option<Loaded>,
+}
+
+#[derive(Debug)]
+struct Loaded {
+    table: &'static rtf_plugin_table,
+    this: *mut c_void,
+    args: Vec<*mut c_char>,
+}
+
+impl NativeHost {
+    pub(crate) fn new(session: Session) -> Self {
+        Self { session, loaded: None }
+    }
+}
+
+impl HostPlugin for NativeHost {
+    fn describe(&self) -> Initialized {
+        let host = concat!("native ", env!("CARGO_PKG_VERSION")).to_owned();
+        Initialized { protocol: PROTOCOL_VERSION, host, stack: StackSupport::None }
+    }
+
+    fn load(&mut self, role: Role, plugin: &Plugin) -> Result<(), LoadError> {
+        let failed = |message: String| LoadError { message, location: None };
+        let table = Table::load(Path::new(&plugin.file)).and_then(|table| table.used_as(role));
+        let table = table.map_err(|error| failed(format!("`{}` {error}", plugin.file)))?.0;
+        let args = arguments(plugin)
+            .map_err(|_| failed("an argument holds a zero byte, which C cannot".to_owned()))?;
+        let host = host_table::for_plugin(&self.session, plugin);
+        // SAFETY: the table was examined; the host's table stays for ever.
+        let this = table.create.map_or(std::ptr::null_mut(), |create| unsafe { create(host) });
+        if this.is_null() {
+            return Err(failed(format!("`{}` could not be created", plugin.file)));
+        }
+        self.loaded = Some(Loaded { table, this, args });
+        Ok(())
+    }
+
+    fn step(&mut self, step: Step) -> StepEnd {
+        self.loaded.as_mut().map_or(StepEnd::Stopped, |loaded| loaded.step(step))
+    }
+
+    fn unload(&mut self) -> StepEnd {
+        if let Some(loaded) = self.loaded.take()
+            && let Some(destroy) = loaded.table.destroy
+        {
+            // SAFETY: `this` is what `create` made, and is used no more.
+            unsafe { destroy(loaded.this) };
+        }
+        StepEnd::Done
+    }
+}
+
+impl Loaded {
+    fn step(&mut self, step: Step) -> StepEnd {
+        let code = if step == Step::Setup {
+            let count = c_int::try_from(self.args.len() - 1).unwrap_or(c_int::MAX);
+            let args = self.args.as_mut_ptr();
+            // SAFETY: `this` is what `create` made; `args` ends with a null.
+            self.table.setup.map(|setup| unsafe { setup(self.this, count, args) })
+        } else {
+            let function = match step {
+                Step::Setup | Step::Run => self.table.run,
+                Step::Check => self.table.check,
+                Step::TearDown => self.table.tear_down,
+            };
+            // SAFETY: `this` is what `create` made.
+            function.map(|function| unsafe { function(self.this) })
+        };
+        match code.unwrap_or(RTF_DONE) {
+            RTF_DONE => StepEnd::Done,
+            RTF_REFUSED => StepEnd::Refused,
+            RTF_STOPPED => StepEnd::Stopped,
+            other => {
+                StepEnd::Broken(format!("the plug-in returned {other}, which means nothing"), None)
+            }
+        }
+    }
+}
+
+/// The arguments as `main` gets them: the name, the arguments, a null. They
+/// stay until the process ends, for the plug-in may keep pointers to them.
+fn arguments(plugin: &Plugin) -> Result<Vec<*mut c_char>, NulError> {
+    let texts = std::iter::once(&plugin.name).chain(&plugin.args);
+    let texts: Vec<CString> =
+        texts.map(|text| CString::new(text.as_str())).collect::<Result<_, _>>()?;
+    let pointers = texts.into_iter().map(CString::into_raw);
+    Ok(pointers.chain([std::ptr::null_mut()]).collect())
+}
