@@ -49,7 +49,7 @@ lint_shell() {
 lint_cpp() {
   find sdk/c sdk/cpp examples conformance tests \
     \( -name '*.h' -o -name '*.hpp' -o -name '*.cpp' \) -print0 |
-    xargs -0 clang-format --dry-run --Werror
+    xargs -0 clang-format --style=file:sdk/.clang-format --dry-run --Werror
 }
 
 lint_python() {

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdint>
-#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <string>
@@ -17,29 +15,30 @@
 
 using namespace std::chrono_literals;
 
-using Pose = std::vector<double>;  // radians, one per joint
+using Pose = std::vector<double>; // radians, one per joint
 
-class AccuracyTest : public rtf::TestCase {
+class AccuracyTest : public rtf::TestCase
+{
 public:
     // The bench: a connection to the arm. An exception here is an error, not a failure.
-    bool setup(int argc, char** argv) override {
+    bool setup(int argc, char **argv) override
+    {
         for (int i = 1; i + 1 < argc; i += 2) {
             if (std::string(argv[i]) == "--tolerance") {
                 tolerance_ = std::stod(argv[i + 1]);
             }
         }
-        const char* port = std::getenv("ARM_PORT");
-        arm_ = std::make_unique<ArmClient>(static_cast<std::uint16_t>(port ? std::stoi(port) : 17681));
+        arm_ = std::make_unique<ArmClient>();
         joints_ = arm_->joints();
-        report(std::to_string(joints_.size()) + " joints, tolerance " + std::to_string(tolerance_) +
-               " rad");
+        RTF_REPORT("accepted error: " + std::to_string(tolerance_) + " rad");
         return joints_.size() == 3;
     }
 
-    void run() override {
+    void run() override
+    {
         double slowest = 0.0;
         double worst = 0.0;
-        for (const Pose& target : {Pose{0.6, -0.5, 0.4}, Pose{-0.6, 0.5, -0.4}, Pose{0, 0, 0}}) {
+        for (const Pose &target : {Pose{0.6, -0.5, 0.4}, Pose{-0.6, 0.5, -0.4}, Pose{0, 0, 0}}) {
             slowest = std::max(slowest, moveTo(target));
             const Pose reached = pose();
             RTF_CHECK_NEAR(reached, target, tolerance_, "pose of the arm");
@@ -52,9 +51,10 @@ public:
     }
 
     // Called whatever happened above, so the arm is never left in a strange pose.
-    void tearDown() override {
+    void tearDown() override
+    {
         if (arm_) {
-            for (const std::string& joint : joints_) {
+            for (const std::string &joint : joints_) {
                 arm_->move(joint, 0.0);
             }
         }
@@ -62,7 +62,8 @@ public:
 
 private:
     // Moves all joints at once; the seconds until the arm stands still there.
-    double moveTo(const Pose& target) {
+    double moveTo(const Pose &target)
+    {
         for (std::size_t i = 0; i < joints_.size(); ++i) {
             arm_->move(joints_[i], target[i]);
         }
@@ -75,20 +76,23 @@ private:
     }
 
     // How far the arm has moved from `before`, which becomes its pose now.
-    double moved(Pose& before) {
+    double moved(Pose &before)
+    {
         const Pose now = pose();
         return distance(std::exchange(before, now), now);
     }
 
-    Pose pose() {
+    Pose pose()
+    {
         Pose radians;
-        for (const std::string& joint : joints_) {
+        for (const std::string &joint : joints_) {
             radians.push_back(arm_->position(joint));
         }
         return radians;
     }
 
-    static double distance(const Pose& a, const Pose& b) {
+    static double distance(const Pose &a, const Pose &b)
+    {
         double largest = 0.0;
         for (std::size_t i = 0; i < a.size(); ++i) {
             largest = std::max(largest, std::abs(a[i] - b[i]));
@@ -101,4 +105,4 @@ private:
     std::vector<std::string> joints_;
 };
 
-RTF_PLUGIN(AccuracyTest)
+RTF_PLUGIN(AccuracyTest);

@@ -10,21 +10,23 @@
 
 #include <cerrno>
 #include <cstdint>
+#include <cstdlib>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 #include <vector>
 
-// One connection to the simulator on 127.0.0.1. Any problem is an exception:
+// One connection to the simulator on 127.0.0.1, port ARM_PORT. Any problem is an exception:
 // in a test that makes the verdict `error`, because the bench is wrong then
 // and nothing is known about the robot.
-class ArmClient {
+class ArmClient
+{
 public:
-    explicit ArmClient(std::uint16_t port)
-        : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    ArmClient() : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0))
+    {
         try {
-            connect(port);
+            connect();
         } catch (...) {
             ::close(socket_);
             throw;
@@ -33,11 +35,12 @@ public:
 
     ~ArmClient() { ::close(socket_); }
 
-    ArmClient(const ArmClient&) = delete;
-    ArmClient& operator=(const ArmClient&) = delete;
+    ArmClient(const ArmClient &) = delete;
+    ArmClient &operator=(const ArmClient &) = delete;
 
     // The names of the joints, from the base on.
-    std::vector<std::string> joints() {
+    std::vector<std::string> joints()
+    {
         std::istringstream words(ask("joints"));
         std::vector<std::string> names;
         for (std::string name; words >> name;) {
@@ -47,33 +50,37 @@ public:
     }
 
     // What the joint's encoder says, in radians.
-    double position(const std::string& joint) { return std::stod(ask("get " + joint)); }
+    double position(const std::string &joint) { return std::stod(ask("get " + joint)); }
 
     // Lets the joint begin to move to `target` radians.
-    void move(const std::string& joint, double target) {
+    void move(const std::string &joint, double target)
+    {
         ask("set " + joint + " " + std::to_string(target));
     }
 
 private:
-    static constexpr timeval kAnswerTime{2, 0};  // an arm that is slower hangs
+    static constexpr timeval kAnswerTime{2, 0}; // an arm that is slower hangs
 
-    void connect(std::uint16_t port) {
+    void connect()
+    {
+        const char *port = std::getenv("ARM_PORT");
         sockaddr_in address{};
         address.sin_family = AF_INET;
-        address.sin_port = htons(port);
+        address.sin_port = htons(static_cast<std::uint16_t>(port ? std::stoi(port) : 17681));
         address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
         const int on = 1;
         check(::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &kAnswerTime, sizeof kAnswerTime));
         check(::setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on));
-        check(::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address));
+        check(::connect(socket_, reinterpret_cast<sockaddr *>(&address), sizeof address));
     }
 
     // Sends a line and returns what the arm answers after `ok`.
-    std::string ask(const std::string& line) {
+    std::string ask(const std::string &line)
+    {
         const std::string request = line + "\n";
         for (std::size_t sent = 0; sent < request.size();) {
-            sent += check(::send(socket_, request.data() + sent, request.size() - sent,
-                                 MSG_NOSIGNAL));
+            sent +=
+                check(::send(socket_, request.data() + sent, request.size() - sent, MSG_NOSIGNAL));
         }
         const std::string answer = readLine(line);
         if (answer.compare(0, 2, "ok") != 0) {
@@ -82,7 +89,8 @@ private:
         return answer.size() > 3 ? answer.substr(3) : std::string();
     }
 
-    std::string readLine(const std::string& request) {
+    std::string readLine(const std::string &request)
+    {
         for (;;) {
             const std::size_t end = received_.find('\n');
             if (end != std::string::npos) {
@@ -99,7 +107,8 @@ private:
         }
     }
 
-    static std::size_t check(ssize_t result) {
+    static std::size_t check(ssize_t result)
+    {
         if (result < 0) {
             throw std::system_error(errno, std::generic_category(), "connection to the arm");
         }

@@ -4,13 +4,16 @@
 #include <cmath>
 #include <string>
 
-class CppTest : public rtf::TestCase {
+class CppTest : public rtf::TestCase
+{
 public:
-    bool setup(int argc, char** argv) override {
+    bool setup(int argc, char **argv) override
+    {
         return argc == 3 && std::string(argv[1]) == "--angle";
     }
 
-    void run() override {
+    void run() override
+    {
         RTF_REPORT("environment: " + environment());
         RTF_CHECK(environment() == "--robot simulator", "the suite's environment arrives");
         RTF_CHECK_NEAR(std::cos(std::acos(0.5)), 0.5, 1e-12, "cosine and back");
@@ -20,4 +23,4 @@ public:
     void tearDown() override {}
 };
 
-RTF_PLUGIN(CppTest)
+RTF_PLUGIN(CppTest);
