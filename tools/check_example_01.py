@@ -84,11 +84,11 @@ class Run:
 
     def __init__(self, rtf: str, suite: str, folder: Path) -> None:
         folder.mkdir()
-        self.journal = folder / "rtf-results" / "latest" / "events.jsonl"
+        self.journal = folder / "latest" / "events.jsonl"
         self.output = folder / "output"
         with self.output.open("wb") as output:
             self.process = subprocess.Popen(
-                [rtf, "run", suite],
+                [rtf, "run", "--results", str(folder), suite],
                 cwd=folder,
                 stdin=subprocess.DEVNULL,
                 stdout=output,

@@ -17,9 +17,9 @@
 #include <system_error>
 #include <vector>
 
-// One connection to the simulator on 127.0.0.1, port ARM_PORT. Any problem is an exception:
-// in a test that makes the verdict `error`, because the bench is wrong then
-// and nothing is known about the robot.
+// One connection to the simulator, on 127.0.0.1 and the port in ARM_PORT. Any
+// problem is an exception: in a test that makes the verdict `error`, because the
+// bench is wrong then and nothing is known about the robot.
 class ArmClient
 {
 public:
