@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// A test: derive from rtf::TestCase, and write RTF_PLUGIN(Class) once.
+#ifndef RTF_TESTCASE_HPP
+#define RTF_TESTCASE_HPP
+
+#include <optional>
+#include <string_view>
+
+#include <rtf/Declare.hpp>
+#include <rtf/Plugin.hpp>
+#include <rtf/internal/Keep.hpp>
+
+namespace rtf {
+
+class TestCase : public Plugin
+{
+public:
+    // The test. Called when setup succeeded.
+    virtual void run() = 0;
+
+protected:
+    // Keeps a number with the result. Outside its limits it is a failure; the
+    // test goes on.
+    bool measure(std::string_view name, double value, std::string_view unit = "",
+                 std::optional<double> low = std::nullopt,
+                 std::optional<double> high = std::nullopt,
+                 Location here = Location::current()) const
+    {
+        return internal::measure(here, internal::Measurement{name, value, unit, low, high});
+    }
+
+    // Keeps a file with the result. Leave it in place until the test is over.
+    void attach(std::string_view path, std::string_view name = "", std::string_view media_type = "",
+                Location here = Location::current()) const
+    {
+        internal::attach(here, path, name, media_type);
+    }
+};
+
+} // namespace rtf
+
+#endif

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// The functions of a plug-in's table. No exception leaves them.
+#ifndef RTF_INTERNAL_ENTRY_HPP
+#define RTF_INTERNAL_ENTRY_HPP
+
+#include <cstdlib>
+#include <exception>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <typeinfo>
+
+#include <cxxabi.h>
+
+#include <rtf/internal/Message.hpp>
+
+namespace rtf {
+
+class FixtureManager;
+class TestCase;
+
+namespace internal {
+
+// The type of the exception that is being handled, as a person would write it.
+inline std::string exception_type()
+{
+    const std::type_info *type = abi::__cxa_current_exception_type();
+    if (type == nullptr) {
+        return "unknown type";
+    }
+    int status = 0;
+    const std::unique_ptr<char, void (*)(void *)> name(
+        abi::__cxa_demangle(type->name(), nullptr, nullptr, &status), std::free);
+    return name ? name.get() : type->name();
+}
+
+// An error that came from no known line.
+inline void stray_error(const std::string &text)
+{
+    send(RTF_MESSAGE_ERROR, text, Location{nullptr, 0});
+}
+
+// Calls a step; what it throws becomes an error.
+template <class Step>
+int32_t guarded(Step &&step) noexcept
+{
+    try {
+        return step() ? RTF_DONE : RTF_REFUSED;
+    } catch (const Stop &) {
+    } catch (const std::exception &exception) {
+        stray_error(exception_type() + ": " + exception.what());
+    } catch (...) {
+        stray_error("exception of type " + exception_type());
+    }
+    return RTF_STOPPED;
+}
+
+template <class T>
+struct Entry
+{
+    static constexpr bool is_fixture = std::is_base_of_v<FixtureManager, T>;
+    static_assert(is_fixture || std::is_base_of_v<TestCase, T>,
+                  "RTF_PLUGIN needs a class that derives from rtf::TestCase or "
+                  "rtf::FixtureManager");
+
+    // Its functions are called through the base, where they are public.
+    using Base = std::conditional_t<is_fixture, FixtureManager, TestCase>;
+
+    static Base &get(void *self) { return *static_cast<T *>(self); }
+
+    static void *create(const rtf_host *host)
+    {
+        current_host.store(host, std::memory_order_release);
+        T *made = nullptr;
+        guarded([&] {
+            made = new T();
+            return true;
+        });
+        return made;
+    }
+
+    static void destroy(void *self) { delete &get(self); }
+
+    static int32_t setup(void *self, int argc, char **argv)
+    {
+        return guarded([&] { return get(self).setup(argc, argv); });
+    }
+
+    static int32_t run(void *self)
+    {
+        return guarded([&] {
+            if constexpr (!is_fixture) {
+                get(self).run();
+            }
+            return true;
+        });
+    }
+
+    static int32_t check(void *self)
+    {
+        return guarded([&] {
+            if constexpr (is_fixture) {
+                return get(self).check();
+            }
+            return true;
+        });
+    }
+
+    static int32_t tear_down(void *self)
+    {
+        return guarded([&] {
+            get(self).tearDown();
+            return true;
+        });
+    }
+};
+
+template <class T>
+constexpr rtf_plugin_table table_of(const char *name)
+{
+    using Own = Entry<T>;
+    rtf_plugin_table table{};
+    table.abi_major = RTF_ABI_MAJOR;
+    table.abi_minor = RTF_ABI_MINOR;
+    table.size = sizeof table;
+    table.kind = Own::is_fixture ? RTF_KIND_FIXTURE : RTF_KIND_TEST;
+    table.name = name;
+    table.create = Own::create;
+    table.destroy = Own::destroy;
+    table.setup = Own::setup;
+    table.run = Own::is_fixture ? nullptr : Own::run;
+    table.check = Own::is_fixture ? Own::check : nullptr;
+    table.tear_down = Own::tear_down;
+    return table;
+}
+
+} // namespace internal
+} // namespace rtf
+
+#endif

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// A place in a plug-in's source, taken where a function is called.
+#ifndef RTF_INTERNAL_LOCATION_HPP
+#define RTF_INTERNAL_LOCATION_HPP
+
+namespace rtf {
+
+struct Location
+{
+    const char *file;
+    unsigned line;
+
+    // As a default argument this is the caller's place. C++20 has
+    // std::source_location for it; the compilers have had it longer.
+    static constexpr Location current(const char *file = __builtin_FILE(),
+                                      unsigned line = __builtin_LINE())
+    {
+        return Location{file, line};
+    }
+};
+
+} // namespace rtf
+
+#define RTF_HERE (::rtf::Location{__FILE__, static_cast<unsigned>(__LINE__)})
+
+#endif

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Messages to the host, and the exception that unwinds a plug-in.
+#ifndef RTF_INTERNAL_MESSAGE_HPP
+#define RTF_INTERNAL_MESSAGE_HPP
+
+#include <string_view>
+
+#include <rtf/internal/Host.hpp>
+#include <rtf/internal/Location.hpp>
+
+namespace rtf {
+namespace internal {
+
+// Ends a step after a failed assertion, an error, or a request to stop. Not a
+// std::exception: a plug-in that handles those must not swallow it.
+struct Stop
+{
+};
+
+enum class Critical { no, yes };
+
+inline void send(int32_t kind, std::string_view text, Location here,
+                 const rtf_comparison *comparison = nullptr, Critical critical = Critical::no)
+{
+    rtf_message message;
+    message.size = sizeof message;
+    message.kind = kind;
+    message.critical = critical == Critical::yes ? 1 : 0;
+    message.text = to_text(text);
+    message.file = here.file;
+    message.line = here.line;
+    message.comparison = comparison;
+    host().message(host().context, &message);
+}
+
+inline void report(Location here, std::string_view text)
+{
+    send(RTF_MESSAGE_REPORT, text, here);
+}
+
+inline bool check(Location here, bool holds, std::string_view text)
+{
+    send(holds ? RTF_MESSAGE_CHECK : RTF_MESSAGE_FAILURE, text, here);
+    return holds;
+}
+
+inline void require(Location here, bool holds, std::string_view text)
+{
+    if (!check(here, holds, text)) {
+        throw Stop();
+    }
+}
+
+inline void require_critical(Location here, bool holds, std::string_view text)
+{
+    if (!holds) {
+        send(RTF_MESSAGE_FAILURE, text, here, nullptr, Critical::yes);
+        throw Stop();
+    }
+    send(RTF_MESSAGE_CHECK, text, here);
+}
+
+[[noreturn]] inline void fail(Location here, std::string_view text)
+{
+    send(RTF_MESSAGE_FAILURE, text, here);
+    throw Stop();
+}
+
+[[noreturn]] inline void error(Location here, std::string_view text)
+{
+    send(RTF_MESSAGE_ERROR, text, here);
+    throw Stop();
+}
+
+} // namespace internal
+} // namespace rtf
+
+#endif

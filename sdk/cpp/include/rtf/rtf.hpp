@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole SDK: tests, fixtures and what both may use.
+#ifndef RTF_RTF_HPP
+#define RTF_RTF_HPP
+
+#include <rtf/FixtureManager.hpp>
+#include <rtf/TestCase.hpp>
+
+#endif
