@@ -38,7 +38,7 @@ TestCase = {}
 
 function TestCase.setup(args)
   arm = assert(socket.connect("127.0.0.1", PORT))
-  arm:settimeout(2)
+  arm:settimeout(10)
   arm:setoption("tcp-nodelay", true)
   for joint in ask("joints"):gmatch("%S+") do
     joints[#joints + 1] = joint
