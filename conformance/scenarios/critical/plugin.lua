@@ -1,0 +1,3 @@
+function TestCase.run()
+  rtf.require_critical(false, "the emergency stop is pressed")
+end

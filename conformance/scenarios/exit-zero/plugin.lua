@@ -1,0 +1,4 @@
+function TestCase.run()
+  rtf.check(false, "already wrong")
+  os.exit(0)
+end

@@ -1,0 +1,3 @@
+function TestCase.run()
+  error({ code = 42 })
+end

@@ -1,0 +1,153 @@
+//! Loads a plug-in into a Lua state of its own and calls its functions.
+
+use std::path::Path;
+
+use mlua::{Function, IntoLua, Lua, MultiValue, Table, Value};
+use rtf_host::{HostPlugin, LoadError, Role, Session, StackDumper, Step, StepEnd};
+use rtf_model::Location;
+use rtf_model::protocol::{Initialized, PROTOCOL_VERSION, Plugin, StackSupport};
+
+use crate::{sdk, search, source, watch};
+
+/// The Lua host with at most one plug-in.
+pub(crate) struct LuaHost {
+    session: Session,
+    loaded: Option<Loaded>,
+}
+
+struct Loaded {
+    lua: Lua,
+    /// `guard.call`: calls a function and tells how it ended.
+    call: Function,
+    table: Table,
+    args: Vec<String>,
+}
+
+impl LuaHost {
+    pub(crate) fn new(session: Session) -> Self {
+        Self { session, loaded: None }
+    }
+}
+
+impl HostPlugin for LuaHost {
+    fn describe(&self) -> Initialized {
+        let host = format!("lua {}", watch::lua_release());
+        Initialized { protocol: PROTOCOL_VERSION, host, stack: StackSupport::Message }
+    }
+
+    fn load(&mut self, role: Role, plugin: &Plugin) -> Result<(), LoadError> {
+        let lua = watch::new_state();
+        let call = prepare(&lua, &self.session, plugin).map_err(unexpected)?;
+        let chunk = source::compile(&lua, Path::new(&plugin.file), &plugin.file)?;
+        match ended(call.call((chunk,))) {
+            StepEnd::Done | StepEnd::Refused => {}
+            StepEnd::Stopped => {
+                let message = format!("`{}` stopped while it was loaded", plugin.file);
+                return Err(LoadError { message, location: None });
+            }
+            StepEnd::Broken(message, location) => return Err(LoadError { message, location }),
+        }
+        let table = table(&lua, role, &plugin.file)?;
+        self.loaded = Some(Loaded { lua, call, table, args: plugin.args.clone() });
+        Ok(())
+    }
+
+    fn step(&mut self, step: Step) -> StepEnd {
+        let Some(loaded) = &self.loaded else { return StepEnd::Stopped };
+        let end =
+            loaded.step(step).unwrap_or_else(|error| StepEnd::Broken(error.to_string(), None));
+        // What was printed belongs before the answer.
+        watch::flush_output();
+        end
+    }
+
+    fn unload(&mut self) -> StepEnd {
+        watch::forget_state();
+        self.loaded = None;
+        StepEnd::Done
+    }
+
+    fn stack_dumper(&self) -> Option<StackDumper> {
+        Some(Box::new(|_| watch::ask_for_stack()))
+    }
+}
+
+impl Loaded {
+    fn step(&self, step: Step) -> mlua::Result<StepEnd> {
+        let name = match step {
+            Step::Setup => "setup",
+            Step::Run => "run",
+            Step::Check => "check",
+            Step::TearDown => "tearDown",
+        };
+        let function: Value = self.table.get(name)?;
+        if function.is_nil() {
+            return Ok(StepEnd::Done);
+        }
+        let mut args = MultiValue::from_iter([function]);
+        if step == Step::Setup {
+            args.push_back(self.args.clone().into_lua(&self.lua)?);
+        }
+        let end = ended(self.call.call(args));
+        // Only a set-up and a check are asked whether they succeeded.
+        let asks = matches!(step, Step::Setup | Step::Check);
+        Ok(if end == StepEnd::Refused && !asks { StepEnd::Done } else { end })
+    }
+}
+
+fn prepare(lua: &Lua, session: &Session, plugin: &Plugin) -> mlua::Result<Function> {
+    search::extend(lua, Path::new(&plugin.file))?;
+    for table in ["TestCase", "FixtureManager"] {
+        lua.globals().set(table, lua.create_table()?)?;
+    }
+    // What was printed before a crash must not be lost with the buffer.
+    lua.load("io.stdout:setvbuf('line')").set_name("=rtf").exec()?;
+    sdk::install(lua, session, plugin)
+}
+
+/// Finds the plug-in's table and looks whether there is something to do in it.
+fn table(lua: &Lua, role: Role, file: &str) -> Result<Table, LoadError> {
+    let failed = |message: String| LoadError { message, location: None };
+    let global = |name: &str| lua.globals().get::<Value>(name).map_err(unexpected);
+    let (name, other, functions) = match role {
+        Role::Test => ("TestCase", "FixtureManager", &["run"][..]),
+        Role::Fixture => ("FixtureManager", "TestCase", &["setup", "check", "tearDown"][..]),
+    };
+    let value = global(name)?;
+    let Some(table) = value.as_table() else {
+        let kind = value.type_name();
+        return Err(failed(format!("`{name}` of `{file}` is a {kind}, not a table of functions")));
+    };
+    for function in functions {
+        if !table.get::<Value>(*function).map_err(unexpected)?.is_nil() {
+            return Ok(table.clone());
+        }
+    }
+    let filled = global(other)?.as_table().is_some_and(|table| !table.is_empty());
+    let hint = if filled { format!("; it has a `{other}`") } else { String::new() };
+    Err(failed(format!("`{file}` defines no function `{name}.{}`{hint}", functions[0])))
+}
+
+/// Reads what `guard.call` returned: `done, value`, `stopped`, or
+/// `broken, text, file, line`.
+fn ended(result: mlua::Result<(String, Value, Value, Value)>) -> StepEnd {
+    let (word, first, file, line) = match result {
+        Ok(result) => result,
+        Err(error) => return StepEnd::Broken(error.to_string(), None),
+    };
+    match word.as_str() {
+        "done" if first == Value::Boolean(false) => StepEnd::Refused,
+        "done" => StepEnd::Done,
+        "stopped" => StepEnd::Stopped,
+        _ => {
+            let line = line.as_u32().unwrap_or(0);
+            let location = sdk::text_of(&file).map(|file| Location { file, line });
+            StepEnd::Broken(sdk::text_of(&first).unwrap_or_default(), location)
+        }
+    }
+}
+
+/// An error of Lua itself (no memory) while the host prepares a state.
+fn unexpected(error: mlua::Error) -> LoadError {
+    LoadError { message: error.to_string(), location: None }
+}

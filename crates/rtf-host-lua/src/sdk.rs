@@ -1,0 +1,202 @@
+//! What a plug-in may call: the table `rtf`, made of the Lua code of `sdk/lua`
+//! and of the few functions that only the host can offer.
+
+use std::ffi::CStr;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use mlua::{Function, IntoLuaMulti, Lua, LuaString, Table, Value};
+use rtf_host::Session;
+use rtf_model::protocol::Plugin;
+use rtf_model::{Attachment, Comparison, Location, Measurement, Message, MessageKind};
+
+/// The name under which `guard.lua` knows the SDK's own code.
+const CHUNK: &str = "=rtf";
+
+/// The name in Lua's registry of the value that unwinds a step.
+pub(crate) const STOP: &CStr = c"rtf.stop";
+
+/// No sleep is longer: more seconds than any clock can add.
+const LONGEST: Duration = Duration::from_secs(1 << 40);
+
+/// Installs the table `rtf` and returns the function that calls a function of
+/// the plug-in and tells how it ended.
+pub(crate) fn install(lua: &Lua, session: &Session, plugin: &Plugin) -> mlua::Result<Function> {
+    let stop = stop_value(lua)?;
+    let text: Table = part(lua, include_str!("../../../sdk/lua/src/text.lua"), ())?;
+    let near: Table = part(lua, include_str!("../../../sdk/lua/src/near.lua"), &text)?;
+    let guard = include_str!("../../../sdk/lua/src/guard.lua");
+    let guard: Table = part(lua, guard, (&text, &stop))?;
+    let host = functions(lua, session)?;
+    host.set("plugin", about(lua, plugin)?)?;
+    let rtf = include_str!("../../../sdk/lua/src/rtf.lua");
+    let rtf: Table = part(lua, rtf, (host, near, text, &guard, stop))?;
+    lua.globals().set("rtf", &rtf)?;
+    // For those who write `local rtf = require("rtf")`.
+    let package: Table = lua.globals().get("package")?;
+    package.get::<Table>("loaded")?.set("rtf", rtf)?;
+    guard.get("call")
+}
+
+fn part(lua: &Lua, source: &str, args: impl IntoLuaMulti) -> mlua::Result<Table> {
+    lua.load(source).set_name(CHUNK).call(args)
+}
+
+/// A value of which there is only one, and which says what it is to a plug-in
+/// that catches it.
+fn stop_value(lua: &Lua) -> mlua::Result<Table> {
+    let meta = lua.create_table()?;
+    meta.set("__name", "rtf.stop")?;
+    meta.set("__tostring", lua.create_function(|_, ()| Ok("this step of the plug-in is over"))?)?;
+    let stop = lua.create_table()?;
+    stop.set_metatable(Some(meta))?;
+    lua.set_named_registry_value(&STOP.to_string_lossy(), &stop)?;
+    Ok(stop)
+}
+
+fn about(lua: &Lua, plugin: &Plugin) -> mlua::Result<Table> {
+    let about = lua.create_table()?;
+    about.set("name", plugin.name.as_str())?;
+    about.set("param", plugin.param.as_str())?;
+    about.set("environment", plugin.environment.as_str())?;
+    about.set("repetition", plugin.repetition)?;
+    Ok(about)
+}
+
+fn functions(lua: &Lua, session: &Session) -> mlua::Result<Table> {
+    let host = lua.create_table()?;
+    let started = Instant::now();
+    host.set("seconds", lua.create_function(move |_, ()| Ok(started.elapsed().as_secs_f64()))?)?;
+    add(lua, &host, "message", session, |session, message: Reported| {
+        session.message(message.0);
+        Ok(())
+    })?;
+    add(lua, &host, "measure", session, |session, measured: Measured| {
+        Ok(session.measure(measured.0))
+    })?;
+    add(
+        lua,
+        &host,
+        "attach",
+        session,
+        |session, file: (LuaString, Option<LuaString>, Option<LuaString>)| {
+            Ok(attach(session, &file.0, file.1.as_ref(), file.2.as_ref()))
+        },
+    )?;
+    add(lua, &host, "collapsed", session, |session, reason: LuaString| {
+        session.collapsed(&reason.to_string_lossy());
+        Ok(())
+    })?;
+    add(lua, &host, "wait", session, |session, seconds: f64| {
+        let duration = Duration::try_from_secs_f64(seconds.max(0.0)).unwrap_or(LONGEST);
+        Ok(session.wait(duration.min(LONGEST)))
+    })?;
+    add(lua, &host, "interrupted", session, |session, (): ()| Ok(session.interrupted()))?;
+    Ok(host)
+}
+
+fn add<A, R>(
+    lua: &Lua,
+    host: &Table,
+    name: &str,
+    session: &Session,
+    call: impl Fn(&Session, A) -> mlua::Result<R> + mlua::MaybeSend + 'static,
+) -> mlua::Result<()>
+where
+    A: mlua::FromLuaMulti,
+    R: IntoLuaMulti,
+{
+    let session = session.clone();
+    host.set(name, lua.create_function(move |_, args| call(&session, args))?)
+}
+
+/// Returns what is wrong with the file, if anything.
+fn attach(
+    session: &Session,
+    path: &LuaString,
+    name: Option<&LuaString>,
+    media_type: Option<&LuaString>,
+) -> Option<String> {
+    let path = path.to_string_lossy();
+    let full = std::path::absolute(&path).unwrap_or_else(|_| Path::new(&path).to_owned());
+    if !full.is_file() {
+        return Some(format!("there is no file `{}` to attach", full.display()));
+    }
+    let own_name = || full.file_name().map(|name| name.to_string_lossy().into_owned());
+    session.attach(Attachment {
+        name: name.map(LuaString::to_string_lossy).or_else(own_name).unwrap_or_default(),
+        path: full.to_string_lossy().into_owned(),
+        media_type: media_type.map(LuaString::to_string_lossy).unwrap_or_default(),
+    });
+    None
+}
+
+/// `kind, text, file, line, comparison, critical`
+struct Reported(Message);
+
+impl mlua::FromLuaMulti for Reported {
+    fn from_lua_multi(values: mlua::MultiValue, lua: &Lua) -> mlua::Result<Self> {
+        type Arguments =
+            (String, LuaString, Option<LuaString>, Option<u32>, Option<Table>, Option<bool>);
+        let (kind, text, file, line, comparison, critical) =
+            Arguments::from_lua_multi(values, lua)?;
+        let kind = match kind.as_str() {
+            "report" => MessageKind::Report,
+            "check" => MessageKind::Check,
+            "failure" => MessageKind::Failure,
+            _ => MessageKind::Error,
+        };
+        Ok(Self(Message {
+            kind,
+            text: text.to_string_lossy(),
+            location: location(file.as_ref(), line),
+            comparison: comparison.map(|numbers| compared(&numbers)).transpose()?,
+            critical: critical.unwrap_or(false),
+        }))
+    }
+}
+
+/// `name, value, unit, low, high, file, line`
+struct Measured(Measurement);
+
+impl mlua::FromLuaMulti for Measured {
+    fn from_lua_multi(values: mlua::MultiValue, lua: &Lua) -> mlua::Result<Self> {
+        type Arguments =
+            (LuaString, f64, LuaString, Option<f64>, Option<f64>, Option<LuaString>, Option<u32>);
+        let (name, value, unit, low, high, file, line) = Arguments::from_lua_multi(values, lua)?;
+        Ok(Self(Measurement {
+            name: name.to_string_lossy(),
+            value: finite(value),
+            unit: unit.to_string_lossy(),
+            low: low.and_then(finite),
+            high: high.and_then(finite),
+            location: location(file.as_ref(), line),
+        }))
+    }
+}
+
+fn compared(numbers: &Table) -> mlua::Result<Comparison> {
+    let all = |name| -> mlua::Result<Vec<Option<f64>>> {
+        Ok(numbers.get::<Vec<f64>>(name)?.into_iter().map(finite).collect())
+    };
+    Ok(Comparison {
+        expected: all("expected")?,
+        got: all("got")?,
+        tolerance: numbers.get("tolerance")?,
+        worst: numbers.get("worst")?,
+    })
+}
+
+fn location(file: Option<&LuaString>, line: Option<u32>) -> Option<Location> {
+    Some(Location { file: file?.to_string_lossy(), line: line.unwrap_or(0) })
+}
+
+/// JSON carries no other numbers.
+fn finite(number: f64) -> Option<f64> {
+    number.is_finite().then_some(number)
+}
+
+/// A text of Lua, also one that is not UTF-8; `None` for any other value.
+pub(crate) fn text_of(value: &Value) -> Option<String> {
+    value.as_string().map(LuaString::to_string_lossy)
+}

@@ -1,0 +1,75 @@
+//! Reads a plug-in's file and compiles it.
+
+use std::path::Path;
+
+use mlua::{Error, Function, Lua};
+use rtf_host::LoadError;
+use rtf_model::Location;
+
+/// A chunk's name that is shorter than any file's, so that Lua's messages
+/// begin with something that can be told from a path with colons in it.
+const NAMELESS: &str = "=?";
+
+/// Compiles a file without running it. Its functions know it by `name`.
+pub(crate) fn compile(lua: &Lua, file: &Path, name: &str) -> Result<Function, LoadError> {
+    let source = std::fs::read(file).map_err(|error| LoadError {
+        message: format!("`{name}` cannot be read: {error}"),
+        location: None,
+    })?;
+    let source = code(source);
+    let load = |chunk_name: &str| lua.load(source.as_slice()).set_name(chunk_name).into_function();
+    load(&format!("@{name}")).map_err(|error| {
+        // Compiled once more under a name that is easy to take off.
+        let message = load(NAMELESS).err().map_or_else(|| error.to_string(), text);
+        let (line, message) = split(&message);
+        LoadError { message, location: Some(Location { file: name.to_owned(), line }) }
+    })
+}
+
+/// Takes off what is allowed before the code: a byte order mark and a first
+/// line for the shell (`#!/usr/bin/lua`), whose line stays.
+fn code(source: Vec<u8>) -> Vec<u8> {
+    let source = source.strip_prefix(b"\xEF\xBB\xBF").map_or(source.clone(), <[u8]>::to_vec);
+    if source.first() != Some(&b'#') {
+        return source;
+    }
+    let end = source.iter().position(|&byte| byte == b'\n').unwrap_or(source.len());
+    source[end..].to_vec()
+}
+
+fn text(error: Error) -> String {
+    match error {
+        Error::SyntaxError { message, .. } => message,
+        error => error.to_string(),
+    }
+}
+
+/// Splits `?:7: unexpected symbol near '='`.
+fn split(message: &str) -> (u32, String) {
+    let parts = message.strip_prefix("?:").and_then(|rest| rest.split_once(": "));
+    match parts.and_then(|(line, text)| Some((line.parse().ok()?, text))) {
+        Some((line, text)) => (line, text.to_owned()),
+        None => (0, message.to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_for_the_shell_and_a_byte_order_mark_are_not_code() {
+        assert_eq!(code(b"#!/usr/bin/lua\nx = 1".to_vec()), b"\nx = 1");
+        assert_eq!(code(b"\xEF\xBB\xBFx = 1".to_vec()), b"x = 1");
+        assert_eq!(code(b"# only this".to_vec()), b"");
+    }
+
+    #[test]
+    fn a_message_is_split_from_its_line() {
+        assert_eq!(
+            split("?:7: unexpected symbol near '='"),
+            (7, "unexpected symbol near '='".into())
+        );
+        assert_eq!(split("not enough memory"), (0, "not enough memory".into()));
+    }
+}

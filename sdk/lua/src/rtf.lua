@@ -1,0 +1,160 @@
+-- The table `rtf` of a Lua plug-in. `host` holds what only the host can do.
+local host, near, text, guard, stop = ...
+
+-- Taken before the plug-in can replace them.
+local error, tostring = error, tostring
+
+local POLL_SECONDS = 0.01
+
+local rtf = {}
+
+-- Sends a message with the line of the plug-in that called.
+local function send(kind, message, comparison, critical)
+  local file, line = guard.location(3)
+  host.message(kind, tostring(message), file, line, comparison, critical)
+end
+
+-- Ends the step. The reason was recorded before, so that a pcall around it in
+-- the plug-in does not turn a failure into a pass.
+local function unwind()
+  error(stop, 0)
+end
+
+function rtf.report(message)
+  send("report", message)
+end
+
+function rtf.check(condition, message)
+  send(condition and "check" or "failure", message)
+  return not not condition
+end
+
+function rtf.require(condition, message)
+  send(condition and "check" or "failure", message)
+  if not condition then
+    unwind()
+  end
+end
+
+function rtf.require_critical(condition, message)
+  send(condition and "check" or "failure", message, nil, not condition)
+  if not condition then
+    unwind()
+  end
+end
+
+function rtf.fail(message)
+  send("failure", message)
+  unwind()
+end
+
+function rtf.error(message)
+  send("error", message)
+  unwind()
+end
+
+local function compare(got, expected, tolerance, what, is_angle)
+  local good, comparison, problem = pcall(near.compare, got, expected, tolerance, is_angle)
+  if not good then
+    error(comparison, 4)
+  end
+  what = tostring(what)
+  local file, line = guard.location(3)
+  if problem then
+    host.message("failure", ("%s: %s"):format(what, problem), file, line, comparison, false)
+  else
+    host.message("check", what, file, line, comparison, false)
+  end
+  return not problem
+end
+
+function rtf.check_near(got, expected, tolerance, what)
+  local holds = compare(got, expected, tolerance, what, false)
+  return holds
+end
+
+function rtf.check_angle_near(got, expected, tolerance, what)
+  local holds = compare(got, expected, tolerance, what, true)
+  return holds
+end
+
+function rtf.require_near(got, expected, tolerance, what)
+  if not compare(got, expected, tolerance, what, false) then
+    unwind()
+  end
+end
+
+function rtf.require_angle_near(got, expected, tolerance, what)
+  if not compare(got, expected, tolerance, what, true) then
+    unwind()
+  end
+end
+
+local function number_or_nil(value, what)
+  if value ~= nil and (not math.type(value) or value ~= value) then
+    error(("%s is not a number: %s"):format(what, tostring(value)), 3)
+  end
+end
+
+function rtf.measure(name, value, unit, low, high)
+  if not math.type(value) then
+    error(("the value of `%s` is not a number: %s"):format(tostring(name), tostring(value)), 2)
+  end
+  number_or_nil(low, "the lower limit")
+  number_or_nil(high, "the upper limit")
+  local file, line = guard.location(2)
+  unit = unit == nil and "" or tostring(unit)
+  return host.measure(tostring(name), value, unit, low, high, file, line)
+end
+
+function rtf.attach(path, name, media_type)
+  local problem = host.attach(tostring(path), name and tostring(name), media_type and tostring(media_type))
+  if problem then
+    error(problem, 2)
+  end
+end
+
+function rtf.sleep(seconds)
+  if not math.type(seconds) then
+    error(("sleep takes seconds, not %s"):format(tostring(seconds)), 2)
+  end
+  if host.wait(seconds) then
+    unwind()
+  end
+end
+
+function rtf.wait_until(condition, timeout, what)
+  if not math.type(timeout) then
+    error(("wait_until takes its time in seconds, not %s"):format(tostring(timeout)), 2)
+  end
+  local limit = host.seconds() + timeout
+  while true do
+    local value = condition()
+    if value then
+      return true
+    end
+    local left = limit - host.seconds()
+    if left <= 0 then
+      send("failure", ("%s: not within %s s (last value: %s)"):format(tostring(what),
+        text.number(timeout), text.value(value)))
+      unwind()
+    end
+    if host.wait(math.min(POLL_SECONDS, left)) then
+      unwind()
+    end
+  end
+end
+
+rtf.interrupted = host.interrupted
+
+function rtf.collapsed(reason)
+  host.collapsed(tostring(reason))
+end
+
+for _, name in ipairs({ "name", "param", "environment", "repetition" }) do
+  rtf[name] = function()
+    return host.plugin[name]
+  end
+end
+
+return rtf
