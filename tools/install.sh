@@ -60,10 +60,8 @@ put 755 "$release/rtf-host-lua" libexec/rtf/rtf-host-lua
 put_tree sdk/c/include include '*.h'
 put_tree sdk/cpp/include include '*.h' '*.hpp'
 put_tree sdk/cpp/cmake lib/cmake/RobotTestingFramework '*.cmake'
+# The Lua SDK is part of rtf-host-lua.
 put_tree sdk/python/rtf share/rtf/python/rtf '*.py' py.typed
-if [ -d sdk/lua ]; then
-  put_tree sdk/lua share/rtf/lua '*.lua'
-fi
 put_tree spec share/rtf/spec '*.md' '*.xsd' '*.json'
 put_tree "$stage/man" share/man/man1 '*.1'
 put 644 "$stage/rtf.bash" share/bash-completion/completions/rtf
