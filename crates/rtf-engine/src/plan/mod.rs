@@ -1,5 +1,25 @@
-//! Suite + options → plan.
+//! Paths + options → [`Plan`]: what will be done.
+//!
+//! Responsible for finding every suite, plug-in, host and program, for unique
+//! names, and for reporting *all* problems at once. It starts nothing but the
+//! hosts' own check of plug-ins (`--check`), so a plan that comes out without
+//! errors can fail only by the world, not by what was written.
 
+mod build;
+mod context;
+mod fixture;
+mod hosts;
+mod inputs;
+mod names;
+mod plugin;
+mod program;
+mod scope;
+mod suite;
+mod surroundings;
 mod types;
+mod unix;
+mod verify;
 
+pub use build::{Options, Outcome, build};
+pub use surroundings::Surroundings;
 pub use types::*;

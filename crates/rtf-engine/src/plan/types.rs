@@ -6,6 +6,8 @@ use std::time::Duration;
 
 use rtf_model::{FixtureId, SuiteId, TestId};
 
+pub use crate::suite::AfterCollapse;
+
 /// Everything that a run will do. Nothing in it can fail to be understood
 /// any more; what can still fail is the world.
 #[derive(Clone, Debug, Default)]
@@ -122,18 +124,6 @@ pub struct TestLimits {
     pub slow: Duration,
     /// From the request to stop to the use of force.
     pub grace: Duration,
-}
-
-/// What happens to a test when a fixture collapses while it runs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum AfterCollapse {
-    /// It is `collapsed`; the suite goes on with the next test.
-    #[default]
-    Fail,
-    /// It is run again once the fixture is back.
-    Rerun,
-    /// It is `skipped`.
-    Skip,
 }
 
 /// A plug-in and the host that runs it.

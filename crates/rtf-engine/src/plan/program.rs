@@ -1,0 +1,55 @@
+//! Programs that a suite names: `<command>` and `command="…"`.
+
+use std::path::PathBuf;
+
+use rtf_model::Diagnostic;
+
+use super::scope::Scope;
+use super::unix::is_executable;
+
+/// Finds the program of a command line: with a slash it is a path that starts
+/// in the suite's folder, without one it is searched in `PATH`.
+pub(super) fn find(name: &str, scope: &Scope<'_>) -> Result<PathBuf, Diagnostic> {
+    if name.contains('/') {
+        let file: PathBuf = scope.folder.join(name).components().collect();
+        return if is_executable(&file) {
+            Ok(file)
+        } else if file.is_file() {
+            let message = format!("the program `{name}` is not executable");
+            let hint = format!("make it so with `chmod +x {name}`");
+            Err(Diagnostic::error("no-such-program", message).hint(hint))
+        } else {
+            let message = format!("there is no program `{name}`");
+            let note = format!("looked for {}", file.display());
+            Err(Diagnostic::error("no-such-program", message).note(note))
+        };
+    }
+    in_path(name, scope).ok_or_else(|| {
+        let problem = Diagnostic::error("no-such-program", format!("there is no program `{name}`"))
+            .note(searched(scope));
+        if scope.folder.join(name).is_file() {
+            problem.hint(format!("the one in the suite's folder is called `./{name}`"))
+        } else {
+            problem
+        }
+    })
+}
+
+/// The first program of this name in `PATH`.
+pub(super) fn in_path(name: &str, scope: &Scope<'_>) -> Option<PathBuf> {
+    scope
+        .folders("PATH")
+        .into_iter()
+        .map(|folder| folder.join(name))
+        .find(|file| is_executable(file))
+}
+
+/// The folders of `PATH`, as a note.
+pub(super) fn searched(scope: &Scope<'_>) -> String {
+    let folders = scope.folders("PATH");
+    if folders.is_empty() {
+        return "`PATH` names no folder".to_owned();
+    }
+    let list: Vec<_> = folders.iter().map(|folder| format!("  {}", folder.display())).collect();
+    format!("searched `PATH`:\n{}", list.join("\n"))
+}

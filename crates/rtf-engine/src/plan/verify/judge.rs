@@ -1,0 +1,126 @@
+//! From a host's answers to diagnostics at the suite's lines.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use rtf_model::Diagnostic;
+
+use super::ask::{Answer, Word};
+use super::{FileUse, Group, Places, SHOWN_PLACES, Verified};
+use crate::plan::context::Role;
+use crate::suite::Source;
+
+/// A plug-in's text longer than this is not shown.
+const SHOWN_BYTES: u64 = 4 * 1024 * 1024;
+
+/// Judges the answers about a group's files from `first` on.
+pub(super) fn judge(group: &Group, first: usize, answers: Vec<Answer>, verified: &mut Verified) {
+    let mut host_failed = false;
+    for (entry, answer) in group.files[first..].iter().zip(answers) {
+        let problem = match answer {
+            Answer::Said(word) if word.ok => {
+                kinds(entry, &word, verified);
+                continue;
+            }
+            Answer::Said(word) => unloadable(entry, &word, verified),
+            Answer::Died { how, stderr } => {
+                let message = format!("loading `{}` ended its host: {how}", shown(&entry.file));
+                with_stderr(Diagnostic::error("plugin-not-loadable", message), &stderr)
+            }
+            Answer::Silent(limit) => {
+                let message =
+                    format!("loading `{}` takes longer than {limit:?}", shown(&entry.file));
+                Diagnostic::error("plugin-not-loadable", message)
+            }
+            Answer::HostFailed { how, stderr } => {
+                if std::mem::replace(&mut host_failed, true) {
+                    continue;
+                }
+                host(group, &how, &stderr)
+            }
+        };
+        verified.problems.push(all_places(entry, problem));
+    }
+}
+
+fn shown(file: &Path) -> String {
+    file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
+}
+
+fn with_stderr(problem: Diagnostic, stderr: &str) -> Diagnostic {
+    if stderr.is_empty() { problem } else { problem.note(format!("it printed\n{stderr}")) }
+}
+
+fn host(group: &Group, how: &str, stderr: &str) -> Diagnostic {
+    let command = shell_words::join(&group.host.command);
+    let message = format!("the host `{command}` does not work: {how}");
+    with_stderr(Diagnostic::error("host-failed", message), stderr)
+}
+
+/// The host could not load it: its loader's or its compiler's words.
+fn unloadable(entry: &FileUse, word: &Word, verified: &mut Verified) -> Diagnostic {
+    let said = word.message.as_deref().unwrap_or("the host does not say why").trim();
+    let (first, rest) = said.split_once('\n').unwrap_or((said, ""));
+    let mut message = format!("the plug-in `{}` cannot be loaded: {first}", shown(&entry.file));
+    let label = word.line.and_then(|line| {
+        let source = text_of(&entry.file)?;
+        let label = source.label(source.line_span(line)?, first);
+        verified.sources.add(Arc::new(source));
+        Some(label)
+    });
+    if let (Some(line), None) = (word.line, &label) {
+        message = format!("{message} (line {line})");
+    }
+    let mut problem = Diagnostic::error("plugin-not-loadable", message);
+    problem.labels.extend(label);
+    let problem = if rest.is_empty() { problem } else { problem.note(rest.trim_end()) };
+    problem.note(format!("the file is {}", entry.file.display()))
+}
+
+fn text_of(file: &Path) -> Option<Source> {
+    let short = file.metadata().is_ok_and(|found| found.len() <= SHOWN_BYTES);
+    let text = short.then(|| std::fs::read_to_string(file).ok())??;
+    Some(Source::new(file.to_string_lossy(), text))
+}
+
+/// It loads; is it what the suite takes it for?
+fn kinds(entry: &FileUse, word: &Word, verified: &mut Verified) {
+    let Some(kinds) = &word.kinds else { return };
+    for (role, places) in [(Role::Test, &entry.tests), (Role::Fixture, &entry.fixtures)] {
+        if places.count == 0 || kinds.iter().any(|kind| kind == role.word()) {
+            continue;
+        }
+        if entry.optional {
+            verified.left_out.insert(entry.file.clone());
+            continue;
+        }
+        let file = shown(&entry.file);
+        let wanted = role.word();
+        let problem = match kinds.first() {
+            Some(other) => {
+                let message = format!("the plug-in `{file}` is a {other}, not a {wanted}");
+                Diagnostic::error("wrong-kind", message).hint(role.advice())
+            }
+            None => Diagnostic::error("wrong-kind", format!("`{file}` holds no {wanted}")),
+        };
+        verified.problems.push(show(places, problem, "used here"));
+    }
+}
+
+fn all_places(entry: &FileUse, problem: Diagnostic) -> Diagnostic {
+    let problem = show(&entry.tests, problem, "needed here");
+    show(&entry.fixtures, problem, "needed here")
+}
+
+/// The suite's places come first, the plug-in's own line after them.
+fn show(places: &Places, mut problem: Diagnostic, text: &str) -> Diagnostic {
+    let own = std::mem::take(&mut problem.labels);
+    for place in &places.shown {
+        problem = place.show(problem, text);
+    }
+    problem.labels.extend(own);
+    match places.count.saturating_sub(SHOWN_PLACES) {
+        0 => problem,
+        more => problem.note(format!("needed in {more} more places")),
+    }
+}

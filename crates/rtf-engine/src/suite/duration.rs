@@ -1,0 +1,79 @@
+//! Durations as suites write them.
+
+use std::time::Duration;
+
+use jiff::SignedDuration;
+
+/// The longest duration that a suite may name: 366 days. Deadlines stay far
+/// from the end of every clock with it.
+const LONGEST: Duration = Duration::from_secs(366 * 24 * 60 * 60);
+
+/// Why a text is not a duration that can be used as a limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum DurationError {
+    /// Not understood.
+    #[error("not a duration")]
+    Malformed,
+    /// Zero or below.
+    #[error("must be longer than zero")]
+    NotPositive,
+    /// Longer than 366 days.
+    #[error("longer than 366 days")]
+    TooLong,
+}
+
+/// Reads `250ms`, `1.5s`, `2min`, `1h 30m`; a bare number is seconds.
+///
+/// # Errors
+/// The text is no duration, not above zero, or above 366 days.
+pub fn parse_duration(text: &str) -> Result<Duration, DurationError> {
+    let text = text.trim();
+    let bare = text.strip_prefix(['-', '+']).unwrap_or(text);
+    let is_number = !bare.is_empty() && bare.bytes().all(|b| b.is_ascii_digit() || b == b'.');
+    let parsed = if is_number {
+        format!("{text}s").parse::<SignedDuration>()
+    } else {
+        text.parse::<SignedDuration>()
+    };
+    let signed = match parsed {
+        Ok(signed) => signed,
+        Err(_) if is_number && bare.parse::<f64>().is_ok_and(|n| n > LONGEST.as_secs_f64()) => {
+            return Err(DurationError::TooLong);
+        }
+        Err(_) => return Err(DurationError::Malformed),
+    };
+    if !signed.is_positive() {
+        return Err(DurationError::NotPositive);
+    }
+    Duration::try_from(signed).ok().filter(|d| *d <= LONGEST).ok_or(DurationError::TooLong)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{DurationError, parse_duration};
+
+    #[test]
+    fn the_forms_of_the_specification() {
+        let millis = |text| parse_duration(text).map(|duration| duration.as_millis());
+        assert_eq!(millis("250ms"), Ok(250));
+        assert_eq!(millis("1.5s"), Ok(1500));
+        assert_eq!(millis("2min"), Ok(120_000));
+        assert_eq!(millis("1h 30m"), Ok(5_400_000));
+        assert_eq!(millis(" 90 "), Ok(90_000));
+        assert_eq!(millis("0.25"), Ok(250));
+        assert_eq!(millis(".5"), Ok(500));
+    }
+
+    #[test]
+    fn what_is_refused() {
+        for text in ["", "soon", "1x", "1.2.3", "5 s s", "."] {
+            assert_eq!(parse_duration(text), Err(DurationError::Malformed), "{text}");
+        }
+        for text in ["0", "0s", "-3", "-2min", "1s ago"] {
+            assert_eq!(parse_duration(text), Err(DurationError::NotPositive), "{text}");
+        }
+        for text in ["9000h", "99999999", "1000000000000000000000000"] {
+            assert_eq!(parse_duration(text), Err(DurationError::TooLong), "{text}");
+        }
+    }
+}

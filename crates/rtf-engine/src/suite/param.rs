@@ -1,0 +1,95 @@
+//! Splits a parameter string into arguments, as the predecessor did.
+
+/// Splits `param` at white space and double quotes.
+///
+/// What stands between two double quotes is one argument with its white space;
+/// a quote ends the argument before it, so `a"b c"d` is three arguments, and
+/// `--from="a b.ini"` is two. Single quotes, backslashes and `#` mean
+/// themselves: Windows paths, regular expressions and colours pass unchanged.
+/// A last quote that is never closed reaches to the end. Two quotes that stand
+/// alone (`--name ""`) are an empty argument; the predecessor dropped them.
+#[must_use]
+pub fn split_param(param: &str) -> Vec<String> {
+    let mut arguments = Vec::new();
+    let mut rest = param;
+    let mut after_space = true;
+    while let Some(first) = rest.chars().next() {
+        if first == '"' {
+            let body = &rest[1..];
+            let (quoted, after) = body.split_once('"').unwrap_or((body, ""));
+            let alone = after_space && after.chars().next().is_none_or(char::is_whitespace);
+            if !quoted.is_empty() || (alone && body.starts_with('"')) {
+                arguments.push(quoted.to_owned());
+            }
+            rest = after;
+            after_space = false;
+        } else if first.is_whitespace() {
+            rest = rest.trim_start();
+            after_space = true;
+        } else {
+            let end = rest.find(|c: char| c == '"' || c.is_whitespace()).unwrap_or(rest.len());
+            arguments.push(rest[..end].to_owned());
+            rest = &rest[end..];
+            after_space = false;
+        }
+    }
+    arguments
+}
+
+#[cfg(test)]
+mod tests {
+    use super::split_param;
+    use proptest::prelude::*;
+
+    fn split(param: &str) -> Vec<String> {
+        split_param(param)
+    }
+
+    #[test]
+    fn splits_like_the_predecessor() {
+        assert_eq!(split("--from a.ini  --n 3 "), ["--from", "a.ini", "--n", "3"]);
+        assert_eq!(split(r#"--from "a b.ini""#), ["--from", "a b.ini"]);
+        assert_eq!(split(r#"a"b c"d"#), ["a", "b c", "d"]);
+        assert_eq!(split(r#"--from="a b.ini""#), ["--from=", "a b.ini"]);
+        assert_eq!(split(r#"open "to the end "#), ["open", "to the end "]);
+        assert_eq!(split(""), [""; 0]);
+    }
+
+    /// Defect 8 of the predecessor: at most 128 arguments, written past an array.
+    #[test]
+    fn any_number_of_arguments() {
+        assert_eq!(split(&"x ".repeat(1000)).len(), 1000);
+    }
+
+    #[test]
+    fn other_special_characters_mean_themselves() {
+        let param = r"C:\data\x #ff0000 'a b' $HOME %s \n";
+        let expected = [r"C:\data\x", "#ff0000", "'a", "b'", "$HOME", "%s", r"\n"];
+        assert_eq!(split(param), expected);
+    }
+
+    #[test]
+    fn lone_quotes_are_an_empty_argument() {
+        assert_eq!(split(r#"--name "" x"#), ["--name", "", "x"]);
+        assert_eq!(split(r#"a""b"#), ["a", "b"]);
+        assert_eq!(split("a \""), ["a"]);
+    }
+
+    proptest! {
+        #[test]
+        fn quoting_each_argument_gives_it_back(
+            arguments in prop::collection::vec("[^\"]*", 0..20),
+        ) {
+            let quoted: Vec<_> = arguments.iter().map(|a| format!("\"{a}\"")).collect();
+            prop_assert_eq!(split_param(&quoted.join(" ")), arguments);
+        }
+
+        #[test]
+        fn no_character_but_space_and_quote_is_lost(param in any::<String>()) {
+            let keep = |c: &char| *c != '"' && !c.is_whitespace();
+            let split: String = split_param(&param).concat();
+            let kept: String = split.chars().filter(keep).collect();
+            prop_assert_eq!(kept, param.chars().filter(keep).collect::<String>());
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! `<suite>`: the way from a text to a [`Suite`].
+
+use roxmltree::Node;
+use rtf_model::Diagnostic;
+
+use super::shape::{self, check};
+use super::test::{self, Defaults};
+use super::value::Reader;
+use super::{Source, Suite, env, fixture, xml};
+
+/// Reads a suite file's text.
+///
+/// Every problem is added to `problems`. What could be read is returned even
+/// when there are errors, so that the planner can find further ones; `None`
+/// when the text is not a suite at all.
+#[must_use]
+pub fn load(source: &Source, problems: &mut Vec<Diagnostic>) -> Option<Suite> {
+    let scan = xml::prepare(source, problems)?;
+    let document = xml::parse(source, &scan.text, problems)?;
+    let root = document.root_element();
+    let mut reader = Reader { source, problems };
+    let name = root.tag_name();
+    if name.name() != "suite" || name.namespace().is_some() {
+        reader.report(not_a_suite(source, root));
+        return None;
+    }
+    Some(read_suite(&mut reader, root))
+}
+
+fn not_a_suite(source: &Source, root: Node<'_, '_>) -> Diagnostic {
+    let name = root.tag_name();
+    let message = match name.namespace() {
+        Some(_) if name.name() == "suite" => {
+            "a suite file has no XML namespace; remove the `xmlns`".to_owned()
+        }
+        _ => {
+            format!("`{}` is not a suite: its first element is `<{}>`", source.name(), name.name())
+        }
+    };
+    let label = source.label(Reader::tag(root), "`<suite>` is expected here");
+    Diagnostic::error("not-a-suite", message).label(label)
+}
+
+fn read_suite(reader: &mut Reader<'_>, root: Node<'_, '_>) -> Suite {
+    check(reader, root, &shape::SUITE);
+    let defaults = Defaults {
+        limits: test::limits(reader, root, "test-"),
+        after_collapse: test::after_collapse(reader, root).unwrap_or_default(),
+    };
+    let mut suite = Suite {
+        span: Reader::tag(root),
+        name: reader.word(root, "name"),
+        description: String::new(),
+        environment: String::new(),
+        env: env::read(reader, root),
+        timeout: reader.duration(root, "timeout"),
+        tags: test::values(reader.words(root, "tags")),
+        tolerates_collapse: reader.truth(root, "tolerate-collapse").unwrap_or(false),
+        fixtures: Vec::new(),
+        tests: Vec::new(),
+    };
+    for node in root.children().filter(Node::is_element) {
+        match node.tag_name().name() {
+            "description" => {
+                let text = only_text(reader, node, "description");
+                suite.description = text.split_whitespace().collect::<Vec<_>>().join(" ");
+            }
+            "environment" => suite.environment = only_text(reader, node, "environment"),
+            "fixture" => suite.fixtures.extend(fixture::read(reader, node)),
+            "test" => suite.tests.extend(test::read(reader, node, defaults)),
+            _ => {}
+        }
+    }
+    if !root.children().any(|node| node.has_tag_name("test")) {
+        let problem = Diagnostic::error("no-tests", "the suite has no tests")
+            .label(reader.source.label(suite.span, "no `<test>` in it"));
+        reader.report(problem);
+    }
+    suite
+}
+
+/// The trimmed text of an element that there is once. The predecessor took the
+/// last one; so do we, but tell.
+fn only_text(reader: &mut Reader<'_>, node: Node<'_, '_>, name: &'static str) -> String {
+    check(reader, node, &shape::text(name));
+    let earlier = node.prev_siblings().skip(1).find(|sibling| sibling.has_tag_name(name));
+    if let Some(earlier) = earlier {
+        let message = format!("`<{name}>` again; the last one counts");
+        let problem = Diagnostic::warning("repeated-element", message)
+            .label(reader.source.label(Reader::tag(node), ""))
+            .label(reader.source.label(Reader::tag(earlier), "the earlier one"));
+        reader.report(problem);
+    }
+    reader.text(node).map(|text| text.value).unwrap_or_default()
+}

@@ -1,0 +1,112 @@
+//! `<test>`.
+
+use roxmltree::Node;
+use rtf_model::Diagnostic;
+
+use super::shape::{self, check};
+use super::value::Reader;
+use super::{AfterCollapse, Plugin, Spanned, Test, WrittenLimits, env};
+
+/// What the suite says for all of its tests.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Defaults {
+    /// Its limits.
+    pub limits: WrittenLimits,
+    /// Its `after-collapse`.
+    pub after_collapse: AfterCollapse,
+}
+
+/// Reads a `<test>`; `None` when it names no plug-in.
+pub(super) fn read(
+    reader: &mut Reader<'_>,
+    node: Node<'_, '_>,
+    defaults: Defaults,
+) -> Option<Test> {
+    check(reader, node, &shape::TEST);
+    let name = reader.word(node, "name");
+    let own = limits(reader, node, "");
+    let given = defaults.limits;
+    let limits = WrittenLimits {
+        load: own.load.or(given.load),
+        setup: own.setup.or(given.setup),
+        run: own.run.or(given.run),
+        teardown: own.teardown.or(given.teardown),
+        slow: own.slow.or(given.slow),
+        grace: own.grace.or(given.grace),
+    };
+    isolation(reader, node);
+    let repetitions = reader.number(node, "repetition", 1).unwrap_or(1);
+    let after_collapse = after_collapse(reader, node).unwrap_or(defaults.after_collapse);
+    let critical = reader.truth(node, "critical").unwrap_or(false);
+    let tags = values(reader.words(node, "tags"));
+    let env = env::read(reader, node);
+    let plugin = plugin(reader, node)?;
+    let span = Reader::tag(node);
+    Some(Test { span, name, plugin, repetitions, limits, after_collapse, critical, tags, env })
+}
+
+/// The limits of tests: on `<test>` as they are, on `<suite>` with `test-` before.
+pub(super) fn limits(reader: &mut Reader<'_>, node: Node<'_, '_>, prefix: &str) -> WrittenLimits {
+    let mut get = |name: &str| {
+        if prefix.is_empty() {
+            reader.duration(node, name)
+        } else {
+            reader.duration(node, &format!("{prefix}{name}"))
+        }
+    };
+    WrittenLimits {
+        load: get("load-timeout"),
+        setup: get("setup-timeout"),
+        run: get("timeout"),
+        teardown: get("teardown-timeout"),
+        slow: get("slow"),
+        grace: get("grace"),
+    }
+}
+
+/// The attribute of `<suite>` and of `<test>`.
+pub(super) fn after_collapse(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Option<AfterCollapse> {
+    let words = [
+        ("rerun", AfterCollapse::Rerun),
+        ("fail", AfterCollapse::Fail),
+        ("skip", AfterCollapse::Skip),
+    ];
+    reader.choice(node, "after-collapse", &words)
+}
+
+/// The plug-in of a test or a fixture.
+pub(super) fn plugin(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Option<Plugin> {
+    let plugin_type = reader.word(node, "type");
+    let param = reader.attribute(node, "param");
+    if let Some(param) = &param
+        && param.value.bytes().filter(|byte| *byte == b'"').count() % 2 == 1
+    {
+        let problem = Diagnostic::warning("open-quote", "a quote in `param` is never closed")
+            .label(reader.source.label(param.span, "the last argument reaches to the end"));
+        reader.report(problem);
+    }
+    let Some(name) = reader.text(node) else {
+        reader.missing(node, "the name of a plug-in as its text");
+        return None;
+    };
+    let param = param.map(|param| param.value).unwrap_or_default();
+    Some(Plugin { name, plugin_type, param })
+}
+
+/// The texts without their places.
+pub(super) fn values(words: Vec<Spanned<String>>) -> Vec<String> {
+    words.into_iter().map(|word| word.value).collect()
+}
+
+/// Only the default is there yet; `shared` must not be taken for it.
+fn isolation(reader: &mut Reader<'_>, node: Node<'_, '_>) {
+    if let Some(isolation) = reader.attribute(node, "isolation")
+        && isolation.value.trim() == "shared"
+    {
+        let message = "`isolation=\"shared\"` is not supported by this version of rtf";
+        let label = reader.source.label(isolation.span, "");
+        reader.report(Diagnostic::error("not-supported", message).label(label));
+    } else {
+        reader.choice(node, "isolation", &[("process", ())]);
+    }
+}

@@ -1,0 +1,170 @@
+//! What a suite file says, before anything is looked up.
+
+use std::time::Duration;
+
+use super::{Span, Spanned};
+
+/// A suite file.
+#[derive(Clone, Debug)]
+pub struct Suite {
+    /// The name of the `<suite>` element's tag.
+    pub span: Span,
+    /// Its name, if it has one.
+    pub name: Option<Spanned<String>>,
+    /// Its description, white space folded.
+    pub description: String,
+    /// Its environment string.
+    pub environment: String,
+    /// Environment variables for all its processes, in order.
+    pub env: Vec<(String, String)>,
+    /// The limit for the whole suite.
+    pub timeout: Option<Duration>,
+    /// Tags that all its tests have.
+    pub tags: Vec<String>,
+    /// Whether a fixture's collapse leaves the suite green.
+    pub tolerates_collapse: bool,
+    /// The fixtures, in order.
+    pub fixtures: Vec<Fixture>,
+    /// The tests, in order.
+    pub tests: Vec<Test>,
+}
+
+/// A `<test>`.
+#[derive(Clone, Debug)]
+pub struct Test {
+    /// The name of the element's tag.
+    pub span: Span,
+    /// Its name, if the file gives one.
+    pub name: Option<Spanned<String>>,
+    /// The plug-in and its parameters.
+    pub plugin: Plugin,
+    /// How often it runs.
+    pub repetitions: u32,
+    /// Its limits, those of the suite included.
+    pub limits: WrittenLimits,
+    /// What happens to it when a fixture collapses while it runs.
+    pub after_collapse: AfterCollapse,
+    /// Whether the rest of the suite is skipped when it does not pass.
+    pub critical: bool,
+    /// Its own tags.
+    pub tags: Vec<String>,
+    /// Environment variables beside the suite's.
+    pub env: Vec<(String, String)>,
+}
+
+/// What a test or a fixture plug-in is called.
+#[derive(Clone, Debug)]
+pub struct Plugin {
+    /// The plug-in's name as written.
+    pub name: Spanned<String>,
+    /// The type as written, if there is one.
+    pub plugin_type: Option<Spanned<String>>,
+    /// The parameter string.
+    pub param: String,
+}
+
+/// The limits that a suite sets, where it sets them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct WrittenLimits {
+    /// For loading.
+    pub load: Option<Duration>,
+    /// For `setup`.
+    pub setup: Option<Duration>,
+    /// For `run`.
+    pub run: Option<Duration>,
+    /// For `tearDown`.
+    pub teardown: Option<Duration>,
+    /// After this long in `run` the test is reported as slow.
+    pub slow: Option<Duration>,
+    /// From the request to stop to the use of force.
+    pub grace: Option<Duration>,
+}
+
+/// What happens to a test when a fixture collapses while it runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum AfterCollapse {
+    /// It is `collapsed`; the suite goes on with the next test.
+    #[default]
+    Fail,
+    /// It is run again once the fixture is back.
+    Rerun,
+    /// It is `skipped`.
+    Skip,
+}
+
+/// A `<fixture>`.
+#[derive(Clone, Debug)]
+pub struct Fixture {
+    /// The name of the element's tag.
+    pub span: Span,
+    /// Its name, if the file gives one.
+    pub name: Option<Spanned<String>>,
+    /// The fixtures that must stand before it.
+    pub depends: Vec<Spanned<String>>,
+    /// What it is.
+    pub body: FixtureKind,
+    /// Environment variables beside the suite's.
+    pub env: Vec<(String, String)>,
+    /// The limit for its set-up.
+    pub setup: Option<Duration>,
+    /// The limit for one `check`.
+    pub check: Option<Duration>,
+    /// The limit for its tear-down.
+    pub teardown: Option<Duration>,
+    /// How often it may be started again after a collapse.
+    pub restarts: Option<u32>,
+    /// How often it is checked while tests run.
+    pub check_every: Option<Duration>,
+}
+
+/// What a `<fixture>` is.
+#[derive(Clone, Debug)]
+pub enum FixtureKind {
+    /// A fixture plug-in.
+    Plugin(Plugin),
+    /// The built-in `type="process"`.
+    Process(Box<Process>),
+}
+
+/// A `<fixture type="process">`.
+#[derive(Clone, Debug)]
+pub struct Process {
+    /// The program and its arguments; empty when the file has none (a problem is reported).
+    pub command: Spanned<Vec<String>>,
+    /// The `<ready>` probes.
+    pub ready: Vec<Probe>,
+    /// The `<alive>` probes.
+    pub alive: Vec<Probe>,
+    /// The signal that asks it to stop.
+    pub stop_signal: Option<i32>,
+    /// How long it may take to stop.
+    pub stop_grace: Option<Duration>,
+}
+
+/// A `<ready>` or an `<alive>`.
+#[derive(Clone, Debug)]
+pub struct Probe {
+    /// What is asked.
+    pub question: Question,
+    /// Where the question was written.
+    pub span: Span,
+    /// How often it is asked.
+    pub every: Option<Duration>,
+    /// How long one answer may take.
+    pub timeout: Option<Duration>,
+}
+
+/// What a [`Probe`] asks.
+#[derive(Clone, Debug)]
+pub enum Question {
+    /// Whether a TCP connection to `host:port` is accepted.
+    Tcp(String),
+    /// Whether an HTTP GET of the URL answers with a 2xx status.
+    Http(String),
+    /// Whether a line of the output matches.
+    Log(regex::Regex),
+    /// Whether the program ends with exit code 0.
+    Command(Vec<String>),
+    /// Whether the file exists.
+    File(String),
+}

@@ -1,0 +1,106 @@
+//! Text → XML tree, and the parser's errors as diagnostics.
+
+use roxmltree::{Document, Error, ParsingOptions, TextPos};
+use rtf_model::Diagnostic;
+
+use super::prepass::{self, Scan};
+use super::{Source, Span};
+
+/// What comes before the parser: the pre-pass with its warnings and refusals.
+pub(super) fn prepare<'a>(source: &'a Source, problems: &mut Vec<Diagnostic>) -> Option<Scan<'a>> {
+    let scan = prepass::scan(source.text());
+    if let Some(first) = scan.dashes.first() {
+        problems.push(dashes_warning(source, *first, scan.dashes.len()));
+    }
+    if let Some(span) = scan.doctype {
+        let problem = Diagnostic::error("doctype", "a suite file cannot have a DTD")
+            .label(source.label(span, "not read, for safety"))
+            .hint("remove the `<!DOCTYPE …>`");
+        problems.push(problem);
+    }
+    if let Some(span) = scan.crowded {
+        let problem =
+            Diagnostic::error("too-many-attributes", "too many attributes on one element");
+        problems.push(problem.label(source.label(span, "")));
+    }
+    (scan.doctype.is_none() && scan.crowded.is_none()).then_some(scan)
+}
+
+/// Parses what [`prepare`] let through.
+pub(super) fn parse<'a>(
+    source: &Source,
+    text: &'a str,
+    problems: &mut Vec<Diagnostic>,
+) -> Option<Document<'a>> {
+    let options = ParsingOptions { allow_dtd: false, ..ParsingOptions::default() };
+    match Document::parse_with_options(text, options) {
+        Ok(document) => Some(document),
+        Err(error) => {
+            problems.push(malformed(source, text, &error));
+            None
+        }
+    }
+}
+
+fn dashes_warning(source: &Source, first: Span, count: usize) -> Diagnostic {
+    let problem =
+        Diagnostic::warning("comment-dashes", "`--` in a comment is not legal XML; accepted")
+            .label(source.label(first, ""))
+            .hint(
+                "write the option without its dashes in comments, other programs refuse the file",
+            );
+    match count {
+        1 => problem,
+        2 => problem.note("one more comment of this file has it"),
+        _ => problem.note(format!("{} more comments of this file have it", count - 1)),
+    }
+}
+
+fn malformed(source: &Source, text: &str, error: &Error) -> Diagnostic {
+    let start = match error {
+        Error::UnclosedRootNode | Error::NoRootNode | Error::UnexpectedEndOfStream => {
+            text.trim_end().len()
+        }
+        _ => offset(text, error.pos()),
+    };
+    let length = text[start..].chars().next().map_or(0, char::len_utf8);
+    let label = source.label(Span::new(start..start + length), "");
+    Diagnostic::error("malformed-xml", explanation(error)).label(label)
+}
+
+/// What is wrong, without the position, which the label has.
+fn explanation(error: &Error) -> String {
+    match error {
+        Error::UnexpectedCloseTag(open, close, _) => {
+            format!("malformed XML: `</{close}>` where `<{open}>` has to be closed")
+        }
+        Error::UnclosedRootNode => {
+            "malformed XML: the file ends before its first element does".into()
+        }
+        Error::NoRootNode => "malformed XML: there is no element in the file".into(),
+        Error::UnexpectedEndOfStream => "malformed XML: the file ends too early".into(),
+        Error::DuplicatedAttribute(name, _) => {
+            format!("malformed XML: the attribute `{name}` twice")
+        }
+        Error::InvalidAttributeValue(_) => "malformed XML: `<` in a value is written `&lt;`".into(),
+        Error::MalformedEntityReference(_) => "malformed XML: `&` is written `&amp;`".into(),
+        Error::UnknownEntityReference(name, _) => {
+            format!("malformed XML: there is no entity `&{name};`; `&` alone is written `&amp;`")
+        }
+        other => {
+            let text = other.to_string();
+            let position = format!(" at {}", other.pos());
+            format!("malformed XML: {}", text.strip_suffix(&position).unwrap_or(&text))
+        }
+    }
+}
+
+/// The byte offset of the parser's row and column, which count from 1.
+fn offset(text: &str, at: TextPos) -> usize {
+    let mut start = 0;
+    for line in text.split_inclusive('\n').take(at.row.saturating_sub(1) as usize) {
+        start += line.len();
+    }
+    let column = at.col.saturating_sub(1) as usize;
+    text[start..].char_indices().nth(column).map_or(text.len(), |(offset, _)| start + offset)
+}
