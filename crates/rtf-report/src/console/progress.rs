@@ -1,0 +1,83 @@
+//! The progress bar, on standard error when that is a terminal.
+
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use rtf_model::{Event, EventKind, Record};
+
+use crate::escape;
+
+/// How often the bar's clock moves while nothing happens.
+const TICK: Duration = Duration::from_millis(250);
+
+const TEMPLATE: &str = "{elapsed_precise} [{bar:20}] {pos} of {len} done  {wide_msg}";
+
+/// How far the run is, and what it does now.
+#[derive(Debug)]
+pub(super) struct Progress {
+    bar: ProgressBar,
+    done: u64,
+}
+
+impl Progress {
+    /// A bar on standard error; none when that is no terminal, or when a
+    /// machine watches (`CI` is set).
+    pub fn on_terminal() -> Self {
+        if std::env::var_os("CI").is_some_and(|value| !value.is_empty()) {
+            return Self::hidden();
+        }
+        let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr());
+        if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        if !bar.is_hidden() {
+            bar.enable_steady_tick(TICK);
+        }
+        Self { bar, done: 0 }
+    }
+
+    /// No bar.
+    pub fn hidden() -> Self {
+        Self { bar: ProgressBar::hidden(), done: 0 }
+    }
+
+    /// Moves on.
+    pub fn event(&mut self, event: &Event, record: &Record) {
+        if self.bar.is_hidden() {
+            return;
+        }
+        match &event.kind {
+            EventKind::TestStarted { test, .. } => {
+                self.bar.set_message(escape::line(&record.full_name(*test)).into_owned());
+            }
+            EventKind::FixtureStarting { fixture, .. } => self.fixture(record, *fixture, "set up"),
+            EventKind::FixtureStopping { fixture } => self.fixture(record, *fixture, "tear down"),
+            EventKind::SuiteStarted { .. } => self.bar.set_length(record.tests.len() as u64),
+            EventKind::TestFinished(finished) if record.verdict(finished.test).is_some() => {
+                self.step();
+            }
+            EventKind::TestSkipped { .. } => self.step(),
+            _ => {}
+        }
+    }
+
+    fn fixture(&self, record: &Record, id: rtf_model::FixtureId, what: &str) {
+        let name = record.fixture(id).map_or("?", |fixture| &fixture.plan.name);
+        self.bar.set_message(format!("{what} fixture {}", escape::line(name)));
+    }
+
+    fn step(&mut self) {
+        self.done += 1;
+        self.bar.set_position(self.done);
+    }
+
+    /// Takes the bar away while `write` writes to the same terminal.
+    pub fn around<T>(&self, write: impl FnOnce() -> T) -> T {
+        if self.bar.is_hidden() { write() } else { self.bar.suspend(write) }
+    }
+
+    /// Takes the bar away for good.
+    pub fn end(&self) {
+        self.bar.finish_and_clear();
+    }
+}

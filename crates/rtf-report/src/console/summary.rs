@@ -1,0 +1,143 @@
+//! What is told at the end: what is wrong, how to look at it and how to run it
+//! again, and as the last line the result.
+
+use std::collections::BTreeMap;
+
+use rtf_model::{Phase, Record, TestId, Verdict};
+
+use super::ConsoleOptions;
+use super::page::Page;
+use super::style::{self, BAD, BOLD, DIM, GOOD, LOUD};
+use crate::{escape, logs, words};
+
+/// How many names of skipped tests are listed for one reason.
+const NAMES: usize = 5;
+
+/// Tells what came of the run.
+pub(super) fn show(page: &mut Page, options: &ConsoleOptions, record: &Record) {
+    problems(page, record);
+    failed(page, options, record);
+    skipped(page, record);
+    page.line("");
+    if let Some(folder) = &options.folder {
+        page.line(&format!("results: {}", folder.display()));
+    }
+    result(page, record);
+}
+
+fn problems(page: &mut Page, record: &Record) {
+    let of_suite = |suite: &rtf_model::SuiteRecord| {
+        let name = escape::line(&suite.plan.name).into_owned();
+        let problems = record.suite_problems(suite.plan.suite);
+        problems.into_iter().map(move |problem| format!("{name}: {}", escape::line(&problem)))
+    };
+    let problems: Vec<_> = record.suites.iter().flat_map(of_suite).collect();
+    if problems.is_empty() {
+        return;
+    }
+    page.line("");
+    page.line(&style::paint(BOLD, "beside the tests:"));
+    for problem in problems {
+        page.line(&format!("  {}", style::paint(BAD, &problem)));
+    }
+}
+
+fn failed(page: &mut Page, options: &ConsoleOptions, record: &Record) {
+    let is_failed = |verdict: Verdict| !verdict.is_green() && verdict != Verdict::Skipped;
+    let ids = record.tests.iter().map(|test| test.plan.test);
+    let failed: Vec<_> = ids.filter(|id| is_failed(record.final_verdict(*id))).collect();
+    if failed.is_empty() {
+        return;
+    }
+    page.line("");
+    page.line(&style::paint(BOLD, "tests that did not pass:"));
+    for id in failed {
+        failed_test(page, options, record, id);
+    }
+}
+
+fn failed_test(page: &mut Page, options: &ConsoleOptions, record: &Record, id: TestId) {
+    let Some(test) = record.tests.get(id.index()) else { return };
+    let verdict = record.final_verdict(id);
+    let attempt = test.decisive_attempt();
+    let finished = attempt.and_then(|attempt| attempt.finished.as_ref());
+    let phase = finished.map(|(_, finished)| finished.phase).filter(|phase| *phase != Phase::Run);
+    let phase = phase.map_or(String::new(), |phase| format!(" in {phase}"));
+    let name = style::paint(BOLD, &escape::line(&record.full_name(id)));
+    let verdict = style::paint(style::of_verdict(verdict), verdict.as_str());
+    page.line(&format!("  {name}  {verdict}{phase}"));
+    let mut fact = |label: &str, text: &str| {
+        let label = style::paint(DIM, &format!("{label:<6}"));
+        page.line(&format!("    {label}  {text}"));
+    };
+    match test.reason() {
+        Some(reason) => fact("reason", &first_line(reason)),
+        None if !record.is_complete() => fact("reason", "the run ended before the test did"),
+        None => {}
+    }
+    let first = attempt.and_then(|attempt| attempt.failures().next());
+    if let Some(location) = first.and_then(|message| message.location.as_ref()) {
+        fact("at", &escape::line(&location.to_string()));
+    }
+    if let (Some(folder), Some(attempt)) = (&options.folder, attempt)
+        && !attempt.output.is_empty()
+    {
+        let log = logs::attempt_log(record, id, (attempt.repetition, attempt.attempt));
+        fact("log", &folder.join(log).display().to_string());
+    }
+    if let Some(command) = (options.rerun)(record, id) {
+        fact("again", &escape::line(&command));
+    }
+}
+
+fn first_line(text: &str) -> String {
+    let mut lines = text.lines();
+    let first = escape::line(lines.next().unwrap_or_default()).into_owned();
+    if lines.next().is_some() { first + " …" } else { first }
+}
+
+fn skipped(page: &mut Page, record: &Record) {
+    let mut reasons: BTreeMap<&str, Vec<TestId>> = BTreeMap::new();
+    for test in &record.tests {
+        if test.final_verdict() == Verdict::Skipped {
+            let reason = test.skipped.as_deref();
+            let reason = reason.unwrap_or("the run ended before the test began");
+            reasons.entry(reason).or_default().push(test.plan.test);
+        }
+    }
+    if reasons.is_empty() {
+        return;
+    }
+    page.line("");
+    page.line(&style::paint(BOLD, "skipped tests:"));
+    for (reason, tests) in reasons {
+        let count = words::count(tests.len() as u64, "test");
+        page.line(&format!("  {}: {}", style::paint(LOUD, &count), first_line(reason)));
+        for id in tests.iter().take(NAMES) {
+            page.line(&format!("    {}", escape::line(&record.full_name(*id))));
+        }
+        if tests.len() > NAMES {
+            page.line(&format!("    … and {} more", tests.len() - NAMES));
+        }
+    }
+}
+
+fn result(page: &mut Page, record: &Record) {
+    let totals = record.final_totals();
+    let counts = Verdict::ALL.into_iter().filter(|verdict| totals.of(*verdict) > 0);
+    let counts: Vec<_> =
+        counts.map(|verdict| format!("{} {verdict}", totals.of(verdict))).collect();
+    let tests = words::count(u64::from(totals.planned), "test");
+    let suites = words::count(record.suites.len() as u64, "suite");
+    let time = words::time(record.last_at.as_duration());
+    let (style, word) = match (record.is_green(), record.is_complete(), record.interrupted()) {
+        (true, ..) => (GOOD, "PASSED".to_owned()),
+        (_, false, _) => (BAD, "INCOMPLETE (the runner did not reach the end)".to_owned()),
+        (.., Some(reason)) => (BAD, format!("INTERRUPTED ({})", escape::line(reason))),
+        _ if totals.planned == 0 => (BAD, "FAILED (there are no tests)".to_owned()),
+        _ => (BAD, "FAILED".to_owned()),
+    };
+    let counts = if counts.is_empty() { String::new() } else { format!(": {}", counts.join(", ")) };
+    let rest = format!("{tests} in {suites}, {time}{counts}");
+    page.line(&format!("{}  {rest}", style::paint(style, &word)));
+}

@@ -1,0 +1,139 @@
+//! What is told in addition when everything is to be told: each message,
+//! measurement and line of output, under the name of whoever it comes from.
+
+use std::collections::BTreeMap;
+
+use rtf_model::{Event, EventKind, FixtureId, Output, Record, Source, TestId};
+
+use super::page::Page;
+use super::style::DIM;
+use crate::explain::{self, Tone};
+use crate::{escape, words};
+
+/// A line that does not end is shown in pieces of this size.
+const LONGEST_LINE: usize = 8 * 1024;
+
+/// Tells everything; keeps the beginnings of lines that have not ended yet.
+#[derive(Debug, Default)]
+pub(super) struct Verbose {
+    partial: BTreeMap<Key, String>,
+}
+
+/// Whose output it is, and whether standard error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Key {
+    Test(TestId, bool),
+    Fixture(FixtureId, bool),
+}
+
+impl Key {
+    fn of(output: &Output) -> Self {
+        let is_error = output.stream == rtf_model::Stream::Stderr;
+        match output.source {
+            Source::Test(id) => Self::Test(id, is_error),
+            Source::Fixture(id) => Self::Fixture(id, is_error),
+        }
+    }
+
+    fn name(self, record: &Record) -> String {
+        match self {
+            Self::Test(id, _) => name(record, Source::Test(id)),
+            Self::Fixture(id, _) => name(record, Source::Fixture(id)),
+        }
+    }
+}
+
+impl Verbose {
+    /// Tells of one event; what is always told is left to the other module.
+    pub fn show(&mut self, page: &mut Page, event: &Event, record: &Record) {
+        match &event.kind {
+            EventKind::TestStarted { test, .. } => {
+                begin(page, record, Source::Test(*test), "start")
+            }
+            EventKind::FixtureStarting { fixture, attempt: 1 } => {
+                begin(page, record, Source::Fixture(*fixture), "set up");
+            }
+            EventKind::FixtureStopping { fixture } => {
+                begin(page, record, Source::Fixture(*fixture), "tear down");
+            }
+            EventKind::TestPhase { test, phase } => {
+                let name = name(record, Source::Test(*test));
+                page.remark((DIM, phase.as_str()), &name);
+            }
+            EventKind::Message { source, message } => {
+                let mut lines = Vec::new();
+                explain::message(message, &mut |tone, line| lines.push((tone, line.to_owned())));
+                lines_of(page, &name(record, *source), &lines);
+            }
+            EventKind::Measured { test, measurement } => {
+                let tone = if measurement.is_within_limits() { Tone::Plain } else { Tone::Bad };
+                let lines = [(tone, explain::measurement(measurement))];
+                lines_of(page, &name(record, Source::Test(*test)), &lines);
+            }
+            EventKind::Attached { test, attachment } => {
+                let text = format!(
+                    "attached {}: {}",
+                    escape::line(&attachment.name),
+                    escape::line(&attachment.path)
+                );
+                lines_of(page, &name(record, Source::Test(*test)), &[(Tone::Plain, text)]);
+            }
+            EventKind::Output(output) => self.output(page, output, record),
+            EventKind::TestFinished(_) | EventKind::FixtureStopped { .. } => {
+                self.flush(page, record);
+            }
+            _ => {}
+        }
+    }
+
+    fn output(&mut self, page: &mut Page, output: &Output, record: &Record) {
+        let key = Key::of(output);
+        let partial = self.partial.entry(key).or_default();
+        if output.omitted > 0 {
+            let bytes = words::count(output.omitted, "byte");
+            partial.push_str(&format!("\n[… {bytes} left out …]\n"));
+        }
+        partial.push_str(&output.text);
+        let complete = match partial.rfind('\n') {
+            Some(end) => end + 1,
+            None if partial.len() > LONGEST_LINE => partial.len(),
+            None => return,
+        };
+        let rest = partial.split_off(complete);
+        let text = std::mem::replace(partial, rest);
+        print(page, &key.name(record), &text);
+    }
+
+    /// Shows the lines that have not ended.
+    pub fn flush(&mut self, page: &mut Page, record: &Record) {
+        for (key, text) in std::mem::take(&mut self.partial) {
+            print(page, &key.name(record), &text);
+        }
+    }
+}
+
+fn name(record: &Record, source: Source) -> String {
+    match source {
+        Source::Test(id) => escape::line(&record.full_name(id)).into_owned(),
+        Source::Fixture(id) => {
+            let name = record.fixture(id).map_or("?", |fixture| &fixture.plan.name);
+            format!("fixture {}", escape::line(name))
+        }
+    }
+}
+
+fn begin(page: &mut Page, record: &Record, source: Source, word: &str) {
+    page.remark((DIM, word), &name(record, source));
+}
+
+fn lines_of(page: &mut Page, name: &str, lines: &[(Tone, String)]) {
+    for (tone, line) in lines {
+        page.detail(*tone, &format!("{name}: {line}"));
+    }
+}
+
+fn print(page: &mut Page, name: &str, text: &str) {
+    for line in text.lines() {
+        page.detail(Tone::Dim, format!("{name} | {}", escape::block(line)).trim_end());
+    }
+}

@@ -1,0 +1,149 @@
+//! Why an attempt of a test did not pass, line by line. Console, text and JUnit
+//! tell it alike; each paints and indents the lines as it likes.
+
+use rtf_model::{AttemptRecord, Comparison, LeftProcess, Measurement, Message, MessageKind};
+
+use crate::{escape, words};
+
+/// How a line is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Tone {
+    /// What went wrong.
+    Bad,
+    /// A fact.
+    Plain,
+    /// A fact of second rank.
+    Dim,
+}
+
+/// How much of an attempt is told.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extent {
+    /// How many failures, and how many measurements outside their limits.
+    pub items: usize,
+    /// How many lines of each stack dump.
+    pub stack_lines: usize,
+}
+
+impl Extent {
+    /// All of it.
+    pub(crate) const ALL: Self = Self { items: usize::MAX, stack_lines: usize::MAX };
+}
+
+/// Takes each line in turn; a line has no line end.
+pub(crate) type Sink<'a> = &'a mut dyn FnMut(Tone, &str);
+
+/// Tells why an attempt did not pass: reason, failures, measurements outside
+/// their limits, stacks, processes left behind. What it printed is not told.
+pub(crate) fn explain(attempt: &AttemptRecord, extent: Extent, sink: Sink<'_>) {
+    let reason = attempt.finished.as_ref().and_then(|(_, finished)| finished.reason.as_deref());
+    // The first failure usually is the reason, and tells its place as well.
+    if let Some(reason) = reason.filter(|reason| attempt.failures().all(|m| m.text != *reason)) {
+        block(Tone::Bad, reason, "", sink);
+    }
+    let failures = attempt.failures().count();
+    attempt.failures().take(extent.items).for_each(|failure| message(failure, sink));
+    left_out(failures, extent.items, "failure", sink);
+    let violations = attempt.violations().count();
+    for violation in attempt.violations().take(extent.items) {
+        sink(Tone::Bad, &measurement(violation));
+    }
+    left_out(violations, extent.items, "measurement", sink);
+    for stack in &attempt.stacks {
+        self::stack(stack, extent, sink);
+    }
+    left(&attempt.left, sink);
+}
+
+/// A message with its place and the vectors behind it.
+pub(crate) fn message(message: &Message, sink: Sink<'_>) {
+    let (tone, word) = match message.kind {
+        MessageKind::Report => (Tone::Plain, "report"),
+        MessageKind::Check => (Tone::Plain, "check"),
+        MessageKind::Failure => (Tone::Bad, "failure"),
+        MessageKind::Error => (Tone::Bad, "error"),
+    };
+    let critical = if message.critical { "critical " } else { "" };
+    block(tone, &message.text, &format!("{critical}{word}: "), sink);
+    if let Some(location) = &message.location {
+        sink(Tone::Dim, &format!("  at {}", escape::line(&location.to_string())));
+    }
+    let fails = matches!(message.kind, MessageKind::Failure | MessageKind::Error);
+    // The text tells a scalar's numbers already.
+    if let Some(comparison) = message.comparison.as_ref().filter(|c| fails && c.got.len() > 1) {
+        vectors(comparison, sink);
+    }
+}
+
+fn vectors(comparison: &Comparison, sink: Sink<'_>) {
+    let list = |numbers: &[Option<f64>]| {
+        let number = |n: &Option<f64>| n.map_or("not finite".to_owned(), |n| n.to_string());
+        numbers.iter().map(number).collect::<Vec<_>>().join(", ")
+    };
+    sink(Tone::Dim, &format!("  expected [{}]", list(&comparison.expected)));
+    sink(Tone::Dim, &format!("  got      [{}]", list(&comparison.got)));
+}
+
+/// `measured rate = 98.2 Hz, outside ≥ 100 at rate.py:12`.
+pub(crate) fn measurement(measurement: &Measurement) -> String {
+    let name = escape::line(&measurement.name);
+    let value = measurement.value_with_unit();
+    let mut text = format!("measured {name} = {}", escape::line(&value));
+    let limits = measurement.limits();
+    match (limits.is_empty(), measurement.is_within_limits()) {
+        (false, true) => text += &format!(", within {limits}"),
+        (false, false) => text += &format!(", outside {limits}"),
+        (true, _) => {}
+    }
+    if let Some(location) = &measurement.location {
+        text += &format!(" at {}", escape::line(&location.to_string()));
+    }
+    text
+}
+
+/// The stacks of a process before it was stopped by force.
+pub(crate) fn stack(stack: &str, extent: Extent, sink: Sink<'_>) {
+    sink(Tone::Plain, "stack before it was stopped by force:");
+    let text = escape::block(stack);
+    for line in text.lines().take(extent.stack_lines) {
+        sink(Tone::Dim, &format!("| {line}"));
+    }
+    left_out(text.lines().count(), extent.stack_lines, "line", sink);
+}
+
+/// The processes that had to be killed.
+pub(crate) fn left(processes: &[LeftProcess], sink: Sink<'_>) {
+    if processes.is_empty() {
+        return;
+    }
+    let count = words::count(processes.len() as u64, "process");
+    sink(Tone::Bad, &format!("{count} left behind and killed:"));
+    for process in processes {
+        let command = escape::line(&process.command);
+        sink(Tone::Plain, &format!("  {} {command}", process.pid));
+    }
+}
+
+/// Lines that a process printed.
+pub(crate) fn printed<'a>(lines: impl IntoIterator<Item = &'a str>, sink: Sink<'_>) {
+    for line in lines {
+        sink(Tone::Dim, format!("| {}", escape::block(line)).trim_end());
+    }
+}
+
+/// Text of several lines: the first after `label`, the others below it.
+pub(crate) fn block(tone: Tone, text: &str, label: &str, sink: Sink<'_>) {
+    let text = escape::block(text);
+    let mut lines = text.lines();
+    sink(tone, format!("{label}{}", lines.next().unwrap_or_default()).trim_end());
+    for line in lines {
+        sink(tone, format!("{:width$}{line}", "", width = label.len()).trim_end());
+    }
+}
+
+fn left_out(total: usize, shown: usize, what: &str, sink: Sink<'_>) {
+    if total > shown {
+        let more = (total - shown) as u64;
+        sink(Tone::Dim, &format!("… and {more} more {}", words::plural(more, what)));
+    }
+}

@@ -1,0 +1,166 @@
+//! A declared test as a JUnit case.
+
+use std::path::Path;
+
+use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestRerun};
+use rtf_model::{AttemptRecord, Record, TestRecord, Verdict};
+
+use super::{text, time};
+use crate::explain::{self, Extent};
+
+/// More measurements than this would drown the page that shows them.
+const MEASUREMENTS: usize = 100;
+
+/// What is said of a test that did not end although the run did.
+const CUT_SHORT: &str = "the run ended before the test did";
+
+/// What is said of a test that did not begin although the run ended.
+const NOT_BEGUN: &str = "the run ended before the test began";
+
+/// The case of a test.
+pub(super) fn of(record: &Record, test: &TestRecord, folder: Option<&Path>) -> TestCase {
+    let mut case = TestCase::new(text(&test.plan.name), status(record, test));
+    let suite = record.suites.get(test.plan.suite.index()).map_or("", |s| &s.plan.name);
+    case.set_classname(text(suite));
+    case.set_time(test.duration());
+    if let Some(first) = test.attempts.first() {
+        case.timestamp = time::at(record, first.started);
+    }
+    properties(&mut case, test);
+    let out = system_out(test, folder);
+    if !out.is_empty() {
+        case.set_system_out(out);
+    }
+    case
+}
+
+fn status(record: &Record, test: &TestRecord) -> TestCaseStatus {
+    let verdict = test.final_verdict();
+    let mut status = match verdict {
+        Verdict::Passed => return passed(record, test),
+        Verdict::Skipped => TestCaseStatus::skipped(),
+        verdict => TestCaseStatus::non_success(kind(verdict)),
+    };
+    let unspoken = if test.attempts.is_empty() { NOT_BEGUN } else { CUT_SHORT };
+    let reason = if test.verdict().is_some() { test.reason() } else { Some(unspoken) };
+    let reason = reason.unwrap_or(verdict.as_str());
+    status.set_message(text(reason.lines().next().unwrap_or_default()));
+    status.set_type(verdict.as_str());
+    status.set_description(description(record, test, reason));
+    status
+}
+
+fn kind(verdict: Verdict) -> NonSuccessKind {
+    match verdict {
+        Verdict::Failed => NonSuccessKind::Failure,
+        _ => NonSuccessKind::Error,
+    }
+}
+
+/// A pass names the attempts that did not, as flaky runs.
+fn passed(record: &Record, test: &TestRecord) -> TestCaseStatus {
+    let mut status = TestCaseStatus::success();
+    for attempt in &test.attempts {
+        let Some((_, finished)) = &attempt.finished else { continue };
+        if finished.verdict.is_green() {
+            continue;
+        }
+        let mut rerun = TestRerun::new(kind(finished.verdict));
+        rerun.timestamp = time::at(record, attempt.started);
+        rerun.set_time(attempt.duration().unwrap_or_default());
+        rerun.set_type(finished.verdict.as_str());
+        rerun.set_message(text(finished.reason.as_deref().unwrap_or_default()));
+        rerun.set_description(explained(attempt));
+        status.add_rerun(rerun);
+    }
+    status
+}
+
+/// Everything that explains the verdict: the reason, and each attempt that
+/// did not pass.
+fn description(record: &Record, test: &TestRecord, reason: &str) -> String {
+    let mut lines = vec![text(reason)];
+    for attempt in test.attempts.iter().filter(|a| a.verdict() != Some(Verdict::Passed)) {
+        lines.push(title(test, attempt));
+        lines.push(explained(attempt));
+    }
+    let collapsed = test.attempts.iter().any(|a| a.verdict() == Some(Verdict::Collapsed));
+    if collapsed || (test.attempts.is_empty() && test.skipped.is_some()) {
+        lines.extend(fixture_tails(record, test));
+    }
+    lines.retain(|line| !line.is_empty());
+    lines.join("\n")
+}
+
+fn title(test: &TestRecord, attempt: &AttemptRecord) -> String {
+    let mut title = format!("repetition {} of {}", attempt.repetition, test.plan.repetitions);
+    title += &format!(", attempt {}", attempt.attempt);
+    let Some((_, finished)) = &attempt.finished else { return title + ": it did not end" };
+    title += &format!(": {} in {}", finished.verdict, finished.phase);
+    if let Some(exit) = finished.exit {
+        title += &format!(", {exit}");
+    }
+    title
+}
+
+fn explained(attempt: &AttemptRecord) -> String {
+    let mut lines = Vec::new();
+    explain::explain(attempt, Extent::ALL, &mut |_, line| lines.push(line.to_owned()));
+    lines.join("\n")
+}
+
+/// The last lines of the fixtures that are to blame.
+fn fixture_tails(record: &Record, test: &TestRecord) -> Vec<String> {
+    let mut lines = Vec::new();
+    let suite = record.suites.get(test.plan.suite.index());
+    let ids = suite.map_or(&[][..], |suite| &suite.fixtures);
+    for fixture in ids.iter().filter_map(|id| record.fixture(*id)) {
+        if !fixture.log_tail.is_empty() {
+            lines.push(text(&format!("the last lines of fixture {}:", fixture.plan.name)));
+            let tail = fixture.log_tail.iter().map(String::as_str);
+            explain::printed(tail, &mut |_, line| lines.push(line.to_owned()));
+        }
+    }
+    lines
+}
+
+fn properties(case: &mut TestCase, test: &TestRecord) {
+    case.add_property(("plugin", text(&test.plan.plugin).as_str()));
+    for tag in &test.plan.tags {
+        case.add_property(("tag", text(tag).as_str()));
+    }
+    let measurements = test.deciding_attempts().flat_map(|attempt| &attempt.measurements);
+    for measurement in measurements.take(MEASUREMENTS) {
+        let name = text(&format!("measurement.{}", measurement.name));
+        let mut value = measurement.value_with_unit();
+        let limits = measurement.limits();
+        if !limits.is_empty() {
+            value += &format!(" ({limits})");
+        }
+        case.add_property((name, text(&value)));
+    }
+}
+
+/// What the attempts printed and attached. `[[ATTACHMENT|path]]` is how both
+/// Jenkins and GitLab find files.
+fn system_out(test: &TestRecord, folder: Option<&Path>) -> String {
+    let mut out = String::new();
+    for attempt in &test.attempts {
+        if !attempt.output.is_empty() {
+            if test.attempts.len() > 1 {
+                out += &title(test, attempt);
+                out.push('\n');
+            }
+            out += &text(&attempt.output);
+        }
+        let Some(folder) = folder else { continue };
+        for attachment in attempt.attachments.iter().map(|attachment| folder.join(&attachment.path))
+        {
+            if !out.is_empty() && !out.ends_with('\n') {
+                out.push('\n');
+            }
+            out += &format!("[[ATTACHMENT|{}]]\n", text(&attachment.display().to_string()));
+        }
+    }
+    out
+}

@@ -1,0 +1,114 @@
+//! The record of a run as a JUnit XML file, as Jenkins and GitLab read it.
+//!
+//! Each declared test is a case, also when it was skipped or when the run died
+//! before it. What JUnit has no word for (a fixture that collapsed, a run that
+//! was interrupted) becomes a further case with an error, so that no server
+//! shows as green what was not.
+
+mod case;
+mod problems;
+mod time;
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use quick_junit::{Report, TestSuite};
+use rtf_model::{Event, Record, SuiteRecord};
+
+use crate::{ReportError, Reporter, escape, output_file, words};
+
+const WHAT: &str = "the JUnit report";
+
+/// Writes the JUnit report of a record. `folder` is the run's folder, below
+/// which attachments are named.
+///
+/// # Errors
+/// `out` cannot be written.
+pub fn write(out: &mut dyn Write, record: &Record, folder: Option<&Path>) -> io::Result<()> {
+    report(record, folder).serialize(out).map_err(io::Error::other)
+}
+
+/// Writes the JUnit report into a file when the run is over.
+#[derive(Debug)]
+pub struct JunitFile {
+    path: PathBuf,
+    folder: Option<PathBuf>,
+}
+
+impl JunitFile {
+    /// Checks that the file can be written: call it before the run. `folder`
+    /// is the run's folder, below which attachments are named.
+    ///
+    /// # Errors
+    /// It cannot.
+    pub fn new(path: &Path, folder: Option<&Path>) -> Result<Self, ReportError> {
+        output_file::probe(WHAT, path)?;
+        Ok(Self { path: path.to_owned(), folder: folder.map(Path::to_owned) })
+    }
+}
+
+impl Reporter for JunitFile {
+    fn event(&mut self, _event: &Event, _record: &Record) -> Result<(), ReportError> {
+        Ok(())
+    }
+
+    fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
+        let folder = self.folder.as_deref();
+        output_file::write(WHAT, &self.path, |out| write(out, record, folder))
+    }
+}
+
+fn report(record: &Record, folder: Option<&Path>) -> Report {
+    let name = record.run.as_ref().map_or("rtf", |run| &run.run);
+    let mut report = Report::new(text(name));
+    report.timestamp = time::at(record, rtf_model::Micros(0));
+    report.set_time(record.last_at.as_duration());
+    for suite in &record.suites {
+        report.add_test_suite(test_suite(record, suite, folder));
+    }
+    if let Some(suite) = problems::of_run(record) {
+        report.add_test_suite(suite);
+    }
+    report
+}
+
+fn test_suite(record: &Record, suite: &SuiteRecord, folder: Option<&Path>) -> TestSuite {
+    let mut junit = TestSuite::new(text(&suite.plan.name));
+    if let Some(started) = suite.started {
+        junit.timestamp = time::at(record, started);
+        junit.set_time(suite.finished.unwrap_or(record.last_at).since(started));
+    }
+    properties(&mut junit, record, suite);
+    for test in suite.tests.iter().filter_map(|id| record.tests.get(id.index())) {
+        junit.add_test_case(case::of(record, test, folder));
+    }
+    for fixture in suite.fixtures.iter().filter_map(|id| record.fixture(*id)) {
+        if let Some(case) = problems::of_fixture(record, suite, fixture) {
+            junit.add_test_case(case);
+        }
+    }
+    junit
+}
+
+fn properties(junit: &mut TestSuite, record: &Record, suite: &SuiteRecord) {
+    let mut add = |name: &str, value: &str| {
+        if !value.is_empty() {
+            junit.add_property((text(name), text(value)));
+        }
+    };
+    if let Some(run) = &record.run {
+        add("run", &run.run);
+        add("rtf", &run.rtf);
+        add("command", &words::command(&run.command));
+        add("folder", &run.folder);
+    }
+    add("file", &suite.plan.file);
+    add("description", &suite.plan.description);
+    add("environment", &suite.plan.environment);
+}
+
+/// Text that XML can hold and that means no harm: control characters are
+/// written out, not dropped.
+fn text(text: &str) -> String {
+    escape::block(text).into_owned()
+}

@@ -1,0 +1,48 @@
+//! What speaks against a run beside its tests, as further cases.
+
+use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
+use rtf_model::{FixtureRecord, Record, SuiteRecord};
+
+use super::text;
+use crate::explain;
+
+/// The case of a fixture, when something went wrong with it.
+pub(super) fn of_fixture(
+    record: &Record,
+    suite: &SuiteRecord,
+    fixture: &FixtureRecord,
+) -> Option<TestCase> {
+    let problems = fixture.problems(suite.plan.tolerates_collapse);
+    let first = problems.first()?;
+    let mut lines: Vec<_> = problems.iter().map(|problem| text(problem)).collect();
+    let sink = &mut |_, line: &str| lines.push(line.to_owned());
+    fixture.messages.iter().for_each(|message| explain::message(message, sink));
+    explain::left(&fixture.left, sink);
+    explain::printed(fixture.log_tail.iter().map(String::as_str), sink);
+    let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+    status.set_message(text(first.lines().next().unwrap_or_default()));
+    status.set_type("fixture");
+    status.set_description(lines.join("\n"));
+    let mut case = TestCase::new(text(&format!("fixture {}", fixture.plan.name)), status);
+    case.set_classname(text(&suite.plan.name));
+    case.timestamp = fixture.started.and_then(|at| super::time::at(record, at));
+    Some(case)
+}
+
+/// A suite of its own for what is wrong with the run as a whole.
+pub(super) fn of_run(record: &Record) -> Option<TestSuite> {
+    let problem = match record.interrupted() {
+        Some(reason) => format!("the run was interrupted: {reason}"),
+        None if !record.is_complete() => "the runner did not reach the end of this run".to_owned(),
+        None if record.tests.is_empty() => "the run has no tests".to_owned(),
+        None => return None,
+    };
+    let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+    status.set_message(text(&problem));
+    status.set_type("run");
+    let mut case = TestCase::new("run", status);
+    case.set_classname("rtf");
+    let mut suite = TestSuite::new("rtf");
+    suite.add_test_case(case);
+    Some(suite)
+}

@@ -1,0 +1,166 @@
+//! Keeps what each process printed in a file of its own in the run's folder.
+//!
+//! The files are made when there is something to write. They hold what the
+//! events hold: a process that floods is cut there as it is in the journal.
+
+use std::collections::HashMap;
+use std::fs::{self, File, OpenOptions};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use rtf_model::{Event, EventKind, FixtureId, Output, Record, Source, TestId};
+
+use crate::{ReportError, Reporter};
+
+const WHAT: &str = "a log";
+
+/// Names longer than this are cut.
+const NAME_LENGTH: usize = 80;
+
+/// The log of the newest attempt of a test, relative to the run's folder:
+/// `logs/arm.EncoderTest.r2.log`.
+#[must_use]
+pub fn test_log(record: &Record, id: TestId) -> PathBuf {
+    let attempt = record.tests.get(id.index()).and_then(|test| test.attempts.last());
+    let (repetition, attempt) = attempt.map_or((1, 1), |a| (a.repetition, a.attempt));
+    attempt_log(record, id, (repetition, attempt))
+}
+
+/// The log of one attempt (its repetition and its number) of a test, relative
+/// to the run's folder.
+#[must_use]
+pub fn attempt_log(record: &Record, id: TestId, number: (u32, u32)) -> PathBuf {
+    let Some(test) = record.tests.get(id.index()) else {
+        return PathBuf::from(format!("logs/test~{id}.log"));
+    };
+    let (repetition, attempt) = number;
+    let suite = record.suites.get(test.plan.suite.index()).map_or("", |s| &s.plan.name);
+    // A test that is named like a fixture's log must not share it.
+    let ambiguous = test.plan.name.starts_with("fixture-");
+    let mut name = base(suite, &test.plan.name, ambiguous, &format!("t{id}"));
+    if test.plan.repetitions > 1 {
+        name += &format!(".r{repetition}");
+    }
+    path(name, attempt)
+}
+
+/// The log of the newest start of a fixture, relative to the run's folder:
+/// `logs/arm.fixture-simulator.a2.log`.
+#[must_use]
+pub fn fixture_log(record: &Record, id: FixtureId) -> PathBuf {
+    let Some(fixture) = record.fixture(id) else {
+        return PathBuf::from(format!("logs/fixture~{id}.log"));
+    };
+    let suite = record.suites.get(fixture.plan.suite.index()).map_or("", |s| &s.plan.name);
+    let name = format!("fixture-{}", fixture.plan.name);
+    path(base(suite, &name, false, &format!("f{id}")), fixture.starts)
+}
+
+/// The log of the newest attempt or start of a source, see [`test_log`] and
+/// [`fixture_log`].
+#[must_use]
+pub fn log(record: &Record, source: Source) -> PathBuf {
+    match source {
+        Source::Test(id) => test_log(record, id),
+        Source::Fixture(id) => fixture_log(record, id),
+    }
+}
+
+fn path(mut name: String, attempt: u32) -> PathBuf {
+    if attempt > 1 {
+        name += &format!(".a{attempt}");
+    }
+    PathBuf::from(format!("logs/{name}.log"))
+}
+
+/// `suite.name` where both are plain; otherwise made safe for every file
+/// system, and told apart from all others by the id after a `~`.
+fn base(suite: &str, name: &str, ambiguous: bool, id: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    let safe = |text: &str| -> String {
+        text.chars().take(NAME_LENGTH).map(|c| if plain(c) { c } else { '_' }).collect()
+    };
+    let (safe_suite, safe_name) = (safe(suite), safe(name));
+    if ambiguous || safe_suite != suite || safe_name != name {
+        format!("{safe_suite}.{safe_name}~{id}")
+    } else {
+        format!("{safe_suite}.{safe_name}")
+    }
+}
+
+/// Writes the logs below the run's folder.
+#[derive(Debug)]
+pub struct Logs {
+    folder: PathBuf,
+    open: HashMap<Source, Log>,
+}
+
+#[derive(Debug)]
+struct Log {
+    path: PathBuf,
+    file: BufWriter<File>,
+}
+
+impl Logs {
+    /// Logs in `logs/` of this run's folder.
+    #[must_use]
+    pub fn new(folder: &Path) -> Self {
+        Self { folder: folder.to_owned(), open: HashMap::new() }
+    }
+
+    fn print(&mut self, output: &Output, record: &Record) -> Result<(), ReportError> {
+        use std::collections::hash_map::Entry;
+        let log = match self.open.entry(output.source) {
+            Entry::Occupied(entry) => entry.into_mut(),
+            Entry::Vacant(entry) => {
+                let path = self.folder.join(log(record, output.source));
+                let file = create(&path).map_err(ReportError::at(WHAT, &path))?;
+                entry.insert(Log { path, file: BufWriter::new(file) })
+            }
+        };
+        log.print(output).map_err(ReportError::at(WHAT, &log.path))
+    }
+
+    fn close(&mut self, source: Source) -> Result<(), ReportError> {
+        match self.open.remove(&source) {
+            Some(mut log) => log.file.flush().map_err(ReportError::at(WHAT, &log.path)),
+            None => Ok(()),
+        }
+    }
+}
+
+fn create(path: &Path) -> std::io::Result<File> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    OpenOptions::new().create(true).append(true).open(path)
+}
+
+impl Log {
+    fn print(&mut self, output: &Output) -> std::io::Result<()> {
+        if output.omitted > 0 {
+            write!(self.file, "\n[… {} bytes left out …]\n", output.omitted)?;
+        }
+        self.file.write_all(output.text.as_bytes())
+    }
+}
+
+impl Reporter for Logs {
+    fn event(&mut self, event: &Event, record: &Record) -> Result<(), ReportError> {
+        match &event.kind {
+            EventKind::Output(output) => self.print(output, record),
+            EventKind::TestFinished(finished) => self.close(Source::Test(finished.test)),
+            EventKind::FixtureStopped { fixture, .. } => self.close(Source::Fixture(*fixture)),
+            _ => Ok(()),
+        }
+    }
+
+    fn idle(&mut self, _record: &Record) -> Result<(), ReportError> {
+        let flushed = |log: &mut Log| log.file.flush().map_err(ReportError::at(WHAT, &log.path));
+        self.open.values_mut().try_for_each(flushed)
+    }
+
+    fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
+        self.idle(record)
+    }
+}

@@ -1,0 +1,54 @@
+//! What every reporter has in common.
+
+use std::path::{Path, PathBuf};
+
+use rtf_model::{Event, Record};
+
+/// Is given each event of a run, in order, on one thread.
+pub trait Reporter: Send {
+    /// Takes in an event. `record` already contains it.
+    ///
+    /// # Errors
+    /// What was to be written could not be written. The run goes on without
+    /// this reporter; the failure is shown at its end and in the exit code.
+    fn event(&mut self, event: &Event, record: &Record) -> Result<(), ReportError>;
+
+    /// Nothing more is waiting at the moment: a good time to flush.
+    ///
+    /// # Errors
+    /// As for [`Reporter::event`].
+    fn idle(&mut self, _record: &Record) -> Result<(), ReportError> {
+        Ok(())
+    }
+
+    /// No event will follow: the run is over, or its stream ended early.
+    ///
+    /// # Errors
+    /// As for [`Reporter::event`].
+    fn finish(&mut self, _record: &Record) -> Result<(), ReportError> {
+        Ok(())
+    }
+}
+
+/// A report could not be written.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot write {what} to `{}`", path.display())]
+pub struct ReportError {
+    /// Which report.
+    pub what: &'static str,
+    /// Where to.
+    pub path: PathBuf,
+    /// Why.
+    #[source]
+    pub source: std::io::Error,
+}
+
+impl ReportError {
+    /// Names the report and its place: for `map_err`.
+    pub(crate) fn at<'a>(
+        what: &'static str,
+        path: &'a Path,
+    ) -> impl FnOnce(std::io::Error) -> Self + use<'a> {
+        move |source| Self { what, path: path.to_owned(), source }
+    }
+}

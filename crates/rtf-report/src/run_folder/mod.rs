@@ -1,0 +1,194 @@
+//! Where the results of one run go: a folder of its own, which no other run
+//! shares or overwrites.
+
+mod resolve;
+
+use std::fs;
+use std::hash::{BuildHasher, Hasher};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use jiff::Zoned;
+use jiff::tz::TimeZone;
+
+pub use resolve::{ResolveError, resolve};
+
+/// The journal's name in the folder of a run.
+pub const JOURNAL: &str = "events.jsonl";
+
+/// The link to the newest run in the results folder.
+pub const LATEST: &str = "latest";
+
+/// How often another name is tried when a folder of this name exists.
+const TRIES: u32 = 100;
+
+/// The folder of one run.
+#[derive(Clone, Debug)]
+pub struct RunFolder {
+    /// Where it is, below the results folder as that was given.
+    pub path: PathBuf,
+    /// Its name, which is the run's: `2026-11-21T06-30-12Z-1f3a`.
+    pub name: String,
+    /// The time in its name as RFC 3339 with the local offset, for `run-started`.
+    pub started_at: String,
+}
+
+impl RunFolder {
+    /// The path of the journal.
+    #[must_use]
+    pub fn journal(&self) -> PathBuf {
+        self.path.join(JOURNAL)
+    }
+
+    /// The folder for what tests attach; made when it is first asked for.
+    ///
+    /// # Errors
+    /// The folder cannot be made.
+    pub fn attachments(&self) -> Result<PathBuf, RunFolderError> {
+        let path = self.path.join("attachments");
+        match fs::create_dir_all(&path) {
+            Ok(()) => Ok(path),
+            Err(source) => Err(RunFolderError::Create { path, source }),
+        }
+    }
+}
+
+/// The folder of a run cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum RunFolderError {
+    /// A folder cannot be made or written to.
+    #[error("cannot create the results folder `{}`", path.display())]
+    Create {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        #[source]
+        source: io::Error,
+    },
+    /// The link to the newest run cannot be replaced.
+    #[error("cannot make `{}` lead to this run", path.display())]
+    Latest {
+        /// The link.
+        path: PathBuf,
+        /// Why.
+        #[source]
+        source: io::Error,
+    },
+}
+
+/// Makes the folder of a new run in `results` (which is made too, if need be)
+/// and lets `latest` lead to it.
+///
+/// # Errors
+/// Nothing can be written there. Nothing was started yet.
+pub fn create(results: &Path) -> Result<RunFolder, RunFolderError> {
+    let failed = |path: &Path| {
+        let path = path.to_owned();
+        |source| RunFolderError::Create { path, source }
+    };
+    fs::create_dir_all(results).map_err(failed(results))?;
+    let now = Zoned::now();
+    let mut tried = 0;
+    let (name, path) = loop {
+        let name = name(&now);
+        let path = results.join(&name);
+        match fs::create_dir(&path) {
+            Ok(()) => break (name, path),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && tried < TRIES => {
+                tried += 1;
+            }
+            Err(error) => return Err(failed(&path)(error)),
+        }
+    };
+    point_latest(results, &name)?;
+    let started_at = now.strftime("%Y-%m-%dT%H:%M:%S%.3f%:z").to_string();
+    Ok(RunFolder { path, name, started_at })
+}
+
+/// Names sort by time; the last four digits keep runs of one second apart.
+fn name(now: &Zoned) -> String {
+    let time = now.with_time_zone(TimeZone::UTC).strftime("%Y-%m-%dT%H-%M-%SZ").to_string();
+    let random = std::hash::RandomState::new().build_hasher().finish();
+    format!("{time}-{:04x}", random & 0xFFFF)
+}
+
+/// Replaces the link at once: it never leads nowhere while runs come and go.
+fn point_latest(results: &Path, name: &str) -> Result<(), RunFolderError> {
+    let link = results.join(LATEST);
+    let beside = results.join(format!(".{LATEST}-{name}"));
+    let replaced = match symlink_folder(name, &beside) {
+        // File systems of USB sticks and some shares have no links; `latest`
+        // is then found by the names, which sort by time.
+        Err(error) if cannot_link(&error) => return Ok(()),
+        made => made.and_then(|()| fs::rename(&beside, &link)),
+    };
+    replaced.map_err(|source| {
+        // The first error is the one to tell; the leftover may not even exist.
+        drop(fs::remove_file(&beside));
+        RunFolderError::Latest { path: link, source }
+    })
+}
+
+fn cannot_link(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::Unsupported | io::ErrorKind::PermissionDenied)
+}
+
+#[cfg(unix)]
+fn symlink_folder(target: &str, link: &Path) -> io::Result<()> {
+    std::os::unix::fs::symlink(target, link)
+}
+
+#[cfg(windows)]
+fn symlink_folder(target: &str, link: &Path) -> io::Result<()> {
+    std::os::windows::fs::symlink_dir(target, link)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_of_one_moment_get_folders_of_their_own() {
+        let results = tempfile::tempdir().unwrap();
+        let threads: Vec<_> = (0..8)
+            .map(|_| {
+                let results = results.path().to_owned();
+                std::thread::spawn(move || {
+                    (0..20).map(|_| create(&results).unwrap().name).collect::<Vec<_>>()
+                })
+            })
+            .collect();
+        let mut names: Vec<_> = threads.into_iter().flat_map(|t| t.join().unwrap()).collect();
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), 160);
+        let latest = fs::read_link(results.path().join(LATEST)).unwrap();
+        assert!(names.contains(&latest.to_str().unwrap().to_owned()));
+    }
+
+    #[test]
+    fn the_name_is_the_time_in_utc() {
+        let now: Zoned = "2026-11-21T08:30:12+02:00[+02:00]".parse().unwrap();
+        let name = name(&now);
+        assert_eq!(name.len(), "2026-11-21T06-30-12Z-1f3a".len());
+        assert!(name.starts_with("2026-11-21T06-30-12Z-"), "{name}");
+    }
+
+    #[test]
+    fn a_results_folder_that_is_a_file_is_an_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("results");
+        fs::write(&file, "").unwrap();
+        let error = create(&file).unwrap_err();
+        assert!(matches!(error, RunFolderError::Create { .. }), "{error}");
+    }
+
+    #[test]
+    fn a_folder_named_latest_is_not_taken_away() {
+        let results = tempfile::tempdir().unwrap();
+        fs::create_dir_all(results.path().join("latest/mine")).unwrap();
+        let error = create(results.path()).unwrap_err();
+        assert!(matches!(error, RunFolderError::Latest { .. }), "{error}");
+        assert!(results.path().join("latest/mine").is_dir());
+    }
+}

@@ -1,0 +1,124 @@
+//! Which run is meant: `rtf show latest`, a run's name, a folder, or a journal.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::{JOURNAL, LATEST};
+
+/// How many names a [`ResolveError`] lists.
+const LISTED: usize = 5;
+
+/// No such run.
+#[derive(Debug, thiserror::Error)]
+pub enum ResolveError {
+    /// There is no run of this name.
+    #[error("there is no run `{run}`")]
+    Unknown {
+        /// What was asked for.
+        run: String,
+        /// Where it was looked for.
+        looked: Vec<PathBuf>,
+        /// The newest runs that there are, the newest first.
+        newest: Vec<String>,
+    },
+    /// There are no runs at all.
+    #[error("there are no runs in `{}`", results.display())]
+    Empty {
+        /// The results folder.
+        results: PathBuf,
+    },
+}
+
+/// Finds the journal of a run: `latest`, the name of a run in `results`, the
+/// path of a run's folder, or the path of a journal.
+///
+/// # Errors
+/// There is none; the error says where it was looked for and what there is.
+pub fn resolve(results: &Path, run: &str) -> Result<PathBuf, ResolveError> {
+    let mut looked = Vec::new();
+    let mut candidates = vec![results.join(run), PathBuf::from(run)];
+    if run == LATEST {
+        // The link may lead to a run that was deleted, or be missing where
+        // there are no links.
+        let newest = names(results).into_iter().next_back();
+        candidates.insert(1, results.join(newest.unwrap_or_default()));
+    }
+    for candidate in candidates {
+        if candidate.is_file() {
+            return Ok(candidate);
+        }
+        let journal = candidate.join(JOURNAL);
+        if journal.is_file() {
+            return Ok(journal);
+        }
+        if !looked.contains(&journal) {
+            looked.push(journal);
+        }
+    }
+    let newest: Vec<_> = names(results).into_iter().rev().take(LISTED).collect();
+    if run == LATEST && newest.is_empty() {
+        return Err(ResolveError::Empty { results: results.to_owned() });
+    }
+    Err(ResolveError::Unknown { run: run.to_owned(), looked, newest })
+}
+
+/// The runs in the results folder, the oldest first.
+fn names(results: &Path) -> Vec<String> {
+    let Ok(entries) = fs::read_dir(results) else { return Vec::new() };
+    let runs = entries.filter_map(Result::ok).filter(|entry| entry.path().join(JOURNAL).is_file());
+    let names = runs.filter_map(|entry| entry.file_name().into_string().ok());
+    let mut names: Vec<_> = names.filter(|name| name != LATEST).collect();
+    names.sort();
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run_folder::create;
+
+    fn run(results: &Path, name: &str) -> PathBuf {
+        let folder = results.join(name);
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(folder.join(JOURNAL), "").unwrap();
+        folder.join(JOURNAL)
+    }
+
+    #[test]
+    fn a_run_is_found_by_name_folder_and_journal() {
+        let results = tempfile::tempdir().unwrap();
+        let journal = run(results.path(), "2026-01-01T00-00-00Z-0001");
+        let elsewhere = Path::new("elsewhere");
+        let found = |results: &Path, run: &Path| resolve(results, run.to_str().unwrap()).unwrap();
+        assert_eq!(found(results.path(), Path::new("2026-01-01T00-00-00Z-0001")), journal);
+        assert_eq!(found(elsewhere, journal.parent().unwrap()), journal);
+        assert_eq!(found(elsewhere, &journal), journal);
+    }
+
+    #[test]
+    fn latest_is_the_link_and_without_it_the_last_name() {
+        let results = tempfile::tempdir().unwrap();
+        let created = create(results.path()).unwrap();
+        fs::write(created.journal(), "").unwrap();
+        let other = run(results.path(), "9999-01-01T00-00-00Z-0001");
+        let latest = resolve(results.path(), LATEST).unwrap();
+        assert_eq!(latest, results.path().join(LATEST).join(JOURNAL));
+        assert_eq!(fs::canonicalize(latest).unwrap(), fs::canonicalize(created.journal()).unwrap());
+        fs::remove_file(results.path().join(LATEST)).unwrap();
+        assert_eq!(resolve(results.path(), LATEST).unwrap(), other);
+    }
+
+    #[test]
+    fn an_unknown_run_is_answered_with_those_that_there_are() {
+        let results = tempfile::tempdir().unwrap();
+        let empty = resolve(results.path(), LATEST).unwrap_err();
+        assert!(matches!(empty, ResolveError::Empty { .. }), "{empty}");
+        run(results.path(), "a");
+        run(results.path(), "b");
+        let Err(ResolveError::Unknown { looked, newest, .. }) = resolve(results.path(), "c") else {
+            panic!("there is no run `c`")
+        };
+        assert_eq!(looked, [results.path().join("c").join(JOURNAL), Path::new("c").join(JOURNAL)]);
+        assert_eq!(newest, ["b", "a"]);
+    }
+}

@@ -1,0 +1,50 @@
+//! What the text report tells of a fixture.
+
+use rtf_model::{FixtureRecord, FixtureState};
+
+use super::lines::Lines;
+use crate::explain;
+use crate::words;
+
+/// All that is known of a fixture.
+pub(super) fn show(lines: &mut Lines, fixture: &FixtureRecord) {
+    let plan = &fixture.plan;
+    lines.fact(2, "fixture", &format!("{} ({})", plan.name, plan.plugin_type));
+    lines.at(4, &format!("state: {}", state(fixture.state)));
+    if fixture.starts > 1 {
+        lines.at(4, &format!("starts: {}", fixture.starts));
+    }
+    if let Some((start, ready)) = fixture.started.zip(fixture.ready) {
+        lines.at(4, &format!("ready after: {}", words::time(ready.since(start))));
+    }
+    for (at, reason) in &fixture.collapses {
+        let label = format!("collapsed at {}", words::time(at.as_duration()));
+        lines.fact(4, &label, reason);
+    }
+    for (at, problem) in &fixture.problems {
+        lines.fact(4, &format!("problem at {}", words::time(at.as_duration())), problem);
+    }
+    if let Some(reason) = &fixture.broken {
+        lines.fact(4, "broken", reason);
+    }
+    for message in &fixture.messages {
+        explain::message(message, &mut |_, line| lines.at(4, line));
+    }
+    explain::left(&fixture.left, &mut |_, line| lines.at(4, line));
+    if !fixture.log_tail.is_empty() {
+        lines.at(4, "its last lines before something went wrong:");
+        fixture.log_tail.iter().for_each(|line| lines.quoted(6, line));
+    }
+}
+
+fn state(state: FixtureState) -> &'static str {
+    match state {
+        FixtureState::Pending => "not started",
+        FixtureState::Starting => "starting",
+        FixtureState::Ready => "ready",
+        FixtureState::Collapsed => "collapsed",
+        FixtureState::Stopping => "stopping",
+        FixtureState::Stopped => "stopped",
+        FixtureState::Broken => "broken",
+    }
+}

@@ -1,0 +1,127 @@
+//! The whole record of a run as plain text, for reading and for comparing.
+
+mod fixtures;
+mod lines;
+mod tests;
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use rtf_model::{Event, Record, SuiteRecord, Verdict};
+
+use crate::{ReportError, Reporter, output_file, words};
+use lines::Lines;
+
+const WHAT: &str = "the text report";
+
+/// Writes the text report of a record.
+///
+/// # Errors
+/// `out` cannot be written.
+pub fn write(out: &mut dyn Write, record: &Record) -> io::Result<()> {
+    let mut lines = Lines::default();
+    head(&mut lines, record);
+    lines.write_to(out)?;
+    for suite in &record.suites {
+        show_suite(&mut lines, out, record, suite)?;
+    }
+    result(&mut lines, record);
+    lines.write_to(out)
+}
+
+/// Writes the text report into a file when the run is over.
+#[derive(Debug)]
+pub struct TextFile {
+    path: PathBuf,
+}
+
+impl TextFile {
+    /// Checks that the file can be written: call it before the run.
+    ///
+    /// # Errors
+    /// It cannot.
+    pub fn new(path: &Path) -> Result<Self, ReportError> {
+        output_file::probe(WHAT, path)?;
+        Ok(Self { path: path.to_owned() })
+    }
+}
+
+impl Reporter for TextFile {
+    fn event(&mut self, _event: &Event, _record: &Record) -> Result<(), ReportError> {
+        Ok(())
+    }
+
+    fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
+        output_file::write(WHAT, &self.path, |out| write(out, record))
+    }
+}
+
+fn head(lines: &mut Lines, record: &Record) {
+    let Some(run) = &record.run else {
+        return lines.at(0, "run: its beginning is missing");
+    };
+    lines.fact(0, "run", &run.run);
+    lines.fact(0, "started", &run.started_at);
+    lines.fact(0, "command", &words::command(&run.command));
+    lines.fact(0, "folder", &run.folder);
+    lines.fact(0, "rtf", &run.rtf);
+    for warning in &record.warnings {
+        let place = warning.labels.first();
+        let place = place.map(|at| format!("{}:{}:{}: ", at.file, at.line, at.column));
+        lines.fact(0, "warning", &format!("{}{}", place.unwrap_or_default(), warning.message));
+        for note in &warning.notes {
+            lines.fact(2, "note", note);
+        }
+        if let Some(hint) = &warning.hint {
+            lines.fact(2, "hint", hint);
+        }
+    }
+}
+
+fn show_suite(
+    lines: &mut Lines,
+    out: &mut dyn Write,
+    record: &Record,
+    suite: &SuiteRecord,
+) -> io::Result<()> {
+    lines.at(0, "");
+    lines.fact(0, "suite", &suite.plan.name);
+    lines.fact(2, "file", &suite.plan.file);
+    lines.fact(2, "description", &suite.plan.description);
+    lines.fact(2, "environment", &suite.plan.environment);
+    if suite.plan.tolerates_collapse {
+        lines.at(2, "a collapse of a fixture is tolerated");
+    }
+    if let (Some(start), Some(end)) = (suite.started, suite.finished) {
+        lines.at(2, &format!("time: {}", words::time(end.since(start))));
+    }
+    for fixture in suite.fixtures.iter().filter_map(|id| record.fixture(*id)) {
+        fixtures::show(lines, fixture);
+    }
+    for test in suite.tests.iter().filter_map(|id| record.tests.get(id.index())) {
+        tests::show(lines, test, record.is_complete());
+        lines.write_to(out)?;
+    }
+    for problem in record.suite_problems(suite.plan.suite) {
+        lines.fact(2, "problem", &problem);
+    }
+    lines.write_to(out)
+}
+
+fn result(lines: &mut Lines, record: &Record) {
+    lines.at(0, "");
+    if let Some(reason) = record.interrupted() {
+        lines.fact(0, "interrupted", reason);
+    }
+    if !record.is_complete() {
+        lines.at(0, "incomplete: the runner did not reach the end of this run");
+    }
+    let totals = record.final_totals();
+    lines.at(0, &format!("tests: {}", totals.planned));
+    for verdict in Verdict::ALL.into_iter().filter(|verdict| totals.of(*verdict) > 0) {
+        lines.at(2, &format!("{verdict}: {}", totals.of(verdict)));
+    }
+    lines.at(0, &format!("time: {}", words::time(record.last_at.as_duration())));
+    let result = if record.is_green() { "passed" } else { "not passed" };
+    lines.at(0, &format!("result: {result}"));
+}

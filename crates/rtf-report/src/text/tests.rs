@@ -1,0 +1,93 @@
+//! What the text report tells of a test.
+
+use rtf_model::{AttemptRecord, MessageKind, TestRecord};
+
+use super::lines::Lines;
+use crate::explain::{self, Extent};
+use crate::{escape, words};
+
+/// All that is known of a test.
+pub(super) fn show(lines: &mut Lines, test: &TestRecord, complete: bool) {
+    let plan = &test.plan;
+    lines.fact(2, "test", &format!("{} ({})", plan.name, plan.plugin_type));
+    lines.fact(4, "plug-in", &plan.plugin);
+    lines.fact(4, "tags", &plan.tags.join(" "));
+    let verdict = test.final_verdict();
+    lines.at(4, &format!("verdict: {verdict}"));
+    if let Some(reason) = test.reason() {
+        lines.fact(4, "reason", reason);
+    } else if !complete && test.verdict().is_none() {
+        lines.at(4, "reason: the run ended before the test did");
+    }
+    for attempt in &test.attempts {
+        show_attempt(lines, test, attempt);
+    }
+    if let Some(reason) = test.skipped.as_deref().filter(|_| !test.attempts.is_empty()) {
+        lines.fact(4, "the rest was skipped", reason);
+    }
+}
+
+fn show_attempt(lines: &mut Lines, test: &TestRecord, attempt: &AttemptRecord) {
+    let mut title = format!("repetition {} of {}", attempt.repetition, test.plan.repetitions);
+    if attempt.attempt > 1 {
+        title += &format!(", attempt {}", attempt.attempt);
+    }
+    match &attempt.finished {
+        None => title += ": it did not end",
+        Some((at, finished)) => {
+            let time = words::time(at.since(attempt.started));
+            title += &format!(": {} in {} after {time}", finished.verdict, finished.phase);
+            if let Some(exit) = finished.exit {
+                title += &format!(", {exit}");
+            }
+            if finished.rerun {
+                title += ", will be run again";
+            }
+        }
+    }
+    lines.at(4, &title);
+    phases(lines, attempt);
+    details(lines, attempt);
+}
+
+fn phases(lines: &mut Lines, attempt: &AttemptRecord) {
+    let ends = attempt.phases.iter().skip(1).map(|(_, at)| *at);
+    let ends = ends.chain(attempt.finished.as_ref().map(|(at, _)| *at));
+    let took =
+        |((phase, start), end): (&(rtf_model::Phase, rtf_model::Micros), rtf_model::Micros)| {
+            format!("{phase} {}", words::time(end.since(*start)))
+        };
+    let phases: Vec<_> = attempt.phases.iter().zip(ends).map(took).collect();
+    lines.fact(6, "phases", &phases.join(", "));
+    if attempt.slow {
+        lines.at(6, "it was slow");
+    }
+}
+
+fn details(lines: &mut Lines, attempt: &AttemptRecord) {
+    // Failures, violations, stacks and left processes are told as everywhere,
+    // what did not speak against the test after them.
+    explain::explain(attempt, Extent::ALL, &mut |_, line| lines.at(6, line));
+    let others = attempt
+        .messages
+        .iter()
+        .filter(|message| matches!(message.kind, MessageKind::Report | MessageKind::Check));
+    for message in others {
+        explain::message(message, &mut |_, line| lines.at(6, line));
+    }
+    if attempt.messages_omitted > 0 {
+        let more = words::plural(attempt.messages_omitted, "message");
+        lines.at(6, &format!("… and {} more {more} in the journal", attempt.messages_omitted));
+    }
+    for measurement in attempt.measurements.iter().filter(|m| m.is_within_limits()) {
+        lines.at(6, &explain::measurement(measurement));
+    }
+    for attachment in &attempt.attachments {
+        let name = escape::line(&attachment.name);
+        lines.fact(6, "attached", &format!("{name}: {}", attachment.path));
+    }
+    if !attempt.output.is_empty() {
+        lines.at(6, "it printed:");
+        lines.quoted(6, &attempt.output);
+    }
+}

@@ -1,0 +1,74 @@
+//! Numbers, times and commands as people read them.
+
+use std::borrow::Cow;
+use std::time::Duration;
+
+/// `1 test`, `2 tests`, `2 processes`.
+pub(crate) fn count(number: u64, noun: &str) -> String {
+    format!("{number} {}", plural(number, noun))
+}
+
+/// The noun as it stands after the number.
+pub(crate) fn plural(number: u64, noun: &str) -> Cow<'_, str> {
+    match number {
+        1 => Cow::Borrowed(noun),
+        _ if noun.ends_with("ss") => Cow::Owned(format!("{noun}es")),
+        _ => Cow::Owned(format!("{noun}s")),
+    }
+}
+
+/// `0.012 s`, `12.345 s`, `3 min 05 s`, `2 h 03 min`.
+pub(crate) fn time(duration: Duration) -> String {
+    let secs = duration.as_secs();
+    match secs {
+        0..60 => format!("{:.3} s", duration.as_secs_f64()),
+        60..3600 => format!("{} min {:02} s", secs / 60, secs % 60),
+        _ => format!("{} h {:02} min", secs / 3600, secs % 3600 / 60),
+    }
+}
+
+/// A word of a command, quoted for a POSIX shell where that is needed.
+pub(crate) fn quoted(word: &str) -> Cow<'_, str> {
+    let plain = |c: char| c.is_alphanumeric() || "-_./:=@%+,".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        Cow::Borrowed(word)
+    } else {
+        Cow::Owned(format!("'{}'", word.replace('\'', r"'\''")))
+    }
+}
+
+/// A command line as it could be typed.
+pub(crate) fn command(words: &[String]) -> String {
+    words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
+}
+
+/// The last `limit` lines of a text, and how many lines there are in all.
+pub(crate) fn tail(text: &str, limit: usize) -> (impl Iterator<Item = &str>, usize) {
+    let total = text.lines().count();
+    (text.lines().skip(total.saturating_sub(limit)), total)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plurals_are_right() {
+        assert_eq!(count(1, "process"), "1 process");
+        assert_eq!(count(2, "process"), "2 processes");
+        assert_eq!(count(0, "test"), "0 tests");
+    }
+
+    #[test]
+    fn times_have_a_precision_that_fits_their_length() {
+        assert_eq!(time(Duration::from_micros(12_345)), "0.012 s");
+        assert_eq!(time(Duration::from_secs(185)), "3 min 05 s");
+        assert_eq!(time(Duration::from_secs(7385)), "2 h 03 min");
+    }
+
+    #[test]
+    fn words_are_quoted_only_when_needed() {
+        let words = ["rtf", "run", "my suite.xml", "it's"].map(str::to_owned);
+        assert_eq!(command(&words), r"rtf run 'my suite.xml' 'it'\''s'");
+    }
+}

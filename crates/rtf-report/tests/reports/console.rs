@@ -1,0 +1,52 @@
+//! What snapshots of the console do not show.
+
+use crate::support::*;
+use rtf_report::console::{ConsoleOptions, Verbosity};
+
+fn verbose() -> ConsoleOptions {
+    ConsoleOptions { verbosity: Verbosity::Verbose, ..ConsoleOptions::default() }
+}
+
+/// What a plug-in prints or reports must not move the cursor, set the title,
+/// or reverse the direction of writing.
+#[test]
+fn only_our_own_colours_reach_the_terminal() {
+    for name in names() {
+        for options in [ConsoleOptions::default(), verbose()] {
+            let mut text = console(&name, options);
+            let ours = ["\x1b[1m", "\x1b[2m", "\x1b[0m", "\x1b[31m", "\x1b[32m", "\x1b[33m"];
+            ours.iter().for_each(|code| text = text.replace(code, ""));
+            let commands: Vec<_> = text
+                .chars()
+                .filter(|c| (c.is_control() && *c != '\n' && *c != '\t') || *c == '\u{202e}')
+                .collect();
+            assert!(commands.is_empty(), "{name}: {commands:?}");
+        }
+    }
+}
+
+/// The last line is green for a green run, red for every other.
+#[test]
+fn the_last_line_is_the_result() {
+    for name in names() {
+        let text = console(&name, ConsoleOptions::default());
+        let last = text.lines().next_back().unwrap();
+        let green = last.starts_with("\x1b[1m\x1b[32mPASSED\x1b[0m  ");
+        assert_eq!(green, record(&name).is_green(), "{name}: {last:?}");
+        assert!(green || last.starts_with("\x1b[1m\x1b[31m"), "{name}: {last:?}");
+    }
+}
+
+#[test]
+fn a_failed_test_is_named_with_the_command_that_runs_it_again() {
+    let text = console("nasty", ConsoleOptions::default());
+    assert!(text.contains(r"rtf run 'my '\''odd'\'' <suite>.xml'"), "{text}");
+    let none = ConsoleOptions { rerun: Box::new(|_, _| None), ..ConsoleOptions::default() };
+    assert!(!console("nasty", none).contains("rtf run"));
+}
+
+#[test]
+fn quiet_says_nothing_of_what_went_well() {
+    let options = ConsoleOptions { verbosity: Verbosity::Quiet, ..ConsoleOptions::default() };
+    assert_eq!(console("silent", options).trim().lines().count(), 1);
+}

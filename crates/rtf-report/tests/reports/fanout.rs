@@ -1,0 +1,95 @@
+//! The thread between a run and its reporters.
+
+use std::path::PathBuf;
+use std::sync::mpsc::{self, Receiver, Sender};
+
+use crate::support::*;
+use rtf_model::{Event, Record};
+use rtf_report::{Fanout, ReportError, Reporter};
+
+#[derive(Debug, PartialEq, Eq)]
+enum Call {
+    Event(u64),
+    Idle,
+    Finish,
+}
+
+/// Tells what it was called with; fails at one event.
+struct Probe {
+    calls: Sender<Call>,
+    fails_at: Option<u64>,
+}
+
+impl Probe {
+    fn new(fails_at: Option<u64>) -> (Box<Self>, Receiver<Call>) {
+        let (calls, receiver) = mpsc::channel();
+        (Box::new(Self { calls, fails_at }), receiver)
+    }
+}
+
+impl Reporter for Probe {
+    fn event(&mut self, event: &Event, record: &Record) -> Result<(), ReportError> {
+        assert_eq!(record.events, event.seq + 1, "the record already contains the event");
+        self.calls.send(Call::Event(event.seq)).unwrap();
+        if self.fails_at == Some(event.seq) {
+            let source = std::io::ErrorKind::StorageFull.into();
+            return Err(ReportError { what: "a probe", path: PathBuf::from("there"), source });
+        }
+        Ok(())
+    }
+
+    fn idle(&mut self, _record: &Record) -> Result<(), ReportError> {
+        self.calls.send(Call::Idle).unwrap();
+        Ok(())
+    }
+
+    fn finish(&mut self, _record: &Record) -> Result<(), ReportError> {
+        self.calls.send(Call::Finish).unwrap();
+        Ok(())
+    }
+}
+
+fn calls(receiver: &Receiver<Call>) -> Vec<Call> {
+    receiver.try_iter().filter(|call| *call != Call::Idle).collect()
+}
+
+fn all_of(events: &[Event]) -> Vec<Call> {
+    events.iter().map(|event| Call::Event(event.seq)).chain([Call::Finish]).collect()
+}
+
+#[test]
+fn each_reporter_gets_each_event_and_one_that_fails_does_not_stop_the_others() {
+    let (events, stored) = events("verdicts");
+    let (failing, of_failing) = Probe::new(Some(3));
+    let (working, of_working) = Probe::new(None);
+    let fanout = Fanout::start(vec![failing, working]).unwrap();
+    events.iter().for_each(|event| fanout.send(event.clone()));
+    let finished = fanout.join();
+    assert_eq!(finished.record.totals(), stored.record.totals());
+    assert_eq!(calls(&of_working), all_of(&events));
+    assert_eq!(calls(&of_failing), (0..4).map(Call::Event).collect::<Vec<_>>());
+    let errors: Vec<_> = finished.errors.iter().map(ToString::to_string).collect();
+    assert_eq!(errors, ["cannot write a probe to `there`"]);
+}
+
+#[test]
+fn a_reporter_is_told_when_nothing_is_waiting() {
+    let (events, _) = events("silent");
+    let (probe, calls) = Probe::new(None);
+    let fanout = Fanout::start(vec![probe]).unwrap();
+    assert_eq!(calls.recv().unwrap(), Call::Idle, "before the first event");
+    fanout.send(events[0].clone());
+    assert_eq!(calls.recv().unwrap(), Call::Event(0));
+    assert_eq!(calls.recv().unwrap(), Call::Idle, "after it");
+    assert_eq!(fanout.join().record.events, 1);
+}
+
+#[test]
+#[should_panic(expected = "event 2: expected number 1")]
+fn a_run_that_breaks_the_order_is_noticed() {
+    let (events, _) = events("silent");
+    let fanout = Fanout::start(Vec::new()).unwrap();
+    fanout.send(events[0].clone());
+    fanout.send(events[2].clone());
+    drop(fanout.join());
+}
