@@ -4,7 +4,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
+use libloading::os::unix::{Library, RTLD_LAZY, RTLD_LOCAL, RTLD_NOW};
 use rtf_host::{CheckedFile, Role};
 
 use crate::abi::{RTF_ABI_MAJOR, RTF_KIND_FIXTURE, RTF_KIND_TEST, rtf_plugin_table};
@@ -148,6 +148,14 @@ pub(crate) fn check(file: &Path) -> CheckedFile {
         Ok(table) => CheckedFile::good(file, Some(vec![word(table.role()).to_owned()])),
         Err(error) => CheckedFile::bad(file, error.to_string(), None),
     }
+}
+
+/// Loads a library that plug-ins are likely to need, if it is there. Its own
+/// functions are looked up as they are called, which saves the most time.
+pub(crate) fn preload(name: &str) {
+    // SAFETY: only for libraries of the system, whose initialisers are known.
+    let library = unsafe { Library::open(Some(name), RTLD_LAZY | RTLD_LOCAL) };
+    std::mem::forget(library);
 }
 
 fn word(role: Role) -> &'static str {

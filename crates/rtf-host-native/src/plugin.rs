@@ -9,7 +9,7 @@ use rtf_model::protocol::{Initialized, PROTOCOL_VERSION, Plugin, StackSupport};
 
 use crate::abi::{RTF_DONE, RTF_REFUSED, RTF_STOPPED, rtf_plugin_table};
 use crate::host_table;
-use crate::library::Table;
+use crate::library::{self, Table};
 
 /// The native host with at most one plug-in.
 #[derive(Debug)]
@@ -35,6 +35,12 @@ impl HostPlugin for NativeHost {
     fn describe(&self) -> Initialized {
         let host = concat!("native ", env!("CARGO_PKG_VERSION")).to_owned();
         Initialized { protocol: PROTOCOL_VERSION, host, stack: StackSupport::None }
+    }
+
+    /// Nearly every plug-in is in C++, and loading its library takes longer
+    /// than all the rest. A plug-in that does without does not see it.
+    fn idle(&mut self) {
+        library::preload("libstdc++.so.6");
     }
 
     fn load(&mut self, role: Role, plugin: &Plugin) -> Result<(), LoadError> {

@@ -32,26 +32,14 @@ impl CheckedFile {
     #[must_use]
     pub fn good(file: &Path, kinds: Option<Vec<String>>) -> Self {
         let file = file.to_string_lossy().into_owned();
-        Self {
-            file,
-            ok: true,
-            message: None,
-            line: None,
-            kinds,
-        }
+        Self { file, ok: true, message: None, line: None, kinds }
     }
 
     /// A file that could not.
     #[must_use]
     pub fn bad(file: &Path, message: String, line: Option<u32>) -> Self {
         let file = file.to_string_lossy().into_owned();
-        Self {
-            file,
-            ok: false,
-            message: Some(message),
-            line,
-            kinds: None,
-        }
+        Self { file, ok: false, message: Some(message), line, kinds: None }
     }
 }
 

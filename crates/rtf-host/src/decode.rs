@@ -51,11 +51,7 @@ pub(crate) fn decode(line: &[u8]) -> Incoming {
     let envelope: Envelope<'_> = match serde_json::from_slice(line) {
         Ok(envelope) => envelope,
         Err(error) => {
-            let code = if error.is_data() {
-                INVALID_REQUEST
-            } else {
-                PARSE_ERROR
-            };
+            let code = if error.is_data() { INVALID_REQUEST } else { PARSE_ERROR };
             return refused(None, code, error.to_string());
         }
     };
@@ -73,11 +69,9 @@ pub(crate) fn decode(line: &[u8]) -> Incoming {
     };
     match request {
         Ok(request) => Incoming::Request { id, request },
-        Err(error) => refused(
-            id,
-            INVALID_PARAMS,
-            format!("parameters of `{}`: {error}", envelope.method),
-        ),
+        Err(error) => {
+            refused(id, INVALID_PARAMS, format!("parameters of `{}`: {error}", envelope.method))
+        }
     }
 }
 
@@ -86,10 +80,7 @@ fn parse<T: DeserializeOwned>(params: Option<&RawValue>) -> serde_json::Result<T
 }
 
 fn refused(id: Option<u64>, code: i32, message: String) -> Incoming {
-    Incoming::Refused {
-        id,
-        error: RpcError { code, message },
-    }
+    Incoming::Refused { id, error: RpcError { code, message } }
 }
 
 #[cfg(test)]
@@ -106,24 +97,15 @@ mod tests {
 
     #[test]
     fn every_request_of_the_model_is_read_as_it_was_written() {
-        let plugin = Plugin {
-            file: "/a b.so".into(),
-            args: vec!["x y".into()],
-            ..Plugin::default()
-        };
+        let plugin =
+            Plugin { file: "/a b.so".into(), args: vec!["x y".into()], ..Plugin::default() };
         let requests = [
-            Request::Initialize(Initialize {
-                protocol: 1,
-                rtf: "0.1.0".into(),
-                stack_file: None,
-            }),
+            Request::Initialize(Initialize { protocol: 1, rtf: "0.1.0".into(), stack_file: None }),
             Request::RunTest(plugin.clone()),
             Request::SetUpFixture(plugin),
             Request::CheckFixture {},
             Request::TearDownFixture {},
-            Request::Interrupt {
-                reason: "Ctrl-C".into(),
-            },
+            Request::Interrupt { reason: "Ctrl-C".into() },
             Request::DumpStack {},
         ];
         for request in requests {
@@ -135,14 +117,8 @@ mod tests {
 
     #[test]
     fn what_cannot_be_carried_out_is_refused_with_its_code() {
-        assert_eq!(
-            code(r#"{"id":4,"method":"paint-test","params":{}}"#),
-            (Some(4), -32601)
-        );
-        assert_eq!(
-            code(r#"{"id":5,"method":"run-test","params":{"file":3}}"#),
-            (Some(5), -32602)
-        );
+        assert_eq!(code(r#"{"id":4,"method":"paint-test","params":{}}"#), (Some(4), -32601));
+        assert_eq!(code(r#"{"id":5,"method":"run-test","params":{"file":3}}"#), (Some(5), -32602));
         assert_eq!(code(r#"{"id":6,"method":"run-test"}"#), (Some(6), -32602));
         assert_eq!(code(r#"{"id":7}"#), (None, -32600));
         assert_eq!(code("not json"), (None, -32700));
@@ -154,10 +130,7 @@ mod tests {
             br#"{"jsonrpc":"2.0","id":1,"new":[],"method":"check-fixture","params":{"x":1}}"#;
         assert_eq!(
             decode(line),
-            Incoming::Request {
-                id: Some(1),
-                request: Request::CheckFixture {}
-            }
+            Incoming::Request { id: Some(1), request: Request::CheckFixture {} }
         );
     }
 }

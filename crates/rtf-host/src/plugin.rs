@@ -64,6 +64,10 @@ pub trait HostPlugin {
     /// Called once, with the runner's first request, before anything is loaded.
     fn prepare(&mut self, _initialize: &Initialize) {}
 
+    /// Called when the runner has started the host before there is a plug-in for
+    /// it: time to get ready for the likely one.
+    fn idle(&mut self) {}
+
     /// Loads a plug-in. At most one is loaded at a time.
     ///
     /// # Errors

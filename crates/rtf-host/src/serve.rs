@@ -6,7 +6,8 @@ use rtf_model::protocol::{
 use rtf_model::{Message, MessageKind, Outcome, Phase};
 
 use crate::decode::{INVALID_REQUEST, Incoming};
-use crate::{HostPlugin, Role, Session, Step, StepEnd, reader};
+use crate::reader::Reader;
+use crate::{HostPlugin, Role, Session, Step, StepEnd};
 
 /// Serves the runner until it has got its last answer or has closed the
 /// channel. The caller then ends the process the ordinary way, so that what
@@ -17,25 +18,18 @@ use crate::{HostPlugin, Role, Session, Step, StepEnd, reader};
 /// # Errors
 /// The thread that reads the channel cannot be started.
 pub fn serve(session: &Session, host: impl HostPlugin) -> std::io::Result<()> {
-    reader::spawn(session.clone(), host.stack_dumper())?;
-    let mut server = Server {
-        session,
-        host,
-        initialized: false,
-        loaded: None,
+    let reader = Reader::new(session, host.stack_dumper());
+    let mut server = Server { session, host, initialized: false, loaded: None };
+    let Some((reader, first)) = server.before_plugins(reader) else {
+        return Ok(());
     };
-    while let Some(incoming) = session.next() {
-        match incoming {
-            Incoming::Refused { id, error } => {
-                session.pass();
-                session.refuse(id, error);
-            }
-            Incoming::Request { id, request } => {
-                if server.carry_out(id, request) {
-                    break;
-                }
-            }
+    reader.spawn()?;
+    let mut incoming = Some(first);
+    while let Some(next) = incoming {
+        if server.take(next) {
+            break;
         }
+        incoming = session.next();
     }
     Ok(())
 }
@@ -48,6 +42,34 @@ struct Server<'a, H> {
 }
 
 impl<H: HostPlugin> Server<'_, H> {
+    /// Serves, on this thread alone, what needs no plug-in. Gives back the first
+    /// request that does, and the reader that is to go on beside it.
+    fn before_plugins(&mut self, mut reader: Reader) -> Option<(Reader, Incoming)> {
+        loop {
+            let incoming = reader.next()?;
+            self.session.begin();
+            if self.initialized && matches!(incoming, Incoming::Request { .. }) {
+                return Some((reader, incoming));
+            }
+            self.take(incoming);
+            if self.initialized && reader.is_drained() {
+                self.host.idle();
+            }
+        }
+    }
+
+    /// Deals with what came in; true when it was the last request.
+    fn take(&mut self, incoming: Incoming) -> bool {
+        match incoming {
+            Incoming::Refused { id, error } => {
+                self.session.pass();
+                self.session.refuse(id, error);
+                false
+            }
+            Incoming::Request { id, request } => self.carry_out(id, request),
+        }
+    }
+
     /// Carries out a request; true when it was the last one.
     fn carry_out(&mut self, id: Option<u64>, request: Request) -> bool {
         if let Request::Initialize(initialize) = request {
@@ -58,13 +80,7 @@ impl<H: HostPlugin> Server<'_, H> {
         if !self.initialized {
             self.session.pass();
             let message = "the first request must be `initialize`".to_owned();
-            self.session.refuse(
-                id,
-                RpcError {
-                    code: INVALID_REQUEST,
-                    message,
-                },
-            );
+            self.session.refuse(id, RpcError { code: INVALID_REQUEST, message });
             return false;
         }
         let mut last = false;
@@ -93,13 +109,7 @@ impl<H: HostPlugin> Server<'_, H> {
                 "rtf {} speaks version {} of the host protocol, this host version {PROTOCOL_VERSION}",
                 initialize.rtf, initialize.protocol
             );
-            self.session.refuse(
-                id,
-                RpcError {
-                    code: VERSION_MISMATCH,
-                    message,
-                },
-            );
+            self.session.refuse(id, RpcError { code: VERSION_MISMATCH, message });
             return;
         }
         self.host.prepare(initialize);
@@ -111,9 +121,7 @@ impl<H: HostPlugin> Server<'_, H> {
     /// message before; what is left here names it.
     fn answer(&self, id: Option<u64>, answer: Answer) {
         if !self.session.answer(id, &answer) {
-            let reason = answer
-                .reason
-                .map(|reason| reason.chars().take(10_000).collect());
+            let reason = answer.reason.map(|reason| reason.chars().take(10_000).collect());
             self.session.answer(id, Answer { reason, ..answer });
         }
     }
@@ -142,8 +150,7 @@ impl<H: HostPlugin> Server<'_, H> {
         if self.loaded.is_some() {
             self.step(Step::Check, false);
         } else {
-            self.session
-                .judge(|judge| judge.note(Outcome::Error, "no fixture is set up"));
+            self.session.judge(|judge| judge.note(Outcome::Error, "no fixture is set up"));
         }
     }
 
@@ -157,8 +164,7 @@ impl<H: HostPlugin> Server<'_, H> {
     fn load(&mut self, role: Role, plugin: &Plugin) -> bool {
         if self.loaded.is_some() {
             let reason = "a fixture is still set up in this host";
-            self.session
-                .judge(|judge| judge.note(Outcome::Error, reason));
+            self.session.judge(|judge| judge.note(Outcome::Error, reason));
             return false;
         }
         self.session.engage(true);
@@ -183,8 +189,7 @@ impl<H: HostPlugin> Server<'_, H> {
     }
 
     fn step(&mut self, step: Step, failures_are_errors: bool) {
-        self.session
-            .judge(|judge| judge.failures_are_errors = failures_are_errors);
+        self.session.judge(|judge| judge.failures_are_errors = failures_are_errors);
         let end = self.host.step(step);
         self.judge_end(end, name(step));
     }
@@ -193,8 +198,7 @@ impl<H: HostPlugin> Server<'_, H> {
         match end {
             StepEnd::Done => {}
             StepEnd::Refused => {
-                self.session
-                    .judge(|judge| judge.note_failure(&format!("{what} returned false")));
+                self.session.judge(|judge| judge.note_failure(&format!("{what} returned false")));
             }
             // Whatever stopped it was reported; a host that forgot must not pass.
             StepEnd::Stopped => self.session.judge(|judge| {
@@ -206,13 +210,7 @@ impl<H: HostPlugin> Server<'_, H> {
 
     fn error(&self, text: String, location: Option<rtf_model::Location>) {
         let kind = MessageKind::Error;
-        self.session.message(Message {
-            kind,
-            text,
-            location,
-            comparison: None,
-            critical: false,
-        });
+        self.session.message(Message { kind, text, location, comparison: None, critical: false });
     }
 }
 

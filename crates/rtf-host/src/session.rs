@@ -69,16 +69,12 @@ impl Session {
     pub fn open() -> Result<Self, OpenError> {
         let value = std::env::var_os(CHANNEL_VARIABLE).ok_or(OpenError::NotSet)?;
         let value = value.to_string_lossy();
-        let fd = value
-            .strip_prefix("fd:")
-            .and_then(|number| number.parse().ok());
+        let fd = value.strip_prefix("fd:").and_then(|number| number.parse().ok());
         let fd = fd.ok_or_else(|| OpenError::Malformed(value.clone().into_owned()))?;
         unix::remove_variable(CHANNEL_VARIABLE);
         unix::restore_sigpipe();
         let channel = unix::take_channel(fd);
-        channel
-            .map(Self::over)
-            .map_err(|source| OpenError::Descriptor { fd, source })
+        channel.map(Self::over).map_err(|source| OpenError::Descriptor { fd, source })
     }
 
     /// A session over a channel that is already open.
@@ -121,9 +117,7 @@ impl Session {
 
     /// Reports that the fixture is not well any more.
     pub fn collapsed(&self, reason: &str) {
-        self.notify(&Notification::Collapsed {
-            reason: reason.to_owned(),
-        });
+        self.notify(&Notification::Collapsed { reason: reason.to_owned() });
     }
 
     /// Sends the stacks that the runner asked for.
@@ -151,8 +145,8 @@ impl Session {
     }
 
     /// The channel, for the thread that reads it.
-    pub(crate) fn channel(&self) -> &UnixStream {
-        &self.0.channel
+    pub(crate) fn channel(&self) -> Arc<UnixStream> {
+        Arc::clone(&self.0.channel)
     }
 
     /// Takes a request that came in.
@@ -183,6 +177,11 @@ impl Session {
         self.0.changed.notify_all();
     }
 
+    /// A request that was read on the main thread is about to be carried out.
+    pub(crate) fn begin(&self) {
+        self.state().busy = true;
+    }
+
     /// The next request, `None` at the end of the channel.
     pub(crate) fn next(&self) -> Option<Incoming> {
         let mut state = self.state();
@@ -194,11 +193,7 @@ impl Session {
             if state.closed {
                 return None;
             }
-            state = self
-                .0
-                .changed
-                .wait(state)
-                .unwrap_or_else(PoisonError::into_inner);
+            state = self.0.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
     }
 

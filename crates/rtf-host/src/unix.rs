@@ -1,8 +1,5 @@
 //! What the host asks of the operating system.
-#![expect(
-    unsafe_code,
-    reason = "inherited descriptors and C functions that have no safe form"
-)]
+#![expect(unsafe_code, reason = "inherited descriptors and C functions that have no safe form")]
 
 use std::os::fd::{BorrowedFd, FromRawFd, RawFd};
 use std::os::unix::net::UnixStream;
@@ -37,15 +34,52 @@ pub(crate) fn restore_sigpipe() {
     unsafe { libc::signal(libc::SIGPIPE, libc::SIG_DFL) };
 }
 
-/// Keeps signals away from the calling thread. A plug-in that blocks a signal
-/// and waits for it in its own threads would otherwise be killed through ours.
-pub(crate) fn block_signals() {
-    let mut all = std::mem::MaybeUninit::<libc::sigset_t>::uninit();
-    // SAFETY: sigfillset initialises the set before it is used.
-    unsafe {
-        libc::sigfillset(all.as_mut_ptr());
-        libc::pthread_sigmask(libc::SIG_SETMASK, all.as_ptr(), std::ptr::null_mut());
+/// What a thread does.
+pub(crate) type Body = Box<dyn FnOnce() + Send>;
+
+/// Starts a thread that no signal reaches. A plug-in that blocks a signal and
+/// waits for it in its own threads would otherwise be killed through ours.
+///
+/// The standard library's threads allocate when they start, and the second
+/// thread that allocates gets a heap of its own: too dear for a host.
+pub(crate) fn spawn_thread(stack_bytes: usize, body: Body) -> std::io::Result<()> {
+    let argument = Box::into_raw(Box::new(body));
+    // SAFETY: every set and attribute is initialised before it is used;
+    // `argument` belongs to the thread, or to us again when there is none.
+    let error = unsafe {
+        let mut all = std::mem::zeroed::<libc::sigset_t>();
+        let mut before = std::mem::zeroed::<libc::sigset_t>();
+        let mut attributes = std::mem::zeroed::<libc::pthread_attr_t>();
+        let mut thread = std::mem::zeroed::<libc::pthread_t>();
+        libc::pthread_attr_init(&raw mut attributes);
+        libc::pthread_attr_setstacksize(&raw mut attributes, stack_bytes);
+        libc::pthread_attr_setdetachstate(&raw mut attributes, libc::PTHREAD_CREATE_DETACHED);
+        libc::sigfillset(&raw mut all);
+        libc::pthread_sigmask(libc::SIG_SETMASK, &raw const all, &raw mut before);
+        let start = &raw const attributes;
+        let error = libc::pthread_create(&raw mut thread, start, run_body, argument.cast());
+        libc::pthread_sigmask(libc::SIG_SETMASK, &raw const before, std::ptr::null_mut());
+        libc::pthread_attr_destroy(&raw mut attributes);
+        error
+    };
+    if error == 0 {
+        return Ok(());
     }
+    // SAFETY: no thread was started that could have taken it.
+    drop(unsafe { Box::from_raw(argument) });
+    Err(std::io::Error::from_raw_os_error(error))
+}
+
+extern "C" fn run_body(argument: *mut libc::c_void) -> *mut libc::c_void {
+    #[cfg(target_os = "linux")]
+    // SAFETY: the name ends with a zero and is short enough.
+    unsafe {
+        libc::prctl(libc::PR_SET_NAME, c"rtf-channel".as_ptr());
+    }
+    // SAFETY: made by `spawn_thread` for this thread alone.
+    let body = unsafe { Box::from_raw(argument.cast::<Body>()) };
+    body();
+    std::ptr::null_mut()
 }
 
 /// Ends the process at once: no destructors, no handlers, no flushing.

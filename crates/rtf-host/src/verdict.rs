@@ -34,19 +34,12 @@ impl Judge {
     }
 
     pub(crate) fn note_failure(&mut self, text: &str) {
-        let outcome = if self.failures_are_errors {
-            Outcome::Error
-        } else {
-            Outcome::Failed
-        };
+        let outcome = if self.failures_are_errors { Outcome::Error } else { Outcome::Failed };
         self.note(outcome, text);
     }
 
     pub(crate) fn note(&mut self, outcome: Outcome, reason: &str) {
-        self.first.get_or_insert_with(|| Answer {
-            outcome,
-            reason: Some(reason.to_owned()),
-        });
+        self.first.get_or_insert_with(|| Answer { outcome, reason: Some(reason.to_owned()) });
     }
 
     pub(crate) fn all_holds(&self) -> bool {
@@ -54,10 +47,7 @@ impl Judge {
     }
 
     pub(crate) fn answer(&mut self) -> Answer {
-        let passed = Answer {
-            outcome: Outcome::Passed,
-            reason: None,
-        };
+        let passed = Answer { outcome: Outcome::Passed, reason: None };
         std::mem::take(self).first.unwrap_or(passed)
     }
 }

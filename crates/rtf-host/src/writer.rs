@@ -22,10 +22,7 @@ pub(crate) struct Writer {
 
 impl Writer {
     pub(crate) fn new(channel: Arc<UnixStream>) -> Self {
-        Self {
-            channel,
-            line: Mutex::new(Vec::with_capacity(512)),
-        }
+        Self { channel, line: Mutex::new(Vec::with_capacity(512)) }
     }
 
     /// Sends a notification. A message that is too long for a line is sent in
@@ -64,23 +61,11 @@ impl Writer {
 /// The two halves of a message's text, as messages of their own.
 fn halves(message: &Message) -> Vec<Message> {
     let text = &message.text;
-    let middle = (text.len() / 2..text.len())
-        .find(|&at| text.is_char_boundary(at))
-        .unwrap_or(0);
+    let middle = (text.len() / 2..text.len()).find(|&at| text.is_char_boundary(at)).unwrap_or(0);
     if middle == 0 {
         return Vec::new();
     }
     let (first, second) = text.split_at(middle);
-    let part = |text: &str| Message {
-        text: text.to_owned(),
-        comparison: None,
-        ..message.clone()
-    };
-    vec![
-        Message {
-            comparison: message.comparison.clone(),
-            ..part(first)
-        },
-        part(second),
-    ]
+    let part = |text: &str| Message { text: text.to_owned(), comparison: None, ..message.clone() };
+    vec![Message { comparison: message.comparison.clone(), ..part(first) }, part(second)]
 }
