@@ -1,25 +1,53 @@
 //! Hands each event to each reporter, on a thread of its own.
 //!
 //! The run must not wait for a disk or a terminal, and reporters must not need
-//! locks: one thread owns the record and all reporters, and a bounded queue
-//! leads there. Only when the queue is full does the run wait, so that a plug-in
-//! that floods cannot fill the memory.
+//! locks: one thread owns the record and all reporters, and a queue leads there.
+//! Handing an event over never waits, so that a fixture's collapse is dealt with
+//! even while somebody holds the terminal. Instead, [`FanoutHandle::is_congested`]
+//! tells the run to stop reading from its processes for a while: a plug-in that
+//! floods cannot fill the memory.
 
-use std::sync::mpsc::{self, Receiver, SyncSender, TryRecvError};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{self, Receiver, Sender, TryRecvError};
 use std::thread::{self, JoinHandle};
 
 use rtf_model::{Event, OrderChecker, Record};
 
 use crate::{ReportError, Reporter};
 
-/// How many events may wait.
-const QUEUE: usize = 4096;
+/// When this many events wait, the run should read no more from its processes.
+const CONGESTED: usize = 4096;
 
-/// The way to all reporters.
+/// All reporters, and the thread that they live on.
 #[derive(Debug)]
 pub struct Fanout {
-    sender: SyncSender<Event>,
+    handle: FanoutHandle,
     thread: JoinHandle<Outcome>,
+}
+
+/// The way to all reporters. Cheap to clone; events of one handle keep their order.
+#[derive(Clone, Debug)]
+pub struct FanoutHandle {
+    sender: Sender<Event>,
+    waiting: Arc<AtomicUsize>,
+}
+
+impl FanoutHandle {
+    /// Hands over an event; never waits. When the thread is gone (a reporter
+    /// panicked) the event is dropped: the run, its tear-down and its hooks go
+    /// on, and [`Fanout::join`] tells.
+    pub fn send(&self, event: Event) {
+        self.waiting.fetch_add(1, Ordering::Relaxed);
+        drop(self.sender.send(event));
+    }
+
+    /// Whether so many events wait that the run should read no more from its
+    /// processes for a while.
+    #[must_use]
+    pub fn is_congested(&self) -> bool {
+        self.waiting.load(Ordering::Relaxed) > CONGESTED
+    }
 }
 
 /// What is left when all events were reported.
@@ -44,17 +72,22 @@ impl Fanout {
     /// # Errors
     /// The system has no thread to give.
     pub fn start(reporters: Vec<Box<dyn Reporter>>) -> std::io::Result<Self> {
-        let (sender, receiver) = mpsc::sync_channel(QUEUE);
-        let state = State::new(reporters);
+        let (sender, receiver) = mpsc::channel();
+        let waiting = Arc::new(AtomicUsize::new(0));
+        let state = State::new(reporters, Arc::clone(&waiting));
         let thread = thread::Builder::new().name("reports".into()).spawn(|| state.run(receiver))?;
-        Ok(Self { sender, thread })
+        Ok(Self { handle: FanoutHandle { sender, waiting }, thread })
     }
 
-    /// Hands over an event; waits while the queue is full. When the thread is
-    /// gone (a reporter panicked) the event is dropped: the run, its tear-down
-    /// and its hooks go on, and [`Fanout::join`] tells.
+    /// Hands over an event, see [`FanoutHandle::send`].
     pub fn send(&self, event: Event) {
-        drop(self.sender.send(event));
+        self.handle.send(event);
+    }
+
+    /// A way to the reporters. All handles must be gone before [`Fanout::join`] returns.
+    #[must_use]
+    pub fn handle(&self) -> FanoutHandle {
+        self.handle.clone()
     }
 
     /// Waits until every event is reported and every reporter has finished.
@@ -64,7 +97,7 @@ impl Fanout {
     /// broke a rule of [`OrderChecker`].
     #[must_use]
     pub fn join(self) -> Finished {
-        drop(self.sender);
+        drop(self.handle);
         let outcome = self.thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         debug_assert!(outcome.disorder.is_none(), "{}", outcome.disorder.unwrap_or_default());
         outcome.finished
@@ -78,11 +111,13 @@ struct State {
     errors: Vec<ReportError>,
     order: OrderChecker,
     disorder: Option<String>,
+    waiting: Arc<AtomicUsize>,
 }
 
 impl State {
-    fn new(reporters: Vec<Box<dyn Reporter>>) -> Self {
+    fn new(reporters: Vec<Box<dyn Reporter>>, waiting: Arc<AtomicUsize>) -> Self {
         Self {
+            waiting,
             record: Record::default(),
             reporters: reporters.into_iter().map(Some).collect(),
             errors: Vec::new(),
@@ -104,6 +139,7 @@ impl State {
                     }
                 }
             };
+            self.waiting.fetch_sub(1, Ordering::Relaxed);
             self.check_order(&event);
             self.record.apply(&event);
             self.each(|reporter, record| reporter.event(&event, record));

@@ -21,5 +21,5 @@ pub mod run_folder;
 pub mod text;
 mod words;
 
-pub use fanout::{Fanout, Finished};
+pub use fanout::{Fanout, FanoutHandle, Finished};
 pub use reporter::{ReportError, Reporter};

@@ -1,0 +1,3 @@
+//! Scratch.
+mod render;
+fn main() {}

@@ -1,0 +1,36 @@
+//! `rtf list`: the tests that `rtf run` would run, one a line.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use rtf_engine::plan::{Plan, TestPlan};
+
+use super::{Outcome, planning};
+use crate::cli::InputArgs;
+use crate::error::Failure;
+
+/// Lists.
+pub fn run(args: &InputArgs) -> Outcome {
+    let planned = planning::plan(args)?;
+    let mut out = std::io::BufWriter::new(anstream::stdout().lock());
+    write(&planned.plan, &mut out).map_err(Failure::own)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn write(plan: &Plan, out: &mut impl Write) -> std::io::Result<()> {
+    for suite in &plan.suites {
+        for test in &suite.tests {
+            writeln!(out, "{}::{}{}", suite.name, test.name, notes(test))?;
+        }
+    }
+    out.flush()
+}
+
+fn notes(test: &TestPlan) -> String {
+    let mut notes = Vec::new();
+    if test.repetitions > 1 {
+        notes.push(format!("{} times", test.repetitions));
+    }
+    notes.extend(test.tags.iter().map(|tag| format!("#{tag}")));
+    if notes.is_empty() { String::new() } else { format!("  ({})", notes.join(", ")) }
+}

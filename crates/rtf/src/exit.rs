@@ -1,0 +1,25 @@
+//! Exit codes. The README and `rtf --help` list them.
+
+use std::process::ExitCode;
+
+use rtf_engine::signal;
+use rtf_model::Record;
+
+/// Everything passed.
+pub const PASSED: u8 = 0;
+/// A test did not pass, or a fixture collapsed or broke.
+pub const FAILED: u8 = 1;
+/// Bad input, or no tests: nothing was started.
+pub const BAD_INPUT: u8 = 2;
+/// `rtf` could not do its own work.
+pub const BROKEN: u8 = 3;
+
+/// The exit code of a run.
+pub fn of_run(record: &Record) -> ExitCode {
+    let interrupted = record.interrupted().map(|by| signal::exit_code(by).unwrap_or(FAILED));
+    ExitCode::from(match interrupted {
+        Some(code) => code,
+        None if record.is_green() => PASSED,
+        None => FAILED,
+    })
+}

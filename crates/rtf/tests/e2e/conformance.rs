@@ -1,0 +1,245 @@
+//! Every scenario of `conformance/` in every language, through the real hosts.
+
+use std::path::{Path, PathBuf};
+
+use rtf_model::{AttemptRecord, Event, EventKind, Record, SuiteId};
+use serde_json::{Value, json};
+
+use crate::support::{Folder, build_cpp, nothing_left, root};
+
+struct Language {
+    name: &'static str,
+    plugin_type: &'static str,
+    file: &'static str,
+}
+
+const LANGUAGES: [Language; 3] = [
+    Language { name: "cpp", plugin_type: "dll", file: "plugin.so" },
+    Language { name: "lua", plugin_type: "lua", file: "plugin.lua" },
+    Language { name: "python", plugin_type: "python", file: "plugin.py" },
+];
+
+#[test]
+fn cpp() {
+    check_language(&LANGUAGES[0]);
+}
+
+#[test]
+fn lua() {
+    check_language(&LANGUAGES[1]);
+}
+
+#[test]
+fn python() {
+    check_language(&LANGUAGES[2]);
+}
+
+fn folder() -> PathBuf {
+    root().join("conformance").canonicalize().expect("the conformance folder")
+}
+
+fn scenarios() -> Vec<String> {
+    let entries = std::fs::read_dir(folder().join("scenarios")).expect("scenarios").flatten();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    assert!(names.len() >= 14, "scenarios are missing: {names:?}");
+    names
+}
+
+fn is_excepted(scenario: &str, language: &str) -> bool {
+    let text = std::fs::read_to_string(folder().join("exceptions.json")).expect("exceptions.json");
+    let list: Vec<Value> = serde_json::from_str(&text).expect("a list of exceptions");
+    list.iter().any(|entry| {
+        assert!(entry["reason"].as_str().is_some_and(|reason| reason.len() > 20), "{entry}");
+        entry["scenario"] == scenario && entry["language"] == language
+    })
+}
+
+fn plugin(scenario: &str, language: &Language, built: Option<&Path>) -> PathBuf {
+    match built {
+        Some(built) => built.join(format!("{scenario}.so")),
+        None => folder().join("scenarios").join(scenario).join(language.file),
+    }
+}
+
+/// A suite for each scenario: the scenario's test, then one that must not suffer.
+fn check_language(language: &Language) {
+    let built = (language.name == "cpp").then(|| build_cpp(&folder(), "conformance"));
+    let temp = Folder::new();
+    let scenarios: Vec<String> =
+        scenarios().into_iter().filter(|name| !is_excepted(name, language.name)).collect();
+    for scenario in &scenarios {
+        let path = |name: &str| plugin(name, language, built.as_deref());
+        let (test, after) = (path(scenario), path("pass"));
+        let kind = language.plugin_type;
+        let limit = if ["hang", "interrupted-sleep"].contains(&scenario.as_str()) {
+            r#"timeout="300ms" grace="500ms""#
+        } else {
+            ""
+        };
+        let suite = format!(
+            "<suite name=\"{scenario}\">\n  <test type=\"{kind}\" name=\"scenario\" {limit}>{}</test>\n  \
+             <test type=\"{kind}\" name=\"after\">{}</test>\n</suite>\n",
+            test.display(),
+            after.display()
+        );
+        temp.file(&format!("{scenario}.xml"), &suite);
+    }
+    let finished = temp.rtf(&["run", "."]);
+    assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
+    let journal = temp.journal();
+    let problems: Vec<String> =
+        scenarios.iter().flat_map(|name| check_scenario(name, language, &journal.events, &journal.record, &temp)).collect();
+    assert!(problems.is_empty(), "{}: \n{}", language.name, problems.join("\n"));
+    assert!(nothing_left(&temp), "processes are left");
+}
+
+fn check_scenario(
+    scenario: &str,
+    language: &Language,
+    events: &[Event],
+    record: &Record,
+    temp: &Folder,
+) -> Vec<String> {
+    let Some(suite) = record.suites.iter().find(|suite| suite.plan.name == scenario) else {
+        return vec![format!("{scenario}: was not run")];
+    };
+    let expected = expectations(scenario, language.name);
+    let test = &record.tests[suite.tests[0].index()];
+    let attempt = test.attempts.last().expect("an attempt");
+    let told = told(events, suite.plan.suite, record, temp);
+    let mut problems = compare_told(scenario, &expected, &told);
+    let mut after = "passed";
+    for line in &expected {
+        if let Some(verdict) = line.get("after").and_then(Value::as_str) {
+            after = verdict;
+        } else if let Some(problem) = check_fact(line, attempt) {
+            problems.push(format!("{scenario}: {problem}"));
+        } else if line.get("stdout_starts").is_some() {
+            problems.extend(check_output(line, events, suite.tests[0]));
+        }
+    }
+    let found = record.final_verdict(suite.tests[1]);
+    if found.as_str() != after {
+        problems.push(format!("{scenario}: the test after it is {found}, expected {after}"));
+    }
+    problems
+}
+
+fn expectations(scenario: &str, language: &str) -> Vec<Value> {
+    let path = folder().join("scenarios").join(scenario).join("expect.jsonl");
+    let text = std::fs::read_to_string(path).expect("expect.jsonl");
+    let lines = text.lines().map(|line| serde_json::from_str::<Value>(line).expect("a JSON line"));
+    lines
+        .filter(|line| {
+            line.get("languages").is_none_or(|only| {
+                only.as_array().is_some_and(|only| only.iter().any(|name| name == language))
+            })
+        })
+        .collect()
+}
+
+/// What the scenario's test told, in order, as in `expect.jsonl`.
+fn told(events: &[Event], suite: SuiteId, record: &Record, temp: &Folder) -> Vec<Value> {
+    let test = record.suites[suite.index()].tests[0];
+    let mut told = Vec::new();
+    for event in events {
+        match &event.kind {
+            EventKind::Message { source, message } if *source == rtf_model::Source::Test(test) => {
+                let mut line = serde_json::to_value(message).expect("a message");
+                line["message"] = line["kind"].take();
+                told.push(line);
+            }
+            EventKind::Measured { test: of, measurement } if *of == test => {
+                let mut line = serde_json::to_value(measurement).expect("a measurement");
+                line["measured"] = line["name"].take();
+                told.push(line);
+            }
+            EventKind::Attached { test: of, attachment } if *of == test => {
+                let path = temp.path().join("rtf-results/latest").join(&attachment.path);
+                let content = std::fs::read_to_string(path).expect("the attached file");
+                let (name, kind) = (&attachment.name, &attachment.media_type);
+                told.push(json!({"attached": name, "media_type": kind, "content": content}));
+            }
+            _ => {}
+        }
+    }
+    told
+}
+
+fn compare_told(scenario: &str, expected: &[Value], told: &[Value]) -> Vec<String> {
+    let is_told = |line: &&Value| ["message", "measured", "attached"].iter().any(|key| line.get(*key).is_some());
+    let expected: Vec<&Value> = expected.iter().filter(is_told).collect();
+    let mut problems = Vec::new();
+    if expected.len() != told.len() {
+        problems.push(format!("{scenario}: expected {} messages, got {told:#?}", expected.len()));
+    }
+    for (expected, told) in expected.iter().zip(told) {
+        if let Some(problem) = mismatch(expected, told) {
+            problems.push(format!("{scenario}: {problem} in {told}"));
+        }
+    }
+    problems
+}
+
+/// The first entry of `expected` that `found` does not have.
+fn mismatch(expected: &Value, found: &Value) -> Option<String> {
+    let entries = expected.as_object().expect("an object");
+    entries.iter().filter(|(key, _)| *key != "languages").find_map(|(key, value)| {
+        let holds = match key.strip_suffix("_contains") {
+            Some(key) => found[key].as_str().is_some_and(|text| text.contains(value.as_str().expect("a text"))),
+            None if value.is_object() => mismatch(value, &found[key]).is_none(),
+            None => same(value, &found[key]),
+        };
+        (!holds).then(|| format!("expected {key} = {value}"))
+    })
+}
+
+/// JSON equality in which 95 and 95.0 are the same.
+fn same(a: &Value, b: &Value) -> bool {
+    match (a.as_f64(), b.as_f64()) {
+        (Some(a), Some(b)) => a == b,
+        _ => a == b,
+    }
+}
+
+fn check_fact(line: &Value, attempt: &AttemptRecord) -> Option<String> {
+    if line.get("verdict").is_some() {
+        let (_, finished) = attempt.finished.as_ref()?;
+        let found = serde_json::to_value(finished).expect("a finish");
+        return mismatch(line, &found).map(|problem| format!("{problem} in {found}"));
+    }
+    if line.get("stack").is_some() {
+        return attempt.stacks.is_empty().then(|| "no stack dump".to_owned()).or_else(|| {
+            let text = attempt.stacks.join("\n");
+            text.contains("no stack dump").then_some(text)
+        });
+    }
+    if let Some(command) = line.get("left").and_then(Value::as_str) {
+        let found = attempt.left.iter().any(|process| process.command.contains(command));
+        return (!found).then(|| format!("no process was left: {:?}", attempt.left));
+    }
+    None
+}
+
+fn check_output(line: &Value, events: &[Event], test: rtf_model::TestId) -> Vec<String> {
+    let outputs = events.iter().filter_map(|event| match &event.kind {
+        EventKind::Output(output) if output.source == rtf_model::Source::Test(test) => Some(output),
+        _ => None,
+    });
+    let (mut text, mut omitted) = (String::new(), 0);
+    for output in outputs {
+        text += &output.text;
+        omitted += output.omitted;
+    }
+    let wanted = |key: &str| line[key].as_str().unwrap_or_default();
+    let mut problems = Vec::new();
+    if !text.starts_with(wanted("stdout_starts")) || !text.ends_with(wanted("stdout_ends")) {
+        problems.push(format!("output-flood: {} bytes of other output", text.len()));
+    }
+    if line["stdout_omits"] == true && omitted == 0 {
+        problems.push("output-flood: nothing was left out".to_owned());
+    }
+    problems
+}

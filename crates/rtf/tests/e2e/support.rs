@@ -1,0 +1,232 @@
+//! A temporary folder with suites and plug-ins, and the real runner in it.
+
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use regex::Regex;
+use rtf_model::{Event, EventKind, OrderChecker, Record};
+
+/// The root of the checkout.
+pub fn root() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+}
+
+/// A folder that is gone with the test.
+pub struct Folder {
+    temp: tempfile::TempDir,
+}
+
+/// What a command came to.
+pub struct Finished {
+    pub code: Option<i32>,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+/// A journal, read.
+pub struct Journal {
+    pub events: Vec<Event>,
+    pub record: Record,
+}
+
+impl Folder {
+    pub fn new() -> Self {
+        build_hosts();
+        Self { temp: tempfile::tempdir().expect("a temporary folder") }
+    }
+
+    pub fn path(&self) -> &Path {
+        self.temp.path()
+    }
+
+    pub fn file(&self, name: &str, text: &str) -> &Self {
+        let path = self.path().join(name);
+        std::fs::create_dir_all(path.parent().expect("a parent")).expect("a folder");
+        std::fs::write(path, text).expect("a file");
+        self
+    }
+
+    pub fn command(&self, args: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rtf"));
+        command.args(args).current_dir(self.path()).stdin(Stdio::null());
+        command.env_remove("RTF_RESULTS").env_remove("RTF_PLUGIN_PATH").env("NO_COLOR", "1");
+        command
+    }
+
+    pub fn rtf(&self, args: &[&str]) -> Finished {
+        let output = self.command(args).output().expect("rtf runs");
+        Finished {
+            code: output.status.code(),
+            stdout: String::from_utf8_lossy(&output.stdout).into_owned(),
+            stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
+        }
+    }
+
+    /// Starts `rtf` and lets it run.
+    pub fn start(&self, args: &[&str]) -> Running {
+        let mut command = self.command(args);
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        Running { child: command.spawn().expect("rtf starts"), folder: self.path().to_owned() }
+    }
+
+    /// The newest journal, complete and in order.
+    pub fn journal(&self) -> Journal {
+        let journal = read_journal(&self.path().join("rtf-results/latest/events.jsonl"));
+        let mut order = OrderChecker::default();
+        for event in &journal.events {
+            order.check(event).expect("events in order");
+        }
+        order.finish().expect("a complete journal");
+        journal
+    }
+
+    /// Exit code, output and errors for a snapshot, with what changes from run
+    /// to run replaced.
+    pub fn shown(&self, finished: &Finished) -> String {
+        let text = format!(
+            "exit code {}\n----- stdout\n{}----- stderr\n{}",
+            finished.code.map_or("none".to_owned(), |code| code.to_string()),
+            finished.stdout,
+            finished.stderr
+        );
+        self.redact(&text)
+    }
+
+    pub fn redact(&self, text: &str) -> String {
+        let canonical = self.path().canonicalize().expect("a path");
+        let bins = Path::new(env!("CARGO_BIN_EXE_rtf")).parent().expect("a folder");
+        let mut text = text
+            .replace(&canonical.display().to_string(), "[FOLDER]")
+            .replace(&self.path().display().to_string(), "[FOLDER]")
+            .replace(&bins.display().to_string(), "[BIN]")
+            .replace(&root().canonicalize().expect("a path").display().to_string(), "[ROOT]");
+        for (pattern, with) in [
+            (r"\d{4}-\d\d-\d\dT\d\d-\d\d-\d\dZ-[0-9a-f]+", "[RUN]"),
+            (r"\d+(\.\d+)? ?(ms|s)\b", "[TIME]"),
+        ] {
+            text = Regex::new(pattern).expect("a pattern").replace_all(&text, with).into_owned();
+        }
+        text
+    }
+}
+
+/// A runner that runs.
+pub struct Running {
+    pub child: Child,
+    folder: PathBuf,
+}
+
+impl Running {
+    /// Waits until the journal holds an event, which is returned.
+    pub fn wait_for(&self, wanted: impl Fn(&EventKind) -> bool) -> Event {
+        let path = self.folder.join("rtf-results/latest/events.jsonl");
+        let found = wait_until("an event in the journal", || {
+            let text = std::fs::read_to_string(&path).ok()?;
+            let whole = text.rsplit_once('\n')?.0;
+            let events = whole.lines().map(|line| serde_json::from_str::<Event>(line).expect("an event"));
+            events.into_iter().find(|event| wanted(&event.kind))
+        });
+        found
+    }
+
+    pub fn signal(&self, signal: &str) {
+        let status = Command::new("kill").args(["-s", signal, &self.child.id().to_string()]).status();
+        assert!(status.expect("kill").success());
+    }
+
+    pub fn finish(self) -> Finished {
+        let output = self.child.wait_with_output().expect("rtf ends");
+        Finished {
+            code: output.status.code(),
+            stdout: String::from_utf8_lossy(&output.stdout).into_owned(),
+            stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
+        }
+    }
+}
+
+/// Asks until there is an answer; fails after a minute.
+pub fn wait_until<T>(what: &str, mut ask: impl FnMut() -> Option<T>) -> T {
+    let start = Instant::now();
+    loop {
+        if let Some(answer) = ask() {
+            return answer;
+        }
+        assert!(start.elapsed() < Duration::from_secs(60), "waited for {what}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+pub fn read_journal(path: &Path) -> Journal {
+    let text = std::fs::read_to_string(path).expect("a journal");
+    let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
+    let mut record = Record::default();
+    let mut events = Vec::new();
+    for line in whole.lines() {
+        let event: Event = serde_json::from_str(line).expect("an event");
+        record.apply(&event);
+        events.push(event);
+    }
+    Journal { events, record }
+}
+
+/// The processes whose command or environment contains a text.
+pub fn processes_with(text: &str) -> Vec<u32> {
+    let own = std::process::id();
+    let entries = std::fs::read_dir("/proc").expect("/proc").flatten();
+    let pids = entries.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
+    pids.filter(|pid| *pid != own)
+        .filter(|pid| {
+            let contains = |file: &str| {
+                let bytes = std::fs::read(format!("/proc/{pid}/{file}")).unwrap_or_default();
+                String::from_utf8_lossy(&bytes).contains(text)
+            };
+            contains("cmdline") || contains("environ")
+        })
+        .collect()
+}
+
+/// Whether nothing of this folder runs any more. Every process of a run has
+/// the folder's path in its working folder, command or environment.
+pub fn nothing_left(folder: &Folder) -> bool {
+    let path = folder.path().canonicalize().expect("a path");
+    let entries = std::fs::read_dir("/proc").expect("/proc").flatten();
+    entries
+        .filter_map(|entry| std::fs::read_link(entry.path().join("cwd")).ok())
+        .all(|cwd| !cwd.starts_with(&path))
+}
+
+/// The hosts are binaries of other packages: cargo builds them on demand.
+fn build_hosts() {
+    static BUILT: std::sync::Once = std::sync::Once::new();
+    BUILT.call_once(|| {
+        let bins = Path::new(env!("CARGO_BIN_EXE_rtf")).parent().expect("a folder");
+        let release = bins.ends_with("release");
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.args(["build", "--quiet", "-p", "rtf-host-native", "-p", "rtf-host-lua"]);
+        cargo.args(release.then_some("--release")).current_dir(root());
+        assert!(cargo.status().expect("cargo").success(), "the hosts build");
+    });
+}
+
+/// Builds C++ plug-ins with the SDK's CMake package; returns the folder with
+/// `<name>.so`.
+pub fn build_cpp(sources: &Path, name: &str) -> PathBuf {
+    static ONE_AT_A_TIME: std::sync::Mutex<()> = std::sync::Mutex::new(());
+    let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let build = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let package = root().canonicalize().expect("a path").join("sdk/cpp/cmake");
+    let mut configure = Command::new("cmake");
+    configure.arg("-S").arg(sources).arg("-B").arg(&build).arg("-DCMAKE_BUILD_TYPE=Debug");
+    configure.arg(format!("-DRobotTestingFramework_DIR={}", package.display()));
+    run_quietly(&mut configure);
+    run_quietly(Command::new("cmake").arg("--build").arg(&build).args(["--parallel", "2"]));
+    build
+}
+
+fn run_quietly(command: &mut Command) {
+    let output = command.output().expect("cmake is installed");
+    let text = String::from_utf8_lossy(&output.stdout).into_owned()
+        + &String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command:?}\n{text}");
+}
