@@ -27,7 +27,9 @@ pub use order::{OrderChecker, OrderError};
 pub use record::{
     AttemptRecord, FixtureRecord, FixtureState, Record, RunState, SuiteRecord, TestRecord, Totals,
 };
-pub use report::{Attachment, Comparison, Location, Measurement, Message, MessageKind};
+pub use report::{
+    Attachment, Comparison, Location, Measurement, Message, MessageKind, format_number,
+};
 pub use verdict::{Outcome, Verdict};
 
 /// The version of the event stream that this crate reads and writes. It grows

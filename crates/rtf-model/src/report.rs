@@ -109,21 +109,30 @@ impl Measurement {
     #[must_use]
     pub fn limits(&self) -> String {
         match (self.low, self.high) {
-            (Some(low), Some(high)) => format!("{low} … {high}"),
-            (Some(low), None) => format!("≥ {low}"),
-            (None, Some(high)) => format!("≤ {high}"),
+            (Some(low), Some(high)) => format!("{} … {}", format_number(low), format_number(high)),
+            (Some(low), None) => format!("≥ {}", format_number(low)),
+            (None, Some(high)) => format!("≤ {}", format_number(high)),
             (None, None) => String::new(),
         }
     }
 
-    /// The value with its unit: `1.25 rad`, `not a number`.
+    /// The value with its unit: `1.25 rad`, `not a finite number`.
     #[must_use]
     pub fn value_with_unit(&self) -> String {
         match self.value {
-            Some(value) if self.unit.is_empty() => value.to_string(),
-            Some(value) => format!("{value} {}", self.unit),
+            Some(value) if self.unit.is_empty() => format_number(value),
+            Some(value) => format!("{} {}", format_number(value), self.unit),
             None => "not a finite number".to_owned(),
         }
+    }
+}
+
+/// A number as people read it: very large and very small ones with an exponent.
+#[must_use]
+pub fn format_number(number: f64) -> String {
+    match number.abs() {
+        size if size != 0.0 && !(1e-5..1e15).contains(&size) => format!("{number:e}"),
+        _ => number.to_string(),
     }
 }
 

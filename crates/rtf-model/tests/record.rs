@@ -176,3 +176,9 @@ fn a_number_that_cannot_be_true_is_not_believed() {
     let record = record([run_started(), suite(0), test(4_000_000_000, 0, 1), test(0, 0, 1)]);
     assert_eq!(record.tests.len(), 1);
 }
+
+#[test]
+fn numbers_are_short() {
+    let shown = [0.0, 0.5, -98.25, 1e308, 2e-7, f64::NAN].map(rtf_model::format_number);
+    assert_eq!(shown, ["0", "0.5", "-98.25", "1e308", "2e-7", "NaN"]);
+}

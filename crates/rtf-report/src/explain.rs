@@ -77,7 +77,7 @@ pub(crate) fn message(message: &Message, sink: Sink<'_>) {
 
 fn vectors(comparison: &Comparison, sink: Sink<'_>) {
     let list = |numbers: &[Option<f64>]| {
-        let number = |n: &Option<f64>| n.map_or("not finite".to_owned(), |n| n.to_string());
+        let number = |n: &Option<f64>| n.map_or("not finite".to_owned(), rtf_model::format_number);
         numbers.iter().map(number).collect::<Vec<_>>().join(", ")
     };
     sink(Tone::Dim, &format!("  expected [{}]", list(&comparison.expected)));

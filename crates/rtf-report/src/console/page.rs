@@ -33,6 +33,9 @@ impl Page {
 
     /// A line that belongs to the entry above.
     pub fn detail(&mut self, tone: Tone, text: &str) {
+        if text.is_empty() {
+            return self.line("");
+        }
         let text = style::paint(style::of_tone(tone), text);
         self.line(&format!("{:DETAIL$}{text}", ""));
     }

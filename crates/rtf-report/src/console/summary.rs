@@ -76,6 +76,9 @@ fn failed_test(page: &mut Page, options: &ConsoleOptions, record: &Record, id: T
         None => {}
     }
     let first = attempt.and_then(|attempt| attempt.failures().next());
+    if let (None, Some(failure)) = (finished, first) {
+        fact("before", &first_line(&failure.text));
+    }
     if let Some(location) = first.and_then(|message| message.location.as_ref()) {
         fact("at", &escape::line(&location.to_string()));
     }

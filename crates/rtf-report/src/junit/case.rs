@@ -82,7 +82,10 @@ fn description(record: &Record, test: &TestRecord, reason: &str) -> String {
     let mut lines = vec![text(reason)];
     for attempt in test.attempts.iter().filter(|a| a.verdict() != Some(Verdict::Passed)) {
         lines.push(title(test, attempt));
-        lines.push(explained(attempt));
+        // The reason stands above already.
+        let explained = explained(attempt);
+        let rest = explained.strip_prefix(&lines[0]).unwrap_or(&explained);
+        lines.push(rest.trim_start_matches('\n').to_owned());
     }
     let collapsed = test.attempts.iter().any(|a| a.verdict() == Some(Verdict::Collapsed));
     if collapsed || (test.attempts.is_empty() && test.skipped.is_some()) {
