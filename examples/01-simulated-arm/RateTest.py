@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import os
 import statistics
 import tempfile
 import time
@@ -25,7 +26,6 @@ class RateTest(rtf.TestCase):
 
     def setup(self, args: list[str]) -> bool:
         self.seconds = float(args[args.index("--seconds") + 1]) if "--seconds" in args else 3.0
-        self.folder = tempfile.TemporaryDirectory()  # goes when this process ends
         self.arm = Arm()
         self.require("shoulder" in self.arm.joints(), "the arm has a shoulder")
         return True
@@ -67,10 +67,14 @@ class RateTest(rtf.TestCase):
         return samples
 
     def keep(self, samples: list[Sample]) -> None:
-        """Keeps the samples with the test's result, for a plot."""
-        path = Path(self.folder.name) / "shoulder.csv"
+        """Keeps the samples with the test's result, for a plot.
+
+        The runner copies the file while the test goes on: it must not go with
+        this process. The next run writes it anew.
+        """
+        path = Path(tempfile.gettempdir()) / f"rtf-example-01-{os.getuid()}.csv"
         with path.open("w", newline="") as file:
             table = csv.writer(file)
             table.writerow(["seconds", "simulated_seconds", "shoulder_rad", "latency_seconds"])
             table.writerows(samples)
-        self.attach(path, media_type="text/csv")
+        self.attach(path, "shoulder.csv", "text/csv")
