@@ -24,7 +24,7 @@ fn a_killed_run_can_still_be_shown_and_reported() {
         let before = read_journal(&journal);
         let shown = folder.rtf(&["show", "latest"]);
         assert_eq!(shown.code, Some(1), "{}{}", shown.stdout, shown.stderr);
-        assert!(shown.stdout.contains("incomplete"), "{}", shown.stdout);
+        assert!(shown.stdout.contains("INCOMPLETE"), "{}", shown.stdout);
         let passed = before.record.totals().of(Verdict::Passed);
         assert_eq!(shown.stdout.matches("  passed  ").count(), passed as usize, "{}", shown.stdout);
         let report = folder.rtf(&["report", "latest", "--format", "junit", "--output", "junit.xml"]);

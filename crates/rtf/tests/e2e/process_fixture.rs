@@ -79,7 +79,7 @@ fn an_alive_probe_that_fails_is_a_collapse() {
 
 #[test]
 fn a_bad_line_in_its_log_is_a_collapse() {
-    let probes = "<ready log='serving'/><alive log='^FATAL'/>";
+    let probes = "<ready log='serving'/><alive log-bad='^FATAL'/>";
     let (folder, _) = folder("fatal", probes, "60");
     assert_eq!(folder.rtf(&["run", "s.xml"]).code, Some(1));
     let record = folder.journal().record;
