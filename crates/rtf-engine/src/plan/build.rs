@@ -1,5 +1,7 @@
 //! The way from paths to an [`Outcome`].
 
+use std::cmp::Reverse;
+use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -51,8 +53,8 @@ impl Options {
 pub struct Outcome {
     /// The plan; `None` when there is an error among the diagnostics.
     pub plan: Option<Plan>,
-    /// Everything that is wrong or worth a look: errors first, otherwise in the
-    /// order of the inputs.
+    /// Everything that is wrong or worth a look: errors first, then in the
+    /// order of the files, from top to bottom, then what is about no file.
     pub diagnostics: Vec<Diagnostic>,
     /// The texts that the diagnostics point at.
     pub sources: Sources,
@@ -154,13 +156,30 @@ fn verify(context: &mut Context<'_>, suites: &mut [SuitePlan], sources: &mut Sou
 }
 
 fn outcome(mut problems: Vec<Diagnostic>, suites: Vec<SuitePlan>, mut sources: Sources) -> Outcome {
-    problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
-    let files: std::collections::HashSet<&str> =
+    sort(&mut problems);
+    let files: HashSet<&str> =
         problems.iter().flat_map(|p| &p.labels).map(|label| label.file.as_str()).collect();
     sources.retain(|file| files.contains(file));
     let broken = problems.iter().any(|problem| problem.severity == Severity::Error);
     let plan = (!broken).then(|| number(suites));
     Outcome { plan, diagnostics: problems, sources }
+}
+
+/// Errors before warnings; then in the order in which the files came, and
+/// within a file from top to bottom.
+fn sort(problems: &mut [Diagnostic]) {
+    let mut ranks: HashMap<String, usize> = HashMap::new();
+    for (index, problem) in problems.iter().enumerate() {
+        if let Some(label) = problem.labels.first() {
+            ranks.entry(label.file.clone()).or_insert(index);
+        }
+    }
+    // What is about no place in a file comes after all that is.
+    let rank = |problem: &Diagnostic| match problem.labels.first() {
+        Some(label) => (ranks[&label.file], label.start),
+        None => (usize::MAX, 0),
+    };
+    problems.sort_by_key(|problem| (Reverse(problem.severity), rank(problem)));
 }
 
 /// Gives the ids, and each suite a name of its own.

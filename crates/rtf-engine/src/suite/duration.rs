@@ -31,7 +31,10 @@ pub fn parse_duration(text: &str) -> Result<Duration, DurationError> {
     let bare = text.strip_prefix(['-', '+']).unwrap_or(text);
     let is_number = !bare.is_empty() && bare.bytes().all(|b| b.is_ascii_digit() || b == b'.');
     let parsed = if is_number {
-        format!("{text}s").parse::<SignedDuration>()
+        // The parser wants a digit before the point.
+        let sign = &text[..text.len() - bare.len()];
+        let zero = if bare.starts_with('.') { "0" } else { "" };
+        format!("{sign}{zero}{bare}s").parse::<SignedDuration>()
     } else {
         text.parse::<SignedDuration>()
     };

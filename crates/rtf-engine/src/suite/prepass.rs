@@ -190,10 +190,10 @@ mod tests {
             "<a><!-- ok --><b c=\"<!-- -- -->\"/><!-- x\n--ü y--><![CDATA[<!-- -- -->]]></a>";
         let found = scan(text);
         let expected =
-            "<a><!-- ok --><b c=\"<!-- -- -->\"/><!--   \n      --><![CDATA[<!-- -- -->]]></a>";
+            "<a><!-- ok --><b c=\"<!-- -- -->\"/><!--  \n      --><![CDATA[<!-- -- -->]]></a>";
         assert_eq!(found.text, expected);
         assert_eq!(found.text.len(), text.len());
-        assert_eq!(found.dashes, [Span::new(42..44)]);
+        assert_eq!(found.dashes, [Span::new(41..43)]);
     }
 
     #[test]
