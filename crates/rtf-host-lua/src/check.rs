@@ -38,15 +38,3 @@ fn kinds(text: &str) -> Option<Vec<String>> {
         .collect();
     (!kinds.is_empty()).then_some(kinds)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn kinds_are_told_by_the_tables_that_are_filled() {
-        assert_eq!(kinds("function TestCase.run()\nend"), Some(vec!["test".into()]));
-        assert_eq!(kinds("FixtureManager = {}"), Some(vec!["fixture".into()]));
-        assert_eq!(kinds("-- TestCase.run\nlocal TestCases = 1"), None);
-    }
-}

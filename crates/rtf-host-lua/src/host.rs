@@ -116,7 +116,7 @@ fn table(lua: &Lua, role: Role, file: &str) -> Result<Table, LoadError> {
     let value = global(name)?;
     let Some(table) = value.as_table() else {
         let kind = value.type_name();
-        return Err(failed(format!("`{name}` of `{file}` is a {kind}, not a table of functions")));
+        return Err(failed(format!("`{name}` of `{file}` is no table of functions, but: {kind}")));
     };
     for function in functions {
         if !table.get::<Value>(*function).map_err(unexpected)?.is_nil() {

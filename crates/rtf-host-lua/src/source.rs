@@ -52,24 +52,3 @@ fn split(message: &str) -> (u32, String) {
         None => (0, message.to_owned()),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_line_for_the_shell_and_a_byte_order_mark_are_not_code() {
-        assert_eq!(code(b"#!/usr/bin/lua\nx = 1".to_vec()), b"\nx = 1");
-        assert_eq!(code(b"\xEF\xBB\xBFx = 1".to_vec()), b"x = 1");
-        assert_eq!(code(b"# only this".to_vec()), b"");
-    }
-
-    #[test]
-    fn a_message_is_split_from_its_line() {
-        assert_eq!(
-            split("?:7: unexpected symbol near '='"),
-            (7, "unexpected symbol near '='".into())
-        );
-        assert_eq!(split("not enough memory"), (0, "not enough memory".into()));
-    }
-}

@@ -1,11 +1,15 @@
 -- Near equality of numbers, vectors and angles.
 --
 -- compare(got, expected, tolerance, is_angle) returns a comparison in the form
--- that the protocol gives it, and what is wrong in words, or nil.
+-- that the protocol gives it (nil when that is too long), and what is wrong in words, or nil.
 local text = ...
 
 local HUGE = math.huge
 local TURN = 2 * math.pi
+
+-- Above this many numbers a comparison is told in words only: a line of the
+-- protocol has an upper limit, and nobody reads a million numbers.
+local NUMBERS_SENT = 100000
 
 local near = {}
 
@@ -56,7 +60,7 @@ end
 
 function near.compare(got, expected, tolerance, is_angle)
   if not math.type(tolerance) or not is_finite(tolerance) or tolerance < 0 then
-    error(("the tolerance is not a finite number from 0: %s"):format(tostring(tolerance)), 0)
+    error(("the tolerance %s is not a finite number from 0"):format(tostring(tolerance)), 0)
   end
   local is_scalar = math.type(got) and math.type(expected)
   local comparison = {
@@ -65,15 +69,16 @@ function near.compare(got, expected, tolerance, is_angle)
     tolerance = tolerance + 0.0,
   }
   local count = #comparison.got
+  local sent = count + #comparison.expected <= NUMBERS_SENT and comparison or nil
   if count ~= #comparison.expected then
-    return comparison, ("got %d values, expected %d"):format(count, #comparison.expected)
+    return sent, ("got %d values, expected %d"):format(count, #comparison.expected)
   end
   local index, off = worst(comparison.got, comparison.expected, is_angle)
   if not is_scalar and index then
     comparison.worst = index - 1
   end
   if not index or (off and off <= tolerance) then
-    return comparison, nil
+    return sent, nil
   end
   local problem = ("got %s, expected %s ± %s"):format(text.number(comparison.got[index]),
     text.number(comparison.expected[index]), text.number(tolerance))
@@ -83,7 +88,7 @@ function near.compare(got, expected, tolerance, is_angle)
   if not is_scalar then
     problem = ("%s at index %d"):format(problem, index - 1)
   end
-  return comparison, problem
+  return sent, problem
 end
 
 return near

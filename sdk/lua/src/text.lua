@@ -9,14 +9,16 @@ function text.number(number)
   return ("%.6g"):format(number)
 end
 
--- The last value of a condition that never came true, or a table's entry.
+-- The last value of a condition that never came true.
 function text.value(value)
   if math.type(value) == "float" then
     return text.number(value)
-  elseif type(value) == "string" then
-    return ("'%s'"):format(value)
   end
   return tostring(value)
+end
+
+local function entry(value)
+  return type(value) == "string" and ("'%s'"):format(value) or text.value(value)
 end
 
 local function by_name(a, b)
@@ -38,7 +40,7 @@ function text.raised(problem)
     end
     table.sort(names, by_name)
     for index, name in ipairs(names) do
-      parts[index] = ("%s = %s"):format(tostring(name), text.value(problem[name]))
+      parts[index] = ("%s = %s"):format(tostring(name), entry(problem[name]))
     end
     shown = ("{%s}"):format(table.concat(parts, ", "))
   end

@@ -18,7 +18,7 @@ def value(thing: object) -> str:
         return "true" if thing else "false"
     if isinstance(thing, float):
         return number(thing)
-    return repr(thing)
+    return str(thing)
 
 
 def violation(

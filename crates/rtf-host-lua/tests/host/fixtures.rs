@@ -1,0 +1,69 @@
+//! Fixtures: set-up, check, collapse, tear-down.
+
+use serde_json::json;
+
+use crate::driver::Host;
+
+#[test]
+fn a_fixture_is_set_up_checked_and_torn_down() {
+    let mut host = Host::start();
+    host.start_plugin(
+        "set-up-fixture",
+        "local well = true\n\
+         function FixtureManager.setup(args) rtf.report(table.concat(args, ' ')) end\n\
+         function FixtureManager.check() local was = well; well = false; return was end\n\
+         function FixtureManager.tearDown() rtf.collapsed('the bus is silent') rtf.report('down') end\n",
+    );
+    assert_eq!(host.answer(), json!({"outcome": "passed"}));
+    assert_eq!(host.ask("check-fixture"), json!({"outcome": "passed"}));
+    assert_eq!(
+        host.ask("check-fixture"),
+        json!({"outcome": "failed", "reason": "check returned false"})
+    );
+    assert_eq!(host.ask("tear-down-fixture"), json!({"outcome": "passed"}));
+    assert_eq!(host.all("collapsed"), [&json!({"reason": "the bus is silent"})]);
+    assert_eq!(host.texts(), ["report: --rate 100", "report: down"]);
+    host.hang_up();
+    assert!(host.end().0.success());
+}
+
+#[test]
+fn a_fixture_that_cannot_be_set_up_is_torn_down() {
+    let cases = [
+        ("return false", "setup returned false"),
+        ("rtf.require(false, 'license')", "license"),
+        ("rtf.error('no license')", "no license"),
+    ];
+    for (line, reason) in cases {
+        let mut host = Host::start();
+        let tear_down = "function FixtureManager.tearDown() rtf.report('down') end";
+        host.start_plugin(
+            "set-up-fixture",
+            &format!("function FixtureManager.setup() {line} end\n{tear_down}"),
+        );
+        assert_eq!(host.answer(), json!({"outcome": "error", "reason": reason}));
+        assert_eq!(host.ask("tear-down-fixture"), json!({"outcome": "passed"}));
+        assert_eq!(host.texts().last().unwrap(), "report: down");
+    }
+}
+
+#[test]
+fn a_fixture_without_check_is_well() {
+    let mut host = Host::start();
+    host.start_plugin("set-up-fixture", "function FixtureManager.setup() end");
+    host.answer();
+    assert_eq!(host.ask("check-fixture"), json!({"outcome": "passed"}));
+}
+
+#[test]
+fn the_end_of_the_runner_ends_a_fixture_that_is_up() {
+    let mut host = Host::start();
+    host.start_plugin(
+        "set-up-fixture",
+        "function FixtureManager.tearDown() rtf.report('down') end",
+    );
+    host.answer();
+    host.hang_up();
+    assert_eq!(host.end().0.code(), Some(1));
+    assert!(host.texts().is_empty());
+}
