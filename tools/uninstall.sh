@@ -11,8 +11,12 @@ manifest=$top/share/rtf/manifest.txt
 
 remove() {
   local folder
-  rm -f "$top/$1"
   folder=$(dirname "$1")
+  rm -f "$top/$1"
+  if [[ $1 == *.py ]]; then # what Python made of it
+    rm -f "$top/$folder/__pycache__/$(basename "$1" .py)".*.pyc
+    rmdir "$top/$folder/__pycache__" 2>/dev/null || true
+  fi
   while [ "$folder" != . ] && rmdir "$top/$folder" 2>/dev/null; do
     folder=$(dirname "$folder")
   done

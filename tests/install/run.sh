@@ -29,7 +29,9 @@ status=0
 RTF_PLUGIN_PATH=project/build prefix/bin/rtf run project/suite.xml >output.txt 2>&1 || status=$?
 cat output.txt
 test "$status" -eq 1
-prefix/bin/rtf show latest >shown.txt
+status=0
+prefix/bin/rtf show latest >shown.txt || status=$? # the run's own exit code
+test "$status" -eq 1
 for name in CppTest LuaTest PythonTest FailingTest; do grep -q "$name" shown.txt; done
 SESSION
 
