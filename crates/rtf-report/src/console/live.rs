@@ -91,8 +91,11 @@ impl Live<'_> {
             parts.push(words::count(suite.fixtures.len() as u64, "fixture"));
         }
         let name = style::paint(BOLD, &format!("suite {}", escape::line(&suite.plan.name)));
-        let file = style::paint(DIM, &escape::line(&suite.plan.file));
-        page.line(format!("{name}  {}  {file}", parts.join(", ")).trim_end());
+        let mut line = format!("{name}  {}", parts.join(", "));
+        if !suite.plan.file.is_empty() {
+            line += &format!("  {}", style::paint(DIM, &escape::line(&suite.plan.file)));
+        }
+        page.line(&line);
     }
 
     fn fixture(&self, id: FixtureId) -> String {

@@ -17,6 +17,8 @@ const TEMPLATE: &str = "{elapsed_precise} [{bar:20}] {pos} of {len} done  {wide_
 pub(super) struct Progress {
     bar: ProgressBar,
     done: u64,
+    /// Nothing is shown before the number of tests is known.
+    begun: bool,
 }
 
 impl Progress {
@@ -30,15 +32,12 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
             bar.set_style(style.progress_chars("=> "));
         }
-        if !bar.is_hidden() {
-            bar.enable_steady_tick(TICK);
-        }
-        Self { bar, done: 0 }
+        Self { bar, done: 0, begun: false }
     }
 
     /// No bar.
     pub fn hidden() -> Self {
-        Self { bar: ProgressBar::hidden(), done: 0 }
+        Self { bar: ProgressBar::hidden(), done: 0, begun: false }
     }
 
     /// Moves on.
@@ -52,7 +51,11 @@ impl Progress {
             }
             EventKind::FixtureStarting { fixture, .. } => self.fixture(record, *fixture, "set up"),
             EventKind::FixtureStopping { fixture } => self.fixture(record, *fixture, "tear down"),
-            EventKind::SuiteStarted { .. } => self.bar.set_length(record.tests.len() as u64),
+            EventKind::SuiteStarted { .. } if !self.begun => {
+                self.begun = true;
+                self.bar.set_length(record.tests.len() as u64);
+                self.bar.enable_steady_tick(TICK);
+            }
             EventKind::TestFinished(finished) if record.verdict(finished.test).is_some() => {
                 self.step();
             }
@@ -73,11 +76,13 @@ impl Progress {
 
     /// Takes the bar away while `write` writes to the same terminal.
     pub fn around<T>(&self, write: impl FnOnce() -> T) -> T {
-        if self.bar.is_hidden() { write() } else { self.bar.suspend(write) }
+        if self.begun { self.bar.suspend(write) } else { write() }
     }
 
     /// Takes the bar away for good.
     pub fn end(&self) {
-        self.bar.finish_and_clear();
+        if self.begun {
+            self.bar.finish_and_clear();
+        }
     }
 }

@@ -79,7 +79,9 @@ fn failed_test(page: &mut Page, options: &ConsoleOptions, record: &Record, id: T
     if let (None, Some(failure)) = (finished, first) {
         fact("before", &first_line(&failure.text));
     }
-    if let Some(location) = first.and_then(|message| message.location.as_ref()) {
+    let violation = attempt.and_then(|attempt| attempt.violations().next());
+    let place = first.and_then(|message| message.location.as_ref());
+    if let Some(location) = place.or(violation.and_then(|v| v.location.as_ref())) {
         fact("at", &escape::line(&location.to_string()));
     }
     if let (Some(folder), Some(attempt)) = (&options.folder, attempt)
