@@ -22,7 +22,8 @@ put() {
   printf '%s\n' "$3" >>"$stage/manifest.txt"
 }
 
-# Installs the files of a folder whose names match one of the patterns.
+# Installs the files of a folder whose names match one of the patterns, but not
+# what running or building something there has left.
 put_tree() {
   local source=$1 destination=$2 names=() file
   shift 2
@@ -31,7 +32,9 @@ put_tree() {
   done
   while IFS= read -r file; do
     put 644 "$file" "$destination/${file#"$source"/}"
-  done < <(find "$source" -type f \( "${names[@]:1}" \) | sort)
+  done < <(find "$source" \
+    -regex '.*/\(build\|venv\|rtf-results\|__pycache__\)' -prune \
+    -o -type f \( "${names[@]:1}" \) -print | sort)
 }
 
 # Under sudo nothing is built: root would leave its files in the checkout.
@@ -62,7 +65,8 @@ put_tree sdk/cpp/include include '*.h' '*.hpp'
 put_tree sdk/cpp/cmake lib/cmake/RobotTestingFramework '*.cmake'
 # The Lua SDK is part of rtf-host-lua.
 put_tree sdk/python/rtf share/rtf/python/rtf '*.py' py.typed
-put_tree spec share/rtf/spec '*.md' '*.xsd' '*.json'
+put_tree spec share/rtf/spec '*.md' '*.xsd'
+put_tree schemas share/rtf/schemas '*.json'
 put_tree "$stage/man" share/man/man1 '*.1'
 put 644 "$stage/rtf.bash" share/bash-completion/completions/rtf
 put 644 "$stage/rtf.zsh" share/zsh/site-functions/_rtf
@@ -71,7 +75,7 @@ for page in README.md CHANGELOG.md LICENSE; do
   put 644 "$page" "share/doc/rtf/$page"
 done
 put_tree docs share/doc/rtf/docs '*.md'
-put_tree examples share/doc/rtf/examples '*'
+put_tree examples share/doc/rtf/examples '*.md' '*.xml' '*.py' '*.lua' '*.cpp' '*.hpp' CMakeLists.txt
 
 install -D -m 644 "$stage/manifest.txt" "$top/share/rtf/manifest.txt"
 say "installed $(wc -l <"$stage/manifest.txt") files below $top"

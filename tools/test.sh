@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Runs every check there is. A step that fails does not stop the others; its
-# whole output is shown. The last line counts the steps.
+# Runs every check there is. A step that fails does not stop the others; the end
+# of its output is shown, and all of it is in build/test-logs. The last line
+# counts the steps.
 #
 #   tools/test.sh             all steps
 #   tools/test.sh lint sdk    the steps whose names contain one of these words
@@ -36,21 +37,26 @@ step() {
   else
     failed+=("$name")
     verdict=FAILED
-    cat "$log"
+    printf -- '--- %s: the last lines of %s\n' "$name" "${log#"$ROOT"/}"
+    tail -n 200 "$log"
   fi
   seconds=$(((${EPOCHREALTIME/./} - ${started/./}) / 100000))
   printf '%-6s  %-28s %4d.%d s\n' "$verdict" "$name" $((seconds / 10)) $((seconds % 10))
 }
 
 lint_shell() {
-  shellcheck tools/*.sh tests/install/*.sh .ci/run
+  files '*.sh' .ci/run | xargs -d '\n' shellcheck
+}
+
+# The files of the project, those that are not committed yet included.
+files() {
+  git ls-files --cached --others --exclude-standard -- "$@"
 }
 
 # All but the header that cbindgen writes.
 lint_cpp() {
-  find sdk/c sdk/cpp examples conformance tests -regex '.*\.\(c\|h\|cpp\|hpp\)' \
-    ! -path sdk/c/include/rtf/plugin.h -print0 |
-    xargs -0 clang-format --style=file:sdk/.clang-format --dry-run --Werror
+  files '*.c' '*.h' '*.cpp' '*.hpp' | grep -v -x sdk/c/include/rtf/plugin.h |
+    xargs -d '\n' clang-format --style=file:sdk/.clang-format --dry-run --Werror
 }
 
 lint_python() {
@@ -73,8 +79,8 @@ sdk_cpp() {
 }
 
 suites_are_valid() {
-  find examples tests/install -name '*.xml' -print0 |
-    xargs -0 xmllint --noout --schema spec/suite.xsd
+  files 'examples/*.xml' 'tests/install/*.xml' |
+    xargs -d '\n' xmllint --noout --schema spec/suite.xsd
 }
 
 example_01() {
@@ -87,7 +93,7 @@ checkers=$(tools/venv.sh test)
 simulation=$(tools/venv.sh demo)
 
 step 'lint shell' lint_shell
-step 'lint rust format' cargo fmt --all --check
+step 'lint rust format' cargo fmt --all --check -- --color never
 step 'lint c++ format' lint_cpp
 step 'lint python' lint_python
 step 'lint suites' suites_are_valid

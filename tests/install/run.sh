@@ -15,7 +15,8 @@ cp -R tests/install/downstream "$work/project"
 
 for file in bin/rtf libexec/rtf/rtf-host-native libexec/rtf/rtf-host-lua share/man/man1/rtf.1 \
   share/man/man1/rtf-run.1 share/bash-completion/completions/rtf share/zsh/site-functions/_rtf \
-  share/fish/vendor_completions.d/rtf.fish share/rtf/spec/suite.md share/doc/rtf/README.md; do
+  share/fish/vendor_completions.d/rtf.fish share/rtf/spec/suite.md share/rtf/schemas/event.json \
+  share/doc/rtf/README.md; do
   [ -s "$prefix/$file" ] || die "$file was not installed"
 done
 
