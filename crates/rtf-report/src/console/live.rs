@@ -197,8 +197,7 @@ impl Live<'_> {
     }
 
     fn log(&self, source: Source) -> Option<String> {
-        let folder = self.options.folder.as_ref()?;
-        Some(folder.join(logs::log(self.record, source)).display().to_string())
+        self.options.shown(&logs::log(self.record, source))
     }
 
     fn skipped(&self, page: &mut Page, id: TestId, reason: &str) {

@@ -70,7 +70,7 @@ impl Console {
         let Self { out, page, progress, .. } = self;
         let written = progress.around(|| out.write_all(page.as_bytes()).and_then(|()| out.flush()));
         self.page.clear();
-        written.map_err(ReportError::at("to the console", Path::new("standard output")))
+        written.map_err(ReportError::at("what happens", Path::new("standard output")))
     }
 }
 

@@ -1,10 +1,10 @@
 //! How much the console tells, and what it must be told.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use rtf_model::{Record, TestId};
 
-use crate::words;
+use crate::{escape, words};
 
 /// How much is told while the run goes on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -32,6 +32,14 @@ pub struct ConsoleOptions {
     pub progress: bool,
     /// Which command runs a failed test again.
     pub rerun: Rerun,
+}
+
+impl ConsoleOptions {
+    /// A file or folder below the run's folder, as it is shown.
+    pub(super) fn shown(&self, path: &Path) -> Option<String> {
+        let path = self.folder.as_ref()?.join(path);
+        Some(escape::line(&path.display().to_string()).into_owned())
+    }
 }
 
 impl Default for ConsoleOptions {

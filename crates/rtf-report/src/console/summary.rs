@@ -20,7 +20,9 @@ pub(super) fn show(page: &mut Page, options: &ConsoleOptions, record: &Record) {
     skipped(page, record);
     page.line("");
     if let Some(folder) = &options.folder {
-        page.line(&format!("results: {}", folder.display()));
+        let here = folder.as_os_str().is_empty().then_some(".".into());
+        let shown = here.unwrap_or_else(|| folder.display().to_string());
+        page.line(&format!("results: {}", escape::line(&shown)));
     }
     result(page, record);
 }
@@ -84,11 +86,9 @@ fn failed_test(page: &mut Page, options: &ConsoleOptions, record: &Record, id: T
     if let Some(location) = place.or(violation.and_then(|v| v.location.as_ref())) {
         fact("at", &escape::line(&location.to_string()));
     }
-    if let (Some(folder), Some(attempt)) = (&options.folder, attempt)
-        && !attempt.output.is_empty()
-    {
+    if let Some(attempt) = attempt.filter(|attempt| !attempt.output.is_empty()) {
         let log = logs::attempt_log(record, id, (attempt.repetition, attempt.attempt));
-        fact("log", &folder.join(log).display().to_string());
+        options.shown(&log).into_iter().for_each(|log| fact("log", &log));
     }
     if let Some(command) = (options.rerun)(record, id) {
         fact("again", &escape::line(&command));

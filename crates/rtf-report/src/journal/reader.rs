@@ -138,7 +138,9 @@ impl<V: FnMut(&Event, &Record) -> Result<(), ReportError>> Reading<'_, V> {
     fn take(&mut self, line: &[u8]) -> Result<(), JournalError> {
         match serde_json::from_slice::<Event>(line) {
             Ok(event) => self.event(&event),
-            Err(_) if !line.ends_with(b"\n") => {
+            // The only line of a journal whose runner was killed at once begins
+            // as an event does; anything else is another file.
+            Err(_) if !line.ends_with(b"\n") && (self.line > 1 || line.starts_with(b"{")) => {
                 self.stored.torn = true;
                 Ok(())
             }

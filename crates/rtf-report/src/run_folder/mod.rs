@@ -100,7 +100,11 @@ pub fn create(results: &Path) -> Result<RunFolder, RunFolderError> {
             Err(error) => return Err(failed(&path)(error)),
         }
     };
-    point_latest(results, &name)?;
+    if let Err(error) = point_latest(results, &name) {
+        // Nothing will run: do not leave an empty folder that looks like a run.
+        drop(fs::remove_dir(&path));
+        return Err(error);
+    }
     let started_at = now.strftime("%Y-%m-%dT%H:%M:%S%.3f%:z").to_string();
     Ok(RunFolder { path, name, started_at })
 }
@@ -190,5 +194,6 @@ mod tests {
         let error = create(results.path()).unwrap_err();
         assert!(matches!(error, RunFolderError::Latest { .. }), "{error}");
         assert!(results.path().join("latest/mine").is_dir());
+        assert_eq!(fs::read_dir(results.path()).unwrap().count(), 1, "nothing else is left");
     }
 }

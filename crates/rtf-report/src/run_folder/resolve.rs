@@ -29,6 +29,23 @@ pub enum ResolveError {
     },
 }
 
+impl ResolveError {
+    /// What could be asked for instead.
+    #[must_use]
+    pub fn hint(&self) -> Option<String> {
+        match self {
+            Self::Unknown { newest, .. } if !newest.is_empty() => {
+                Some(format!("the newest runs are {}", newest.join(", ")))
+            }
+            Self::Unknown { looked, .. } => {
+                let looked: Vec<_> = looked.iter().map(|path| path.display().to_string()).collect();
+                Some(format!("looked for {}", looked.join(", ")))
+            }
+            Self::Empty { .. } => Some("run something first, or name a run's folder".to_owned()),
+        }
+    }
+}
+
 /// Finds the journal of a run: `latest`, the name of a run in `results`, the
 /// path of a run's folder, or the path of a journal.
 ///
@@ -120,5 +137,7 @@ mod tests {
         };
         assert_eq!(looked, [results.path().join("c").join(JOURNAL), Path::new("c").join(JOURNAL)]);
         assert_eq!(newest, ["b", "a"]);
+        let error = resolve(results.path(), "c").unwrap_err();
+        assert_eq!(error.hint().as_deref(), Some("the newest runs are b, a"));
     }
 }

@@ -93,3 +93,22 @@ fn a_run_that_breaks_the_order_is_noticed() {
     fanout.send(events[2].clone());
     drop(fanout.join());
 }
+
+/// Each write fails, the error is told once, and the run goes on.
+#[test]
+#[cfg(target_os = "linux")]
+fn what_cannot_be_written_is_told_once() {
+    let Ok(full) = std::fs::OpenOptions::new().write(true).open("/dev/full") else {
+        panic!("Linux has /dev/full")
+    };
+    let console = rtf_report::console::Console::new(
+        Box::new(full),
+        rtf_report::console::ConsoleOptions::default(),
+    );
+    let fanout = Fanout::start(vec![Box::new(console)]).unwrap();
+    events("verdicts").0.into_iter().for_each(|event| fanout.send(event));
+    let finished = fanout.join();
+    let errors: Vec<_> = finished.errors.iter().map(ToString::to_string).collect();
+    assert_eq!(errors, ["cannot write what happens to `standard output`"]);
+    assert!(finished.record.is_complete());
+}

@@ -118,6 +118,8 @@ fn events_that_come_twice_count_once() {
 fn a_file_that_is_no_journal_is_refused() {
     let error = read("\x7fELF\n\0\0\n").unwrap_err();
     assert!(matches!(error, JournalError::NotAJournal { .. }), "{error}");
+    let error = read("one line").unwrap_err();
+    assert!(matches!(error, JournalError::NotAJournal { .. }), "{error}");
     assert!(read("").unwrap().record.run.is_none());
     let missing = journal::read(Path::new("there/is/no/such/file")).unwrap_err();
     assert!(matches!(missing, JournalError::Read { .. }), "{missing}");
