@@ -11,8 +11,7 @@ use rtf_model::{Diagnostic, Severity};
 
 fn data(folder: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(folder);
-    let mut files: Vec<_> =
-        folder.read_dir().unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut files: Vec<_> = folder.read_dir().unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
     assert!(!files.is_empty());
     files
@@ -52,8 +51,7 @@ fn the_predecessors_files_load_unchanged() {
         let (suite, problems) = file(&format!("legacy/{name}"));
         assert!(!suite.tests.is_empty(), "{name}");
         let codes: Vec<_> = problems.iter().map(|problem| problem.code.as_str()).collect();
-        let expected: &[&str] =
-            if name.starts_with("dashes") { &["comment-dashes"] } else { &[] };
+        let expected: &[&str] = if name.starts_with("dashes") { &["comment-dashes"] } else { &[] };
         assert_eq!(codes, expected, "{name}");
         assert!(problems.iter().all(|problem| problem.severity == Severity::Warning));
     }
@@ -73,11 +71,14 @@ fn a_predecessors_file_in_full() {
         .iter()
         .map(|test| (test.plugin.name.value.as_str(), test.plugin.param.as_str()))
         .collect();
-    assert_eq!(tests, [
-        ("SensorRate", "--from sensors_left.ini"),
-        ("SensorRate", "--from sensors_right.ini"),
-        ("BoardVersions", ""),
-    ]);
+    assert_eq!(
+        tests,
+        [
+            ("SensorRate", "--from sensors_left.ini"),
+            ("SensorRate", "--from sensors_right.ini"),
+            ("BoardVersions", ""),
+        ]
+    );
 }
 
 #[test]
@@ -110,34 +111,43 @@ fn every_attribute_arrives() {
     assert_eq!(suite.timeout, Some(secs(5400)));
     assert_eq!(suite.tags, ["hardware", "slow"]);
     assert!(suite.tolerates_collapse);
-    assert_eq!(suite.env, [("ARM_PORT", "17681"), ("EMPTY", "")].map(|(n, v)| (n.into(), v.into())));
+    assert_eq!(
+        suite.env,
+        [("ARM_PORT", "17681"), ("EMPTY", "")].map(|(n, v)| (n.into(), v.into()))
+    );
     let test = &suite.tests[0];
     assert_eq!(test.name.as_ref().unwrap().value, "reach");
     assert_eq!(test.plugin.name.value, "ReachTest");
     assert_eq!(test.plugin.param, "--n 3 \"a b\"");
     assert_eq!(test.repetitions, 5);
-    assert_eq!(test.limits, WrittenLimits {
-        load: Some(secs(11)),
-        setup: Some(secs(12)),
-        run: Some(secs(120)),
-        teardown: Some(secs(13)),
-        slow: Some(secs(14)),
-        grace: Some(secs(15)),
-    });
+    assert_eq!(
+        test.limits,
+        WrittenLimits {
+            load: Some(secs(11)),
+            setup: Some(secs(12)),
+            run: Some(secs(120)),
+            teardown: Some(secs(13)),
+            slow: Some(secs(14)),
+            grace: Some(secs(15)),
+        }
+    );
     assert_eq!(test.after_collapse, AfterCollapse::Skip);
     assert!(test.critical);
     assert_eq!(test.tags, ["reach", "slow"]);
     assert_eq!(test.env, [("SEED".to_owned(), "7".to_owned())]);
     let other = &suite.tests[1];
     assert_eq!(other.after_collapse, AfterCollapse::Rerun);
-    assert_eq!(other.limits, WrittenLimits {
-        load: Some(secs(1)),
-        setup: Some(secs(2)),
-        run: Some(secs(10)),
-        teardown: Some(secs(3)),
-        slow: Some(secs(4)),
-        grace: Some(Duration::from_millis(500)),
-    });
+    assert_eq!(
+        other.limits,
+        WrittenLimits {
+            load: Some(secs(1)),
+            setup: Some(secs(2)),
+            run: Some(secs(10)),
+            teardown: Some(secs(3)),
+            slow: Some(secs(4)),
+            grace: Some(Duration::from_millis(500)),
+        }
+    );
 }
 
 #[test]
@@ -161,13 +171,16 @@ fn every_part_of_a_process_fixture_arrives() {
         };
         probes.iter().map(kind).collect::<Vec<_>>()
     };
-    assert_eq!(kinds(&process.ready), [
-        "127.0.0.1:17681",
-        "http://127.0.0.1:8080/health",
-        "listening on port \\d+",
-        "run/sim.pid",
-        "python3|arm_client.py|time",
-    ]);
+    assert_eq!(
+        kinds(&process.ready),
+        [
+            "127.0.0.1:17681",
+            "http://127.0.0.1:8080/health",
+            "listening on port \\d+",
+            "run/sim.pid",
+            "python3|arm_client.py|time",
+        ]
+    );
     assert_eq!(kinds(&process.alive), ["python3|arm_client.py|time", "(?i)fatal", "[::1]:17681"]);
     assert_eq!(process.ready[0].every, Some(Duration::from_millis(50)));
     assert_eq!(process.ready[0].timeout, Some(Duration::from_millis(500)));
@@ -179,52 +192,63 @@ fn all_problems_of_a_file_come_at_once_with_their_places() {
     let text = "<suite nam='x'>\n <env name='A=B' value=''/>\n <env name='RTF_SCOPE' value=''/>\n \
                 <env value='x'/>\n <env name='C' value='1'/><env name='C' value='2'/>\n \
                 stray\n <test>A<env name='x'/>B</test>\n <test> </test>\n</suite>";
-    assert_eq!(places(text), [
-        at("unknown-attribute", 1, 8),
-        at("stray-text", 6, 2),
-        at("invalid-value", 2, 13),
-        at("invalid-value", 3, 13),
-        at("incomplete", 4, 2),
-        at("repeated-variable", 5, 38),
-        at("incomplete", 7, 9),
-        at("divided-text", 7, 24),
-        at("incomplete", 8, 2),
-    ]);
+    assert_eq!(
+        places(text),
+        [
+            at("unknown-attribute", 1, 8),
+            at("stray-text", 6, 2),
+            at("invalid-value", 2, 13),
+            at("invalid-value", 3, 13),
+            at("incomplete", 4, 2),
+            at("repeated-variable", 5, 38),
+            at("incomplete", 7, 9),
+            at("divided-text", 7, 24),
+            at("incomplete", 8, 2),
+        ]
+    );
 }
 
 #[test]
 fn what_is_wrong_with_a_process_fixture() {
     let fixture = |inside: &str| {
-        let text = format!("<suite><fixture type='process'>{inside}</fixture><test>A</test></suite>");
+        let text =
+            format!("<suite><fixture type='process'>{inside}</fixture><test>A</test></suite>");
         problems(&text).into_iter().map(|problem| problem.message).collect::<Vec<_>>()
     };
     assert_eq!(fixture(""), ["`<fixture>` needs a `<command>` for `type=\"process\"`"]);
     assert_eq!(fixture("<command/>"), ["`<command>` needs a program as its text"]);
-    assert_eq!(fixture("<command>a 'b</command>"), [
-        "`<command>` has a quote that is not closed: `a 'b`"
-    ]);
-    assert_eq!(fixture("<command>a | b</command>"), [
-        "no shell reads this command: the program gets `|` as an argument"
-    ]);
-    assert_eq!(fixture("<command>a</command><command>b</command>"), [
-        "`<command>` twice in one fixture"
-    ]);
+    assert_eq!(
+        fixture("<command>a 'b</command>"),
+        ["`<command>` has a quote that is not closed: `a 'b`"]
+    );
+    assert_eq!(
+        fixture("<command>a | b</command>"),
+        ["no shell reads this command: the program gets `|` as an argument"]
+    );
+    assert_eq!(
+        fixture("<command>a</command><command>b</command>"),
+        ["`<command>` twice in one fixture"]
+    );
     let probe = |probe: &str| fixture(&format!("<command>a</command>{probe}"));
-    assert_eq!(probe("<ready/>"), [
-        "`<ready>` needs one of the attributes `tcp`, `http`, `log`, `file`, `command`"
-    ]);
-    assert_eq!(probe("<ready tcp='a:1' file='b'/>"), [
-        "`<ready>` asks several things: `tcp` and `file`"
-    ]);
+    assert_eq!(
+        probe("<ready/>"),
+        ["`<ready>` needs one of the attributes `tcp`, `http`, `log`, `file`, `command`"]
+    );
+    assert_eq!(
+        probe("<ready tcp='a:1' file='b'/>"),
+        ["`<ready>` asks several things: `tcp` and `file`"]
+    );
     assert_eq!(probe("<ready tcp='a:0'/>"), ["`tcp` is not a host and a port: `a:0`"]);
-    assert_eq!(probe("<ready http='https://a/'/>"), [
-        "`http` is not a URL with `http://`: `https://a/`"
-    ]);
+    assert_eq!(
+        probe("<ready http='https://a/'/>"),
+        ["`http` is not a URL with `http://`: `https://a/`"]
+    );
     assert_eq!(probe("<ready log='('/>"), ["`log` is not a regular expression: `(`"]);
     assert_eq!(probe("<ready log='x' every='1s'/>"), ["`every` has no effect beside `log`"]);
-    assert_eq!(probe("<alive log-bad='x' timeout='1s'/>"), [
-        "`timeout` has no effect beside `log-bad`"
-    ]);
+    assert_eq!(
+        probe("<alive log-bad='x' timeout='1s'/>"),
+        ["`timeout` has no effect beside `log-bad`"]
+    );
     assert_eq!(probe("<stop signal='x'/>"), ["`signal` is not a signal: `x`"]);
 }
 
@@ -237,9 +261,10 @@ fn files_that_are_no_utf8_or_too_long() {
         suite::open(&path, name).map(|_| ()).map_err(|(problem, _)| problem)
     };
     let problem = open("a.xml", b"<suite>\n<test>\xe4</test></suite>").unwrap_err();
-    assert_eq!((problem.code.as_str(), problem.labels[0].line, problem.labels[0].column), (
-        "encoding", 2, 7
-    ));
+    assert_eq!(
+        (problem.code.as_str(), problem.labels[0].line, problem.labels[0].column),
+        ("encoding", 2, 7)
+    );
     let latin = "<?xml version='1.0' encoding='ISO-8859-1'?><suite name='ä'/>";
     let problem = open("b.xml", latin.as_bytes()).unwrap_err();
     assert_eq!((problem.code.as_str(), problem.labels[0].column), ("encoding", 31));
@@ -292,11 +317,46 @@ fn the_schema_and_the_loader_accept_the_same_files() {
 /// Pieces from which texts arise that look like suites.
 fn suite_like() -> impl Strategy<Value = String> {
     let piece = prop::sample::select(vec![
-        "<suite", "<test", "<fixture", "<env", "<command>", "<ready", "</test>", "</suite>",
-        "</fixture>", "</command>", " type='process'", " timeout='1s'", " tcp='a:1'", " log='['",
-        " name='ä'", " value=''", ">", "/>", "<!-- -- -->", "<!--", "-->", "<![CDATA[", "]]>",
-        "<?xml version='1.0'?>", "<!DOCTYPE", "&amp;", "&x;", "A.lua", "\n", "\r\n", " ", "\"",
-        "'", "é", "\u{0}", " tags='a,b'", " depends='x'", " xmlns='u'", "x:", " xmlns:x='u'",
+        "<suite",
+        "<test",
+        "<fixture",
+        "<env",
+        "<command>",
+        "<ready",
+        "</test>",
+        "</suite>",
+        "</fixture>",
+        "</command>",
+        " type='process'",
+        " timeout='1s'",
+        " tcp='a:1'",
+        " log='['",
+        " name='ä'",
+        " value=''",
+        ">",
+        "/>",
+        "<!-- -- -->",
+        "<!--",
+        "-->",
+        "<![CDATA[",
+        "]]>",
+        "<?xml version='1.0'?>",
+        "<!DOCTYPE",
+        "&amp;",
+        "&x;",
+        "A.lua",
+        "\n",
+        "\r\n",
+        " ",
+        "\"",
+        "'",
+        "é",
+        "\u{0}",
+        " tags='a,b'",
+        " depends='x'",
+        " xmlns='u'",
+        "x:",
+        " xmlns:x='u'",
     ]);
     prop::collection::vec(piece, 0..60).prop_map(|pieces| pieces.concat())
 }

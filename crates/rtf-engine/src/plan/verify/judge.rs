@@ -15,7 +15,6 @@ const SHOWN_BYTES: u64 = 4 * 1024 * 1024;
 
 /// Judges the answers about a group's files from `first` on.
 pub(super) fn judge(group: &Group, first: usize, answers: Vec<Answer>, verified: &mut Verified) {
-    let mut host_failed = false;
     for (entry, answer) in group.files[first..].iter().zip(answers) {
         let problem = match answer {
             Answer::Said(word) if word.ok => {
@@ -33,10 +32,11 @@ pub(super) fn judge(group: &Group, first: usize, answers: Vec<Answer>, verified:
                 Diagnostic::error("plugin-not-loadable", message)
             }
             Answer::HostFailed { how, stderr } => {
-                if std::mem::replace(&mut host_failed, true) {
+                let problem = host(group, &how, &stderr);
+                if verified.problems.iter().any(|known| known.message == problem.message) {
                     continue;
                 }
-                host(group, &how, &stderr)
+                problem
             }
         };
         verified.problems.push(all_places(entry, problem));
@@ -51,6 +51,7 @@ fn with_stderr(problem: Diagnostic, stderr: &str) -> Diagnostic {
     if stderr.is_empty() { problem } else { problem.note(format!("it printed\n{stderr}")) }
 }
 
+/// Said once of a host, however many plug-ins and suites need it.
 fn host(group: &Group, how: &str, stderr: &str) -> Diagnostic {
     let command = shell_words::join(&group.host.command);
     let message = format!("the host `{command}` does not work: {how}");

@@ -1,0 +1,74 @@
+//! Suites, plug-ins and folders in any mix.
+
+use crate::bench::{Bench, names};
+
+#[test]
+fn a_folder_is_its_suites_or_else_its_plugins() {
+    let mut bench = Bench::new();
+    bench.file("work/all/b.xml", "<suite><test>../A.lua</test></suite>");
+    bench.file("work/all/a.xml", "<suite><test>../A.lua</test></suite>");
+    bench.file("work/all/launch.xml", "<robot/>");
+    bench.file("work/all/C.lua", "");
+    bench.file("work/all/below/c.xml", "<suite><test>../../A.lua</test></suite>");
+    bench.file("work/A.lua", "");
+    let files = |bench: &Bench| {
+        let plan = bench.plan(&["all"]);
+        plan.suites.iter().map(|suite| suite.file.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(files(&bench), ["all/a.xml", "all/b.xml"]);
+    bench.options.recursive = true;
+    assert_eq!(files(&bench), ["all/a.xml", "all/b.xml", "all/below/c.xml"]);
+    for name in ["b.lua", "a.py", "c.so", "note.txt", ".hidden.lua", "sub/d.lua", ".git/e.lua"] {
+        bench.file(&format!("work/plain/{name}"), "");
+    }
+    let plan = bench.plan(&["plain"]);
+    assert_eq!(names(&plan, 0), ["a", "b", "c", "d"]);
+    assert_eq!(plan.suites[0].name, "plug-ins");
+    bench.options.recursive = false;
+    assert_eq!(names(&bench.plan(&["plain"]), 0), ["a", "b", "c"]);
+}
+
+#[test]
+fn plugins_given_directly_make_one_suite() {
+    let mut bench = Bench::new();
+    bench.file("work/A.lua", "");
+    bench.file("work/b/A.lua", "");
+    bench.file("work/s.xml", "<suite name='plug-ins'><test>A.lua</test></suite>");
+    bench.options.param = "--n 3".to_owned();
+    bench.options.environment = "--robot r".to_owned();
+    bench.options.repetitions = 4;
+    let plan = bench.plan(&["A.lua", "s.xml", "b/A.lua", "s.xml"]);
+    let suites: Vec<_> = plan.suites.iter().map(|suite| suite.name.as_str()).collect();
+    assert_eq!(suites, ["plug-ins", "plug-ins#2", "plug-ins#3"]);
+    let suite = &plan.suites[2];
+    assert_eq!(names(&plan, 2), ["A", "A#2"]);
+    assert_eq!((suite.file.as_str(), bench.relative(&suite.folder).as_str()), ("", "work"));
+    assert_eq!(suite.environment, "--robot r");
+    assert_eq!((suite.tests[0].repetitions, suite.tests[0].plugin.args.len()), (4, 2));
+    assert_eq!((suite.tests[1].id.0, plan.tests), (3, 4));
+    // The suite's own tests have what the suite says.
+    assert_eq!(
+        (plan.suites[0].tests[0].repetitions, plan.suites[0].tests[0].plugin.args.len()),
+        (1, 0)
+    );
+}
+
+/// Defect 1 of the predecessor: missing plug-ins and empty folders were green.
+#[test]
+fn nothing_to_run_is_an_error() {
+    let bench = Bench::new();
+    bench.file("work/empty/note.txt", "");
+    bench.file("work/none.xml", "<suite><description>x</description></suite>");
+    bench.file("work/robot.xml", "<robot/>");
+    let code = |path: &str| {
+        let outcome = bench.build(&[path]);
+        assert!(outcome.plan.is_none());
+        outcome.diagnostics[0].code.clone()
+    };
+    assert_eq!(code("empty"), "no-tests");
+    assert_eq!(code("none.xml"), "no-tests");
+    assert_eq!(code("robot.xml"), "not-a-suite");
+    assert_eq!(code("nothing.xml"), "no-such-file");
+    assert_eq!(code("empty/note.txt"), "unknown-file");
+    assert_eq!(bench.problems(&[])[0].0, "no-tests");
+}

@@ -1,0 +1,143 @@
+//! Where plug-ins and hosts are found.
+
+use std::sync::Arc;
+
+use crate::bench::Bench;
+
+/// Defect 11 of the predecessor: `.so` was searched anywhere in the path.
+#[test]
+fn a_folder_named_like_a_library_is_no_library() {
+    let bench = Bench::new();
+    bench.file("work/my.sources/Arm.so", "");
+    bench.file("work/my.sources/libArm.so/x", "");
+    bench.file("work/my.sources/Gaze.lua", "");
+    bench.file("work/my.sources/s.xml", "<suite><test>Arm</test><test>Gaze.lua</test></suite>");
+    bench.file("work/s.xml", "<suite><test>my.sources/Arm</test></suite>");
+    let plan = bench.plan(&["my.sources/s.xml", "s.xml", "my.sources/Arm.so"]);
+    for test in plan.suites.iter().map(|suite| &suite.tests[0]) {
+        assert_eq!(bench.relative(&test.plugin.file), "work/my.sources/Arm.so");
+    }
+}
+
+#[test]
+fn plugins_are_searched_in_order() {
+    let mut bench = Bench::new();
+    bench.file("work/s.xml", "<suite><test>Arm</test></suite>");
+    let found =
+        |bench: &Bench| bench.relative(&bench.plan(&["s.xml"]).suites[0].tests[0].plugin.file);
+    bench.file("lib/rtf/plugins/libArm.so", "");
+    assert_eq!(found(&bench), "lib/rtf/plugins/libArm.so");
+    bench.file("work/system/Arm.so", "");
+    bench.set("LD_LIBRARY_PATH", "system");
+    assert_eq!(found(&bench), "work/system/Arm.so");
+    bench.file("own/Arm.so", "");
+    let own = format!("{}:{}", bench.path("nowhere"), bench.path("own"));
+    bench.set("RTF_PLUGIN_PATH", &own);
+    assert_eq!(found(&bench), "own/Arm.so");
+    bench.file("work/Arm", "a program, not a plug-in, but of this name");
+    assert_eq!(found(&bench), "work/Arm");
+    bench.file("work/libArm.so", "");
+    assert_eq!(found(&bench), "work/libArm.so");
+    bench.file("work/Arm.so", "");
+    assert_eq!(found(&bench), "work/Arm.so");
+    // The suite's own variables go over the user's, and start in its folder.
+    bench.file("work/deep/only/Gaze.so", "");
+    bench.file(
+        "work/deep/s.xml",
+        "<suite><env name='RTF_PLUGIN_PATH' value='only'/><test>Gaze</test></suite>",
+    );
+    let plan = bench.plan(&["deep/s.xml"]);
+    assert_eq!(bench.relative(&plan.suites[0].tests[0].plugin.file), "work/deep/only/Gaze.so");
+}
+
+#[test]
+fn a_missing_plugin_says_every_path_that_was_searched() {
+    let mut bench = Bench::new();
+    bench.set("RTF_PLUGIN_PATH", "/p1:/p2");
+    bench.set("LD_LIBRARY_PATH", "/l1");
+    bench.file("work/s.xml", "<suite>\n<test>Arm</test>\n<test type='lua'>Arm</test></suite>");
+    let outcome = bench.build(&["s.xml"]);
+    assert!(outcome.plan.is_none());
+    let (dll, lua) = (&outcome.diagnostics[0], &outcome.diagnostics[1]);
+    let installed = bench.path("lib/rtf/plugins");
+    assert_eq!(
+        dll.notes,
+        [format!(
+            "looked for `Arm.so`, `libArm.so`, `Arm` in\n  {}\n  /p1\n  /p2\n  /l1\n  {installed}",
+            bench.path("work")
+        )]
+    );
+    assert_eq!(
+        lua.notes,
+        [format!(
+            "looked for `Arm.lua`, `Arm` in\n  {}\n  /p1\n  /p2\n  {installed}",
+            bench.path("work")
+        )]
+    );
+    assert_eq!((dll.labels[0].line, dll.labels[0].column), (2, 7));
+}
+
+#[test]
+fn a_plugin_that_is_missed_often_is_reported_once() {
+    let bench = Bench::new();
+    let tests = "<test>Arm</test>\n".repeat(10);
+    bench.file("work/s.xml", &format!("<suite>{tests}</suite>"));
+    let outcome = bench.build(&["s.xml"]);
+    assert_eq!(outcome.diagnostics.len(), 1);
+    assert_eq!(outcome.diagnostics[0].labels.len(), 3);
+    assert_eq!(outcome.diagnostics[0].notes[1], "needed in 7 more places of this suite");
+}
+
+#[test]
+fn python_is_the_users_own() {
+    let mut bench = Bench::new();
+    bench.file("work/A.py", "");
+    bench.file("work/s.xml", "<suite><test>A.py</test></suite>");
+    let host = |bench: &Bench, suite: &str| {
+        let host = Arc::clone(&bench.plan(&[suite]).suites[0].tests[0].plugin.host);
+        (host.command.clone(), host.env.clone())
+    };
+    let venv = bench.program("venv/bin/python3", "");
+    let path = format!("{}:{}", bench.path("venv/bin"), bench.path("bin"));
+    bench.set("PATH", &path);
+    let (command, env) = host(&bench, "s.xml");
+    assert_eq!(command, [venv.to_str().unwrap(), "-m", "rtf.host"]);
+    // Without our module beside it, its own may have it.
+    assert!(env.is_empty());
+    // In a source tree; then installed, which comes first.
+    bench.file("sdk/python/rtf/host/__main__.py", "");
+    bench.set("PYTHONPATH", "/mine");
+    let path =
+        |folder: &str| vec![("PYTHONPATH".to_owned(), format!("{}:/mine", bench.path(folder)))];
+    assert_eq!(host(&bench, "s.xml").1, path("sdk/python"));
+    bench.file("share/rtf/python/rtf/host/__main__.py", "");
+    assert_eq!(host(&bench, "s.xml").1, path("share/rtf/python"));
+    // What a suite adds stays behind ours.
+    bench.file(
+        "work/t.xml",
+        "<suite><env name='PYTHONPATH' value='theirs'/><test>A.py</test></suite>",
+    );
+    let expected = format!("{}:theirs", bench.path("share/rtf/python"));
+    assert_eq!(host(&bench, "t.xml").1[0].1, expected);
+    let other = bench.program("other/python3.12", "");
+    bench.set("RTF_PYTHON", other.to_str().unwrap());
+    assert_eq!(host(&bench, "s.xml").0[0], other.to_str().unwrap());
+}
+
+#[test]
+fn a_host_that_is_not_there_is_reported_once_beside_the_rest() {
+    let bench = Bench::new();
+    std::fs::remove_file(bench.root.join("bin/rtf-host-lua")).unwrap();
+    bench.file("work/A.lua", "");
+    bench.file(
+        "work/s.xml",
+        "<suite><test>A.lua</test><test>A.lua</test><test type='lua'>B</test></suite>",
+    );
+    let codes: Vec<_> = bench.problems(&["s.xml"]).into_iter().map(|(code, _)| code).collect();
+    assert_eq!(codes, ["no-such-host", "no-such-plugin"]);
+    bench.program("libexec/rtf/rtf-host-lua", "");
+    bench.file("work/B.lua", "");
+    let plan = bench.plan(&["s.xml"]);
+    let host = &plan.suites[0].tests[0].plugin.host;
+    assert_eq!(host.command, [bench.path("libexec/rtf/rtf-host-lua")]);
+}

@@ -1,0 +1,168 @@
+//! Hosts asked with `--check` before a run. The hosts here are shell scripts
+//! that answer as the protocol says, or break it.
+
+use std::time::Duration;
+
+use rtf_engine::plan::Outcome;
+use rtf_model::Diagnostic;
+
+use crate::bench::{Bench, names};
+
+/// A bench whose Lua host runs `script` for `--check FILE…` and whose suites
+/// are checked.
+fn bench(script: &str) -> Bench {
+    let mut bench = Bench::new();
+    bench.options.verify = Some(Duration::from_secs(20));
+    bench.program("bin/rtf-host-lua", &format!("test \"$1\" = --check || exit 9\nshift\n{script}"));
+    for name in ["A", "B", "C"] {
+        bench.file(&format!("work/{name}.lua"), "one\ntwo\n  three\n");
+    }
+    bench.file(
+        "work/s.xml",
+        "<suite>\n<test>A.lua</test>\n<test>B.lua</test>\n<test>C.lua</test>\n<test>B.lua</test>\n</suite>",
+    );
+    bench
+}
+
+/// Says `fields` of B and `"ok":true` of all others.
+fn answer_b(fields: &str) -> String {
+    format!(
+        "for f; do case $f in\n*/B.lua) printf '%s\\n' '{{\"file\":\"'$f'\",{fields}}}';;\n\
+         *) echo '{{\"file\":\"'$f'\",\"ok\":true,\"kinds\":[\"test\"]}}';;\nesac; done"
+    )
+}
+
+fn only(outcome: &Outcome) -> &Diagnostic {
+    assert!(outcome.plan.is_none());
+    assert_eq!(outcome.diagnostics.len(), 1, "{:#?}", outcome.diagnostics);
+    &outcome.diagnostics[0]
+}
+
+#[test]
+fn plugins_that_load_are_fine() {
+    let bench = bench(&answer_b("\"ok\":true"));
+    assert_eq!(bench.plan(&["s.xml"]).tests, 4);
+}
+
+#[test]
+fn a_syntax_error_is_shown_in_the_suite_and_in_the_plugin() {
+    let bench =
+        bench(&answer_b("\"ok\":false,\"message\":\"unexpected symbol near x\",\"line\":3"));
+    let outcome = bench.build(&["s.xml"]);
+    let found = only(&outcome);
+    assert_eq!(found.code, "plugin-not-loadable");
+    assert_eq!(found.message, "the plug-in `B.lua` cannot be loaded: unexpected symbol near x");
+    let places: Vec<_> =
+        found.labels.iter().map(|label| (label.file.as_str(), label.line, label.column)).collect();
+    let plugin = bench.path("work/B.lua");
+    assert_eq!(places, [("s.xml", 3, 7), ("s.xml", 5, 7), (plugin.as_str(), 3, 3)]);
+    assert!(outcome.sources.text(&plugin).is_some());
+}
+
+#[test]
+fn the_loaders_text_is_kept() {
+    let text = "libarm.so: undefined symbol: arm_open\\nneeded by libarm.so";
+    let bench = bench(&answer_b(&format!("\"ok\":false,\"message\":\"{text}\"")));
+    let outcome = bench.build(&["s.xml"]);
+    let found = only(&outcome);
+    let message = "the plug-in `B.lua` cannot be loaded: libarm.so: undefined symbol: arm_open";
+    assert_eq!(found.message, message);
+    assert_eq!(found.notes[0], "needed by libarm.so");
+}
+
+#[test]
+fn a_fixture_is_no_test_and_the_other_way_round() {
+    let bench = bench(&answer_b("\"ok\":true,\"kinds\":[\"fixture\"]"));
+    let outcome = bench.build(&["s.xml"]);
+    assert_eq!(only(&outcome).message, "the plug-in `B.lua` is a fixture, not a test");
+    assert_eq!(only(&outcome).hint.as_deref(), Some("write it as `<fixture>`"));
+    bench.file("work/s.xml", "<suite><fixture>A.lua</fixture><test>A.lua</test></suite>");
+    let outcome = bench.build(&["s.xml"]);
+    assert_eq!(only(&outcome).message, "the plug-in `A.lua` is a test, not a fixture");
+}
+
+#[test]
+fn a_host_that_dies_at_one_plugin_still_checks_the_others() {
+    let script = "for f; do case $f in\n*/B.lua) echo boom >&2; kill -SEGV $$;;\n\
+                  *) echo '{\"file\":\"'$f'\",\"ok\":true,\"kinds\":[\"fixture\"]}';;\nesac; done";
+    let bench = bench(script);
+    let messages: Vec<_> = bench.problems(&["s.xml"]).into_iter().map(|(_, m)| m).collect();
+    assert_eq!(
+        messages,
+        [
+            "the plug-in `A.lua` is a fixture, not a test",
+            "loading `B.lua` ended its host: a segmentation fault (signal 11)",
+            "the plug-in `C.lua` is a fixture, not a test",
+        ]
+    );
+    let outcome = bench.build(&["s.xml"]);
+    assert_eq!(outcome.diagnostics[1].notes, ["it printed\nboom"]);
+}
+
+#[test]
+fn a_plugin_that_hangs_is_blamed_and_its_host_killed() {
+    let script = "for f; do case $f in\n*/B.lua) echo $$ > pid; sleep 1000;;\n\
+                  *) echo '{\"file\":\"'$f'\",\"ok\":true}';;\nesac; done";
+    let mut bench = bench(script);
+    bench.options.verify = Some(Duration::from_millis(500));
+    let outcome = bench.build(&["s.xml"]);
+    assert_eq!(only(&outcome).message, "loading `B.lua` takes longer than 500ms");
+    let pid = std::fs::read_to_string(bench.root.join("work/pid")).unwrap();
+    assert!(!std::path::Path::new("/proc").join(pid.trim()).exists());
+}
+
+#[test]
+fn a_host_that_does_not_work_is_reported_once() {
+    let bench = bench("echo 'No module named rtf' >&2\nexit 1");
+    let outcome = bench.build(&["s.xml"]);
+    let found = only(&outcome);
+    assert_eq!(found.code, "host-failed");
+    assert!(found.message.ends_with("does not work: exit code 1"), "{}", found.message);
+    assert_eq!(found.notes[0], "it printed\nNo module named rtf");
+}
+
+#[test]
+fn what_plugins_print_while_they_are_loaded_is_no_answer() {
+    let script = "echo hello; echo '{\"file\":\"/other\",\"ok\":false}'; echo '{broken'\n";
+    let bench = bench(&format!("{script}{}", answer_b("\"ok\":true")));
+    assert_eq!(bench.plan(&["s.xml"]).tests, 4);
+}
+
+#[test]
+fn plugins_of_a_folder_that_hold_no_test_are_left_out() {
+    let bench = bench(&answer_b("\"ok\":true,\"kinds\":[\"fixture\"]"));
+    std::fs::remove_file(bench.root.join("work/s.xml")).unwrap();
+    let plan = bench.plan(&["."]);
+    assert_eq!(names(&plan, 0), ["A", "C"]);
+    // One that is named is not.
+    let problems = bench.problems(&["B.lua"]);
+    assert_eq!(problems[0].1, "the plug-in `B.lua` is a fixture, not a test");
+    // A folder of helpers only has nothing to run.
+    bench.file("work/only/B.lua", "");
+    assert_eq!(bench.problems(&["only"])[0].0, "no-tests");
+}
+
+#[test]
+fn hosts_check_with_the_folder_and_the_variables_of_the_suite() {
+    let script = "test \"$MODE\" = fast && test -f here || exit 3\n";
+    let bench = bench(&format!("{script}{}", answer_b("\"ok\":true")));
+    bench.file("work/sub/here", "");
+    bench.file(
+        "work/sub/s.xml",
+        "<suite><env name='MODE' value='fast'/><test>../A.lua</test></suite>",
+    );
+    assert_eq!(bench.plan(&["sub/s.xml"]).tests, 1);
+    assert_eq!(bench.problems(&["s.xml"])[0].0, "host-failed");
+}
+
+#[test]
+fn each_file_is_checked_once() {
+    let bench = bench(&format!("for f; do echo $f >> checked; done\n{}", answer_b("\"ok\":true")));
+    let tests: String = (0..500)
+        .map(|n| format!("<test param='{n}'>{}.lua</test>", ["A", "B", "C"][n % 3]))
+        .collect();
+    bench.file("work/s.xml", &format!("<suite>{tests}</suite>"));
+    assert_eq!(bench.plan(&["s.xml"]).tests, 500);
+    let checked = std::fs::read_to_string(bench.root.join("work/checked")).unwrap();
+    assert_eq!(checked.lines().count(), 3);
+}
