@@ -39,8 +39,9 @@ fn problems(page: &mut Page, record: &Record) {
     }
     page.line("");
     page.line(&style::paint(BOLD, "beside the tests:"));
-    for problem in problems {
-        page.line(&format!("  {}", style::paint(BAD, &problem)));
+    for same in problems.chunk_by(|a, b| a == b) {
+        let times = if same.len() > 1 { format!(" ({} times)", same.len()) } else { String::new() };
+        page.line(&format!("  {}{times}", style::paint(BAD, &same[0])));
     }
 }
 

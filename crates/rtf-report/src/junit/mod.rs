@@ -25,7 +25,9 @@ const WHAT: &str = "the JUnit report";
 /// # Errors
 /// `out` cannot be written.
 pub fn write(out: &mut dyn Write, record: &Record, folder: Option<&Path>) -> io::Result<()> {
-    report(record, folder).serialize(out).map_err(io::Error::other)
+    // In memory first: an error of `out` (a closed pipe) then stays what it is.
+    let xml = report(record, folder).to_string().map_err(io::Error::other)?;
+    out.write_all(xml.as_bytes())
 }
 
 /// Writes the JUnit report into a file when the run is over.

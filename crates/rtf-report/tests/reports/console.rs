@@ -50,3 +50,24 @@ fn quiet_says_nothing_of_what_went_well() {
     let options = ConsoleOptions { verbosity: Verbosity::Quiet, ..ConsoleOptions::default() };
     assert_eq!(console("silent", options).trim().lines().count(), 1);
 }
+
+#[test]
+fn a_fixture_that_collapses_again_and_again_is_told_once_with_a_number() {
+    let stream = std::fs::read_to_string(stream_path("collapse-tolerated")).unwrap();
+    let strict = stream.replace(",\"tolerates_collapse\":true", "");
+    let mut lines: Vec<_> = strict.lines().map(str::to_owned).collect();
+    let collapse = lines.iter().position(|line| line.contains("fixture-collapsed")).unwrap();
+    lines.insert(collapse, lines[collapse].clone());
+    let numbered = |(seq, line): (usize, &String)| {
+        let rest = line.split_once(',').unwrap().1;
+        format!("{{\"seq\":{seq},{rest}\n")
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("events.jsonl");
+    std::fs::write(&path, lines.iter().enumerate().map(numbered).collect::<String>()).unwrap();
+    let paper = Paper::default();
+    let options = ConsoleOptions::default();
+    let mut console = rtf_report::console::Console::new(Box::new(paper.clone()), options);
+    rtf_report::journal::replay(&path, &mut console).unwrap();
+    assert!(paper.text().contains("the bridge is gone\u{1b}[0m (2 times)"), "{}", paper.text());
+}
