@@ -1,6 +1,8 @@
 //! Suite files → what was written: the predecessor's files, every element and
 //! attribute, the schema, and whatever else may come.
 
+#![expect(clippy::unwrap_used, clippy::expect_used, reason = "that is where a test ends")]
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
@@ -258,7 +260,7 @@ fn files_that_are_no_utf8_or_too_long() {
     let open = |name: &str, bytes: &[u8]| {
         let path = folder.path().join(name);
         std::fs::write(&path, bytes).unwrap();
-        suite::open(&path, name).map(|_| ()).map_err(|(problem, _)| problem)
+        suite::open(&path, name).map(|_| ()).map_err(|unreadable| Box::new(unreadable.problem))
     };
     let problem = open("a.xml", b"<suite>\n<test>\xe4</test></suite>").unwrap_err();
     assert_eq!(
@@ -273,7 +275,7 @@ fn files_that_are_no_utf8_or_too_long() {
     let long = vec![b' '; usize::try_from(suite::MAX_SUITE_BYTES).unwrap() + 1];
     assert_eq!(open("e.xml", &long).unwrap_err().code, "file-too-long");
     assert!(open("f.xml", &long[1..]).is_ok());
-    let missing = suite::open(&folder.path().join("g.xml"), "g.xml").unwrap_err().0;
+    let missing = suite::open(&folder.path().join("g.xml"), "g.xml").unwrap_err().problem;
     assert_eq!(missing.code, "no-such-file");
 }
 

@@ -100,9 +100,9 @@ pub fn build(paths: &[PathBuf], options: &Options) -> Outcome {
 fn one_suite(context: &mut Context<'_>, found: &Found, sources: &mut Sources) -> Option<SuitePlan> {
     let source = match suite::open(&found.path, &found.name) {
         Ok(source) => Arc::new(source),
-        Err((problem, source)) => {
-            context.problems.push(problem);
-            if let Some(source) = source {
+        Err(unreadable) => {
+            context.problems.push(unreadable.problem);
+            if let Some(source) = unreadable.source {
                 sources.add(Arc::new(source));
             }
             return None;

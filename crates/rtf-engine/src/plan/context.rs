@@ -177,7 +177,7 @@ impl<'a, 'c> PluginPlanner<'a, 'c> {
 
     fn finish(&mut self, file: &Path, param: String, use_of: Use<'_>) -> Option<PluginPlan> {
         if let Err(problem) = hosts::text(file) {
-            self.context.problems.push(use_of.place.show(problem, ""));
+            self.context.problems.push(use_of.place.show(*problem, ""));
             return None;
         }
         let host = self.host(use_of.kind, use_of.own, use_of.place)?;
@@ -205,7 +205,7 @@ impl<'a, 'c> PluginPlanner<'a, 'c> {
         let located = match kind.locate(&self.scope.with(own)) {
             Ok(host) => Some(self.context.share(host)),
             Err(problem) => {
-                self.context.problems.push(place.show(problem, "needed here"));
+                self.context.problems.push(place.show(*problem, "needed here"));
                 None
             }
         };

@@ -123,7 +123,7 @@ pub(super) fn by_extension(file: &Path) -> Option<&'static HostKind> {
 
 impl HostKind {
     /// How to start this host for processes in `scope`.
-    pub fn locate(&self, scope: &Scope<'_>) -> Result<HostPlan, Diagnostic> {
+    pub fn locate(&self, scope: &Scope<'_>) -> Result<HostPlan, Box<Diagnostic>> {
         match &self.start {
             Start::Own { program } => {
                 let file = own_program(program, scope)?;
@@ -142,7 +142,7 @@ impl HostKind {
 impl Sdk {
     /// The folder of our module before the user's own ones. Without the
     /// folder the interpreter may still know the module by itself.
-    fn env(&self, scope: &Scope<'_>) -> Result<Vec<(String, String)>, Diagnostic> {
+    fn env(&self, scope: &Scope<'_>) -> Result<Vec<(String, String)>, Box<Diagnostic>> {
         let executable = &scope.surroundings.executable;
         let installed = scope.surroundings.prefix().map(|prefix| prefix.join(self.installed));
         let source = executable.ancestors().skip(1).map(|folder| folder.join(self.source));
@@ -158,7 +158,7 @@ impl Sdk {
 }
 
 /// A host of ours: beside `rtf`, below its prefix, or in `PATH`.
-fn own_program(program: &str, scope: &Scope<'_>) -> Result<PathBuf, Diagnostic> {
+fn own_program(program: &str, scope: &Scope<'_>) -> Result<PathBuf, Box<Diagnostic>> {
     let beside = scope.surroundings.executable.parent().map(Path::to_path_buf);
     let libexec = scope.surroundings.prefix().map(|prefix| prefix.join("libexec/rtf"));
     let folders: Vec<PathBuf> = beside.into_iter().chain(libexec).collect();
@@ -169,6 +169,7 @@ fn own_program(program: &str, scope: &Scope<'_>) -> Result<PathBuf, Diagnostic> 
             .note(format!("searched\n{}", list.join("\n")))
             .note(searched(scope))
             .hint("it is built and installed together with `rtf`")
+            .into()
     })
 }
 
@@ -179,12 +180,12 @@ fn interpreter(
     program: &str,
     variable: &str,
     scope: &Scope<'_>,
-) -> Result<PathBuf, Diagnostic> {
+) -> Result<PathBuf, Box<Diagnostic>> {
     if let Some(wanted) = scope.variable(variable).filter(|wanted| !wanted.is_empty()) {
         return super::program::find(wanted, scope).map_err(|mut problem| {
             problem.code = "no-such-interpreter".into();
             problem.message = format!("the interpreter `{wanted}` is not there");
-            problem.note(format!("`{variable}` names it"))
+            problem.note(format!("`{variable}` names it")).into()
         });
     }
     in_path(program, scope).ok_or_else(|| {
@@ -192,13 +193,14 @@ fn interpreter(
         Diagnostic::error("no-such-interpreter", message)
             .note(searched(scope))
             .hint(format!("install it, or name another one in `{variable}`"))
+            .into()
     })
 }
 
 /// A path for a command line and for the protocol, which are UTF-8.
-pub(super) fn text(path: &Path) -> Result<String, Diagnostic> {
+pub(super) fn text(path: &Path) -> Result<String, Box<Diagnostic>> {
     path.to_str().map(str::to_owned).ok_or_else(|| {
         let message = format!("the path `{}` is not UTF-8", path.display());
-        Diagnostic::error("path-encoding", message)
+        Diagnostic::error("path-encoding", message).into()
     })
 }

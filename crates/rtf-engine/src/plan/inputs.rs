@@ -53,16 +53,16 @@ pub(super) fn collect(
         };
         match looked {
             Ok(more) => inputs.extend(more),
-            Err(problem) => problems.push(problem),
+            Err(problem) => problems.push(*problem),
         }
     }
     inputs
 }
 
 /// A file that the user named: a suite, or a plug-in by its extension.
-fn file(found: Found) -> Result<Input, Diagnostic> {
+fn file(found: Found) -> Result<Input, Box<Diagnostic>> {
     if !found.path.exists() {
-        return Err(missing(&found));
+        return Err(missing(&found).into());
     }
     if has_extension(&found.path, "xml") {
         return Ok(Input::Suite(found));
@@ -80,7 +80,7 @@ fn file(found: Found) -> Result<Input, Diagnostic> {
         .collect();
     let message = format!("`{}` is neither a suite nor a plug-in", found.name);
     let note = format!("suites end in `.xml`, plug-ins in {}", known.join(", "));
-    Err(Diagnostic::error("unknown-file", message).note(note))
+    Err(Diagnostic::error("unknown-file", message).note(note).into())
 }
 
 fn missing(found: &Found) -> Diagnostic {
@@ -101,11 +101,11 @@ fn missing(found: &Found) -> Diagnostic {
 }
 
 /// A folder stands for its suites, and when it has none for its plug-ins.
-fn folder(folder: &Found, recursive: bool) -> Result<Vec<Input>, Diagnostic> {
+fn folder(folder: &Found, recursive: bool) -> Result<Vec<Input>, Box<Diagnostic>> {
     let mut files = Vec::new();
     list(&folder.path, recursive, &mut files).map_err(|error| {
         let message = format!("cannot read the folder `{}`: {error}", folder.name);
-        Diagnostic::error("unreadable-folder", message)
+        Box::new(Diagnostic::error("unreadable-folder", message))
     })?;
     // The file system's order is not one that can be relied on.
     files.sort();
@@ -124,11 +124,8 @@ fn folder(folder: &Found, recursive: bool) -> Result<Vec<Input>, Diagnostic> {
     if inputs.is_empty() {
         let message = format!("the folder `{}` holds neither a suite nor a plug-in", folder.name);
         let problem = Diagnostic::error("no-tests", message);
-        return Err(if recursive {
-            problem
-        } else {
-            problem.hint("folders inside of it are searched with `--recursive`")
-        });
+        let hint = "folders inside of it are searched with `--recursive`";
+        return Err(if recursive { problem } else { problem.hint(hint) }.into());
     }
     Ok(inputs)
 }

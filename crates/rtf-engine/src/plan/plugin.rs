@@ -12,7 +12,7 @@ use super::scope::Scope;
 use crate::suite::{Plugin, nearest};
 
 /// The type of a plug-in: as written, else as its extension tells, else `dll`.
-pub(super) fn kind_of(plugin: &Plugin) -> Result<&'static HostKind, Diagnostic> {
+pub(super) fn kind_of(plugin: &Plugin) -> Result<&'static HostKind, Box<Diagnostic>> {
     let Some(written) = &plugin.plugin_type else {
         let told = hosts::by_extension(Path::new(&plugin.name.value));
         return Ok(told.unwrap_or(&HOSTS[0]));
@@ -23,8 +23,8 @@ pub(super) fn kind_of(plugin: &Plugin) -> Result<&'static HostKind, Diagnostic> 
             Diagnostic::error("unknown-type", format!("unknown type `{}`", written.value))
                 .note(format!("known types are {}", known.join(", ")));
         match nearest(&written.value, HOSTS.iter().map(|kind| kind.name)) {
-            Some(name) => problem.hint(format!("did you mean `{name}`?")),
-            None => problem,
+            Some(name) => problem.hint(format!("did you mean `{name}`?")).into(),
+            None => problem.into(),
         }
     })
 }

@@ -9,7 +9,7 @@ use super::unix::is_executable;
 
 /// Finds the program of a command line: with a slash it is a path that starts
 /// in the suite's folder, without one it is searched in `PATH`.
-pub(super) fn find(name: &str, scope: &Scope<'_>) -> Result<PathBuf, Diagnostic> {
+pub(super) fn find(name: &str, scope: &Scope<'_>) -> Result<PathBuf, Box<Diagnostic>> {
     if name.contains('/') {
         let file: PathBuf = scope.folder.join(name).components().collect();
         return if is_executable(&file) {
@@ -17,20 +17,20 @@ pub(super) fn find(name: &str, scope: &Scope<'_>) -> Result<PathBuf, Diagnostic>
         } else if file.is_file() {
             let message = format!("the program `{name}` is not executable");
             let hint = format!("make it so with `chmod +x {name}`");
-            Err(Diagnostic::error("no-such-program", message).hint(hint))
+            Err(Diagnostic::error("no-such-program", message).hint(hint).into())
         } else {
             let message = format!("there is no program `{name}`");
             let note = format!("looked for {}", file.display());
-            Err(Diagnostic::error("no-such-program", message).note(note))
+            Err(Diagnostic::error("no-such-program", message).note(note).into())
         };
     }
     in_path(name, scope).ok_or_else(|| {
         let problem = Diagnostic::error("no-such-program", format!("there is no program `{name}`"))
             .note(searched(scope));
         if scope.folder.join(name).is_file() {
-            problem.hint(format!("the one in the suite's folder is called `./{name}`"))
+            problem.hint(format!("the one in the suite's folder is called `./{name}`")).into()
         } else {
-            problem
+            problem.into()
         }
     })
 }

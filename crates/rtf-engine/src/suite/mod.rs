@@ -25,7 +25,7 @@ mod value;
 mod xml;
 
 pub use duration::{DurationError, parse_duration};
-pub use open::{MAX_SUITE_BYTES, is_suite_file, open};
+pub use open::{MAX_SUITE_BYTES, Unreadable, is_suite_file, open};
 pub use param::split_param;
 pub use read::load;
 pub(crate) use shape::nearest;

@@ -53,10 +53,8 @@ pub(super) fn scan(text: &str) -> Scan<'_> {
                     blank.push(body);
                 }
             }
-            Markup::Declaration if found.doctype.is_none() => {
-                if text[open..].get(..9).is_some_and(|s| s.eq_ignore_ascii_case("<!doctype")) {
-                    found.doctype = Some(Span::new(open..open + 9));
-                }
+            Markup::Declaration if found.doctype.is_none() && is_doctype(&text[open..]) => {
+                found.doctype = Some(Span::new(open..open + DOCTYPE.len()));
             }
             Markup::Tag if found.crowded.is_none() => {
                 let tag = &text[open..end.unwrap_or(text.len())];
@@ -75,6 +73,12 @@ pub(super) fn scan(text: &str) -> Scan<'_> {
     }
     found.text = blanked(text, &blank);
     found
+}
+
+const DOCTYPE: &str = "<!DOCTYPE";
+
+fn is_doctype(declaration: &str) -> bool {
+    declaration.get(..DOCTYPE.len()).is_some_and(|start| start.eq_ignore_ascii_case(DOCTYPE))
 }
 
 /// The name of the first element, if the text begins like XML. Also reads

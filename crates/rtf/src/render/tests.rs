@@ -174,17 +174,17 @@ fn not_supported_yet() {
     2 |   <hook on="failure"> Park.lua </hook>
       |   ^^^^^
 
-    error: `retries` is not supported by this version of rtf
-     --> suite.xml:3:28
-      |
-    3 |   <test isolation="shared" retries="2">ArmTest.lua</test>
-      |                            ^^^^^^^
-
     error: `isolation="shared"` is not supported by this version of rtf
      --> suite.xml:3:20
       |
     3 |   <test isolation="shared" retries="2">ArmTest.lua</test>
       |                    ^^^^^^
+
+    error: `retries` is not supported by this version of rtf
+     --> suite.xml:3:28
+      |
+    3 |   <test isolation="shared" retries="2">ArmTest.lua</test>
+      |                            ^^^^^^^
     "#);
 }
 
@@ -208,17 +208,17 @@ fn wrong_values() {
       |
       = help: write it like `250ms`, `1.5s`, `2min` or `1h 30m`; a bare number is seconds
 
-    error: `slow` must be longer than zero: `-1s`
-     --> suite.xml:2:45
-      |
-    2 |   <test timeout="soon" repetition="0" slow="-1s" after-collapse="return">ArmTest.lua</test>
-      |                                             ^^^
-
     error: `repetition` is not a whole number from 1 to 1000000: `0`
      --> suite.xml:2:36
       |
     2 |   <test timeout="soon" repetition="0" slow="-1s" after-collapse="return">ArmTest.lua</test>
       |                                    ^
+
+    error: `slow` must be longer than zero: `-1s`
+     --> suite.xml:2:45
+      |
+    2 |   <test timeout="soon" repetition="0" slow="-1s" after-collapse="return">ArmTest.lua</test>
+      |                                             ^^^
 
     error: `after-collapse` has to be `rerun` or `fail` or `skip`: `return`
      --> suite.xml:2:66
@@ -341,14 +341,6 @@ fn missing_program() {
     let suite = "<suite>\n  <fixture type=\"process\">\n    <command>simulator --fast</command>\n    \
                  <ready command=\"./probe\"/>\n  </fixture>\n  <test>ArmTest.lua</test>\n</suite>";
     assert_snapshot!(shown(suite), @r#"
-    error: there is no program `./probe`
-     --> suite.xml:4:21
-      |
-    4 |     <ready command="./probe"/>
-      |                     ^^^^^^^
-      |
-      = note: looked for [ROOT]/suites/probe
-
     error: there is no program `simulator`
      --> suite.xml:3:14
       |
@@ -357,6 +349,14 @@ fn missing_program() {
       |
       = note: searched `PATH`:
                 [ROOT]/bin
+
+    error: there is no program `./probe`
+     --> suite.xml:4:21
+      |
+    4 |     <ready command="./probe"/>
+      |                     ^^^^^^^
+      |
+      = note: looked for [ROOT]/suites/probe
     "#);
 }
 
@@ -381,6 +381,12 @@ fn five_mistakes_are_five_messages() {
       = note: `<suite>` can have the attributes `name`, `timeout`, `tags`, `tolerate-collapse`, `after-collapse`, `test-timeout`, `test-load-timeout`, `test-setup-timeout`, `test-teardown-timeout`, `test-slow`, `test-grace`
       = help: did you mean `tags`?
 
+    error: there is no fixture `sim`
+     --> suite.xml:2:21
+      |
+    2 |   <fixture depends="sim"> ArmTest.lua </fixture>
+      |                     ^^^
+
     error: `timeout` is not a duration: `3 apples`
      --> suite.xml:3:18
       |
@@ -388,12 +394,6 @@ fn five_mistakes_are_five_messages() {
       |                  ^^^^^^^^
       |
       = help: write it like `250ms`, `1.5s`, `2min` or `1h 30m`; a bare number is seconds
-
-    error: there is no fixture `sim`
-     --> suite.xml:2:21
-      |
-    2 |   <fixture depends="sim"> ArmTest.lua </fixture>
-      |                     ^^^
 
     error: unknown type `matlab`
      --> suite.xml:4:15
