@@ -23,10 +23,7 @@ pub async fn forward(stops: &watch::Sender<Option<Stop>>) -> io::Result<i32> {
     let mut signals = Signals::install()?;
     for level in [StopLevel::TearDown, StopLevel::Kill] {
         let (_, name) = signals.next().await;
-        stops.send_replace(Some(Stop {
-            level,
-            reason: name.to_owned(),
-        }));
+        stops.send_replace(Some(Stop { level, reason: name.to_owned() }));
     }
     let (number, _) = signals.next().await;
     let _ = tree::kill_everything();

@@ -50,30 +50,16 @@ pub fn decode(line: &[u8]) -> Result<FromHost, String> {
     let envelope: Envelope<'_> =
         serde_json::from_str(text).map_err(|error| not_a_message(line, &error.to_string()))?;
     match envelope {
-        Envelope {
-            method: Some(_),
-            id: None,
-            ..
-        } => serde_json::from_str(text)
+        Envelope { method: Some(_), id: None, .. } => serde_json::from_str(text)
             .map(FromHost::Told)
             .map_err(|error| not_a_message(line, &error.to_string())),
-        Envelope {
-            method: Some(method),
-            id: Some(_),
-            ..
-        } => Err(format!(
-            "it asks for `{method}`, but the runner answers no requests"
-        )),
-        Envelope {
-            id: Some(id),
-            error: Some(error),
-            ..
-        } => Ok(FromHost::Answered(id, Reply::Error(error))),
-        Envelope {
-            id: Some(id),
-            result: Some(result),
-            ..
-        } => serde_json::from_str(result.get())
+        Envelope { method: Some(method), id: Some(_), .. } => {
+            Err(format!("it asks for `{method}`, but the runner answers no requests"))
+        }
+        Envelope { id: Some(id), error: Some(error), .. } => {
+            Ok(FromHost::Answered(id, Reply::Error(error)))
+        }
+        Envelope { id: Some(id), result: Some(result), .. } => serde_json::from_str(result.get())
             .map(|value| FromHost::Answered(id, Reply::Result(value)))
             .map_err(|error| not_a_message(line, &error.to_string())),
         Envelope { .. } => Err(not_a_message(line, "neither a notification nor an answer")),
@@ -83,11 +69,7 @@ pub fn decode(line: &[u8]) -> Result<FromHost, String> {
 fn not_a_message(line: &[u8], why: &str) -> String {
     let text = String::from_utf8_lossy(line);
     let shown: String = text.chars().take(SHOWN).collect();
-    let dots = if text.chars().nth(SHOWN).is_some() {
-        "…"
-    } else {
-        ""
-    };
+    let dots = if text.chars().nth(SHOWN).is_some() { "…" } else { "" };
     format!("it wrote `{shown}{dots}`, which is not a message: {why}")
 }
 
@@ -99,24 +81,15 @@ mod tests {
     #[test]
     fn notifications_and_answers_are_told_apart() {
         let told = decode(br#"{"jsonrpc":"2.0","method":"phase","params":{"phase":"run"}}"#);
-        assert!(matches!(
-            told,
-            Ok(FromHost::Told(Notification::Phase { phase: Phase::Run }))
-        ));
+        assert!(matches!(told, Ok(FromHost::Told(Notification::Phase { phase: Phase::Run }))));
         let answer = decode(br#"{"jsonrpc":"2.0","id":7,"result":{"outcome":"passed"},"x":1}"#);
-        assert!(matches!(
-            answer,
-            Ok(FromHost::Answered(7, Reply::Result(_)))
-        ));
+        assert!(matches!(answer, Ok(FromHost::Answered(7, Reply::Result(_)))));
     }
 
     #[test]
     fn what_is_not_a_message_is_shown() {
         let error = decode(b"this is not a message").unwrap_err();
-        assert!(
-            error.starts_with("it wrote `this is not a message`"),
-            "{error}"
-        );
+        assert!(error.starts_with("it wrote `this is not a message`"), "{error}");
         assert!(decode(br#"{"jsonrpc":"2.0","method":"nonsense","params":{}}"#).is_err());
         assert!(decode(&[0xFF, 0xFE]).is_err());
     }

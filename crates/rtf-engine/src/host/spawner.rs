@@ -29,7 +29,7 @@ pub enum Streams {
 }
 
 /// What to start. Each process is the leader of a group of its own.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SpawnRequest {
     /// The program and its arguments.
     pub command: Vec<String>,
@@ -96,15 +96,13 @@ impl Spawner {
     pub fn start() -> io::Result<Self> {
         let (jobs, queue) = std::sync::mpsc::channel::<Job>();
         let runtime = tokio::runtime::Handle::current();
-        std::thread::Builder::new()
-            .name("rtf-spawner".to_owned())
-            .spawn(move || {
-                let _entered = runtime.enter();
-                for (request, answer) in queue {
-                    // The asker may be gone: then the process is killed by its drop.
-                    let _ = answer.send(spawn(&request));
-                }
-            })?;
+        std::thread::Builder::new().name("rtf-spawner".to_owned()).spawn(move || {
+            let _entered = runtime.enter();
+            for (request, answer) in queue {
+                // The asker may be gone: then the process is killed by its drop.
+                let _ = answer.send(spawn(&request));
+            }
+        })?;
         Ok(Self { jobs })
     }
 
@@ -113,29 +111,35 @@ impl Spawner {
     /// # Errors
     /// The program cannot be executed, or a resource is used up.
     pub async fn spawn(&self, request: SpawnRequest) -> io::Result<Process> {
+        Self::started(self.begin(request)).await
+    }
+
+    /// Asks for the start of a process, without waiting for it.
+    #[must_use]
+    pub fn begin(&self, request: SpawnRequest) -> oneshot::Receiver<io::Result<Process>> {
         let (answer, started) = oneshot::channel();
-        let gone = || io::Error::other("the thread that starts processes is gone");
-        self.jobs.send((request, answer)).map_err(|_| gone())?;
-        started.await.map_err(|_| gone())?
+        // When the thread is gone, so is the other end of the answer.
+        let _ = self.jobs.send((request, answer));
+        started
+    }
+
+    /// Waits for what [`Spawner::begin`] asked for.
+    ///
+    /// # Errors
+    /// As for [`Spawner::spawn`].
+    pub async fn started(answer: oneshot::Receiver<io::Result<Process>>) -> io::Result<Process> {
+        let gone = |_| io::Error::other("the thread that starts processes is gone");
+        answer.await.map_err(gone)?
     }
 }
 
 fn spawn(request: &SpawnRequest) -> io::Result<Process> {
     let Some((program, arguments)) = request.command.split_first() else {
-        return Err(io::Error::new(
-            io::ErrorKind::InvalidInput,
-            "an empty command",
-        ));
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "an empty command"));
     };
     let mut command = Command::new(program);
-    command
-        .args(arguments)
-        .envs(request.env.iter().map(|(name, value)| (name, value)));
-    command
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .process_group(0)
-        .kill_on_drop(true);
+    command.args(arguments).envs(request.env.iter().map(|(name, value)| (name, value)));
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).process_group(0).kill_on_drop(true);
     command.stderr(match request.streams {
         Streams::Both => Stdio::piped(),
         Streams::StdoutOnly => Stdio::null(),
@@ -157,17 +161,8 @@ fn spawn(request: &SpawnRequest) -> io::Result<Process> {
     // From here on nobody but the new process has the other end.
     drop(theirs);
     let mut child = child?;
-    let pid = child
-        .id()
-        .and_then(|pid| i32::try_from(pid).ok())
-        .unwrap_or_default();
+    let pid = child.id().and_then(|pid| i32::try_from(pid).ok()).unwrap_or_default();
     tree::add_own_child(pid);
     let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
-    Ok(Process {
-        pid,
-        channel,
-        stdout,
-        stderr,
-        end: End { pid, child },
-    })
+    Ok(Process { pid, channel, stdout, stderr, end: End { pid, child } })
 }

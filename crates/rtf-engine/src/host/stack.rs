@@ -50,16 +50,7 @@ async fn by_signal(pid: i32, file: &Path) -> Option<String> {
 
 async fn by_debugger(pid: i32, spawner: &Spawner) -> String {
     let pid = pid.to_string();
-    let gdb = [
-        "gdb",
-        "-nx",
-        "-q",
-        "-batch",
-        "-p",
-        &pid,
-        "-ex",
-        "thread apply all backtrace 64",
-    ];
+    let gdb = ["gdb", "-nx", "-q", "-batch", "-p", &pid, "-ex", "thread apply all backtrace 64"];
     let eu_stack = ["eu-stack", "-p", &pid];
     for command in [&gdb[..], &eu_stack[..]] {
         if let Ok(text) = run(command, spawner).await {
@@ -97,23 +88,11 @@ async fn run(command: &[&str], spawner: &Spawner) -> std::io::Result<String> {
 /// Leaves out what a debugger says about itself.
 fn tidy(text: &str) -> String {
     let noise = |line: &&str| {
-        [
-            "[New LWP",
-            "[Thread debugging",
-            "Using host",
-            "warning:",
-            "[Inferior",
-            "Attaching to",
-        ]
-        .iter()
-        .all(|start| !line.starts_with(start))
+        ["[New LWP", "[Thread debugging", "Using host", "warning:", "[Inferior", "Attaching to"]
+            .iter()
+            .all(|start| !line.starts_with(start))
     };
-    text.lines()
-        .filter(noise)
-        .collect::<Vec<_>>()
-        .join("\n")
-        .trim()
-        .to_owned()
+    text.lines().filter(noise).collect::<Vec<_>>().join("\n").trim().to_owned()
 }
 
 #[cfg(test)]

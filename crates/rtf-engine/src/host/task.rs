@@ -8,14 +8,15 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, SystemTime};
 
-use rtf_model::protocol::{Notification, Request, SCOPE_VARIABLE, StackSupport};
+use rtf_model::protocol::{Notification, Request, StackSupport};
 use rtf_model::{Attachment, ExitStatus, Source, Stream};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::sync::mpsc;
 use tokio::task::JoinSet;
 
 use super::codec::{self, FromHost, LINE_LIMIT};
-use super::spawner::{End, Process, SpawnRequest, Spawner};
+use super::launch::Launch;
+use super::spawner::{End, Process, Spawner};
 use super::{stack, tree, unix};
 use crate::plan::ProcessPlan;
 use crate::run::Sink;
@@ -27,6 +28,7 @@ use crate::run::probe;
 const DRAIN_LIMIT: Duration = Duration::from_millis(500);
 /// How often a task that waits for slow reporters looks again.
 const CONGESTED_WAIT: Duration = Duration::from_millis(1);
+/// How much is read at once: what a pipe holds at most.
 const READ_BYTES: usize = 64 * 1024;
 
 /// What the suite's task asks of a process's task.
@@ -66,10 +68,8 @@ pub struct Job {
     pub host: HostId,
     /// Whose it is.
     pub source: Source,
-    /// The value of the scope variable: unique on this machine.
-    pub scope: String,
-    /// How to start it.
-    pub request: SpawnRequest,
+    /// How to start it, unless it was started ahead.
+    pub launch: Launch,
     /// Its probes, when it is a process fixture.
     pub process: Option<Arc<ProcessPlan>>,
 }
@@ -89,18 +89,15 @@ pub async fn run(
         let reason = format!("{taken} answers already, before the fixture was started");
         return drop(inputs.send((host, HostInput::SpawnFailed(reason))).await);
     }
-    job.request
-        .env
-        .push((SCOPE_VARIABLE.to_owned(), job.scope.clone()));
     let started_at = SystemTime::now();
-    match shared.spawner.spawn(job.request.clone()).await {
+    match job.launch.start(&shared.spawner).await {
         Ok(process) => {
             let mut task = Task::new(job, shared, process, inputs);
             task.watch_ready(started_at);
             task.run(orders).await;
         }
         Err(error) => {
-            let program = job.request.command.first().map_or("", String::as_str);
+            let program = job.launch.request.command.first().map_or("", String::as_str);
             let reason = format!("`{program}` cannot be started: {error}");
             drop(inputs.send((host, HostInput::SpawnFailed(reason))).await);
         }
@@ -121,15 +118,7 @@ struct Task {
 impl Task {
     fn new(job: Job, shared: Arc<Shared>, process: Process, inputs: Inputs) -> Self {
         let stack_file = shared.scratch.join(format!("{}.stack", process.pid));
-        Self {
-            job,
-            shared,
-            process,
-            inputs,
-            line: Vec::new(),
-            stack_file,
-            side: JoinSet::new(),
-        }
+        Self { job, shared, process, inputs, line: Vec::new(), stack_file, side: JoinSet::new() }
     }
 
     fn watch_ready(&mut self, started_at: SystemTime) {
@@ -144,57 +133,51 @@ impl Task {
     }
 
     async fn run(&mut self, mut orders: mpsc::UnboundedReceiver<Order>) {
-        let (mut from_channel, mut stdout, mut stderr) = buffers();
+        let mut buffers = Buffers::new();
         let status = loop {
             let congested = self.shared.sink.is_congested();
             let process = &mut self.process;
             tokio::select! {
                 biased;
                 Some(order) = orders.recv() => self.obey(order).await,
-                Ok(count) = read(&mut process.channel, &mut from_channel), if !congested =>
-                    self.heard(&from_channel[..count]).await,
-                Ok(count) = read(&mut process.stdout, &mut stdout), if !congested =>
-                    self.printed(Stream::Stdout, &stdout[..count]).await,
-                Ok(count) = read(&mut process.stderr, &mut stderr), if !congested =>
-                    self.printed(Stream::Stderr, &stderr[..count]).await,
+                _ = read(&mut process.channel, &mut buffers.channel), if !congested =>
+                    self.heard(&buffers.channel).await,
+                _ = read(&mut process.stdout, &mut buffers.stdout), if !congested =>
+                    self.printed(Stream::Stdout, &buffers.stdout).await,
+                _ = read(&mut process.stderr, &mut buffers.stderr), if !congested =>
+                    self.printed(Stream::Stderr, &buffers.stderr).await,
                 status = wait(&mut process.end) => break status,
                 () = tokio::time::sleep(CONGESTED_WAIT), if congested => {}
             }
         };
-        self.end(status).await;
+        self.end(status, &mut buffers).await;
     }
 
     /// The process has ended: kill what it left, deliver what it said.
-    async fn end(&mut self, status: ExitStatus) {
+    async fn end(&mut self, status: ExitStatus, buffers: &mut Buffers) {
         self.side.abort_all();
-        let left = tree::sweep(&self.job.scope);
-        let _ = tokio::time::timeout(DRAIN_LIMIT, self.drain()).await;
+        let left = tree::sweep(&self.job.launch.scope);
+        let _ = tokio::time::timeout(DRAIN_LIMIT, self.drain(buffers)).await;
         let _ = std::fs::remove_file(&self.stack_file);
         self.tell(HostInput::Exited(status, left)).await;
     }
 
-    async fn drain(&mut self) {
-        let (mut from_channel, mut stdout, mut stderr) = buffers();
+    async fn drain(&mut self, buffers: &mut Buffers) {
         while self.is_open() {
             let process = &mut self.process;
             tokio::select! {
-                Ok(count) = read(&mut process.channel, &mut from_channel) =>
-                    self.heard(&from_channel[..count]).await,
-                Ok(count) = read(&mut process.stdout, &mut stdout) =>
-                    self.printed(Stream::Stdout, &stdout[..count]).await,
-                Ok(count) = read(&mut process.stderr, &mut stderr) =>
-                    self.printed(Stream::Stderr, &stderr[..count]).await,
+                _ = read(&mut process.channel, &mut buffers.channel) =>
+                    self.heard(&buffers.channel).await,
+                _ = read(&mut process.stdout, &mut buffers.stdout) =>
+                    self.printed(Stream::Stdout, &buffers.stdout).await,
+                _ = read(&mut process.stderr, &mut buffers.stderr) =>
+                    self.printed(Stream::Stderr, &buffers.stderr).await,
             }
         }
     }
 
     fn is_open(&self) -> bool {
-        let Process {
-            channel,
-            stdout,
-            stderr,
-            ..
-        } = &self.process;
+        let Process { channel, stdout, stderr, .. } = &self.process;
         channel.is_some() || stdout.is_some() || stderr.is_some()
     }
 
@@ -298,13 +281,7 @@ impl Task {
         let name: String = attachment.name.chars().map(safe).collect();
         let path = format!("attachments/{test}/{}-{name}", self.job.host.0);
         let target = self.shared.run_folder.join(&path);
-        let source = self
-            .job
-            .request
-            .folder
-            .clone()
-            .unwrap_or_default()
-            .join(&attachment.path);
+        let source = self.job.launch.request.folder.clone().unwrap_or_default().join(&attachment.path);
         let copy = async {
             if let Some(folder) = target.parent() {
                 tokio::fs::create_dir_all(folder).await?;
@@ -341,22 +318,28 @@ fn safe(character: char) -> char {
     }
 }
 
-fn buffers() -> (Vec<u8>, Vec<u8>, Vec<u8>) {
-    (
-        vec![0; READ_BYTES],
-        vec![0; READ_BYTES],
-        vec![0; READ_BYTES],
-    )
+/// What was read last from each stream.
+struct Buffers {
+    channel: Vec<u8>,
+    stdout: Vec<u8>,
+    stderr: Vec<u8>,
 }
 
-/// Reads from a stream that may be closed already: then it never answers.
-/// An error counts as the end of the stream.
-async fn read<R: tokio::io::AsyncRead + Unpin>(
-    stream: &mut Option<R>,
-    buffer: &mut [u8],
-) -> Result<usize, std::convert::Infallible> {
+impl Buffers {
+    fn new() -> Self {
+        let empty = || Vec::with_capacity(READ_BYTES);
+        Self { channel: empty(), stdout: empty(), stderr: empty() }
+    }
+}
+
+/// Replaces the buffer by what comes next from a stream; by nothing at its end,
+/// and an error counts as the end. A stream that is closed never answers.
+async fn read<R: tokio::io::AsyncRead + Unpin>(stream: &mut Option<R>, buffer: &mut Vec<u8>) {
     match stream {
-        Some(stream) => Ok(stream.read(buffer).await.unwrap_or(0)),
+        Some(stream) => {
+            buffer.clear();
+            let _ = stream.read_buf(buffer).await;
+        }
         None => std::future::pending().await,
     }
 }

@@ -22,25 +22,16 @@ static OWN_CHILDREN: LazyLock<Mutex<HashSet<i32>>> = LazyLock::new(Mutex::defaul
 
 /// Remembers a process that the runner started and will wait for.
 pub fn add_own_child(pid: i32) {
-    OWN_CHILDREN
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner)
-        .insert(pid);
+    OWN_CHILDREN.lock().unwrap_or_else(PoisonError::into_inner).insert(pid);
 }
 
 /// Forgets a process that the runner has waited for.
 pub fn remove_own_child(pid: i32) {
-    OWN_CHILDREN
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner)
-        .remove(&pid);
+    OWN_CHILDREN.lock().unwrap_or_else(PoisonError::into_inner).remove(&pid);
 }
 
 fn is_own_child(pid: i32) -> bool {
-    OWN_CHILDREN
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner)
-        .contains(&pid)
+    OWN_CHILDREN.lock().unwrap_or_else(PoisonError::into_inner).contains(&pid)
 }
 
 /// Kills a process, its group, and everything below it.
@@ -63,10 +54,7 @@ pub fn sweep(scope: &str) -> Vec<LeftProcess> {
 /// Kills every process below this one, also those that the runner waits for.
 #[must_use]
 pub fn kill_everything() -> Vec<LeftProcess> {
-    OWN_CHILDREN
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner)
-        .clear();
+    OWN_CHILDREN.lock().unwrap_or_else(PoisonError::into_inner).clear();
     sweep_all()
 }
 
@@ -91,10 +79,7 @@ fn sweep_if(belongs: impl Fn(i32) -> bool) -> Vec<LeftProcess> {
             if is_zombie(*pid) {
                 unix::reap(*pid);
             } else if seen.insert(*pid) {
-                left.push(LeftProcess {
-                    pid: *pid,
-                    command: command_of(*pid),
-                });
+                left.push(LeftProcess { pid: *pid, command: command_of(*pid) });
                 unix::signal_process(*pid, SIGKILL);
             }
         }
@@ -121,9 +106,8 @@ fn children_of(tasks: impl AsRef<Path>) -> Vec<i32> {
     let Ok(entries) = std::fs::read_dir(tasks) else {
         return Vec::new();
     };
-    let lists = entries
-        .flatten()
-        .map(|entry| std::fs::read_to_string(entry.path().join("children")));
+    let lists =
+        entries.flatten().map(|entry| std::fs::read_to_string(entry.path().join("children")));
     let lists: Vec<String> = lists.flatten().collect();
     lists
         .iter()
@@ -136,17 +120,15 @@ fn is_zombie(pid: i32) -> bool {
     let Ok(stat) = std::fs::read_to_string(format!("/proc/{pid}/stat")) else {
         return false;
     };
-    stat.rsplit_once(") ")
-        .is_some_and(|(_, rest)| rest.starts_with('Z'))
+    stat.rsplit_once(") ").is_some_and(|(_, rest)| rest.starts_with('Z'))
 }
 
 /// The value of the scope variable of a process.
 fn scope_of(pid: i32) -> Option<Vec<u8>> {
     let environ = std::fs::read(format!("/proc/{pid}/environ")).ok()?;
     let prefix = format!("{SCOPE_VARIABLE}=");
-    let found = environ
-        .split(|byte| *byte == 0)
-        .find_map(|entry| entry.strip_prefix(prefix.as_bytes()));
+    let found =
+        environ.split(|byte| *byte == 0).find_map(|entry| entry.strip_prefix(prefix.as_bytes()));
     found.map(<[u8]>::to_vec)
 }
 

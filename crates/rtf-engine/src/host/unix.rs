@@ -1,8 +1,5 @@
 //! The system calls behind [`crate::host`].
-#![expect(
-    unsafe_code,
-    reason = "file descriptors of this process are marked by number"
-)]
+#![expect(unsafe_code, reason = "file descriptors of this process are marked by number")]
 
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd};
@@ -32,13 +29,8 @@ fn inherited_descriptors() -> Vec<i32> {
     let Ok(entries) = std::fs::read_dir("/proc/self/fd") else {
         return Vec::new();
     };
-    let numbers = entries
-        .flatten()
-        .filter_map(|entry| entry.file_name().to_str()?.parse().ok());
-    numbers
-        .filter(|fd| *fd >= 3)
-        .filter(|fd| is_open(*fd))
-        .collect()
+    let numbers = entries.flatten().filter_map(|entry| entry.file_name().to_str()?.parse().ok());
+    numbers.filter(|fd| *fd >= 3).filter(|fd| is_open(*fd)).collect()
 }
 
 fn is_open(fd: i32) -> bool {

@@ -28,12 +28,7 @@ pub struct Events {
 impl Events {
     /// Starts the run's clock. `token` is unique on this machine.
     pub fn new(token: String, sink: Arc<dyn Sink>) -> Self {
-        Self {
-            start: Instant::now(),
-            token,
-            next: Mutex::new(0),
-            sink,
-        }
+        Self { start: Instant::now(), token, next: Mutex::new(0), sink }
     }
 
     /// When the run started.
@@ -55,11 +50,7 @@ impl Events {
     pub fn emit(&self, kind: EventKind) {
         // The number, the time and the place in the queue are taken together.
         let mut next = self.next.lock().unwrap_or_else(PoisonError::into_inner);
-        let event = Event {
-            seq: *next,
-            at: Micros::from(self.now()),
-            kind,
-        };
+        let event = Event { seq: *next, at: Micros::from(self.now()), kind };
         *next += 1;
         self.sink.emit(event);
     }

@@ -23,10 +23,7 @@ pub async fn already_answers(process: Option<&ProcessPlan>) -> Option<String> {
             ProbeKind::Http(url) => address_of(url)?,
             _ => continue,
         };
-        if matches!(
-            timeout(TAKEN_WAIT, TcpStream::connect(&address)).await,
-            Ok(Ok(_))
-        ) {
+        if matches!(timeout(TAKEN_WAIT, TcpStream::connect(&address)).await, Ok(Ok(_))) {
             return Some(address);
         }
     }
@@ -35,11 +32,7 @@ pub async fn already_answers(process: Option<&ProcessPlan>) -> Option<String> {
 
 fn address_of(url: &str) -> Option<String> {
     let url = reqwest::Url::parse(url).ok()?;
-    Some(format!(
-        "{}:{}",
-        url.host_str()?,
-        url.port_or_known_default()?
-    ))
+    Some(format!("{}:{}", url.host_str()?, url.port_or_known_default()?))
 }
 
 /// Returns when each probe has held once.
@@ -53,14 +46,9 @@ pub async fn wait_until_ready(probes: &[Probe], started_at: SystemTime, spawner:
 
 /// Returns when a probe does not hold any more, with the reason.
 pub async fn wait_until_unwell(probes: &[Probe], spawner: &Spawner) -> String {
-    let asked: Vec<&Probe> = probes
-        .iter()
-        .filter(|probe| !matches!(probe.kind, ProbeKind::Log(_)))
-        .collect();
-    let mut due: Vec<_> = asked
-        .iter()
-        .map(|p| tokio::time::Instant::now() + p.every)
-        .collect();
+    let asked: Vec<&Probe> =
+        probes.iter().filter(|probe| !matches!(probe.kind, ProbeKind::Log(_))).collect();
+    let mut due: Vec<_> = asked.iter().map(|p| tokio::time::Instant::now() + p.every).collect();
     loop {
         let next = (0..asked.len()).min_by_key(|index| due[*index]);
         let Some(next) = next else {
@@ -89,11 +77,7 @@ async fn ask(probe: &Probe, since: Option<SystemTime>, spawner: &Spawner) -> Res
     };
     match timeout(probe.timeout, answer).await {
         Ok(answer) => answer,
-        Err(_) => Err(format!(
-            "{} did not answer within {:?}",
-            subject(probe),
-            probe.timeout
-        )),
+        Err(_) => Err(format!("{} did not answer within {:?}", subject(probe), probe.timeout)),
     }
 }
 
@@ -108,9 +92,8 @@ fn subject(probe: &Probe) -> String {
 }
 
 async fn ask_http(url: &str) -> Result<(), String> {
-    let answer = reqwest::get(url)
-        .await
-        .map_err(|error| format!("no answer from {url}: {error}"))?;
+    let answer =
+        reqwest::get(url).await.map_err(|error| format!("no answer from {url}: {error}"))?;
     if answer.status().is_success() {
         Ok(())
     } else {
@@ -138,17 +121,11 @@ async fn ask_command(command: &[String], spawner: &Spawner) -> Result<(), String
         streams: Streams::StdoutOnly,
         ..SpawnRequest::default()
     };
-    let mut process = spawner
-        .spawn(request)
-        .await
-        .map_err(|error| format!("`{shown}` cannot run: {error}"))?;
+    let mut process =
+        spawner.spawn(request).await.map_err(|error| format!("`{shown}` cannot run: {error}"))?;
     process.stdout = None;
     let guard = KillOnDrop(process.pid);
-    let status = process
-        .end
-        .wait()
-        .await
-        .map_err(|error| format!("`{shown}`: {error}"))?;
+    let status = process.end.wait().await.map_err(|error| format!("`{shown}`: {error}"))?;
     std::mem::forget(guard);
     if status == rtf_model::ExitStatus::Code(0) {
         Ok(())

@@ -13,9 +13,10 @@ use tokio::time::Instant;
 
 use super::events::Events;
 use super::machine::{Deadline, Effect, HostId, HostInput, Input, SpawnPlan, Stop, SuiteMachine};
+use crate::host::launch::Launch;
 use crate::host::spawner::{SpawnRequest, Streams};
 use crate::host::task::{self, Job, Order, Shared};
-use crate::plan::SuitePlan;
+use crate::plan::{HostPlan, SuitePlan};
 
 /// How many inputs may wait; then processes wait.
 const INPUTS: usize = 1024;
@@ -36,10 +37,15 @@ pub async fn run_suite(
         machine: SuiteMachine::new(plan),
         effects: Vec::new(),
         orders: HashMap::new(),
+        spare: None,
+        scopes: 0,
         deadlines: BTreeMap::new(),
         over: false,
     };
     task.run(queue, stops).await;
+    if let Some(spare) = task.spare.take() {
+        spare.discard().await;
+    }
 }
 
 struct SuiteTask<'a> {
@@ -50,6 +56,10 @@ struct SuiteTask<'a> {
     machine: SuiteMachine<'a>,
     effects: Vec<Effect>,
     orders: HashMap<HostId, mpsc::UnboundedSender<Order>>,
+    /// A host that was started ahead of its need.
+    spare: Option<Launch>,
+    /// How many scopes were given out.
+    scopes: u64,
     deadlines: BTreeMap<Deadline, Duration>,
     over: bool,
 }
@@ -128,15 +138,10 @@ impl SuiteTask<'_> {
             Effect::Emit(kind) => self.events.emit(kind),
             Effect::SetDeadline(deadline, at) => drop(self.deadlines.insert(deadline, at)),
             Effect::ClearDeadline(deadline) => drop(self.deadlines.remove(&deadline)),
-            Effect::Spawn {
-                host,
-                source,
-                plan,
-                env,
-                folder,
-            } => {
+            Effect::Spawn { host, source, plan, env, folder } => {
                 self.spawn(host, source, plan, env, folder);
             }
+            Effect::SpawnAhead { plan, env, folder } => self.spawn_ahead(&plan, env, folder),
             Effect::Send(host, id, request) => self.order(host, Order::Send(id, request)),
             Effect::CloseChannel(host) => self.order(host, Order::CloseChannel),
             Effect::TakeStack(host, support) => self.order(host, Order::TakeStack(support)),
@@ -159,46 +164,62 @@ impl SuiteTask<'_> {
         host: HostId,
         source: Source,
         plan: SpawnPlan,
-        mut env: Vec<(String, String)>,
+        env: Vec<(String, String)>,
         folder: PathBuf,
     ) {
-        env.insert(
-            0,
-            (
-                ENVIRONMENT_VARIABLE.to_owned(),
-                self.plan.environment.clone(),
-            ),
-        );
-        let (command, channel, process) = match plan {
-            SpawnPlan::Host(plan) => {
-                env.splice(0..0, plan.env.iter().cloned());
-                (plan.command.clone(), true, None)
+        let (request, process) = match plan {
+            SpawnPlan::Host(plan) => (self.host_request(&plan, env, folder), None),
+            SpawnPlan::Process(plan) => {
+                let mut request = self.request(plan.command.clone(), env, folder);
+                request.channel = false;
+                (request, Some(plan))
             }
-            SpawnPlan::Process(plan) => (plan.command.clone(), false, Some(plan)),
         };
-        let folder = Some(folder);
-        let request = SpawnRequest {
-            command,
-            env,
-            folder,
-            channel,
-            streams: Streams::Both,
-        };
-        let scope = format!("{}.{}.{}", self.events.run_token(), self.plan.id, host.0);
         let (orders, queue) = mpsc::unbounded_channel();
         self.orders.insert(host, orders);
-        let job = Job {
-            host,
-            source,
-            scope,
-            request,
-            process,
+        let launch = match self.spare.take_if(|spare| spare.request == request) {
+            Some(spare) => spare,
+            None => self.launch(request),
         };
-        tokio::spawn(task::run(
-            job,
-            self.shared.clone(),
-            queue,
-            self.inputs.clone(),
-        ));
+        let job = Job { host, source, launch, process };
+        tokio::spawn(task::run(job, self.shared.clone(), queue, self.inputs.clone()));
+    }
+
+    fn spawn_ahead(&mut self, plan: &HostPlan, env: Vec<(String, String)>, folder: PathBuf) {
+        let request = self.host_request(plan, env, folder);
+        if let Some(other) = self.spare.take_if(|spare| spare.request != request) {
+            tokio::spawn(other.discard());
+        }
+        if self.spare.is_none() {
+            let mut launch = self.launch(request);
+            launch.start_ahead(&self.shared.spawner);
+            self.spare = Some(launch);
+        }
+    }
+
+    fn host_request(
+        &self,
+        plan: &HostPlan,
+        mut env: Vec<(String, String)>,
+        folder: PathBuf,
+    ) -> SpawnRequest {
+        env.splice(0..0, plan.env.iter().cloned());
+        self.request(plan.command.clone(), env, folder)
+    }
+
+    fn request(
+        &self,
+        command: Vec<String>,
+        mut env: Vec<(String, String)>,
+        folder: PathBuf,
+    ) -> SpawnRequest {
+        env.insert(0, (ENVIRONMENT_VARIABLE.to_owned(), self.plan.environment.clone()));
+        SpawnRequest { command, env, folder: Some(folder), channel: true, streams: Streams::Both }
+    }
+
+    fn launch(&mut self, request: SpawnRequest) -> Launch {
+        self.scopes += 1;
+        let scope = format!("{}.{}.{}", self.events.run_token(), self.plan.id, self.scopes);
+        Launch::new(request, scope)
     }
 }

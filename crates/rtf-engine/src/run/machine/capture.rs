@@ -94,11 +94,7 @@ fn complete_len(bytes: &[u8]) -> usize {
             0xF0..=0xF7 => 4,
             _ => 1,
         };
-        return if index + width > bytes.len() {
-            index
-        } else {
-            bytes.len()
-        };
+        return if index + width > bytes.len() { index } else { bytes.len() };
     }
     bytes.len()
 }
@@ -116,29 +112,21 @@ mod tests {
     fn a_character_that_comes_in_two_pieces_is_not_torn() {
         let mut capture = capture();
         assert_eq!(capture.push(&[0xC3]), None);
-        assert_eq!(
-            capture.push(&[0xA9, b'!']).map(|o| o.text),
-            Some("é!".to_owned())
-        );
+        assert_eq!(capture.push(&[0xA9, b'!']).map(|o| o.text), Some("é!".to_owned()));
         assert_eq!(capture.finish(), None);
     }
 
     #[test]
     fn bytes_that_are_not_utf_8_are_replaced_and_do_not_get_stuck() {
         let mut capture = capture();
-        assert_eq!(
-            capture.push(&[0xFF, b'a']).map(|o| o.text),
-            Some("\u{FFFD}a".to_owned())
-        );
+        assert_eq!(capture.push(&[0xFF, b'a']).map(|o| o.text), Some("\u{FFFD}a".to_owned()));
     }
 
     #[test]
     fn a_flood_keeps_head_and_tail_and_counts_the_rest() {
         let mut capture = capture();
         let total = HEAD_BYTES + 3 * TAIL_BYTES + 5;
-        let flood: Vec<u8> = (0..total)
-            .map(|i| b'a' + u8::try_from(i % 26).unwrap())
-            .collect();
+        let flood: Vec<u8> = (0..total).map(|i| b'a' + u8::try_from(i % 26).unwrap()).collect();
         let mut text = String::new();
         for piece in flood.chunks(1000) {
             text.extend(capture.push(piece).map(|o| o.text));

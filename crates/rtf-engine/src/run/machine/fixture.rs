@@ -130,40 +130,19 @@ impl<'p> FixtureRun<'p> {
         self.busy = true;
         self.forced = false;
         self.captures = captures(self.plan.id);
-        cx.emit(EventKind::FixtureStarting {
-            fixture: self.plan.id,
-            attempt: self.starts,
-        });
+        cx.emit(EventKind::FixtureStarting { fixture: self.plan.id, attempt: self.starts });
         let (spawn, folder) = match &self.plan.body {
             FixtureBody::Plugin(plugin) => {
                 self.log = LogWatch::default();
-                (
-                    SpawnPlan::Host(plugin.host.clone()),
-                    self.suite.folder.clone(),
-                )
+                (SpawnPlan::Host(plugin.host.clone()), self.suite.folder.clone())
             }
             FixtureBody::Process(process) => {
                 self.log = log_watch(process);
-                (
-                    SpawnPlan::Process(Arc::new((**process).clone())),
-                    process.folder.clone(),
-                )
+                (SpawnPlan::Process(Arc::new((**process).clone())), process.folder.clone())
             }
         };
-        let env = self
-            .suite
-            .env
-            .iter()
-            .chain(&self.plan.env)
-            .cloned()
-            .collect();
-        cx.out(Effect::Spawn {
-            host,
-            source: self.source(),
-            plan: spawn,
-            env,
-            folder,
-        });
+        let env = self.suite.env.iter().chain(&self.plan.env).cloned().collect();
+        cx.out(Effect::Spawn { host, source: self.source(), plan: spawn, env, folder });
         if let FixtureBody::Plugin(plugin) = &self.plan.body {
             cx.out(Effect::Send(host, Some(INITIALIZE), initialize()));
             let request = Request::SetUpFixture(Plugin {
@@ -202,10 +181,7 @@ impl<'p> FixtureRun<'p> {
             }
             HostInput::ProbeFailed(reason) => self.unwell(reason, cx),
             HostInput::StackTaken(text) => {
-                cx.emit(EventKind::StackDumped {
-                    source: self.source(),
-                    text,
-                });
+                cx.emit(EventKind::StackDumped { source: self.source(), text });
                 None
             }
         }
@@ -214,10 +190,7 @@ impl<'p> FixtureRun<'p> {
     fn told(&mut self, notification: Notification, cx: &mut Context<'_>) -> Option<Change> {
         match notification {
             Notification::Message(message) => {
-                cx.emit(EventKind::Message {
-                    source: self.source(),
-                    message,
-                });
+                cx.emit(EventKind::Message { source: self.source(), message });
                 None
             }
             Notification::Collapsed { reason } => self.unwell(reason, cx),
@@ -233,10 +206,8 @@ impl<'p> FixtureRun<'p> {
             cx.emit(EventKind::Output(output));
         }
         self.log.push(bytes);
-        let change = self
-            .log
-            .take_found()
-            .and_then(|line| self.unwell(format!("it printed `{line}`"), cx));
+        let change =
+            self.log.take_found().and_then(|line| self.unwell(format!("it printed `{line}`"), cx));
         self.try_ready(cx);
         change
     }
@@ -258,10 +229,7 @@ impl<'p> FixtureRun<'p> {
         }
         let answer = match parse_answer(reply) {
             Ok(Ok(answer)) => problem_of(&answer),
-            Ok(Err(error)) => Some(format!(
-                "its host refused: {} ({})",
-                error.message, error.code
-            )),
+            Ok(Err(error)) => Some(format!("its host refused: {} ({})", error.message, error.code)),
             Err(what) => Some(format!("its host broke the protocol: {what}")),
         };
         if self.check == Some(id) {
@@ -294,9 +262,7 @@ impl<'p> FixtureRun<'p> {
         self.state = State::Ready;
         self.busy = false;
         cx.clear(self.timer(FixtureTimer::Limit));
-        cx.emit(EventKind::FixtureReady {
-            fixture: self.plan.id,
-        });
+        cx.emit(EventKind::FixtureReady { fixture: self.plan.id });
         match (&self.plan.body, self.host) {
             (FixtureBody::Process(process), Some(host)) if !process.alive.is_empty() => {
                 cx.out(Effect::WatchAlive(host));
@@ -348,11 +314,7 @@ impl<'p> FixtureRun<'p> {
                 self.state = State::Unwell;
                 let log_tail = self.log.tail();
                 let fixture = self.plan.id;
-                cx.emit(EventKind::FixtureCollapsed {
-                    fixture,
-                    reason: reason.clone(),
-                    log_tail,
-                });
+                cx.emit(EventKind::FixtureCollapsed { fixture, reason: reason.clone(), log_tail });
                 Some(Change::Collapsed(reason))
             }
             _ => None,
@@ -371,10 +333,7 @@ impl<'p> FixtureRun<'p> {
             }
         }
         if !left.is_empty() {
-            cx.emit(EventKind::ProcessesLeft {
-                source: self.source(),
-                processes: left,
-            });
+            cx.emit(EventKind::ProcessesLeft { source: self.source(), processes: left });
         }
         self.host = None;
         match self.state {
@@ -402,9 +361,7 @@ impl<'p> FixtureRun<'p> {
 
     /// Tears it down.
     pub fn stop(&mut self, cx: &mut Context<'_>) {
-        cx.emit(EventKind::FixtureStopping {
-            fixture: self.plan.id,
-        });
+        cx.emit(EventKind::FixtureStopping { fixture: self.plan.id });
         self.busy |= self.check.take().is_some();
         cx.clear(self.timer(FixtureTimer::Check));
         cx.clear(self.timer(FixtureTimer::CheckDue));
@@ -433,8 +390,7 @@ impl<'p> FixtureRun<'p> {
     fn torn_down(&mut self, problem: Option<String>, cx: &mut Context<'_>) {
         self.teardown = None;
         if let Some(why) = problem {
-            self.problem
-                .get_or_insert(format!("tear-down failed: {why}"));
+            self.problem.get_or_insert(format!("tear-down failed: {why}"));
         }
         self.state = State::Ending;
         if let Some(host) = self.host {
@@ -449,9 +405,7 @@ impl<'p> FixtureRun<'p> {
             return;
         }
         if !matches!(self.state, State::Stopping | State::Ending) {
-            cx.emit(EventKind::FixtureStopping {
-                fixture: self.plan.id,
-            });
+            cx.emit(EventKind::FixtureStopping { fixture: self.plan.id });
         }
         self.state = State::Ending;
         self.force(cx);
@@ -472,16 +426,8 @@ impl<'p> FixtureRun<'p> {
         self.state = State::Stopped;
         cx.clear(self.timer(FixtureTimer::Limit));
         let problem = self.problem.take();
-        let log_tail = if problem.is_some() {
-            self.log.tail()
-        } else {
-            Vec::new()
-        };
-        cx.emit(EventKind::FixtureStopped {
-            fixture: self.plan.id,
-            problem,
-            log_tail,
-        });
+        let log_tail = if problem.is_some() { self.log.tail() } else { Vec::new() };
+        cx.emit(EventKind::FixtureStopped { fixture: self.plan.id, problem, log_tail });
     }
 
     /// A deadline about this fixture has passed.
@@ -521,8 +467,7 @@ impl<'p> FixtureRun<'p> {
             FixtureBody::Plugin(_) => self.plan.limits.teardown,
             FixtureBody::Process(process) => process.stop_grace,
         };
-        self.problem
-            .get_or_insert(format!("it did not stop within {limit:?} and was killed"));
+        self.problem.get_or_insert(format!("it did not stop within {limit:?} and was killed"));
         let terminated_already = match &self.plan.body {
             FixtureBody::Plugin(_) => self.forced,
             FixtureBody::Process(_) => true,
@@ -541,10 +486,7 @@ impl<'p> FixtureRun<'p> {
 
 fn captures(fixture: FixtureId) -> [Capture; 2] {
     let source = Source::Fixture(fixture);
-    [
-        Capture::new(source, Stream::Stdout),
-        Capture::new(source, Stream::Stderr),
-    ]
+    [Capture::new(source, Stream::Stdout), Capture::new(source, Stream::Stderr)]
 }
 
 fn log_watch(process: &ProcessPlan) -> LogWatch {

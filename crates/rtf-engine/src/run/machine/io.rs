@@ -126,6 +126,16 @@ pub enum Effect {
         /// Its working folder.
         folder: PathBuf,
     },
+    /// A host like this will be needed next: start it while the test runs, if
+    /// that is cheap. It is used when the next `Spawn` asks for the same.
+    SpawnAhead {
+        /// What to start.
+        plan: Arc<HostPlan>,
+        /// Environment variables, later ones win.
+        env: Vec<(String, String)>,
+        /// Its working folder.
+        folder: PathBuf,
+    },
     /// Send a request or a notification.
     Send(HostId, Option<u64>, Request),
     /// No request will follow: the host ends when it is done.

@@ -38,10 +38,7 @@ pub fn judge(evidence: &Evidence, last_phase: Phase) -> (Verdict, Option<String>
     match &evidence.answer {
         None => judge_without_answer(evidence, last_phase),
         Some(Err(error)) => {
-            let reason = format!(
-                "the host refused the test: {} ({})",
-                error.message, error.code
-            );
+            let reason = format!("the host refused the test: {} ({})", error.message, error.code);
             (Verdict::Error, Some(reason), last_phase)
         }
         Some(Ok(answer)) => judge_answer(evidence, answer, last_phase),
@@ -69,10 +66,7 @@ fn judge_answer(
     last_phase: Phase,
 ) -> (Verdict, Option<String>, Phase) {
     let clean = evidence.exit == Some(ExitStatus::Code(0));
-    let problem = evidence
-        .first_problem
-        .clone()
-        .or_else(|| from_answer(answer, last_phase));
+    let problem = evidence.first_problem.clone().or_else(|| from_answer(answer, last_phase));
     match problem {
         None if clean => (Verdict::Passed, None, last_phase),
         None => {
@@ -96,24 +90,14 @@ fn from_answer(answer: &Answer, phase: Phase) -> Option<Problem> {
         Outcome::Passed => return None,
         Outcome::Failed => (Verdict::Failed, "the host says that the test failed"),
         Outcome::Error => (Verdict::Error, "the host says that the test went wrong"),
-        Outcome::Interrupted => (
-            Verdict::Error,
-            "the test stopped although it was not asked to",
-        ),
+        Outcome::Interrupted => (Verdict::Error, "the test stopped although it was not asked to"),
     };
     let reason = answer.reason.clone().unwrap_or_else(|| default.to_owned());
-    Some(Problem {
-        verdict,
-        reason,
-        phase,
-    })
+    Some(Problem { verdict, reason, phase })
 }
 
 fn ended(exit: Option<ExitStatus>) -> String {
-    exit.map_or_else(
-        || "an unknown status".to_owned(),
-        |status| status.to_string(),
-    )
+    exit.map_or_else(|| "an unknown status".to_owned(), |status| status.to_string())
 }
 
 #[cfg(test)]
@@ -121,15 +105,8 @@ mod tests {
     use super::*;
 
     fn answered(outcome: Outcome, exit: ExitStatus) -> Evidence {
-        let answer = Answer {
-            outcome,
-            reason: None,
-        };
-        Evidence {
-            answer: Some(Ok(answer)),
-            exit: Some(exit),
-            ..Evidence::default()
-        }
+        let answer = Answer { outcome, reason: None };
+        Evidence { answer: Some(Ok(answer)), exit: Some(exit), ..Evidence::default() }
     }
 
     #[test]
@@ -138,10 +115,7 @@ mod tests {
         assert_eq!(judge(&passed, Phase::Exit).0, Verdict::Passed);
         let crashed = answered(Outcome::Passed, ExitStatus::Signal(11));
         assert_eq!(judge(&crashed, Phase::Exit).0, Verdict::Crashed);
-        let silent = Evidence {
-            exit: Some(ExitStatus::Code(0)),
-            ..Evidence::default()
-        };
+        let silent = Evidence { exit: Some(ExitStatus::Code(0)), ..Evidence::default() };
         assert_eq!(judge(&silent, Phase::Run).0, Verdict::Crashed);
     }
 
@@ -149,15 +123,9 @@ mod tests {
     fn a_host_that_hides_a_failure_is_not_believed() {
         let mut evidence = answered(Outcome::Passed, ExitStatus::Code(0));
         let reason = "the gripper is open".to_owned();
-        evidence.first_problem = Some(Problem {
-            verdict: Verdict::Failed,
-            reason: reason.clone(),
-            phase: Phase::Run,
-        });
-        assert_eq!(
-            judge(&evidence, Phase::Exit),
-            (Verdict::Failed, Some(reason), Phase::Run)
-        );
+        evidence.first_problem =
+            Some(Problem { verdict: Verdict::Failed, reason: reason.clone(), phase: Phase::Run });
+        assert_eq!(judge(&evidence, Phase::Exit), (Verdict::Failed, Some(reason), Phase::Run));
     }
 
     #[test]

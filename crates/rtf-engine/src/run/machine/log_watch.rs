@@ -24,11 +24,7 @@ pub struct LogWatch {
 impl LogWatch {
     /// Waits for `awaited`, and looks out for `forbidden`.
     pub fn new(awaited: Vec<Regex>, forbidden: Vec<Regex>) -> Self {
-        Self {
-            awaited,
-            forbidden,
-            ..Self::default()
-        }
+        Self { awaited, forbidden, ..Self::default() }
     }
 
     /// Takes in what was printed.

@@ -40,10 +40,7 @@ impl Context<'_> {
 
     /// Sets a deadline `after` now.
     pub fn set(&mut self, deadline: Deadline, after: Duration) {
-        self.out.push(Effect::SetDeadline(
-            deadline,
-            self.now.saturating_add(after),
-        ));
+        self.out.push(Effect::SetDeadline(deadline, self.now.saturating_add(after)));
     }
 
     pub fn clear(&mut self, deadline: Deadline) {
@@ -87,16 +84,10 @@ impl<'p> SuiteMachine<'p> {
     pub fn new(plan: &'p SuitePlan) -> Self {
         Self {
             plan,
-            fixtures: (0..plan.fixtures.len())
-                .map(|place| FixtureRun::new(plan, place))
-                .collect(),
+            fixtures: (0..plan.fixtures.len()).map(|place| FixtureRun::new(plan, place)).collect(),
             restarts: vec![0; plan.fixtures.len()],
             running: None,
-            cursor: Cursor {
-                test: 0,
-                repetition: 1,
-                attempt: 1,
-            },
+            cursor: Cursor { test: 0, repetition: 1, attempt: 1 },
             checked: false,
             ending: None,
             started: false,
@@ -108,11 +99,7 @@ impl<'p> SuiteMachine<'p> {
     /// Takes in what happened at `now` and appends what is to be done.
     pub fn handle(&mut self, input: Input, now: Duration, out: &mut Vec<Effect>) {
         let mut hosts = self.hosts;
-        let mut cx = Context {
-            now,
-            out,
-            hosts: &mut hosts,
-        };
+        let mut cx = Context { now, out, hosts: &mut hosts };
         match input {
             Input::Start => self.start(&mut cx),
             Input::Host(host, input) => self.host(host, input, &mut cx),
@@ -125,24 +112,15 @@ impl<'p> SuiteMachine<'p> {
 
     fn start(&mut self, cx: &mut Context<'_>) {
         self.started = true;
-        cx.emit(EventKind::SuiteStarted {
-            suite: self.plan.id,
-        });
+        cx.emit(EventKind::SuiteStarted { suite: self.plan.id });
         if let Some(timeout) = self.plan.timeout {
             cx.set(Deadline::Suite, timeout);
         }
     }
 
     fn host(&mut self, host: HostId, input: HostInput, cx: &mut Context<'_>) {
-        if self
-            .running
-            .as_ref()
-            .is_some_and(|test| test.host() == host)
-        {
-            let ended = self
-                .running
-                .as_mut()
-                .and_then(|test| test.handle(input, cx));
+        if self.running.as_ref().is_some_and(|test| test.host() == host) {
+            let ended = self.running.as_mut().and_then(|test| test.handle(input, cx));
             if let Some(ended) = ended {
                 self.test_ended(&ended, cx);
             }
@@ -238,37 +216,17 @@ impl<'p> SuiteMachine<'p> {
         }
         cx.emit(finished);
         if let Some(text) = &ended.critical {
-            self.end_early(format!(
-                "a critical assertion of `{}` did not hold: {text}",
-                plan.name
-            ));
+            self.end_early(format!("a critical assertion of `{}` did not hold: {text}", plan.name));
         } else if plan.critical && !ended.verdict.is_green() && !rerun {
-            self.end_early(format!(
-                "the critical test `{}` is {}",
-                plan.name, ended.verdict
-            ));
+            self.end_early(format!("the critical test `{}` is {}", plan.name, ended.verdict));
         }
         self.checked = false;
         self.cursor = match (rerun, self.cursor) {
-            (true, cursor) => Cursor {
-                attempt: cursor.attempt + 1,
-                ..cursor
-            },
-            (
-                false,
-                Cursor {
-                    test, repetition, ..
-                },
-            ) if repetition < plan.repetitions => Cursor {
-                test,
-                repetition: repetition + 1,
-                attempt: 1,
-            },
-            (false, cursor) => Cursor {
-                test: cursor.test + 1,
-                repetition: 1,
-                attempt: 1,
-            },
+            (true, cursor) => Cursor { attempt: cursor.attempt + 1, ..cursor },
+            (false, Cursor { test, repetition, .. }) if repetition < plan.repetitions => {
+                Cursor { test, repetition: repetition + 1, attempt: 1 }
+            }
+            (false, cursor) => Cursor { test: cursor.test + 1, repetition: 1, attempt: 1 },
         };
     }
 
@@ -279,21 +237,14 @@ impl<'p> SuiteMachine<'p> {
         if self.ending.is_some() || self.cursor.test >= self.plan.tests.len() {
             return self.finish(cx);
         }
-        let unwell = self
-            .fixtures
-            .iter()
-            .position(|f| f.state() == State::Unwell);
+        let unwell = self.fixtures.iter().position(|f| f.state() == State::Unwell);
         if let (Some(lowest), None) = (unwell, &self.running) {
             self.stop_from(lowest, cx);
         }
         if self.running.is_some() || self.is_stopping() || self.is_starting() {
             return;
         }
-        if let Some(fixture) = self
-            .fixtures
-            .iter_mut()
-            .find(|f| f.state() == State::Stopped)
-        {
+        if let Some(fixture) = self.fixtures.iter_mut().find(|f| f.state() == State::Stopped) {
             self.checked = false;
             return fixture.start(cx);
         }
@@ -301,9 +252,7 @@ impl<'p> SuiteMachine<'p> {
     }
 
     fn is_stopping(&self) -> bool {
-        self.fixtures
-            .iter()
-            .any(|f| matches!(f.state(), State::Stopping | State::Ending))
+        self.fixtures.iter().any(|f| matches!(f.state(), State::Stopping | State::Ending))
     }
 
     fn is_starting(&self) -> bool {
@@ -320,13 +269,17 @@ impl<'p> SuiteMachine<'p> {
         if self.fixtures.iter().any(FixtureRun::is_checking) {
             return;
         }
-        let Cursor {
-            test,
-            repetition,
-            attempt,
-        } = self.cursor;
+        let Cursor { test, repetition, attempt } = self.cursor;
         let plan = &self.plan.tests[test];
         self.running = Some(TestRun::start(self.plan, plan, (repetition, attempt), cx));
+        let next = if repetition < plan.repetitions { test } else { test + 1 };
+        if let Some(next) = self.plan.tests.get(next) {
+            cx.out(Effect::SpawnAhead {
+                plan: next.plugin.host.clone(),
+                env: TestRun::env(self.plan, next),
+                folder: self.plan.folder.clone(),
+            });
+        }
     }
 
     /// Tears down the highest fixture from `lowest` on that is still there.
@@ -346,25 +299,16 @@ impl<'p> SuiteMachine<'p> {
             return;
         }
         self.stop_from(0, cx);
-        if self
-            .fixtures
-            .iter()
-            .any(|fixture| fixture.state() != State::Stopped)
-        {
+        if self.fixtures.iter().any(|fixture| fixture.state() != State::Stopped) {
             return;
         }
         let reason = self.ending.clone().unwrap_or_default();
         for plan in &self.plan.tests[self.cursor.test.min(self.plan.tests.len())..] {
-            cx.emit(EventKind::TestSkipped {
-                test: plan.id,
-                reason: reason.clone(),
-            });
+            cx.emit(EventKind::TestSkipped { test: plan.id, reason: reason.clone() });
         }
         self.over = true;
         cx.clear(Deadline::Suite);
-        cx.emit(EventKind::SuiteFinished {
-            suite: self.plan.id,
-        });
+        cx.emit(EventKind::SuiteFinished { suite: self.plan.id });
         cx.out(Effect::Done);
     }
 }

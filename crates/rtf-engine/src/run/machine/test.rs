@@ -88,20 +88,10 @@ impl<'p> TestRun<'p> {
     ) -> Self {
         let host = cx.new_host();
         let source = Source::Test(plan.id);
-        cx.emit(EventKind::TestStarted {
-            test: plan.id,
-            repetition,
-            attempt,
-        });
-        let env = suite.env.iter().chain(&plan.env).cloned().collect();
+        cx.emit(EventKind::TestStarted { test: plan.id, repetition, attempt });
+        let env = Self::env(suite, plan);
         let spawn = SpawnPlan::Host(plan.plugin.host.clone());
-        cx.out(Effect::Spawn {
-            host,
-            source,
-            plan: spawn,
-            env,
-            folder: suite.folder.clone(),
-        });
+        cx.out(Effect::Spawn { host, source, plan: spawn, env, folder: suite.folder.clone() });
         cx.out(Effect::Send(host, Some(INITIALIZE), initialize()));
         let plugin = Plugin {
             file: plan.plugin.file.to_string_lossy().into_owned(),
@@ -122,12 +112,14 @@ impl<'p> TestRun<'p> {
             stack: StackSupport::None,
             stack_taken: false,
             step: None,
-            captures: [
-                Capture::new(source, Stream::Stdout),
-                Capture::new(source, Stream::Stderr),
-            ],
+            captures: [Capture::new(source, Stream::Stdout), Capture::new(source, Stream::Stderr)],
             critical: None,
         }
+    }
+
+    /// The environment variables of a test's process.
+    pub fn env(suite: &SuitePlan, plan: &TestPlan) -> Vec<(String, String)> {
+        suite.env.iter().chain(&plan.env).cloned().collect()
     }
 
     /// The process of this attempt.
@@ -146,10 +138,7 @@ impl<'p> TestRun<'p> {
             HostInput::Exited(status, left) => return Some(self.end(Some(status), left, cx)),
             HostInput::Told(notification) => self.told(notification, cx),
             HostInput::Attached(Ok(attachment)) => {
-                cx.emit(EventKind::Attached {
-                    test: self.plan.id,
-                    attachment,
-                });
+                cx.emit(EventKind::Attached { test: self.plan.id, attachment });
             }
             HostInput::Attached(Err(reason)) => self.own_error(reason, cx),
             HostInput::Answered(INITIALIZE, reply) => self.initialized(reply, cx),
@@ -186,10 +175,7 @@ impl<'p> TestRun<'p> {
             return self.broke_protocol(what, cx);
         }
         self.phase = phase;
-        cx.emit(EventKind::TestPhase {
-            test: self.plan.id,
-            phase,
-        });
+        cx.emit(EventKind::TestPhase { test: self.plan.id, phase });
         if self.step.is_some() {
             return;
         }
@@ -216,10 +202,7 @@ impl<'p> TestRun<'p> {
         if message.critical && message.kind != MessageKind::Check && self.critical.is_none() {
             self.critical = Some(message.text.clone());
         }
-        cx.emit(EventKind::Message {
-            source: Source::Test(self.plan.id),
-            message,
-        });
+        cx.emit(EventKind::Message { source: Source::Test(self.plan.id), message });
     }
 
     fn measured(&mut self, measurement: Measurement, cx: &mut Context<'_>) {
@@ -231,40 +214,20 @@ impl<'p> TestRun<'p> {
             };
             self.note(Verdict::Failed, reason);
         }
-        cx.emit(EventKind::Measured {
-            test: self.plan.id,
-            measurement,
-        });
+        cx.emit(EventKind::Measured { test: self.plan.id, measurement });
     }
 
     fn own_error(&mut self, text: String, cx: &mut Context<'_>) {
         let kind = MessageKind::Error;
-        self.message(
-            Message {
-                kind,
-                text,
-                location: None,
-                comparison: None,
-                critical: false,
-            },
-            cx,
-        );
+        self.message(Message { kind, text, location: None, comparison: None, critical: false }, cx);
     }
 
     /// Remembers the first failure or error. Only `run` can show that the
     /// robot is wrong; what goes wrong around it is the bench's.
     fn note(&mut self, verdict: Verdict, reason: String) {
-        let verdict = if self.phase == Phase::Run {
-            verdict
-        } else {
-            Verdict::Error
-        };
+        let verdict = if self.phase == Phase::Run { verdict } else { Verdict::Error };
         let phase = self.phase;
-        self.evidence.first_problem.get_or_insert(Problem {
-            verdict,
-            reason,
-            phase,
-        });
+        self.evidence.first_problem.get_or_insert(Problem { verdict, reason, phase });
     }
 
     fn initialized(&mut self, reply: Reply<serde_json::Value>, cx: &mut Context<'_>) {
@@ -302,11 +265,7 @@ impl<'p> TestRun<'p> {
         if self.evidence.stopped.is_some() {
             return;
         }
-        cx.emit(EventKind::TestStopping {
-            test: self.plan.id,
-            cause,
-            reason: reason.clone(),
-        });
+        cx.emit(EventKind::TestStopping { test: self.plan.id, cause, reason: reason.clone() });
         cx.clear(Deadline::Test(TestTimer::Slow));
         self.evidence.stopped = Some((cause, reason, self.phase));
         if cause == StopCause::Timeout {
@@ -324,11 +283,7 @@ impl<'p> TestRun<'p> {
 
     fn ask(&mut self, cx: &mut Context<'_>) {
         self.step = Some(Step::Asked);
-        let reason = self
-            .evidence
-            .stopped
-            .as_ref()
-            .map(|(_, reason, _)| reason.clone());
+        let reason = self.evidence.stopped.as_ref().map(|(_, reason, _)| reason.clone());
         let reason = reason.unwrap_or_default();
         cx.out(Effect::Send(self.host, None, Request::Interrupt { reason }));
         cx.set(Deadline::Test(TestTimer::Limit), self.plan.limits.grace);
@@ -337,10 +292,7 @@ impl<'p> TestRun<'p> {
     fn stack_taken(&mut self, text: String, cx: &mut Context<'_>) {
         if !self.stack_taken {
             self.stack_taken = true;
-            cx.emit(EventKind::StackDumped {
-                source: Source::Test(self.plan.id),
-                text,
-            });
+            cx.emit(EventKind::StackDumped { source: Source::Test(self.plan.id), text });
         }
         match self.step {
             Some(Step::DumpThenAsk) => self.ask(cx),
@@ -386,10 +338,9 @@ impl<'p> TestRun<'p> {
             Phase::Setup => format!("set-up did not end within {:?}", limits.setup),
             Phase::Run => format!("run did not end within {:?}", limits.run),
             Phase::TearDown => format!("tear-down did not end within {:?}", limits.teardown),
-            Phase::Exit => format!(
-                "the process did not end within {:?} after the test",
-                limits.teardown
-            ),
+            Phase::Exit => {
+                format!("the process did not end within {:?} after the test", limits.teardown)
+            }
         }
     }
 
@@ -408,20 +359,11 @@ impl<'p> TestRun<'p> {
         }
         if !left.is_empty() {
             let source = Source::Test(self.plan.id);
-            cx.emit(EventKind::ProcessesLeft {
-                source,
-                processes: left,
-            });
+            cx.emit(EventKind::ProcessesLeft { source, processes: left });
         }
         self.evidence.exit = exit;
         let (verdict, reason, phase) = judge(&self.evidence, self.phase);
-        Ended {
-            verdict,
-            reason,
-            phase,
-            exit,
-            critical: self.critical.take(),
-        }
+        Ended { verdict, reason, phase, exit, critical: self.critical.take() }
     }
 
     /// The last event of this attempt.
@@ -462,10 +404,7 @@ pub fn parse_initialized(reply: Reply<serde_json::Value>) -> Result<StackSupport
     if initialized.protocol == PROTOCOL_VERSION {
         Ok(initialized.stack)
     } else {
-        Err(format!(
-            "{} speaks protocol {}",
-            initialized.host, initialized.protocol
-        ))
+        Err(format!("{} speaks protocol {}", initialized.host, initialized.protocol))
     }
 }
 

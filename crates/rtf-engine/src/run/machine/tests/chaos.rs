@@ -11,11 +11,7 @@ use crate::plan::AfterCollapse;
 use crate::run::machine::{HostInput, Input, StopLevel};
 
 fn act(world: &mut World<'_>, choice: u8, which: usize) {
-    let alive: Vec<_> = world
-        .hosts
-        .iter()
-        .map(|(host, source)| (*host, *source))
-        .collect();
+    let alive: Vec<_> = world.hosts.iter().map(|(host, source)| (*host, *source)).collect();
     let Some((host, source)) = alive.get(which % alive.len().max(1)).copied() else {
         if !world.deadlines.is_empty() {
             world.next_deadline();
@@ -23,12 +19,7 @@ fn act(world: &mut World<'_>, choice: u8, which: usize) {
         return;
     };
     let answerable = |world: &World<'_>| {
-        world
-            .sent
-            .iter()
-            .rev()
-            .find(|(to, id, _)| *to == host && id.is_some())
-            .and_then(|s| s.1)
+        world.sent.iter().rev().find(|(to, id, _)| *to == host && id.is_some()).and_then(|s| s.1)
     };
     let told = |notification| Input::Host(host, HostInput::Told(notification));
     match choice % 16 {
@@ -36,43 +27,26 @@ fn act(world: &mut World<'_>, choice: u8, which: usize) {
             if let Some(id) = answerable(world) {
                 let outcome = if choice > 200 { "failed" } else { "passed" };
                 let value = serde_json::json!({ "outcome": outcome });
-                world.feed(Input::Host(
-                    host,
-                    HostInput::Answered(id, Reply::Result(value)),
-                ));
+                world.feed(Input::Host(host, HostInput::Answered(id, Reply::Result(value))));
             }
         }
-        5 => world.feed(told(Notification::Phase {
-            phase: Phase::Setup,
-        })),
+        5 => world.feed(told(Notification::Phase { phase: Phase::Setup })),
         6 | 7 => world.feed(told(Notification::Phase { phase: Phase::Run })),
-        8 => world.feed(told(Notification::Phase {
-            phase: Phase::TearDown,
-        })),
-        9 => world.feed(told(Notification::Collapsed {
-            reason: "gone".to_owned(),
-        })),
+        8 => world.feed(told(Notification::Phase { phase: Phase::TearDown })),
+        9 => world.feed(told(Notification::Collapsed { reason: "gone".to_owned() })),
         10 => world.exit(source, ExitStatus::Signal(9)),
         11 | 12 => world.exit(source, ExitStatus::Code(0)),
         13 => {
             let kind = MessageKind::Failure;
             let text = "no".to_owned();
-            let message = Message {
-                kind,
-                text,
-                location: None,
-                comparison: None,
-                critical: choice > 240,
-            };
+            let message =
+                Message { kind, text, location: None, comparison: None, critical: choice > 240 };
             world.feed(told(Notification::Message(message)));
         }
         14 => drop((!world.deadlines.is_empty()).then(|| world.next_deadline())),
         _ if choice == 255 => world.stop(StopLevel::Kill),
         _ if choice == 239 => world.stop(StopLevel::TearDown),
-        _ => world.feed(Input::Host(
-            host,
-            HostInput::Garbage("it wrote `x`".to_owned()),
-        )),
+        _ => world.feed(Input::Host(host, HostInput::Garbage("it wrote `x`".to_owned()))),
     }
 }
 
@@ -121,23 +95,15 @@ proptest! {
 
 /// No attempt during which a fixture collapsed is green.
 fn check_overlaps(world: &World<'_>) {
-    let collapses: Vec<_> = world
-        .record
-        .fixtures
-        .iter()
-        .flat_map(|f| f.collapses.iter().map(|(at, _)| *at))
-        .collect();
+    let collapses: Vec<_> =
+        world.record.fixtures.iter().flat_map(|f| f.collapses.iter().map(|(at, _)| *at)).collect();
     for test in &world.record.tests {
         for attempt in &test.attempts {
             let Some((end, finished)) = &attempt.finished else {
                 continue;
             };
             let overlaps = collapses.iter().any(|at| *at > attempt.started && at < end);
-            assert!(
-                !(overlaps && finished.verdict == Verdict::Passed),
-                "{:#?}",
-                world.log
-            );
+            assert!(!(overlaps && finished.verdict == Verdict::Passed), "{:#?}", world.log);
         }
     }
 }

@@ -28,10 +28,7 @@ fn until_test_runs(plan: &SuitePlan) -> World<'_> {
 fn ready(world: &mut World<'_>, fixtures: usize) {
     for _ in ["set-up", "check"] {
         for fixture in 0..fixtures {
-            world.answer(
-                Source::Fixture(FixtureId(u32::try_from(fixture).unwrap())),
-                "passed",
-            );
+            world.answer(Source::Fixture(FixtureId(u32::try_from(fixture).unwrap())), "passed");
         }
     }
 }
@@ -136,10 +133,7 @@ fn a_rerun_keeps_both_attempts_and_the_last_one_counts() {
     let verdicts: Vec<_> = test.attempts.iter().filter_map(|a| a.verdict()).collect();
     assert_eq!(verdicts, [Verdict::Collapsed, Verdict::Passed]);
     assert_eq!(test.verdict(), Some(Verdict::Passed));
-    assert!(
-        !world.record.is_green(),
-        "a collapse is not green unless it is tolerated"
-    );
+    assert!(!world.record.is_green(), "a collapse is not green unless it is tolerated");
 }
 
 #[test]
@@ -217,10 +211,7 @@ fn a_check_that_fails_before_a_test_restarts_the_fixture_first() {
     world.pass(0);
     world.tear_down(0);
     world.finish();
-    assert_eq!(
-        world.record.fixtures[0].collapses[0].1,
-        "check failed: says failed"
-    );
+    assert_eq!(world.record.fixtures[0].collapses[0].1, "check failed: says failed");
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Passed));
 }
 

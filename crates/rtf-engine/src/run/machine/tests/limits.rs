@@ -45,10 +45,7 @@ fn each_phase_has_its_own_limit() {
         (&[][..], "the plug-in was not loaded within 10s"),
         (&[Phase::Setup], "set-up did not end within 10s"),
         (&[Phase::Setup, Phase::Run], "run did not end within 5s"),
-        (
-            &[Phase::Setup, Phase::Run, Phase::TearDown],
-            "tear-down did not end within 3s",
-        ),
+        (&[Phase::Setup, Phase::Run, Phase::TearDown], "tear-down did not end within 3s"),
     ] {
         let plan = suite(0, 1);
         let mut world = World::new(&plan);
@@ -92,10 +89,7 @@ fn a_check_that_hangs_is_a_collapse() {
     world.start();
     world.answer(FIXTURE, "passed");
     world.next_deadline();
-    assert_eq!(
-        world.record.fixtures[0].collapses[0].1,
-        "check did not answer within 1s"
-    );
+    assert_eq!(world.record.fixtures[0].collapses[0].1, "check did not answer within 1s");
     world.exit(FIXTURE, ExitStatus::Code(1));
     world.answer(FIXTURE, "passed");
     world.answer(FIXTURE, "passed");
@@ -134,8 +128,5 @@ fn the_limit_of_the_suite_ends_it_with_tear_down() {
     world.tear_down(0);
     world.finish();
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::TimedOut));
-    assert_eq!(
-        world.record.tests[1].reason(),
-        Some("the suite did not end within 1s")
-    );
+    assert_eq!(world.record.tests[1].reason(), Some("the suite did not end within 1s"));
 }

@@ -40,10 +40,7 @@ fn plugin() -> PluginPlan {
         file: PathBuf::from("plugin.so"),
         param: String::new(),
         args: Vec::new(),
-        host: Arc::new(HostPlan {
-            command: vec!["host".to_owned()],
-            env: Vec::new(),
-        }),
+        host: Arc::new(HostPlan { command: vec!["host".to_owned()], env: Vec::new() }),
     }
 }
 
@@ -53,11 +50,7 @@ fn fixture(index: usize) -> FixturePlan {
         name: format!("fixture{index}"),
         body: FixtureBody::Plugin(plugin()),
         env: Vec::new(),
-        limits: FixtureLimits {
-            setup: 10 * SECOND,
-            check: SECOND,
-            teardown: 3 * SECOND,
-        },
+        limits: FixtureLimits { setup: 10 * SECOND, check: SECOND, teardown: 3 * SECOND },
         restarts: 1,
         check_every: None,
     }
@@ -160,22 +153,14 @@ impl<'p> World<'p> {
     }
 
     fn emit(&mut self, kind: EventKind) {
-        let event = Event {
-            seq: self.seq,
-            at: Micros::from(self.now),
-            kind,
-        };
+        let event = Event { seq: self.seq, at: Micros::from(self.now), kind };
         self.seq += 1;
         self.order
             .check(&event)
             .unwrap_or_else(|error| panic!("{error}\n{event:?}\n{:#?}", self.log));
         self.record.apply(&event);
         let json = serde_json::to_value(&event.kind).unwrap();
-        self.log.push(format!(
-            "{:>5.1}  {}",
-            self.now.as_secs_f64(),
-            line_of(&json)
-        ));
+        self.log.push(format!("{:>5.1}  {}", self.now.as_secs_f64(), line_of(&json)));
     }
 
     pub fn feed(&mut self, input: Input) {
@@ -189,6 +174,7 @@ impl<'p> World<'p> {
                 Effect::SetDeadline(deadline, at) => drop(self.deadlines.insert(deadline, at)),
                 Effect::ClearDeadline(deadline) => drop(self.deadlines.remove(&deadline)),
                 Effect::Done => self.done = true,
+                Effect::SpawnAhead { .. } => {}
                 other => self.log.push(format!(
                     "{:>5.1}    {}",
                     self.now.as_secs_f64(),
@@ -203,18 +189,13 @@ impl<'p> World<'p> {
     }
 
     pub fn stop(&mut self, level: StopLevel) {
-        self.feed(Input::Stop(Stop {
-            level,
-            reason: "SIGINT".to_owned(),
-        }));
+        self.feed(Input::Stop(Stop { level, reason: "SIGINT".to_owned() }));
     }
 
     /// The host of a source that is alive.
     pub fn host_of(&self, source: Source) -> HostId {
         let host = self.hosts.iter().find(|(_, of)| **of == source);
-        *host
-            .unwrap_or_else(|| panic!("no host of {source:?}\n{:#?}", self.log))
-            .0
+        *host.unwrap_or_else(|| panic!("no host of {source:?}\n{:#?}", self.log)).0
     }
 
     pub fn input(&mut self, source: Source, input: HostInput) {
@@ -232,11 +213,7 @@ impl<'p> World<'p> {
     /// Answers the request that was sent last to a host and waits for an answer.
     pub fn answer(&mut self, source: Source, outcome: &str) {
         let host = self.host_of(source);
-        let asked = self
-            .sent
-            .iter()
-            .rev()
-            .find(|(to, id, _)| *to == host && id.is_some());
+        let asked = self.sent.iter().rev().find(|(to, id, _)| *to == host && id.is_some());
         let id = asked.and_then(|(_, id, _)| *id).expect("a request");
         let value = serde_json::json!({ "outcome": outcome, "reason": format!("says {outcome}") });
         self.input(source, HostInput::Answered(id, Reply::Result(value)));
@@ -248,13 +225,8 @@ impl<'p> World<'p> {
 
     pub fn failure(&mut self, source: Source, text: &str, critical: bool) {
         let kind = MessageKind::Failure;
-        let message = Message {
-            kind,
-            text: text.to_owned(),
-            location: None,
-            comparison: None,
-            critical,
-        };
+        let message =
+            Message { kind, text: text.to_owned(), location: None, comparison: None, critical };
         self.input(source, HostInput::Told(Notification::Message(message)));
     }
 
@@ -278,9 +250,7 @@ impl<'p> World<'p> {
     /// Lets time pass up to the next deadline, which then passes.
     pub fn next_deadline(&mut self) -> Deadline {
         let next = self.deadlines.iter().min_by_key(|(_, at)| **at);
-        let (deadline, at) = next
-            .map(|(deadline, at)| (*deadline, *at))
-            .expect("a deadline");
+        let (deadline, at) = next.map(|(deadline, at)| (*deadline, *at)).expect("a deadline");
         self.now = self.now.max(at);
         self.deadlines.remove(&deadline);
         self.feed(Input::Deadline(deadline));
@@ -289,20 +259,14 @@ impl<'p> World<'p> {
 
     pub fn finish(&mut self) {
         assert!(self.done, "the suite is not over\n{:#?}", self.log);
-        assert!(
-            self.deadlines.is_empty(),
-            "deadlines are left: {:?}",
-            self.deadlines
-        );
+        assert!(self.deadlines.is_empty(), "deadlines are left: {:?}", self.deadlines);
         self.emit(EventKind::RunFinished { interrupted: None });
     }
 
     /// What happened after the plan.
     pub fn story(&self) -> String {
-        let story = self
-            .log
-            .iter()
-            .filter(|line| !line.contains("-planned") && !line.contains("run-"));
+        let story =
+            self.log.iter().filter(|line| !line.contains("-planned") && !line.contains("run-"));
         story.cloned().collect::<Vec<_>>().join("\n")
     }
 }

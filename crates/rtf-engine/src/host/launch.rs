@@ -1,0 +1,60 @@
+//! A process that is to be started, or was started ahead of its need.
+
+use std::io;
+
+use rtf_model::protocol::SCOPE_VARIABLE;
+use tokio::sync::oneshot;
+
+use super::spawner::{Process, SpawnRequest, Spawner};
+use super::tree;
+
+/// A process of a scope of its own, started already or not.
+#[derive(Debug)]
+pub struct Launch {
+    /// What is started; without the scope variable.
+    pub request: SpawnRequest,
+    /// The value of its scope variable: unique on this machine.
+    pub scope: String,
+    ahead: Option<oneshot::Receiver<io::Result<Process>>>,
+}
+
+impl Launch {
+    /// A process that will be started by [`Launch::start`].
+    #[must_use]
+    pub fn new(request: SpawnRequest, scope: String) -> Self {
+        Self { request, scope, ahead: None }
+    }
+
+    /// Starts it now, for a need that is to come.
+    pub fn start_ahead(&mut self, spawner: &Spawner) {
+        self.ahead = Some(spawner.begin(self.full_request()));
+    }
+
+    /// The process: started now, unless it was before.
+    ///
+    /// # Errors
+    /// It cannot be started.
+    pub async fn start(&mut self, spawner: &Spawner) -> io::Result<Process> {
+        let started = match self.ahead.take() {
+            Some(started) => started,
+            None => spawner.begin(self.full_request()),
+        };
+        Spawner::started(started).await
+    }
+
+    /// Ends a process that was started ahead and is not needed.
+    pub async fn discard(mut self) {
+        let Some(started) = self.ahead.take() else { return };
+        if let Ok(mut process) = Spawner::started(started).await {
+            tree::kill_tree(process.pid);
+            let _ = process.end.wait().await;
+            let _ = tree::sweep(&self.scope);
+        }
+    }
+
+    fn full_request(&self) -> SpawnRequest {
+        let mut request = self.request.clone();
+        request.env.push((SCOPE_VARIABLE.to_owned(), self.scope.clone()));
+        request
+    }
+}
