@@ -84,7 +84,7 @@ impl Table {
         // SAFETY: loading a library runs its initialisers. Whoever names a
         // plug-in wants it run; a crash in it is seen by the runner.
         let library = unsafe { Library::open(Some(&file), RTLD_NOW | RTLD_LOCAL) };
-        let library = library.map_err(|error| LibraryError::Load(cause(&error)))?;
+        let library = library.map_err(|error| LibraryError::Load(cause(&error, &file)))?;
         // Threads and thread-local destructors of the plug-in may outlive any
         // use of it, so that it stays until the process ends.
         let library = std::mem::ManuallyDrop::new(library);
@@ -165,7 +165,10 @@ fn word(role: Role) -> &'static str {
     }
 }
 
-/// The loader's own words, which name the missing library or symbol.
-fn cause(error: &libloading::Error) -> String {
-    error.source().map_or_else(|| error.to_string(), ToString::to_string)
+/// The loader's own words, which name the missing library or symbol. The file
+/// is named beside them already.
+fn cause(error: &libloading::Error, file: &Path) -> String {
+    let words = error.source().map_or_else(|| error.to_string(), ToString::to_string);
+    let own = format!("{}: ", file.display());
+    words.strip_prefix(&own).map(str::to_owned).unwrap_or(words)
 }
