@@ -231,6 +231,9 @@ fn what_is_wrong_with_a_process_fixture() {
         fixture("<command>a</command><command>b</command>"),
         ["`<command>` twice in one fixture"]
     );
+    let text = "<suite><fixture type='proces'><command>a</command><stop/></fixture>\
+                <fixture><command>a</command></fixture><test>A</test></suite>";
+    assert_eq!(places(text), [at("wrong-type", 1, 23), at("wrong-type", 1, 68)]);
     let probe = |probe: &str| fixture(&format!("<command>a</command>{probe}"));
     assert_eq!(
         probe("<ready/>"),

@@ -108,6 +108,9 @@ struct Missing {
     places: usize,
 }
 
+/// For so many missing plug-ins of a suite others of a similar name are searched.
+const ADVISED_MISSING: usize = 20;
+
 /// Places of one problem that are shown; the others are counted.
 const SHOWN_PLACES: usize = 3;
 
@@ -138,7 +141,7 @@ impl<'a, 'c> PluginPlanner<'a, 'c> {
         env: &Env,
         role: Role,
     ) -> Option<PluginPlan> {
-        let kind = match plugin::kind_of(&written) {
+        let kind = match plugin::kind_of(&written, role) {
             Ok(kind) => kind,
             Err(problem) => {
                 let span = written.plugin_type.map_or(written.name.span, |written| written.span);
@@ -225,7 +228,12 @@ impl<'a, 'c> PluginPlanner<'a, 'c> {
             }
             return;
         }
-        let problem = plugin::not_found(name, kind, &self.scope.with(own));
+        let problem = plugin::not_found(
+            name,
+            kind,
+            &self.scope.with(own),
+            self.missing.len() < ADVISED_MISSING,
+        );
         self.missing_index.insert(key, self.missing.len());
         self.missing.push(Missing { problem: place.show(problem, ""), places: 1 });
     }

@@ -182,7 +182,9 @@ fn interpreter(
     scope: &Scope<'_>,
 ) -> Result<PathBuf, Box<Diagnostic>> {
     if let Some(wanted) = scope.variable(variable).filter(|wanted| !wanted.is_empty()) {
-        return super::program::find(wanted, scope).map_err(|mut problem| {
+        let base = scope.base(variable);
+        let within = Scope { folder: base, ..*scope };
+        return super::program::find(wanted, &within).map_err(|mut problem| {
             problem.code = "no-such-interpreter".into();
             problem.message = format!("the interpreter `{wanted}` is not there");
             problem.note(format!("`{variable}` names it")).into()

@@ -7,22 +7,25 @@ use std::sync::Arc;
 
 use rtf_model::Diagnostic;
 
+use super::context::Role;
 use super::hosts::{self, HOSTS, HostKind};
 use super::scope::Scope;
 use crate::suite::{Plugin, nearest};
 
 /// The type of a plug-in: as written, else as its extension tells, else `dll`.
-pub(super) fn kind_of(plugin: &Plugin) -> Result<&'static HostKind, Box<Diagnostic>> {
+pub(super) fn kind_of(plugin: &Plugin, role: Role) -> Result<&'static HostKind, Box<Diagnostic>> {
     let Some(written) = &plugin.plugin_type else {
         let told = hosts::by_extension(Path::new(&plugin.name.value));
         return Ok(told.unwrap_or(&HOSTS[0]));
     };
     hosts::by_name(&written.value).ok_or_else(|| {
-        let known: Vec<_> = HOSTS.iter().map(|kind| format!("`{}`", kind.name)).collect();
+        let process = (role == Role::Fixture).then_some("process");
+        let names: Vec<&str> = HOSTS.iter().map(|kind| kind.name).chain(process).collect();
+        let known: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
         let problem =
             Diagnostic::error("unknown-type", format!("unknown type `{}`", written.value))
                 .note(format!("known types are {}", known.join(", ")));
-        match nearest(&written.value, HOSTS.iter().map(|kind| kind.name)) {
+        match nearest(&written.value, names.into_iter()) {
             Some(name) => problem.hint(format!("did you mean `{name}`?")).into(),
             None => problem.into(),
         }
@@ -105,7 +108,15 @@ fn search(name: &str, kind: &HostKind, folders: &[PathBuf]) -> Option<PathBuf> {
 }
 
 /// What to say when nothing was found: where and for what we looked.
-pub(super) fn not_found(name: &str, kind: &'static HostKind, scope: &Scope<'_>) -> Diagnostic {
+///
+/// The search for what may have been meant reads whole folders; `advise` is
+/// false when that was done often enough.
+pub(super) fn not_found(
+    name: &str,
+    kind: &'static HostKind,
+    scope: &Scope<'_>,
+    advise: bool,
+) -> Diagnostic {
     let folders = search_folders(kind, scope);
     let names: Vec<_> =
         candidates(name, kind).iter().map(|file| format!("`{}`", file.display())).collect();
@@ -117,6 +128,9 @@ pub(super) fn not_found(name: &str, kind: &'static HostKind, scope: &Scope<'_>) 
         let list: Vec<_> = folders.iter().map(|folder| format!("  {}", folder.display())).collect();
         problem.note(format!("looked for {} in\n{}", names.join(", "), list.join("\n")))
     };
+    if !advise {
+        return problem;
+    }
     match other_type(name, kind, scope).or_else(|| similar(name, kind, &folders)) {
         Some(hint) => problem.hint(hint),
         None => problem,

@@ -49,15 +49,20 @@ impl Scope<'_> {
     /// The folders of a variable like `PATH`. Relative ones belong to whoever
     /// wrote them: the suite's folder, or the current one.
     pub fn folders(&self, name: &str) -> Vec<PathBuf> {
-        let base = match self.written(name) {
-            Some(_) => self.folder,
-            None => &self.surroundings.current_folder,
-        };
+        let base = self.base(name);
         let value = self.variable(name).unwrap_or_default();
         std::env::split_paths(value)
             .filter(|folder| !folder.as_os_str().is_empty())
             .map(|folder| base.join(folder).components().collect())
             .collect()
+    }
+
+    /// The folder where relative paths in a variable start.
+    pub fn base(&self, name: &str) -> &Path {
+        match self.written(name) {
+            Some(_) => self.folder,
+            None => &self.surroundings.current_folder,
+        }
     }
 
     fn written(&self, name: &str) -> Option<&str> {

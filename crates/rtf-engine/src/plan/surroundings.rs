@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 pub struct Surroundings {
     /// The folder against which the given paths are resolved; absolute.
     pub current_folder: PathBuf,
-    /// The running `rtf`: its hosts and SDKs lie beside it.
+    /// The running `rtf`, absolute: its hosts and SDKs lie beside it.
     pub executable: PathBuf,
     /// The environment variables.
     pub variables: HashMap<String, String>,

@@ -9,7 +9,7 @@ use super::{Fixture, FixtureKind, Process, Span, Spanned, command, env, probe, s
 
 /// Reads a `<fixture>`; `None` when it does not say what it is.
 pub(super) fn read(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Option<Fixture> {
-    let is_process = node.attribute("type").is_some_and(|kind| kind.trim() == "process");
+    let is_process = is_process(reader, node);
     check(reader, node, if is_process { &shape::PROCESS } else { &shape::FIXTURE });
     let name = reader.word(node, "name");
     let depends = reader.words(node, "depends");
@@ -26,6 +26,25 @@ pub(super) fn read(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Option<Fixtur
     };
     let span = Reader::tag(node);
     Some(Fixture { span, name, depends, body, env, setup, check, teardown, restarts, check_every })
+}
+
+/// Whether it is the built-in fixture. One with a `<command>` was meant to be,
+/// whatever its `type` says: that is one mistake, not one for each child.
+fn is_process(reader: &mut Reader<'_>, node: Node<'_, '_>) -> bool {
+    let written = reader.attribute(node, "type");
+    if written.as_ref().is_some_and(|kind| kind.value.trim() == "process") {
+        return true;
+    }
+    let meant = node.children().any(|child| child.has_tag_name("command"));
+    if meant {
+        let message = "a fixture with a `<command>` is of another type";
+        let span = written.map_or_else(|| Reader::tag(node), |written| written.span);
+        let problem = Diagnostic::error("wrong-type", message)
+            .label(reader.source.label(span, ""))
+            .hint("write `type=\"process\"`");
+        reader.report(problem);
+    }
+    meant
 }
 
 fn process(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Option<Process> {

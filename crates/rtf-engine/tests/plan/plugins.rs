@@ -119,6 +119,12 @@ fn python_is_the_users_own() {
     );
     let expected = format!("{}:theirs", bench.path("share/rtf/python"));
     assert_eq!(host(&bench, "t.xml").1[0].1, expected);
+    // A relative one starts where whoever wrote it is.
+    bench.program("work/mine/python", "");
+    bench.set("RTF_PYTHON", "mine/python");
+    bench.file("work/deep/A.py", "");
+    bench.file("work/deep/s.xml", "<suite><test>A.py</test></suite>");
+    assert_eq!(host(&bench, "deep/s.xml").0[0], bench.path("work/mine/python"));
     let other = bench.program("other/python3.12", "");
     bench.set("RTF_PYTHON", other.to_str().unwrap());
     assert_eq!(host(&bench, "s.xml").0[0], other.to_str().unwrap());

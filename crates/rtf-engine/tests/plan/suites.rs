@@ -81,6 +81,24 @@ fn fixtures_with_their_defaults() {
 }
 
 #[test]
+fn unknown_types_list_the_known_ones() {
+    let bench = Bench::new();
+    bench.file(
+        "work/s.xml",
+        "<suite><fixture type='procss'>A</fixture><test type='Lua'>A</test></suite>",
+    );
+    let outcome = bench.build(&["s.xml"]);
+    let found = |index: usize| {
+        let found = &outcome.diagnostics[index];
+        (found.code.as_str(), found.notes[0].as_str(), found.hint.as_deref())
+    };
+    let known = "known types are `dll`, `lua`, `python`, `process`";
+    assert_eq!(found(0), ("unknown-type", known, Some("did you mean `process`?")));
+    let known = "known types are `dll`, `lua`, `python`";
+    assert_eq!(found(1), ("unknown-type", known, Some("did you mean `lua`?")));
+}
+
+#[test]
 fn dependencies_are_earlier_fixtures() {
     let bench = Bench::new();
     bench.file("work/A.lua", "");

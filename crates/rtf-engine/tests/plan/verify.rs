@@ -61,7 +61,7 @@ fn a_syntax_error_is_shown_in_the_suite_and_in_the_plugin() {
 
 #[test]
 fn the_loaders_text_is_kept() {
-    let text = "libarm.so: undefined symbol: arm_open\\nneeded by libarm.so";
+    let text = "cannot be loaded: libarm.so: undefined symbol: arm_open\\nneeded by libarm.so";
     let bench = bench(&answer_b(&format!("\"ok\":false,\"message\":\"{text}\"")));
     let outcome = bench.build(&["s.xml"]);
     let found = only(&outcome);

@@ -61,6 +61,8 @@ fn host(group: &Group, how: &str, stderr: &str) -> Diagnostic {
 /// The host could not load it: its loader's or its compiler's words.
 fn unloadable(entry: &FileUse, word: &Word, verified: &mut Verified) -> Diagnostic {
     let said = word.message.as_deref().unwrap_or("the host does not say why").trim();
+    // Some hosts begin with the words of the message itself.
+    let said = said.strip_prefix("cannot be loaded: ").unwrap_or(said);
     let (first, rest) = said.split_once('\n').unwrap_or((said, ""));
     let mut message = format!("the plug-in `{}` cannot be loaded: {first}", shown(&entry.file));
     let label = word.line.and_then(|line| {
@@ -72,10 +74,12 @@ fn unloadable(entry: &FileUse, word: &Word, verified: &mut Verified) -> Diagnost
     if let (Some(line), None) = (word.line, &label) {
         message = format!("{message} (line {line})");
     }
-    let mut problem = Diagnostic::error("plugin-not-loadable", message);
-    problem.labels.extend(label);
+    let problem = Diagnostic::error("plugin-not-loadable", message);
     let problem = if rest.is_empty() { problem } else { problem.note(rest.trim_end()) };
-    problem.note(format!("the file is {}", entry.file.display()))
+    match label {
+        Some(label) => problem.label(label),
+        None => problem.note(format!("the file is {}", entry.file.display())),
+    }
 }
 
 fn text_of(file: &Path) -> Option<Source> {

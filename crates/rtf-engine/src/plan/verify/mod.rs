@@ -68,7 +68,7 @@ const SHOWN_PLACES: usize = 3;
 
 /// Files for one start of a host: enough to make the start cheap, few enough
 /// for the longest command line.
-const MOST_FILES: usize = 128;
+const MOST_FILES: usize = 256;
 
 /// What came out.
 #[derive(Default)]
