@@ -281,7 +281,8 @@ impl Task {
         let name: String = attachment.name.chars().map(safe).collect();
         let path = format!("attachments/{test}/{}-{name}", self.job.host.0);
         let target = self.shared.run_folder.join(&path);
-        let source = self.job.launch.request.folder.clone().unwrap_or_default().join(&attachment.path);
+        let source =
+            self.job.launch.request.folder.clone().unwrap_or_default().join(&attachment.path);
         let copy = async {
             if let Some(folder) = target.parent() {
                 tokio::fs::create_dir_all(folder).await?;

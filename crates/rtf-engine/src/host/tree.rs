@@ -91,10 +91,10 @@ fn sweep_if(belongs: impl Fn(i32) -> bool) -> Vec<LeftProcess> {
 
 /// Everything below a process, parents before children.
 fn descendants(root: i32) -> Vec<i32> {
-    let mut found = children_of(&format!("/proc/{root}/task"));
+    let mut found = children_of(format!("/proc/{root}/task"));
     let mut next = 0;
     while next < found.len() {
-        let children = children_of(&format!("/proc/{}/task", found[next]));
+        let children = children_of(format!("/proc/{}/task", found[next]));
         found.extend(children);
         next += 1;
     }

@@ -2,7 +2,6 @@
 //! brings the inputs.
 
 use std::collections::{BTreeMap, HashMap};
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -12,11 +11,13 @@ use tokio::sync::{mpsc, watch};
 use tokio::time::Instant;
 
 use super::events::Events;
-use super::machine::{Deadline, Effect, HostId, HostInput, Input, SpawnPlan, Stop, SuiteMachine};
+use super::machine::{
+    Deadline, Effect, HostId, HostInput, Input, Program, Start, Stop, SuiteMachine,
+};
 use crate::host::launch::Launch;
 use crate::host::spawner::{SpawnRequest, Streams};
 use crate::host::task::{self, Job, Order, Shared};
-use crate::plan::{HostPlan, SuitePlan};
+use crate::plan::SuitePlan;
 
 /// How many inputs may wait; then processes wait.
 const INPUTS: usize = 1024;
@@ -138,10 +139,8 @@ impl SuiteTask<'_> {
             Effect::Emit(kind) => self.events.emit(kind),
             Effect::SetDeadline(deadline, at) => drop(self.deadlines.insert(deadline, at)),
             Effect::ClearDeadline(deadline) => drop(self.deadlines.remove(&deadline)),
-            Effect::Spawn { host, source, plan, env, folder } => {
-                self.spawn(host, source, plan, env, folder);
-            }
-            Effect::SpawnAhead { plan, env, folder } => self.spawn_ahead(&plan, env, folder),
+            Effect::Spawn { host, source, start } => self.spawn(host, source, start),
+            Effect::SpawnAhead(start) => self.spawn_ahead(start),
             Effect::Send(host, id, request) => self.order(host, Order::Send(id, request)),
             Effect::CloseChannel(host) => self.order(host, Order::CloseChannel),
             Effect::TakeStack(host, support) => self.order(host, Order::TakeStack(support)),
@@ -159,22 +158,12 @@ impl SuiteTask<'_> {
         }
     }
 
-    fn spawn(
-        &mut self,
-        host: HostId,
-        source: Source,
-        plan: SpawnPlan,
-        env: Vec<(String, String)>,
-        folder: PathBuf,
-    ) {
-        let (request, process) = match plan {
-            SpawnPlan::Host(plan) => (self.host_request(&plan, env, folder), None),
-            SpawnPlan::Process(plan) => {
-                let mut request = self.request(plan.command.clone(), env, folder);
-                request.channel = false;
-                (request, Some(plan))
-            }
+    fn spawn(&mut self, host: HostId, source: Source, start: Start) {
+        let process = match &start.what {
+            Program::Host(_) => None,
+            Program::Process(plan) => Some(plan.clone()),
         };
+        let request = self.request(start);
         let (orders, queue) = mpsc::unbounded_channel();
         self.orders.insert(host, orders);
         let launch = match self.spare.take_if(|spare| spare.request == request) {
@@ -185,8 +174,8 @@ impl SuiteTask<'_> {
         tokio::spawn(task::run(job, self.shared.clone(), queue, self.inputs.clone()));
     }
 
-    fn spawn_ahead(&mut self, plan: &HostPlan, env: Vec<(String, String)>, folder: PathBuf) {
-        let request = self.host_request(plan, env, folder);
+    fn spawn_ahead(&mut self, start: Start) {
+        let request = self.request(start);
         if let Some(other) = self.spare.take_if(|spare| spare.request != request) {
             tokio::spawn(other.discard());
         }
@@ -197,24 +186,18 @@ impl SuiteTask<'_> {
         }
     }
 
-    fn host_request(
-        &self,
-        plan: &HostPlan,
-        mut env: Vec<(String, String)>,
-        folder: PathBuf,
-    ) -> SpawnRequest {
-        env.splice(0..0, plan.env.iter().cloned());
-        self.request(plan.command.clone(), env, folder)
-    }
-
-    fn request(
-        &self,
-        command: Vec<String>,
-        mut env: Vec<(String, String)>,
-        folder: PathBuf,
-    ) -> SpawnRequest {
-        env.insert(0, (ENVIRONMENT_VARIABLE.to_owned(), self.plan.environment.clone()));
-        SpawnRequest { command, env, folder: Some(folder), channel: true, streams: Streams::Both }
+    fn request(&self, start: Start) -> SpawnRequest {
+        let mut env = vec![(ENVIRONMENT_VARIABLE.to_owned(), self.plan.environment.clone())];
+        let (command, channel) = match start.what {
+            Program::Host(plan) => {
+                env.extend_from_slice(&plan.env);
+                (plan.command.clone(), true)
+            }
+            Program::Process(plan) => (plan.command.clone(), false),
+        };
+        env.extend(start.env);
+        let folder = Some(start.folder);
+        SpawnRequest { command, env, folder, channel, streams: Streams::Both }
     }
 
     fn launch(&mut self, request: SpawnRequest) -> Launch {

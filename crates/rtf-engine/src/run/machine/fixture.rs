@@ -6,7 +6,7 @@ use rtf_model::protocol::{Answer, Notification, Plugin, Reply, Request, StackSup
 use rtf_model::{EventKind, ExitStatus, FixtureId, LeftProcess, Outcome, Source, Stream};
 
 use super::capture::Capture;
-use super::io::{Deadline, Effect, FixtureTimer, HostId, HostInput, SpawnPlan};
+use super::io::{Deadline, Effect, FixtureTimer, HostId, HostInput, Program, Start};
 use super::log_watch::LogWatch;
 use super::suite::Context;
 use super::test::{INITIALIZE, TERM_GRACE, initialize, parse_answer, parse_initialized};
@@ -131,18 +131,19 @@ impl<'p> FixtureRun<'p> {
         self.forced = false;
         self.captures = captures(self.plan.id);
         cx.emit(EventKind::FixtureStarting { fixture: self.plan.id, attempt: self.starts });
-        let (spawn, folder) = match &self.plan.body {
+        let (what, folder) = match &self.plan.body {
             FixtureBody::Plugin(plugin) => {
                 self.log = LogWatch::default();
-                (SpawnPlan::Host(plugin.host.clone()), self.suite.folder.clone())
+                (Program::Host(plugin.host.clone()), self.suite.folder.clone())
             }
             FixtureBody::Process(process) => {
                 self.log = log_watch(process);
-                (SpawnPlan::Process(Arc::new((**process).clone())), process.folder.clone())
+                (Program::Process(Arc::new((**process).clone())), process.folder.clone())
             }
         };
         let env = self.suite.env.iter().chain(&self.plan.env).cloned().collect();
-        cx.out(Effect::Spawn { host, source: self.source(), plan: spawn, env, folder });
+        let start = Start { what, env, folder };
+        cx.out(Effect::Spawn { host, source: self.source(), start });
         if let FixtureBody::Plugin(plugin) = &self.plan.body {
             cx.out(Effect::Send(host, Some(INITIALIZE), initialize()));
             let request = Request::SetUpFixture(Plugin {

@@ -103,7 +103,18 @@ pub enum FixtureTimer {
 
 /// How to start a process.
 #[derive(Clone, Debug)]
-pub enum SpawnPlan {
+pub struct Start {
+    /// What to start.
+    pub what: Program,
+    /// Environment variables, later ones win.
+    pub env: Vec<(String, String)>,
+    /// Its working folder.
+    pub folder: PathBuf,
+}
+
+/// What to start.
+#[derive(Clone, Debug)]
+pub enum Program {
     /// A host with a channel.
     Host(Arc<HostPlan>),
     /// A process fixture, with its probes.
@@ -119,23 +130,12 @@ pub enum Effect {
         host: HostId,
         /// Whose it is.
         source: Source,
-        /// What to start.
-        plan: SpawnPlan,
-        /// Environment variables, later ones win.
-        env: Vec<(String, String)>,
-        /// Its working folder.
-        folder: PathBuf,
+        /// How.
+        start: Start,
     },
-    /// A host like this will be needed next: start it while the test runs, if
-    /// that is cheap. It is used when the next `Spawn` asks for the same.
-    SpawnAhead {
-        /// What to start.
-        plan: Arc<HostPlan>,
-        /// Environment variables, later ones win.
-        env: Vec<(String, String)>,
-        /// Its working folder.
-        folder: PathBuf,
-    },
+    /// A host like this will be needed next: start it while the test runs. It
+    /// is used when the next `Spawn` asks for the same.
+    SpawnAhead(Start),
     /// Send a request or a notification.
     Send(HostId, Option<u64>, Request),
     /// No request will follow: the host ends when it is done.

@@ -22,6 +22,7 @@ mod test;
 mod tests;
 
 pub use io::{
-    Deadline, Effect, FixtureTimer, HostId, HostInput, Input, SpawnPlan, Stop, StopLevel, TestTimer,
+    Deadline, Effect, FixtureTimer, HostId, HostInput, Input, Program, Start, Stop, StopLevel,
+    TestTimer,
 };
 pub use suite::SuiteMachine;

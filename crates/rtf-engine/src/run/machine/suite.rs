@@ -274,11 +274,7 @@ impl<'p> SuiteMachine<'p> {
         self.running = Some(TestRun::start(self.plan, plan, (repetition, attempt), cx));
         let next = if repetition < plan.repetitions { test } else { test + 1 };
         if let Some(next) = self.plan.tests.get(next) {
-            cx.out(Effect::SpawnAhead {
-                plan: next.plugin.host.clone(),
-                env: TestRun::env(self.plan, next),
-                folder: self.plan.folder.clone(),
-            });
+            cx.out(Effect::SpawnAhead(TestRun::host_start(self.plan, next)));
         }
     }
 

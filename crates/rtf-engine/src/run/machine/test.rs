@@ -16,7 +16,7 @@ use rtf_model::{
 };
 
 use super::capture::Capture;
-use super::io::{Deadline, Effect, HostId, HostInput, SpawnPlan, TestTimer};
+use super::io::{Deadline, Effect, HostId, HostInput, Program, Start, TestTimer};
 use super::judge::{Evidence, Problem, judge};
 use super::suite::Context;
 use crate::plan::{SuitePlan, TestPlan};
@@ -89,9 +89,7 @@ impl<'p> TestRun<'p> {
         let host = cx.new_host();
         let source = Source::Test(plan.id);
         cx.emit(EventKind::TestStarted { test: plan.id, repetition, attempt });
-        let env = Self::env(suite, plan);
-        let spawn = SpawnPlan::Host(plan.plugin.host.clone());
-        cx.out(Effect::Spawn { host, source, plan: spawn, env, folder: suite.folder.clone() });
+        cx.out(Effect::Spawn { host, source, start: Self::host_start(suite, plan) });
         cx.out(Effect::Send(host, Some(INITIALIZE), initialize()));
         let plugin = Plugin {
             file: plan.plugin.file.to_string_lossy().into_owned(),
@@ -117,9 +115,13 @@ impl<'p> TestRun<'p> {
         }
     }
 
-    /// The environment variables of a test's process.
-    pub fn env(suite: &SuitePlan, plan: &TestPlan) -> Vec<(String, String)> {
-        suite.env.iter().chain(&plan.env).cloned().collect()
+    /// How a test's host is started.
+    pub fn host_start(suite: &SuitePlan, plan: &TestPlan) -> Start {
+        Start {
+            what: Program::Host(plan.plugin.host.clone()),
+            env: suite.env.iter().chain(&plan.env).cloned().collect(),
+            folder: suite.folder.clone(),
+        }
     }
 
     /// The process of this attempt.

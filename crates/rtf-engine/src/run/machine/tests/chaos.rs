@@ -23,7 +23,7 @@ fn act(world: &mut World<'_>, choice: u8, which: usize) {
     };
     let told = |notification| Input::Host(host, HostInput::Told(notification));
     match choice % 16 {
-        0 | 1 | 2 | 3 | 4 => {
+        0..=4 => {
             if let Some(id) = answerable(world) {
                 let outcome = if choice > 200 { "failed" } else { "passed" };
                 let value = serde_json::json!({ "outcome": outcome });

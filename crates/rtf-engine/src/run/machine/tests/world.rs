@@ -174,7 +174,7 @@ impl<'p> World<'p> {
                 Effect::SetDeadline(deadline, at) => drop(self.deadlines.insert(deadline, at)),
                 Effect::ClearDeadline(deadline) => drop(self.deadlines.remove(&deadline)),
                 Effect::Done => self.done = true,
-                Effect::SpawnAhead { .. } => {}
+                Effect::SpawnAhead(_) => {}
                 other => self.log.push(format!(
                     "{:>5.1}    {}",
                     self.now.as_secs_f64(),
