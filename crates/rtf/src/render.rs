@@ -44,7 +44,7 @@ fn group<'a>(diagnostic: &'a Diagnostic, sources: &'a Sources) -> Group<'a> {
     for note in &diagnostic.notes {
         group = group.element(Level::NOTE.message(printable(note)));
     }
-    for hint in &diagnostic.hint {
+    if let Some(hint) = &diagnostic.hint {
         group = group.element(Level::HELP.message(printable(hint)));
     }
     group
