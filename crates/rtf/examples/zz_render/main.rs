@@ -1,3 +1,0 @@
-//! Scratch.
-mod render;
-fn main() {}
