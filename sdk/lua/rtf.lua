@@ -98,8 +98,8 @@ function rtf.wait_until(condition, timeout, what) end
 ---@return boolean within
 function rtf.measure(name, value, unit, low, high) end
 
----Keeps a file with the result. It is copied soon: write it to its end before,
----and leave it in place until the test is over.
+---Keeps a copy of a file with the result. Write it to its end before; it may go
+---afterwards.
 ---@param path string
 ---@param name? string The file's own name unless told.
 ---@param media_type? string

@@ -123,12 +123,12 @@ fn attach(
         return Some(format!("there is no file `{}` to attach", full.display()));
     }
     let own_name = || full.file_name().map(|name| name.to_string_lossy().into_owned());
-    session.attach(Attachment {
+    let kept = session.attach(Attachment {
         name: name.map(LuaString::to_string_lossy).or_else(own_name).unwrap_or_default(),
         path: full.to_string_lossy().into_owned(),
         media_type: media_type.map(LuaString::to_string_lossy).unwrap_or_default(),
     });
-    None
+    kept.err().map(|error| format!("`{}` cannot be attached: {error}", full.display()))
 }
 
 /// `kind, text, file, line, comparison, critical`

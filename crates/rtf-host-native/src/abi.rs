@@ -112,8 +112,7 @@ pub struct rtf_measurement {
 pub struct rtf_attachment {
     /// `sizeof(rtf_attachment)`.
     pub size: usize,
-    /// Where it is. It is copied soon after the call: leave it in place until
-    /// the test is over.
+    /// Where it is. It is copied before the call returns.
     pub path: rtf_text,
     /// The name under which reports show it; empty: the path's last part.
     pub name: rtf_text,

@@ -93,7 +93,13 @@ unsafe extern "C" fn attach(context: *mut c_void, attachment: *const rtf_attachm
             name = last.map_or_else(|| path.clone(), |last| last.to_string_lossy().into_owned());
         }
         let media_type = text(attachment.media_type);
-        self::context(context).session.attach(Attachment { name, path, media_type });
+        let session = &self::context(context).session;
+        if let Err(error) = session.attach(Attachment { name, path: path.clone(), media_type }) {
+            let text = format!("`{path}` cannot be attached: {error}");
+            let kind = MessageKind::Error;
+            let (location, comparison) = (None, None);
+            session.message(Message { kind, text, location, comparison, critical: false });
+        }
     }
 }
 

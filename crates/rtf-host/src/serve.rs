@@ -127,6 +127,7 @@ impl<H: HostPlugin> Server<'_, H> {
     }
 
     fn run_test(&mut self, plugin: &Plugin) {
+        self.session.keep_in(plugin.keep_folder.as_ref().map(Into::into));
         if !self.load(Role::Test, plugin) {
             return;
         }

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 use std::os::unix::net::UnixStream;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -57,6 +58,9 @@ struct State {
     /// A request is being carried out.
     busy: bool,
     stop_reason: Option<String>,
+    /// Where the copies of attached files go, and how many there are.
+    keep_folder: Option<PathBuf>,
+    attached: u64,
     judge: Judge,
 }
 
@@ -110,9 +114,35 @@ impl Session {
         holds
     }
 
-    /// Hands a file to the runner, which copies it at once.
-    pub fn attach(&self, attachment: Attachment) {
+    /// Keeps a copy of a file with the test's result. Afterwards the plug-in may
+    /// change or remove the file.
+    ///
+    /// # Errors
+    /// It cannot be copied.
+    pub fn attach(&self, mut attachment: Attachment) -> std::io::Result<()> {
+        // Without such a folder the runner copies the file, as soon as it can.
+        if let Some(copy) = self.place_for_copy(&attachment.name) {
+            std::fs::create_dir_all(copy.parent().unwrap_or(&copy))?;
+            std::fs::copy(&attachment.path, &copy)?;
+            attachment.path = copy.to_string_lossy().into_owned();
+        }
         self.notify(&Notification::Attached(attachment));
+        Ok(())
+    }
+
+    /// Where the next attached file goes: `3-plot.png`.
+    fn place_for_copy(&self, name: &str) -> Option<PathBuf> {
+        let safe = |c: char| if c.is_alphanumeric() || ".-_".contains(c) { c } else { '_' };
+        let mut state = self.state();
+        state.attached += 1;
+        let number = state.attached;
+        let name: String = name.chars().map(safe).collect();
+        state.keep_folder.as_ref().map(|folder| folder.join(format!("{number}-{name}")))
+    }
+
+    /// Says where the copies of attached files go.
+    pub(crate) fn keep_in(&self, folder: Option<PathBuf>) {
+        self.state().keep_folder = folder;
     }
 
     /// Reports that the fixture is not well any more.

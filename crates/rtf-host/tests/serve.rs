@@ -38,14 +38,7 @@ impl Script {
                 let value = rest.parse().ok();
                 let (name, unit) = ("rate".to_owned(), "Hz".to_owned());
                 let (low, high) = (Some(1.0), Some(2.0));
-                self.session.measure(Measurement {
-                    name,
-                    value,
-                    unit,
-                    low,
-                    high,
-                    location: None,
-                });
+                self.session.measure(Measurement { name, value, unit, low, high, location: None });
             }
             "sleep" => {
                 if self.session.wait(Duration::from_secs(1000)) {
@@ -63,24 +56,16 @@ impl Script {
 
 impl HostPlugin for Script {
     fn describe(&self) -> Initialized {
-        Initialized {
-            protocol: 1,
-            host: "script 1".into(),
-            stack: StackSupport::Message,
-        }
+        Initialized { protocol: 1, host: "script 1".into(), stack: StackSupport::Message }
     }
 
     fn load(&mut self, _role: Role, plugin: &Plugin) -> Result<(), LoadError> {
         if plugin.file == "missing" {
-            return Err(LoadError {
-                message: "no such script".into(),
-                location: None,
-            });
+            return Err(LoadError { message: "no such script".into(), location: None });
         }
         let steps = plugin.file.split(';').filter(|part| !part.is_empty());
         for (part, step) in steps.zip(["setup", "run", "tear-down"]) {
-            self.steps
-                .insert(step, part.split(',').map(str::to_owned).collect());
+            self.steps.insert(step, part.split(',').map(str::to_owned).collect());
         }
         Ok(())
     }
@@ -91,10 +76,7 @@ impl HostPlugin for Script {
             Step::Run | Step::Check => &self.steps["run"],
             Step::TearDown => &self.steps["tear-down"],
         };
-        words
-            .iter()
-            .find_map(|word| self.act(word))
-            .unwrap_or(StepEnd::Done)
+        words.iter().find_map(|word| self.act(word)).unwrap_or(StepEnd::Done)
     }
 
     fn stack_dumper(&self) -> Option<StackDumper> {
@@ -123,22 +105,12 @@ impl Runner {
 
     fn silent() -> (Self, std::thread::JoinHandle<std::io::Result<()>>) {
         let (ours, theirs) = UnixStream::pair().unwrap();
-        ours.set_read_timeout(Some(Duration::from_secs(20)))
-            .unwrap();
+        ours.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
         let session = Session::over(theirs);
-        let host = Script {
-            session: session.clone(),
-            steps: HashMap::new(),
-        };
+        let host = Script { session: session.clone(), steps: HashMap::new() };
         let thread = std::thread::spawn(move || serve(&session, host));
         let lines = BufReader::new(ours.try_clone().unwrap()).lines();
-        (
-            Self {
-                channel: ours,
-                lines,
-            },
-            thread,
-        )
+        (Self { channel: ours, lines }, thread)
     }
 
     fn send(&mut self, line: &str) {
@@ -151,9 +123,7 @@ impl Runner {
 
     fn ask(&mut self, method: &str, script: &str) {
         let params = format!(r#"{{"file":"{script}","name":"T"}}"#);
-        self.send(&format!(
-            r#"{{"jsonrpc":"2.0","id":1,"method":"{method}","params":{params}}}"#
-        ));
+        self.send(&format!(r#"{{"jsonrpc":"2.0","id":1,"method":"{method}","params":{params}}}"#));
     }
 
     /// The result of the next answer; what comes before is left out.
@@ -161,10 +131,7 @@ impl Runner {
         loop {
             let line = self.line();
             if let Some((_, result)) = line.split_once(r#""id":1,"result":"#) {
-                return result
-                    .trim_end_matches('}')
-                    .trim_start_matches('{')
-                    .to_owned();
+                return result.trim_end_matches('}').trim_start_matches('{').to_owned();
             }
         }
     }
@@ -199,38 +166,14 @@ fn a_test_announces_its_phases_and_passes() {
 fn the_first_failure_or_error_decides() {
     let (mut runner, _host) = Runner::start();
     for (script, result) in [
-        (
-            "report:;fail:f,error:e;error:t",
-            r#""outcome":"failed","reason":"f""#,
-        ),
-        (
-            "report:;error:e,fail:f;report:",
-            r#""outcome":"error","reason":"e""#,
-        ),
-        (
-            "fail:f;fail:never;report:",
-            r#""outcome":"error","reason":"f""#,
-        ),
-        (
-            "false;fail:never;report:",
-            r#""outcome":"error","reason":"setup returned false""#,
-        ),
-        (
-            "report:;false;report:",
-            r#""outcome":"failed","reason":"run returned false""#,
-        ),
-        (
-            "report:;report:;fail:t",
-            r#""outcome":"error","reason":"t""#,
-        ),
-        (
-            "report:;throw:int;report:",
-            r#""outcome":"error","reason":"int""#,
-        ),
-        (
-            "report:;stop;report:",
-            r#""outcome":"error","reason":"run stopped without a reason""#,
-        ),
+        ("report:;fail:f,error:e;error:t", r#""outcome":"failed","reason":"f""#),
+        ("report:;error:e,fail:f;report:", r#""outcome":"error","reason":"e""#),
+        ("fail:f;fail:never;report:", r#""outcome":"error","reason":"f""#),
+        ("false;fail:never;report:", r#""outcome":"error","reason":"setup returned false""#),
+        ("report:;false;report:", r#""outcome":"failed","reason":"run returned false""#),
+        ("report:;report:;fail:t", r#""outcome":"error","reason":"t""#),
+        ("report:;throw:int;report:", r#""outcome":"error","reason":"int""#),
+        ("report:;stop;report:", r#""outcome":"error","reason":"run stopped without a reason""#),
         (
             "report:;measure:1.5,measure:3,fail:f;report:",
             r#""outcome":"failed","reason":"rate: 3 Hz is outside 1 … 2""#,
@@ -251,10 +194,7 @@ fn set_up_that_fails_leaves_out_run_but_not_tear_down() {
     let (mut runner, _host) = Runner::start();
     runner.ask("run-test", "false;report:never;report:torn down");
     let phases: Vec<String> = (0..3).map(|_| runner.line()).collect();
-    assert!(
-        phases[0].contains("setup") && phases[1].contains("tear-down"),
-        "{phases:?}"
-    );
+    assert!(phases[0].contains("setup") && phases[1].contains("tear-down"), "{phases:?}");
     assert!(phases[2].contains("torn down"), "{phases:?}");
     assert!(runner.result().contains("setup returned false"));
 }
@@ -262,41 +202,23 @@ fn set_up_that_fails_leaves_out_run_but_not_tear_down() {
 #[test]
 fn a_request_to_stop_ends_a_sleep_but_not_the_one_in_tear_down() {
     let (mut runner, _host) = Runner::start();
-    runner.ask(
-        "run-test",
-        "report:;report:sleeping,sleep;report:parking,sleep",
-    );
+    runner.ask("run-test", "report:;report:sleeping,sleep;report:parking,sleep");
     while !runner.line().contains("sleeping") {}
     runner.send(r#"{"jsonrpc":"2.0","method":"interrupt","params":{"reason":"Ctrl-C"}}"#);
     while !runner.line().contains("parking") {}
     runner.send(r#"{"method":"dump-stack"}"#);
-    assert!(
-        runner.line().contains(r#""method":"stack""#),
-        "it still sleeps"
-    );
+    assert!(runner.line().contains(r#""method":"stack""#), "it still sleeps");
     runner.send(r#"{"jsonrpc":"2.0","method":"interrupt","params":{"reason":"again"}}"#);
-    assert_eq!(
-        runner.result(),
-        r#""outcome":"interrupted","reason":"Ctrl-C""#
-    );
-    assert_eq!(
-        runner.run_test("report:;report:;report:"),
-        r#""outcome":"passed""#
-    );
+    assert_eq!(runner.result(), r#""outcome":"interrupted","reason":"Ctrl-C""#);
+    assert_eq!(runner.run_test("report:;report:;report:"), r#""outcome":"passed""#);
 }
 
 #[test]
 fn a_request_to_stop_that_crosses_the_answer_stops_nothing() {
     let (mut runner, _host) = Runner::start();
-    assert_eq!(
-        runner.run_test("report:;report:;report:"),
-        r#""outcome":"passed""#
-    );
+    assert_eq!(runner.run_test("report:;report:;report:"), r#""outcome":"passed""#);
     runner.send(r#"{"jsonrpc":"2.0","method":"interrupt","params":{"reason":"late"}}"#);
-    assert_eq!(
-        runner.run_test("report:;report:;report:"),
-        r#""outcome":"passed""#
-    );
+    assert_eq!(runner.run_test("report:;report:;report:"), r#""outcome":"passed""#);
 }
 
 #[test]
@@ -305,19 +227,13 @@ fn a_fixture_is_set_up_checked_and_torn_down() {
     runner.ask("set-up-fixture", "report:;false;report:");
     assert_eq!(runner.result(), r#""outcome":"passed""#);
     runner.ask("check-fixture", "");
-    assert_eq!(
-        runner.result(),
-        r#""outcome":"failed","reason":"check returned false""#
-    );
+    assert_eq!(runner.result(), r#""outcome":"failed","reason":"check returned false""#);
     runner.ask("run-test", "report:;report:;report:");
     assert!(runner.result().contains("a fixture is still set up"));
     runner.ask("tear-down-fixture", "");
     assert_eq!(runner.result(), r#""outcome":"passed""#);
     runner.ask("check-fixture", "");
-    assert_eq!(
-        runner.result(),
-        r#""outcome":"error","reason":"no fixture is set up""#
-    );
+    assert_eq!(runner.result(), r#""outcome":"error","reason":"no fixture is set up""#);
     runner.ask("set-up-fixture", "error:no power;report:;report:");
     assert_eq!(runner.result(), r#""outcome":"error","reason":"no power""#);
     runner.ask("tear-down-fixture", "");
@@ -329,20 +245,14 @@ fn what_is_not_understood_is_refused_and_the_rest_goes_on() {
     let (mut runner, _host) = Runner::silent();
     for (line, code) in [
         (r#"{"id":1,"method":"check-fixture","params":{}}"#, "-32600"),
-        (
-            r#"{"id":1,"method":"initialize","params":{"protocol":2,"rtf":"9"}}"#,
-            "-32001",
-        ),
+        (r#"{"id":1,"method":"initialize","params":{"protocol":2,"rtf":"9"}}"#, "-32001"),
         (r#"{"id":1,"method":"initialize"}"#, "-32602"),
         (r#"{"id":1,"method":"dance"}"#, "-32601"),
         ("]", "-32700"),
     ] {
         runner.send(line);
         let answer = runner.line();
-        assert!(
-            answer.contains(&format!(r#""error":{{"code":{code},"#)),
-            "{line} → {answer}"
-        );
+        assert!(answer.contains(&format!(r#""error":{{"code":{code},"#)), "{line} → {answer}");
     }
     runner.send(r#"{"id":1,"method":"initialize","params":{"protocol":1,"rtf":"9"}}"#);
     assert!(runner.line().contains("result"));
@@ -357,19 +267,14 @@ fn stacks_are_dumped_while_the_plugin_hangs() {
     let stack = r#"{"jsonrpc":"2.0","method":"stack","params":{"text":"here"}}"#;
     assert_eq!(runner.line(), stack);
     runner.send(r#"{"method":"interrupt","params":{"reason":"too slow"}}"#);
-    assert_eq!(
-        runner.result(),
-        r#""outcome":"interrupted","reason":"too slow""#
-    );
+    assert_eq!(runner.result(), r#""outcome":"interrupted","reason":"too slow""#);
 }
 
 #[test]
 fn the_last_test_ends_the_host() {
     let (mut runner, host) = Runner::start();
     let params = r#"{"file":"report:;report:;report:","name":"T","last":true}"#;
-    runner.send(&format!(
-        r#"{{"id":1,"method":"run-test","params":{params}}}"#
-    ));
+    runner.send(&format!(r#"{{"id":1,"method":"run-test","params":{params}}}"#));
     assert_eq!(runner.result(), r#""outcome":"passed""#);
     host.join().unwrap().unwrap();
 }
@@ -383,13 +288,7 @@ fn a_text_longer_than_a_line_arrives_whole_in_several_messages() {
     let thread = std::thread::spawn(move || {
         let kind = MessageKind::Report;
         let (location, comparison) = (None, None);
-        session.message(Message {
-            kind,
-            text: sent,
-            location,
-            comparison,
-            critical: false,
-        });
+        session.message(Message { kind, text: sent, location, comparison, critical: false });
     });
     let mut arrived = String::new();
     for line in BufReader::new(ours).lines() {

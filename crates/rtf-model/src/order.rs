@@ -179,14 +179,18 @@ impl OrderChecker {
     }
 
     fn plan_suite(&mut self, suite: SuiteId) -> Rule {
-        ensure(self.stage == Stage::Planning, || "plans come before the first suite starts".into())?;
+        ensure(self.stage == Stage::Planning, || {
+            "plans come before the first suite starts".into()
+        })?;
         ensure(suite.index() == self.suites.len(), || format!("suite {suite} out of order"))?;
         self.suites.push(Bracket::Planned);
         Ok(())
     }
 
     fn planned_last(&self, suite: SuiteId) -> Rule {
-        ensure(self.stage == Stage::Planning, || "plans come before the first suite starts".into())?;
+        ensure(self.stage == Stage::Planning, || {
+            "plans come before the first suite starts".into()
+        })?;
         ensure(suite.index() + 1 == self.suites.len(), || {
             format!("suite {suite} is not the one planned last")
         })
@@ -194,7 +198,9 @@ impl OrderChecker {
 
     fn plan_fixture(&mut self, fixture: FixtureId, suite: SuiteId) -> Rule {
         self.planned_last(suite)?;
-        ensure(fixture.index() == self.fixtures.len(), || format!("fixture {fixture} out of order"))?;
+        ensure(fixture.index() == self.fixtures.len(), || {
+            format!("fixture {fixture} out of order")
+        })?;
         let stage = FixtureStage::Stopped;
         self.fixtures.push(Fixture { suite, stage, attempt: 0, broken: false });
         Ok(())
@@ -204,7 +210,14 @@ impl OrderChecker {
         self.planned_last(suite)?;
         ensure(test.index() == self.tests.len(), || format!("test {test} out of order"))?;
         let last = None;
-        self.tests.push(Test { suite, repetitions, open: false, last, rerun: false, skipped: false });
+        self.tests.push(Test {
+            suite,
+            repetitions,
+            open: false,
+            last,
+            rerun: false,
+            skipped: false,
+        });
         Ok(())
     }
 
@@ -275,7 +288,9 @@ impl OrderChecker {
             Some((r, _)) => number == (r + 1, 1),
         };
         ensure(follows, || format!("test {id}: repetition or attempt out of order"))?;
-        ensure(number.0 <= test.repetitions, || format!("test {id}: more repetitions than planned"))?;
+        ensure(number.0 <= test.repetitions, || {
+            format!("test {id}: more repetitions than planned")
+        })?;
         test.last = Some(number);
         test.open = true;
         Ok(())

@@ -124,6 +124,9 @@ pub struct Plugin {
     /// Whether this is the host's only request: it ends after the answer.
     #[serde(default)]
     pub last: bool,
+    /// A test's folder for what it attaches. The host makes it when it is needed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub keep_folder: Option<String>,
 }
 
 /// The answer to a request that carries out something.

@@ -178,7 +178,8 @@ fn format_parser() -> impl TypedValueParser<Value = Format> {
 fn parse_report(value: &str) -> Result<(Format, PathBuf), String> {
     let expected = "expected `junit=PATH` or `text=PATH`";
     let (name, path) = value.split_once('=').ok_or(expected)?;
-    let format = Format::from_name(name).ok_or_else(|| format!("unknown format `{name}`, {expected}"))?;
+    let format =
+        Format::from_name(name).ok_or_else(|| format!("unknown format `{name}`, {expected}"))?;
     if path.is_empty() {
         return Err(format!("the path is missing, {expected}"));
     }

@@ -10,12 +10,7 @@ const SOURCE: &str = "crates/rtf-host-native/src/abi.rs";
 const HEADER: &str = "sdk/c/include/rtf/plugin.h";
 
 /// The types that the closing lines and plug-ins use; those inside them follow.
-const TYPES: [&str; 4] = [
-    "rtf_plugin_table",
-    "rtf_message",
-    "rtf_measurement",
-    "rtf_attachment",
-];
+const TYPES: [&str; 4] = ["rtf_plugin_table", "rtf_message", "rtf_measurement", "rtf_attachment"];
 
 const OPENING: &str = "\
 /* The binary interface of the Robot Testing Framework's native plug-ins.
@@ -114,17 +109,10 @@ pub fn run(check: bool) -> Result<(), HeaderError> {
         .map_err(HeaderError::Generate)?;
     let mut wanted = Vec::new();
     bindings.write(&mut wanted);
-    let failed = |source| HeaderError::File {
-        path: path.clone(),
-        source,
-    };
+    let failed = |source| HeaderError::File { path: path.clone(), source };
     if check {
         let found = std::fs::read(&path).map_err(failed)?;
-        return if found == wanted {
-            Ok(())
-        } else {
-            Err(HeaderError::Differs { path })
-        };
+        return if found == wanted { Ok(()) } else { Err(HeaderError::Differs { path }) };
     }
     let folder = path.parent().unwrap_or(&root);
     std::fs::create_dir_all(folder).map_err(failed)?;
@@ -138,16 +126,11 @@ fn config() -> Config {
         cpp_compat: true,
         documentation: true,
         documentation_style: DocumentationStyle::C99,
-        export: ExportConfig {
-            include: TYPES.map(str::to_owned).to_vec(),
-            ..Default::default()
-        },
+        export: ExportConfig { include: TYPES.map(str::to_owned).to_vec(), ..Default::default() },
         header: Some(OPENING.to_owned()),
         trailer: Some(CLOSING.to_owned()),
         no_includes: true,
-        sys_includes: ["stddef.h", "stdint.h", "string.h"]
-            .map(str::to_owned)
-            .to_vec(),
+        sys_includes: ["stddef.h", "stdint.h", "string.h"].map(str::to_owned).to_vec(),
         usize_is_size_t: true,
         line_length: 100,
         tab_width: 4,

@@ -102,6 +102,7 @@ class Task:
         self.args: list[str] = args
         self.repetition = repetition
         self.last = params.get("last", False) is True
+        self.keep_folder = _text_of(params, "keep_folder", "")
 
 
 def _text_of(params: dict[str, object], name: str, default: str | None = None) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 
-from rtf import _session
+from rtf import _keep, _session
 from rtf._near import Comparison
 from rtf._plugin import Plugin
 from rtf._stop import AssertionEnded
@@ -100,12 +100,12 @@ class TestCase(Plugin):
         full = os.path.abspath(os.fspath(path))
         if not os.path.isfile(full):
             raise FileNotFoundError(f"there is no file `{full}` to attach")
-        params: dict[str, object] = {
-            "name": name or os.path.basename(full),
-            "path": full,
-            "media_type": media_type or "",
-        }
-        _session.current().notify("attached", params)
+        name = name or os.path.basename(full)
+        session = _session.current()
+        if session.task.keep_folder:
+            full = _keep.copy(full, name, session.task.keep_folder)
+        params: dict[str, object] = {"name": name, "path": full, "media_type": media_type or ""}
+        session.notify("attached", params)
 
 
 def _tell(comparison: Comparison, what: str) -> bool:

@@ -136,6 +136,7 @@ def test_files_are_checked_without_running_them(tmp_path: Path) -> None:
         "test.py": "import rtf\nprint('ran')\nclass A(rtf.TestCase): pass\nclass B(A): pass\n",
         "fixture.py": "from rtf import FixtureManager\nclass A(FixtureManager): pass\n",
         "unknown.py": "from bases import Base\nclass A(Base): pass\n",
+        "helper.py": "class Client: pass\ndef connect(): return Client()\n",
         "broken.py": "x = 1\nclass A(:\n",
         "outside.py": "return 3\n",
     }
@@ -147,6 +148,7 @@ def test_files_are_checked_without_running_them(tmp_path: Path) -> None:
         {"file": "test.py", "ok": True, "kinds": ["test"]},
         {"file": "fixture.py", "ok": True, "kinds": ["fixture"]},
         {"file": "unknown.py", "ok": True},
+        {"file": "helper.py", "ok": True, "kinds": []},
         {"file": "broken.py", "ok": False, "message": "invalid syntax", "line": 2},
         {"file": "outside.py", "ok": False, "message": "'return' outside function", "line": 1},
         {"file": "gone.py", "ok": False, "message": "No such file or directory"},

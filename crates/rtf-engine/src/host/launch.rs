@@ -52,7 +52,9 @@ impl Launch {
         }
     }
 
-    fn full_request(&self) -> SpawnRequest {
+    /// The request with the scope variable.
+    #[must_use]
+    pub fn full_request(&self) -> SpawnRequest {
         let mut request = self.request.clone();
         request.env.push((SCOPE_VARIABLE.to_owned(), self.scope.clone()));
         request

@@ -26,6 +26,8 @@ pub enum Streams {
     Both,
     /// Standard output; standard error is thrown away.
     StdoutOnly,
+    /// None; both are thrown away.
+    None,
 }
 
 /// What to start. Each process is the leader of a group of its own.
@@ -139,11 +141,13 @@ fn spawn(request: &SpawnRequest) -> io::Result<Process> {
     };
     let mut command = Command::new(program);
     command.args(arguments).envs(request.env.iter().map(|(name, value)| (name, value)));
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).process_group(0).kill_on_drop(true);
-    command.stderr(match request.streams {
-        Streams::Both => Stdio::piped(),
-        Streams::StdoutOnly => Stdio::null(),
-    });
+    command.stdin(Stdio::null()).process_group(0).kill_on_drop(true);
+    let (stdout, stderr) = match request.streams {
+        Streams::Both => (Stdio::piped(), Stdio::piped()),
+        Streams::StdoutOnly => (Stdio::piped(), Stdio::null()),
+        Streams::None => (Stdio::null(), Stdio::null()),
+    };
+    command.stdout(stdout).stderr(stderr);
     if let Some(folder) = &request.folder {
         command.current_dir(folder);
     }

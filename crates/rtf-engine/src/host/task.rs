@@ -21,7 +21,7 @@ use super::{stack, tree, unix};
 use crate::plan::ProcessPlan;
 use crate::run::Sink;
 use crate::run::machine::{HostId, HostInput};
-use crate::run::probe;
+use crate::run::probe::{self, Asker};
 
 /// After its end, a process's outputs are read for this long at the most: a
 /// descendant that could not be found may hold them open.
@@ -123,13 +123,17 @@ impl Task {
 
     fn watch_ready(&mut self, started_at: SystemTime) {
         if let Some(plan) = self.job.process.clone() {
-            let (inputs, host) = (self.inputs.clone(), self.job.host);
-            let spawner = self.shared.spawner.clone();
+            let (inputs, host, asker) = (self.inputs.clone(), self.job.host, self.asker());
             self.side.spawn(async move {
-                probe::wait_until_ready(&plan.ready, started_at, &spawner).await;
+                probe::wait_until_ready(&plan.ready, started_at, &asker).await;
                 drop(inputs.send((host, HostInput::ProbesHold)).await);
             });
         }
+    }
+
+    fn asker(&self) -> Asker {
+        let like = self.job.launch.full_request();
+        Asker { spawner: self.shared.spawner.clone(), like }
     }
 
     async fn run(&mut self, mut orders: mpsc::UnboundedReceiver<Order>) {
@@ -200,8 +204,15 @@ impl Task {
     }
 
     async fn send(&mut self, id: Option<u64>, mut request: Request) {
-        if let Request::Initialize(initialize) = &mut request {
-            initialize.stack_file = Some(self.stack_file.to_string_lossy().into_owned());
+        match &mut request {
+            Request::Initialize(initialize) => {
+                initialize.stack_file = Some(self.stack_file.to_string_lossy().into_owned());
+            }
+            Request::RunTest(plugin) => {
+                let folder = self.shared.run_folder.join(self.keep_folder());
+                plugin.keep_folder = Some(folder.to_string_lossy().into_owned());
+            }
+            _ => {}
         }
         if let (Ok(line), Some(channel)) = (codec::encode(id, request), &mut self.process.channel) {
             // A host that is gone or does not read is noticed by its exit or its limit.
@@ -225,10 +236,9 @@ impl Task {
         let Some(plan) = self.job.process.clone() else {
             return;
         };
-        let (inputs, host) = (self.inputs.clone(), self.job.host);
-        let spawner = self.shared.spawner.clone();
+        let (inputs, host, asker) = (self.inputs.clone(), self.job.host, self.asker());
         self.side.spawn(async move {
-            let reason = probe::wait_until_unwell(&plan.alive, &spawner).await;
+            let reason = probe::wait_until_unwell(&plan.alive, &asker).await;
             drop(inputs.send((host, HostInput::ProbeFailed(reason))).await);
         });
     }
@@ -273,26 +283,35 @@ impl Task {
         self.tell(input).await;
     }
 
-    /// Copies an attached file into the run's folder.
-    async fn keep(&self, attachment: Attachment) -> Result<Attachment, String> {
-        let Source::Test(test) = self.job.source else {
-            return Err("a fixture has no result to attach a file to".to_owned());
-        };
-        let name: String = attachment.name.chars().map(safe).collect();
-        let path = format!("attachments/{test}/{}-{name}", self.job.host.0);
-        let target = self.shared.run_folder.join(&path);
-        let source =
-            self.job.launch.request.folder.clone().unwrap_or_default().join(&attachment.path);
-        let copy = async {
-            if let Some(folder) = target.parent() {
-                tokio::fs::create_dir_all(folder).await?;
-            }
-            tokio::fs::copy(&source, &target).await
-        };
-        match copy.await {
-            Ok(_) => Ok(Attachment { path, ..attachment }),
-            Err(error) => Err(format!("`{}` cannot be attached: {error}", attachment.path)),
+    /// The folder for what this process attaches, relative to the run's.
+    fn keep_folder(&self) -> String {
+        match self.job.source {
+            Source::Test(id) => format!("attachments/{id}/{}", self.job.host.0),
+            Source::Fixture(id) => format!("attachments/fixture-{id}/{}", self.job.host.0),
         }
+    }
+
+    /// Names an attached file relative to the run's folder. A host that did not
+    /// copy it there itself has it copied now.
+    async fn keep(&self, attachment: Attachment) -> Result<Attachment, String> {
+        let folder = self.keep_folder();
+        let own = self.shared.run_folder.join(&folder);
+        let work = self.job.launch.request.folder.clone().unwrap_or_default();
+        let source = work.join(&attachment.path);
+        let cannot =
+            |error: std::io::Error| format!("`{}` cannot be attached: {error}", attachment.path);
+        let copied = source.parent() == Some(own.as_path());
+        let name = match (copied, source.file_name()) {
+            (true, Some(name)) => name.to_string_lossy().into_owned(),
+            _ => attachment.name.chars().map(safe).collect(),
+        };
+        if copied {
+            tokio::fs::metadata(&source).await.map_err(cannot)?;
+        } else {
+            tokio::fs::create_dir_all(&own).await.map_err(cannot)?;
+            tokio::fs::copy(&source, own.join(&name)).await.map_err(cannot)?;
+        }
+        Ok(Attachment { path: format!("{folder}/{name}"), ..attachment })
     }
 
     async fn printed(&mut self, stream: Stream, bytes: &[u8]) {

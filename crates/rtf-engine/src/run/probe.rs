@@ -11,7 +11,7 @@ use crate::host::spawner::{SpawnRequest, Spawner, Streams};
 use crate::host::tree;
 use crate::plan::{Probe, ProbeKind, ProcessPlan};
 
-/// Asks who holds the address is not possible; that somebody does, is.
+/// How long somebody else may take to answer.
 const TAKEN_WAIT: Duration = Duration::from_millis(200);
 
 /// A TCP or HTTP address that a fixture will be ready by and that answers
@@ -35,17 +35,26 @@ fn address_of(url: &str) -> Option<String> {
     Some(format!("{}:{}", url.host_str()?, url.port_or_known_default()?))
 }
 
+/// Where the probes of a process are asked.
+#[derive(Clone, Debug)]
+pub struct Asker {
+    /// The thread that starts processes.
+    pub spawner: Spawner,
+    /// The process that is asked about: commands get its folder and environment.
+    pub like: SpawnRequest,
+}
+
 /// Returns when each probe has held once.
-pub async fn wait_until_ready(probes: &[Probe], started_at: SystemTime, spawner: &Spawner) {
+pub async fn wait_until_ready(probes: &[Probe], started_at: SystemTime, asker: &Asker) {
     for probe in probes {
-        while ask(probe, Some(started_at), spawner).await.is_err() {
+        while ask(probe, Some(started_at), asker).await.is_err() {
             tokio::time::sleep(probe.every).await;
         }
     }
 }
 
 /// Returns when a probe does not hold any more, with the reason.
-pub async fn wait_until_unwell(probes: &[Probe], spawner: &Spawner) -> String {
+pub async fn wait_until_unwell(probes: &[Probe], asker: &Asker) -> String {
     let asked: Vec<&Probe> =
         probes.iter().filter(|probe| !matches!(probe.kind, ProbeKind::Log(_))).collect();
     let mut due: Vec<_> = asked.iter().map(|p| tokio::time::Instant::now() + p.every).collect();
@@ -55,14 +64,14 @@ pub async fn wait_until_unwell(probes: &[Probe], spawner: &Spawner) -> String {
             return std::future::pending().await;
         };
         tokio::time::sleep_until(due[next]).await;
-        if let Err(reason) = ask(asked[next], None, spawner).await {
+        if let Err(reason) = ask(asked[next], None, asker).await {
             return reason;
         }
         due[next] = tokio::time::Instant::now() + asked[next].every;
     }
 }
 
-async fn ask(probe: &Probe, since: Option<SystemTime>, spawner: &Spawner) -> Result<(), String> {
+async fn ask(probe: &Probe, since: Option<SystemTime>, asker: &Asker) -> Result<(), String> {
     let answer = async {
         match &probe.kind {
             ProbeKind::Tcp(address) => match TcpStream::connect(address).await {
@@ -71,7 +80,7 @@ async fn ask(probe: &Probe, since: Option<SystemTime>, spawner: &Spawner) -> Res
             },
             ProbeKind::Http(url) => ask_http(url).await,
             ProbeKind::File(path) => ask_file(path, since),
-            ProbeKind::Command(command) => ask_command(command, spawner).await,
+            ProbeKind::Command(command) => ask_command(command, asker).await,
             ProbeKind::Log(_) => Ok(()),
         }
     };
@@ -86,7 +95,7 @@ fn subject(probe: &Probe) -> String {
         ProbeKind::Tcp(address) => address.clone(),
         ProbeKind::Http(url) => url.clone(),
         ProbeKind::File(path) => path.display().to_string(),
-        ProbeKind::Command(command) => format!("`{}`", shell_words::join(command)),
+        ProbeKind::Command(command) => format!("`{}`", shown(command)),
         ProbeKind::Log(pattern) => pattern.to_string(),
     }
 }
@@ -114,16 +123,16 @@ fn ask_file(path: &Path, since: Option<SystemTime>) -> Result<(), String> {
     }
 }
 
-async fn ask_command(command: &[String], spawner: &Spawner) -> Result<(), String> {
-    let shown = shell_words::join(command);
+async fn ask_command(command: &[String], asker: &Asker) -> Result<(), String> {
+    let shown = shown(command);
     let request = SpawnRequest {
         command: command.to_vec(),
-        streams: Streams::StdoutOnly,
-        ..SpawnRequest::default()
+        streams: Streams::None,
+        channel: false,
+        ..asker.like.clone()
     };
-    let mut process =
-        spawner.spawn(request).await.map_err(|error| format!("`{shown}` cannot run: {error}"))?;
-    process.stdout = None;
+    let started = asker.spawner.spawn(request).await;
+    let mut process = started.map_err(|error| format!("`{shown}` cannot run: {error}"))?;
     let guard = KillOnDrop(process.pid);
     let status = process.end.wait().await.map_err(|error| format!("`{shown}`: {error}"))?;
     std::mem::forget(guard);
@@ -132,6 +141,15 @@ async fn ask_command(command: &[String], spawner: &Spawner) -> Result<(), String
     } else {
         Err(format!("`{shown}` ended with {status}"))
     }
+}
+
+/// A command as the suite has it: the program was made absolute since.
+fn shown(command: &[String]) -> String {
+    let mut words: Vec<&str> = command.iter().map(String::as_str).collect();
+    if let Some(program) = words.first_mut() {
+        *program = program.rsplit('/').next().unwrap_or(program);
+    }
+    shell_words::join(words)
 }
 
 /// Kills a command's tree when its probe runs out of time.

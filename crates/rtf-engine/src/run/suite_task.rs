@@ -188,14 +188,15 @@ impl SuiteTask<'_> {
 
     fn request(&self, start: Start) -> SpawnRequest {
         let mut env = vec![(ENVIRONMENT_VARIABLE.to_owned(), self.plan.environment.clone())];
+        env.extend(start.env);
         let (command, channel) = match start.what {
             Program::Host(plan) => {
+                // Last: the plan has put what the suite says into it already.
                 env.extend_from_slice(&plan.env);
                 (plan.command.clone(), true)
             }
             Program::Process(plan) => (plan.command.clone(), false),
         };
-        env.extend(start.env);
         let folder = Some(start.folder);
         SpawnRequest { command, env, folder, channel, streams: Streams::Both }
     }

@@ -95,7 +95,8 @@ impl TestRecord {
     /// The last word, `None` while there is none.
     #[must_use]
     pub fn verdict(&self) -> Option<Verdict> {
-        let failed = || self.deciding_attempts().filter_map(AttemptRecord::verdict).find(|v| !v.is_green());
+        let failed =
+            || self.deciding_attempts().filter_map(AttemptRecord::verdict).find(|v| !v.is_green());
         if self.skipped.is_some() {
             return Some(failed().unwrap_or(Verdict::Skipped));
         }

@@ -34,7 +34,11 @@ pub fn plan(args: &InputArgs) -> Result<Planned, Failure> {
         Some(plan) => Ok(Planned { plan, warnings: outcome.diagnostics }),
         None => {
             let many = if errors == 1 { "1 error".to_owned() } else { format!("{errors} errors") };
-            Err(Failure { hint: Some("nothing was started".to_owned()), code: exit::BAD_INPUT, error: many.into() })
+            Err(Failure {
+                hint: Some("nothing was started".to_owned()),
+                code: exit::BAD_INPUT,
+                error: many.into(),
+            })
         }
     }
 }

@@ -16,8 +16,8 @@ use rtf_report::text::TextFile;
 use rtf_report::{Fanout, FanoutHandle, Reporter};
 use tokio::sync::watch;
 
-use super::planning::{self, Planned};
 use super::Outcome;
+use super::planning::{self, Planned};
 use crate::cli::{Format, RunArgs};
 use crate::error::Failure;
 use crate::exit;

@@ -57,7 +57,10 @@ fn a_test_is_run_again_when_the_suite_says_so() {
     let suite = suite("F", "").replace("name='first'", "name='first' after-collapse='rerun'");
     let test = "import os, rtf\nclass T(rtf.TestCase):\n    def run(self):\n        again = os.path.exists('died')\n        open(self.param, 'w').close()\n        self.sleep(0 if again else 60)\n";
     folder.file("T.py", test).file("F.py", DIES);
-    folder.file("s.xml", &suite.replace("<suite name='s'>", "<suite name='s' tolerate-collapse='true'>"));
+    folder.file(
+        "s.xml",
+        &suite.replace("<suite name='s'>", "<suite name='s' tolerate-collapse='true'>"),
+    );
     let finished = folder.rtf(&["run", "s.xml"]);
     let record = folder.journal().record;
     let verdicts: Vec<_> = record.tests[0].attempts.iter().filter_map(|a| a.verdict()).collect();

@@ -89,8 +89,10 @@ fn check_language(language: &Language) {
     let finished = temp.rtf(&["run", "."]);
     assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
     let journal = temp.journal();
-    let problems: Vec<String> =
-        scenarios.iter().flat_map(|name| check_scenario(name, language, &journal.events, &journal.record, &temp)).collect();
+    let problems: Vec<String> = scenarios
+        .iter()
+        .flat_map(|name| check_scenario(name, language, &journal.events, &journal.record, &temp))
+        .collect();
     assert!(problems.is_empty(), "{}: \n{}", language.name, problems.join("\n"));
     assert!(nothing_left(&temp), "processes are left");
 }
@@ -169,7 +171,9 @@ fn told(events: &[Event], suite: SuiteId, record: &Record, temp: &Folder) -> Vec
 }
 
 fn compare_told(scenario: &str, expected: &[Value], told: &[Value]) -> Vec<String> {
-    let is_told = |line: &&Value| ["message", "measured", "attached"].iter().any(|key| line.get(*key).is_some());
+    let is_told = |line: &&Value| {
+        ["message", "measured", "attached"].iter().any(|key| line.get(*key).is_some())
+    };
     let expected: Vec<&Value> = expected.iter().filter(is_told).collect();
     let mut problems = Vec::new();
     if expected.len() != told.len() {
@@ -188,7 +192,9 @@ fn mismatch(expected: &Value, found: &Value) -> Option<String> {
     let entries = expected.as_object().expect("an object");
     entries.iter().filter(|(key, _)| *key != "languages").find_map(|(key, value)| {
         let holds = match key.strip_suffix("_contains") {
-            Some(key) => found[key].as_str().is_some_and(|text| text.contains(value.as_str().expect("a text"))),
+            Some(key) => found[key]
+                .as_str()
+                .is_some_and(|text| text.contains(value.as_str().expect("a text"))),
             None if value.is_object() => mismatch(value, &found[key]).is_none(),
             None => same(value, &found[key]),
         };

@@ -27,7 +27,8 @@ fn a_killed_run_can_still_be_shown_and_reported() {
         assert!(shown.stdout.contains("INCOMPLETE"), "{}", shown.stdout);
         let passed = before.record.totals().of(Verdict::Passed);
         assert_eq!(shown.stdout.matches("  passed  ").count(), passed as usize, "{}", shown.stdout);
-        let report = folder.rtf(&["report", "latest", "--format", "junit", "--output", "junit.xml"]);
+        let report =
+            folder.rtf(&["report", "latest", "--format", "junit", "--output", "junit.xml"]);
         assert_eq!(report.code, Some(0), "{}", report.stderr);
         let file = std::fs::File::open(folder.path().join("junit.xml")).expect("a file");
         let junit = junit_parser::from_reader(std::io::BufReader::new(file)).expect("valid JUnit");

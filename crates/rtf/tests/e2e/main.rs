@@ -6,6 +6,7 @@ mod support;
 mod bad_input;
 mod collapse;
 mod conformance;
+mod cpp_fixture;
 mod killed;
 mod predecessor;
 mod process_fixture;

@@ -18,10 +18,17 @@ fn junit(folder: &Folder) -> junit_parser::TestSuites {
 #[test]
 fn defect_1_a_plug_in_that_is_missing_is_red() {
     let folder = Folder::new();
-    folder.file("s.xml", "<suite name='s'><test type='dll'>A</test><test type='lua'>B</test></suite>");
+    folder.file(
+        "s.xml",
+        "<suite name='s'><test type='dll'>A</test><test type='lua'>B</test></suite>",
+    );
     let finished = folder.rtf(&["run", "s.xml"]);
     assert_eq!(finished.code, Some(2));
-    assert!(finished.stderr.contains("`A`") && finished.stderr.contains("`B`"), "{}", finished.stderr);
+    assert!(
+        finished.stderr.contains("`A`") && finished.stderr.contains("`B`"),
+        "{}",
+        finished.stderr
+    );
     std::fs::create_dir(folder.path().join("empty")).expect("a folder");
     assert_eq!(folder.rtf(&["run", "empty"]).code, Some(2));
 }
@@ -81,7 +88,10 @@ fn defect_4_a_collapse_during_the_only_test_is_red_everywhere() {
 fn defect_5_what_was_set_up_is_torn_down() {
     let folder = Folder::new();
     folder.file("First.lua", "FixtureManager = {}\nfunction FixtureManager.setup() return true end\nfunction FixtureManager.tearDown() io.open('torn-down', 'w'):close() end\n");
-    folder.file("Second.lua", "FixtureManager = {}\nfunction FixtureManager.setup() return false end\n");
+    folder.file(
+        "Second.lua",
+        "FixtureManager = {}\nfunction FixtureManager.setup() return false end\n",
+    );
     folder.file("T.lua", PASSES);
     folder.file("s.xml", "<suite name='s'><fixture type='lua'>First</fixture><fixture type='lua'>Second</fixture><test type='lua'>T</test></suite>");
     let finished = folder.rtf(&["run", "s.xml", "--report", "junit=junit.xml"]);
@@ -124,7 +134,8 @@ fn defect_8_texts_names_and_parameters_arrive_whole() {
     let finished = folder.rtf(&["run", "s.xml"]);
     assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
     let record = folder.journal().record;
-    let texts: Vec<&str> = record.tests[0].attempts[0].messages.iter().map(|m| m.text.as_str()).collect();
+    let texts: Vec<&str> =
+        record.tests[0].attempts[0].messages.iter().map(|m| m.text.as_str()).collect();
     assert_eq!(texts[0], "['--from', 'a b.ini', '--colour', '#ff0000']");
     assert_eq!(texts[1..3], ["304", "joint test"]);
     assert_eq!(texts[3].len(), 100_000);
@@ -135,16 +146,29 @@ fn defect_8_texts_names_and_parameters_arrive_whole() {
 #[test]
 fn defect_9_scripts_mean_what_they_say() {
     let folder = Folder::new();
-    folder.file("Percent.lua", "TestCase = {}\nfunction TestCase.run() rtf.error('100% sure: %s %n') end\n");
-    folder.file("Nil.lua", "TestCase = {}\nfunction TestCase.run() rtf.check(nil, 'nil is not true') end\n");
+    folder.file(
+        "Percent.lua",
+        "TestCase = {}\nfunction TestCase.run() rtf.error('100% sure: %s %n') end\n",
+    );
+    folder.file(
+        "Nil.lua",
+        "TestCase = {}\nfunction TestCase.run() rtf.check(nil, 'nil is not true') end\n",
+    );
     folder.file("TearDown.lua", "TestCase = {}\nfunction TestCase.run() rtf.require(false, 'stop') end\nfunction TestCase.tearDown() rtf.report('torn down') end\n");
-    let python = |text: &str| format!("import rtf\nSTATE = []\nclass T(rtf.TestCase):\n    def run(self):\n        STATE.append('{text}')\n        self.report(repr(STATE))\n");
+    let python = |text: &str| {
+        format!(
+            "import rtf\nSTATE = []\nclass T(rtf.TestCase):\n    def run(self):\n        STATE.append('{text}')\n        self.report(repr(STATE))\n"
+        )
+    };
     folder.file("A.py", &python("a")).file("B.py", &python("b"));
     folder.file("s.xml", "<suite name='s'><test>Percent.lua</test><test>Nil.lua</test><test>TearDown.lua</test><test>A.py</test><test>B.py</test></suite>");
     folder.rtf(&["run", "s.xml"]);
     let record = folder.journal().record;
     let verdicts: Vec<_> = record.tests.iter().map(|t| t.verdict().expect("a verdict")).collect();
-    assert_eq!(verdicts, [Verdict::Error, Verdict::Failed, Verdict::Failed, Verdict::Passed, Verdict::Passed]);
+    assert_eq!(
+        verdicts,
+        [Verdict::Error, Verdict::Failed, Verdict::Failed, Verdict::Passed, Verdict::Passed]
+    );
     assert_eq!(record.tests[0].reason(), Some("100% sure: %s %n"));
     let reports = |test: usize| -> Vec<String> {
         let messages = record.tests[test].attempts[0].messages.iter();

@@ -74,7 +74,11 @@ fn an_alive_probe_that_fails_is_a_collapse() {
     assert_eq!(folder.rtf(&["run", "s.xml"]).code, Some(1));
     let record = folder.journal().record;
     assert_eq!(record.verdict(TestId(0)), Some(Verdict::Collapsed));
-    assert!(record.tests[0].reason().expect("a reason").contains("503"), "{:?}", record.tests[0].reason());
+    assert!(
+        record.tests[0].reason().expect("a reason").contains("503"),
+        "{:?}",
+        record.tests[0].reason()
+    );
 }
 
 #[test]
@@ -83,7 +87,10 @@ fn a_bad_line_in_its_log_is_a_collapse() {
     let (folder, _) = folder("fatal", probes, "60");
     assert_eq!(folder.rtf(&["run", "s.xml"]).code, Some(1));
     let record = folder.journal().record;
-    assert_eq!(record.tests[0].reason(), Some("fixture `server` collapsed: it printed `FATAL: motor 3`"));
+    assert_eq!(
+        record.tests[0].reason(),
+        Some("fixture `server` collapsed: it printed `FATAL: motor 3`")
+    );
 }
 
 #[test]
@@ -112,7 +119,10 @@ fn a_file_from_before_the_start_does_not_make_it_ready() {
     folder.file("ready.txt", "old");
     let suite = std::fs::read_to_string(folder.path().join("s.xml")).expect("the suite");
     folder.file("s.xml", &suite.replace("timeout='10s'", "timeout='500ms'"));
-    let old = std::process::Command::new("touch").args(["-d", "1 hour ago", "ready.txt"]).current_dir(folder.path()).status();
+    let old = std::process::Command::new("touch")
+        .args(["-d", "1 hour ago", "ready.txt"])
+        .current_dir(folder.path())
+        .status();
     assert!(old.expect("touch").success());
     assert_eq!(folder.rtf(&["run", "s.xml"]).code, Some(1));
     let broken = folder.journal().record.fixtures[0].broken.clone().expect("broken");
@@ -132,7 +142,24 @@ fn a_detached_grandchild_goes_with_its_fixture() {
     let finished = folder.rtf(&["run", "s.xml"]);
     assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
     let journal = folder.journal();
-    let left = journal.events.iter().any(|event| matches!(event.kind, EventKind::ProcessesLeft { .. }));
+    let left =
+        journal.events.iter().any(|event| matches!(event.kind, EventKind::ProcessesLeft { .. }));
     assert!(left, "what was left is told");
     assert!(nothing_left(&folder));
+}
+
+#[test]
+fn a_command_probe_runs_in_the_suites_folder_with_its_environment_and_may_print() {
+    let folder = Folder::new();
+    folder.file("sub/T.py", TEST).file("sub/robot.txt", "");
+    folder.file(
+        "sub/s.xml",
+        "<suite name='s'>\n  <env name='ROBOT' value='arm'/>\n  \
+         <fixture type='process' name='sleeper' restarts='0'>\n    <command>sleep 1000</command>\n    \
+         <ready command=\"sh -c 'echo looking; test -f robot.txt -a $ROBOT = arm'\"/>\n    \
+         <alive command=\"sh -c 'echo looking; test -f robot.txt'\" every='10ms'/>\n  \
+         </fixture>\n  <test type='python' param='0.1'>T</test>\n</suite>\n",
+    );
+    let finished = folder.rtf(&["run", "sub/s.xml"]);
+    assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
 }

@@ -5,7 +5,8 @@ use rtf_model::{EventKind, Phase, TestId, Verdict};
 use crate::support::{Folder, Running, nothing_left};
 
 const FIXTURE: &str = "import rtf\nclass F(rtf.FixtureManager):\n    def setup(self, args):\n        return True\n    def tearDown(self):\n        open('torn-down', 'w').close()\n";
-const PATIENT: &str = "import rtf\nclass T(rtf.TestCase):\n    def run(self):\n        self.sleep(1000)\n";
+const PATIENT: &str =
+    "import rtf\nclass T(rtf.TestCase):\n    def run(self):\n        self.sleep(1000)\n";
 const STUBBORN: &str = "import rtf, signal, time\nclass T(rtf.TestCase):\n    def run(self):\n        signal.signal(signal.SIGTERM, signal.SIG_IGN)\n        while True:\n            time.sleep(1)\n";
 
 fn run(folder: &Folder, test: &str) -> Running {

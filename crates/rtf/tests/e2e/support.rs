@@ -124,14 +124,16 @@ impl Running {
         let found = wait_until("an event in the journal", || {
             let text = std::fs::read_to_string(&path).ok()?;
             let whole = text.rsplit_once('\n')?.0;
-            let events = whole.lines().map(|line| serde_json::from_str::<Event>(line).expect("an event"));
+            let events =
+                whole.lines().map(|line| serde_json::from_str::<Event>(line).expect("an event"));
             events.into_iter().find(|event| wanted(&event.kind))
         });
         found
     }
 
     pub fn signal(&self, signal: &str) {
-        let status = Command::new("kill").args(["-s", signal, &self.child.id().to_string()]).status();
+        let status =
+            Command::new("kill").args(["-s", signal, &self.child.id().to_string()]).status();
         assert!(status.expect("kill").success());
     }
 

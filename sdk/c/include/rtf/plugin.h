@@ -114,8 +114,7 @@ typedef struct rtf_measurement {
 typedef struct rtf_attachment {
     // `sizeof(rtf_attachment)`.
     size_t size;
-    // Where it is. It is copied soon after the call: leave it in place until
-    // the test is over.
+    // Where it is. It is copied before the call returns.
     struct rtf_text path;
     // The name under which reports show it; empty: the path's last part.
     struct rtf_text name;

@@ -12,7 +12,6 @@
     {                                                                                              \
         static constexpr rtf_plugin_table table = ::rtf::internal::table_of<Class>(#Class);        \
         return &table;                                                                             \
-    }                                                                                              \
-    static_assert(true, "takes the semicolon")
+    }
 
 #endif

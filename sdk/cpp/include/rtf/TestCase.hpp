@@ -29,7 +29,7 @@ protected:
         return internal::measure(here, internal::Measurement{name, value, unit, low, high});
     }
 
-    // Keeps a file with the result. Leave it in place until the test is over.
+    // Keeps a copy of a file with the result. The file may go afterwards.
     void attach(std::string_view path, std::string_view name = "", std::string_view media_type = "",
                 Location here = Location::current()) const
     {

@@ -32,14 +32,17 @@ def check_file(file: str) -> dict[str, object]:
     except (ValueError, RecursionError, MemoryError) as problem:
         return {"file": file, "ok": False, "message": str(problem)}
     kinds = _kinds(tree)
-    return {"file": file, "ok": True, "kinds": kinds} if kinds else {"file": file, "ok": True}
+    if kinds is None:
+        return {"file": file, "ok": True}
+    return {"file": file, "ok": True, "kinds": kinds}
 
 
-def _kinds(tree: ast.Module) -> list[str]:
+def _kinds(tree: ast.Module) -> list[str] | None:
     """Tell tests and fixtures by the bases that classes name.
 
-    Nothing is said of a file whose class derives from one of another file:
-    that can be known only by running it.
+    Nothing (`None`) is said of a file whose class derives from one of another
+    file: that can be known only by running it. A file in which no class
+    derives from anything is no plug-in.
     """
     kind_of = dict(_KINDS)
     found = []
@@ -49,7 +52,8 @@ def _kinds(tree: ast.Module) -> list[str]:
             if kinds:
                 kind_of[node.name] = kinds[0]
                 found.append(kinds[0])
-    return sorted(set(found), reverse=True)
+    derived = any(isinstance(node, ast.ClassDef) and node.bases for node in ast.walk(tree))
+    return sorted(set(found), reverse=True) if found or not derived else None
 
 
 def _last_name(base: ast.expr) -> str:

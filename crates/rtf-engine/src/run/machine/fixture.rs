@@ -154,6 +154,7 @@ impl<'p> FixtureRun<'p> {
                 environment: self.suite.environment.clone(),
                 repetition: self.starts,
                 last: false,
+                keep_folder: None,
             });
             cx.out(Effect::Send(host, Some(SET_UP), request));
         }

@@ -99,6 +99,7 @@ impl<'p> TestRun<'p> {
             environment: suite.environment.clone(),
             repetition,
             last: true,
+            keep_folder: None,
         };
         cx.out(Effect::Send(host, Some(RUN_TEST), Request::RunTest(plugin)));
         cx.set(Deadline::Test(TestTimer::Limit), plan.limits.load);
