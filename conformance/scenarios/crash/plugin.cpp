@@ -7,7 +7,7 @@ public:
     void run() override
     {
         report("before the crash");
-        int *volatile nowhere = nullptr;
+        volatile int *volatile nowhere = nullptr;
         *nowhere = 1;
     }
 };
