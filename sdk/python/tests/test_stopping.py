@@ -80,7 +80,7 @@ def test_the_stack_of_a_hang_that_holds_the_interpreter_lock_is_dumped(tmp_path:
     host.send("run-test", plugin(tmp_path, body), number=2)
     host.wait_for("message")
     end = time.monotonic() + 30
-    while "in run" not in stack_file.read_text() and time.monotonic() < end:
+    while "plugin.py" not in stack_file.read_text() and time.monotonic() < end:
         host.process.send_signal(signal.SIGUSR2)
         os.sched_yield()
     assert "plugin.py" in stack_file.read_text()
