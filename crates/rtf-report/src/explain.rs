@@ -37,8 +37,7 @@ pub(crate) type Sink<'a> = &'a mut dyn FnMut(Tone, &str);
 /// their limits, stacks, processes left behind. What it printed is not told.
 pub(crate) fn explain(attempt: &AttemptRecord, extent: Extent, sink: Sink<'_>) {
     let reason = attempt.finished.as_ref().and_then(|(_, finished)| finished.reason.as_deref());
-    // The first failure usually is the reason, and tells its place as well.
-    if let Some(reason) = reason.filter(|reason| attempt.failures().all(|m| m.text != *reason)) {
+    if let Some(reason) = reason.filter(|reason| !is_told_with_its_place(attempt, reason)) {
         block(Tone::Bad, reason, "", sink);
     }
     let failures = attempt.failures().count();
@@ -53,6 +52,22 @@ pub(crate) fn explain(attempt: &AttemptRecord, extent: Extent, sink: Sink<'_>) {
         self::stack(stack, extent, sink);
     }
     left(&attempt.left, sink);
+}
+
+/// Whether the reason is one of the failures or measurements that are told
+/// anyway: usually the first one is, and it tells its place as well.
+fn is_told_with_its_place(attempt: &AttemptRecord, reason: &str) -> bool {
+    attempt.failures().any(|failure| failure.text == reason)
+        || attempt.violations().any(|violation| violation_as_reason(violation) == reason)
+}
+
+/// What the runner gives as the reason for a measurement outside its limits.
+fn violation_as_reason(measurement: &Measurement) -> String {
+    let (name, value) = (&measurement.name, measurement.value_with_unit());
+    match measurement.limits() {
+        limits if limits.is_empty() => format!("`{name}` is {value}"),
+        limits => format!("`{name}` is {value}, its limits are {limits}"),
+    }
 }
 
 /// A message with its place and the vectors behind it.

@@ -11,7 +11,7 @@ mod style;
 mod summary;
 mod verbose;
 
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::Path;
 use std::time::Duration;
 
@@ -70,6 +70,12 @@ impl Console {
         let Self { out, page, progress, .. } = self;
         let written = progress.around(|| out.write_all(page.as_bytes()).and_then(|()| out.flush()));
         self.page.clear();
+        if written.as_ref().is_err_and(|error| error.kind() == ErrorKind::BrokenPipe) {
+            // Whoever read along (`head`, a pager) has seen enough: the run goes
+            // on, and its exit code stays about the tests.
+            self.out = Box::new(std::io::sink());
+            return Ok(());
+        }
         written.map_err(ReportError::at("what happens", Path::new("standard output")))
     }
 }

@@ -76,16 +76,17 @@ fn passed(record: &Record, test: &TestRecord) -> TestCaseStatus {
     status
 }
 
-/// Everything that explains the verdict: the reason, and each attempt that
-/// did not pass.
+/// Everything that explains the verdict: each attempt that did not pass, and
+/// before them the reason when it is none of theirs.
 fn description(record: &Record, test: &TestRecord, reason: &str) -> String {
-    let mut lines = vec![text(reason)];
-    for attempt in test.attempts.iter().filter(|a| a.verdict() != Some(Verdict::Passed)) {
-        lines.push(title(test, attempt));
-        // The reason stands above already.
-        let explained = explained(attempt);
-        let rest = explained.strip_prefix(&lines[0]).unwrap_or(&explained);
-        lines.push(rest.trim_start_matches('\n').to_owned());
+    let attempts = test.attempts.iter().filter(|a| a.verdict() != Some(Verdict::Passed));
+    let mut reasons = attempts.clone().filter_map(|a| a.finished.as_ref()?.1.reason.as_deref());
+    let mut lines = Vec::new();
+    if reasons.all(|told| told != reason) {
+        lines.push(text(reason));
+    }
+    for attempt in attempts {
+        lines.extend([title(test, attempt), explained(attempt)]);
     }
     let collapsed = test.attempts.iter().any(|a| a.verdict() == Some(Verdict::Collapsed));
     if collapsed || (test.attempts.is_empty() && test.skipped.is_some()) {

@@ -3,7 +3,8 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use super::{Outcome, planning};
+use super::Outcome;
+use super::planning::{self, count};
 use crate::cli::InputArgs;
 use crate::error::Failure;
 
@@ -11,14 +12,16 @@ use crate::error::Failure;
 pub fn run(args: &InputArgs) -> Outcome {
     let planned = planning::plan(args)?;
     let plan = planned.plan;
-    let count = |number: usize, one: &str| {
-        if number == 1 { format!("1 {one}") } else { format!("{number} {one}s") }
-    };
     let summary = [
         count(plan.suites.len(), "suite"),
         count(plan.fixtures as usize, "fixture"),
         count(plan.tests as usize, "test"),
     ];
-    writeln!(anstream::stdout(), "{}: no errors", summary.join(", ")).map_err(Failure::own)?;
+    let warned = match planned.warnings.len() {
+        0 => String::new(),
+        many => format!(", {}", count(many, "warning")),
+    };
+    let written = writeln!(anstream::stdout(), "{}: no errors{warned}", summary.join(", "));
+    Failure::unless_reader_left(written)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -14,6 +14,6 @@ use crate::error::Failure;
 pub fn run(shell: Shell) -> Outcome {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "rtf", &mut script);
-    std::io::stdout().write_all(&script).map_err(Failure::own)?;
+    Failure::unless_reader_left(std::io::stdout().write_all(&script))?;
     Ok(ExitCode::SUCCESS)
 }

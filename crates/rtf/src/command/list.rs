@@ -13,7 +13,7 @@ use crate::error::Failure;
 pub fn run(args: &InputArgs) -> Outcome {
     let planned = planning::plan(args)?;
     let mut out = std::io::BufWriter::new(anstream::stdout().lock());
-    write(&planned.plan, &mut out).map_err(Failure::own)?;
+    Failure::unless_reader_left(write(&planned.plan, &mut out))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,6 +1,8 @@
 //! What `run`, `check` and `list` have in common: from paths to a plan, with
 //! every problem shown.
 
+use std::io::Write;
+
 use rtf_engine::plan::{self, Options, Plan, Surroundings};
 use rtf_model::{Diagnostic, Severity};
 
@@ -28,17 +30,30 @@ pub fn plan(args: &InputArgs) -> Result<Planned, Failure> {
     let outcome = plan::build(&args.inputs, &options);
     // The stream takes the colours out where they are not wanted.
     let mut err = anstream::stderr().lock();
-    render::write(&mut err, &outcome.diagnostics, &outcome.sources, true).map_err(Failure::own)?;
-    let errors = outcome.diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
-    match outcome.plan {
-        Some(plan) => Ok(Planned { plan, warnings: outcome.diagnostics }),
-        None => {
-            let many = if errors == 1 { "1 error".to_owned() } else { format!("{errors} errors") };
-            Err(Failure {
-                hint: Some("nothing was started".to_owned()),
-                code: exit::BAD_INPUT,
-                error: many.into(),
-            })
-        }
+    let shown = render::write(&mut err, &outcome.diagnostics, &outcome.sources, true);
+    Failure::unless_reader_left(shown)?;
+    if let Some(plan) = outcome.plan {
+        return Ok(Planned { plan, warnings: outcome.diagnostics });
     }
+    Failure::unless_reader_left(writeln!(
+        err,
+        "{}; nothing was started",
+        sum(&outcome.diagnostics)
+    ))?;
+    Err(Failure::told(exit::BAD_INPUT))
+}
+
+/// `2 errors and 1 warning`
+fn sum(diagnostics: &[Diagnostic]) -> String {
+    let of = |severity| diagnostics.iter().filter(|d| d.severity == severity).count();
+    let errors = count(of(Severity::Error), "error");
+    match of(Severity::Warning) {
+        0 => errors,
+        warnings => format!("{errors} and {}", count(warnings, "warning")),
+    }
+}
+
+/// A number with its noun: `1 suite`, `2 suites`.
+pub fn count(number: usize, one: &str) -> String {
+    if number == 1 { format!("1 {one}") } else { format!("{number} {one}s") }
 }

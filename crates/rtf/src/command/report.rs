@@ -3,18 +3,18 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use rtf_report::{Reporter, journal, junit, run_folder, text};
+use rtf_report::{Reporter, journal, junit, text};
 
 use super::Outcome;
-use super::show::tell_damage;
+use super::show::{find, tell_damage, unreadable};
 use crate::cli::{Format, ReportArgs};
 use crate::error::Failure;
 
 /// Writes the report. Its exit code is about the writing, not about the run.
 pub fn run(args: &ReportArgs) -> Outcome {
-    let path = run_folder::resolve(&args.results.results, &args.run).map_err(Failure::input)?;
+    let path = find(&args.results, &args.run)?;
     let folder = path.parent();
-    let stored = journal::read(&path).map_err(Failure::input)?;
+    let stored = journal::read(&path).map_err(unreadable)?;
     tell_damage(&stored)?;
     match &args.output {
         Some(output) => {
@@ -28,12 +28,11 @@ pub fn run(args: &ReportArgs) -> Outcome {
         }
         None => {
             let mut out = std::io::stdout().lock();
-            match args.format {
+            let written = match args.format {
                 Format::Text => text::write(&mut out, &stored.record),
                 Format::Junit => junit::write(&mut out, &stored.record, folder),
-            }
-            .and_then(|()| out.flush())
-            .map_err(Failure::own)?;
+            };
+            Failure::unless_reader_left(written.and_then(|()| out.flush()))?;
         }
     }
     Ok(ExitCode::SUCCESS)

@@ -1,6 +1,6 @@
 //! `rtf run`: plan, open the reports, run, report.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use rtf_report::junit::JunitFile;
 use rtf_report::logs::Logs;
 use rtf_report::run_folder::{self, RunFolder};
 use rtf_report::text::TextFile;
-use rtf_report::{Fanout, FanoutHandle, Reporter};
+use rtf_report::{Fanout, FanoutHandle, ReportError, Reporter};
 use tokio::sync::watch;
 
 use super::Outcome;
@@ -22,25 +22,26 @@ use crate::cli::{Format, RunArgs};
 use crate::error::Failure;
 use crate::exit;
 
+const REPORT_HINT: &str = "choose another path with `--report FORMAT=PATH`";
+
 /// Runs.
 pub fn run(args: &RunArgs) -> Outcome {
     let planned = planning::plan(&args.input)?;
-    for (format, path) in &args.reports {
-        open_report(*format, path, None)?;
-    }
+    check_reports(&args.reports)?;
     let folder = run_folder::create(&args.results.results).map_err(|error| {
-        Failure::input(error).hint("choose another folder with `--results DIR`")
+        Failure::input(error).hint("choose another folder with `--results DIR`".to_owned())
     })?;
     let fanout = Fanout::start(reporters(args, &folder)?).map_err(Failure::own)?;
     let ended = run_plan(&planned, &folder, fanout.handle());
     let finished = fanout.join();
     let killed_by = ended.map_err(Failure::own)?;
-    for error in &finished.errors {
-        Failure { code: exit::BROKEN, error: error.to_string().into(), hint: None }.show();
+    let wrote_all = finished.errors.is_empty();
+    for error in finished.errors {
+        Failure::own(error).show();
     }
     Ok(match killed_by {
         Some(signal) => ExitCode::from(u8::try_from(128 + signal).unwrap_or(exit::FAILED)),
-        None if finished.errors.is_empty() => exit::of_run(&finished.record),
+        None if wrote_all => exit::of_run(&finished.record),
         None => ExitCode::from(exit::BROKEN),
     })
 }
@@ -63,16 +64,28 @@ fn reporters(args: &RunArgs, folder: &RunFolder) -> Result<Vec<Box<dyn Reporter>
     Ok(reporters)
 }
 
+/// Finds out before anything is started whether the reports can be written.
+fn check_reports(reports: &[(Format, PathBuf)]) -> Result<(), Failure> {
+    for (index, (format, path)) in reports.iter().enumerate() {
+        if reports[..index].iter().any(|(_, earlier)| earlier == path) {
+            let message = format!("two reports would be written to `{}`", path.display());
+            return Err(Failure::input(message).hint(REPORT_HINT.to_owned()));
+        }
+        open_report(*format, path, None)?;
+    }
+    Ok(())
+}
+
 fn open_report(
     format: Format,
     path: &Path,
     folder: Option<&Path>,
 ) -> Result<Box<dyn Reporter>, Failure> {
-    let report: Box<dyn Reporter> = match format {
-        Format::Text => Box::new(TextFile::new(path).map_err(Failure::input)?),
-        Format::Junit => Box::new(JunitFile::new(path, folder).map_err(Failure::input)?),
+    let report: Result<Box<dyn Reporter>, ReportError> = match format {
+        Format::Text => TextFile::new(path).map(|report| Box::new(report) as _),
+        Format::Junit => JunitFile::new(path, folder).map(|report| Box::new(report) as _),
     };
-    Ok(report)
+    report.map_err(|error| Failure::input(error).hint(REPORT_HINT.to_owned()))
 }
 
 /// Runs the plan; `Some` with the signal that ended `rtf` the hard way.

@@ -1,27 +1,28 @@
 //! `rtf show`: a past run on the console, or what is there of one that was killed.
 
 use std::io::Write;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use rtf_report::console::{Console, ConsoleOptions, Verbosity};
-use rtf_report::journal::{self, Stored};
+use rtf_report::journal::{self, JournalError, Stored};
 use rtf_report::run_folder;
 
 use super::Outcome;
-use crate::cli::ShowArgs;
+use crate::cli::{ResultsArgs, ShowArgs};
 use crate::error::Failure;
 use crate::exit;
 
 /// Shows.
 pub fn run(args: &ShowArgs) -> Outcome {
-    let path = run_folder::resolve(&args.results.results, &args.run).map_err(Failure::input)?;
+    let path = find(&args.results, &args.run)?;
     let mut console = Console::stdout(ConsoleOptions {
         verbosity: if args.verbose { Verbosity::Verbose } else { Verbosity::Normal },
         folder: path.parent().map(std::path::Path::to_owned),
         progress: false,
         ..ConsoleOptions::default()
     });
-    let stored = journal::replay(&path, &mut console).map_err(Failure::input)?;
+    let stored = journal::replay(&path, &mut console).map_err(unreadable)?;
     tell_damage(&stored)?;
     if stored.record.is_complete() {
         return Ok(exit::of_run(&stored.record));
@@ -29,11 +30,28 @@ pub fn run(args: &ShowArgs) -> Outcome {
     Ok(ExitCode::from(exit::FAILED))
 }
 
+/// The journal of a run.
+pub fn find(results: &ResultsArgs, run: &str) -> Result<PathBuf, Failure> {
+    run_folder::resolve(&results.results, run).map_err(|error| {
+        let hint = error.hint();
+        Failure::input(error).hint(hint)
+    })
+}
+
+/// A journal that is none is bad input; a report that cannot be written is not.
+pub fn unreadable(error: JournalError) -> Failure {
+    match error {
+        JournalError::Report(error) => Failure::own(error),
+        error => Failure::input(error),
+    }
+}
+
 /// Says on standard error what of the journal could not be read.
 pub fn tell_damage(stored: &Stored) -> Result<(), Failure> {
     let mut err = anstream::stderr().lock();
     for damage in &stored.damages {
-        writeln!(err, "warning: the journal is damaged: {damage}").map_err(Failure::own)?;
+        let told = writeln!(err, "warning: the journal is damaged: {damage}");
+        Failure::unless_reader_left(told)?;
     }
     Ok(())
 }

@@ -121,14 +121,13 @@ impl Running {
     /// Waits until the journal holds an event, which is returned.
     pub fn wait_for(&self, wanted: impl Fn(&EventKind) -> bool) -> Event {
         let path = self.folder.join("rtf-results/latest/events.jsonl");
-        let found = wait_until("an event in the journal", || {
+        wait_until("an event in the journal", || {
             let text = std::fs::read_to_string(&path).ok()?;
             let whole = text.rsplit_once('\n')?.0;
             let events =
                 whole.lines().map(|line| serde_json::from_str::<Event>(line).expect("an event"));
             events.into_iter().find(|event| wanted(&event.kind))
-        });
-        found
+        })
     }
 
     pub fn signal(&self, signal: &str) {
@@ -170,22 +169,6 @@ pub fn read_journal(path: &Path) -> Journal {
         events.push(event);
     }
     Journal { events, record }
-}
-
-/// The processes whose command or environment contains a text.
-pub fn processes_with(text: &str) -> Vec<u32> {
-    let own = std::process::id();
-    let entries = std::fs::read_dir("/proc").expect("/proc").flatten();
-    let pids = entries.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
-    pids.filter(|pid| *pid != own)
-        .filter(|pid| {
-            let contains = |file: &str| {
-                let bytes = std::fs::read(format!("/proc/{pid}/{file}")).unwrap_or_default();
-                String::from_utf8_lossy(&bytes).contains(text)
-            };
-            contains("cmdline") || contains("environ")
-        })
-        .collect()
 }
 
 /// Whether nothing of this folder runs any more. Every process of a run has
