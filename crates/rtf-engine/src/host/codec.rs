@@ -1,8 +1,11 @@
 //! Lines of the host protocol, both ways.
 
 use std::borrow::Cow;
+use std::path::Path;
 
-use rtf_model::protocol::{Line, Notification, Reply, Request, RpcError};
+use rtf_model::protocol::{
+    Initialize, Line, Notification, PROTOCOL_VERSION, Reply, Request, RpcError,
+};
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
@@ -29,6 +32,22 @@ struct Envelope<'a> {
     #[serde(borrow)]
     result: Option<&'a RawValue>,
     error: Option<RpcError>,
+}
+
+/// The number of `initialize` on every channel; later requests have others.
+pub const INITIALIZE: u64 = 1;
+
+/// The first line on every channel: `initialize`.
+///
+/// # Errors
+/// As for [`encode`].
+pub fn greeting(stack_file: &Path) -> Result<Vec<u8>, serde_json::Error> {
+    let request = Request::Initialize(Initialize {
+        protocol: PROTOCOL_VERSION,
+        rtf: env!("CARGO_PKG_VERSION").to_owned(),
+        stack_file: Some(stack_file.to_string_lossy().into_owned()),
+    });
+    encode(Some(INITIALIZE), request)
 }
 
 /// Writes a request, with its line end.

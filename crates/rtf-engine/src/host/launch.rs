@@ -1,28 +1,33 @@
 //! A process that is to be started, or was started ahead of its need.
 
 use std::io;
+use std::path::{Path, PathBuf};
 
 use rtf_model::protocol::SCOPE_VARIABLE;
 use tokio::sync::oneshot;
 
 use super::spawner::{Process, SpawnRequest, Spawner};
-use super::tree;
+use super::{codec, tree};
 
-/// A process of a scope of its own, started already or not.
+/// A process of a scope of its own, started already or not. A host is greeted
+/// with `initialize` as it starts, so that it can get ready while it waits.
 #[derive(Debug)]
 pub struct Launch {
     /// What is started; without the scope variable.
     pub request: SpawnRequest,
     /// The value of its scope variable: unique on this machine.
     pub scope: String,
+    /// Where a host that answers a signal with a stack dump writes it.
+    pub stack_file: PathBuf,
     ahead: Option<oneshot::Receiver<io::Result<Process>>>,
 }
 
 impl Launch {
     /// A process that will be started by [`Launch::start`].
     #[must_use]
-    pub fn new(request: SpawnRequest, scope: String) -> Self {
-        Self { request, scope, ahead: None }
+    pub fn new(request: SpawnRequest, scope: String, scratch: &Path) -> Self {
+        let stack_file = scratch.join(format!("{scope}.stack"));
+        Self { request, scope, stack_file, ahead: None }
     }
 
     /// Starts it now, for a need that is to come.
@@ -57,6 +62,10 @@ impl Launch {
     pub fn full_request(&self) -> SpawnRequest {
         let mut request = self.request.clone();
         request.env.push((SCOPE_VARIABLE.to_owned(), self.scope.clone()));
+        if let Some(greeting) = &mut request.channel {
+            // A host that is not greeted says so by not answering.
+            *greeting = codec::greeting(&self.stack_file).unwrap_or_default();
+        }
         request
     }
 }

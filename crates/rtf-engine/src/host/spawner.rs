@@ -5,7 +5,7 @@
 //! single place. `posix_spawn` is used (no code runs between fork and exec), so
 //! the time does not grow with the runner's memory.
 
-use std::io;
+use std::io::{self, Write};
 use std::os::fd::AsRawFd;
 use std::path::PathBuf;
 use std::process::Stdio;
@@ -39,8 +39,8 @@ pub struct SpawnRequest {
     pub env: Vec<(String, String)>,
     /// The working folder; the runner's own when `None`.
     pub folder: Option<PathBuf>,
-    /// Whether it gets a channel.
-    pub channel: bool,
+    /// Whether it gets a channel, and what is written there at once.
+    pub channel: Option<Vec<u8>>,
     /// What is captured.
     pub streams: Streams,
 }
@@ -153,8 +153,10 @@ fn spawn(request: &SpawnRequest) -> io::Result<Process> {
     }
     let mut channel = None;
     let mut theirs = None;
-    if request.channel {
+    if let Some(greeting) = &request.channel {
         let (ours, host) = unix::channel_pair()?;
+        // It is short: it fits into the socket's buffer before anybody reads.
+        (&ours).write_all(greeting)?;
         ours.set_nonblocking(true)?;
         unix::let_inherit(&host)?;
         command.env(CHANNEL_VARIABLE, format!("fd:{}", host.as_raw_fd()));

@@ -110,15 +110,13 @@ struct Task {
     process: Process,
     inputs: Inputs,
     line: Vec<u8>,
-    stack_file: PathBuf,
     /// Probes and stack dumps; they end with the task.
     side: JoinSet<()>,
 }
 
 impl Task {
     fn new(job: Job, shared: Arc<Shared>, process: Process, inputs: Inputs) -> Self {
-        let stack_file = shared.scratch.join(format!("{}.stack", process.pid));
-        Self { job, shared, process, inputs, line: Vec::new(), stack_file, side: JoinSet::new() }
+        Self { job, shared, process, inputs, line: Vec::new(), side: JoinSet::new() }
     }
 
     fn watch_ready(&mut self, started_at: SystemTime) {
@@ -162,7 +160,7 @@ impl Task {
         self.side.abort_all();
         let left = tree::sweep(&self.job.launch.scope);
         let _ = tokio::time::timeout(DRAIN_LIMIT, self.drain(buffers)).await;
-        let _ = std::fs::remove_file(&self.stack_file);
+        let _ = std::fs::remove_file(&self.job.launch.stack_file);
         self.tell(HostInput::Exited(status, left)).await;
     }
 
@@ -204,15 +202,9 @@ impl Task {
     }
 
     async fn send(&mut self, id: Option<u64>, mut request: Request) {
-        match &mut request {
-            Request::Initialize(initialize) => {
-                initialize.stack_file = Some(self.stack_file.to_string_lossy().into_owned());
-            }
-            Request::RunTest(plugin) => {
-                let folder = self.shared.run_folder.join(self.keep_folder());
-                plugin.keep_folder = Some(folder.to_string_lossy().into_owned());
-            }
-            _ => {}
+        if let Request::RunTest(plugin) = &mut request {
+            let folder = self.shared.run_folder.join(self.keep_folder());
+            plugin.keep_folder = Some(folder.to_string_lossy().into_owned());
         }
         if let (Ok(line), Some(channel)) = (codec::encode(id, request), &mut self.process.channel) {
             // A host that is gone or does not read is noticed by its exit or its limit.
@@ -225,7 +217,7 @@ impl Task {
             self.send(None, Request::DumpStack {}).await;
         }
         let (inputs, host, pid) = (self.inputs.clone(), self.job.host, self.process.pid);
-        let (spawner, file) = (self.shared.spawner.clone(), self.stack_file.clone());
+        let (spawner, file) = (self.shared.spawner.clone(), self.job.launch.stack_file.clone());
         self.side.spawn(async move {
             let text = stack::dump(pid, support, &file, &spawner).await;
             drop(inputs.send((host, HostInput::StackTaken(text))).await);

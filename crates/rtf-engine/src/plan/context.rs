@@ -57,7 +57,7 @@ impl Role {
 
     /// What to do with a plug-in that was written as this and is the other one.
     pub fn advice(self) -> String {
-        format!("write it as `<{}>`", self.other().word())
+        format!("in a suite it is written as `<{}>`", self.other().word())
     }
 }
 

@@ -32,7 +32,8 @@ impl Names {
                     let message = format!("two {what}s are named `{}`", name.value);
                     let problem = Diagnostic::error("duplicate-name", message)
                         .label(source.label(name.span, "the second one"))
-                        .label(source.label(*first, "the first one"));
+                        .label(source.label(*first, "the first one"))
+                        .hint("give one of them another `name`");
                     problems.push(problem);
                 }
             }

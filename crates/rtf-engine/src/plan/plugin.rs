@@ -133,7 +133,8 @@ pub(super) fn not_found(
     }
     match other_type(name, kind, scope).or_else(|| similar(name, kind, &folders)) {
         Some(hint) => problem.hint(hint),
-        None => problem,
+        None if Path::new(name).is_absolute() => problem,
+        None => problem.hint("other folders are searched when `RTF_PLUGIN_PATH` names them"),
     }
 }
 

@@ -128,7 +128,7 @@ async fn ask_command(command: &[String], asker: &Asker) -> Result<(), String> {
     let request = SpawnRequest {
         command: command.to_vec(),
         streams: Streams::None,
-        channel: false,
+        channel: None,
         ..asker.like.clone()
     };
     let started = asker.spawner.spawn(request).await;

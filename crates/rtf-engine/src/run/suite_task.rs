@@ -193,9 +193,9 @@ impl SuiteTask<'_> {
             Program::Host(plan) => {
                 // Last: the plan has put what the suite says into it already.
                 env.extend_from_slice(&plan.env);
-                (plan.command.clone(), true)
+                (plan.command.clone(), Some(Vec::new()))
             }
-            Program::Process(plan) => (plan.command.clone(), false),
+            Program::Process(plan) => (plan.command.clone(), None),
         };
         let folder = Some(start.folder);
         SpawnRequest { command, env, folder, channel, streams: Streams::Both }
@@ -204,6 +204,6 @@ impl SuiteTask<'_> {
     fn launch(&mut self, request: SpawnRequest) -> Launch {
         self.scopes += 1;
         let scope = format!("{}.{}.{}", self.events.run_token(), self.plan.id, self.scopes);
-        Launch::new(request, scope)
+        Launch::new(request, scope, &self.shared.scratch)
     }
 }

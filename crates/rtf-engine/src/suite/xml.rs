@@ -75,12 +75,12 @@ fn explanation(error: &Error) -> String {
             format!("malformed XML: `</{close}>` where `<{open}>` has to be closed")
         }
         Error::UnclosedRootNode => {
-            "malformed XML: the file ends before its first element does".into()
+            "malformed XML: the file ends before its first element is closed".into()
         }
         Error::NoRootNode => "malformed XML: there is no element in the file".into(),
         Error::UnexpectedEndOfStream => "malformed XML: the file ends too early".into(),
         Error::DuplicatedAttribute(name, _) => {
-            format!("malformed XML: the attribute `{name}` twice")
+            format!("malformed XML: the attribute `{name}` is there twice")
         }
         Error::InvalidAttributeValue(_) => "malformed XML: `<` in a value is written `&lt;`".into(),
         Error::MalformedEntityReference(_) => "malformed XML: `&` is written `&amp;`".into(),

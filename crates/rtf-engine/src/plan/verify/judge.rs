@@ -55,7 +55,8 @@ fn with_stderr(problem: Diagnostic, stderr: &str) -> Diagnostic {
 fn host(group: &Group, how: &str, stderr: &str) -> Diagnostic {
     let command = shell_words::join(&group.host.command);
     let message = format!("the host `{command}` does not work: {how}");
-    with_stderr(Diagnostic::error("host-failed", message), stderr)
+    let problem = with_stderr(Diagnostic::error("host-failed", message), stderr);
+    problem.hint(format!("`{command} --check` has to end with exit code 0"))
 }
 
 /// The host could not load it: its loader's or its compiler's words.
@@ -76,6 +77,10 @@ fn unloadable(entry: &FileUse, word: &Word, verified: &mut Verified) -> Diagnost
     }
     let problem = Diagnostic::error("plugin-not-loadable", message);
     let problem = if rest.is_empty() { problem } else { problem.note(rest.trim_end()) };
+    let problem = match first.starts_with("undefined symbol") {
+        true => problem.hint("link the plug-in with the library that defines it"),
+        false => problem,
+    };
     match label {
         Some(label) => problem.label(label),
         None => problem.note(format!("the file is {}", entry.file.display())),

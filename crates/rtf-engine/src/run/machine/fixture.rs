@@ -9,7 +9,8 @@ use super::capture::Capture;
 use super::io::{Deadline, Effect, FixtureTimer, HostId, HostInput, Program, Start};
 use super::log_watch::LogWatch;
 use super::suite::Context;
-use super::test::{INITIALIZE, TERM_GRACE, initialize, parse_answer, parse_initialized};
+use super::test::{TERM_GRACE, parse_answer, parse_initialized};
+use crate::host::codec::INITIALIZE;
 use crate::plan::{FixtureBody, FixturePlan, ProbeKind, ProcessPlan, SuitePlan};
 
 const SIGTERM: i32 = 15;
@@ -145,7 +146,6 @@ impl<'p> FixtureRun<'p> {
         let start = Start { what, env, folder };
         cx.out(Effect::Spawn { host, source: self.source(), start });
         if let FixtureBody::Plugin(plugin) = &self.plan.body {
-            cx.out(Effect::Send(host, Some(INITIALIZE), initialize()));
             let request = Request::SetUpFixture(Plugin {
                 file: plugin.file.to_string_lossy().into_owned(),
                 name: self.plan.name.clone(),

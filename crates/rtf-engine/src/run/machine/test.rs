@@ -7,8 +7,7 @@
 use std::time::Duration;
 
 use rtf_model::protocol::{
-    Answer, Initialize, Initialized, Notification, PROTOCOL_VERSION, Plugin, Reply, Request,
-    StackSupport,
+    Answer, Initialized, Notification, PROTOCOL_VERSION, Plugin, Reply, Request, StackSupport,
 };
 use rtf_model::{
     EventKind, ExitStatus, LeftProcess, Measurement, Message, MessageKind, Phase, Source,
@@ -19,10 +18,9 @@ use super::capture::Capture;
 use super::io::{Deadline, Effect, HostId, HostInput, Program, Start, TestTimer};
 use super::judge::{Evidence, Problem, judge};
 use super::suite::Context;
+use crate::host::codec::INITIALIZE;
 use crate::plan::{SuitePlan, TestPlan};
 
-/// The number of `initialize` on a host's channel.
-pub const INITIALIZE: u64 = 1;
 /// The number of `run-test` on a host's channel.
 const RUN_TEST: u64 = 2;
 
@@ -90,7 +88,6 @@ impl<'p> TestRun<'p> {
         let source = Source::Test(plan.id);
         cx.emit(EventKind::TestStarted { test: plan.id, repetition, attempt });
         cx.out(Effect::Spawn { host, source, start: Self::host_start(suite, plan) });
-        cx.out(Effect::Send(host, Some(INITIALIZE), initialize()));
         let plugin = Plugin {
             file: plan.plugin.file.to_string_lossy().into_owned(),
             name: plan.name.clone(),
@@ -380,15 +377,6 @@ impl<'p> TestRun<'p> {
             rerun,
         })
     }
-}
-
-/// The first request on every channel.
-pub fn initialize() -> Request {
-    Request::Initialize(Initialize {
-        protocol: PROTOCOL_VERSION,
-        rtf: env!("CARGO_PKG_VERSION").to_owned(),
-        stack_file: None,
-    })
 }
 
 /// Reads the answer to `initialize`.
