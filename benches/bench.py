@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+"""Measures speed and memory of rtf beside its peers, and judges them.
+
+The exit code is 1 when a line breaks its limit, 2 when something could not be
+measured. What the lines mean is told in docs/performance.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import platform
+import re
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from lines import all_groups
+from measuring import table
+from measuring.bench import TOP, Bench
+from measuring.build import build
+from measuring.judge import Judgement, judge
+from measuring.model import Group, MeasuringError
+from measuring.others import NOISY_SHARE, Others
+from measuring.rounds import measure
+
+
+def main() -> int:
+    """Measures, prints, judges."""
+    options = parse()
+    with tempfile.TemporaryDirectory(prefix="rtf-bench-") as name:
+        folder = Path(name)
+        bench = Bench.open(folder, options.results or folder / "results", options.rtf.resolve())
+        if options.list:
+            print_lines(bench)
+            return 0
+        judgements = list(measure_all(bench, options.only, options.rounds))
+    if not judgements:
+        raise MeasuringError(f"no line has a name with `{options.only.pattern}`, see --list")
+    print(about_machine())
+    print(table.text(judgements))
+    for note in filter(None, (judgement.note for judgement in judgements)):
+        print(f"note: {note}")
+    if options.json:
+        options.json.write_text(table.as_json(judgements), encoding="utf-8")
+    if options.page:
+        table.write_page(options.page, judgements)
+    failed = sum(judgement.fails for judgement in judgements)
+    print(f"{failed} of {len(judgements)} lines failed" if failed else "no line failed")
+    return 1 if failed else 0
+
+
+def parse() -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n", maxsplit=1)[0])
+    parser.add_argument(
+        "--only",
+        type=re.compile,
+        default=re.compile(""),
+        metavar="PATTERN",
+        help="measure the lines whose group or name matches this regular expression",
+    )
+    parser.add_argument("--rounds", type=positive, metavar="N", help="instead of each group's own")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="also write all numbers as JSON")
+    parser.add_argument("--page", type=Path, metavar="FILE", help="put the table into this page")
+    parser.add_argument("--results", type=Path, metavar="DIR", help="rtf's results while it runs")
+    parser.add_argument("--rtf", type=Path, default=default_rtf(), help="the rtf to be measured")
+    parser.add_argument("--list", action="store_true", help="list the lines, measure nothing")
+    return parser.parse_args()
+
+
+def positive(value: str) -> int:
+    """A number from 1."""
+    number = int(value)
+    if number < 1:
+        raise ValueError(value)
+    return number
+
+
+def default_rtf() -> Path:
+    """What `make build` has built."""
+    return TOP / os.environ.get("CARGO_TARGET_DIR", "target") / "release" / "rtf"
+
+
+def print_lines(bench: Bench) -> None:
+    """Says what there is to be measured."""
+    for group in all_groups(bench):
+        for line in group.lines:
+            print(f"{group.name}: {line.what}")
+
+
+def measure_all(bench: Bench, only: re.Pattern[str], rounds: int | None) -> Iterator[Judgement]:
+    """Measures each group of which a line is wanted."""
+    build(bench)
+    for group in all_groups(bench):
+        lines = [line for line in group.lines if only.search(f"{group.name}: {line.what}")]
+        if lines:
+            with Progress(group) as tell:
+                others = Others()
+                found = measure(group, lines, rounds or group.rounds, tell)
+                disturbed(group, others.share())
+            yield from (judge(group, line, found) for line in lines)
+
+
+def disturbed(group: Group, share: float) -> None:
+    """Warns when the numbers of a group are not to be trusted."""
+    if share >= NOISY_SHARE:
+        print(
+            f"warning: {group.name}: other programs used {share:.0%} of the processors meanwhile; "
+            "measure again when they are quiet",
+            file=sys.stderr,
+        )
+
+
+class Progress(contextlib.AbstractContextManager["Progress"]):
+    """A line on stderr that says what is being measured, if somebody watches."""
+
+    def __init__(self, group: Group) -> None:
+        self.name = group.name
+        self.is_watched = sys.stderr.isatty()
+
+    def __call__(self, what: str) -> None:
+        if self.is_watched:
+            print(f"\r\x1b[K{self.name}: {what}", end="", file=sys.stderr, flush=True)
+
+    def __enter__(self) -> Progress:
+        """Begins."""
+        if not self.is_watched:
+            print(f"measuring {self.name}", file=sys.stderr, flush=True)
+        return self
+
+    def __exit__(self, *problem: object) -> None:
+        """Leaves nothing behind."""
+        if self.is_watched:
+            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+
+
+def about_machine() -> str:
+    """What the numbers depend on."""
+    busy = os.getloadavg()[2]
+    cores = os.cpu_count()
+    return f"{platform.system()} {platform.machine()}, {cores} cores, load of 15 minutes {busy:.1f}"
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except MeasuringError as problem:
+        print(f"error: {problem}", file=sys.stderr)
+        sys.exit(2)

@@ -1,0 +1,19 @@
+"""What is measured: one module for each group of works that take turns.
+
+A new line is a `Line` in its group; a new group is a module with a function
+`group(bench)` and an entry here.
+"""
+
+from __future__ import annotations
+
+from measuring.bench import Bench
+from measuring.model import Group
+
+from lines import collapse, large, own_process, python, reports, startup
+
+MODULES = (own_process, python, startup, large, reports, collapse)
+
+
+def all_groups(bench: Bench) -> list[Group]:
+    """Every group, in the order of the table."""
+    return [module.group(bench) for module in MODULES]

@@ -1,0 +1,93 @@
+"""How long it takes from a fixture's death until the running test knows.
+
+The test itself kills the fixture's process and takes the time until it is asked
+to stop, so there is one clock. What the runner needs from its notice to its
+request is in the journal.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from measuring import suite
+from measuring.bench import Bench
+from measuring.model import Group, Limit, Line, MeasuringError, Samples, Work, high_percentile
+
+COUNT = 60
+"""Collapses in each round."""
+
+LATENCY = "ms"
+NOTICE = "ms, runner"
+
+PROCESS = "process"
+PLUGIN = "plug-in"
+
+
+def group(bench: Bench) -> Group:
+    """A program that is a fixture, and a fixture plug-in whose host is killed."""
+    pid = bench.folder / "victim.pid"
+    common = f'name="victim" restarts="{COUNT}"'
+    fixtures = {
+        PROCESS: (
+            f'<fixture type="process" {common}>'
+            f'<command>"{bench.folder}/victim" "{pid}"</command><ready log="^ready$"/></fixture>'
+        ),
+        PLUGIN: f'<fixture type="dll" {common} param=\'"{pid}"\'>VictimFixture</fixture>',
+    }
+    works = []
+    lines: list[Line] = []
+    for kind, fixture in fixtures.items():
+        file = suite.write(
+            bench,
+            f"collapse-{kind}",
+            [fixture, f'<test repetition="{COUNT}" param=\'"{pid}"\'>Killer</test>'],
+        )
+        works.append(Work(kind, lambda file=file: collapses(bench, file)))  # type: ignore[misc]
+        lines += lines_of(kind)
+    return Group("collapse", tuple(works), tuple(lines), rounds=3, warm_up=False)
+
+
+def lines_of(kind: str) -> list[Line]:
+    """Median and tail."""
+    what = f"{kind} fixture killed → test interrupted"
+    median, tail = Limit(5, required=False), Limit(20, required=False)
+    return [
+        Line(f"{what}, median", kind, LATENCY, limit=median),
+        Line(f"{what}, 99 %", kind, LATENCY, limit=tail, statistic=high_percentile),
+        Line(f"{what}, collapse noticed → test asked", kind, NOTICE),
+    ]
+
+
+def collapses(bench: Bench, file: Path) -> Samples:
+    """Runs the test as often as it is repeated; each time its fixture dies."""
+    with suite.Run(bench, file, codes=(1,)) as run:
+        run.expect("test-finished", COUNT, '"verdict":"collapsed"')
+        events = run.events()
+    latencies = [latency(event) for event in events if event["type"] == "measured"]
+    if len(latencies) != COUNT:
+        raise MeasuringError(f"{len(latencies)} latencies were measured, {COUNT} expected")
+    return {LATENCY: latencies, NOTICE: notices(events)}
+
+
+def latency(event: dict[str, object]) -> float:
+    """The number that the test has measured."""
+    measurement = event["measurement"]
+    value = measurement["value"] if isinstance(measurement, dict) else None
+    if not isinstance(value, float):
+        raise MeasuringError(f"not a measurement: {event}")
+    return value
+
+
+def notices(events: list[dict[str, object]]) -> list[float]:
+    """From each `fixture-collapsed` to the `test-stopping` after it."""
+    found = []
+    since = 0
+    for event in events:
+        at = event["at"]
+        if not isinstance(at, int):
+            raise MeasuringError(f"no time: {event}")
+        if event["type"] == "fixture-collapsed":
+            since = at
+        elif event["type"] == "test-stopping":
+            found.append((at - since) / 1e3)
+    return found

@@ -1,0 +1,72 @@
+"""1000 trivial tests, each in a process of its own: C++ and Lua."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from measuring import suite
+from measuring.bench import PREDECESSOR, Bench, Launched
+from measuring.model import Group, Limit, Line, Samples, Work
+
+COUNT = 1000
+UNIT = "ms a test"
+
+SPAWN = "posix_spawn + wait of /bin/true"
+CTEST = "ctest"
+PREDECESSOR_CPP = "predecessor in process, C++"
+PREDECESSOR_LUA = "predecessor in process, Lua"
+CPP = "rtf, C++"
+LUA = "rtf, Lua"
+
+
+def group(bench: Bench) -> Group:
+    """The predecessor runs all tests in its own process: it is the peer of
+    shared hosts, shown for information.
+    """
+    no_predecessor = "" if bench.predecessor else f"{PREDECESSOR} is not installed"
+    works = (
+        Work(SPAWN, lambda: a_test(bench.launch(["/bin/true"], COUNT))),
+        Work(CTEST, ctest(bench), "" if bench.ctest else "ctest is not installed"),
+        Work(PREDECESSOR_CPP, predecessor(bench, "dll", "./Predecessor.so"), no_predecessor),
+        Work(PREDECESSOR_LUA, predecessor(bench, "lua", "Trivial.lua"), no_predecessor),
+        Work(CPP, rtf(bench, "dll")),
+        Work(LUA, rtf(bench, "lua")),
+    )
+    twice = Limit(2.0, of_ratio=True)
+    lines = (
+        Line(f"{COUNT} C++ tests, own process each", CPP, UNIT, SPAWN, twice),
+        Line(f"{COUNT} C++ tests, beside ctest", CPP, UNIT, CTEST),
+        Line(f"{COUNT} C++ tests, beside the predecessor", CPP, UNIT, PREDECESSOR_CPP),
+        Line(f"{COUNT} Lua tests, own process each", LUA, UNIT, SPAWN),
+        Line(f"{COUNT} Lua tests, beside the predecessor", LUA, UNIT, PREDECESSOR_LUA),
+        Line(f"{COUNT} bare processes", SPAWN, UNIT),
+    )
+    return Group("own process", works, lines)
+
+
+def a_test(launched: Launched) -> Samples:
+    """The price of one of them."""
+    return {UNIT: [launched.seconds * 1e3 / COUNT]}
+
+
+def rtf(bench: Bench, kind: str) -> Callable[[], Samples]:
+    """Runs the tests with rtf."""
+    file = suite.write(bench, f"trivial-{kind}", suite.tests(kind, "Trivial", COUNT))
+    return lambda: a_test(suite.run_passing(bench, file, COUNT))
+
+
+def predecessor(bench: Bench, kind: str, plugin: str) -> Callable[[], Samples]:
+    """Runs them with the predecessor, which knows no names of tests."""
+    elements: list[str] = [f'<test type="{kind}">{plugin}</test>'] * COUNT
+    file = suite.write(bench, f"predecessor-{kind}", elements)
+    return lambda: a_test(suite.run_predecessor(bench, file, COUNT))
+
+
+def ctest(bench: Bench) -> Callable[[], Samples]:
+    """Runs a C++ program as often with ctest, from a file as CMake writes it."""
+    folder = bench.folder / "ctest"
+    folder.mkdir(exist_ok=True)
+    program = bench.folder / "program"
+    entries = "".join(f'add_test("test-{n:06}" "{program}")\n' for n in range(COUNT))
+    (folder / "CTestTestfile.cmake").write_text(entries, encoding="utf-8")
+    return lambda: a_test(bench.launch([bench.ctest, "--test-dir", str(folder)]))

@@ -1,0 +1,1 @@
+"""How things are measured and judged; what is measured stands in `lines`."""

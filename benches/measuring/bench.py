@@ -1,0 +1,111 @@
+"""Where a measurement finds its programs, and how it calls them."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from measuring.model import MeasuringError
+
+TOP = Path(__file__).resolve().parents[2]
+PREDECESSOR = "robottestingframework-testrunner"
+LAST_LINES = 20
+
+
+@dataclass(frozen=True)
+class Child:
+    """A process that has ended."""
+
+    seconds: float
+    rss_mb: float
+    """The largest resident set, of it or of one that it waited for."""
+    status: int
+    """Its wait status."""
+
+
+@dataclass(frozen=True)
+class Launched:
+    """What the stopwatch says."""
+
+    seconds: float
+    children: list[Child]
+    output: str
+
+
+@dataclass(frozen=True)
+class Bench:
+    """A folder with everything that was built, and the programs to be measured."""
+
+    folder: Path
+    results: Path
+    """Where rtf keeps its runs."""
+    rtf: Path
+    predecessor: str
+    """Its runner; empty when it is not installed."""
+    ctest: str
+
+    @staticmethod
+    def open(folder: Path, results: Path, rtf: Path) -> Bench:
+        """A bench in an empty folder."""
+        if not rtf.exists():
+            raise MeasuringError(f"{rtf} is missing: build it with `make build`")
+        predecessor = shutil.which(PREDECESSOR) or ""
+        return Bench(folder, results, rtf, predecessor, shutil.which("ctest") or "")
+
+    def launch(
+        self, command: Sequence[str], count: int = 1, codes: Sequence[int] = (0,)
+    ) -> Launched:
+        """Runs a command that many times under the stopwatch. Each has to end
+        with one of the codes.
+        """
+        times = self.folder / "times"
+        log = self.folder / "log"
+        with log.open("wb") as output:
+            stopwatch = [str(self.folder / "launch"), str(count), str(times), *command]
+            done = subprocess.run(
+                stopwatch,
+                cwd=self.folder,
+                env=self.environment(),
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                check=False,
+            )
+        printed = log.read_text(encoding="utf-8", errors="replace")
+        if done.returncode != 0:
+            raise MeasuringError(f"cannot launch {command[0]}:\n{tail(printed)}")
+        launched = parse(times.read_text(encoding="ascii"), printed)
+        for child in launched.children:
+            code = os.WEXITSTATUS(child.status) if os.WIFEXITED(child.status) else -1
+            if code not in codes:
+                raise MeasuringError(
+                    f"`{' '.join(command)}` ended with wait status {child.status}:\n{tail(printed)}"
+                )
+        return launched
+
+    def environment(self) -> Mapping[str, str]:
+        """The user's, without what would change how rtf runs. The interpreter is
+        this one: a shim in front of it would be measured, too.
+        """
+        kept = {name: value for name, value in os.environ.items() if not name.startswith("RTF_")}
+        return {**kept, "RTF_PYTHON": sys.executable, "NO_COLOR": "1"}
+
+
+def parse(times: str, printed: str) -> Launched:
+    """Reads what `launch` wrote."""
+    total, *rest = times.splitlines()
+    children = []
+    for entry in rest:
+        nanoseconds, kib, status = entry.split()
+        children.append(Child(int(nanoseconds) / 1e9, int(kib) * 1024 / 1e6, int(status)))
+    return Launched(int(total) / 1e9, children, printed)
+
+
+def tail(printed: str) -> str:
+    """The end of an output."""
+    return "\n".join(printed.splitlines()[-LAST_LINES:])

@@ -1,0 +1,59 @@
+"""Builds the plug-ins and programs that are measured, with -O2 as a distribution does."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from measuring.bench import TOP, Bench, tail
+from measuring.model import MeasuringError
+
+SOURCES = TOP / "benches" / "plugins"
+INCLUDES = [f"-I{TOP / 'sdk' / language / 'include'}" for language in ("c", "cpp")]
+C = ["cc", "-std=gnu11", "-O2"]
+CPP = ["c++", "-std=c++17", "-O2"]
+MODULE = ["-fPIC", "-shared"]
+
+
+def build(bench: Bench) -> None:
+    """Puts everything into the bench's folder, a core for each compiler."""
+    for script in ("Trivial.lua", "Trivial.py"):
+        shutil.copy(SOURCES / script, bench.folder)
+    commands = [
+        [*C, *source("launch.c"), *output(bench, "launch")],
+        [*C, *source("victim_program.c"), *output(bench, "victim")],
+        [*C, *MODULE, *INCLUDES, *source("Killer.c"), *output(bench, "Killer.so")],
+        [*CPP, *source("program.cpp"), *output(bench, "program")],
+    ]
+    for name in ("Trivial", "Fails", "Reports", "VictimFixture"):
+        commands.append(
+            [*CPP, *MODULE, *INCLUDES, *source(f"{name}.cpp"), *output(bench, f"{name}.so")]
+        )
+    if bench.predecessor:
+        libraries = ["-lrobottestingframework-dll", "-lrobottestingframework"]
+        plugin = [*source("Predecessor.cpp"), *output(bench, "Predecessor.so")]
+        commands.append([*CPP, *MODULE, *plugin, *libraries])
+    with ThreadPoolExecutor() as compilers:
+        list(compilers.map(compile_one, commands))
+
+
+def source(name: str) -> list[str]:
+    """A file in plugins/."""
+    return [str(SOURCES / name)]
+
+
+def output(bench: Bench, name: str) -> list[str]:
+    """What is to be built."""
+    return ["-o", str(Path(bench.folder) / name)]
+
+
+def compile_one(command: Sequence[str]) -> None:
+    """Calls a compiler."""
+    done = subprocess.run(
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False
+    )
+    if done.returncode != 0:
+        raise MeasuringError(f"`{' '.join(command)}` failed:\n{tail(done.stdout)}")

@@ -1,0 +1,85 @@
+"""Writes suites, runs them with rtf or the predecessor, and makes sure that what
+was measured did happen.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from measuring.bench import Bench, Launched
+from measuring.model import MeasuringError
+
+PREDECESSOR_RESULT = "predecessor.txt"
+TOTAL = re.compile(r"^Number of passed test cases +: (\d+)$", re.M)
+
+
+def write(bench: Bench, name: str, elements: Iterable[str]) -> Path:
+    """A suite with these elements, in the bench's folder."""
+    path = bench.folder / f"{name}.xml"
+    body = "\n".join(f"  {element}" for element in elements)
+    path.write_text(f'<suite name="{name}">\n{body}\n</suite>\n', encoding="utf-8")
+    return path
+
+
+def tests(kind: str, plugin: str, count: int) -> list[str]:
+    """That many tests, all of one plug-in."""
+    return [f'<test type="{kind}" name="test-{n:06}">{plugin}</test>' for n in range(count)]
+
+
+class Run:
+    """A run of rtf, whose journal is kept until `close`."""
+
+    def __init__(self, bench: Bench, suite: Path, codes: Sequence[int] = (0,)) -> None:
+        command = [str(bench.rtf), "run", "--results", str(bench.results), str(suite)]
+        self.launched: Launched = bench.launch(command, codes=codes)
+        self.folder = (bench.results / "latest").resolve()
+
+    def __enter__(self) -> Run:
+        """Is there already."""
+        return self
+
+    def __exit__(self, *problem: object) -> None:
+        """Removes the run's folder."""
+        shutil.rmtree(self.folder)
+
+    def expect(self, kind: str, count: int, detail: str = "") -> None:
+        """Makes sure that the journal has this many events of a kind."""
+        wanted = (f'"type":"{kind}"', detail)
+        expect_in(self.folder / "events.jsonl", count, *wanted)
+
+    def events(self) -> list[dict[str, object]]:
+        """All of the journal."""
+        with (self.folder / "events.jsonl").open(encoding="utf-8") as journal:
+            return [json.loads(line) for line in journal]
+
+
+def expect_in(file: Path, count: int, *texts: str) -> None:
+    """Makes sure that this many lines of a file have all of these texts."""
+    wanted = [text.encode() for text in texts]
+    with file.open("rb") as content:
+        found = sum(all(text in line for text in wanted) for line in content)
+    if found != count:
+        raise MeasuringError(f"{file.name}: {found} lines with `{' '.join(texts)}`, not {count}")
+
+
+def run_passing(bench: Bench, suite: Path, count: int) -> Launched:
+    """Runs a suite of which this many tests have to pass."""
+    with Run(bench, suite) as run:
+        run.expect("test-finished", count, '"verdict":"passed"')
+        return run.launched
+
+
+def run_predecessor(bench: Bench, suite: Path, count: int) -> Launched:
+    """The same with the predecessor, whose exit code is 0 also when it could not
+    load a single plug-in.
+    """
+    result = bench.folder / PREDECESSOR_RESULT
+    launched = bench.launch([bench.predecessor, "--output", str(result), "--suite", str(suite)])
+    found = TOTAL.search(launched.output)
+    if found is None or int(found[1]) != count:
+        raise MeasuringError(f"the predecessor did not pass {count} tests:\n{launched.output}")
+    return launched

@@ -1,0 +1,95 @@
+"""The judgements as text, as Markdown, and as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+from measuring.judge import Judgement
+from measuring.model import MeasuringError
+
+TIMES = "\N{MULTIPLICATION SIGN}"
+HEADER = ("what", "measured", "to its peer", "limit", "verdict")
+BEGIN = "<!-- table: written by benches/bench.py -->"
+END = "<!-- table: end -->"
+
+
+def row(judgement: Judgement) -> list[str]:
+    """The cells of a line."""
+    line = judgement.line
+    measured = ratio = limit = ""
+    if judgement.value is not None:
+        measured = f"{number(judgement.value)} {line.unit}"
+    if judgement.ratio is not None and judgement.ratios:
+        spread = f"{number(min(judgement.ratios))} to {number(max(judgement.ratios))}"
+        ratio = f"{number(judgement.ratio)} {TIMES} {line.peer} ({spread})"
+    elif line.peer:
+        ratio = f"? {TIMES} {line.peer}"
+    if line.limit is not None:
+        sign = "≥" if line.limit.at_least else "≤"
+        unit = TIMES if line.limit.of_ratio else line.unit
+        limit = f"{sign} {number(line.limit.bound)} {unit}"
+        limit = limit if line.limit.required else f"goal {limit}"
+    return [line.what, measured, ratio, limit, judgement.verdict]
+
+
+def number(value: float) -> str:
+    """Three digits that count."""
+    if abs(value) >= 100:
+        return f"{value:,.0f}".replace(",", " ")
+    return f"{value:#.3g}".rstrip(".")
+
+
+def text(judgements: Sequence[Judgement]) -> str:
+    """The table for a terminal."""
+    rows = [list(HEADER)] + [row(judgement) for judgement in judgements]
+    widths = [max(len(cells[column]) for cells in rows) for column in range(len(HEADER))]
+    lines = ["  ".join(map(str.ljust, cells, widths)).rstrip() for cells in rows]
+    lines.insert(1, "  ".join("-" * width for width in widths))
+    return "\n".join(lines)
+
+
+def markdown(judgements: Sequence[Judgement]) -> str:
+    """The table for a page."""
+    rows = [list(HEADER), ["---"] * len(HEADER)] + [row(judgement) for judgement in judgements]
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in rows)
+
+
+def write_page(page: Path, judgements: Sequence[Judgement]) -> None:
+    """Replaces the table in a page, which stands between two comments."""
+    before, begin, rest = page.read_text(encoding="utf-8").partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not (begin and end):
+        raise MeasuringError(f"{page}: no `{BEGIN}` with a `{END}` after it")
+    table = f"{begin}\n{markdown(judgements)}\n{end}"
+    page.write_text(before + table + after, encoding="utf-8")
+
+
+def as_json(judgements: Sequence[Judgement]) -> str:
+    """Everything, for other programs."""
+    return json.dumps([entry(judgement) for judgement in judgements], indent=2) + "\n"
+
+
+def entry(judgement: Judgement) -> dict[str, object]:
+    """A line as JSON has it."""
+    line = judgement.line
+    result: dict[str, object] = {
+        "group": judgement.group,
+        "what": line.what,
+        "value": judgement.value,
+        "unit": line.unit,
+        "peer": line.peer or None,
+        "ratio": judgement.ratio,
+        "ratios": judgement.ratios,
+        "verdict": judgement.verdict or None,
+        "note": judgement.note or None,
+    }
+    if line.limit is not None:
+        result["limit"] = {
+            "bound": line.limit.bound,
+            "of": "ratio" if line.limit.of_ratio else "value",
+            "sense": "at least" if line.limit.at_least else "at most",
+            "required": line.limit.required,
+        }
+    return result

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// The critical first test of a long suite, of which nothing else shall run.
+#include <rtf/rtf.hpp>
+
+class Fails : public rtf::TestCase
+{
+public:
+    void run() override { RTF_FAIL("the rest is skipped"); }
+};
+
+RTF_PLUGIN(Fails);
