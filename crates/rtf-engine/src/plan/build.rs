@@ -1,7 +1,7 @@
 //! The way from paths to an [`Outcome`].
 
 use std::cmp::Reverse;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -86,13 +86,15 @@ pub fn build(paths: &[PathBuf], options: &Options) -> Outcome {
     } else {
         suites.push(plan_singles(&mut context, &singles));
     }
-    verify(&mut context, &mut suites, &mut sources);
+    let left_out = verify(&mut context, &mut suites, &mut sources);
     // Those of files were reported; the gathered one may have lost all of its own.
     suites.retain(|suite| !suite.tests.is_empty());
     if context.problems.iter().all(|problem| problem.severity != Severity::Error)
         && suites.is_empty()
     {
-        context.problems.push(Diagnostic::error("no-tests", "there is no test to run"));
+        let problem = Diagnostic::error("no-tests", "there is no test to run");
+        let notes = left_out.iter().map(|file| format!("{} holds no test", file.display()));
+        context.problems.push(notes.fold(problem, Diagnostic::note));
     }
     outcome(context.problems, suites, sources)
 }
@@ -141,18 +143,21 @@ fn unused(options: &Options) -> Vec<Diagnostic> {
         .collect()
 }
 
-fn verify(context: &mut Context<'_>, suites: &mut [SuitePlan], sources: &mut Sources) {
-    let Some(limit) = context.options.verify else { return };
+/// Asks the hosts; returns the files of folders that hold no test.
+fn verify(
+    context: &mut Context<'_>,
+    suites: &mut [SuitePlan],
+    sources: &mut Sources,
+) -> BTreeSet<PathBuf> {
+    let Some(limit) = context.options.verify else { return BTreeSet::new() };
     let verified = std::mem::take(&mut context.checks).run(limit);
     context.problems.extend(verified.problems);
     sources.append(verified.sources);
-    if verified.left_out.is_empty() {
-        return;
-    }
     // Only files of folders are ever left out, and those are in no suite file.
     for suite in suites.iter_mut().filter(|suite| suite.file.is_empty()) {
         suite.tests.retain(|test| !verified.left_out.contains(&test.plugin.file));
     }
+    verified.left_out
 }
 
 fn outcome(mut problems: Vec<Diagnostic>, suites: Vec<SuitePlan>, mut sources: Sources) -> Outcome {

@@ -71,7 +71,11 @@ fn read_suite(reader: &mut Reader<'_>, root: Node<'_, '_>) -> Suite {
             _ => {}
         }
     }
-    if !root.children().any(|node| node.has_tag_name("test")) {
+    // An element of another name may be a test that was mistyped: that is told.
+    let may_be_test = |node: &Node<'_, '_>| {
+        node.has_tag_name("test") || !shape::SUITE.elements.contains(&node.tag_name().name())
+    };
+    if !root.children().filter(Node::is_element).any(|node| may_be_test(&node)) {
         let problem = Diagnostic::error("no-tests", "the suite has no tests")
             .label(reader.source.label(suite.span, "no `<test>` in it"));
         reader.report(problem);

@@ -11,6 +11,7 @@ use crate::error::Failure;
 /// Checks.
 pub fn run(args: &InputArgs) -> Outcome {
     let planned = planning::plan(args)?;
+    planned.show_warnings()?;
     let plan = planned.plan;
     let summary = [
         count(plan.suites.len(), "suite"),

@@ -12,6 +12,7 @@ use crate::error::Failure;
 /// Lists.
 pub fn run(args: &InputArgs) -> Outcome {
     let planned = planning::plan(args)?;
+    planned.show_warnings()?;
     let mut out = std::io::BufWriter::new(anstream::stdout().lock());
     Failure::unless_reader_left(write(&planned.plan, &mut out))?;
     Ok(ExitCode::SUCCESS)

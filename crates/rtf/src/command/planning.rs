@@ -4,6 +4,7 @@
 use std::io::Write;
 
 use rtf_engine::plan::{self, Options, Plan, Surroundings};
+use rtf_engine::suite::Sources;
 use rtf_model::{Diagnostic, Severity};
 
 use crate::cli::InputArgs;
@@ -15,11 +16,12 @@ use crate::render;
 pub struct Planned {
     /// What will be done.
     pub plan: Plan,
-    /// Warnings; they were shown.
+    /// Warnings. A run's reporters show them; other verbs do it themselves.
     pub warnings: Vec<Diagnostic>,
+    sources: Sources,
 }
 
-/// Plans, and shows every problem on standard error.
+/// Plans; shows every problem on standard error when there is an error.
 pub fn plan(args: &InputArgs) -> Result<Planned, Failure> {
     let surroundings = Surroundings::of_process().map_err(Failure::own)?;
     let mut options = Options::new(surroundings);
@@ -28,19 +30,26 @@ pub fn plan(args: &InputArgs) -> Result<Planned, Failure> {
     options.environment = args.environment.clone().unwrap_or_default();
     options.repetitions = args.repetition.unwrap_or(1);
     let outcome = plan::build(&args.inputs, &options);
+    if let Some(plan) = outcome.plan {
+        return Ok(Planned { plan, warnings: outcome.diagnostics, sources: outcome.sources });
+    }
+    show(&outcome.diagnostics, &outcome.sources)?;
+    let told = writeln!(anstream::stderr(), "{}; nothing was started", sum(&outcome.diagnostics));
+    Failure::unless_reader_left(told)?;
+    Err(Failure::told(exit::BAD_INPUT))
+}
+
+impl Planned {
+    /// Shows the warnings on standard error.
+    pub fn show_warnings(&self) -> Result<(), Failure> {
+        show(&self.warnings, &self.sources)
+    }
+}
+
+fn show(diagnostics: &[Diagnostic], sources: &Sources) -> Result<(), Failure> {
     // The stream takes the colours out where they are not wanted.
     let mut err = anstream::stderr().lock();
-    let shown = render::write(&mut err, &outcome.diagnostics, &outcome.sources, true);
-    Failure::unless_reader_left(shown)?;
-    if let Some(plan) = outcome.plan {
-        return Ok(Planned { plan, warnings: outcome.diagnostics });
-    }
-    Failure::unless_reader_left(writeln!(
-        err,
-        "{}; nothing was started",
-        sum(&outcome.diagnostics)
-    ))?;
-    Err(Failure::told(exit::BAD_INPUT))
+    Failure::unless_reader_left(render::write(&mut err, diagnostics, sources, true))
 }
 
 /// `2 errors and 1 warning`

@@ -1,4 +1,5 @@
-//! What users see of bad input, as it is printed.
+//! What users see of bad input, as it is printed. The end-to-end tests have
+//! the common mistakes; here is what is particular about showing them.
 
 use std::path::PathBuf;
 
@@ -59,105 +60,6 @@ fn shown(text: &str) -> String {
 }
 
 #[test]
-fn missing_suite() {
-    assert_snapshot!(Bench::new().write("arm.xml", "").shown("arm"), @"
-    error: there is no file or folder `arm`
-     |
-     = note: looked for [ROOT]/suites/arm
-     = help: did you mean `arm.xml`?
-    ");
-    assert_snapshot!(Bench::new().shown("robot.xml"), @"
-    error: there is no file or folder `robot.xml`
-     |
-     = note: looked for [ROOT]/suites/robot.xml
-    ");
-}
-
-#[test]
-fn malformed_xml() {
-    assert_snapshot!(shown("<suite name=\"a\">\n  <test> ArmTest.lua </tset>\n</suite>\n"), @"
-    error: malformed XML: `</tset>` where `<test>` has to be closed
-     --> suite.xml:2:22
-      |
-    2 |   <test> ArmTest.lua </tset>
-      |                      ^
-    ");
-    assert_snapshot!(shown("<suite>\n  <test> a & b </test>\n</suite>"), @"
-    error: malformed XML: `&` is written `&amp;`
-     --> suite.xml:2:12
-      |
-    2 |   <test> a & b </test>
-      |            ^
-    ");
-    assert_snapshot!(shown("<suite>\n  <test>ArmTest.lua</test>\n"), @"
-    error: malformed XML: the file ends before its first element does
-     --> suite.xml:2:27
-      |
-    2 |   <test>ArmTest.lua</test>
-      |                           ^
-    ");
-    assert_snapshot!(shown(""), @"
-    error: malformed XML: there is no element in the file
-     --> suite.xml:1:1
-      |
-    1 |
-      | ^
-    ");
-    assert_snapshot!(shown("<robot/>"), @"
-    error: `suite.xml` is not a suite: its first element is `<robot>`
-     --> suite.xml:1:1
-      |
-    1 | <robot/>
-      | ^^^^^^ `<suite>` is expected here
-    ");
-}
-
-#[test]
-fn dashes_in_a_comment() {
-    let suite = "<suite>\n  <!-- <test param=\"--from x.ini\"> Off </test> -->\n  \
-                 <test>ArmTest.lua</test>\n</suite>\n";
-    assert_snapshot!(shown(suite), @r#"
-    warning: `--` in a comment is not legal XML; accepted
-     --> suite.xml:2:21
-      |
-    2 |   <!-- <test param="--from x.ini"> Off </test> -->
-      |                     ^^
-      |
-      = help: write the option without its dashes in comments, other programs refuse the file
-    "#);
-}
-
-#[test]
-fn unknown_element() {
-    assert_snapshot!(shown("<suite>\n  <tets>ArmTest.lua</tets>\n  <test>ArmTest.lua</test></suite>"), @"
-    error: unknown element `<tets>`
-     --> suite.xml:2:3
-      |
-    2 |   <tets>ArmTest.lua</tets>
-      |   ^^^^^ not known in `<suite>`
-      |
-      = note: `<suite>` can have the elements `description`, `environment`, `env`, `fixture`, `test`
-      = help: did you mean `test`?
-    ");
-}
-
-#[test]
-fn unknown_attribute() {
-    let suite = "<suite>\n  <description>An arm</description>\n\n  \
-                 <test tiemout=\"3s\">ArmTest.lua</test>\n</suite>";
-    assert_snapshot!(shown(suite), @r#"
-    error: unknown attribute `tiemout`
-     --> suite.xml:4:9
-      |
-    4 |   <test tiemout="3s">ArmTest.lua</test>
-      |         ^^^^^^^ not known in `<test>`
-      |
-      = note: `<test>` can have the attributes `name`, `type`, `param`, `repetition`, `tags`, `timeout`, `load-timeout`, `setup-timeout`, `teardown-timeout`, `slow`, `grace`, `after-collapse`, `critical`, `isolation`
-      = help: did you mean `timeout`?
-    "#);
-}
-
-#[test]
 fn not_supported_yet() {
     let suite = "<suite isolate=\"network\">\n  <hook on=\"failure\"> Park.lua </hook>\n  \
                  <test isolation=\"shared\" retries=\"2\">ArmTest.lua</test>\n</suite>";
@@ -185,62 +87,6 @@ fn not_supported_yet() {
       |
     3 |   <test isolation="shared" retries="2">ArmTest.lua</test>
       |                            ^^^^^^^
-    "#);
-}
-
-#[test]
-fn wrong_values() {
-    let suite = "<suite tolerate-collapse=\"yes\">\n  \
-                 <test timeout=\"soon\" repetition=\"0\" slow=\"-1s\" after-collapse=\"return\">\
-                 ArmTest.lua</test>\n</suite>";
-    assert_snapshot!(shown(suite), @r#"
-    error: `tolerate-collapse` has to be `true` or `false`: `yes`
-     --> suite.xml:1:27
-      |
-    1 | <suite tolerate-collapse="yes">
-      |                           ^^^
-
-    error: `timeout` is not a duration: `soon`
-     --> suite.xml:2:18
-      |
-    2 |   <test timeout="soon" repetition="0" slow="-1s" after-collapse="return">ArmTest.lua</test>
-      |                  ^^^^
-      |
-      = help: write it like `250ms`, `1.5s`, `2min` or `1h 30m`; a bare number is seconds
-
-    error: `repetition` is not a whole number from 1 to 1000000: `0`
-     --> suite.xml:2:36
-      |
-    2 |   <test timeout="soon" repetition="0" slow="-1s" after-collapse="return">ArmTest.lua</test>
-      |                                    ^
-
-    error: `slow` must be longer than zero: `-1s`
-     --> suite.xml:2:45
-      |
-    2 |   <test timeout="soon" repetition="0" slow="-1s" after-collapse="return">ArmTest.lua</test>
-      |                                             ^^^
-
-    error: `after-collapse` has to be `rerun` or `fail` or `skip`: `return`
-     --> suite.xml:2:66
-      |
-    2 |   <test timeout="soon" repetition="0" slow="-1s" after-collapse="return">ArmTest.lua</test>
-      |                                                                  ^^^^^^
-    "#);
-}
-
-#[test]
-fn duplicate_names() {
-    let suite = "<suite>\n  <test name=\"reach\">ArmTest.lua</test>\n  \
-                 <test>SensorTest</test>\n  <test name=\"reach\">SensorTest</test>\n</suite>";
-    assert_snapshot!(shown(suite), @r#"
-    error: two tests are named `reach`
-     --> suite.xml:4:15
-      |
-    2 |   <test name="reach">ArmTest.lua</test>
-      |               ----- the first one
-    3 |   <test>SensorTest</test>
-    4 |   <test name="reach">SensorTest</test>
-      |               ^^^^^ the second one
     "#);
 }
 
@@ -277,66 +123,6 @@ fn missing_plugin() {
 }
 
 #[test]
-fn doctype() {
-    let suite = "<?xml version=\"1.0\"?>\n<!DOCTYPE suite [<!ENTITY a \"b\">]>\n\
-                 <suite><test>&a;</test></suite>";
-    assert_snapshot!(shown(suite), @r#"
-    error: a suite file cannot have a DTD
-     --> suite.xml:2:1
-      |
-    2 | <!DOCTYPE suite [<!ENTITY a "b">]>
-      | ^^^^^^^^^ not read, for safety
-      |
-      = help: remove the `<!DOCTYPE …>`
-    "#);
-}
-
-#[test]
-fn unknown_type() {
-    assert_snapshot!(shown("<suite>\n  <test type=\"pyton\"> ArmTest </test>\n</suite>"), @r#"
-    error: unknown type `pyton`
-     --> suite.xml:2:15
-      |
-    2 |   <test type="pyton"> ArmTest </test>
-      |               ^^^^^
-      |
-      = note: known types are `dll`, `lua`, `python`
-      = help: did you mean `python`?
-    "#);
-}
-
-#[test]
-fn interpreter_that_is_not_there() {
-    let mut bench = Bench::new()
-        .write("RateTest.py", "")
-        .write("suite.xml", "<suite>\n  <test> RateTest.py </test>\n</suite>");
-    let variables = &mut bench.options.surroundings.variables;
-    variables.insert("RTF_PYTHON".into(), "python3.99".into());
-    assert_snapshot!(bench.shown("suite.xml"), @"
-    error: the interpreter `python3.99` is not there
-     --> suite.xml:2:10
-      |
-    2 |   <test> RateTest.py </test>
-      |          ^^^^^^^^^^^ needed here
-      |
-      = note: searched `PATH`:
-                [ROOT]/bin
-      = note: `RTF_PYTHON` names it
-    ");
-    bench.options.surroundings.variables.clear();
-    assert_snapshot!(bench.shown("suite.xml"), @"
-    error: plug-ins of type `python` need `python3`, which is not there
-     --> suite.xml:2:10
-      |
-    2 |   <test> RateTest.py </test>
-      |          ^^^^^^^^^^^ needed here
-      |
-      = note: `PATH` names no folder
-      = help: install it, or name another one in `RTF_PYTHON`
-    ");
-}
-
-#[test]
 fn missing_program() {
     let suite = "<suite>\n  <fixture type=\"process\">\n    <command>simulator --fast</command>\n    \
                  <ready command=\"./probe\"/>\n  </fixture>\n  <test>ArmTest.lua</test>\n</suite>";
@@ -357,61 +143,6 @@ fn missing_program() {
       |                     ^^^^^^^
       |
       = note: looked for [ROOT]/suites/probe
-    "#);
-}
-
-/// The issue's own words: five different mistakes print five messages.
-#[test]
-fn five_mistakes_are_five_messages() {
-    let suite = "<suite name=\"five\" tag=\"a\">\n  \
-                 <fixture depends=\"sim\"> ArmTest.lua </fixture>\n  \
-                 <test timeout=\"3 apples\"> ArmTest.lua </test>\n  \
-                 <test type=\"matlab\"> ArmTest </test>\n  \
-                 <test> GripperTest </test>\n</suite>";
-    let bench = Bench::new().write("suite.xml", suite);
-    assert_eq!(bench.outcome("suite.xml").diagnostics.len(), 5);
-    assert!(bench.outcome("suite.xml").plan.is_none());
-    assert_snapshot!(bench.shown("suite.xml"), @r#"
-    error: unknown attribute `tag`
-     --> suite.xml:1:20
-      |
-    1 | <suite name="five" tag="a">
-      |                    ^^^ not known in `<suite>`
-      |
-      = note: `<suite>` can have the attributes `name`, `timeout`, `tags`, `tolerate-collapse`, `after-collapse`, `test-timeout`, `test-load-timeout`, `test-setup-timeout`, `test-teardown-timeout`, `test-slow`, `test-grace`
-      = help: did you mean `tags`?
-
-    error: there is no fixture `sim`
-     --> suite.xml:2:21
-      |
-    2 |   <fixture depends="sim"> ArmTest.lua </fixture>
-      |                     ^^^
-
-    error: `timeout` is not a duration: `3 apples`
-     --> suite.xml:3:18
-      |
-    3 |   <test timeout="3 apples"> ArmTest.lua </test>
-      |                  ^^^^^^^^
-      |
-      = help: write it like `250ms`, `1.5s`, `2min` or `1h 30m`; a bare number is seconds
-
-    error: unknown type `matlab`
-     --> suite.xml:4:15
-      |
-    4 |   <test type="matlab"> ArmTest </test>
-      |               ^^^^^^
-      |
-      = note: known types are `dll`, `lua`, `python`
-
-    error: there is no plug-in `GripperTest` of type `dll`
-     --> suite.xml:5:10
-      |
-    5 |   <test> GripperTest </test>
-      |          ^^^^^^^^^^^
-      |
-      = note: looked for `GripperTest.so`, `libGripperTest.so`, `GripperTest` in
-                [ROOT]/suites
-                [ROOT]/lib/rtf/plugins
     "#);
 }
 

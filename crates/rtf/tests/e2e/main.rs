@@ -1,9 +1,15 @@
 //! End to end: suites and plug-ins in a temporary folder, the real runner and
 //! the real hosts → exit code, output, journal.
 
+#![expect(clippy::expect_used, reason = "a helper that cannot go on fails its test")]
+
 mod support;
 
 mod bad_input;
+mod bad_libraries;
+mod bad_outputs;
+mod bad_plugins;
+mod bad_suites;
 mod collapse;
 mod conformance;
 mod cpp_fixture;

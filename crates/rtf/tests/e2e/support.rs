@@ -50,7 +50,11 @@ impl Folder {
     pub fn command(&self, args: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_rtf"));
         command.args(args).current_dir(self.path()).stdin(Stdio::null());
-        command.env_remove("RTF_RESULTS").env_remove("RTF_PLUGIN_PATH").env("NO_COLOR", "1");
+        // Cargo sets the library path, in which plug-ins are searched.
+        for variable in ["RTF_RESULTS", "RTF_PLUGIN_PATH", "RTF_PYTHON", "LD_LIBRARY_PATH"] {
+            command.env_remove(variable);
+        }
+        command.env("NO_COLOR", "1");
         command
     }
 
@@ -93,14 +97,21 @@ impl Folder {
         self.redact(&text)
     }
 
-    pub fn redact(&self, text: &str) -> String {
+    /// The text without the paths of this machine.
+    pub fn redact_paths(&self, text: &str) -> String {
         let canonical = self.path().canonicalize().expect("a path");
         let bins = Path::new(env!("CARGO_BIN_EXE_rtf")).parent().expect("a folder");
-        let mut text = text
-            .replace(&canonical.display().to_string(), "[FOLDER]")
+        let prefix = bins.parent().expect("a folder");
+        text.replace(&canonical.display().to_string(), "[FOLDER]")
             .replace(&self.path().display().to_string(), "[FOLDER]")
             .replace(&bins.display().to_string(), "[BIN]")
-            .replace(&root().canonicalize().expect("a path").display().to_string(), "[ROOT]");
+            .replace(&prefix.display().to_string(), "[PREFIX]")
+            .replace(&root().canonicalize().expect("a path").display().to_string(), "[ROOT]")
+    }
+
+    /// The text without what changes from run to run.
+    pub fn redact(&self, text: &str) -> String {
+        let mut text = self.redact_paths(text);
         for (pattern, with) in [
             (r"\d{4}-\d\d-\d\dT\d\d-\d\d-\d\dZ-[0-9a-f]+", "[RUN]"),
             (r"\d+(\.\d+)? ?(ms|s)\b", "[TIME]"),

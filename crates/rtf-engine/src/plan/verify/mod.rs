@@ -8,8 +8,7 @@
 mod ask;
 mod judge;
 
-use std::collections::VecDeque;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, VecDeque};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -78,7 +77,7 @@ pub(super) struct Verified {
     /// The plug-ins' own texts that problems point at.
     pub sources: Sources,
     /// Files from folders that hold no test.
-    pub left_out: HashSet<PathBuf>,
+    pub left_out: BTreeSet<PathBuf>,
 }
 
 impl Checks {

@@ -1,0 +1,90 @@
+//! Folders and reports that cannot be written are told before anything is started.
+//!
+//! The paths lie below a file: whoever runs these tests, `root` included, can
+//! write nothing there.
+
+use insta::assert_snapshot;
+
+use crate::bad_input::{LUA_TEST, refused};
+use crate::support::Folder;
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.file("EncoderTest.lua", LUA_TEST).file("file", "");
+    folder
+}
+
+#[test]
+fn a_results_folder_that_cannot_be_written() {
+    let folder = folder();
+    assert_snapshot!(refused(&folder, &["run", "EncoderTest.lua", "--results", "file/results"]), @"
+    error: cannot create the results folder `file/results`
+    caused by: Not a directory (os error 20)
+    hint: choose another folder with `--results DIR`
+    ");
+    assert_eq!(std::fs::read_dir(folder.path()).expect("the folder").count(), 2);
+}
+
+#[test]
+fn a_report_that_cannot_be_written() {
+    let folder = folder();
+    assert_snapshot!(refused(&folder, &["run", "EncoderTest.lua", "--report", "junit=file/junit.xml"]), @"
+    error: cannot write the JUnit report to `file/junit.xml`
+    caused by: Not a directory (os error 20)
+    hint: choose another path with `--report FORMAT=PATH`
+    ");
+    assert_snapshot!(refused(&folder, &["run", "EncoderTest.lua", "--report", "text=."]), @"
+    error: cannot write the text report to `.`
+    caused by: is a directory
+    hint: choose another path with `--report FORMAT=PATH`
+    ");
+}
+
+#[test]
+fn an_unknown_format() {
+    assert_snapshot!(refused(&folder(), &["run", "EncoderTest.lua", "--report", "html=report.html"]), @"
+    error: invalid value 'html=report.html' for '--report <FORMAT=PATH>': unknown format `html`, expected `junit=PATH` or `text=PATH`
+
+    For more information, try '--help'.
+    ");
+    assert_snapshot!(refused(&folder(), &["run", "EncoderTest.lua", "--report", "junit"]), @"
+    error: invalid value 'junit' for '--report <FORMAT=PATH>': expected `junit=PATH` or `text=PATH`
+
+    For more information, try '--help'.
+    ");
+    assert_snapshot!(refused(&folder(), &["report", "latest", "--format", "html"]), @"
+    error: invalid value 'html' for '--format <FORMAT>'
+      [possible values: text, junit]
+
+    For more information, try '--help'.
+    ");
+}
+
+#[test]
+fn two_reports_in_one_file() {
+    let folder = folder();
+    let reports = ["--report", "text=report", "--report", "junit=report"];
+    assert_snapshot!(refused(&folder, &[["run", "EncoderTest.lua"].as_slice(), &reports].concat()), @"
+    error: two reports would be written to `report`
+    hint: choose another path with `--report FORMAT=PATH`
+    ");
+    assert!(!folder.path().join("report").exists());
+}
+
+/// A report that fails after the run is told too, and is no success.
+#[test]
+fn a_report_that_fails_after_the_run() {
+    let folder = folder();
+    folder.file(
+        "Breaks.lua",
+        "TestCase = {}\nfunction TestCase.run() os.remove('out') io.open('out', 'w'):close() end\n",
+    );
+    let finished = folder.rtf(&["run", "Breaks.lua", "--report", "text=out/report.txt"]);
+    assert_eq!(finished.code, Some(3), "{}", finished.stderr);
+    assert_snapshot!(finished.stderr, @"
+    error: cannot write the text report to `out/report.txt`
+    caused by: Not a directory (os error 20)
+    ");
+    let record = folder.journal().record;
+    assert!(record.is_green(), "the run itself was well");
+}
