@@ -75,7 +75,7 @@ fn a_fixture_is_no_test_and_the_other_way_round() {
     let bench = bench(&answer_b("\"ok\":true,\"kinds\":[\"fixture\"]"));
     let outcome = bench.build(&["s.xml"]);
     assert_eq!(only(&outcome).message, "the plug-in `B.lua` is a fixture, not a test");
-    assert_eq!(only(&outcome).hint.as_deref(), Some("write it as `<fixture>`"));
+    assert_eq!(only(&outcome).hint.as_deref(), Some("in a suite it is written as `<fixture>`"));
     bench.file("work/s.xml", "<suite><fixture>A.lua</fixture><test>A.lua</test></suite>");
     let outcome = bench.build(&["s.xml"]);
     assert_eq!(only(&outcome).message, "the plug-in `A.lua` is a test, not a fixture");
