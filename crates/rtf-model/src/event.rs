@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Attachment, Diagnostic, FixtureId, Measurement, Message, Micros, SuiteId, TestId, Verdict,
+    Attachment, Diagnostic, FixtureId, HookId, Measurement, Message, Micros, SuiteId, TestId, Verdict,
 };
 
 /// One fact about a run.
@@ -33,6 +33,8 @@ pub enum EventKind {
     SuitePlanned(SuitePlanned),
     /// A fixture of the suite planned last.
     FixturePlanned(FixturePlanned),
+    /// A hook of the suite planned last.
+    HookPlanned(HookPlanned),
     /// A test of the suite planned last.
     TestPlanned(TestPlanned),
     /// Something that the user should look at; it does not change a verdict.
@@ -166,6 +168,26 @@ pub enum EventKind {
         /// Why.
         reason: String,
     },
+    /// A hook is being run. Ends with `hook-finished`.
+    HookStarted {
+        /// The hook.
+        hook: HookId,
+        /// What called for it.
+        trigger: Trigger,
+        /// The same in words.
+        reason: String,
+        /// The test that it is about, if there is one.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        test: Option<TestId>,
+    },
+    /// The end of what `hook-started` began.
+    HookFinished {
+        /// The hook.
+        hook: HookId,
+        /// Why the robot may not be in a safe state; nothing when the hook did its work.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        problem: Option<String>,
+    },
     /// The end of what `suite-started` began.
     SuiteFinished {
         /// The suite.
@@ -176,6 +198,15 @@ pub enum EventKind {
         /// The signal or request that cut the run short, in words.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         interrupted: Option<String>,
+    },
+    /// The last event of a run whose runner died: written by the guard, which
+    /// stopped what was left. What was open stays open.
+    RunnerDied {
+        /// How the runner ended.
+        reason: String,
+        /// What it had started and was still alive.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        left: Vec<LeftProcess>,
     },
 }
 
@@ -235,6 +266,70 @@ pub struct FixturePlanned {
     pub name: String,
     /// The plug-in's type (`dll`, `lua`, `python`, `process`).
     pub plugin_type: String,
+}
+
+/// A hook: what brings the robot into a safe state.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct HookPlanned {
+    /// The hook.
+    pub hook: HookId,
+    /// Its suite.
+    pub suite: SuiteId,
+    /// Its name, unique in the suite.
+    pub name: String,
+    /// What calls for it.
+    pub on: Vec<Trigger>,
+}
+
+/// What calls for a hook.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Trigger {
+    /// A test failed, went wrong, or crashed.
+    Failure,
+    /// A fixture collapsed.
+    Collapse,
+    /// A test, or the suite, reached its limit.
+    Timeout,
+    /// The run is cut short: by a signal, or because the runner died.
+    Interrupt,
+    /// A fixture will not be started again.
+    FixtureBroken,
+    /// The suite ends, whatever happened.
+    End,
+}
+
+impl Trigger {
+    /// Every trigger.
+    pub const ALL: [Self; 6] = [
+        Self::Failure,
+        Self::Collapse,
+        Self::Timeout,
+        Self::Interrupt,
+        Self::FixtureBroken,
+        Self::End,
+    ];
+
+    /// The word for this trigger, as in a suite.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Failure => "failure",
+            Self::Collapse => "collapse",
+            Self::Timeout => "timeout",
+            Self::Interrupt => "interrupt",
+            Self::FixtureBroken => "fixture-broken",
+            Self::End => "end",
+        }
+    }
+}
+
+impl std::fmt::Display for Trigger {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.as_str())
+    }
 }
 
 /// A test that will be run.
@@ -304,6 +399,8 @@ pub enum Source {
     Test(TestId),
     /// A fixture.
     Fixture(FixtureId),
+    /// A hook.
+    Hook(HookId),
 }
 
 /// Which of its outputs a process used.
@@ -398,6 +495,9 @@ pub struct LeftProcess {
     pub pid: i32,
     /// Its command line.
     pub command: String,
+    /// Who started it, where that is not plain: `test arm/EncoderTest`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub owner: Option<String>,
 }
 
 /// The end of one attempt of a test.

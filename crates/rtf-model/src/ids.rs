@@ -39,6 +39,11 @@ id!(
     TestId
 );
 
+id!(
+    /// A hook of a run. Numbered from 0 over all suites, in the order of the plan.
+    HookId
+);
+
 /// Microseconds since the run started, from a clock that never jumps.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,

@@ -1,6 +1,6 @@
 //! The grammar of an event stream: which event may follow which.
 
-use crate::{Event, EventKind, FixtureId, Source, SuiteId, TestId};
+use crate::{Event, EventKind, FixtureId, HookId, Source, SuiteId, TestId};
 
 /// An event that may not come where it came.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -79,6 +79,7 @@ pub struct OrderChecker {
     stage: Stage,
     suites: Vec<Bracket>,
     fixtures: Vec<Fixture>,
+    hooks: Vec<(SuiteId, bool)>,
     tests: Vec<Test>,
 }
 
@@ -90,6 +91,7 @@ impl Default for OrderChecker {
             stage: Stage::Before,
             suites: Vec::new(),
             fixtures: Vec::new(),
+            hooks: Vec::new(),
             tests: Vec::new(),
         }
     }
@@ -141,6 +143,7 @@ impl OrderChecker {
             }
             EventKind::SuitePlanned(plan) => self.plan_suite(plan.suite),
             EventKind::FixturePlanned(plan) => self.plan_fixture(plan.fixture, plan.suite),
+            EventKind::HookPlanned(plan) => self.plan_hook(plan.hook, plan.suite),
             EventKind::TestPlanned(plan) => self.plan_test(plan.test, plan.suite, plan.repetitions),
             EventKind::Warning { .. } => Ok(()),
             EventKind::SuiteStarted { suite } => self.start_suite(*suite),
@@ -173,7 +176,13 @@ impl OrderChecker {
             EventKind::Output(output) => self.inside(output.source),
             EventKind::TestFinished(finished) => self.finish_test(finished.test, finished.rerun),
             EventKind::TestSkipped { test, .. } => self.skip_test(*test),
+            EventKind::HookStarted { hook, .. } => self.turn_hook(*hook, true),
+            EventKind::HookFinished { hook, .. } => self.turn_hook(*hook, false),
             EventKind::SuiteFinished { suite } => self.finish_suite(*suite),
+            EventKind::RunnerDied { .. } => {
+                self.stage = Stage::After;
+                Ok(())
+            }
             EventKind::RunFinished { .. } => self.finish_run(),
         }
     }
@@ -218,6 +227,22 @@ impl OrderChecker {
             rerun: false,
             skipped: false,
         });
+        Ok(())
+    }
+
+    fn plan_hook(&mut self, hook: HookId, suite: SuiteId) -> Rule {
+        self.planned_last(suite)?;
+        ensure(hook.index() == self.hooks.len(), || format!("hook {hook} out of order"))?;
+        self.hooks.push((suite, false));
+        Ok(())
+    }
+
+    fn turn_hook(&mut self, hook: HookId, open: bool) -> Rule {
+        let known = self.hooks.get(hook.index()).copied();
+        let (suite, was_open) = known.ok_or_else(|| format!("hook {hook} was not planned"))?;
+        self.suite_open(suite)?;
+        ensure(was_open != open, || format!("hook {hook} started or finished twice"))?;
+        self.hooks[hook.index()].1 = open;
         Ok(())
     }
 
@@ -304,6 +329,10 @@ impl OrderChecker {
     fn inside(&mut self, source: Source) -> Rule {
         match source {
             Source::Test(test) => self.inside_test(test),
+            Source::Hook(hook) => {
+                let open = self.hooks.get(hook.index()).is_some_and(|(_, open)| *open);
+                ensure(open, || format!("hook {hook} is not running"))
+            }
             Source::Fixture(id) => {
                 let stage = self.fixture(id)?.stage;
                 ensure(stage != FixtureStage::Stopped, || format!("fixture {id} is not running"))
@@ -336,6 +365,9 @@ impl OrderChecker {
         for (index, fixture) in self.fixtures.iter().enumerate().filter(|(_, f)| f.suite == suite) {
             let stopped = fixture.stage == FixtureStage::Stopped;
             ensure(stopped, || format!("fixture {index} still runs"))?;
+        }
+        for (index, (_, open)) in self.hooks.iter().enumerate().filter(|(_, h)| h.0 == suite) {
+            ensure(!open, || format!("hook {index} still runs"))?;
         }
         self.suites[suite.index()] = Bracket::Closed;
         Ok(())

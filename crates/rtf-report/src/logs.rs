@@ -8,7 +8,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use rtf_model::{Event, EventKind, FixtureId, Output, Record, Source, TestId};
+use rtf_model::{Event, EventKind, FixtureId, HookId, Output, Record, Source, TestId};
 
 use crate::{ReportError, Reporter};
 
@@ -56,6 +56,19 @@ pub fn fixture_log(record: &Record, id: FixtureId) -> PathBuf {
     path(base(suite, &name, false, &format!("f{id}")), fixture.starts)
 }
 
+/// The log of the newest run of a hook, relative to the run's folder:
+/// `logs/arm.hook-park.a2.log`.
+#[must_use]
+pub fn hook_log(record: &Record, id: HookId) -> PathBuf {
+    let Some(hook) = record.hooks.get(id.index()) else {
+        return PathBuf::from(format!("logs/hook~{id}.log"));
+    };
+    let suite = record.suites.get(hook.plan.suite.index()).map_or("", |s| &s.plan.name);
+    let name = format!("hook-{}", hook.plan.name);
+    let runs = u32::try_from(hook.runs.len()).unwrap_or(u32::MAX);
+    path(base(suite, &name, false, &format!("h{id}")), runs)
+}
+
 /// The log of the newest attempt or start of a source, see [`test_log`] and
 /// [`fixture_log`].
 #[must_use]
@@ -63,6 +76,7 @@ pub fn log(record: &Record, source: Source) -> PathBuf {
     match source {
         Source::Test(id) => test_log(record, id),
         Source::Fixture(id) => fixture_log(record, id),
+        Source::Hook(id) => hook_log(record, id),
     }
 }
 

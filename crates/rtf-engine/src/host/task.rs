@@ -280,6 +280,7 @@ impl Task {
         match self.job.source {
             Source::Test(id) => format!("attachments/{id}/{}", self.job.host.0),
             Source::Fixture(id) => format!("attachments/fixture-{id}/{}", self.job.host.0),
+            Source::Hook(id) => format!("attachments/hook-{id}/{}", self.job.host.0),
         }
     }
 

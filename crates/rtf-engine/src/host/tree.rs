@@ -79,7 +79,7 @@ fn sweep_if(belongs: impl Fn(i32) -> bool) -> Vec<LeftProcess> {
             if is_zombie(*pid) {
                 unix::reap(*pid);
             } else if seen.insert(*pid) {
-                left.push(LeftProcess { pid: *pid, command: command_of(*pid) });
+                left.push(LeftProcess { pid: *pid, command: command_of(*pid), owner: None });
                 unix::signal_process(*pid, SIGKILL);
             }
         }

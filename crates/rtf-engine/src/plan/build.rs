@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use rtf_model::{Diagnostic, FixtureId, Severity, SuiteId, TestId};
+use rtf_model::{Diagnostic, FixtureId, HookId, Severity, SuiteId, TestId};
 
 use super::context::Context;
 use super::inputs::{self, Found, Input};
@@ -190,7 +190,7 @@ fn sort(problems: &mut [Diagnostic]) {
 /// Gives the ids, and each suite a name of its own.
 fn number(mut suites: Vec<SuitePlan>) -> Plan {
     let mut names = Names::default();
-    let (mut fixtures, mut tests) = (0, 0);
+    let (mut fixtures, mut hooks, mut tests) = (0, 0, 0);
     for (id, suite) in (0..).zip(&mut suites) {
         suite.id = SuiteId(id);
         suite.name = names.unique(&suite.name);
@@ -198,10 +198,14 @@ fn number(mut suites: Vec<SuitePlan>) -> Plan {
             fixture.id = FixtureId(fixtures);
             fixtures += 1;
         }
+        for hook in &mut suite.hooks {
+            hook.id = HookId(hooks);
+            hooks += 1;
+        }
         for test in &mut suite.tests {
             test.id = TestId(tests);
             tests += 1;
         }
     }
-    Plan { suites, fixtures, tests }
+    Plan { suites, fixtures, hooks, tests }
 }

@@ -116,10 +116,12 @@ fn plan(
     Some(FixturePlan {
         id: FixtureId(0),
         name,
+        depends: Vec::new(),
         body,
         env: fixture.env,
         limits,
         restarts: fixture.restarts.unwrap_or(RESTARTS),
+        restart_delay: Duration::ZERO,
         check_every,
     })
 }

@@ -13,7 +13,7 @@ use super::inputs::Found;
 use super::names::Names;
 use super::plugin::base_name;
 use super::scope::Scope;
-use super::{AfterCollapse, SuitePlan, TestLimits, TestPlan, fixture};
+use super::{AfterCollapse, Leaks, SuitePlan, TestLimits, TestPlan, fixture};
 use crate::suite::{Source, Suite, Test, WrittenLimits};
 
 /// The name of the suite that gathers the plug-ins of the command line.
@@ -86,6 +86,7 @@ pub(super) fn plan(
             repetitions: test.repetitions,
             limits,
             after_collapse: test.after_collapse,
+            leaks: Leaks::default(),
             critical: test.critical,
             tags,
         });
@@ -102,6 +103,7 @@ pub(super) fn plan(
         timeout: suite.timeout,
         tolerates_collapse: suite.tolerates_collapse,
         fixtures,
+        hooks: Vec::new(),
         tests,
     }
 }
@@ -154,6 +156,7 @@ pub(super) fn plan_singles(context: &mut Context<'_>, singles: &[Single]) -> Sui
             repetitions: options.repetitions.max(1),
             limits: Arc::clone(&limits),
             after_collapse: AfterCollapse::default(),
+            leaks: Leaks::default(),
             critical: false,
             tags: Vec::new(),
         });
@@ -169,6 +172,7 @@ pub(super) fn plan_singles(context: &mut Context<'_>, singles: &[Single]) -> Sui
         timeout: None,
         tolerates_collapse: false,
         fixtures: Vec::new(),
+        hooks: Vec::new(),
         tests,
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use rtf_model::{FixtureId, SuiteId, TestId};
+use rtf_model::{FixtureId, HookId, SuiteId, TestId, Trigger};
 
 pub use crate::suite::AfterCollapse;
 
@@ -16,6 +16,8 @@ pub struct Plan {
     pub suites: Vec<SuitePlan>,
     /// The number of fixtures over all suites.
     pub fixtures: u32,
+    /// The number of hooks over all suites.
+    pub hooks: u32,
     /// The number of tests over all suites.
     pub tests: u32,
 }
@@ -43,6 +45,8 @@ pub struct SuitePlan {
     pub tolerates_collapse: bool,
     /// The fixtures, in the order of set-up.
     pub fixtures: Vec<FixturePlan>,
+    /// The hooks, in the order in which they are run when several are called for.
+    pub hooks: Vec<HookPlan>,
     /// The tests, in the order in which they run.
     pub tests: Vec<TestPlan>,
 }
@@ -54,6 +58,9 @@ pub struct FixturePlan {
     pub id: FixtureId,
     /// Its name, unique in the suite.
     pub name: String,
+    /// The places in the suite's list of the fixtures that must be ready before
+    /// it is set up, and that are torn down after it.
+    pub depends: Vec<usize>,
     /// What it is.
     pub body: FixtureBody,
     /// Environment variables beside the suite's.
@@ -62,6 +69,9 @@ pub struct FixturePlan {
     pub limits: FixtureLimits,
     /// How often it may be started again after a collapse.
     pub restarts: u32,
+    /// How long the first restart waits; each further one waits twice as long,
+    /// up to ten seconds.
+    pub restart_delay: Duration,
     /// How often `check` (or `<alive>`) is asked while tests run; `None`: only before each test.
     pub check_every: Option<Duration>,
 }
@@ -103,6 +113,8 @@ pub struct TestPlan {
     pub limits: Arc<TestLimits>,
     /// What happens to it when a fixture collapses while it runs.
     pub after_collapse: AfterCollapse,
+    /// What is said of it when it leaves processes behind.
+    pub leaks: Leaks,
     /// Whether the rest of the suite is skipped when it does not pass.
     pub critical: bool,
     /// The tags given in the suite.
@@ -124,6 +136,42 @@ pub struct TestLimits {
     pub slow: Duration,
     /// From the request to stop to the use of force.
     pub grace: Duration,
+}
+
+/// What brings the robot into a safe state.
+#[derive(Clone, Debug)]
+pub struct HookPlan {
+    /// Its id.
+    pub id: HookId,
+    /// Its name, unique in the suite.
+    pub name: String,
+    /// What calls for it.
+    pub on: Vec<Trigger>,
+    /// What it is.
+    pub body: HookBody,
+    /// Environment variables beside the suite's.
+    pub env: Vec<(String, String)>,
+    /// How long it may take.
+    pub timeout: Duration,
+}
+
+/// What a hook is.
+#[derive(Clone, Debug)]
+pub enum HookBody {
+    /// A test plug-in in a host: it did its work when it passes.
+    Plugin(PluginPlan),
+    /// A command: it did its work when it ends with exit code 0.
+    Command(Vec<String>),
+}
+
+/// What is said of a test that left processes behind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Leaks {
+    /// The processes are killed and named.
+    #[default]
+    Report,
+    /// And the test, had it passed, is an error.
+    Fail,
 }
 
 /// A plug-in and the host that runs it.

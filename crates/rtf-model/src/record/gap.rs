@@ -1,8 +1,10 @@
 //! Stand-ins for plans whose events were lost with a damaged line of a journal,
 //! so that what is known of later suites, fixtures and tests keeps its place.
 
-use super::{FixtureRecord, SuiteRecord, TestRecord};
-use crate::{FixtureId, FixturePlanned, SuiteId, SuitePlanned, TestId, TestPlanned};
+use super::{FixtureRecord, HookRecord, SuiteRecord, TestRecord};
+use crate::{
+    FixtureId, FixturePlanned, HookId, HookPlanned, SuiteId, SuitePlanned, TestId, TestPlanned,
+};
 
 /// A gap larger than this is not believed: the number itself is damaged.
 const LARGEST: usize = 1000;
@@ -38,6 +40,11 @@ pub(super) fn fixture(index: u32, suite: SuiteId) -> FixtureRecord {
         name: format!("unknown-fixture-{index}"),
         plugin_type: String::new(),
     })
+}
+
+pub(super) fn hook(index: u32, suite: SuiteId) -> HookRecord {
+    let (hook, on) = (HookId(index), Vec::new());
+    HookRecord::new(HookPlanned { hook, suite, name: format!("unknown-hook-{index}"), on })
 }
 
 pub(super) fn test(index: u32, suite: SuiteId) -> TestRecord {

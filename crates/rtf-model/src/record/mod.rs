@@ -5,15 +5,17 @@
 
 mod fixture;
 mod gap;
+mod hook;
 mod suite;
 mod test;
 
 pub use fixture::{FixtureRecord, FixtureState};
+pub use hook::{HookRecord, HookRun};
 pub use suite::SuiteRecord;
 pub use test::{AttemptRecord, TestRecord};
 
 use crate::{
-    Diagnostic, Event, EventKind, FixtureId, Micros, RunStarted, Source, SuiteId, TestId, Verdict,
+    Diagnostic, Event, EventKind, FixtureId, HookId, Micros, RunStarted, Source, SuiteId, TestId, Verdict,
 };
 
 /// How far a run is.
@@ -26,6 +28,11 @@ pub enum RunState {
     Finished {
         /// The signal or request that cut it short, in words.
         interrupted: Option<String>,
+    },
+    /// The runner died; the guard stopped what was left. The record is incomplete.
+    Died {
+        /// How the runner ended.
+        reason: String,
     },
 }
 
@@ -70,8 +77,12 @@ pub struct Record {
     pub suites: Vec<SuiteRecord>,
     /// The fixtures, by their ids.
     pub fixtures: Vec<FixtureRecord>,
+    /// The hooks, by their ids.
+    pub hooks: Vec<HookRecord>,
     /// The tests, by their ids.
     pub tests: Vec<TestRecord>,
+    /// What was left at the end and had to be killed, when the runner died.
+    pub left: Vec<crate::LeftProcess>,
     /// What the user should look at.
     pub warnings: Vec<Diagnostic>,
 }
@@ -105,6 +116,19 @@ impl Record {
                     self.fixtures.push(FixtureRecord::new(plan.clone()));
                 }
             }
+            EventKind::RunnerDied { reason, left } => {
+                self.state = RunState::Died { reason: reason.clone() };
+                self.left.extend_from_slice(left);
+            }
+            EventKind::HookPlanned(plan) => {
+                let missing = |index| gap::hook(index, plan.suite);
+                let known = self.hooks.len() as u32;
+                if gap::fill(&mut self.hooks, plan.hook.index(), missing) {
+                    let ids = (known..=plan.hook.0).map(HookId);
+                    self.suite(plan.suite, |s| s.hooks.extend(ids));
+                    self.hooks.push(HookRecord::new(plan.clone()));
+                }
+            }
             EventKind::TestPlanned(plan) => {
                 let missing = |index| gap::test(index, plan.suite);
                 let known = self.tests.len() as u32;
@@ -130,6 +154,11 @@ impl Record {
                     fixture.apply(at, kind);
                 }
             }
+            Some(Source::Hook(id)) => {
+                if let Some(hook) = self.hooks.get_mut(id.index()) {
+                    hook.apply(at, kind);
+                }
+            }
             None => {}
         }
     }
@@ -144,7 +173,7 @@ impl Record {
     /// was killed never does.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        self.state != RunState::Running
+        matches!(self.state, RunState::Finished { .. })
     }
 
     /// The signal or request that cut the run short.
@@ -152,8 +181,14 @@ impl Record {
     pub fn interrupted(&self) -> Option<&str> {
         match &self.state {
             RunState::Finished { interrupted } => interrupted.as_deref(),
-            RunState::Running => None,
+            RunState::Running | RunState::Died { .. } => None,
         }
+    }
+
+    /// Whether a hook did not do its work: the robot may not be in a safe state.
+    #[must_use]
+    pub fn hook_failed(&self) -> bool {
+        self.hooks.iter().any(|hook| hook.problems().next().is_some())
     }
 
     /// A test's last word. While the run goes on it is `None` for a test that
@@ -206,13 +241,15 @@ impl Record {
     }
 
     /// What went wrong in a suite beside its tests, in words: fixtures that
-    /// collapsed, broke, or could not be torn down.
+    /// collapsed, broke, or could not be torn down, and hooks that failed.
     #[must_use]
     pub fn suite_problems(&self, suite: SuiteId) -> Vec<String> {
         let Some(suite) = self.suites.get(suite.index()) else { return Vec::new() };
         let tolerant = suite.plan.tolerates_collapse;
         let fixtures = suite.fixtures.iter().filter_map(|id| self.fixtures.get(id.index()));
-        fixtures.flat_map(|fixture| fixture.problems(tolerant)).collect()
+        let hooks = suite.hooks.iter().filter_map(|id| self.hooks.get(id.index()));
+        let fixtures = fixtures.flat_map(|fixture| fixture.problems(tolerant));
+        fixtures.chain(hooks.flat_map(HookRecord::problems)).collect()
     }
 
     /// Whether nothing at all speaks against the robot or the bench: the run
@@ -254,6 +291,9 @@ fn source_of(kind: &EventKind) -> Option<Source> {
         | EventKind::FixtureStopping { fixture }
         | EventKind::FixtureStopped { fixture, .. }
         | EventKind::FixtureBroken { fixture, .. } => Some(Source::Fixture(*fixture)),
+        EventKind::HookStarted { hook, .. } | EventKind::HookFinished { hook, .. } => {
+            Some(Source::Hook(*hook))
+        }
         EventKind::TestStarted { test, .. }
         | EventKind::TestPhase { test, .. }
         | EventKind::Measured { test, .. }

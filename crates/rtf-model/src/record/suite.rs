@@ -1,6 +1,6 @@
 //! What is known of one suite.
 
-use crate::{FixtureId, Micros, SuitePlanned, TestId};
+use crate::{FixtureId, HookId, Micros, SuitePlanned, TestId};
 
 /// What is known of one suite.
 #[derive(Clone, Debug)]
@@ -9,6 +9,8 @@ pub struct SuiteRecord {
     pub plan: SuitePlanned,
     /// Its fixtures, in the order of the plan.
     pub fixtures: Vec<FixtureId>,
+    /// Its hooks, in the order of the plan.
+    pub hooks: Vec<HookId>,
     /// Its tests, in the order of the plan.
     pub tests: Vec<TestId>,
     /// When it started.
@@ -19,6 +21,13 @@ pub struct SuiteRecord {
 
 impl SuiteRecord {
     pub(super) fn new(plan: SuitePlanned) -> Self {
-        Self { plan, fixtures: Vec::new(), tests: Vec::new(), started: None, finished: None }
+        Self {
+            plan,
+            fixtures: Vec::new(),
+            hooks: Vec::new(),
+            tests: Vec::new(),
+            started: None,
+            finished: None,
+        }
     }
 }

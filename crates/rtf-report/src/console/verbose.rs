@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use rtf_model::{Event, EventKind, FixtureId, Output, Record, Source, TestId};
+use rtf_model::{Event, EventKind, FixtureId, HookId, Output, Record, Source, TestId};
 
 use super::page::Page;
 use super::style::DIM;
@@ -24,6 +24,7 @@ pub(super) struct Verbose {
 enum Key {
     Test(TestId, bool),
     Fixture(FixtureId, bool),
+    Hook(HookId, bool),
 }
 
 impl Key {
@@ -32,6 +33,7 @@ impl Key {
         match output.source {
             Source::Test(id) => Self::Test(id, is_error),
             Source::Fixture(id) => Self::Fixture(id, is_error),
+            Source::Hook(id) => Self::Hook(id, is_error),
         }
     }
 
@@ -39,6 +41,7 @@ impl Key {
         match self {
             Self::Test(id, _) => name(record, Source::Test(id)),
             Self::Fixture(id, _) => name(record, Source::Fixture(id)),
+            Self::Hook(id, _) => name(record, Source::Hook(id)),
         }
     }
 }
@@ -118,6 +121,10 @@ fn name(record: &Record, source: Source) -> String {
         Source::Fixture(id) => {
             let name = record.fixture(id).map_or("?", |fixture| &fixture.plan.name);
             format!("fixture {}", escape::line(name))
+        }
+        Source::Hook(id) => {
+            let name = record.hooks.get(id.index()).map_or("?", |hook| &hook.plan.name);
+            format!("hook {}", escape::line(name))
         }
     }
 }

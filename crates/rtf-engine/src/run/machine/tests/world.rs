@@ -30,6 +30,7 @@ pub fn suite(fixtures: usize, tests: usize) -> SuitePlan {
         timeout: None,
         tolerates_collapse: false,
         fixtures: (0..fixtures).map(fixture).collect(),
+        hooks: Vec::new(),
         tests: (0..tests).map(test).collect(),
     }
 }
@@ -48,10 +49,12 @@ fn fixture(index: usize) -> FixturePlan {
     FixturePlan {
         id: FixtureId(u32::try_from(index).unwrap()),
         name: format!("fixture{index}"),
+        depends: index.checked_sub(1).into_iter().collect(),
         body: FixtureBody::Plugin(plugin()),
         env: Vec::new(),
         limits: FixtureLimits { setup: 10 * SECOND, check: SECOND, teardown: 3 * SECOND },
         restarts: 1,
+        restart_delay: Duration::ZERO,
         check_every: None,
     }
 }
@@ -73,6 +76,7 @@ fn test(index: usize) -> TestPlan {
         repetitions: 1,
         limits: Arc::new(limits),
         after_collapse: AfterCollapse::Fail,
+        leaks: Leaks::Report,
         critical: false,
         tags: Vec::new(),
     }
