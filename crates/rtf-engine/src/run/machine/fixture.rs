@@ -426,7 +426,10 @@ impl<'p> FixtureRun<'p> {
 
     fn stopped(&mut self, cx: &mut Context<'_>) {
         self.state = State::Stopped;
-        cx.clear(self.timer(FixtureTimer::Limit));
+        self.check = None;
+        for timer in [FixtureTimer::Limit, FixtureTimer::Check, FixtureTimer::CheckDue] {
+            cx.clear(self.timer(timer));
+        }
         let problem = self.problem.take();
         let log_tail = if problem.is_some() { self.log.tail() } else { Vec::new() };
         cx.emit(EventKind::FixtureStopped { fixture: self.plan.id, problem, log_tail });
