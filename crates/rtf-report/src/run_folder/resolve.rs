@@ -34,6 +34,9 @@ impl ResolveError {
     #[must_use]
     pub fn hint(&self) -> Option<String> {
         match self {
+            Self::Unknown { newest, .. } if newest.len() == 1 => {
+                Some(format!("the only run is {}", newest[0]))
+            }
             Self::Unknown { newest, .. } if !newest.is_empty() => {
                 Some(format!("the newest runs are {}", newest.join(", ")))
             }

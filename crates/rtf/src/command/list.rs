@@ -4,6 +4,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use rtf_engine::plan::{Plan, TestPlan};
+use rtf_report::escape;
 
 use super::{Outcome, planning};
 use crate::cli::InputArgs;
@@ -21,7 +22,8 @@ pub fn run(args: &InputArgs) -> Outcome {
 fn write(plan: &Plan, out: &mut impl Write) -> std::io::Result<()> {
     for suite in &plan.suites {
         for test in &suite.tests {
-            writeln!(out, "{}::{}{}", suite.name, test.name, notes(test))?;
+            let name = format!("{}/{}", suite.name, test.name);
+            writeln!(out, "{}{}", escape::line(&name), notes(test))?;
         }
     }
     out.flush()
@@ -32,6 +34,9 @@ fn notes(test: &TestPlan) -> String {
     if test.repetitions > 1 {
         notes.push(format!("{} times", test.repetitions));
     }
-    notes.extend(test.tags.iter().map(|tag| format!("#{tag}")));
+    if test.critical {
+        notes.push("critical".to_owned());
+    }
+    notes.extend(test.tags.iter().map(|tag| format!("#{}", escape::line(tag))));
     if notes.is_empty() { String::new() } else { format!("  ({})", notes.join(", ")) }
 }

@@ -1,5 +1,6 @@
 //! One module a verb of the command line.
 
+mod again;
 pub mod check;
 pub mod completions;
 pub mod list;

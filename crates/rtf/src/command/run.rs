@@ -16,8 +16,8 @@ use rtf_report::text::TextFile;
 use rtf_report::{Fanout, FanoutHandle, ReportError, Reporter};
 use tokio::sync::watch;
 
-use super::Outcome;
 use super::planning::{self, Planned};
+use super::{Outcome, again};
 use crate::cli::{Format, RunArgs};
 use crate::error::Failure;
 use crate::exit;
@@ -50,6 +50,7 @@ fn reporters(args: &RunArgs, folder: &RunFolder) -> Result<Vec<Box<dyn Reporter>
     let options = ConsoleOptions {
         verbosity: if args.verbose { Verbosity::Verbose } else { Verbosity::Normal },
         folder: Some(folder.path.clone()),
+        rerun: again::command(),
         ..ConsoleOptions::default()
     };
     let mut reporters: Vec<Box<dyn Reporter>> = vec![

@@ -1,0 +1,227 @@
+//! The verbs that run nothing: `list`, `check`, `completions`, `man`, `--help`.
+
+use insta::assert_snapshot;
+
+use crate::support::Folder;
+
+const PASSES: &str = "TestCase = {}\nfunction TestCase.run() rtf.check(true, 'fine') end\n";
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.file("Encoder.lua", PASSES);
+    folder.file("Driver.lua", "FixtureManager = {}\nfunction FixtureManager.setup() end\n");
+    folder.file(
+        "arm.xml",
+        "<suite name=\"arm\" tags=\"simulation\">\n  <fixture>Driver.lua</fixture>\n  \
+         <test>Encoder.lua</test>\n  \
+         <test name=\"again\" tags=\"smoke slow\" repetition=\"3\">Encoder.lua</test>\n  \
+         <test name=\"safe\" critical=\"true\">Encoder.lua</test>\n</suite>\n",
+    );
+    folder
+}
+
+#[test]
+fn list_names_the_tests_with_their_tags() {
+    let folder = folder();
+    let finished = folder.rtf(&["list", "arm.xml", "Encoder.lua", "--repetition", "2"]);
+    assert_snapshot!(folder.shown(&finished), @"
+    exit code 0
+    ----- stdout
+    arm/Encoder  (#simulation)
+    arm/again  (3 times, #simulation, #smoke, #slow)
+    arm/safe  (critical, #simulation)
+    plug-ins/Encoder  (2 times)
+    ----- stderr
+    ");
+    assert!(!folder.path().join("rtf-results").exists());
+}
+
+#[test]
+fn check_counts_what_is_there() {
+    let folder = folder();
+    let finished = folder.rtf(&["check", "arm.xml"]);
+    assert_snapshot!(folder.shown(&finished), @"
+    exit code 0
+    ----- stdout
+    1 suite, 1 fixture, 3 tests: no errors
+    ----- stderr
+    ");
+    folder.file("one.xml", "<suite>\n  <!-- -- -->\n  <test>Encoder.lua</test>\n</suite>\n");
+    let finished = folder.rtf(&["check", "one.xml"]);
+    assert_snapshot!(folder.shown(&finished), @"
+    exit code 0
+    ----- stdout
+    1 suite, 0 fixtures, 1 test: no errors, 1 warning
+    ----- stderr
+    warning: `--` in a comment is not legal XML; accepted
+     --> one.xml:2:8
+      |
+    2 |   <!-- -- -->
+      |        ^^
+      |
+      = help: write the option without its dashes in comments, other programs refuse the file
+    ");
+    assert!(!folder.path().join("rtf-results").exists());
+}
+
+#[test]
+fn options_that_have_no_effect_are_told() {
+    let folder = folder();
+    let finished = folder.rtf(&["check", "arm.xml", "--param", "--fast"]);
+    assert_snapshot!(folder.shown(&finished), @"
+    exit code 0
+    ----- stdout
+    1 suite, 1 fixture, 3 tests: no errors, 1 warning
+    ----- stderr
+    warning: the parameter string has no effect: no plug-in is given directly
+     |
+     = note: tests of a suite have what their suite says
+    ");
+}
+
+#[test]
+fn help_lists_the_exit_codes() {
+    let folder = Folder::new();
+    let shown = folder.shown(&folder.rtf(&["--help"]));
+    let lines: Vec<&str> = shown.lines().map(str::trim_end).collect();
+    assert_snapshot!(lines.join("\n"), @"
+    exit code 0
+    ----- stdout
+    Tests of robots: plug-ins in any language, on top of fixtures that are watched while the tests run
+
+    Usage: rtf [OPTIONS] <COMMAND>
+
+    Commands:
+      run          Run suites, plug-ins and folders
+      check        Find every problem of suites and plug-ins, start nothing
+      list         List the tests that `run` would run
+      show         Show a past run, or what is there of one that was killed
+      report       Write a report of a past run
+      completions  Print a shell's completions
+      help         Print this message or the help of the given subcommand(s)
+
+    Options:
+          --color <WHEN>
+              When to use colours
+
+              Possible values:
+              - auto:   On a terminal, unless `NO_COLOR` is set
+              - always: Always
+              - never:  Never
+
+              [default: auto]
+
+      -h, --help
+              Print help (see a summary with '-h')
+
+      -V, --version
+              Print version
+
+    Exit codes:
+      0    everything passed
+      1    a test did not pass, or a fixture collapsed or broke
+      2    bad input, or no tests: nothing was started
+      3    rtf could not do its own work, for example write a report
+      128+N  the run was ended by signal N (130 for Ctrl-C)
+    ----- stderr
+    ");
+}
+
+#[test]
+fn help_of_run() {
+    let folder = Folder::new();
+    let finished = folder.rtf(&["run", "-h"]);
+    assert_snapshot!(folder.shown(&finished), @"
+    exit code 0
+    ----- stdout
+    Run suites, plug-ins and folders
+
+    Usage: rtf run [OPTIONS] <FILE>...
+
+    Arguments:
+      <FILE>...  Suites (.xml), plug-ins, and folders of either
+
+    Options:
+          --color <WHEN>          When to use colours [default: auto] [possible values: auto, always,
+                                  never]
+      -r, --recursive             Descend into folders
+          --param <TEXT>          The parameter string of plug-ins that are given by name
+          --environment <TEXT>    The environment string of plug-ins that are given by name
+          --repetition <N>        How often plug-ins that are given by name are run
+          --results <DIR>         The folder of the runs' folders [env: RTF_RESULTS=] [default:
+                                  rtf-results]
+          --report <FORMAT=PATH>  Also write a report: `junit=PATH` or `text=PATH`
+      -v, --verbose               Show every message, measurement and output as it comes
+      -h, --help                  Print help (see more with '--help')
+      -V, --version               Print version
+    ----- stderr
+    ");
+}
+
+#[test]
+fn completions_know_every_verb() {
+    let folder = Folder::new();
+    for (shell, begins) in [("bash", "_rtf()"), ("zsh", "#compdef rtf"), ("fish", "# Print")] {
+        let finished = folder.rtf(&["completions", shell]);
+        assert_eq!((finished.code, finished.stderr.as_str()), (Some(0), ""));
+        let script = finished.stdout;
+        assert!(script.starts_with(begins), "{shell}: {}", &script[..80]);
+        for verb in ["run", "check", "list", "show", "report", "completions"] {
+            assert!(script.contains(verb), "{shell}: {verb}");
+        }
+        assert!(script.contains("recursive") && script.contains("junit"), "{shell}");
+    }
+    let finished = folder.rtf(&["completions", "tcsh"]);
+    assert_snapshot!(folder.shown(&finished), @"
+    exit code 2
+    ----- stdout
+    ----- stderr
+    error: invalid value 'tcsh' for '<SHELL>'
+      [possible values: bash, elvish, fish, powershell, zsh]
+
+      tip: a similar value exists: 'zsh'
+
+    For more information, try '--help'.
+    ");
+}
+
+/// A shell takes what is written for it.
+#[test]
+fn bash_reads_its_completions() {
+    let folder = Folder::new();
+    folder.file("rtf.bash", &folder.rtf(&["completions", "bash"]).stdout);
+    let script = "source ./rtf.bash; COMP_WORDS=(rtf s); COMP_CWORD=1; _rtf rtf s rtf; echo \"${COMPREPLY[*]}\"";
+    let mut bash = std::process::Command::new("bash");
+    let output = bash.args(["-c", script]).current_dir(folder.path()).output().expect("bash");
+    assert_eq!(
+        String::from_utf8_lossy(&output.stdout),
+        "show\n",
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
+
+#[test]
+fn man_writes_a_page_for_each_verb() {
+    let folder = Folder::new();
+    let finished = folder.rtf(&["man", "share/man1"]);
+    assert_eq!((finished.code, finished.stderr.as_str()), (Some(0), ""));
+    let pages = std::fs::read_dir(folder.path().join("share/man1")).expect("the folder");
+    let mut names: Vec<_> = pages
+        .map(|page| page.expect("a page").file_name().into_string().expect("a name"))
+        .collect();
+    names.sort();
+    let verbs = ["check", "completions", "list", "report", "run", "show"];
+    let wanted: Vec<_> =
+        verbs.iter().map(|verb| format!("rtf-{verb}.1")).chain(["rtf.1".into()]).collect();
+    assert_eq!(names, wanted);
+    let page = std::fs::read_to_string(folder.path().join("share/man1/rtf.1")).expect("a page");
+    assert!(page.contains(".TH rtf 1") && page.contains("Exit codes"), "{page}");
+    let finished = folder.file("file", "").rtf(&["man", "file"]);
+    assert_snapshot!(folder.shown(&finished), @"
+    exit code 3
+    ----- stdout
+    ----- stderr
+    error: File exists (os error 17)
+    ");
+}
