@@ -6,7 +6,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Attachment, Diagnostic, FixtureId, HookId, Measurement, Message, Micros, SuiteId, TestId, Verdict,
+    Attachment, Diagnostic, FixtureId, HookId, Measurement, Message, Micros, SuiteId, TestId,
+    Verdict,
 };
 
 /// One fact about a run.

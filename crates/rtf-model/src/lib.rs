@@ -19,13 +19,14 @@ mod verdict;
 
 pub use diagnostic::{Diagnostic, Label, Severity};
 pub use event::{
-    Event, EventKind, ExitStatus, FixturePlanned, HookPlanned, LeftProcess, Output, Phase, RunStarted, Source,
-    StopCause, Stream, SuitePlanned, TestFinished, TestPlanned, Trigger,
+    Event, EventKind, ExitStatus, FixturePlanned, HookPlanned, LeftProcess, Output, Phase,
+    RunStarted, Source, StopCause, Stream, SuitePlanned, TestFinished, TestPlanned, Trigger,
 };
 pub use ids::{FixtureId, HookId, Micros, SuiteId, TestId};
 pub use order::{OrderChecker, OrderError};
 pub use record::{
-    AttemptRecord, FixtureRecord, FixtureState, HookRecord, HookRun, Record, RunState, SuiteRecord, TestRecord, Totals,
+    AttemptRecord, FixtureRecord, FixtureState, HookRecord, HookRun, Record, RunState, SuiteRecord,
+    TestRecord, Totals,
 };
 pub use report::{
     Attachment, Comparison, Location, Measurement, Message, MessageKind, format_number,

@@ -17,6 +17,9 @@ pub const CHANNEL_VARIABLE: &str = "RTF_CHANNEL";
 /// The environment variable that marks every process of a test or fixture.
 pub const SCOPE_VARIABLE: &str = "RTF_SCOPE";
 
+/// The environment variable that says for people whose process it is: `test arm/EncoderTest`.
+pub const OWNER_VARIABLE: &str = "RTF_OWNER";
+
 /// The environment variable that holds the suite's environment string.
 pub const ENVIRONMENT_VARIABLE: &str = "RTF_ENVIRONMENT";
 

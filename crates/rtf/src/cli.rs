@@ -25,6 +25,7 @@ Exit codes:
   1    a test did not pass, or a fixture collapsed or broke
   2    bad input, or no tests: nothing was started
   3    rtf could not do its own work, for example write a report
+  4    a hook failed: the robot may not be in a safe state, whatever else happened
   128+N  the run was ended by signal N (130 for Ctrl-C)";
 
 /// When to use colours.

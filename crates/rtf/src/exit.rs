@@ -13,11 +13,14 @@ pub const FAILED: u8 = 1;
 pub const BAD_INPUT: u8 = 2;
 /// `rtf` could not do its own work.
 pub const BROKEN: u8 = 3;
+/// A hook failed: the robot may not be in a safe state. Whatever else happened.
+pub const HOOK_FAILED: u8 = 4;
 
 /// The exit code of a run.
 pub fn of_run(record: &Record) -> ExitCode {
     let interrupted = record.interrupted().map(|by| signal::exit_code(by).unwrap_or(FAILED));
     ExitCode::from(match interrupted {
+        _ if record.hook_failed() => HOOK_FAILED,
         Some(code) => code,
         None if record.is_green() => PASSED,
         None => FAILED,

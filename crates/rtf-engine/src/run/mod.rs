@@ -12,7 +12,9 @@ pub mod suite_task;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use rtf_model::{Diagnostic, EventKind, FixturePlanned, RunStarted, SuitePlanned, TestPlanned};
+use rtf_model::{
+    Diagnostic, EventKind, FixturePlanned, HookPlanned, RunStarted, SuitePlanned, TestPlanned,
+};
 use tokio::sync::watch;
 
 pub use events::{Events, Sink};
@@ -107,6 +109,10 @@ fn announce(suite: &SuitePlan, events: &Events) {
             name: fixture.name.clone(),
             plugin_type: type_of(fixture).to_owned(),
         }));
+    }
+    for hook in &suite.hooks {
+        let (hook, suite, name, on) = (hook.id, suite.id, hook.name.clone(), hook.on.clone());
+        events.emit(EventKind::HookPlanned(HookPlanned { hook, suite, name, on }));
     }
     for test in &suite.tests {
         events.emit(EventKind::TestPlanned(planned(suite, test)));

@@ -160,7 +160,7 @@ impl SuiteTask<'_> {
 
     fn spawn(&mut self, host: HostId, source: Source, start: Start) {
         let process = match &start.what {
-            Program::Host(_) => None,
+            Program::Host(_) | Program::Command(_) => None,
             Program::Process(plan) => Some(plan.clone()),
         };
         let request = self.request(start);
@@ -196,6 +196,7 @@ impl SuiteTask<'_> {
                 (plan.command.clone(), Some(Vec::new()))
             }
             Program::Process(plan) => (plan.command.clone(), None),
+            Program::Command(command) => (command, None),
         };
         let folder = Some(start.folder);
         SpawnRequest { command, env, folder, channel, streams: Streams::Both }

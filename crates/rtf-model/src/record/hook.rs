@@ -1,5 +1,7 @@
 //! What is known of one hook.
 
+use std::time::Duration;
+
 use crate::{EventKind, HookPlanned, LeftProcess, Message, MessageKind, Micros, TestId, Trigger};
 
 /// What is known of one hook.
@@ -28,6 +30,8 @@ pub struct HookRun {
     pub messages: Vec<Message>,
     /// What it printed.
     pub output: String,
+    /// Where it was before it was stopped by force.
+    pub stacks: Vec<String>,
     /// Processes of it that had to be killed.
     pub left: Vec<LeftProcess>,
 }
@@ -49,10 +53,8 @@ impl HookRecord {
     /// or did not come to their end.
     pub fn problems(&self) -> impl Iterator<Item = String> {
         let name = &self.plan.name;
-        self.runs.iter().filter_map(move |run| match &run.finished {
-            Some((_, Some(problem))) => Some(format!("hook `{name}` on {}: {problem}", run.trigger)),
-            Some((_, None)) => None,
-            None => Some(format!("hook `{name}` on {} did not come to its end", run.trigger)),
+        self.runs.iter().filter_map(move |run| {
+            run.problem().map(|problem| format!("hook `{name}` on {}: {problem}", run.trigger))
         })
     }
 }
@@ -67,6 +69,7 @@ impl HookRun {
             finished: None,
             messages: Vec::new(),
             output: String::new(),
+            stacks: Vec::new(),
             left: Vec::new(),
         }
     }
@@ -79,9 +82,30 @@ impl HookRun {
                     self.messages.push(message.clone());
                 }
             }
-            EventKind::Output(output) => self.output += &output.text,
+            EventKind::Output(output) => {
+                if output.omitted > 0 {
+                    self.output += &format!("\n[… {} bytes left out …]\n", output.omitted);
+                }
+                self.output += &output.text;
+            }
+            EventKind::StackDumped { text, .. } => self.stacks.push(text.clone()),
             EventKind::ProcessesLeft { processes, .. } => self.left.extend_from_slice(processes),
             _ => {}
         }
+    }
+    /// Why the robot may not be in a safe state; nothing when the hook did its
+    /// work. A run that has not ended has not done it.
+    #[must_use]
+    pub fn problem(&self) -> Option<&str> {
+        match &self.finished {
+            Some((_, problem)) => problem.as_deref(),
+            None => Some("it did not come to its end"),
+        }
+    }
+
+    /// How long it took, `None` when it did not end.
+    #[must_use]
+    pub fn duration(&self) -> Option<Duration> {
+        self.finished.as_ref().map(|(at, _)| at.since(self.started))
     }
 }

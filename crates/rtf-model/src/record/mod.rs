@@ -6,6 +6,7 @@
 mod fixture;
 mod gap;
 mod hook;
+mod left;
 mod suite;
 mod test;
 
@@ -15,7 +16,8 @@ pub use suite::SuiteRecord;
 pub use test::{AttemptRecord, TestRecord};
 
 use crate::{
-    Diagnostic, Event, EventKind, FixtureId, HookId, Micros, RunStarted, Source, SuiteId, TestId, Verdict,
+    Diagnostic, Event, EventKind, FixtureId, HookId, Micros, RunStarted, Source, SuiteId, TestId,
+    Verdict,
 };
 
 /// How far a run is.
@@ -185,6 +187,15 @@ impl Record {
         }
     }
 
+    /// How the runner ended, when it died.
+    #[must_use]
+    pub fn died(&self) -> Option<&str> {
+        match &self.state {
+            RunState::Died { reason } => Some(reason),
+            RunState::Running | RunState::Finished { .. } => None,
+        }
+    }
+
     /// Whether a hook did not do its work: the robot may not be in a safe state.
     #[must_use]
     pub fn hook_failed(&self) -> bool {
@@ -234,9 +245,20 @@ impl Record {
     #[must_use]
     pub fn full_name(&self, test: TestId) -> String {
         let Some(test) = self.tests.get(test.index()) else { return format!("test {test}") };
-        match self.suites.get(test.plan.suite.index()) {
-            Some(suite) => format!("{}/{}", suite.plan.name, test.plan.name),
-            None => test.plan.name.clone(),
+        self.within(test.plan.suite, &test.plan.name)
+    }
+
+    /// A hook's name with its suite's: `arm/park`.
+    #[must_use]
+    pub fn full_hook_name(&self, hook: HookId) -> String {
+        let Some(hook) = self.hooks.get(hook.index()) else { return format!("hook {hook}") };
+        self.within(hook.plan.suite, &hook.plan.name)
+    }
+
+    fn within(&self, suite: SuiteId, name: &str) -> String {
+        match self.suites.get(suite.index()) {
+            Some(suite) => format!("{}/{name}", suite.plan.name),
+            None => name.to_owned(),
         }
     }
 
@@ -244,16 +266,24 @@ impl Record {
     /// collapsed, broke, or could not be torn down, and hooks that failed.
     #[must_use]
     pub fn suite_problems(&self, suite: SuiteId) -> Vec<String> {
+        let mut problems = self.fixture_problems(suite);
+        let hooks = self.suites.get(suite.index()).map_or(&[][..], |s| &s.hooks);
+        let hooks = hooks.iter().filter_map(|id| self.hooks.get(id.index()));
+        problems.extend(hooks.flat_map(HookRecord::problems));
+        problems
+    }
+
+    /// What went wrong with the fixtures of a suite, in words.
+    #[must_use]
+    pub fn fixture_problems(&self, suite: SuiteId) -> Vec<String> {
         let Some(suite) = self.suites.get(suite.index()) else { return Vec::new() };
         let tolerant = suite.plan.tolerates_collapse;
         let fixtures = suite.fixtures.iter().filter_map(|id| self.fixtures.get(id.index()));
-        let hooks = suite.hooks.iter().filter_map(|id| self.hooks.get(id.index()));
-        let fixtures = fixtures.flat_map(|fixture| fixture.problems(tolerant));
-        fixtures.chain(hooks.flat_map(HookRecord::problems)).collect()
+        fixtures.flat_map(|fixture| fixture.problems(tolerant)).collect()
     }
 
     /// Whether nothing at all speaks against the robot or the bench: the run
-    /// came to its end, has tests, each of them passed, and no fixture failed.
+    /// came to its end, has tests, each of them passed, and no fixture or hook failed.
     #[must_use]
     pub fn is_green(&self) -> bool {
         self.state == RunState::Finished { interrupted: None }
@@ -282,7 +312,7 @@ fn totals<'a>(tests: impl Iterator<Item = &'a TestRecord>) -> Totals {
     totals
 }
 
-/// Whose event it is, for the events that belong to a test or a fixture.
+/// Whose event it is, for the events that belong to a test, a fixture or a hook.
 fn source_of(kind: &EventKind) -> Option<Source> {
     match kind {
         EventKind::FixtureStarting { fixture, .. }

@@ -1,12 +1,13 @@
 //! One fixture, from set-up to tear-down, over all its restarts.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use rtf_model::protocol::{Answer, Notification, Plugin, Reply, Request, StackSupport};
 use rtf_model::{EventKind, ExitStatus, FixtureId, LeftProcess, Outcome, Source, Stream};
 
 use super::capture::Capture;
-use super::io::{Deadline, Effect, FixtureTimer, HostId, HostInput, Program, Start};
+use super::io::{Deadline, Effect, FixtureTimer, HostId, HostInput, Program, Start, environment};
 use super::log_watch::LogWatch;
 use super::suite::Context;
 use super::test::{TERM_GRACE, parse_answer, parse_initialized};
@@ -15,12 +16,16 @@ use crate::plan::{FixtureBody, FixturePlan, ProbeKind, ProcessPlan, SuitePlan};
 
 const SIGTERM: i32 = 15;
 const SET_UP: u64 = 2;
+/// No restart waits longer than this.
+const LONGEST_DELAY: Duration = Duration::from_secs(10);
 
 /// Where a fixture is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     /// Not there: never started, or torn down.
     Stopped,
+    /// Not there, and to be started again after a while.
+    Waiting,
     /// Being set up.
     Starting,
     /// There, and watched.
@@ -59,6 +64,8 @@ pub struct FixtureRun<'p> {
     log: LogWatch,
     captures: [Capture; 2],
     problem: Option<String>,
+    /// How long the next start has to wait.
+    delay: Duration,
     /// Whether the plug-in may be in the middle of something.
     busy: bool,
     forced: bool,
@@ -82,6 +89,7 @@ impl<'p> FixtureRun<'p> {
             log: LogWatch::default(),
             captures: captures(plan.id),
             problem: None,
+            delay: Duration::ZERO,
             busy: false,
             forced: false,
         }
@@ -117,8 +125,24 @@ impl<'p> FixtureRun<'p> {
         Deadline::Fixture(self.place, timer)
     }
 
-    /// Starts it: emits `fixture-starting`, and asks for its set-up.
+    /// Lets the next start wait, the longer the more restarts there were.
+    pub fn delay_restart(&mut self, restart: u32) {
+        let factor = 1_u32.checked_shl(restart.saturating_sub(1)).unwrap_or(u32::MAX);
+        self.delay = self.plan.restart_delay.saturating_mul(factor).min(LONGEST_DELAY);
+    }
+
+    /// Starts it, or lets it wait for its next start.
     pub fn start(&mut self, cx: &mut Context<'_>) {
+        let delay = std::mem::take(&mut self.delay);
+        if delay.is_zero() {
+            return self.start_now(cx);
+        }
+        self.state = State::Waiting;
+        cx.set(self.timer(FixtureTimer::RestartDue), delay);
+    }
+
+    /// Emits `fixture-starting`, and asks for its set-up.
+    fn start_now(&mut self, cx: &mut Context<'_>) {
         let host = cx.new_host();
         self.host = Some(host);
         self.state = State::Starting;
@@ -142,7 +166,7 @@ impl<'p> FixtureRun<'p> {
                 (Program::Process(Arc::new((**process).clone())), process.folder.clone())
             }
         };
-        let env = self.suite.env.iter().chain(&self.plan.env).cloned().collect();
+        let env = environment(self.suite, &self.plan.env, "fixture", &self.plan.name);
         let start = Start { what, env, folder };
         cx.out(Effect::Spawn { host, source: self.source(), start });
         if let FixtureBody::Plugin(plugin) = &self.plan.body {
@@ -348,7 +372,7 @@ impl<'p> FixtureRun<'p> {
                 self.stopped(cx);
                 None
             }
-            State::Unwell | State::Stopped => None,
+            State::Unwell | State::Stopped | State::Waiting => None,
         }
     }
 
@@ -363,6 +387,9 @@ impl<'p> FixtureRun<'p> {
 
     /// Tears it down.
     pub fn stop(&mut self, cx: &mut Context<'_>) {
+        if self.state == State::Waiting {
+            return self.forget_restart(cx);
+        }
         cx.emit(EventKind::FixtureStopping { fixture: self.plan.id });
         self.busy |= self.check.take().is_some();
         cx.clear(self.timer(FixtureTimer::Check));
@@ -403,14 +430,22 @@ impl<'p> FixtureRun<'p> {
 
     /// Kills its process and everything below it, now.
     pub fn kill(&mut self, cx: &mut Context<'_>) {
-        if self.state == State::Stopped {
-            return;
+        match self.state {
+            State::Stopped => return,
+            State::Waiting => return self.forget_restart(cx),
+            _ => {}
         }
         if !matches!(self.state, State::Stopping | State::Ending) {
             cx.emit(EventKind::FixtureStopping { fixture: self.plan.id });
         }
         self.state = State::Ending;
         self.force(cx);
+    }
+
+    /// It waits for its next start, which will not come.
+    fn forget_restart(&mut self, cx: &mut Context<'_>) {
+        self.state = State::Stopped;
+        cx.clear(self.timer(FixtureTimer::RestartDue));
     }
 
     fn force(&mut self, cx: &mut Context<'_>) {
@@ -438,6 +473,10 @@ impl<'p> FixtureRun<'p> {
     /// A deadline about this fixture has passed.
     pub fn deadline(&mut self, timer: FixtureTimer, cx: &mut Context<'_>) -> Option<Change> {
         match (timer, self.state) {
+            (FixtureTimer::RestartDue, State::Waiting) => {
+                self.start_now(cx);
+                None
+            }
             (FixtureTimer::CheckDue, State::Ready) => {
                 self.ask_check(cx);
                 None

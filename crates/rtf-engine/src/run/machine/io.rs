@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use rtf_model::protocol::{Notification, Reply, Request, StackSupport};
+use rtf_model::protocol::{Notification, OWNER_VARIABLE, Reply, Request, StackSupport};
 use rtf_model::{Attachment, EventKind, ExitStatus, LeftProcess, Source, Stream};
 
-use crate::plan::{HostPlan, ProcessPlan};
+use crate::plan::{HostPlan, ProcessPlan, SuitePlan};
 
 /// One process that the machine asked for. Never used twice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -79,6 +79,8 @@ pub enum Deadline {
     Test(TestTimer),
     /// About the fixture at this place of the suite's plan.
     Fixture(usize, FixtureTimer),
+    /// The limit of the running hook, or of a step of its stop.
+    Hook,
 }
 
 /// What is waited for in a test.
@@ -99,6 +101,8 @@ pub enum FixtureTimer {
     Check,
     /// The next `check`.
     CheckDue,
+    /// The next restart.
+    RestartDue,
 }
 
 /// How to start a process.
@@ -112,6 +116,17 @@ pub struct Start {
     pub folder: PathBuf,
 }
 
+/// The environment variables of a process: the suite's, its own, and whose it is.
+pub(super) fn environment(
+    suite: &SuitePlan,
+    own: &[(String, String)],
+    kind: &str,
+    name: &str,
+) -> Vec<(String, String)> {
+    let owner = (OWNER_VARIABLE.to_owned(), format!("{kind} {}/{name}", suite.name));
+    suite.env.iter().chain(own).cloned().chain([owner]).collect()
+}
+
 /// What to start.
 #[derive(Clone, Debug)]
 pub enum Program {
@@ -119,6 +134,8 @@ pub enum Program {
     Host(Arc<HostPlan>),
     /// A process fixture, with its probes.
     Process(Arc<ProcessPlan>),
+    /// A command, without a channel.
+    Command(Vec<String>),
 }
 
 /// What is to be done.

@@ -8,11 +8,16 @@
 //!   request or the suite's limit change about that.
 //! - [`fixture`]: one fixture from set-up to tear-down.
 //! - [`test`]: one attempt of a test, its phases, limits, and its stop by force.
+//! - [`fixtures`]: which of them may be set up or torn down now.
+//! - [`hook`], [`hooks`]: one run of a hook; which were called for.
 //! - [`judge`]: the verdict over one attempt.
 //! - [`capture`]: what is kept of what a process prints.
 
 mod capture;
 mod fixture;
+mod fixtures;
+mod hook;
+mod hooks;
 mod io;
 mod judge;
 mod log_watch;

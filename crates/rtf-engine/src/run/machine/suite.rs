@@ -1,22 +1,25 @@
-//! Which fixture or test of a suite is next.
+//! What is next in a suite.
 //!
-//! After every input, [`SuiteMachine::proceed`] looks at the fixtures and the
-//! running test and does the one thing that is due, in this order:
+//! After every input, [`SuiteMachine::proceed`] looks at the fixtures, hooks and
+//! the running test and does what is due, in this order:
 //!
-//! 1. The suite ends early (stop request, broken fixture, critical failure,
-//!    limit) or has no test left: stop the test, tear down in reverse, skip the rest.
-//! 2. A fixture is unwell: interrupt the test, tear down that fixture and all
-//!    that were set up after it, in reverse.
-//! 3. A fixture is not there: set it up.
-//! 4. Ask plug-in fixtures for their `check`, then start the next test.
+//! 1. A test runs: it is left alone, unless the suite ends early.
+//! 2. A hook runs, or was called for: nothing else is begun.
+//! 3. The suite ends early (stop request, broken fixture, critical failure,
+//!    limit) or has no test left: `end` hooks, tear down in reverse, skip the rest.
+//! 4. A fixture is unwell: tear down that fixture and all that depend on it.
+//! 5. A fixture is not there: set it up.
+//! 6. Ask plug-in fixtures for their `check`, then start the next test.
 //!
 //! **A collapse interrupts a test in [`SuiteMachine::fixture_changed`].**
 
 use std::time::Duration;
 
-use rtf_model::{EventKind, StopCause, Verdict};
+use rtf_model::{EventKind, StopCause, TestId, Trigger, Verdict};
 
-use super::fixture::{Change, FixtureRun, State};
+use super::fixture::Change;
+use super::fixtures::Fixtures;
+use super::hooks::Hooks;
 use super::io::{Deadline, Effect, HostId, HostInput, Input, Stop, StopLevel};
 use super::test::{Ended, TestRun};
 use crate::plan::{AfterCollapse, SuitePlan};
@@ -65,14 +68,16 @@ struct Cursor {
 #[derive(Debug)]
 pub struct SuiteMachine<'p> {
     plan: &'p SuitePlan,
-    fixtures: Vec<FixtureRun<'p>>,
-    restarts: Vec<u32>,
+    fixtures: Fixtures<'p>,
+    hooks: Hooks<'p>,
     running: Option<TestRun<'p>>,
     cursor: Cursor,
     /// Whether `check` was asked for the test that is next.
     checked: bool,
     /// Why the rest is skipped.
     ending: Option<String>,
+    /// Whether the `end` hooks were called for.
+    end_called: bool,
     started: bool,
     over: bool,
     hosts: u64,
@@ -84,12 +89,13 @@ impl<'p> SuiteMachine<'p> {
     pub fn new(plan: &'p SuitePlan) -> Self {
         Self {
             plan,
-            fixtures: (0..plan.fixtures.len()).map(|place| FixtureRun::new(plan, place)).collect(),
-            restarts: vec![0; plan.fixtures.len()],
+            fixtures: Fixtures::new(plan),
+            hooks: Hooks::new(plan),
             running: None,
             cursor: Cursor { test: 0, repetition: 1, attempt: 1 },
             checked: false,
             ending: None,
+            end_called: false,
             started: false,
             over: false,
             hosts: 0,
@@ -124,36 +130,45 @@ impl<'p> SuiteMachine<'p> {
             if let Some(ended) = ended {
                 self.test_ended(&ended, cx);
             }
-        } else if let Some(place) = self.fixtures.iter().position(|f| f.host() == Some(host)) {
-            let change = self.fixtures[place].handle(input, cx);
+        } else if let Some(place) = self.fixtures.place_of(host) {
+            let change = self.fixtures.get(place).handle(input, cx);
             self.fixture_changed(place, change, cx);
+        } else if self.hooks.owns(host) {
+            self.hooks.handle(input, cx);
         }
     }
 
     fn deadline(&mut self, deadline: Deadline, cx: &mut Context<'_>) {
         match deadline {
-            Deadline::Suite => {
-                let limit = self.plan.timeout.unwrap_or_default();
-                let reason = format!("the suite did not end within {limit:?}");
-                if let Some(test) = &mut self.running {
-                    test.stop(StopCause::Timeout, reason.clone(), cx);
-                }
-                self.end_early(reason);
-            }
+            Deadline::Suite => self.limit_reached(cx),
             Deadline::Test(timer) => {
                 if let Some(test) = &mut self.running {
                     test.deadline(timer, cx);
                 }
             }
             Deadline::Fixture(place, timer) => {
-                let change = self.fixtures[place].deadline(timer, cx);
+                let change = self.fixtures.get(place).deadline(timer, cx);
                 self.fixture_changed(place, change, cx);
             }
+            Deadline::Hook => self.hooks.deadline(cx),
         }
+    }
+
+    fn limit_reached(&mut self, cx: &mut Context<'_>) {
+        let limit = self.plan.timeout.unwrap_or_default();
+        let reason = format!("the suite did not end within {limit:?}");
+        self.hooks.call(Trigger::Timeout, &reason, self.running_test());
+        if let Some(test) = &mut self.running {
+            test.stop(StopCause::Timeout, reason.clone(), cx);
+        }
+        self.end_early(reason);
     }
 
     fn stop(&mut self, stop: &Stop, cx: &mut Context<'_>) {
         let reason = format!("stopped by {}", stop.reason);
+        if self.started && stop.level == StopLevel::TearDown {
+            self.hooks.call(Trigger::Interrupt, &reason, self.running_test());
+        }
         if let Some(test) = &mut self.running {
             test.stop(StopCause::Interrupt, reason.clone(), cx);
             if stop.level == StopLevel::Kill {
@@ -161,9 +176,7 @@ impl<'p> SuiteMachine<'p> {
             }
         }
         if stop.level == StopLevel::Kill {
-            for fixture in self.fixtures.iter_mut().rev() {
-                fixture.kill(cx);
-            }
+            self.fixtures.kill_all(cx);
         }
         self.end_early(reason);
     }
@@ -172,38 +185,42 @@ impl<'p> SuiteMachine<'p> {
         self.ending.get_or_insert(reason);
     }
 
+    fn running_test(&self) -> Option<(TestId, String)> {
+        self.running.as_ref()?;
+        let plan = self.plan.tests.get(self.cursor.test)?;
+        Some((plan.id, plan.name.clone()))
+    }
+
     /// A fixture's set-up failed, or it collapsed: the running test is
     /// interrupted at once, and the restarts are counted.
     fn fixture_changed(&mut self, place: usize, change: Option<Change>, cx: &mut Context<'_>) {
         let Some(change) = change else { return };
-        let fixture = &self.fixtures[place];
-        let name = &fixture.plan().name;
+        let fixture = self.fixtures.get(place);
+        let (id, name, first) = (fixture.plan().id, &fixture.plan().name, fixture.starts() == 1);
         let (collapsed, reason) = match change {
             Change::Collapsed(reason) => (true, reason),
             Change::SetupFailed(reason) => (false, reason),
         };
-        if let (true, Some(test)) = (collapsed, &mut self.running) {
+        let test = self.running_test();
+        if collapsed {
             let reason = format!("fixture `{name}` collapsed: {reason}");
-            test.stop(StopCause::Collapse, reason, cx);
+            self.hooks.call(Trigger::Collapse, &reason, test.clone());
+            if let Some(test) = &mut self.running {
+                test.stop(StopCause::Collapse, reason, cx);
+            }
         }
-        let first_setup = !collapsed && fixture.starts() == 1;
-        if !first_setup && self.restarts[place] < fixture.plan().restarts {
-            self.restarts[place] += 1;
-            return;
-        }
-        if self.ending.is_none() {
-            cx.emit(EventKind::FixtureBroken {
-                fixture: fixture.plan().id,
-                reason: reason.clone(),
-            });
-            self.ending = Some(format!("fixture `{name}` is broken: {reason}"));
+        let again = (collapsed || !first) && self.fixtures.take_restart(place);
+        if !again && self.ending.is_none() {
+            cx.emit(EventKind::FixtureBroken { fixture: id, reason: reason.clone() });
+            let reason = format!("fixture `{name}` is broken: {reason}");
+            self.hooks.call(Trigger::FixtureBroken, &reason, test);
+            self.ending = Some(reason);
         }
     }
 
     fn test_ended(&mut self, ended: &Ended, cx: &mut Context<'_>) {
-        let Some(run) = self.running.take() else {
-            return;
-        };
+        let about = self.running_test();
+        let Some(run) = self.running.take() else { return };
         let plan = &self.plan.tests[self.cursor.test];
         let collapsed = ended.verdict == Verdict::Collapsed;
         let rerun =
@@ -215,62 +232,68 @@ impl<'p> SuiteMachine<'p> {
             finished.verdict = Verdict::Skipped;
         }
         cx.emit(finished);
+        let trigger = match ended.verdict {
+            Verdict::Failed | Verdict::Error | Verdict::Crashed => Some(Trigger::Failure),
+            Verdict::TimedOut => Some(Trigger::Timeout),
+            _ => None,
+        };
+        if let Some(trigger) = trigger {
+            let reason = ended.reason.as_deref().unwrap_or_default();
+            self.hooks.call(
+                trigger,
+                &format!("`{}` is {}: {reason}", plan.name, ended.verdict),
+                about,
+            );
+        }
         if let Some(text) = &ended.critical {
             self.end_early(format!("a critical assertion of `{}` did not hold: {text}", plan.name));
         } else if plan.critical && !ended.verdict.is_green() && !rerun {
             self.end_early(format!("the critical test `{}` is {}", plan.name, ended.verdict));
         }
         self.checked = false;
-        self.cursor = match (rerun, self.cursor) {
-            (true, cursor) => Cursor { attempt: cursor.attempt + 1, ..cursor },
-            (false, Cursor { test, repetition, .. }) if repetition < plan.repetitions => {
-                Cursor { test, repetition: repetition + 1, attempt: 1 }
-            }
-            (false, cursor) => Cursor { test: cursor.test + 1, repetition: 1, attempt: 1 },
-        };
+        self.cursor = self.cursor.next(rerun, plan.repetitions);
     }
 
     fn proceed(&mut self, cx: &mut Context<'_>) {
         if !self.started || self.over {
             return;
         }
+        if let Some(test) = &mut self.running {
+            if let Some(reason) = &self.ending {
+                test.stop(StopCause::Interrupt, reason.clone(), cx);
+            }
+            return;
+        }
+        if self.hooks.run_next(cx) {
+            return;
+        }
         if self.ending.is_some() || self.cursor.test >= self.plan.tests.len() {
             return self.finish(cx);
         }
-        let unwell = self.fixtures.iter().position(|f| f.state() == State::Unwell);
-        if let (Some(lowest), None) = (unwell, &self.running) {
-            self.stop_from(lowest, cx);
+        if self.fixtures.any_unwell() {
+            self.fixtures.stop_unwell(cx);
         }
-        if self.running.is_some() || self.is_stopping() || self.is_starting() {
+        if self.fixtures.any_unwell() || self.fixtures.any_stopping() {
             return;
         }
-        if let Some(fixture) = self.fixtures.iter_mut().find(|f| f.state() == State::Stopped) {
+        if self.fixtures.start_next(cx) {
             self.checked = false;
-            return fixture.start(cx);
+        } else if self.fixtures.all_ready() {
+            self.check_then_test(cx);
         }
-        self.check_then_test(cx);
-    }
-
-    fn is_stopping(&self) -> bool {
-        self.fixtures.iter().any(|f| matches!(f.state(), State::Stopping | State::Ending))
-    }
-
-    fn is_starting(&self) -> bool {
-        self.fixtures.iter().any(|f| f.state() == State::Starting)
     }
 
     fn check_then_test(&mut self, cx: &mut Context<'_>) {
         if !self.checked {
             self.checked = true;
-            for fixture in &mut self.fixtures {
-                fixture.ask_check(cx);
-            }
+            self.fixtures.ask_checks(cx);
         }
-        if self.fixtures.iter().any(FixtureRun::is_checking) {
+        if self.fixtures.any_checking() {
             return;
         }
         let Cursor { test, repetition, attempt } = self.cursor;
         let plan = &self.plan.tests[test];
+        self.hooks.test_starts();
         self.running = Some(TestRun::start(self.plan, plan, (repetition, attempt), cx));
         let next = if repetition < plan.repetitions { test } else { test + 1 };
         if let Some(next) = self.plan.tests.get(next) {
@@ -278,24 +301,19 @@ impl<'p> SuiteMachine<'p> {
         }
     }
 
-    /// Tears down the highest fixture from `lowest` on that is still there.
-    fn stop_from(&mut self, lowest: usize, cx: &mut Context<'_>) {
-        while !self.is_stopping() {
-            let there = |fixture: &&mut FixtureRun<'_>| fixture.state() != State::Stopped;
-            match self.fixtures[lowest..].iter_mut().rev().find(there) {
-                Some(fixture) => fixture.stop(cx),
-                None => return,
+    fn finish(&mut self, cx: &mut Context<'_>) {
+        if !self.end_called {
+            self.end_called = true;
+            let began = self.fixtures.any_started() || self.cursor.test > 0;
+            if began {
+                self.hooks.call(Trigger::End, "the suite ends", None);
+            }
+            if self.hooks.run_next(cx) {
+                return;
             }
         }
-    }
-
-    fn finish(&mut self, cx: &mut Context<'_>) {
-        if let (Some(test), Some(reason)) = (&mut self.running, &self.ending) {
-            test.stop(StopCause::Interrupt, reason.clone(), cx);
-            return;
-        }
-        self.stop_from(0, cx);
-        if self.fixtures.iter().any(|fixture| fixture.state() != State::Stopped) {
+        self.fixtures.stop_all(cx);
+        if !self.fixtures.all_stopped() {
             return;
         }
         let reason = self.ending.clone().unwrap_or_default();
@@ -306,5 +324,19 @@ impl<'p> SuiteMachine<'p> {
         cx.clear(Deadline::Suite);
         cx.emit(EventKind::SuiteFinished { suite: self.plan.id });
         cx.out(Effect::Done);
+    }
+}
+
+impl Cursor {
+    /// What comes after an attempt.
+    fn next(self, rerun: bool, repetitions: u32) -> Self {
+        let Self { test, repetition, attempt } = self;
+        if rerun {
+            Self { attempt: attempt + 1, ..self }
+        } else if repetition < repetitions {
+            Self { test, repetition: repetition + 1, attempt: 1 }
+        } else {
+            Self { test: test + 1, repetition: 1, attempt: 1 }
+        }
     }
 }

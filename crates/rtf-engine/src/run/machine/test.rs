@@ -15,11 +15,11 @@ use rtf_model::{
 };
 
 use super::capture::Capture;
-use super::io::{Deadline, Effect, HostId, HostInput, Program, Start, TestTimer};
+use super::io::{Deadline, Effect, HostId, HostInput, Program, Start, TestTimer, environment};
 use super::judge::{Evidence, Problem, judge};
 use super::suite::Context;
 use crate::host::codec::INITIALIZE;
-use crate::plan::{SuitePlan, TestPlan};
+use crate::plan::{Leaks, SuitePlan, TestPlan};
 
 /// The number of `run-test` on a host's channel.
 const RUN_TEST: u64 = 2;
@@ -117,7 +117,7 @@ impl<'p> TestRun<'p> {
     pub fn host_start(suite: &SuitePlan, plan: &TestPlan) -> Start {
         Start {
             what: Program::Host(plan.plugin.host.clone()),
-            env: suite.env.iter().chain(&plan.env).cloned().collect(),
+            env: environment(suite, &plan.env, "test", &plan.name),
             folder: suite.folder.clone(),
         }
     }
@@ -357,12 +357,17 @@ impl<'p> TestRun<'p> {
                 cx.emit(EventKind::Output(output));
             }
         }
+        let leak = leak_of(self.plan.leaks, &left);
         if !left.is_empty() {
             let source = Source::Test(self.plan.id);
             cx.emit(EventKind::ProcessesLeft { source, processes: left });
         }
         self.evidence.exit = exit;
-        let (verdict, reason, phase) = judge(&self.evidence, self.phase);
+        let (mut verdict, mut reason, phase) = judge(&self.evidence, self.phase);
+        if let (Verdict::Passed, Some(problem)) = (verdict, leak) {
+            verdict = Verdict::Error;
+            reason = Some(problem);
+        }
         Ended { verdict, reason, phase, exit, critical: self.critical.take() }
     }
 
@@ -376,6 +381,17 @@ impl<'p> TestRun<'p> {
             exit: ended.exit,
             rerun,
         })
+    }
+}
+
+/// What is said of a test that passed and left processes behind, if that counts.
+fn leak_of(leaks: Leaks, left: &[LeftProcess]) -> Option<String> {
+    match (leaks, left) {
+        (Leaks::Report, _) | (_, []) => None,
+        (Leaks::Fail, [one]) => Some(format!("it left a process behind: {}", one.command)),
+        (Leaks::Fail, [first, ..]) => {
+            Some(format!("it left {} processes behind, first: {}", left.len(), first.command))
+        }
     }
 }
 

@@ -4,9 +4,9 @@
 
 use proptest::prelude::*;
 use rtf_model::protocol::{Notification, Reply};
-use rtf_model::{ExitStatus, Message, MessageKind, Phase, Verdict};
+use rtf_model::{ExitStatus, Message, MessageKind, Phase, Trigger, Verdict};
 
-use super::world::{World, suite};
+use super::world::{SECOND, World, hook, suite};
 use crate::plan::AfterCollapse;
 use crate::run::machine::{HostInput, Input, StopLevel};
 
@@ -71,13 +71,19 @@ proptest! {
         fixtures in 0..3usize,
         tests in 1..5usize,
         restarts in 0..4u32,
+        independent in any::<bool>(),
     ) {
         let mut plan = suite(fixtures, tests);
         for fixture in &mut plan.fixtures {
             fixture.restarts = restarts;
+            fixture.restart_delay = SECOND;
+            if independent {
+                fixture.depends.clear();
+            }
         }
         plan.tests[0].after_collapse = AfterCollapse::Rerun;
         plan.tests[tests - 1].repetitions = 2;
+        plan.hooks = vec![hook(0, &Trigger::ALL), hook(1, &[Trigger::End])];
         let mut world = World::new(&plan);
         world.start();
         for (choice, which) in steps {
@@ -91,6 +97,7 @@ proptest! {
         let totals = world.record.totals();
         prop_assert_eq!(totals.done() as usize, tests);
         check_overlaps(&world);
+        prop_assert!(world.record.hooks.iter().all(|h| h.runs.iter().all(|r| r.finished.is_some())));
     }
 }
 

@@ -3,5 +3,7 @@
 mod chaos;
 mod collapse;
 mod flow;
+mod graph;
+mod hooks;
 mod limits;
 mod world;

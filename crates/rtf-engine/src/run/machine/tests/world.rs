@@ -7,8 +7,9 @@ use std::time::Duration;
 
 use rtf_model::protocol::{Notification, Reply, Request};
 use rtf_model::{
-    Event, EventKind, ExitStatus, FixtureId, FixturePlanned, Message, MessageKind, Micros,
-    OrderChecker, Phase, Record, RunStarted, Source, SuiteId, SuitePlanned, TestId, TestPlanned,
+    Event, EventKind, ExitStatus, FixtureId, FixturePlanned, HookId, HookPlanned, Message,
+    MessageKind, Micros, OrderChecker, Phase, Record, RunStarted, Source, SuiteId, SuitePlanned,
+    TestId, TestPlanned, Trigger,
 };
 
 use crate::plan::*;
@@ -56,6 +57,18 @@ fn fixture(index: usize) -> FixturePlan {
         restarts: 1,
         restart_delay: Duration::ZERO,
         check_every: None,
+    }
+}
+
+/// A hook that is a command.
+pub fn hook(index: usize, on: &[Trigger]) -> HookPlan {
+    HookPlan {
+        id: HookId(u32::try_from(index).unwrap()),
+        name: format!("hook{index}"),
+        on: on.to_vec(),
+        body: HookBody::Command(vec!["park".to_owned()]),
+        env: Vec::new(),
+        timeout: 4 * SECOND,
     }
 }
 
@@ -142,6 +155,10 @@ impl<'p> World<'p> {
                 name,
                 plugin_type,
             }));
+        }
+        for hook in &plan.hooks {
+            let (hook, suite, name, on) = (hook.id, plan.id, hook.name.clone(), hook.on.clone());
+            self.emit(EventKind::HookPlanned(HookPlanned { hook, suite, name, on }));
         }
         for test in &plan.tests {
             self.emit(EventKind::TestPlanned(TestPlanned {

@@ -1,0 +1,136 @@
+//! All fixtures of a suite: which may be set up or torn down now.
+//!
+//! A fixture is set up when all that it depends on are ready, and torn down
+//! when all that depend on it are gone. Those that do not depend on each other
+//! go at the same time.
+
+use super::fixture::{FixtureRun, State};
+use super::io::HostId;
+use super::suite::Context;
+use crate::plan::SuitePlan;
+
+/// The fixtures of a suite, in the order of its plan.
+#[derive(Debug)]
+pub struct Fixtures<'p> {
+    runs: Vec<FixtureRun<'p>>,
+    restarts: Vec<u32>,
+}
+
+impl<'p> Fixtures<'p> {
+    pub fn new(plan: &'p SuitePlan) -> Self {
+        let count = plan.fixtures.len();
+        let runs = (0..count).map(|place| FixtureRun::new(plan, place)).collect();
+        Self { runs, restarts: vec![0; count] }
+    }
+
+    pub fn get(&mut self, place: usize) -> &mut FixtureRun<'p> {
+        &mut self.runs[place]
+    }
+
+    /// The place of the fixture that this process belongs to.
+    pub fn place_of(&self, host: HostId) -> Option<usize> {
+        self.runs.iter().position(|fixture| fixture.host() == Some(host))
+    }
+
+    fn any(&self, states: &[State]) -> bool {
+        self.runs.iter().any(|fixture| states.contains(&fixture.state()))
+    }
+
+    pub fn any_unwell(&self) -> bool {
+        self.any(&[State::Unwell])
+    }
+
+    pub fn any_stopping(&self) -> bool {
+        self.any(&[State::Stopping, State::Ending])
+    }
+
+    pub fn all_ready(&self) -> bool {
+        self.runs.iter().all(|fixture| fixture.state() == State::Ready)
+    }
+
+    pub fn all_stopped(&self) -> bool {
+        self.runs.iter().all(|fixture| fixture.state() == State::Stopped)
+    }
+
+    pub fn any_started(&self) -> bool {
+        self.runs.iter().any(|fixture| fixture.starts() > 0)
+    }
+
+    /// Sets up every fixture whose turn it is; false when there is none.
+    pub fn start_next(&mut self, cx: &mut Context<'_>) -> bool {
+        let ready: Vec<bool> = self.runs.iter().map(|f| f.state() == State::Ready).collect();
+        let mut started = false;
+        for fixture in self.runs.iter_mut().filter(|f| f.state() == State::Stopped) {
+            if fixture.plan().depends.iter().all(|place| ready[*place]) {
+                fixture.start(cx);
+                started = true;
+            }
+        }
+        started
+    }
+
+    /// Tears down what is unwell and all that depends on it, as far as it is
+    /// its turn.
+    pub fn stop_unwell(&mut self, cx: &mut Context<'_>) {
+        let unwell = |fixture: &FixtureRun<'_>| fixture.state() == State::Unwell;
+        let mut doomed: Vec<bool> = self.runs.iter().map(unwell).collect();
+        // A chain of dependencies is no longer than the list.
+        for _ in 0..self.runs.len() {
+            for place in 0..self.runs.len() {
+                let depends = &self.runs[place].plan().depends;
+                doomed[place] |= depends.iter().any(|needed| doomed[*needed]);
+            }
+        }
+        self.stop(&doomed, cx);
+    }
+
+    /// Tears down everything, as far as it is its turn.
+    pub fn stop_all(&mut self, cx: &mut Context<'_>) {
+        self.stop(&vec![true; self.runs.len()], cx);
+    }
+
+    fn stop(&mut self, doomed: &[bool], cx: &mut Context<'_>) {
+        // One that is gone at once may let the next one go: look again.
+        loop {
+            let due = |place: &usize| doomed[*place] && self.may_stop(*place);
+            let due: Vec<usize> = (0..self.runs.len()).rev().filter(due).collect();
+            if due.is_empty() {
+                return;
+            }
+            for place in due {
+                self.runs[place].stop(cx);
+            }
+        }
+    }
+
+    fn may_stop(&self, place: usize) -> bool {
+        let there = [State::Waiting, State::Starting, State::Ready, State::Unwell];
+        let gone = |fixture: &FixtureRun<'_>| fixture.state() == State::Stopped;
+        there.contains(&self.runs[place].state())
+            && self.runs.iter().all(|other| !other.plan().depends.contains(&place) || gone(other))
+    }
+
+    /// Kills everything, the last fixture first.
+    pub fn kill_all(&mut self, cx: &mut Context<'_>) {
+        self.runs.iter_mut().rev().for_each(|fixture| fixture.kill(cx));
+    }
+
+    /// Takes one of a fixture's restarts; false when they are used up.
+    pub fn take_restart(&mut self, place: usize) -> bool {
+        if self.restarts[place] >= self.runs[place].plan().restarts {
+            return false;
+        }
+        self.restarts[place] += 1;
+        self.runs[place].delay_restart(self.restarts[place]);
+        true
+    }
+
+    /// Asks each plug-in whether it is well.
+    pub fn ask_checks(&mut self, cx: &mut Context<'_>) {
+        self.runs.iter_mut().for_each(|fixture| fixture.ask_check(cx));
+    }
+
+    pub fn any_checking(&self) -> bool {
+        self.runs.iter().any(FixtureRun::is_checking)
+    }
+}

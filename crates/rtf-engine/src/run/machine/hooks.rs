@@ -1,0 +1,73 @@
+//! All hooks of a suite: which were called for, and which one runs.
+
+use std::collections::VecDeque;
+
+use rtf_model::{TestId, Trigger};
+
+use super::hook::{Call, HookRun};
+use super::io::{HostId, HostInput};
+use super::suite::Context;
+use crate::plan::SuitePlan;
+
+/// The hooks of a suite. They run one after the other, while no test runs.
+#[derive(Debug)]
+pub struct Hooks<'p> {
+    plan: &'p SuitePlan,
+    queue: VecDeque<Call>,
+    running: Option<HookRun<'p>>,
+    /// Which ran, or wait to be run, since the last test.
+    done: Vec<bool>,
+}
+
+impl<'p> Hooks<'p> {
+    pub fn new(plan: &'p SuitePlan) -> Self {
+        let done = vec![false; plan.hooks.len()];
+        Self { plan, queue: VecDeque::new(), running: None, done }
+    }
+
+    /// Calls for the hooks of a trigger. One that waits already for the same
+    /// trigger is not run twice.
+    pub fn call(&mut self, trigger: Trigger, reason: &str, test: Option<(TestId, String)>) {
+        for (place, plan) in self.plan.hooks.iter().enumerate() {
+            let waits =
+                self.queue.iter().any(|call| call.place == place && call.trigger == trigger);
+            let idle = trigger == Trigger::End && self.done[place];
+            if plan.on.contains(&trigger) && !waits && !idle {
+                self.done[place] = true;
+                let (reason, test) = (reason.to_owned(), test.clone());
+                self.queue.push_back(Call { place, trigger, reason, test });
+            }
+        }
+    }
+
+    /// The robot will move again: what was done is of no use any more.
+    pub fn test_starts(&mut self) {
+        self.done.fill(false);
+    }
+
+    /// Whether a hook runs; the next one that waits is started.
+    pub fn run_next(&mut self, cx: &mut Context<'_>) -> bool {
+        if self.running.is_none() {
+            self.running = self.queue.pop_front().map(|call| HookRun::start(self.plan, call, cx));
+        }
+        self.running.is_some()
+    }
+
+    pub fn owns(&self, host: HostId) -> bool {
+        self.running.as_ref().is_some_and(|hook| hook.host() == host)
+    }
+
+    /// Takes in what the running hook's process did.
+    pub fn handle(&mut self, input: HostInput, cx: &mut Context<'_>) {
+        if self.running.as_mut().is_some_and(|hook| hook.handle(input, cx)) {
+            self.running = None;
+        }
+    }
+
+    /// The running hook's deadline has passed.
+    pub fn deadline(&mut self, cx: &mut Context<'_>) {
+        if let Some(hook) = &mut self.running {
+            hook.deadline(cx);
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! Fixtures that depend on each other, or do not; and restarts that wait.
+
+use insta::assert_snapshot;
+use rtf_model::{ExitStatus, FixtureId, Source, TestId, Verdict};
+
+use super::world::{SECOND, World, suite};
+use crate::run::machine::{Deadline, FixtureTimer, StopLevel};
+
+fn fixture(number: u32) -> Source {
+    Source::Fixture(FixtureId(number))
+}
+
+#[test]
+fn independent_fixtures_are_set_up_and_torn_down_together() {
+    let mut plan = suite(3, 1);
+    plan.fixtures[1].depends.clear();
+    plan.fixtures[2].depends = vec![0, 1];
+    let mut world = World::new(&plan);
+    world.start();
+    world.answer(fixture(1), "passed");
+    world.answer(fixture(0), "passed");
+    world.answer(fixture(2), "passed");
+    (0..3).for_each(|number| world.answer(fixture(number), "passed"));
+    world.pass(0);
+    world.tear_down(2);
+    world.tear_down(0);
+    world.tear_down(1);
+    world.finish();
+    assert_snapshot!(world.story(), @"
+    0.0  suite-started
+    0.0  fixture-starting attempt=1 fixture=0
+    0.0  fixture-starting attempt=1 fixture=1
+    0.0  fixture-ready fixture=1
+    0.0  fixture-ready fixture=0
+    0.0  fixture-starting attempt=1 fixture=2
+    0.0  fixture-ready fixture=2
+    0.0  test-started attempt=1 repetition=1 test=0
+    0.0  test-phase phase=setup test=0
+    0.0  test-phase phase=run test=0
+    0.0  test-phase phase=tear-down test=0
+    0.0    → close the channel
+    0.0  test-finished exit={code:0} phase=exit test=0 verdict=passed
+    0.0  fixture-stopping fixture=2
+    0.0    → close the channel
+    0.0  fixture-stopped fixture=2
+    0.0  fixture-stopping fixture=1
+    0.0  fixture-stopping fixture=0
+    0.0    → close the channel
+    0.0  fixture-stopped fixture=0
+    0.0    → close the channel
+    0.0  fixture-stopped fixture=1
+    0.0  suite-finished
+    ");
+}
+
+#[test]
+fn a_collapse_takes_only_those_with_it_that_depend_on_it() {
+    let mut plan = suite(3, 1);
+    plan.fixtures[1].depends.clear();
+    plan.fixtures[2].depends = vec![1];
+    let mut world = World::new(&plan);
+    world.start();
+    (0..3).for_each(|number| world.answer(fixture(number), "passed"));
+    world.exit(fixture(1), ExitStatus::Signal(9));
+    world.tear_down(2);
+    world.answer(fixture(1), "passed");
+    world.answer(fixture(2), "passed");
+    (0..3).for_each(|number| world.answer(fixture(number), "passed"));
+    world.pass(0);
+    (0..3).rev().for_each(|number| world.tear_down(number));
+    world.finish();
+    let starts: Vec<u32> = world.record.fixtures.iter().map(|fixture| fixture.starts).collect();
+    assert_eq!(starts, [1, 2, 2]);
+}
+
+#[test]
+fn each_further_restart_waits_twice_as_long() {
+    let mut plan = suite(1, 1);
+    plan.fixtures[0].restarts = 5;
+    plan.fixtures[0].restart_delay = 3 * SECOND;
+    let mut world = World::new(&plan);
+    world.start();
+    world.answer(fixture(0), "passed");
+    let mut waited = Vec::new();
+    for _ in 0..4 {
+        world.exit(fixture(0), ExitStatus::Code(1));
+        let before = world.now;
+        assert_eq!(world.next_deadline(), Deadline::Fixture(0, FixtureTimer::RestartDue));
+        waited.push((world.now - before).as_secs());
+        world.answer(fixture(0), "passed");
+    }
+    assert_eq!(waited, [3, 6, 10, 10]);
+}
+
+#[test]
+fn a_stop_while_a_restart_waits_starts_nothing() {
+    let mut plan = suite(1, 1);
+    plan.fixtures[0].restart_delay = SECOND;
+    let mut world = World::new(&plan);
+    world.start();
+    world.answer(fixture(0), "passed");
+    world.exit(fixture(0), ExitStatus::Code(1));
+    world.stop(StopLevel::TearDown);
+    world.finish();
+    assert_eq!(world.record.fixtures[0].starts, 1);
+    assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Skipped));
+}

@@ -1,0 +1,184 @@
+//! Hooks: after what, before what, and with which outcome.
+
+use insta::assert_snapshot;
+use rtf_model::protocol::Notification;
+use rtf_model::{ExitStatus, FixtureId, HookId, Phase, Source, TestId, Trigger, Verdict};
+
+use super::world::{World, hook, suite};
+use crate::plan::SuitePlan;
+use crate::run::machine::{Deadline, HostInput, StopLevel};
+
+const FIXTURE: Source = Source::Fixture(FixtureId(0));
+const TEST: Source = Source::Test(TestId(0));
+const HOOK: Source = Source::Hook(HookId(0));
+
+fn plan(tests: usize, on: &[Trigger]) -> SuitePlan {
+    let mut plan = suite(1, tests);
+    plan.hooks = vec![hook(0, on)];
+    plan
+}
+
+fn until_test_runs(plan: &SuitePlan) -> World<'_> {
+    let mut world = World::new(plan);
+    world.start();
+    world.answer(FIXTURE, "passed");
+    world.answer(FIXTURE, "passed");
+    world.phase(TEST, Phase::Run);
+    world
+}
+
+fn fail(world: &mut World<'_>) {
+    world.failure(TEST, "the arm is stuck", false);
+    world.answer(TEST, "failed");
+    world.exit(TEST, ExitStatus::Code(0));
+}
+
+#[test]
+fn after_a_failure_the_hook_runs_before_the_next_test() {
+    let plan = plan(2, &[Trigger::Failure]);
+    let mut world = until_test_runs(&plan);
+    fail(&mut world);
+    world.exit(HOOK, ExitStatus::Code(0));
+    world.answer(FIXTURE, "passed");
+    world.pass(1);
+    world.tear_down(0);
+    world.finish();
+    assert_snapshot!(world.story(), @"
+    0.0  suite-started
+    0.0  fixture-starting attempt=1 fixture=0
+    0.0  fixture-ready fixture=0
+    0.0  test-started attempt=1 repetition=1 test=0
+    0.0  test-phase phase=run test=0
+    0.0  message source={test:0}
+    0.0    → close the channel
+    0.0  test-finished exit={code:0} phase=run reason=the arm is stuck test=0 verdict=failed
+    0.0  hook-started hook=0 reason=`test0` is failed: the arm is stuck test=0 trigger=failure
+    0.0  hook-finished hook=0
+    0.0  test-started attempt=1 repetition=1 test=1
+    0.0  test-phase phase=setup test=1
+    0.0  test-phase phase=run test=1
+    0.0  test-phase phase=tear-down test=1
+    0.0    → close the channel
+    0.0  test-finished exit={code:0} phase=exit test=1 verdict=passed
+    0.0  fixture-stopping fixture=0
+    0.0    → close the channel
+    0.0  fixture-stopped fixture=0
+    0.0  suite-finished
+    ");
+    assert!(!world.record.hook_failed());
+}
+
+#[test]
+fn after_a_collapse_the_hook_runs_before_anything_is_torn_down() {
+    let plan = plan(1, &[Trigger::Collapse]);
+    let mut world = until_test_runs(&plan);
+    let reason = "no heartbeat".to_owned();
+    world.input(FIXTURE, HostInput::Told(Notification::Collapsed { reason }));
+    world.answer(TEST, "interrupted");
+    world.exit(TEST, ExitStatus::Code(0));
+    world.exit(HOOK, ExitStatus::Code(0));
+    world.tear_down(0);
+    world.finish();
+    assert_snapshot!(world.story(), @"
+    0.0  suite-started
+    0.0  fixture-starting attempt=1 fixture=0
+    0.0  fixture-ready fixture=0
+    0.0  test-started attempt=1 repetition=1 test=0
+    0.0  test-phase phase=run test=0
+    0.0  fixture-collapsed fixture=0 reason=no heartbeat
+    0.0  test-stopping cause=collapse reason=fixture `fixture0` collapsed: no heartbeat test=0
+    0.0    → close the channel
+    0.0  test-finished exit={code:0} phase=run reason=fixture `fixture0` collapsed: no heartbeat test=0 verdict=collapsed
+    0.0  hook-started hook=0 reason=fixture `fixture0` collapsed: no heartbeat test=0 trigger=collapse
+    0.0  hook-finished hook=0
+    0.0  fixture-stopping fixture=0
+    0.0    → close the channel
+    0.0  fixture-stopped fixture=0
+    0.0  suite-finished
+    ");
+}
+
+#[test]
+fn a_hook_that_fails_is_told_and_the_run_is_not_green() {
+    let plan = plan(1, &[Trigger::End]);
+    let mut world = until_test_runs(&plan);
+    world.phase(TEST, Phase::TearDown);
+    world.answer(TEST, "passed");
+    world.exit(TEST, ExitStatus::Code(0));
+    world.exit(HOOK, ExitStatus::Code(3));
+    world.tear_down(0);
+    world.finish();
+    assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Passed));
+    assert!(world.record.hook_failed() && !world.record.is_green());
+    let problems = world.record.suite_problems(plan.id);
+    assert_eq!(problems, ["hook `hook0` on end: it ended with exit code 3"]);
+}
+
+#[test]
+fn a_hook_that_hangs_is_ended_by_force() {
+    let plan = plan(1, &[Trigger::Failure]);
+    let mut world = until_test_runs(&plan);
+    fail(&mut world);
+    assert_eq!(world.next_deadline(), Deadline::Hook);
+    assert_eq!(world.next_deadline(), Deadline::Hook);
+    world.exit(HOOK, ExitStatus::Signal(9));
+    world.tear_down(0);
+    world.finish();
+    let problems = world.record.suite_problems(plan.id);
+    assert_eq!(problems, ["hook `hook0` on failure: it did not end within 4s"]);
+}
+
+#[test]
+fn the_end_does_not_call_a_hook_again_that_ran_since_the_last_test() {
+    let plan = plan(1, &[Trigger::Failure, Trigger::End]);
+    let mut world = until_test_runs(&plan);
+    fail(&mut world);
+    world.exit(HOOK, ExitStatus::Code(0));
+    world.tear_down(0);
+    world.finish();
+    assert_eq!(world.record.hooks[0].runs.len(), 1);
+}
+
+#[test]
+fn the_first_signal_calls_the_hook_and_the_second_one_leaves_it_running() {
+    let plan = plan(1, &[Trigger::Interrupt]);
+    let mut world = until_test_runs(&plan);
+    world.stop(StopLevel::TearDown);
+    world.answer(TEST, "interrupted");
+    world.exit(TEST, ExitStatus::Code(0));
+    world.stop(StopLevel::Kill);
+    world.exit(FIXTURE, ExitStatus::Signal(9));
+    world.exit(HOOK, ExitStatus::Code(0));
+    world.finish();
+    assert_snapshot!(world.story(), @"
+    0.0  suite-started
+    0.0  fixture-starting attempt=1 fixture=0
+    0.0  fixture-ready fixture=0
+    0.0  test-started attempt=1 repetition=1 test=0
+    0.0  test-phase phase=run test=0
+    0.0  test-stopping cause=interrupt reason=stopped by SIGINT test=0
+    0.0    → close the channel
+    0.0  test-finished exit={code:0} phase=run reason=stopped by SIGINT test=0 verdict=interrupted
+    0.0  hook-started hook=0 reason=stopped by SIGINT test=0 trigger=interrupt
+    0.0  fixture-stopping fixture=0
+    0.0    → kill the tree
+    0.0  fixture-stopped fixture=0
+    0.0  hook-finished hook=0
+    0.0  suite-finished
+    ");
+}
+
+#[test]
+fn a_fixture_that_breaks_calls_its_hook_before_the_others_are_torn_down() {
+    let mut plan = suite(2, 1);
+    plan.hooks = vec![hook(0, &[Trigger::FixtureBroken])];
+    let mut world = World::new(&plan);
+    world.start();
+    world.answer(FIXTURE, "passed");
+    world.answer(Source::Fixture(FixtureId(1)), "error");
+    world.exit(HOOK, ExitStatus::Code(0));
+    world.tear_down(1);
+    world.tear_down(0);
+    world.finish();
+    assert_eq!(world.record.hooks[0].runs[0].trigger, Trigger::FixtureBroken);
+}
