@@ -15,6 +15,7 @@ import re
 import sys
 import tempfile
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from lines import all_groups
@@ -23,7 +24,7 @@ from measuring.bench import TOP, Bench
 from measuring.build import build
 from measuring.judge import Judgement, judge
 from measuring.model import Group, MeasuringError
-from measuring.others import NOISY_SHARE, Others
+from measuring.others import Others
 from measuring.rounds import measure
 
 
@@ -41,7 +42,7 @@ def main() -> int:
         raise MeasuringError(f"no line has a name with `{options.only.pattern}`, see --list")
     print(about_machine())
     print(table.text(judgements))
-    for note in filter(None, (judgement.note for judgement in judgements)):
+    for note in table.notes(judgements):
         print(f"note: {note}")
     if options.json:
         options.json.write_text(table.as_json(judgements), encoding="utf-8")
@@ -100,18 +101,8 @@ def measure_all(bench: Bench, only: re.Pattern[str], rounds: int | None) -> Iter
             with Progress(group) as tell:
                 others = Others()
                 found = measure(group, lines, rounds or group.rounds, tell)
-                disturbed(group, others.share())
-            yield from (judge(group, line, found) for line in lines)
-
-
-def disturbed(group: Group, share: float) -> None:
-    """Warns when the numbers of a group are not to be trusted."""
-    if share >= NOISY_SHARE:
-        print(
-            f"warning: {group.name}: other programs used {share:.0%} of the processors meanwhile; "
-            "measure again when they are quiet",
-            file=sys.stderr,
-        )
+                share = others.share()
+            yield from (replace(judge(group, line, found), foreign_share=share) for line in lines)
 
 
 class Progress(contextlib.AbstractContextManager["Progress"]):

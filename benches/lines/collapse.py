@@ -17,7 +17,7 @@ COUNT = 60
 """Collapses in each round."""
 
 LATENCY = "ms"
-NOTICE = "ms, runner"
+NOTICE = "µs"
 
 PROCESS = "process"
 PLUGIN = "plug-in"
@@ -89,5 +89,5 @@ def notices(events: list[dict[str, object]]) -> list[float]:
         if event["type"] == "fixture-collapsed":
             since = at
         elif event["type"] == "test-stopping":
-            found.append((at - since) / 1e3)
+            found.append(float(at - since))
     return found

@@ -28,6 +28,8 @@ class Judgement:
     ratios: list[float] | None = None
     """The ratio to the peer in each round."""
     note: str = ""
+    foreign_share: float = 0.0
+    """The share of the processors that other programs used meanwhile."""
 
     @property
     def ratio(self) -> float | None:

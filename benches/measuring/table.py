@@ -8,6 +8,7 @@ from pathlib import Path
 
 from measuring.judge import Judgement
 from measuring.model import MeasuringError
+from measuring.others import NOISY_SHARE
 
 TIMES = "\N{MULTIPLICATION SIGN}"
 HEADER = ("what", "measured", "to its peer", "limit", "verdict")
@@ -56,13 +57,28 @@ def markdown(judgements: Sequence[Judgement]) -> str:
     return "\n".join("| " + " | ".join(cells) + " |" for cells in rows)
 
 
+def notes(judgements: Sequence[Judgement]) -> list[str]:
+    """What a reader has to know before believing the table."""
+    found = [judgement.note for judgement in judgements if judgement.note]
+    shares = {judgement.group: judgement.foreign_share for judgement in judgements}
+    for group, share in shares.items():
+        if share >= NOISY_SHARE:
+            found.append(
+                f"{group}: other programs used {share:.0%} of the processors meanwhile; "
+                "measure again when they are quiet"
+            )
+    return found
+
+
 def write_page(page: Path, judgements: Sequence[Judgement]) -> None:
     """Replaces the table in a page, which stands between two comments."""
     before, begin, rest = page.read_text(encoding="utf-8").partition(BEGIN)
     _, end, after = rest.partition(END)
     if not (begin and end):
         raise MeasuringError(f"{page}: no `{BEGIN}` with a `{END}` after it")
-    table = f"{begin}\n{markdown(judgements)}\n{end}"
+    below = "".join(f"\n- {note}" for note in notes(judgements))
+    below = f"\nDuring this measurement:\n{below}\n" if below else ""
+    table = f"{begin}\n{markdown(judgements)}\n{below}{end}"
     page.write_text(before + table + after, encoding="utf-8")
 
 
@@ -84,6 +100,7 @@ def entry(judgement: Judgement) -> dict[str, object]:
         "ratios": judgement.ratios,
         "verdict": judgement.verdict or None,
         "note": judgement.note or None,
+        "foreign_share": judgement.foreign_share,
     }
     if line.limit is not None:
         result["limit"] = {
