@@ -163,12 +163,12 @@ fn spawn(request: &SpawnRequest) -> io::Result<Process> {
         channel = Some(UnixStream::from_std(ours)?);
         theirs = Some(host);
     }
-    let child = command.spawn();
+    let pid_of = |child: &io::Result<Child>| i32::try_from(child.as_ref().ok()?.id()?).ok();
+    let child = tree::start_own_child(|| command.spawn(), pid_of);
     // From here on nobody but the new process has the other end.
     drop(theirs);
     let mut child = child?;
     let pid = child.id().and_then(|pid| i32::try_from(pid).ok()).unwrap_or_default();
-    tree::add_own_child(pid);
     let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
     Ok(Process { pid, channel, stdout, stderr, end: End { pid, child } })
 }

@@ -8,7 +8,9 @@
 use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{LazyLock, Mutex, PoisonError};
+use std::time::Duration;
 
 use rtf_model::LeftProcess;
 use rtf_model::protocol::SCOPE_VARIABLE;
@@ -16,13 +18,26 @@ use rtf_model::protocol::SCOPE_VARIABLE;
 use super::unix;
 
 const SIGKILL: i32 = 9;
+/// How often, and how long apart, an environment that looks empty is looked at.
+const EXEC_LOOKS: u32 = 50;
+const EXEC_WAIT: Duration = Duration::from_micros(200);
 
 /// The processes that this runner started itself and waits for itself.
 static OWN_CHILDREN: LazyLock<Mutex<HashSet<i32>>> = LazyLock::new(Mutex::default);
 
-/// Remembers a process that the runner started and will wait for.
-pub fn add_own_child(pid: i32) {
-    OWN_CHILDREN.lock().unwrap_or_else(PoisonError::into_inner).insert(pid);
+/// Odd while a process is being started: it is a child already and not yet known.
+static STARTS: AtomicUsize = AtomicUsize::new(0);
+
+/// Starts a process that the runner will wait for, and remembers it. Called by
+/// one thread only.
+pub fn start_own_child<T>(start: impl FnOnce() -> T, pid_of: impl FnOnce(&T) -> Option<i32>) -> T {
+    STARTS.fetch_add(1, Ordering::SeqCst);
+    let started = start();
+    if let Some(pid) = pid_of(&started) {
+        OWN_CHILDREN.lock().unwrap_or_else(PoisonError::into_inner).insert(pid);
+    }
+    STARTS.fetch_add(1, Ordering::SeqCst);
+    started
 }
 
 /// Forgets a process that the runner has waited for.
@@ -68,16 +83,21 @@ fn sweep_if(belongs: impl Fn(i32) -> bool) -> Vec<LeftProcess> {
     let mut left = Vec::new();
     let mut seen = HashSet::new();
     loop {
+        let starts = STARTS.load(Ordering::SeqCst);
         let orphans = children_of("/proc/self/task").into_iter();
         let found: Vec<i32> = orphans
             .filter(|pid| !is_own_child(*pid))
             .filter(|pid| is_zombie(*pid) || belongs(*pid))
             .flat_map(|pid| std::iter::once(pid).chain(descendants(pid)))
             .collect();
+        // One that is just being started may look like a dead orphan.
+        let is_quiet = starts.is_multiple_of(2) && STARTS.load(Ordering::SeqCst) == starts;
         let before = left.len();
         for pid in &found {
             if is_zombie(*pid) {
-                unix::reap(*pid);
+                if is_quiet {
+                    unix::reap(*pid);
+                }
             } else if seen.insert(*pid) {
                 left.push(LeftProcess { pid: *pid, command: command_of(*pid), owner: None });
                 unix::signal_process(*pid, SIGKILL);
@@ -123,9 +143,26 @@ fn is_zombie(pid: i32) -> bool {
     stat.rsplit_once(") ").is_some_and(|(_, rest)| rest.starts_with('Z'))
 }
 
+/// The environment of a process. It looks empty for a moment while the process
+/// executes a program; one that stays empty was emptied by the process itself.
+fn environ_of(pid: i32) -> Option<Vec<u8>> {
+    static EMPTIED: LazyLock<Mutex<HashSet<i32>>> = LazyLock::new(Mutex::default);
+    let mut emptied = EMPTIED.lock().unwrap_or_else(PoisonError::into_inner);
+    let looks = if emptied.contains(&pid) { 1 } else { EXEC_LOOKS };
+    for _ in 0..looks {
+        let environ = std::fs::read(format!("/proc/{pid}/environ")).ok()?;
+        if !environ.is_empty() || is_zombie(pid) {
+            return Some(environ);
+        }
+        std::thread::sleep(EXEC_WAIT);
+    }
+    emptied.insert(pid);
+    None
+}
+
 /// The value of the scope variable of a process.
 fn scope_of(pid: i32) -> Option<Vec<u8>> {
-    let environ = std::fs::read(format!("/proc/{pid}/environ")).ok()?;
+    let environ = environ_of(pid)?;
     let prefix = format!("{SCOPE_VARIABLE}=");
     let found =
         environ.split(|byte| *byte == 0).find_map(|entry| entry.strip_prefix(prefix.as_bytes()));
