@@ -1,7 +1,9 @@
-//! Why an attempt of a test did not pass, line by line. Console, text and JUnit
+//! Why an attempt of a test or a hook went wrong, line by line. Console, text and JUnit
 //! tell it alike; each paints and indents the lines as it likes.
 
-use rtf_model::{AttemptRecord, Comparison, LeftProcess, Measurement, Message, MessageKind};
+use rtf_model::{
+    AttemptRecord, Comparison, HookRun, LeftProcess, Measurement, Message, MessageKind,
+};
 
 use crate::{escape, words};
 
@@ -34,7 +36,7 @@ impl Extent {
 pub(crate) type Sink<'a> = &'a mut dyn FnMut(Tone, &str);
 
 /// Tells why an attempt did not pass: reason, failures, measurements outside
-/// their limits, stacks, processes left behind. What it printed is not told.
+/// their limits, stacks. Neither what it printed nor what it left is told.
 pub(crate) fn explain(attempt: &AttemptRecord, extent: Extent, sink: Sink<'_>) {
     let reason = attempt.finished.as_ref().and_then(|(_, finished)| finished.reason.as_deref());
     if let Some(reason) = reason.filter(|reason| !is_told_with_its_place(attempt, reason)) {
@@ -51,7 +53,21 @@ pub(crate) fn explain(attempt: &AttemptRecord, extent: Extent, sink: Sink<'_>) {
     for stack in &attempt.stacks {
         self::stack(stack, extent, sink);
     }
-    left(&attempt.left, sink);
+}
+
+/// Tells why a run of a hook did not do its work: problem, failures, stacks,
+/// processes left behind. What it printed is not told.
+pub(crate) fn hook(run: &HookRun, extent: Extent, sink: Sink<'_>) {
+    let is_told = |problem: &&str| run.messages.iter().any(|message| message.text == *problem);
+    if let Some(problem) = run.problem().filter(|problem| !is_told(problem)) {
+        block(Tone::Bad, problem, "", sink);
+    }
+    run.messages.iter().take(extent.items).for_each(|failure| message(failure, sink));
+    left_out(run.messages.len(), extent.items, "failure", sink);
+    for stack in &run.stacks {
+        self::stack(stack, extent, sink);
+    }
+    left(&run.left, sink);
 }
 
 /// Whether the reason is one of the failures or measurements that are told
@@ -134,9 +150,16 @@ pub(crate) fn left(processes: &[LeftProcess], sink: Sink<'_>) {
     let count = words::count(processes.len() as u64, "process");
     sink(Tone::Bad, &format!("{count} left behind and killed:"));
     for process in processes {
-        let command = escape::line(&process.command);
-        sink(Tone::Plain, &format!("  {} {command}", process.pid));
+        sink(Tone::Plain, &format!("  {}", self::process(process)));
     }
+}
+
+/// `4711 sleep 1000 (test arm/EncoderTest)`.
+pub(crate) fn process(process: &LeftProcess) -> String {
+    let command = escape::line(&process.command);
+    let owner = process.owner.as_deref();
+    let owner = owner.map_or(String::new(), |owner| format!(" ({})", escape::line(owner)));
+    format!("{} {command}{owner}", process.pid)
 }
 
 /// Lines that a process printed.

@@ -35,8 +35,8 @@ pub fn attempt_log(record: &Record, id: TestId, number: (u32, u32)) -> PathBuf {
     };
     let (repetition, attempt) = number;
     let suite = record.suites.get(test.plan.suite.index()).map_or("", |s| &s.plan.name);
-    // A test that is named like a fixture's log must not share it.
-    let ambiguous = test.plan.name.starts_with("fixture-");
+    // A test that is named like a fixture's or a hook's log must not share it.
+    let ambiguous = ["fixture-", "hook-"].iter().any(|word| test.plan.name.starts_with(word));
     let mut name = base(suite, &test.plan.name, ambiguous, &format!("t{id}"));
     if test.plan.repetitions > 1 {
         name += &format!(".r{repetition}");
@@ -60,17 +60,24 @@ pub fn fixture_log(record: &Record, id: FixtureId) -> PathBuf {
 /// `logs/arm.hook-park.a2.log`.
 #[must_use]
 pub fn hook_log(record: &Record, id: HookId) -> PathBuf {
+    let runs = record.hooks.get(id.index()).map_or(1, |hook| hook.runs.len());
+    hook_run_log(record, id, runs)
+}
+
+/// The log of one run of a hook, counted from 1, relative to the run's folder.
+#[must_use]
+pub fn hook_run_log(record: &Record, id: HookId, run: usize) -> PathBuf {
     let Some(hook) = record.hooks.get(id.index()) else {
         return PathBuf::from(format!("logs/hook~{id}.log"));
     };
     let suite = record.suites.get(hook.plan.suite.index()).map_or("", |s| &s.plan.name);
     let name = format!("hook-{}", hook.plan.name);
-    let runs = u32::try_from(hook.runs.len()).unwrap_or(u32::MAX);
-    path(base(suite, &name, false, &format!("h{id}")), runs)
+    let run = u32::try_from(run).unwrap_or(u32::MAX);
+    path(base(suite, &name, false, &format!("h{id}")), run)
 }
 
-/// The log of the newest attempt or start of a source, see [`test_log`] and
-/// [`fixture_log`].
+/// The log of the newest attempt, start or run of a source, see [`test_log`],
+/// [`fixture_log`] and [`hook_log`].
 #[must_use]
 pub fn log(record: &Record, source: Source) -> PathBuf {
     match source {
@@ -165,6 +172,7 @@ impl Reporter for Logs {
             EventKind::Output(output) => self.print(output, record),
             EventKind::TestFinished(finished) => self.close(Source::Test(finished.test)),
             EventKind::FixtureStopped { fixture, .. } => self.close(Source::Fixture(*fixture)),
+            EventKind::HookFinished { hook, .. } => self.close(Source::Hook(*hook)),
             _ => Ok(()),
         }
     }

@@ -3,6 +3,8 @@
 use std::borrow::Cow;
 use std::time::Duration;
 
+use crate::escape;
+
 /// `1 test`, `2 tests`, `2 processes`.
 pub(crate) fn count(number: u64, noun: &str) -> String {
     format!("{number} {}", plural(number, noun))
@@ -40,6 +42,13 @@ pub(crate) fn quoted(word: &str) -> Cow<'_, str> {
 /// A command line as it could be typed.
 pub(crate) fn command(words: &[String]) -> String {
     words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
+}
+
+/// The first line of a text, made harmless, with a sign when there are more.
+pub(crate) fn first_line(text: &str) -> String {
+    let mut lines = text.lines();
+    let first = escape::line(lines.next().unwrap_or_default()).into_owned();
+    if lines.next().is_some() { first + " …" } else { first }
 }
 
 /// The last `limit` lines of a text, and how many lines there are in all.

@@ -199,7 +199,12 @@ impl Record {
     /// Whether a hook did not do its work: the robot may not be in a safe state.
     #[must_use]
     pub fn hook_failed(&self) -> bool {
-        self.hooks.iter().any(|hook| hook.problems().next().is_some())
+        self.failed_hooks().next().is_some()
+    }
+
+    /// The hooks of which a run did not do its work.
+    pub fn failed_hooks(&self) -> impl Iterator<Item = &HookRecord> {
+        self.hooks.iter().filter(|hook| hook.problems().next().is_some())
     }
 
     /// A test's last word. While the run goes on it is `None` for a test that

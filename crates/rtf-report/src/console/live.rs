@@ -7,12 +7,12 @@ use rtf_model::{
 
 use super::page::Page;
 use super::style::{self, BAD, BOLD, DIM, LOUD};
-use super::{ConsoleOptions, Verbosity};
+use super::{ConsoleOptions, Verbosity, hooks};
 use crate::explain::{self, Extent, Tone};
 use crate::{escape, logs, words};
 
 /// How much of a failed test is told at once; the reports have all of it.
-const EXTENT: Extent = Extent { items: 10, stack_lines: 40 };
+pub(super) const EXTENT: Extent = Extent { items: 10, stack_lines: 40 };
 
 /// How many lines of a failed test's output are told at once.
 const OUTPUT_LINES: usize = 20;
@@ -52,10 +52,13 @@ pub(super) fn show(page: &mut Page, options: &ConsoleOptions, event: &Event, rec
             page.remark((LOUD, "stack"), &live.fixture(*fixture));
             explain::stack(text, EXTENT, &mut |tone, line| page.detail(tone, line));
         }
-        EventKind::TestFinished(finished) if !(quiet && finished.verdict.is_green()) => {
-            live.finished(page, finished);
-        }
+        EventKind::TestFinished(finished) => live.finished(page, finished),
         EventKind::TestSkipped { test, reason } if !quiet => live.skipped(page, *test, reason),
+        EventKind::HookFinished { hook, .. } => hooks::finished(page, options, record, *hook),
+        EventKind::RunnerDied { reason, left } => {
+            page.remark((BAD, "RUNNER DIED"), &escape::line(reason));
+            explain::left(left, &mut |tone, line| page.detail(tone, line));
+        }
         EventKind::RunFinished { interrupted: Some(reason) } => {
             page.remark((LOUD, "INTERRUPTED"), &escape::line(reason));
         }
@@ -153,7 +156,7 @@ impl Live<'_> {
         page.remark((LOUD, "stopping"), &format!("{} ({cause}): {reason}", self.test(id)));
     }
 
-    /// What a failed test left behind is told with its failures.
+    /// What a test or a hook left behind is told with its end.
     fn left(&self, page: &mut Page, source: Source, processes: &[LeftProcess]) {
         if let Source::Fixture(id) = source {
             page.remark((LOUD, "left"), &self.fixture(id));
@@ -174,25 +177,19 @@ impl Live<'_> {
         if finished.rerun {
             name += ", will be run again";
         }
-        let verdict = (style::of_verdict(finished.verdict), finished.verdict.as_str());
-        page.entry(verdict, &words::time(attempt.duration().unwrap_or_default()), &name);
+        let green = finished.verdict.is_green();
+        if !green || self.options.verbosity > Verbosity::Quiet {
+            let verdict = (style::of_verdict(finished.verdict), finished.verdict.as_str());
+            page.entry(verdict, &words::time(attempt.duration().unwrap_or_default()), &name);
+        }
+        if green {
+            return leaked(page, &name, &attempt.left);
+        }
         let sink = &mut |tone, line: &str| page.detail(tone, line);
         explain::explain(attempt, EXTENT, sink);
+        explain::left(&attempt.left, sink);
         if !attempt.output.is_empty() && self.options.verbosity < Verbosity::Verbose {
-            self.output(finished.test, &attempt.output, sink);
-        }
-    }
-
-    fn output(&self, id: TestId, output: &str, sink: explain::Sink<'_>) {
-        let (lines, total) = words::tail(output, OUTPUT_LINES);
-        let heading = match total {
-            0..=OUTPUT_LINES => "it printed:".to_owned(),
-            _ => format!("the last {OUTPUT_LINES} of {total} lines that it printed:"),
-        };
-        sink(Tone::Plain, &heading);
-        explain::printed(lines, sink);
-        if let Some(log) = self.log(Source::Test(id)).filter(|_| total > OUTPUT_LINES) {
-            sink(Tone::Dim, &format!("all of them: {log}"));
+            output(&attempt.output, self.log(Source::Test(finished.test)), sink);
         }
     }
 
@@ -203,5 +200,27 @@ impl Live<'_> {
     fn skipped(&self, page: &mut Page, id: TestId, reason: &str) {
         let verdict = (style::of_verdict(Verdict::Skipped), Verdict::Skipped.as_str());
         page.entry(verdict, "", &format!("{}: {}", self.test(id), escape::line(reason)));
+    }
+}
+
+/// Tells what somebody left behind whose work was done nevertheless.
+pub(super) fn leaked(page: &mut Page, name: &str, processes: &[LeftProcess]) {
+    if !processes.is_empty() {
+        page.remark((LOUD, "leaked"), name);
+        explain::left(processes, &mut |tone, line| page.detail(tone, line));
+    }
+}
+
+/// Tells the last lines of what somebody printed, and in which log the others are.
+pub(super) fn output(text: &str, log: Option<String>, sink: explain::Sink<'_>) {
+    let (lines, total) = words::tail(text, OUTPUT_LINES);
+    let heading = match total {
+        0..=OUTPUT_LINES => "it printed:".to_owned(),
+        _ => format!("the last {OUTPUT_LINES} of {total} lines that it printed:"),
+    };
+    sink(Tone::Plain, &heading);
+    explain::printed(lines, sink);
+    if let Some(log) = log.filter(|_| total > OUTPUT_LINES) {
+        sink(Tone::Dim, &format!("all of them: {log}"));
     }
 }

@@ -3,6 +3,7 @@
 //! The lines go to standard output: they are what `rtf run` is asked for. The
 //! progress bar goes to standard error, and only to a terminal.
 
+mod hooks;
 mod live;
 mod options;
 mod page;

@@ -51,6 +51,10 @@ impl Progress {
             }
             EventKind::FixtureStarting { fixture, .. } => self.fixture(record, *fixture, "set up"),
             EventKind::FixtureStopping { fixture } => self.fixture(record, *fixture, "tear down"),
+            EventKind::HookStarted { hook, .. } => {
+                let name = record.full_hook_name(*hook);
+                self.bar.set_message(format!("hook {}", escape::line(&name)));
+            }
             EventKind::SuiteStarted { .. } if !self.begun => {
                 self.begun = true;
                 self.bar.set_length(record.tests.len() as u64);

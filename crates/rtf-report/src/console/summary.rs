@@ -3,21 +3,27 @@
 
 use std::collections::BTreeMap;
 
+use anstyle::Style;
 use rtf_model::{Phase, Record, TestId, Verdict};
 
-use super::ConsoleOptions;
 use super::page::Page;
-use super::style::{self, BAD, BOLD, DIM, GOOD, LOUD};
-use crate::{escape, logs, words};
+use super::style::{self, BAD, BOLD, GOOD, LOUD};
+use super::{ConsoleOptions, hooks};
+use crate::{escape, explain, logs, words};
 
 /// How many names of skipped tests are listed for one reason.
 const NAMES: usize = 5;
 
+/// How many processes that had to be killed are listed.
+const PROCESSES: usize = 50;
+
 /// Tells what came of the run.
 pub(super) fn show(page: &mut Page, options: &ConsoleOptions, record: &Record) {
+    hooks::summary(page, options, record);
     problems(page, record);
     failed(page, options, record);
     skipped(page, record);
+    killed(page, record);
     page.line("");
     if let Some(folder) = &options.folder {
         let here = folder.as_os_str().is_empty().then_some(".".into());
@@ -30,7 +36,7 @@ pub(super) fn show(page: &mut Page, options: &ConsoleOptions, record: &Record) {
 fn problems(page: &mut Page, record: &Record) {
     let of_suite = |suite: &rtf_model::SuiteRecord| {
         let name = escape::line(&suite.plan.name).into_owned();
-        let problems = record.suite_problems(suite.plan.suite);
+        let problems = record.fixture_problems(suite.plan.suite);
         problems.into_iter().map(move |problem| format!("{name}: {}", escape::line(&problem)))
     };
     let problems: Vec<_> = record.suites.iter().flat_map(of_suite).collect();
@@ -69,37 +75,27 @@ fn failed_test(page: &mut Page, options: &ConsoleOptions, record: &Record, id: T
     let name = style::paint(BOLD, &escape::line(&record.full_name(id)));
     let verdict = style::paint(style::of_verdict(verdict), verdict.as_str());
     page.line(&format!("  {name}  {verdict}{phase}"));
-    let mut fact = |label: &str, text: &str| {
-        let label = style::paint(DIM, &format!("{label:<6}"));
-        page.line(&format!("    {label}  {text}"));
-    };
     match test.reason() {
-        Some(reason) => fact("reason", &first_line(reason)),
-        None if !record.is_complete() => fact("reason", "the run ended before the test did"),
+        Some(reason) => page.fact("reason", &words::first_line(reason)),
+        None if !record.is_complete() => page.fact("reason", "the run ended before the test did"),
         None => {}
     }
     let first = attempt.and_then(|attempt| attempt.failures().next());
     if let (None, Some(failure)) = (finished, first) {
-        fact("before", &first_line(&failure.text));
+        page.fact("before", &words::first_line(&failure.text));
     }
     let violation = attempt.and_then(|attempt| attempt.violations().next());
     let place = first.and_then(|message| message.location.as_ref());
     if let Some(location) = place.or(violation.and_then(|v| v.location.as_ref())) {
-        fact("at", &escape::line(&location.to_string()));
+        page.fact("at", &escape::line(&location.to_string()));
     }
     if let Some(attempt) = attempt.filter(|attempt| !attempt.output.is_empty()) {
         let log = logs::attempt_log(record, id, (attempt.repetition, attempt.attempt));
-        options.shown(&log).into_iter().for_each(|log| fact("log", &log));
+        options.shown(&log).into_iter().for_each(|log| page.fact("log", &log));
     }
     if let Some(command) = (options.rerun)(record, id) {
-        fact("again", &escape::line(&command));
+        page.fact("again", &escape::line(&command));
     }
-}
-
-fn first_line(text: &str) -> String {
-    let mut lines = text.lines();
-    let first = escape::line(lines.next().unwrap_or_default()).into_owned();
-    if lines.next().is_some() { first + " …" } else { first }
 }
 
 fn skipped(page: &mut Page, record: &Record) {
@@ -118,13 +114,29 @@ fn skipped(page: &mut Page, record: &Record) {
     page.line(&style::paint(BOLD, "skipped tests:"));
     for (reason, tests) in reasons {
         let count = words::count(tests.len() as u64, "test");
-        page.line(&format!("  {}: {}", style::paint(LOUD, &count), first_line(reason)));
+        page.line(&format!("  {}: {}", style::paint(LOUD, &count), words::first_line(reason)));
         for id in tests.iter().take(NAMES) {
             page.line(&format!("    {}", escape::line(&record.full_name(*id))));
         }
         if tests.len() > NAMES {
             page.line(&format!("    … and {} more", tests.len() - NAMES));
         }
+    }
+}
+
+/// Everything that had to be killed, whoever left it.
+fn killed(page: &mut Page, record: &Record) {
+    let left = record.left_behind();
+    if left.is_empty() {
+        return;
+    }
+    page.line("");
+    page.line(&style::paint(BOLD, "processes that were left behind and had to be killed:"));
+    for process in left.iter().take(PROCESSES) {
+        page.line(&format!("  {}", explain::process(process)));
+    }
+    if left.len() > PROCESSES {
+        page.line(&format!("  … and {} more", left.len() - PROCESSES));
     }
 }
 
@@ -136,14 +148,32 @@ fn result(page: &mut Page, record: &Record) {
     let tests = words::count(u64::from(totals.planned), "test");
     let suites = words::count(record.suites.len() as u64, "suite");
     let time = words::time(record.last_at.as_duration());
-    let (style, word) = match (record.is_green(), record.is_complete(), record.interrupted()) {
-        (true, ..) => (GOOD, "PASSED".to_owned()),
-        (_, false, _) => (BAD, "INCOMPLETE (the runner did not reach the end)".to_owned()),
-        (.., Some(reason)) => (BAD, format!("INTERRUPTED ({})", escape::line(reason))),
-        _ if totals.planned == 0 => (BAD, "FAILED (there are no tests)".to_owned()),
-        _ => (BAD, "FAILED".to_owned()),
-    };
+    let (style, word) = outcome(record);
     let counts = if counts.is_empty() { String::new() } else { format!(": {}", counts.join(", ")) };
-    let rest = format!("{tests} in {suites}, {time}{counts}");
+    let failed = record.failed_hooks().count();
+    let hooks = match failed {
+        0 => String::new(),
+        failed => format!("; {} failed", words::count(failed as u64, "hook")),
+    };
+    let rest = format!("{tests} in {suites}, {time}{counts}{hooks}");
     page.line(&format!("{}  {rest}", style::paint(style, &word)));
+}
+
+/// The result in a word, and whatever stands behind it.
+fn outcome(record: &Record) -> (Style, String) {
+    if record.is_green() {
+        return (GOOD, "PASSED".to_owned());
+    }
+    let word = if let Some(reason) = record.died() {
+        format!("INCOMPLETE (the runner died: {})", escape::line(reason))
+    } else if !record.is_complete() {
+        "INCOMPLETE (the runner did not reach the end)".to_owned()
+    } else if let Some(reason) = record.interrupted() {
+        format!("INTERRUPTED ({})", escape::line(reason))
+    } else if record.tests.is_empty() {
+        "FAILED (there are no tests)".to_owned()
+    } else {
+        "FAILED".to_owned()
+    };
+    (BAD, word)
 }

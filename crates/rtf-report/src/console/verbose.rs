@@ -59,6 +59,9 @@ impl Verbose {
             EventKind::FixtureStopping { fixture } => {
                 begin(page, record, Source::Fixture(*fixture), "tear down");
             }
+            EventKind::HookStarted { hook, .. } => {
+                begin(page, record, Source::Hook(*hook), "start");
+            }
             EventKind::TestPhase { test, phase } => {
                 let name = name(record, Source::Test(*test));
                 page.remark((DIM, phase.as_str()), &name);
@@ -82,9 +85,10 @@ impl Verbose {
                 lines_of(page, &name(record, Source::Test(*test)), &[(Tone::Plain, text)]);
             }
             EventKind::Output(output) => self.output(page, output, record),
-            EventKind::TestFinished(_) | EventKind::FixtureStopped { .. } => {
-                self.flush(page, record);
-            }
+            EventKind::TestFinished(_)
+            | EventKind::FixtureStopped { .. }
+            | EventKind::HookFinished { .. }
+            | EventKind::RunnerDied { .. } => self.flush(page, record),
             _ => {}
         }
     }
@@ -122,10 +126,7 @@ fn name(record: &Record, source: Source) -> String {
             let name = record.fixture(id).map_or("?", |fixture| &fixture.plan.name);
             format!("fixture {}", escape::line(name))
         }
-        Source::Hook(id) => {
-            let name = record.hooks.get(id.index()).map_or("?", |hook| &hook.plan.name);
-            format!("hook {}", escape::line(name))
-        }
+        Source::Hook(id) => format!("hook {}", escape::line(&record.full_hook_name(id))),
     }
 }
 

@@ -44,6 +44,7 @@ fn is_landmark(kind: &EventKind) -> bool {
         kind,
         EventKind::SuitePlanned(_)
             | EventKind::FixturePlanned(_)
+            | EventKind::HookPlanned(_)
             | EventKind::TestPlanned(_)
             | EventKind::TestPhase { .. }
             | EventKind::Message { .. }

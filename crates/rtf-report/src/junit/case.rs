@@ -27,6 +27,8 @@ pub(super) fn of(record: &Record, test: &TestRecord, folder: Option<&Path>) -> T
         case.timestamp = time::at(record, first.started);
     }
     properties(&mut case, test);
+    let left: Vec<_> = test.attempts.iter().flat_map(|a| a.left.iter().cloned()).collect();
+    super::leaked(&mut case, &left, test.final_verdict() == Verdict::Passed);
     let out = system_out(test, folder);
     if !out.is_empty() {
         case.set_system_out(out);
@@ -109,7 +111,9 @@ fn title(test: &TestRecord, attempt: &AttemptRecord) -> String {
 
 fn explained(attempt: &AttemptRecord) -> String {
     let mut lines = Vec::new();
-    explain::explain(attempt, Extent::ALL, &mut |_, line| lines.push(line.to_owned()));
+    let sink = &mut |_, line: &str| lines.push(line.to_owned());
+    explain::explain(attempt, Extent::ALL, sink);
+    explain::left(&attempt.left, sink);
     lines.join("\n")
 }
 

@@ -1,21 +1,22 @@
 //! The record of a run as a JUnit XML file, as Jenkins and GitLab read it.
 //!
 //! Each declared test is a case, also when it was skipped or when the run died
-//! before it. What JUnit has no word for (a fixture that collapsed, a run that
+//! before it, and so is each run of a hook. What JUnit has no word for (a fixture that collapsed, a run that
 //! was interrupted) becomes a further case with an error, so that no server
 //! shows as green what was not.
 
 mod case;
+mod hook;
 mod problems;
 mod time;
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use quick_junit::{Report, TestSuite};
-use rtf_model::{Event, Record, SuiteRecord};
+use quick_junit::{Report, TestCase, TestSuite};
+use rtf_model::{Event, LeftProcess, Record, SuiteRecord};
 
-use crate::{ReportError, Reporter, escape, output_file, words};
+use crate::{ReportError, Reporter, escape, explain, output_file, words};
 
 const WHAT: &str = "the JUnit report";
 
@@ -84,6 +85,9 @@ fn test_suite(record: &Record, suite: &SuiteRecord, folder: Option<&Path>) -> Te
     for test in suite.tests.iter().filter_map(|id| record.tests.get(id.index())) {
         junit.add_test_case(case::of(record, test, folder));
     }
+    for hook in suite.hooks.iter().filter_map(|id| record.hooks.get(id.index())) {
+        junit.add_test_cases(hook::of(record, hook));
+    }
     for fixture in suite.fixtures.iter().filter_map(|id| record.fixture(*id)) {
         if let Some(case) = problems::of_fixture(record, suite, fixture) {
             junit.add_test_case(case);
@@ -113,4 +117,17 @@ fn properties(junit: &mut TestSuite, record: &Record, suite: &SuiteRecord) {
 /// written out, not dropped.
 fn text(text: &str) -> String {
     escape::block(text).into_owned()
+}
+
+/// Names what was left behind and killed, as properties; a case that passed
+/// also tells it on its standard error, which more servers show.
+fn leaked(case: &mut TestCase, left: &[LeftProcess], passed: bool) {
+    for process in left {
+        case.add_property(("leaked", explain::process(process).as_str()));
+    }
+    if passed && !left.is_empty() {
+        let mut lines = String::new();
+        explain::left(left, &mut |_, line| lines += &format!("{line}\n"));
+        case.set_system_err(lines);
+    }
 }

@@ -31,15 +31,25 @@ pub(super) fn of_fixture(
 
 /// A suite of its own for what is wrong with the run as a whole.
 pub(super) fn of_run(record: &Record) -> Option<TestSuite> {
-    let problem = match record.interrupted() {
-        Some(reason) => format!("the run was interrupted: {reason}"),
-        None if !record.is_complete() => "the runner did not reach the end of this run".to_owned(),
-        None if record.tests.is_empty() => "the run has no tests".to_owned(),
-        None => return None,
+    let problem = if let Some(reason) = record.interrupted() {
+        format!("the run was interrupted: {reason}")
+    } else if let Some(reason) = record.died() {
+        format!("the runner died: {reason}")
+    } else if !record.is_complete() {
+        "the runner did not reach the end of this run".to_owned()
+    } else if record.tests.is_empty() {
+        "the run has no tests".to_owned()
+    } else {
+        return None;
     };
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
     status.set_message(text(&problem));
     status.set_type("run");
+    if !record.left.is_empty() {
+        let mut lines = vec![text(&problem)];
+        explain::left(&record.left, &mut |_, line| lines.push(line.to_owned()));
+        status.set_description(lines.join("\n"));
+    }
     let mut case = TestCase::new("run", status);
     case.set_classname("rtf");
     let mut suite = TestSuite::new("rtf");

@@ -1,6 +1,7 @@
 //! The whole record of a run as plain text, for reading and for comparing.
 
 mod fixtures;
+mod hooks;
 mod lines;
 mod tests;
 
@@ -9,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use rtf_model::{Event, Record, SuiteRecord, Verdict};
 
-use crate::{ReportError, Reporter, output_file, words};
+use crate::{ReportError, Reporter, explain, output_file, words};
 use lines::Lines;
 
 const WHAT: &str = "the text report";
@@ -98,6 +99,9 @@ fn show_suite(
     for fixture in suite.fixtures.iter().filter_map(|id| record.fixture(*id)) {
         fixtures::show(lines, fixture);
     }
+    for hook in suite.hooks.iter().filter_map(|id| record.hooks.get(id.index())) {
+        hooks::show(lines, record, hook);
+    }
     for test in suite.tests.iter().filter_map(|id| record.tests.get(id.index())) {
         tests::show(lines, test, record.is_complete());
         lines.write_to(out)?;
@@ -113,13 +117,24 @@ fn result(lines: &mut Lines, record: &Record) {
     if let Some(reason) = record.interrupted() {
         lines.fact(0, "interrupted", reason);
     }
-    if !record.is_complete() {
+    if let Some(reason) = record.died() {
+        lines.fact(0, "incomplete: the runner died", reason);
+    } else if !record.is_complete() {
         lines.at(0, "incomplete: the runner did not reach the end of this run");
+    }
+    let left = record.left_behind();
+    if !left.is_empty() {
+        lines.at(0, "left behind and killed:");
+        left.iter().for_each(|process| lines.at(2, &explain::process(process)));
     }
     let totals = record.final_totals();
     lines.at(0, &format!("tests: {}", totals.planned));
     for verdict in Verdict::ALL.into_iter().filter(|verdict| totals.of(*verdict) > 0) {
         lines.at(2, &format!("{verdict}: {}", totals.of(verdict)));
+    }
+    let failed = record.failed_hooks().count();
+    if failed > 0 {
+        lines.at(0, &format!("hooks that failed: {failed}"));
     }
     lines.at(0, &format!("time: {}", words::time(record.last_at.as_duration())));
     let result = if record.is_green() { "passed" } else { "not passed" };

@@ -17,7 +17,8 @@ pub(super) fn show(lines: &mut Lines, test: &TestRecord, complete: bool) {
     if let Some(reason) = test.reason() {
         lines.fact(4, "reason", reason);
     } else if !complete && test.verdict().is_none() {
-        lines.at(4, "reason: the run ended before the test did");
+        let what = if test.attempts.is_empty() { "began" } else { "did" };
+        lines.at(4, &format!("reason: the run ended before the test {what}"));
     }
     for attempt in &test.attempts {
         show_attempt(lines, test, attempt);
@@ -68,6 +69,7 @@ fn details(lines: &mut Lines, attempt: &AttemptRecord) {
     // Failures, violations, stacks and left processes are told as everywhere,
     // what did not speak against the test after them.
     explain::explain(attempt, Extent::ALL, &mut |_, line| lines.at(6, line));
+    explain::left(&attempt.left, &mut |_, line| lines.at(6, line));
     let others = attempt
         .messages
         .iter()

@@ -52,6 +52,18 @@ fn quiet_says_nothing_of_what_went_well() {
 }
 
 #[test]
+fn a_hook_that_failed_is_loud_also_when_all_tests_passed() {
+    for verbosity in [Verbosity::Quiet, Verbosity::Normal, Verbosity::Verbose] {
+        let options = ConsoleOptions { verbosity, ..ConsoleOptions::default() };
+        let text = console("hook-failed", options);
+        assert!(text.contains("\x1b[1m\x1b[31mHOOK FAILED\x1b[0m"), "{verbosity:?}: {text}");
+        let warning = "\x1b[1m\x1b[31mhooks that failed: the robot may not be in a safe state";
+        assert!(text.contains(warning), "{verbosity:?}: {text}");
+        assert!(text.trim_end().ends_with("1 passed; 1 hook failed"), "{verbosity:?}: {text}");
+    }
+}
+
+#[test]
 fn a_fixture_that_collapses_again_and_again_is_told_once_with_a_number() {
     let stream = std::fs::read_to_string(stream_path("collapse-tolerated")).unwrap();
     let strict = stream.replace(",\"tolerates_collapse\":true", "");

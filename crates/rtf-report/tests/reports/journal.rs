@@ -89,6 +89,24 @@ fn a_journal_may_be_torn_anywhere() {
     }
 }
 
+/// The guard cuts off the line that the runner was writing when it died, runs
+/// the hooks and closes the journal: that is a whole journal of a run that is not.
+#[test]
+fn what_the_guard_adds_to_a_torn_journal_is_read() {
+    let torn = fs::read_to_string(stream_path(KILLED)).unwrap();
+    let (whole, rest) = torn.split_at(torn.rfind('\n').unwrap() + 1);
+    assert!(!rest.is_empty());
+    let seq = whole.lines().count();
+    let end = format!(
+        "{{\"seq\":{seq},\"at\":900000,\"type\":\"runner-died\",\"reason\":\"signal 9 (SIGKILL)\"}}\n"
+    );
+    let stored = read(whole.to_owned() + &end).unwrap();
+    assert!(!stored.torn && stored.damages.is_empty(), "{:?}", stored.damages);
+    assert_eq!(stored.record.died(), Some("signal 9 (SIGKILL)"));
+    assert!(!stored.record.is_complete() && !stored.record.is_green());
+    assert_eq!(stored.record.final_verdict(TestId(1)), Verdict::Interrupted);
+}
+
 #[test]
 fn damage_is_told_with_its_line_and_the_rest_is_read() {
     let mut lines = lines("silent");

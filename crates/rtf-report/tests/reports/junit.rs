@@ -25,11 +25,13 @@ fn wanted(record: &Record) -> (u64, u64, u64, u64) {
     });
     let cut_short = !record.is_complete() || record.interrupted().is_some();
     let run = u64::from(cut_short || record.tests.is_empty());
-    let problems = broken_fixtures.count() as u64 + run;
+    let hooks = record.hooks.iter().flat_map(|hook| &hook.runs);
+    let (failed, done): (Vec<_>, Vec<_>) = hooks.partition(|run| run.problem().is_some());
+    let problems = broken_fixtures.count() as u64 + run + failed.len() as u64;
     let benign = [Verdict::Passed, Verdict::Failed, Verdict::Skipped];
     let errors = Verdict::ALL.iter().filter(|v| !benign.contains(v)).map(|v| totals.of(*v));
     (
-        record.tests.len() as u64 + problems,
+        record.tests.len() as u64 + problems + done.len() as u64,
         u64::from(totals.of(Verdict::Failed)),
         u64::from(errors.sum::<u32>()) + problems,
         u64::from(totals.of(Verdict::Skipped)),
@@ -114,6 +116,42 @@ fn a_killed_runner_leaves_a_case_for_each_test() {
     assert!(begun.text.contains("joint 3 does not move"));
     let not_begun = case(&junit, "GripperTest").status.skipped_as_ref();
     assert_eq!(not_begun.message, "the run ended before the test began");
+}
+
+/// All tests passed, and yet the robot may stand anywhere.
+#[test]
+fn each_run_of_a_hook_is_a_case_and_one_that_failed_is_an_error() {
+    let junit = parsed(&junit("hooks"));
+    let parked = case(&junit, "hook park (collapse)");
+    assert!(parked.status.is_success());
+    assert_eq!(parked.system_out.as_deref(), Some("moving to the rest position\nparked\n"));
+    let brakes = case(&junit, "hook brakes (collapse)");
+    let error = brakes.status.error_as_ref();
+    assert_eq!((&*error.message, &*error.error_type), ("joint 22 is not locked", "hook"));
+    for part in ["brakes.py:31", "4715 candump can0", "called for: fixture `simulator` collapsed"] {
+        assert!(error.text.contains(part), "`{part}` in {}", error.text);
+    }
+    let hung = &case(&junit, "hook park (failure)").status.error_as_ref().text;
+    assert!(hung.contains("Arm::waitUntilParked"), "{hung}");
+    assert!(case(&junit, "hook park (end)").status.is_success());
+}
+
+#[test]
+fn a_runner_that_died_is_an_error_with_what_it_left() {
+    let junit = parsed(&junit("runner-died"));
+    let run = case(&junit, "run").status.error_as_ref();
+    assert_eq!(run.message, "the runner died: signal 9 (SIGKILL)");
+    assert!(run.text.contains("4650 gzserver arm.world (fixture arm/simulator)"), "{}", run.text);
+    assert!(case(&junit, "hook park (interrupt)").status.is_success());
+}
+
+#[test]
+fn a_test_that_passed_and_left_processes_behind_names_them() {
+    let junit = parsed(&junit("leaked"));
+    let encoder = case(&junit, "EncoderTest");
+    assert!(encoder.status.is_success());
+    let err = encoder.system_err.as_deref();
+    assert!(err.is_some_and(|err| err.contains("4711 sleep 1000")), "{err:?}");
 }
 
 #[test]

@@ -50,6 +50,15 @@ fn repetitions_and_restarts_have_logs_of_their_own() {
 }
 
 #[test]
+fn each_run_of_a_hook_has_a_log_of_its_own() {
+    let logs = logs("hooks");
+    assert_eq!(logs["arm.hook-park.log"], "moving to the rest position\nparked\n");
+    assert_eq!(logs["arm.hook-park.a2.log"], "moving to the rest position\n");
+    assert_eq!(logs["arm.hook-park.a3.log"], "parked\n");
+    assert!(logs["arm.hook-brakes.log"].ends_with("last words"));
+}
+
+#[test]
 fn a_log_of_a_killed_run_holds_what_was_printed_until_then() {
     assert_eq!(logs("killed")["arm.MoveTest.log"], "moving\n");
 }
@@ -67,7 +76,7 @@ fn names_that_would_leave_the_folder_do_not() {
 #[test]
 fn names_that_look_alike_get_files_of_their_own() {
     let mut record = Record::default();
-    let names = ["a b", "a_b", "a/b", "a.b", "a", "fixture-x", "a.r2", "ä", ""];
+    let names = ["a b", "a_b", "a/b", "a.b", "a", "fixture-x", "hook-x", "a.r2", "ä", ""];
     let mut events: Vec<_> =
         events("silent").0.into_iter().take(2).map(|event| event.kind).collect();
     for (id, name) in (0..).zip(names) {

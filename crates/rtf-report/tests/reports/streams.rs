@@ -41,14 +41,14 @@ fn console() {
 
 #[test]
 fn quiet_console() {
-    for name in ["verdicts", "silent", "collapse-restart"] {
+    for name in ["verdicts", "silent", "collapse-restart", "hooks", "leaked"] {
         insta::assert_snapshot!(format!("quiet-{name}"), plain(name, Verbosity::Quiet));
     }
 }
 
 #[test]
 fn verbose_console() {
-    for name in ["verdicts", "nasty", "killed"] {
+    for name in ["verdicts", "nasty", "killed", "hooks", "runner-died"] {
         insta::assert_snapshot!(format!("verbose-{name}"), plain(name, Verbosity::Verbose));
     }
 }

@@ -1,0 +1,69 @@
+//! What is told of hooks: each when it ends, and at the end of the run those
+//! after which the robot may not be in a safe state.
+
+use rtf_model::{HookId, HookRun, Record};
+
+use super::live::{self, EXTENT};
+use super::page::Page;
+use super::style::{self, BAD, BOLD, DIM, GOOD};
+use super::{ConsoleOptions, Verbosity};
+use crate::explain::{self, Tone};
+use crate::{escape, logs, words};
+
+/// Tells how a run of a hook ended.
+pub(super) fn finished(page: &mut Page, options: &ConsoleOptions, record: &Record, id: HookId) {
+    let Some(hook) = record.hooks.get(id.index()) else { return };
+    let Some(run) = hook.runs.last() else { return };
+    let time = words::time(run.duration().unwrap_or_default());
+    let title = title(record, id, run);
+    if run.problem().is_some() {
+        page.entry((BAD, "HOOK FAILED"), &time, &title);
+        return failed(page, options, record, (id, run));
+    }
+    if options.verbosity > Verbosity::Quiet {
+        let reason = style::paint(DIM, &words::first_line(&run.reason));
+        page.entry((GOOD, "hook"), &time, &format!("{title}: done  {reason}"));
+    }
+    live::leaked(page, &title, &run.left);
+}
+
+/// `arm/park (collapse)`.
+fn title(record: &Record, id: HookId, run: &HookRun) -> String {
+    format!("{} ({})", escape::line(&record.full_hook_name(id)), run.trigger)
+}
+
+fn failed(page: &mut Page, options: &ConsoleOptions, record: &Record, which: (HookId, &HookRun)) {
+    let (id, run) = which;
+    let sink = &mut |tone, line: &str| page.detail(tone, line);
+    explain::hook(run, EXTENT, sink);
+    explain::block(Tone::Dim, &run.reason, "called for: ", sink);
+    if let Some(test) = run.test {
+        sink(Tone::Dim, &format!("about: {}", escape::line(&record.full_name(test))));
+    }
+    if !run.output.is_empty() && options.verbosity < Verbosity::Verbose {
+        live::output(&run.output, options.shown(&logs::hook_log(record, id)), sink);
+    }
+}
+
+/// Lists the runs of hooks that failed.
+pub(super) fn summary(page: &mut Page, options: &ConsoleOptions, record: &Record) {
+    if !record.hook_failed() {
+        return;
+    }
+    page.line("");
+    page.line(&style::paint(BAD, "hooks that failed: the robot may not be in a safe state"));
+    for hook in &record.hooks {
+        for (number, run) in (1..).zip(&hook.runs) {
+            if let Some(problem) = run.problem() {
+                let log = logs::hook_run_log(record, hook.plan.hook, number);
+                let log = Some(log).filter(|_| !run.output.is_empty());
+                let title = style::paint(BOLD, &title(record, hook.plan.hook, run));
+                page.line(&format!("  {title}"));
+                page.fact("reason", &words::first_line(problem));
+                if let Some(log) = log.and_then(|log| options.shown(&log)) {
+                    page.fact("log", &log);
+                }
+            }
+        }
+    }
+}

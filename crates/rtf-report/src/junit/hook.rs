@@ -1,0 +1,51 @@
+//! A run of a hook as a JUnit case.
+
+use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus};
+use rtf_model::{HookRecord, HookRun, Record};
+
+use super::{text, time};
+use crate::explain::{self, Extent};
+
+/// A case for each run of a hook. One that failed is an error: the robot may
+/// not be in a safe state, which says nothing about the software under test.
+pub(super) fn of(record: &Record, hook: &HookRecord) -> impl Iterator<Item = TestCase> {
+    hook.runs.iter().enumerate().map(move |(index, run)| {
+        let earlier = hook.runs[..index].iter().filter(|r| r.trigger == run.trigger).count();
+        let mut name = format!("hook {} ({})", hook.plan.name, run.trigger);
+        // A server tells cases apart by their names, from build to build.
+        if earlier > 0 {
+            name += &format!(" {}", earlier + 1);
+        }
+        case(record, hook, (name, run))
+    })
+}
+
+fn case(record: &Record, hook: &HookRecord, (name, run): (String, &HookRun)) -> TestCase {
+    let mut case = TestCase::new(text(&name), status(run));
+    let suite = record.suites.get(hook.plan.suite.index()).map_or("", |s| &s.plan.name);
+    case.set_classname(text(suite));
+    case.set_time(run.duration().unwrap_or_default());
+    case.timestamp = time::at(record, run.started);
+    case.add_property(("reason", text(&run.reason).as_str()));
+    if let Some(test) = run.test {
+        case.add_property(("test", text(&record.full_name(test)).as_str()));
+    }
+    super::leaked(&mut case, &run.left, run.problem().is_none());
+    if !run.output.is_empty() {
+        case.set_system_out(text(&run.output));
+    }
+    case
+}
+
+fn status(run: &HookRun) -> TestCaseStatus {
+    let Some(problem) = run.problem() else { return TestCaseStatus::success() };
+    let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+    status.set_message(text(problem.lines().next().unwrap_or_default()));
+    status.set_type("hook");
+    let mut lines = Vec::new();
+    let sink = &mut |_, line: &str| lines.push(line.to_owned());
+    explain::hook(run, Extent::ALL, sink);
+    explain::block(explain::Tone::Dim, &run.reason, "called for: ", sink);
+    status.set_description(lines.join("\n"));
+    status
+}
