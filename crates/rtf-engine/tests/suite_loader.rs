@@ -186,7 +186,9 @@ fn every_part_of_a_process_fixture_arrives() {
     assert_eq!(kinds(&process.alive), ["python3|arm_client.py|time", "(?i)fatal", "[::1]:17681"]);
     assert_eq!(process.ready[0].every, Some(Duration::from_millis(50)));
     assert_eq!(process.ready[0].timeout, Some(Duration::from_millis(500)));
-    assert_eq!(suite.fixtures[1].depends[0].value, "sim");
+    assert_eq!(suite.fixtures[0].depends, None);
+    assert_eq!(suite.fixtures[0].restart_delay, Some(Duration::from_millis(500)));
+    assert_eq!(suite.fixtures[1].depends.as_ref().unwrap()[0].value, "sim");
 }
 
 #[test]
@@ -246,7 +248,7 @@ fn what_is_wrong_with_a_process_fixture() {
     assert_eq!(probe("<ready tcp='a:0'/>"), ["`tcp` is not a host and a port: `a:0`"]);
     assert_eq!(
         probe("<ready http='https://a/'/>"),
-        ["`http` is not a URL with `http://`: `https://a/`"]
+        ["`http` cannot ask over TLS: `https://a/`"]
     );
     assert_eq!(probe("<ready log='('/>"), ["`log` is not a regular expression: `(`"]);
     assert_eq!(probe("<ready log='x' every='1s'/>"), ["`every` has no effect beside `log`"]);

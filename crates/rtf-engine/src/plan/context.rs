@@ -32,32 +32,30 @@ impl Place {
     }
 }
 
-/// Whether a plug-in is used as a test or as a fixture.
+/// What a plug-in is used as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Role {
     Test,
     Fixture,
+    Hook,
 }
 
 impl Role {
-    /// The word of the protocol and of messages.
-    pub fn word(self) -> &'static str {
+    /// The kind of plug-in that it takes, in the word of the protocol and of messages.
+    pub fn kind(self) -> &'static str {
         match self {
-            Self::Test => "test",
+            Self::Test | Self::Hook => "test",
             Self::Fixture => "fixture",
         }
     }
 
-    fn other(self) -> Self {
+    /// What to do with a plug-in of the other kind.
+    pub fn advice(self) -> &'static str {
         match self {
-            Self::Test => Self::Fixture,
-            Self::Fixture => Self::Test,
+            Self::Test => "in a suite it is written as `<fixture>`",
+            Self::Fixture => "in a suite it is written as `<test>`",
+            Self::Hook => "a hook is a test plug-in, which did its work when it passes",
         }
-    }
-
-    /// What to do with a plug-in that was written as this and is the other one.
-    pub fn advice(self) -> String {
-        format!("in a suite it is written as `<{}>`", self.other().word())
     }
 }
 

@@ -1,6 +1,5 @@
 //! The fixtures of a suite → [`FixturePlan`]s.
 
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -11,22 +10,23 @@ use super::names::Names;
 use super::plugin::base_name;
 use super::scope::Scope;
 use super::{
-    FixtureBody, FixtureLimits, FixturePlan, Probe, ProbeKind, ProcessPlan, hosts, program,
+    FixtureBody, FixtureLimits, FixturePlan, Probe, ProbeKind, ProcessPlan, depends, program,
 };
-use crate::suite::{self, Fixture, FixtureKind, Process, Question, Source, Span, Spanned, nearest};
+use crate::suite::{self, Fixture, FixtureKind, Process, Question, Source, Spanned};
 
 /// `spec/suite.md` lists these.
 const SETUP: Duration = Duration::from_secs(60);
 const CHECK: Duration = Duration::from_secs(5);
 const TEARDOWN: Duration = Duration::from_secs(30);
 const RESTARTS: u32 = 3;
+const RESTART_DELAY: Duration = Duration::from_millis(100);
 const READY_EVERY: Duration = Duration::from_millis(100);
 const ALIVE_EVERY: Duration = Duration::from_secs(1);
 const ANSWER: Duration = Duration::from_secs(1);
 const STOP_SIGNAL: i32 = 15;
 const STOP_GRACE: Duration = Duration::from_secs(5);
 
-/// Plans all fixtures of a suite, in the order of set-up.
+/// Plans all fixtures of a suite, each after those that it depends on.
 pub(super) fn plan_all(
     planner: &mut PluginPlanner<'_, '_>,
     source: &Arc<Source>,
@@ -41,15 +41,13 @@ pub(super) fn plan_all(
             None => made_up.unique(base_of(fixture)),
         })
         .collect();
-    let mut plans = Vec::new();
-    for (index, fixture) in fixtures.into_iter().enumerate() {
-        for wanted in &fixture.depends {
-            if let Some(problem) = dependency(wanted, &names, index) {
-                let label = source.label(wanted.span, "");
-                planner.context.problems.push(problem.label(label));
-            }
-        }
-        plans.extend(plan(planner, source, fixture, names[index].clone()));
+    let turns = depends::order(&fixtures, &names, source, &mut planner.context.problems);
+    let mut fixtures: Vec<_> = fixtures.into_iter().zip(names).map(Some).collect();
+    let mut plans = Vec::with_capacity(turns.len());
+    for turn in turns {
+        let Some((fixture, name)) = fixtures[turn.fixture].take() else { continue };
+        let planned = plan(planner, source, fixture, name);
+        plans.extend(planned.map(|planned| FixturePlan { depends: turn.depends, ..planned }));
     }
     plans
 }
@@ -58,34 +56,7 @@ pub(super) fn plan_all(
 fn base_of(fixture: &Fixture) -> &str {
     match &fixture.body {
         FixtureKind::Plugin(plugin) => base_name(&plugin.name.value),
-        FixtureKind::Process(process) => {
-            let program = process.command.value.first().map_or("process", String::as_str);
-            Path::new(program).file_name().and_then(|name| name.to_str()).unwrap_or(program)
-        }
-    }
-}
-
-/// What is wrong with an entry of `depends`: fixtures are set up in the order
-/// of the file, so only an earlier one can be depended on.
-fn dependency(wanted: &Spanned<String>, names: &[String], index: usize) -> Option<Diagnostic> {
-    let name = &wanted.value;
-    let problem = |message: String| Diagnostic::error("unknown-dependency", message);
-    match names.iter().position(|known| known == name) {
-        Some(at) if at < index => None,
-        Some(at) if at == index => Some(problem(format!("the fixture `{name}` depends on itself"))),
-        Some(_) => Some(
-            problem(format!("the fixture `{name}` comes later"))
-                .note("fixtures are set up in the order in which they are written")
-                .hint(format!("write `{name}` before this one")),
-        ),
-        None => {
-            let unknown = problem(format!("there is no fixture `{name}`"));
-            let nearest = nearest(name, names[..index].iter().map(String::as_str));
-            Some(match nearest {
-                Some(known) => unknown.hint(format!("did you mean `{known}`?")),
-                None => unknown,
-            })
-        }
+        FixtureKind::Process(process) => program::base_name(&process.command.value),
     }
 }
 
@@ -121,7 +92,7 @@ fn plan(
         env: fixture.env,
         limits,
         restarts: fixture.restarts.unwrap_or(RESTARTS),
-        restart_delay: Duration::ZERO,
+        restart_delay: fixture.restart_delay.unwrap_or(RESTART_DELAY),
         check_every,
     })
 }
@@ -141,7 +112,7 @@ impl ProcessPlanner<'_> {
         let ready = probes(written.ready, READY_EVERY);
         let alive = probes(written.alive, alive_every);
         ProcessPlan {
-            command: self.command(written.command.value, written.command.span),
+            command: self.command(written.command),
             folder: self.scope.folder.to_path_buf(),
             ready,
             alive,
@@ -155,7 +126,9 @@ impl ProcessPlanner<'_> {
             Question::Tcp(address) => ProbeKind::Tcp(address),
             Question::Http(url) => ProbeKind::Http(url),
             Question::Log(pattern) => ProbeKind::Log(pattern),
-            Question::Command(words) => ProbeKind::Command(self.command(words, written.span)),
+            Question::Command(words) => {
+                ProbeKind::Command(self.command(Spanned::new(words, written.span)))
+            }
             Question::File(path) => ProbeKind::File(self.scope.folder.join(path)),
         };
         Probe {
@@ -165,13 +138,7 @@ impl ProcessPlanner<'_> {
         }
     }
 
-    /// The command with its program found.
-    fn command(&mut self, mut words: Vec<String>, span: Span) -> Vec<String> {
-        let Some(first) = words.first_mut() else { return words };
-        match program::find(first, &self.scope).and_then(|file| hosts::text(&file)) {
-            Ok(file) => *first = file,
-            Err(problem) => self.problems.push(problem.label(self.source.label(span, ""))),
-        }
-        words
+    fn command(&mut self, written: Spanned<Vec<String>>) -> Vec<String> {
+        program::command(written, &self.scope, self.source, self.problems)
     }
 }

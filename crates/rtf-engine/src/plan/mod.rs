@@ -7,7 +7,9 @@
 
 mod build;
 mod context;
+mod depends;
 mod fixture;
+mod hook;
 mod hosts;
 mod inputs;
 mod names;

@@ -25,6 +25,9 @@ pub(super) fn kind_of(plugin: &Plugin, role: Role) -> Result<&'static HostKind, 
         let problem =
             Diagnostic::error("unknown-type", format!("unknown type `{}`", written.value))
                 .note(format!("known types are {}", known.join(", ")));
+        if role == Role::Hook && written.value == "process" {
+            return problem.hint("a program is written as `<command>`, without a `type`").into();
+        }
         match nearest(&written.value, names.into_iter()) {
             Some(name) => problem.hint(format!("did you mean `{name}`?")).into(),
             None => problem.into(),
@@ -173,7 +176,7 @@ fn similar(name: &str, kind: &HostKind, folders: &[PathBuf]) -> Option<String> {
     Some(format!("did you mean `{found}`?"))
 }
 
-/// The name of a test or fixture that has none of its own: the plug-in's,
+/// The name of a test, fixture or hook that has none of its own: the plug-in's,
 /// without its folder and without an extension that says its type.
 pub(super) fn base_name(name: &str) -> &str {
     let path = Path::new(name);

@@ -1,11 +1,37 @@
 //! Programs that a suite names: `<command>` and `command="…"`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use rtf_model::Diagnostic;
 
+use super::hosts;
 use super::scope::Scope;
 use super::unix::is_executable;
+use crate::suite::{Source, Spanned};
+
+/// A command line with its program found; no words when it has none, which
+/// was reported.
+pub(super) fn command(
+    written: Spanned<Vec<String>>,
+    scope: &Scope<'_>,
+    source: &Source,
+    problems: &mut Vec<Diagnostic>,
+) -> Vec<String> {
+    let mut words = written.value;
+    let Some(first) = words.first_mut() else { return words };
+    match find(first, scope).and_then(|file| hosts::text(&file)) {
+        Ok(file) => *first = file,
+        Err(problem) => problems.push(problem.label(source.label(written.span, ""))),
+    }
+    words
+}
+
+/// The name of whatever has a command and no name of its own: the program's,
+/// without its folder.
+pub(super) fn base_name(command: &[String]) -> &str {
+    let program = command.first().map_or("process", String::as_str);
+    Path::new(program).file_name().and_then(|name| name.to_str()).unwrap_or(program)
+}
 
 /// Finds the program of a command line: with a slash it is a path that starts
 /// in the suite's folder, without one it is searched in `PATH`.

@@ -13,7 +13,7 @@ use super::inputs::Found;
 use super::names::Names;
 use super::plugin::base_name;
 use super::scope::Scope;
-use super::{AfterCollapse, Leaks, SuitePlan, TestLimits, TestPlan, fixture};
+use super::{AfterCollapse, Leaks, SuitePlan, TestLimits, TestPlan, fixture, hook};
 use crate::suite::{Source, Suite, Test, WrittenLimits};
 
 /// The name of the suite that gathers the plug-ins of the command line.
@@ -67,6 +67,7 @@ pub(super) fn plan(
     let scope = Scope { surroundings, folder: &folder, suite: &env, own: &[] };
     let mut planner = PluginPlanner::new(context, scope);
     let fixtures = fixture::plan_all(&mut planner, source, suite.fixtures);
+    let hooks = hook::plan_all(&mut planner, source, suite.hooks);
     let mut limits = Limits::default();
     let mut tests = Vec::with_capacity(suite.tests.len());
     for test in suite.tests {
@@ -86,7 +87,7 @@ pub(super) fn plan(
             repetitions: test.repetitions,
             limits,
             after_collapse: test.after_collapse,
-            leaks: Leaks::default(),
+            leaks: test.leaks,
             critical: test.critical,
             tags,
         });
@@ -103,7 +104,7 @@ pub(super) fn plan(
         timeout: suite.timeout,
         tolerates_collapse: suite.tolerates_collapse,
         fixtures,
-        hooks: Vec::new(),
+        hooks,
         tests,
     }
 }

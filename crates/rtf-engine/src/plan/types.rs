@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use rtf_model::{FixtureId, HookId, SuiteId, TestId, Trigger};
 
-pub use crate::suite::AfterCollapse;
+pub use crate::suite::{AfterCollapse, Leaks};
 
 /// Everything that a run will do. Nothing in it can fail to be understood
 /// any more; what can still fail is the world.
@@ -43,7 +43,7 @@ pub struct SuitePlan {
     pub timeout: Option<Duration>,
     /// Whether a fixture's collapse leaves the suite green.
     pub tolerates_collapse: bool,
-    /// The fixtures, in the order of set-up.
+    /// The fixtures: each after those that it depends on, else in the order of the file.
     pub fixtures: Vec<FixturePlan>,
     /// The hooks, in the order in which they are run when several are called for.
     pub hooks: Vec<HookPlan>,
@@ -162,16 +162,6 @@ pub enum HookBody {
     Plugin(PluginPlan),
     /// A command: it did its work when it ends with exit code 0.
     Command(Vec<String>),
-}
-
-/// What is said of a test that left processes behind.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Leaks {
-    /// The processes are killed and named.
-    #[default]
-    Report,
-    /// And the test, had it passed, is an error.
-    Fail,
 }
 
 /// A plug-in and the host that runs it.

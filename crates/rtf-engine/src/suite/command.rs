@@ -1,4 +1,49 @@
-//! Splits a command line into words without a shell.
+//! `<command>` and `command="…"`: a command line, split into words without a shell.
+
+use roxmltree::Node;
+use rtf_model::Diagnostic;
+
+use super::Spanned;
+use super::shape::{self, Shape, check};
+use super::value::Reader;
+
+/// Reads a `<command>`; no words when it cannot be read.
+pub(super) fn read(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Spanned<Vec<String>> {
+    const SHAPE: Shape = shape::text("command");
+    check(reader, node, &SHAPE);
+    let nothing = Spanned::new(Vec::new(), Reader::tag(node));
+    let Some(line) = reader.text(node) else {
+        reader.missing(node, "a program as its text");
+        return nothing;
+    };
+    let words = words(reader, "<command>", &line).unwrap_or_default();
+    Spanned::new(words, line.span)
+}
+
+/// Splits a command line, and says so when it was meant for a shell.
+pub(super) fn words(
+    reader: &mut Reader<'_>,
+    name: &str,
+    line: &Spanned<String>,
+) -> Option<Vec<String>> {
+    let Ok(words) = split(&line.value) else {
+        reader.wrong(name, line, "has a quote that is not closed", None);
+        return None;
+    };
+    if let Some(word) = shell_word(&words) {
+        let message =
+            format!("no shell reads this command: the program gets `{word}` as an argument");
+        let problem = Diagnostic::warning("no-shell", message)
+            .label(reader.source.label(line.span, ""))
+            .hint("if you want a shell, write `sh -c '…'`");
+        reader.report(problem);
+    }
+    if words.first().is_none_or(String::is_empty) {
+        reader.wrong(name, line, "names no program", None);
+        return None;
+    }
+    Some(words)
+}
 
 /// Splits like a shell splits words: white space, single and double quotes,
 /// backslash. Nothing else is special, `#` included, which a shell takes for
@@ -6,12 +51,12 @@
 ///
 /// # Errors
 /// A quote is not closed.
-pub(super) fn split(line: &str) -> Result<Vec<String>, shell_words::ParseError> {
+fn split(line: &str) -> Result<Vec<String>, shell_words::ParseError> {
     shell_words::split(&protect_hashes(line))
 }
 
 /// The words that mean something to a shell, and nothing here.
-pub(super) fn shell_word(words: &[String]) -> Option<&str> {
+fn shell_word(words: &[String]) -> Option<&str> {
     const SPECIAL: [&str; 9] = ["|", "||", "&&", "&", ";", ">", ">>", "<", "2>&1"];
     words.iter().map(String::as_str).find(|word| SPECIAL.contains(word))
 }

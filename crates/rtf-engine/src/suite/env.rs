@@ -6,9 +6,15 @@ use rtf_model::{Diagnostic, protocol};
 use super::shape::{self, check};
 use super::value::Reader;
 
-/// Variables that the runner sets for its hosts itself.
-const RESERVED: [&str; 3] =
-    [protocol::CHANNEL_VARIABLE, protocol::SCOPE_VARIABLE, protocol::ENVIRONMENT_VARIABLE];
+/// Variables that the runner sets for its processes itself.
+const RESERVED: [&str; 6] = [
+    protocol::CHANNEL_VARIABLE,
+    protocol::SCOPE_VARIABLE,
+    protocol::ENVIRONMENT_VARIABLE,
+    "RTF_HOOK_TRIGGER",
+    "RTF_HOOK_REASON",
+    "RTF_HOOK_TEST",
+];
 
 /// Reads the `<env>` children of an element.
 pub(super) fn read(reader: &mut Reader<'_>, parent: Node<'_, '_>) -> Vec<(String, String)> {

@@ -11,6 +11,7 @@ mod command;
 mod duration;
 mod env;
 mod fixture;
+mod hook;
 mod open;
 mod param;
 mod prepass;

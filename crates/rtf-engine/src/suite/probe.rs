@@ -3,7 +3,7 @@
 use roxmltree::Node;
 use rtf_model::Diagnostic;
 
-use super::fixture::words;
+use super::command::words;
 use super::shape::{Shape, check};
 use super::value::Reader;
 use super::{Probe, Question, Span, Spanned};
@@ -50,6 +50,14 @@ fn question(reader: &mut Reader<'_>, name: &str, value: &Spanned<String>) -> Opt
             Some(Question::Tcp(value.value.clone()))
         }
         "http" => {
+            if value.value.get(..6).is_some_and(|start| start.eq_ignore_ascii_case("https:")) {
+                let hint = format!(
+                    "probes speak plain HTTP; ask with `command=\"curl -fsS {}\"`",
+                    value.value
+                );
+                reader.wrong(name, value, "cannot ask over TLS", Some(&hint));
+                return None;
+            }
             let url = reqwest::Url::parse(&value.value).ok();
             if url.is_none_or(|url| url.scheme() != "http" || !url.has_host()) {
                 let hint = Some("write it like `http://127.0.0.1:8080/health`");

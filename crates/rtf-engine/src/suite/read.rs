@@ -6,7 +6,7 @@ use rtf_model::Diagnostic;
 use super::shape::{self, check};
 use super::test::{self, Defaults};
 use super::value::Reader;
-use super::{Source, Suite, env, fixture, xml};
+use super::{Source, Suite, env, fixture, hook, xml};
 
 /// Reads a suite file's text.
 ///
@@ -46,6 +46,7 @@ fn read_suite(reader: &mut Reader<'_>, root: Node<'_, '_>) -> Suite {
     let defaults = Defaults {
         limits: test::limits(reader, root, "test-"),
         after_collapse: test::after_collapse(reader, root).unwrap_or_default(),
+        leaks: test::leaks(reader, root).unwrap_or_default(),
     };
     let mut suite = Suite {
         span: Reader::tag(root),
@@ -57,6 +58,7 @@ fn read_suite(reader: &mut Reader<'_>, root: Node<'_, '_>) -> Suite {
         tags: test::values(reader.words(root, "tags")),
         tolerates_collapse: reader.truth(root, "tolerate-collapse").unwrap_or(false),
         fixtures: Vec::new(),
+        hooks: Vec::new(),
         tests: Vec::new(),
     };
     for node in root.children().filter(Node::is_element) {
@@ -67,6 +69,7 @@ fn read_suite(reader: &mut Reader<'_>, root: Node<'_, '_>) -> Suite {
             }
             "environment" => suite.environment = only_text(reader, node, "environment"),
             "fixture" => suite.fixtures.extend(fixture::read(reader, node)),
+            "hook" => suite.hooks.extend(hook::read(reader, node)),
             "test" => suite.tests.extend(test::read(reader, node, defaults)),
             _ => {}
         }

@@ -32,6 +32,7 @@ pub(super) const SUITE: Shape = Shape {
         "tags",
         "tolerate-collapse",
         "after-collapse",
+        "leaks",
         "test-timeout",
         "test-load-timeout",
         "test-setup-timeout",
@@ -39,9 +40,9 @@ pub(super) const SUITE: Shape = Shape {
         "test-slow",
         "test-grace",
     ],
-    elements: &["description", "environment", "env", "fixture", "test"],
+    elements: &["description", "environment", "env", "fixture", "hook", "test"],
     text: false,
-    planned: &["isolate", "requires", "hook"],
+    planned: &["isolate", "requires"],
 };
 
 /// `<test>`.
@@ -60,12 +61,13 @@ pub(super) const TEST: Shape = Shape {
         "slow",
         "grace",
         "after-collapse",
+        "leaks",
         "critical",
         "isolation",
     ],
     elements: &["env"],
     text: true,
-    planned: &["retries", "hook"],
+    planned: &["retries"],
 };
 
 /// `<fixture>` with a plug-in.
@@ -80,11 +82,12 @@ pub(super) const FIXTURE: Shape = Shape {
         "check-timeout",
         "teardown-timeout",
         "restarts",
+        "restart-delay",
         "check-every",
     ],
     elements: &["env"],
     text: true,
-    planned: &["attach", "host", "hook"],
+    planned: &["attach", "host"],
 };
 
 /// `<fixture type="process">`.
@@ -97,11 +100,21 @@ pub(super) const PROCESS: Shape = Shape {
         "timeout",
         "teardown-timeout",
         "restarts",
+        "restart-delay",
         "check-every",
     ],
     elements: &["command", "ready", "alive", "stop", "env"],
     text: false,
-    planned: &["attach", "host", "hook"],
+    planned: &["attach", "host"],
+};
+
+/// `<hook>`. What goes with a plug-in only is told apart in `hook.rs`.
+pub(super) const HOOK: Shape = Shape {
+    name: "hook",
+    attributes: &["name", "on", "type", "param", "timeout"],
+    elements: &["command", "env"],
+    text: true,
+    planned: &[],
 };
 
 /// `<env>`.
@@ -207,6 +220,9 @@ impl Unknown<'_> {
         };
         match nearest(self.name, known.iter().copied()) {
             Some(name) => problem.hint(format!("did you mean `{name}`?")),
+            None if matches!(self.kind, Kind::Element) && SUITE.elements.contains(&self.name) => {
+                problem.hint(format!("{} is written directly in `<suite>`", self.written()))
+            }
             None => problem,
         }
     }

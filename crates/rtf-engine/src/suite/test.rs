@@ -5,7 +5,7 @@ use rtf_model::Diagnostic;
 
 use super::shape::{self, check};
 use super::value::Reader;
-use super::{AfterCollapse, Plugin, Spanned, Test, WrittenLimits, env};
+use super::{AfterCollapse, Leaks, Plugin, Spanned, Test, WrittenLimits, env};
 
 /// What the suite says for all of its tests.
 #[derive(Clone, Copy, Default)]
@@ -14,6 +14,8 @@ pub(super) struct Defaults {
     pub limits: WrittenLimits,
     /// Its `after-collapse`.
     pub after_collapse: AfterCollapse,
+    /// Its `leaks`.
+    pub leaks: Leaks,
 }
 
 /// Reads a `<test>`; `None` when it names no plug-in.
@@ -37,12 +39,24 @@ pub(super) fn read(
     isolation(reader, node);
     let repetitions = reader.number(node, "repetition", 1).unwrap_or(1);
     let after_collapse = after_collapse(reader, node).unwrap_or(defaults.after_collapse);
+    let leaks = leaks(reader, node).unwrap_or(defaults.leaks);
     let critical = reader.truth(node, "critical").unwrap_or(false);
     let tags = values(reader.words(node, "tags"));
     let env = env::read(reader, node);
     let plugin = plugin(reader, node)?;
     let span = Reader::tag(node);
-    Some(Test { span, name, plugin, repetitions, limits, after_collapse, critical, tags, env })
+    Some(Test {
+        span,
+        name,
+        plugin,
+        repetitions,
+        limits,
+        after_collapse,
+        leaks,
+        critical,
+        tags,
+        env,
+    })
 }
 
 /// The limits of tests: on `<test>` as they are, on `<suite>` with `test-` before.
@@ -74,7 +88,12 @@ pub(super) fn after_collapse(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Opt
     reader.choice(node, "after-collapse", &words)
 }
 
-/// The plug-in of a test or a fixture.
+/// The attribute of `<suite>` and of `<test>`.
+pub(super) fn leaks(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Option<Leaks> {
+    reader.choice(node, "leaks", &[("report", Leaks::Report), ("fail", Leaks::Fail)])
+}
+
+/// The plug-in of a test, a fixture or a hook.
 pub(super) fn plugin(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Option<Plugin> {
     let plugin_type = reader.word(node, "type");
     let param = reader.attribute(node, "param");

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use rtf_model::Trigger;
+
 use super::{Span, Spanned};
 
 /// A suite file.
@@ -25,6 +27,8 @@ pub struct Suite {
     pub tolerates_collapse: bool,
     /// The fixtures, in order.
     pub fixtures: Vec<Fixture>,
+    /// The hooks, in order.
+    pub hooks: Vec<Hook>,
     /// The tests, in order.
     pub tests: Vec<Test>,
 }
@@ -44,6 +48,8 @@ pub struct Test {
     pub limits: WrittenLimits,
     /// What happens to it when a fixture collapses while it runs.
     pub after_collapse: AfterCollapse,
+    /// What is said of it when it leaves processes behind.
+    pub leaks: Leaks,
     /// Whether the rest of the suite is skipped when it does not pass.
     pub critical: bool,
     /// Its own tags.
@@ -52,7 +58,7 @@ pub struct Test {
     pub env: Vec<(String, String)>,
 }
 
-/// What a test or a fixture plug-in is called.
+/// What a plug-in is called.
 #[derive(Clone, Debug)]
 pub struct Plugin {
     /// The plug-in's name as written.
@@ -92,6 +98,16 @@ pub enum AfterCollapse {
     Skip,
 }
 
+/// What is said of a test that left processes behind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Leaks {
+    /// The processes are killed and named.
+    #[default]
+    Report,
+    /// And the test, had it passed, is an error.
+    Fail,
+}
+
 /// A `<fixture>`.
 #[derive(Clone, Debug)]
 pub struct Fixture {
@@ -99,8 +115,8 @@ pub struct Fixture {
     pub span: Span,
     /// Its name, if the file gives one.
     pub name: Option<Spanned<String>>,
-    /// The fixtures that must stand before it.
-    pub depends: Vec<Spanned<String>>,
+    /// The fixtures that must stand before it; `None` when it does not say.
+    pub depends: Option<Vec<Spanned<String>>>,
     /// What it is.
     pub body: FixtureKind,
     /// Environment variables beside the suite's.
@@ -113,6 +129,8 @@ pub struct Fixture {
     pub teardown: Option<Duration>,
     /// How often it may be started again after a collapse.
     pub restarts: Option<u32>,
+    /// How long the first of these restarts waits.
+    pub restart_delay: Option<Duration>,
     /// How often it is checked while tests run.
     pub check_every: Option<Duration>,
 }
@@ -139,6 +157,31 @@ pub struct Process {
     pub stop_signal: Option<i32>,
     /// How long it may take to stop.
     pub stop_grace: Option<Duration>,
+}
+
+/// A `<hook>`.
+#[derive(Clone, Debug)]
+pub struct Hook {
+    /// Its name, if the file gives one.
+    pub name: Option<Spanned<String>>,
+    /// What calls for it, each once; empty when the file says nothing that is
+    /// known (a problem is reported).
+    pub on: Vec<Trigger>,
+    /// What it is.
+    pub body: HookKind,
+    /// Environment variables beside the suite's.
+    pub env: Vec<(String, String)>,
+    /// How long it may take.
+    pub timeout: Option<Duration>,
+}
+
+/// What a `<hook>` is.
+#[derive(Clone, Debug)]
+pub enum HookKind {
+    /// A test plug-in.
+    Plugin(Plugin),
+    /// A program and its arguments; empty when they cannot be read (a problem is reported).
+    Command(Spanned<Vec<String>>),
 }
 
 /// A `<ready>` or an `<alive>`.

@@ -172,6 +172,19 @@ impl Reader<'_> {
         });
     }
 
+    /// Reports an element that is there a second time; `seen` is the first one's place.
+    pub fn once(&mut self, node: Node<'_, '_>, seen: &mut Option<Span>) {
+        let span = Self::tag(node);
+        if let Some(first) = seen.replace(span) {
+            let parent = node.parent_element().map_or("suite", |parent| parent.tag_name().name());
+            let message = format!("`<{}>` twice in one {parent}", node.tag_name().name());
+            let problem = Diagnostic::error("repeated-element", message)
+                .label(self.source.label(span, "the second one"))
+                .label(self.source.label(first, "the first one"));
+            self.report(problem);
+        }
+    }
+
     /// Reports that something required is not there.
     pub fn missing(&mut self, node: Node<'_, '_>, what: &str) {
         let name = node.tag_name().name();

@@ -1,6 +1,7 @@
 //! A folder with an installation whose hosts are shell scripts, and with
 //! suites and plug-ins for the planner to find.
 
+use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -82,6 +83,29 @@ impl Bench {
     pub fn problems(&self, paths: &[&str]) -> Vec<(String, String)> {
         let outcome = self.build(paths);
         outcome.diagnostics.into_iter().map(|found| (found.code, found.message)).collect()
+    }
+
+    /// What is wrong with a suite of this text, as a text: for each problem its
+    /// code and message, its places, its notes and its hint.
+    pub fn shown(&self, suite: &str) -> String {
+        self.file("work/s.xml", suite);
+        let outcome = self.build(&["s.xml"]);
+        let mut out = String::new();
+        for found in &outcome.diagnostics {
+            writeln!(out, "{}: {}", found.code, found.message).unwrap();
+            for label in &found.labels {
+                let text = &outcome.sources.text(&label.file).unwrap();
+                let range =
+                    usize::try_from(label.start).unwrap()..usize::try_from(label.end).unwrap();
+                let written = &text[range];
+                writeln!(out, "  {}:{} {written} {}", label.line, label.column, label.text)
+                    .unwrap();
+            }
+            found.notes.iter().for_each(|note| writeln!(out, "  note: {note}").unwrap());
+            found.hint.iter().for_each(|hint| writeln!(out, "  hint: {hint}").unwrap());
+        }
+        assert_eq!(outcome.plan.is_none(), !out.is_empty(), "{out}");
+        out.replace(&self.root.display().to_string(), "[ROOT]")
     }
 
     /// A path below the root.

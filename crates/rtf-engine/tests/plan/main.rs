@@ -3,6 +3,8 @@
 #![expect(clippy::unwrap_used, reason = "that is where a test ends")]
 
 mod bench;
+mod depends;
+mod hooks;
 mod inputs;
 mod plugins;
 mod suites;

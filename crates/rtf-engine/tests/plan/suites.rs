@@ -99,26 +99,6 @@ fn unknown_types_list_the_known_ones() {
 }
 
 #[test]
-fn dependencies_are_earlier_fixtures() {
-    let bench = Bench::new();
-    bench.file("work/A.lua", "");
-    bench.file(
-        "work/s.xml",
-        "<suite><fixture name='a' depends='b a'>A.lua</fixture>\
-         <fixture name='b' depends='c'>A.lua</fixture><test>A.lua</test></suite>",
-    );
-    let messages: Vec<_> = bench.problems(&["s.xml"]).into_iter().map(|(_, m)| m).collect();
-    assert_eq!(
-        messages,
-        [
-            "the fixture `b` comes later",
-            "the fixture `a` depends on itself",
-            "there is no fixture `c`",
-        ]
-    );
-}
-
-#[test]
 fn problems_of_all_files_come_at_once() {
     let bench = Bench::new();
     bench.file("work/a.xml", "<suite><test timeout='x'>A</test></suite>");

@@ -96,8 +96,10 @@ fn text_of(file: &Path) -> Option<Source> {
 /// It loads; is it what the suite takes it for?
 fn kinds(entry: &FileUse, word: &Word, verified: &mut Verified) {
     let Some(kinds) = &word.kinds else { return };
-    for (role, places) in [(Role::Test, &entry.tests), (Role::Fixture, &entry.fixtures)] {
-        if places.count == 0 || kinds.iter().any(|kind| kind == role.word()) {
+    let uses =
+        [(Role::Test, &entry.tests), (Role::Fixture, &entry.fixtures), (Role::Hook, &entry.hooks)];
+    for (role, places) in uses {
+        if places.count == 0 || kinds.iter().any(|kind| kind == role.kind()) {
             continue;
         }
         if entry.optional {
@@ -105,7 +107,7 @@ fn kinds(entry: &FileUse, word: &Word, verified: &mut Verified) {
             continue;
         }
         let file = shown(&entry.file);
-        let wanted = role.word();
+        let wanted = role.kind();
         let problem = match kinds.first() {
             Some(other) => {
                 let message = format!("the plug-in `{file}` is a {other}, not a {wanted}");
@@ -119,7 +121,8 @@ fn kinds(entry: &FileUse, word: &Word, verified: &mut Verified) {
 
 fn all_places(entry: &FileUse, problem: Diagnostic) -> Diagnostic {
     let problem = show(&entry.tests, problem, "needed here");
-    show(&entry.fixtures, problem, "needed here")
+    let problem = show(&entry.fixtures, problem, "needed here");
+    show(&entry.hooks, problem, "needed here")
 }
 
 /// The suite's places come first, the plug-in's own line after them.

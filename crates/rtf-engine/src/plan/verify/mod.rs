@@ -52,6 +52,7 @@ struct FileUse {
     file: PathBuf,
     tests: Places,
     fixtures: Places,
+    hooks: Places,
     optional: bool,
 }
 
@@ -93,6 +94,7 @@ impl Checks {
                     file: wanted.file.to_path_buf(),
                     tests: Places::default(),
                     fixtures: Places::default(),
+                    hooks: Places::default(),
                     optional: wanted.optional,
                 });
                 index
@@ -103,6 +105,7 @@ impl Checks {
         let places = match wanted.role {
             Role::Test => &mut entry.tests,
             Role::Fixture => &mut entry.fixtures,
+            Role::Hook => &mut entry.hooks,
         };
         places.count += 1;
         if places.shown.len() < SHOWN_PLACES {
