@@ -105,6 +105,19 @@ impl Measurement {
         })
     }
 
+    /// What is wrong with the value, in words; nothing within the limits.
+    #[must_use]
+    pub fn problem(&self) -> Option<String> {
+        if self.is_within_limits() {
+            return None;
+        }
+        let (name, value) = (&self.name, self.value_with_unit());
+        Some(match self.limits() {
+            limits if limits.is_empty() => format!("`{name}` is {value}"),
+            limits => format!("`{name}` is {value}, its limits are {limits}"),
+        })
+    }
+
     /// The limits as text: `0.5 … 2`, `≥ 0.5`, `≤ 2`; empty without limits.
     #[must_use]
     pub fn limits(&self) -> String {

@@ -145,7 +145,7 @@ fn the_rest_is_skipped_when_a_critical_test_does_not_pass() {
          failed     [TIME]  arm/Fails
                  failure: the brake is open
                    at [FOLDER]/Fails.lua:2
-        skipped              arm/moves: the critical test `Fails` is failed
+        skipped              arm/moves: the critical test `Fails` did not pass: it is failed
     suite leg  1 test  2.xml
          passed     [TIME]  leg/Passes
 
@@ -156,7 +156,7 @@ fn the_rest_is_skipped_when_a_critical_test_does_not_pass() {
         again   rtf run 1.xml
 
     skipped tests:
-      1 test: the critical test `Fails` is failed
+      1 test: the critical test `Fails` did not pass: it is failed
         arm/moves
 
     results: rtf-results/[RUN]

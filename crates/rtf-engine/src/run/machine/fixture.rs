@@ -16,6 +16,8 @@ use crate::plan::{FixtureBody, FixturePlan, ProbeKind, ProcessPlan, SuitePlan};
 
 const SIGTERM: i32 = 15;
 const SET_UP: u64 = 2;
+/// The environment variable that counts a fixture's starts, from 1.
+const START_VARIABLE: &str = "RTF_FIXTURE_START";
 /// No restart waits longer than this.
 const LONGEST_DELAY: Duration = Duration::from_secs(10);
 
@@ -166,7 +168,8 @@ impl<'p> FixtureRun<'p> {
                 (Program::Process(Arc::new((**process).clone())), process.folder.clone())
             }
         };
-        let env = environment(self.suite, &self.plan.env, "fixture", &self.plan.name);
+        let mut env = environment(self.suite, &self.plan.env, "fixture", &self.plan.name);
+        env.push((START_VARIABLE.to_owned(), self.starts.to_string()));
         let start = Start { what, env, folder };
         cx.out(Effect::Spawn { host, source: self.source(), start });
         if let FixtureBody::Plugin(plugin) = &self.plan.body {

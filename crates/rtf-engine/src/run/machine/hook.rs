@@ -91,10 +91,8 @@ impl<'p> HookRun<'p> {
                 }
                 cx.emit(EventKind::Message { source: Source::Hook(self.plan.id), message });
             }
-            HostInput::Told(Notification::Measured(measurement))
-                if !measurement.is_within_limits() =>
-            {
-                self.note(format!("`{}` is out of its limits", measurement.name));
+            HostInput::Told(Notification::Measured(measurement)) => {
+                self.problem = self.problem.take().or_else(|| measurement.problem());
             }
             HostInput::Answered(RUN, reply) => match parse_answer(reply) {
                 Ok(Ok(answer)) => self.answer = Some(answer),

@@ -248,7 +248,7 @@ impl<'p> SuiteMachine<'p> {
         if let Some(text) = &ended.critical {
             self.end_early(format!("a critical assertion of `{}` did not hold: {text}", plan.name));
         } else if plan.critical && !ended.verdict.is_green() && !rerun {
-            self.end_early(format!("the critical test `{}` is {}", plan.name, ended.verdict));
+            self.end_early(format!("the critical test `{}` did not pass: it is {}", plan.name, ended.verdict));
         }
         self.checked = false;
         self.cursor = self.cursor.next(rerun, plan.repetitions);

@@ -206,13 +206,8 @@ impl<'p> TestRun<'p> {
     }
 
     fn measured(&mut self, measurement: Measurement, cx: &mut Context<'_>) {
-        if !measurement.is_within_limits() {
-            let value = measurement.value_with_unit();
-            let reason = match measurement.limits() {
-                limits if limits.is_empty() => format!("`{}` is {value}", measurement.name),
-                limits => format!("`{}` is {value}, its limits are {limits}", measurement.name),
-            };
-            self.note(Verdict::Failed, reason);
+        if let Some(problem) = measurement.problem() {
+            self.note(Verdict::Failed, problem);
         }
         cx.emit(EventKind::Measured { test: self.plan.id, measurement });
     }
