@@ -1,12 +1,10 @@
 //! Which streams of events are legal.
 
-mod support;
-
+use crate::support::*;
 use proptest::prelude::*;
-use rtf_model::{Event, EventKind, OrderChecker, Source, Verdict};
-use support::*;
+use rtf_model::{Event, EventKind, OrderChecker, Source, Trigger, Verdict};
 
-fn check(events: &[Event]) -> Result<(), String> {
+pub fn check(events: &[Event]) -> Result<(), String> {
     let mut checker = OrderChecker::default();
     for event in events {
         checker.check(event).map_err(|error| error.to_string())?;
@@ -43,7 +41,7 @@ fn broken() -> EventKind {
     EventKind::FixtureBroken { fixture: SIMULATOR, reason: "gone".into() }
 }
 
-fn left(source: Source) -> EventKind {
+pub fn left(source: Source) -> EventKind {
     EventKind::ProcessesLeft { source, processes: Vec::new() }
 }
 
@@ -195,11 +193,16 @@ fn any_kind() -> impl Strategy<Value = EventKind> {
         (number.clone(), number).prop_map(|(r, a)| started(r, a)),
         Just(finished(Verdict::Passed)),
         Just(rerun(Verdict::Collapsed)),
-        id.prop_map(skipped),
+        id.clone().prop_map(skipped),
         Just(EventKind::SuiteStarted { suite: SUITE }),
         Just(starting(1)),
         Just(collapsed()),
         Just(stopped()),
+        (id.clone(), id.clone()).prop_map(|(h, s)| hook(h, s)),
+        Just(hook_started(Trigger::Collapse)),
+        Just(hook_finished(Some("no power"))),
+        Just(left(Source::Hook(PARK))),
+        Just(runner_died()),
         Just(closed()[0].clone()),
         Just(closed()[1].clone()),
     ]

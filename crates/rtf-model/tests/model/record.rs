@@ -1,16 +1,14 @@
 //! What a record knows after a stream of events.
 
-mod support;
-
 use std::time::Duration;
 
+use crate::support::*;
 use rtf_model::{
     AttemptRecord, EventKind, FixtureState, Message, MessageKind, Output, Record, Source, Stream,
     TestId, Verdict,
 };
-use support::*;
 
-fn record(kinds: impl IntoIterator<Item = EventKind>) -> Record {
+pub fn record(kinds: impl IntoIterator<Item = EventKind>) -> Record {
     let mut record = Record::default();
     for event in stream(kinds) {
         record.apply(&event);

@@ -1,13 +1,14 @@
 //! Short ways to write event streams.
 
 use rtf_model::{
-    Event, EventKind, FixtureId, FixturePlanned, Micros, Phase, RunStarted, SuiteId, SuitePlanned,
-    TestFinished, TestId, TestPlanned, Verdict,
+    Event, EventKind, FixtureId, FixturePlanned, HookId, HookPlanned, LeftProcess, Micros, Phase,
+    RunStarted, SuiteId, SuitePlanned, TestFinished, TestId, TestPlanned, Trigger, Verdict,
 };
 
 pub const SUITE: SuiteId = SuiteId(0);
 pub const SIMULATOR: FixtureId = FixtureId(0);
 pub const TEST: TestId = TestId(0);
+pub const PARK: HookId = HookId(0);
 
 pub fn run_started() -> EventKind {
     EventKind::RunStarted(RunStarted {
@@ -54,6 +55,32 @@ pub fn test(id: u32, suite: u32, repetitions: u32) -> EventKind {
     })
 }
 
+pub fn hook(id: u32, suite: u32) -> EventKind {
+    EventKind::HookPlanned(HookPlanned {
+        hook: HookId(id),
+        suite: SuiteId(suite),
+        name: format!("hook-{id}"),
+        on: vec![Trigger::Collapse, Trigger::End],
+    })
+}
+
+pub fn hook_started(trigger: Trigger) -> EventKind {
+    EventKind::HookStarted { hook: PARK, trigger, reason: "for a reason".into(), test: Some(TEST) }
+}
+
+pub fn hook_finished(problem: Option<&str>) -> EventKind {
+    EventKind::HookFinished { hook: PARK, problem: problem.map(str::to_owned) }
+}
+
+pub fn runner_died() -> EventKind {
+    let left = vec![process(7, Some("test suite-0/test-0"))];
+    EventKind::RunnerDied { reason: "signal 9 (SIGKILL)".into(), left }
+}
+
+pub fn process(pid: i32, owner: Option<&str>) -> LeftProcess {
+    LeftProcess { pid, command: "sleep 9".into(), owner: owner.map(str::to_owned) }
+}
+
 pub fn started(repetition: u32, attempt: u32) -> EventKind {
     EventKind::TestStarted { test: TEST, repetition, attempt }
 }
@@ -86,6 +113,13 @@ pub fn stream(kinds: impl IntoIterator<Item = EventKind>) -> Vec<Event> {
 pub fn opened(repetitions: u32) -> Vec<EventKind> {
     let planned = [run_started(), suite(0), fixture(0, 0), test(0, 0, repetitions)];
     planned.into_iter().chain([EventKind::SuiteStarted { suite: SUITE }]).collect()
+}
+
+/// As [`opened`], with a hook.
+pub fn opened_with_hook(repetitions: u32) -> Vec<EventKind> {
+    let mut kinds = opened(repetitions);
+    kinds.insert(3, hook(0, 0));
+    kinds
 }
 
 pub fn closed() -> [EventKind; 2] {

@@ -1,0 +1,6 @@
+//! Streams of events: which are legal, and what is known after them.
+
+mod hooks;
+mod order;
+mod record;
+mod support;
