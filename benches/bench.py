@@ -12,6 +12,7 @@ import contextlib
 import os
 import platform
 import re
+import signal
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -136,6 +137,8 @@ def about_machine() -> str:
 
 
 if __name__ == "__main__":
+    # So that the temporary folder is removed then, too.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     try:
         sys.exit(main())
     except MeasuringError as problem:
