@@ -8,8 +8,10 @@ use std::process::Command;
 use std::time::Duration;
 
 use proptest::prelude::*;
-use rtf_engine::suite::{self, AfterCollapse, FixtureKind, Question, Source, Suite, WrittenLimits};
-use rtf_model::{Diagnostic, Severity};
+use rtf_engine::suite::{
+    self, AfterCollapse, FixtureKind, HookKind, Leaks, Question, Source, Suite, WrittenLimits,
+};
+use rtf_model::{Diagnostic, Severity, Trigger};
 
 fn data(folder: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(folder);
@@ -133,12 +135,12 @@ fn every_attribute_arrives() {
             grace: Some(secs(15)),
         }
     );
-    assert_eq!(test.after_collapse, AfterCollapse::Skip);
+    assert_eq!((test.after_collapse, test.leaks), (AfterCollapse::Skip, Leaks::Report));
     assert!(test.critical);
     assert_eq!(test.tags, ["reach", "slow"]);
     assert_eq!(test.env, [("SEED".to_owned(), "7".to_owned())]);
     let other = &suite.tests[1];
-    assert_eq!(other.after_collapse, AfterCollapse::Rerun);
+    assert_eq!((other.after_collapse, other.leaks), (AfterCollapse::Rerun, Leaks::Fail));
     assert_eq!(
         other.limits,
         WrittenLimits {
@@ -189,6 +191,31 @@ fn every_part_of_a_process_fixture_arrives() {
     assert_eq!(suite.fixtures[0].depends, None);
     assert_eq!(suite.fixtures[0].restart_delay, Some(Duration::from_millis(500)));
     assert_eq!(suite.fixtures[1].depends.as_ref().unwrap()[0].value, "sim");
+}
+
+#[test]
+fn every_part_of_a_hook_arrives() {
+    let (suite, _) = file("valid/everything.xml");
+    let park = &suite.hooks[0];
+    assert_eq!(park.name.as_ref().unwrap().value, "park");
+    assert_eq!(
+        park.on,
+        [
+            Trigger::Failure,
+            Trigger::Collapse,
+            Trigger::Timeout,
+            Trigger::Interrupt,
+            Trigger::FixtureBroken,
+            Trigger::End,
+        ]
+    );
+    assert_eq!(park.timeout, Some(Duration::from_secs(10)));
+    assert_eq!(park.env, [("SPEED".to_owned(), "0.1".to_owned())]);
+    let HookKind::Plugin(plugin) = &park.body else { panic!("a plug-in") };
+    assert_eq!((plugin.name.value.as_str(), plugin.param.as_str()), ("Park.lua", "--slow"));
+    let HookKind::Command(command) = &suite.hooks[1].body else { panic!("a command") };
+    assert_eq!(command.value, ["python3", "park.py", "--fast"]);
+    assert_eq!((suite.hooks[1].timeout, suite.hooks[1].name.is_none()), (None, true));
 }
 
 #[test]
@@ -246,10 +273,7 @@ fn what_is_wrong_with_a_process_fixture() {
         ["`<ready>` asks several things: `tcp` and `file`"]
     );
     assert_eq!(probe("<ready tcp='a:0'/>"), ["`tcp` is not a host and a port: `a:0`"]);
-    assert_eq!(
-        probe("<ready http='https://a/'/>"),
-        ["`http` cannot ask over TLS: `https://a/`"]
-    );
+    assert_eq!(probe("<ready http='https://a/'/>"), ["`http` cannot ask over TLS: `https://a/`"]);
     assert_eq!(probe("<ready log='('/>"), ["`log` is not a regular expression: `(`"]);
     assert_eq!(probe("<ready log='x' every='1s'/>"), ["`every` has no effect beside `log`"]);
     assert_eq!(
@@ -327,6 +351,9 @@ fn suite_like() -> impl Strategy<Value = String> {
         "<suite",
         "<test",
         "<fixture",
+        "<hook",
+        "</hook>",
+        " on='end'",
         "<env",
         "<command>",
         "<ready",
@@ -395,12 +422,13 @@ proptest! {
 
     #[test]
     fn no_attribute_value_makes_the_loader_panic(
-        name in "timeout|type|param|tags|name|repetition|depends|signal",
+        name in "timeout|type|param|tags|name|repetition|depends|signal|on|leaks|restart-delay",
         value in "[^<&'\\p{Cc}]*",
     ) {
         load_and_check(&format!("<suite {name}='{value}'><test {name}='{value}'>A</test></suite>"));
         load_and_check(&format!("<suite><fixture type='process'><command>{}</command>\
             <ready log='{value}'/><ready command='{value}'/><ready http='{value}'/>\
-            <stop signal='{value}'/></fixture><test>A</test></suite>", value.replace("]]>", "")));
+            <stop signal='{value}'/></fixture><fixture {name}='{value}'>A</fixture>\
+            <hook {name}='{value}'>A</hook><test>A</test></suite>", value.replace("]]>", "")));
     }
 }

@@ -17,7 +17,7 @@ pub(super) struct Turn {
 }
 
 /// That a fixture depends on another one.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Link {
     on: usize,
     span: Span,
@@ -183,5 +183,57 @@ impl Graph<'_> {
         problem
             .label(source.label(link.span, &text))
             .hint(format!("if {} needs no other fixture, give it `depends=\"\"`", name(*fixture)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::{Graph, Link};
+    use crate::suite::Span;
+
+    /// Up to 12 fixtures with any links between two different ones.
+    fn links() -> impl Strategy<Value = Vec<Vec<Link>>> {
+        let link = (any::<prop::sample::Index>(), any::<bool>());
+        let links = prop::collection::vec(link, 0..3);
+        prop::collection::vec(links, 1..12).prop_map(|drawn| {
+            let count = drawn.len();
+            let of = |place: usize, drawn: &[(prop::sample::Index, bool)]| {
+                let mut links: Vec<Link> = Vec::new();
+                for (index, written) in drawn {
+                    // What is not written goes to the one before.
+                    let on = if *written { index.index(count) } else { place.wrapping_sub(1) };
+                    if on < count && on != place && links.iter().all(|known| known.on != on) {
+                        links.push(Link { on, span: Span::default(), written: *written });
+                    }
+                }
+                links
+            };
+            drawn.iter().enumerate().map(|(place, drawn)| of(place, drawn)).collect()
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn an_order_is_right_or_there_is_a_circle(links in links()) {
+            let names: Vec<_> = (0..links.len()).map(|place| place.to_string()).collect();
+            let mut graph = Graph { names: &names, links };
+            let mut order = graph.sort();
+            while let Some(cycle) = graph.cycle(&order) {
+                for (index, (fixture, link)) in cycle.iter().enumerate() {
+                    prop_assert_eq!(link.on, cycle[(index + 1) % cycle.len()].0);
+                    prop_assert!(graph.links[*fixture].iter().any(|known| known.on == link.on));
+                }
+                prop_assert!(cycle.iter().any(|(_, link)| link.written));
+                graph.cut(&cycle);
+                order = graph.sort();
+            }
+            prop_assert_eq!(order.len(), names.len());
+            for (turn, fixture) in order.iter().enumerate() {
+                let earlier = |link: &Link| order[..turn].contains(&link.on);
+                prop_assert!(graph.links[*fixture].iter().all(earlier));
+            }
+        }
     }
 }

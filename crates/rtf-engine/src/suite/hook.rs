@@ -26,7 +26,8 @@ fn on(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Vec<Trigger> {
     };
     let words = reader.words(node, "on");
     if words.is_empty() {
-        reader.wrong("on", &attribute, "is empty", Some(&format!("it can have {}", known())));
+        let hint = format!("it can have {}", known());
+        reader.wrong("on", &attribute, "names nothing that calls for the hook", Some(&hint));
     }
     let mut on = Vec::new();
     for word in &words {

@@ -98,8 +98,8 @@ impl Bench {
                 let range =
                     usize::try_from(label.start).unwrap()..usize::try_from(label.end).unwrap();
                 let written = &text[range];
-                writeln!(out, "  {}:{} {written} {}", label.line, label.column, label.text)
-                    .unwrap();
+                let place = format!("{}:{} {}", label.line, label.column, written.trim());
+                writeln!(out, "{}", format!("  {place} {}", label.text).trim_end()).unwrap();
             }
             found.notes.iter().for_each(|note| writeln!(out, "  note: {note}").unwrap());
             found.hint.iter().for_each(|hint| writeln!(out, "  hint: {hint}").unwrap());

@@ -96,9 +96,9 @@ fn names_that_are_not_there() {
     let text = suite(&["name='simulator' depends='arm'", "name='b' depends='simulater b'"]);
     assert_snapshot!(bench().shown(&text), @"
     unknown-dependency: there is no fixture `arm`
-      2:37 arm 
+      2:37 arm
     unknown-dependency: there is no fixture `simulater`
-      3:29 simulater 
+      3:29 simulater
       hint: did you mean `simulator`?
     circular-dependency: the fixture `b` depends on itself
       3:39 b
@@ -162,7 +162,7 @@ fn restarts_wait_as_told() {
     let text = suite(&["restart-delay='11s'", "restart-delay='0'"]);
     assert_snapshot!(bench.shown(&text), @"
     invalid-value: `restart-delay` is longer than 10s, the longest wait before a restart: `11s`
-      2:26 11s 
+      2:26 11s
     invalid-value: `restart-delay` must be longer than zero: `0`
       3:26 0
     ");
@@ -174,7 +174,7 @@ fn probes_speak_plain_http() {
                 <ready http='HTTPS://127.0.0.1/up'/></fixture><test>A.lua</test></suite>";
     assert_snapshot!(bench().shown(text), @r#"
     invalid-value: `http` cannot ask over TLS: `HTTPS://127.0.0.1/up`
-      2:14 HTTPS://127.0.0.1/up 
+      2:14 HTTPS://127.0.0.1/up
       hint: probes speak plain HTTP; ask with `command="curl -fsS HTTPS://127.0.0.1/up"`
     "#);
 }

@@ -118,8 +118,8 @@ fn on_is_required_and_known() {
       2:1 <hook
     ");
     assert_snapshot!(bench.shown(&hook("on=' , '", "Park.lua")), @"
-    invalid-value: `on` is empty: `,`
-      2:11  ,  
+    invalid-value: `on` names nothing that calls for the hook: `,`
+      2:11 ,
       hint: it can have `failure`, `collapse`, `timeout`, `interrupt`, `fixture-broken`, `end`
     ");
     assert_snapshot!(bench.shown(&hook("on='colapse end crash'", "Park.lua")), @"
@@ -143,10 +143,10 @@ fn a_plugin_or_a_command() {
     let program = "<command>./park.sh</command>";
     assert_snapshot!(bench.shown(&hook("on='end' type='lua' param='-x'", program)), @"
     without-effect: `type` has no effect beside `<command>`
-      2:16 type 
+      2:16 type
       hint: a program has no type; leave it out
     without-effect: `param` has no effect beside `<command>`
-      2:27 param 
+      2:27 param
       hint: write the arguments behind the program, in `<command>`
     ");
     assert_snapshot!(bench.shown(&hook("on='end'", &format!("Park.lua{program}{program}"))), @"
@@ -159,7 +159,7 @@ fn a_plugin_or_a_command() {
     ");
     assert_snapshot!(bench.shown(&hook("on='end' type='process'", "./park.sh")), @"
     unknown-type: unknown type `process`
-      2:22 process 
+      2:22 process
       note: known types are `dll`, `lua`, `python`
       hint: a program is written as `<command>`, without a `type`
     ");
@@ -170,7 +170,7 @@ fn what_a_hook_runs_has_to_be_there() {
     let bench = bench();
     assert_snapshot!(bench.shown(&hook("on='end'", "Parc.lua")), @"
     no-such-plugin: there is no plug-in `Parc.lua` of type `lua`
-      2:16 Parc.lua 
+      2:16 Parc.lua
       note: looked for `Parc.lua` in
       [ROOT]/work
       [ROOT]/lib/rtf/plugins
@@ -178,7 +178,7 @@ fn what_a_hook_runs_has_to_be_there() {
     ");
     assert_snapshot!(bench.shown(&hook("on='end'", "<command>./parc.sh</command>")), @"
     no-such-program: there is no program `./parc.sh`
-      2:25 ./parc.sh 
+      2:25 ./parc.sh
       note: looked for [ROOT]/work/parc.sh
     ");
     assert_snapshot!(bench.shown(&hook("on='end'", "<command/>")), @"
@@ -212,7 +212,7 @@ fn a_hook_is_of_the_suite_and_has_a_name_of_its_own() {
       2:22 park the first one
       hint: give one of them another `name`
     invalid-value: `name` is a variable that rtf sets itself: `RTF_HOOK_TEST`
-      3:47 RTF_HOOK_TEST 
+      3:47 RTF_HOOK_TEST
     unknown-element: unknown element `<hook>`
       4:15 <hook not known in `<fixture>`
       note: `<fixture>` can have the elements `env`
@@ -229,9 +229,9 @@ fn leaks_are_reported_or_fail() {
     let text = "<suite leaks='yes'>\n<test leaks='repot'>A.lua</test></suite>";
     assert_snapshot!(bench().shown(text), @"
     invalid-value: `leaks` has to be `report` or `fail`: `yes`
-      1:15 yes 
+      1:15 yes
     invalid-value: `leaks` has to be `report` or `fail`: `repot`
-      2:14 repot 
+      2:14 repot
       hint: did you mean `report`?
     ");
 }
@@ -243,15 +243,15 @@ fn what_is_not_built_is_refused() {
                 <test retries='1' isolation='shared'>A.lua</test></suite>";
     assert_snapshot!(bench().shown(text), @r#"
     not-supported: `isolate` is not supported by this version of rtf
-      1:8 isolate 
+      1:8 isolate
     not-supported: `requires` is not supported by this version of rtf
-      1:26 requires 
+      1:26 requires
     not-supported: `attach` is not supported by this version of rtf
-      2:10 attach 
+      2:10 attach
     not-supported: `host` is not supported by this version of rtf
-      2:24 host 
+      2:24 host
     not-supported: `retries` is not supported by this version of rtf
-      3:7 retries 
+      3:7 retries
     not-supported: `isolation="shared"` is not supported by this version of rtf
       3:30 shared
     "#);
