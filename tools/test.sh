@@ -60,9 +60,11 @@ lint_cpp() {
 }
 
 lint_python() {
-  "$checkers/ruff" check examples tools tests
-  "$checkers/ruff" format --check examples tools tests
-  "$checkers/mypy" examples/*/*.py tools/*.py
+  "$checkers/ruff" check examples tools tests benches
+  "$checkers/ruff" format --check examples tools tests benches
+  "$checkers/mypy" examples/01-simulated-arm/*.py tools/*.py
+  "$checkers/mypy" examples/02-supervised-simulator/*.py
+  "$checkers/mypy" benches/bench.py
 }
 
 sdk_python() {

@@ -117,9 +117,9 @@ impl OrderChecker {
     /// Checks that the stream is complete.
     ///
     /// # Errors
-    /// The stream does not end with `run-finished`.
+    /// The stream ends with neither `run-finished` nor `runner-died`.
     pub fn finish(&self) -> Result<(), OrderError> {
-        ensure(self.stage == Stage::After, || "the stream does not end with run-finished".into())
+        ensure(self.stage == Stage::After, || "the stream ends with neither run-finished nor runner-died".into())
             .map_err(|rule| OrderError { seq: self.next_seq, rule })
     }
 
@@ -132,7 +132,7 @@ impl OrderChecker {
         ensure(first == (self.stage == Stage::Before), || {
             "run-started comes first and only once".into()
         })?;
-        ensure(self.stage != Stage::After, || "nothing follows run-finished".into())
+        ensure(self.stage != Stage::After, || "nothing follows run-finished or runner-died".into())
     }
 
     fn check_kind(&mut self, kind: &EventKind) -> Rule {

@@ -74,16 +74,7 @@ pub(crate) fn hook(run: &HookRun, extent: Extent, sink: Sink<'_>) {
 /// anyway: usually the first one is, and it tells its place as well.
 fn is_told_with_its_place(attempt: &AttemptRecord, reason: &str) -> bool {
     attempt.failures().any(|failure| failure.text == reason)
-        || attempt.violations().any(|violation| violation_as_reason(violation) == reason)
-}
-
-/// What the runner gives as the reason for a measurement outside its limits.
-fn violation_as_reason(measurement: &Measurement) -> String {
-    let (name, value) = (&measurement.name, measurement.value_with_unit());
-    match measurement.limits() {
-        limits if limits.is_empty() => format!("`{name}` is {value}"),
-        limits => format!("`{name}` is {value}, its limits are {limits}"),
-    }
+        || attempt.violations().any(|value| value.problem().as_deref() == Some(reason))
 }
 
 /// A message with its place and the vectors behind it.
