@@ -3,8 +3,10 @@
 //! [`suite`] turns text into what was written, [`plan`] turns that into what
 //! will be done and finds every problem before a process starts, and [`run`]
 //! does it: a state machine without I/O or clock, with one task around it.
-//! [`host`] is how processes are started, spoken to, and ended.
+//! [`host`] is how processes are started, spoken to, and ended; [`guard`] is
+//! who does what is left to do when the runner dies.
 
+pub mod guard;
 pub mod host;
 pub mod plan;
 pub mod run;

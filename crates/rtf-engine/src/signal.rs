@@ -1,17 +1,21 @@
 //! Signals that end a run: the first asks, the second insists, the third kills.
+//!
+//! They come through the [`crate::guard`], whose own death counts as one.
 
 use std::io;
 
 use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::watch;
 
+use crate::guard::Link;
 use crate::host::tree;
 use crate::run::{Stop, StopLevel};
 
 /// The signals that end a run, by number and name.
 const ENDING: [(i32, &str); 3] = [(2, "SIGINT"), (15, "SIGTERM"), (1, "SIGHUP")];
 
-/// Turns signals into stop requests, for as long as it is polled:
+/// Turns signals, and the guard's death, into stop requests, for as long as it
+/// is polled:
 ///
 /// 1. stop the test, tear down, report;
 /// 2. kill everything, report;
@@ -19,11 +23,23 @@ const ENDING: [(i32, &str); 3] = [(2, "SIGINT"), (15, "SIGTERM"), (1, "SIGHUP")]
 ///
 /// # Errors
 /// A signal's handler cannot be installed.
-pub async fn forward(stops: &watch::Sender<Option<Stop>>) -> io::Result<i32> {
+pub async fn forward(stops: &watch::Sender<Option<Stop>>, guard: &Link) -> io::Result<i32> {
     let mut signals = Signals::install()?;
+    let died = async {
+        guard.guard_died().await;
+        "the guard died"
+    };
+    let mut died = Box::pin(died);
+    let mut alive = true;
     for level in [StopLevel::TearDown, StopLevel::Kill] {
-        let (_, name) = signals.next().await;
-        stops.send_replace(Some(Stop { level, reason: name.to_owned() }));
+        let reason = tokio::select! {
+            (_, name) = signals.next() => name,
+            reason = &mut died, if alive => {
+                alive = false;
+                reason
+            }
+        };
+        stops.send_replace(Some(Stop { level, reason: reason.to_owned() }));
     }
     let (number, _) = signals.next().await;
     let _ = tree::kill_everything();

@@ -16,6 +16,9 @@ pub const BROKEN: u8 = 3;
 /// A hook failed: the robot may not be in a safe state. Whatever else happened.
 pub const HOOK_FAILED: u8 = 4;
 
+/// The runner died; the guard stopped everything.
+pub const RUNNER_DIED: u8 = 5;
+
 /// The exit code of a run.
 pub fn of_run(record: &Record) -> ExitCode {
     let interrupted = record.interrupted().map(|by| signal::exit_code(by).unwrap_or(FAILED));

@@ -7,6 +7,7 @@ mod cli;
 mod command;
 mod error;
 mod exit;
+mod guarded;
 mod render;
 
 use std::process::ExitCode;
@@ -22,7 +23,7 @@ fn main() -> ExitCode {
         Color::Never => anstream::ColorChoice::Never.write_global(),
     }
     let outcome = match &cli.command {
-        Command::Run(args) => command::run::run(args),
+        Command::Run(args) => guarded::run(args),
         Command::Check(args) => command::check::run(args),
         Command::List(args) => command::list::run(args),
         Command::Show(args) => command::show::run(args),

@@ -4,6 +4,7 @@
 //! process said, printed, and how it ended. Everything that the process said
 //! and printed is delivered before its end is told.
 
+use std::os::fd::AsFd;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, SystemTime};
@@ -18,6 +19,7 @@ use super::codec::{self, FromHost, LINE_LIMIT};
 use super::launch::Launch;
 use super::spawner::{End, Process, Spawner};
 use super::{stack, tree, unix};
+use crate::guard::{Kept, Link};
 use crate::plan::ProcessPlan;
 use crate::run::Sink;
 use crate::run::machine::{HostId, HostInput};
@@ -59,6 +61,8 @@ pub struct Shared {
     pub run_folder: PathBuf,
     /// A folder for files that are gone when the run is over.
     pub scratch: PathBuf,
+    /// The way to the guard.
+    pub guard: Arc<Link>,
 }
 
 /// What one process is.
@@ -93,12 +97,14 @@ pub async fn run(
     match job.launch.start(&shared.spawner).await {
         Ok(process) => {
             let mut task = Task::new(job, shared, process, inputs);
+            task.tell_guard();
             task.watch_ready(started_at);
             task.run(orders).await;
         }
         Err(error) => {
             let program = job.launch.request.command.first().map_or("", String::as_str);
             let reason = format!("`{program}` cannot be started: {error}");
+            shared.guard.process_ended(job.source, 0);
             drop(inputs.send((host, HostInput::SpawnFailed(reason))).await);
         }
     }
@@ -117,6 +123,16 @@ struct Task {
 impl Task {
     fn new(job: Job, shared: Arc<Shared>, process: Process, inputs: Inputs) -> Self {
         Self { job, shared, process, inputs, line: Vec::new(), side: JoinSet::new() }
+    }
+
+    /// Hooks and fixtures must be able to go on when the runner dies.
+    fn tell_guard(&self) {
+        let Process { channel, stdout, stderr, .. } = &self.process;
+        let channel = channel.as_ref().map(|end| (Kept::Channel, end.as_fd()));
+        let stdout = stdout.as_ref().map(|end| (Kept::Stdout, end.as_fd()));
+        let stderr = stderr.as_ref().map(|end| (Kept::Stderr, end.as_fd()));
+        let streams: Vec<_> = [channel, stdout, stderr].into_iter().flatten().collect();
+        self.shared.guard.process_started(self.job.source, self.process.pid, &streams);
     }
 
     fn watch_ready(&mut self, started_at: SystemTime) {
@@ -161,6 +177,7 @@ impl Task {
         let left = tree::sweep(&self.job.launch.scope);
         let _ = tokio::time::timeout(DRAIN_LIMIT, self.drain(buffers)).await;
         let _ = std::fs::remove_file(&self.job.launch.stack_file);
+        self.shared.guard.process_ended(self.job.source, self.process.pid);
         self.tell(HostInput::Exited(status, left)).await;
     }
 
@@ -202,6 +219,7 @@ impl Task {
     }
 
     async fn send(&mut self, id: Option<u64>, mut request: Request) {
+        let asks = matches!(request, Request::RunTest(_));
         if let Request::RunTest(plugin) = &mut request {
             let folder = self.shared.run_folder.join(self.keep_folder());
             plugin.keep_folder = Some(folder.to_string_lossy().into_owned());
@@ -209,6 +227,9 @@ impl Task {
         if let (Ok(line), Some(channel)) = (codec::encode(id, request), &mut self.process.channel) {
             // A host that is gone or does not read is noticed by its exit or its limit.
             let _ = tokio::time::timeout(DRAIN_LIMIT, channel.write_all(&line)).await;
+            if asks {
+                self.shared.guard.process_asked(self.job.source);
+            }
         }
     }
 

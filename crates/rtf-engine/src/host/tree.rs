@@ -7,17 +7,22 @@
 
 use std::collections::HashSet;
 use std::ffi::OsStr;
+use std::os::fd::AsRawFd;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{LazyLock, Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use rtf_model::LeftProcess;
-use rtf_model::protocol::SCOPE_VARIABLE;
+use rtf_model::protocol::{OWNER_VARIABLE, SCOPE_VARIABLE};
 
 use super::unix;
 
 const SIGKILL: i32 = 9;
+/// How long to wait before looking again for processes that are ending.
+const ENDING: Duration = Duration::from_millis(1);
+/// The children of this process.
+const OWN: &str = "/proc/self/task";
 /// How often, and how long apart, an environment that looks empty is looked at.
 const EXEC_LOOKS: u32 = 50;
 const EXEC_WAIT: Duration = Duration::from_micros(200);
@@ -79,12 +84,89 @@ pub fn sweep_all() -> Vec<LeftProcess> {
     sweep_if(|_| true)
 }
 
+/// Kills every process below this one, again and again until there is none or
+/// the time is over. Returns what was killed.
+#[must_use]
+pub fn clear(limit: Duration) -> Vec<LeftProcess> {
+    let end = Instant::now() + limit;
+    let mut left = Vec::new();
+    loop {
+        add(&mut left, kill_everything());
+        if children_of(OWN).is_empty() || Instant::now() >= end {
+            return left;
+        }
+        std::thread::sleep(ENDING);
+    }
+}
+
+/// Adds processes that are not known yet.
+pub fn add(known: &mut Vec<LeftProcess>, more: Vec<LeftProcess>) {
+    let pids: HashSet<i32> = known.iter().map(|process| process.pid).collect();
+    known.extend(more.into_iter().filter(|process| !pids.contains(&process.pid)));
+}
+
+/// Kills the children of this process whose owner begins so, and all that is
+/// below them. Returns what was killed. Nothing is reaped.
+#[must_use]
+pub fn kill_owned(prefix: &str) -> Vec<LeftProcess> {
+    let mut left = Vec::new();
+    loop {
+        let owned = children_of(OWN).into_iter().filter(|pid| !is_zombie(*pid));
+        let owned = owned.filter(|pid| owner_of(*pid).is_some_and(|o| o.starts_with(prefix)));
+        let found: Vec<_> = owned
+            .flat_map(|pid| std::iter::once(pid).chain(descendants(pid)))
+            .map(described)
+            .collect();
+        let before = left.len();
+        add(&mut left, found);
+        for process in &left[before..] {
+            unix::signal_process(process.pid, SIGKILL);
+        }
+        if left.len() == before {
+            return left;
+        }
+    }
+}
+
+/// The child of this process that has this scope.
+#[must_use]
+pub fn child_of_scope(scope: &str) -> Option<i32> {
+    let belongs = |pid: &i32| scope_of(*pid).is_some_and(|found| found == scope.as_bytes());
+    children_of(OWN).into_iter().find(belongs)
+}
+
+/// Whether a process is a child of this one, alive or not.
+#[must_use]
+pub fn is_child(pid: i32) -> bool {
+    children_of(OWN).contains(&pid)
+}
+
+/// Sends a signal to a process.
+pub fn signal(pid: i32, signal: i32) {
+    unix::signal_process(pid, signal);
+}
+
+/// Sends a signal to a process group.
+pub fn signal_group(pid: i32, signal: i32) {
+    unix::signal_group(pid, signal);
+}
+
+/// Lets the next process that is started inherit a host's end of its channel;
+/// returns its address, as the host expects it in its environment.
+///
+/// # Errors
+/// The descriptor is not open.
+pub fn inheritable(channel: &std::os::unix::net::UnixStream) -> std::io::Result<String> {
+    unix::let_inherit(channel)?;
+    Ok(format!("fd:{}", channel.as_raw_fd()))
+}
+
 fn sweep_if(belongs: impl Fn(i32) -> bool) -> Vec<LeftProcess> {
     let mut left = Vec::new();
     let mut seen = HashSet::new();
     loop {
         let starts = STARTS.load(Ordering::SeqCst);
-        let orphans = children_of("/proc/self/task").into_iter();
+        let orphans = children_of(OWN).into_iter();
         let found: Vec<i32> = orphans
             .filter(|pid| !is_own_child(*pid))
             .filter(|pid| is_zombie(*pid) || belongs(*pid))
@@ -99,7 +181,7 @@ fn sweep_if(belongs: impl Fn(i32) -> bool) -> Vec<LeftProcess> {
                     unix::reap(*pid);
                 }
             } else if seen.insert(*pid) {
-                left.push(LeftProcess { pid: *pid, command: command_of(*pid), owner: None });
+                left.push(described(*pid));
                 unix::signal_process(*pid, SIGKILL);
             }
         }
@@ -160,10 +242,25 @@ fn environ_of(pid: i32) -> Option<Vec<u8>> {
     None
 }
 
+fn described(pid: i32) -> LeftProcess {
+    LeftProcess { pid, command: command_of(pid), owner: owner_of(pid) }
+}
+
+/// Who started a process: `test arm/EncoderTest`.
+fn owner_of(pid: i32) -> Option<String> {
+    let owner = variable_of(pid, OWNER_VARIABLE)?;
+    Some(String::from_utf8_lossy(&owner).into_owned())
+}
+
 /// The value of the scope variable of a process.
 fn scope_of(pid: i32) -> Option<Vec<u8>> {
+    variable_of(pid, SCOPE_VARIABLE)
+}
+
+/// The value of a variable in the environment of a process, as it was started.
+fn variable_of(pid: i32, name: &str) -> Option<Vec<u8>> {
     let environ = environ_of(pid)?;
-    let prefix = format!("{SCOPE_VARIABLE}=");
+    let prefix = format!("{name}=");
     let found =
         environ.split(|byte| *byte == 0).find_map(|entry| entry.strip_prefix(prefix.as_bytes()));
     found.map(<[u8]>::to_vec)

@@ -20,6 +20,7 @@ use tokio::sync::watch;
 pub use events::{Events, Sink};
 pub use machine::{Stop, StopLevel};
 
+use crate::guard::Link;
 use crate::host::spawner::Spawner;
 use crate::host::task::Shared;
 use crate::host::{prepare_process, tree};
@@ -34,6 +35,10 @@ pub struct RunOptions {
     pub warnings: Vec<Diagnostic>,
     /// The run's folder, for attachments.
     pub folder: PathBuf,
+    /// The run's journal, which the guard closes when the runner dies.
+    pub journal: PathBuf,
+    /// The way to the guard.
+    pub guard: Arc<Link>,
 }
 
 /// Runs every suite of a plan, one after the other.
@@ -53,8 +58,10 @@ pub async fn execute(
         sink: sink.clone(),
         run_folder: options.folder,
         scratch: scratch.clone(),
+        guard: options.guard.clone(),
     });
     let events = Events::new(options.started.run.clone(), sink);
+    options.guard.run_begins(&options.journal, events.start());
     events.emit(EventKind::RunStarted(options.started));
     for diagnostic in options.warnings {
         events.emit(EventKind::Warning { diagnostic });
@@ -63,7 +70,9 @@ pub async fn execute(
         announce(suite, &events);
     }
     for suite in &plan.suites {
+        options.guard.suite_begins(suite);
         suite_task::run_suite(suite, &shared, &events, stops.clone()).await;
+        options.guard.suite_ends(suite.id);
     }
     let left = tree::sweep_all();
     if !left.is_empty() {
@@ -78,6 +87,7 @@ pub async fn execute(
     }
     let interrupted = stops.borrow().as_ref().map(|stop| stop.reason.clone());
     events.emit(EventKind::RunFinished { interrupted });
+    options.guard.run_ends();
     let _ = std::fs::remove_dir_all(scratch);
     Ok(())
 }

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 use std::time::Duration;
 
-use rtf_model::Source;
 use rtf_model::protocol::ENVIRONMENT_VARIABLE;
+use rtf_model::{EventKind, Source};
 use tokio::sync::{mpsc, watch};
 use tokio::time::Instant;
 
@@ -14,6 +14,7 @@ use super::events::Events;
 use super::machine::{
     Deadline, Effect, HostId, HostInput, Input, Program, Start, Stop, SuiteMachine,
 };
+use crate::guard::HookBegins;
 use crate::host::launch::Launch;
 use crate::host::spawner::{SpawnRequest, Streams};
 use crate::host::task::{self, Job, Order, Shared};
@@ -39,6 +40,7 @@ pub async fn run_suite(
         effects: Vec::new(),
         orders: HashMap::new(),
         spare: None,
+        called: None,
         scopes: 0,
         deadlines: BTreeMap::new(),
         over: false,
@@ -59,6 +61,8 @@ struct SuiteTask<'a> {
     orders: HashMap<HostId, mpsc::UnboundedSender<Order>>,
     /// A host that was started ahead of its need.
     spare: Option<Launch>,
+    /// What called for the hook that is started next.
+    called: Option<HookBegins>,
     /// How many scopes were given out.
     scopes: u64,
     deadlines: BTreeMap<Deadline, Duration>,
@@ -136,7 +140,10 @@ impl SuiteTask<'_> {
 
     fn carry_out(&mut self, effect: Effect) {
         match effect {
-            Effect::Emit(kind) => self.events.emit(kind),
+            Effect::Emit(kind) => {
+                self.tell_guard(&kind);
+                self.events.emit(kind);
+            }
             Effect::SetDeadline(deadline, at) => drop(self.deadlines.insert(deadline, at)),
             Effect::ClearDeadline(deadline) => drop(self.deadlines.remove(&deadline)),
             Effect::Spawn { host, source, start } => self.spawn(host, source, start),
@@ -148,6 +155,25 @@ impl SuiteTask<'_> {
             Effect::KillTree(host) => self.order(host, Order::KillTree),
             Effect::WatchAlive(host) => self.order(host, Order::WatchAlive),
             Effect::Done => self.over = true,
+        }
+    }
+
+    /// What the guard must know of tests and hooks, should the runner die.
+    fn tell_guard(&mut self, kind: &EventKind) {
+        let guard = &self.shared.guard;
+        match kind {
+            EventKind::TestStarted { test, .. } => {
+                let first = self.plan.tests.first().map_or(0, |first| first.id.index());
+                let plan = self.plan.tests.get(test.index() - first);
+                guard.test_begins(*test, plan.map_or("", |plan| &plan.name));
+            }
+            EventKind::TestFinished(_) => guard.test_ends(),
+            EventKind::HookStarted { hook, trigger, reason, test } => {
+                let (reason, scope) = (reason.clone(), String::new());
+                let (hook, trigger, test) = (*hook, *trigger, *test);
+                self.called = Some(HookBegins { hook, scope, trigger, reason, test });
+            }
+            _ => {}
         }
     }
 
@@ -170,6 +196,9 @@ impl SuiteTask<'_> {
             Some(spare) => spare,
             None => self.launch(request),
         };
+        if let Some(called) = self.called.take_if(|_| matches!(source, Source::Hook(_))) {
+            self.shared.guard.hook_begins(HookBegins { scope: launch.scope.clone(), ..called });
+        }
         let job = Job { host, source, launch, process };
         tokio::spawn(task::run(job, self.shared.clone(), queue, self.inputs.clone()));
     }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
+use rtf_engine::guard::Link;
 use rtf_engine::run::{RunOptions, Sink, Stop, execute};
 use rtf_engine::signal;
 use rtf_model::{EVENTS_VERSION, Event, RunStarted};
@@ -24,15 +25,16 @@ use crate::exit;
 
 const REPORT_HINT: &str = "choose another path with `--report FORMAT=PATH`";
 
-/// Runs.
-pub fn run(args: &RunArgs) -> Outcome {
+/// Runs, under a guard.
+pub fn run(args: &RunArgs, guard: Link) -> Outcome {
     let planned = planning::plan(&args.input)?;
     check_reports(&args.reports)?;
     let folder = run_folder::create(&args.results.results).map_err(|error| {
         Failure::input(error).hint("choose another folder with `--results DIR`".to_owned())
     })?;
     let fanout = Fanout::start(reporters(args, &folder)?).map_err(Failure::own)?;
-    let ended = run_plan(&planned, &folder, fanout.handle());
+    let guard = Arc::new(guard);
+    let ended = run_plan(&planned, &folder, fanout.handle(), guard.clone());
     let finished = fanout.join();
     let killed_by = ended.map_err(Failure::own)?;
     let wrote_all = finished.errors.is_empty();
@@ -77,7 +79,8 @@ fn check_reports(reports: &[(Format, PathBuf)]) -> Result<(), Failure> {
     Ok(())
 }
 
-fn open_report(
+/// Opens a report's file.
+pub fn open_report(
     format: Format,
     path: &Path,
     folder: Option<&Path>,
@@ -94,19 +97,22 @@ fn run_plan(
     planned: &Planned,
     folder: &RunFolder,
     events: FanoutHandle,
+    guard: Arc<Link>,
 ) -> std::io::Result<Option<i32>> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let (stops, stopped) = watch::channel(None::<Stop>);
     let options = RunOptions {
         started: started(planned, folder)?,
         warnings: planned.warnings.clone(),
+        journal: folder.journal().canonicalize()?,
         folder: folder.path.canonicalize()?,
+        guard: guard.clone(),
     };
     let sink: Arc<dyn Sink> = Arc::new(Reports(events));
     runtime.block_on(async {
         tokio::select! {
             biased;
-            signal = signal::forward(&stops) => signal.map(Some),
+            signal = signal::forward(&stops, &guard) => signal.map(Some),
             done = execute(&planned.plan, options, sink, stopped) => done.map(|()| None),
         }
     })

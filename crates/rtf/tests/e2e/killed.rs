@@ -14,13 +14,13 @@ fn a_killed_run_can_still_be_shown_and_reported() {
         folder.file("T.py", TEST);
         let tests = "<test type='python'>T</test>".repeat(5);
         folder.file("s.xml", &format!("<suite name='s'>{tests}</suite>"));
-        let mut running = folder.start(&["run", "s.xml"]);
+        let running = folder.start(&["run", "s.xml"]);
         let seen = running.wait_for(|_| true);
         assert!(matches!(seen.kind, EventKind::RunStarted(_)));
         let journal = folder.path().join("rtf-results/latest/events.jsonl");
         wait_until("events", || (read_journal(&journal).events.len() >= moment).then_some(()));
-        running.child.kill().expect("the runner is killed");
-        running.child.wait().expect("the runner is dead");
+        running.kill_runner();
+        assert_eq!(running.finish().code, Some(5));
         let before = read_journal(&journal);
         let shown = folder.rtf(&["show", "latest"]);
         assert_eq!(shown.code, Some(1), "{}{}", shown.stdout, shown.stderr);

@@ -141,6 +141,21 @@ impl Running {
         })
     }
 
+    /// The runner below the guard, which is the process that was started.
+    pub fn runner(&self) -> i32 {
+        let guard = self.child.id();
+        wait_until("the runner", || {
+            let children = format!("/proc/{guard}/task/{guard}/children");
+            std::fs::read_to_string(children).ok()?.split_whitespace().next()?.parse().ok()
+        })
+    }
+
+    /// Kills the runner with SIGKILL.
+    pub fn kill_runner(&self) {
+        let status = Command::new("kill").args(["-KILL", &self.runner().to_string()]).status();
+        assert!(status.expect("kill").success());
+    }
+
     pub fn signal(&self, signal: &str) {
         let status =
             Command::new("kill").args(["-s", signal, &self.child.id().to_string()]).status();

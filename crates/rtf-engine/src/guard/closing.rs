@@ -1,0 +1,127 @@
+//! Closes the journal of a run whose runner died.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, BufRead, BufReader, Write};
+use std::path::Path;
+use std::time::Instant;
+
+use rtf_model::{Diagnostic, Event, EventKind, HookId, Micros, OrderChecker, SuiteId};
+
+/// Something that is to be written, and when it was.
+#[derive(Debug)]
+pub struct Happened {
+    /// When.
+    pub at: Instant,
+    /// What.
+    pub kind: EventKind,
+}
+
+/// Cuts off a last line that is not whole and writes what happened since.
+/// `start` is zero on the run's clock. A journal that is closed, or has no
+/// event, stays as it is.
+///
+/// # Errors
+/// The file cannot be read or written.
+pub fn close(journal: &Path, start: Instant, happened: Vec<Happened>) -> io::Result<()> {
+    let file = OpenOptions::new().read(true).append(true).open(journal)?;
+    let Some(mut closing) = Closing::read(&file, start)? else { return Ok(()) };
+    for Happened { at, kind } in happened {
+        closing.add(at, kind);
+    }
+    file.set_len(closing.whole)?;
+    (&file).write_all(&closing.lines)?;
+    file.sync_data()
+}
+
+struct Closing {
+    /// The length of the file up to the end of its last whole line.
+    whole: u64,
+    next: u64,
+    last_at: Micros,
+    start: Instant,
+    /// `None` when what is there breaks the order already, as damage does.
+    order: Option<OrderChecker>,
+    /// The suites of hooks, as planned.
+    suites: Vec<(HookId, SuiteId)>,
+    lines: Vec<u8>,
+}
+
+impl Closing {
+    /// `None` when there is nothing to close.
+    fn read(file: &File, start: Instant) -> io::Result<Option<Self>> {
+        let order = Some(OrderChecker::default());
+        let (last_at, suites, lines) = (Micros::default(), Vec::new(), Vec::new());
+        let mut closing = Self { whole: 0, next: 0, last_at, start, order, suites, lines };
+        let mut reader = BufReader::with_capacity(64 * 1024, file);
+        let mut line = Vec::new();
+        while reader.read_until(b'\n', &mut line)? > 0 && line.ends_with(b"\n") {
+            closing.whole += line.len() as u64;
+            if let Ok(event) = serde_json::from_slice::<Event>(&line) {
+                let over = EventKind::RunFinished { interrupted: None };
+                if std::mem::discriminant(&event.kind) == std::mem::discriminant(&over) {
+                    return Ok(None);
+                }
+                closing.pass(&event);
+            }
+            line.clear();
+        }
+        Ok((closing.next > 0).then_some(closing))
+    }
+
+    fn pass(&mut self, event: &Event) {
+        self.next = event.seq.saturating_add(1);
+        self.last_at = event.at;
+        if let EventKind::HookPlanned(plan) = &event.kind {
+            self.suites.push((plan.hook, plan.suite));
+        }
+        self.order.take_if(|order| order.check(event).is_err());
+    }
+
+    fn add(&mut self, at: Instant, kind: EventKind) {
+        let hook = match &kind {
+            EventKind::HookStarted { hook, .. } => Some(*hook),
+            _ => None,
+        };
+        if self.offer(at, kind.clone()) {
+            return;
+        }
+        match kind {
+            // The runner died after it had told the guard, but not the journal:
+            // its hook began (then this one is known), or its suite did.
+            EventKind::HookStarted { .. } => {
+                let suite = self.suites.iter().find(|(id, _)| Some(*id) == hook);
+                if let Some((_, suite)) = suite.copied() {
+                    self.offer(at, EventKind::SuiteStarted { suite });
+                    self.offer(at, kind);
+                }
+            }
+            EventKind::HookFinished { hook, problem } => {
+                let end = problem.map_or("did its work".to_owned(), |why| format!("failed: {why}"));
+                let text = format!("hook {hook} was run by the guard and {end}");
+                let diagnostic = Diagnostic::warning("hook-of-the-guard", text);
+                self.offer(at, EventKind::Warning { diagnostic });
+            }
+            _ => {}
+        }
+    }
+
+    /// Writes an event, if it may stand here.
+    fn offer(&mut self, at: Instant, kind: EventKind) -> bool {
+        let at = Micros::from(at.saturating_duration_since(self.start)).max(self.last_at);
+        let event = Event { seq: self.next, at, kind };
+        if let Some(order) = &self.order {
+            let mut order = order.clone();
+            if order.check(&event).is_err() {
+                return false;
+            }
+            self.order = Some(order);
+        }
+        if serde_json::to_writer(&mut self.lines, &event).is_err() {
+            return false;
+        }
+        self.lines.push(b'\n');
+        self.next += 1;
+        self.last_at = at;
+        true
+    }
+}

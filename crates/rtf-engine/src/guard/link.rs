@@ -1,0 +1,174 @@
+//! The runner's end of the line to its guard.
+
+use std::io::IoSlice;
+use std::mem::MaybeUninit;
+use std::os::fd::BorrowedFd;
+use std::os::unix::net::UnixStream;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use rtf_model::{Source, SuiteId, TestId};
+use rustix::net::{SendAncillaryBuffer, SendAncillaryMessage, SendFlags, sendmsg};
+
+use super::note::{Hook, HookBegins, Kept, Note};
+use crate::plan::SuitePlan;
+
+/// A guard that does not read for this long (it was stopped by a debugger, say)
+/// is told no more: the run must not wait for it.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// The way to the guard. Telling never fails: without a guard, or when it is
+/// gone, the run goes on.
+#[derive(Debug)]
+pub struct Link {
+    socket: Mutex<Option<UnixStream>>,
+    /// Closed by the guard's death. A socket of its own: waiting for this one
+    /// must not block, telling must.
+    pulse: Option<UnixStream>,
+    forked: Instant,
+    /// Whether the suite that runs has hooks: without, the guard needs to know
+    /// nothing of its tests and fixtures.
+    hooks: AtomicBool,
+}
+
+impl Link {
+    pub(super) fn new(socket: UnixStream, pulse: UnixStream, forked: Instant) -> Self {
+        let pulse = pulse.set_nonblocking(true).is_ok().then_some(pulse);
+        let _ = socket.set_write_timeout(Some(PATIENCE));
+        Self { pulse, forked, ..Self::with(Some(socket)) }
+    }
+
+    /// A runner without a guard.
+    #[must_use]
+    pub fn none() -> Self {
+        Self::with(None)
+    }
+
+    fn with(socket: Option<UnixStream>) -> Self {
+        let (socket, hooks) = (Mutex::new(socket), AtomicBool::new(false));
+        Self { socket, pulse: None, forked: Instant::now(), hooks }
+    }
+
+    fn has_hooks(&self) -> bool {
+        self.hooks.load(Ordering::Relaxed)
+    }
+
+    /// The run begins; `start` is zero on the clock of its events.
+    pub fn run_begins(&self, journal: &Path, start: Instant) {
+        let started = start.saturating_duration_since(self.forked);
+        self.tell(&Note::RunBegins { journal: journal.to_owned(), started });
+    }
+
+    /// The run is over.
+    pub fn run_ends(&self) {
+        self.tell(&Note::RunEnds);
+    }
+
+    /// A suite begins: from now on, the guard will run its abort hooks.
+    pub fn suite_begins(&self, suite: &SuitePlan) {
+        self.hooks.store(!suite.hooks.is_empty(), Ordering::Relaxed);
+        if self.has_hooks() {
+            let hooks = suite.hooks.iter().map(|hook| Hook::of(suite, hook)).collect();
+            self.tell(&Note::SuiteBegins { suite: suite.id, hooks });
+        }
+    }
+
+    /// A suite is over.
+    pub fn suite_ends(&self, suite: SuiteId) {
+        if self.has_hooks() {
+            self.tell(&Note::SuiteEnds { suite });
+        }
+    }
+
+    /// A test begins.
+    pub fn test_begins(&self, test: TestId, name: &str) {
+        if self.has_hooks() {
+            self.tell(&Note::TestBegins { test, name: name.to_owned() });
+        }
+    }
+
+    /// The test that ran is over.
+    pub fn test_ends(&self) {
+        if self.has_hooks() {
+            self.tell(&Note::TestEnds);
+        }
+    }
+
+    /// A hook is about to be started; to be told before its process is.
+    pub fn hook_begins(&self, hook: HookBegins) {
+        self.tell(&Note::HookBegins(hook));
+    }
+
+    /// A process was started. The streams of a hook's or fixture's process are
+    /// kept by the guard, too, so that it can go on without the runner.
+    pub fn process_started(&self, source: Source, pid: i32, streams: &[(Kept, BorrowedFd<'_>)]) {
+        let (names, descriptors): (Vec<_>, Vec<_>) = streams.iter().copied().unzip();
+        let note = match source {
+            Source::Test(_) => return,
+            _ if !self.has_hooks() => return,
+            Source::Hook(hook) => Note::HookStarted { hook, pid, streams: names },
+            Source::Fixture(_) => Note::FixtureStarted { pid, streams: names },
+        };
+        self.tell_with(&note, &descriptors);
+    }
+
+    /// The host of a process was asked to run its test.
+    pub fn process_asked(&self, source: Source) {
+        if let Source::Hook(hook) = source {
+            self.tell(&Note::HookAsked { hook });
+        }
+    }
+
+    /// A process has ended, or could not be started.
+    pub fn process_ended(&self, source: Source, pid: i32) {
+        match source {
+            Source::Test(_) => {}
+            _ if !self.has_hooks() => {}
+            Source::Hook(hook) => self.tell(&Note::HookEnds { hook }),
+            Source::Fixture(_) => self.tell(&Note::FixtureEnds { pid }),
+        }
+    }
+
+    /// Waits for the guard's death; for ever when there is no guard.
+    pub async fn guard_died(&self) {
+        let pulse = self.pulse.as_ref().and_then(|pulse| pulse.try_clone().ok());
+        match pulse.and_then(|pulse| tokio::net::UnixStream::from_std(pulse).ok()) {
+            // Nothing is ever written there: what can be read is its end.
+            Some(pulse) => drop(pulse.readable().await),
+            None => std::future::pending().await,
+        }
+    }
+
+    fn tell(&self, note: &Note) {
+        self.tell_with(note, &[]);
+    }
+
+    fn tell_with(&self, note: &Note, descriptors: &[BorrowedFd<'_>]) {
+        let mut slot = self.socket.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(socket) = slot.as_ref()
+            && write(socket, note, descriptors).is_err()
+        {
+            // Half a line may have been written: nothing may follow it.
+            *slot = None;
+        }
+    }
+}
+
+fn write(socket: &UnixStream, note: &Note, mut fds: &[BorrowedFd<'_>]) -> std::io::Result<()> {
+    let mut line = serde_json::to_vec(note)?;
+    line.push(b'\n');
+    let mut rest = line.as_slice();
+    while !rest.is_empty() {
+        let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(3))];
+        let mut beside = SendAncillaryBuffer::new(&mut space);
+        if !fds.is_empty() {
+            beside.push(SendAncillaryMessage::ScmRights(fds));
+        }
+        let written = sendmsg(socket, &[IoSlice::new(rest)], &mut beside, SendFlags::NOSIGNAL)?;
+        rest = &rest[written..];
+        fds = &[];
+    }
+    Ok(())
+}

@@ -1,0 +1,168 @@
+//! What the runner tells the guard: one JSON object a line. Descriptors travel
+//! beside the line that announces them.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use rtf_model::protocol::{ENVIRONMENT_VARIABLE, OWNER_VARIABLE, Plugin};
+use rtf_model::{HookId, SuiteId, TestId, Trigger};
+use serde::{Deserialize, Serialize};
+
+use crate::plan::{HookBody, HookPlan, SuitePlan};
+
+/// One thing that the guard must know, should the runner die.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "note", rename_all = "kebab-case")]
+pub enum Note {
+    /// The run begins.
+    RunBegins {
+        /// Its journal, absolute.
+        journal: PathBuf,
+        /// When its clock started, since the fork.
+        started: Duration,
+    },
+    /// The run is over: there is nothing left to be done.
+    RunEnds,
+    /// A suite begins, with these hooks.
+    SuiteBegins {
+        /// Which.
+        suite: SuiteId,
+        /// Its hooks, in their order.
+        hooks: Vec<Hook>,
+    },
+    /// A suite is over; its hooks are not needed any more.
+    SuiteEnds {
+        /// Which.
+        suite: SuiteId,
+    },
+    /// A test begins: every hook is due again.
+    TestBegins {
+        /// Which.
+        test: TestId,
+        /// Its name.
+        name: String,
+    },
+    /// The test that ran is over.
+    TestEnds,
+    /// A hook is about to be started.
+    HookBegins(HookBegins),
+    /// The hook's process is there.
+    HookStarted {
+        /// Which.
+        hook: HookId,
+        /// Its process.
+        pid: i32,
+        /// Which descriptors come with this line, in this order.
+        streams: Vec<Kept>,
+    },
+    /// The hook's host was asked to run its test.
+    HookAsked {
+        /// Which.
+        hook: HookId,
+    },
+    /// The hook is over.
+    HookEnds {
+        /// Which.
+        hook: HookId,
+    },
+    /// A fixture's process is there. It must live on while hooks run.
+    FixtureStarted {
+        /// Its process.
+        pid: i32,
+        /// Which descriptors come with this line, in this order.
+        streams: Vec<Kept>,
+    },
+    /// A fixture's process has ended.
+    FixtureEnds {
+        /// Its process.
+        pid: i32,
+    },
+}
+
+/// A hook is about to be started.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct HookBegins {
+    /// Which.
+    pub hook: HookId,
+    /// The scope of its process.
+    pub scope: String,
+    /// What called for it.
+    pub trigger: Trigger,
+    /// The same in words.
+    pub reason: String,
+    /// The test that it is about.
+    pub test: Option<TestId>,
+}
+
+/// An end of a process's stream that the guard keeps, too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kept {
+    /// Standard output, to be read.
+    Stdout,
+    /// Standard error, to be read.
+    Stderr,
+    /// The host's channel.
+    Channel,
+}
+
+/// A hook as the guard needs it to run it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Hook {
+    /// Its id.
+    pub id: HookId,
+    /// Its suite.
+    pub suite: SuiteId,
+    /// Its name.
+    pub name: String,
+    /// Whether it is run when the runner dies; the others are only let come to their end.
+    pub aborts: bool,
+    /// The program and its arguments.
+    pub command: Vec<String>,
+    /// Environment variables beside the runner's own.
+    pub env: Vec<(String, String)>,
+    /// The working folder.
+    pub folder: PathBuf,
+    /// How long it may take.
+    pub limit: Duration,
+    /// What its host is asked to run, when it is a plug-in.
+    pub plugin: Option<Plugin>,
+}
+
+impl Hook {
+    /// What the guard needs of a suite's hook.
+    #[must_use]
+    pub fn of(suite: &SuitePlan, plan: &HookPlan) -> Self {
+        let mut env = vec![(ENVIRONMENT_VARIABLE.to_owned(), suite.environment.clone())];
+        env.extend(suite.env.iter().chain(&plan.env).cloned());
+        env.push((OWNER_VARIABLE.to_owned(), format!("hook {}/{}", suite.name, plan.name)));
+        let (command, plugin) = match &plan.body {
+            HookBody::Command(command) => (command.clone(), None),
+            HookBody::Plugin(plugin) => {
+                env.extend_from_slice(&plugin.host.env);
+                let asked = Plugin {
+                    file: plugin.file.to_string_lossy().into_owned(),
+                    name: plan.name.clone(),
+                    param: plugin.param.clone(),
+                    args: plugin.args.clone(),
+                    environment: suite.environment.clone(),
+                    repetition: 1,
+                    last: true,
+                    keep_folder: None,
+                };
+                (plugin.host.command.clone(), Some(asked))
+            }
+        };
+        Self {
+            id: plan.id,
+            suite: suite.id,
+            name: plan.name.clone(),
+            aborts: plan.on.iter().any(|on| matches!(on, Trigger::Interrupt | Trigger::End)),
+            command,
+            env,
+            folder: suite.folder.clone(),
+            limit: plan.timeout,
+            plugin,
+        }
+    }
+}
