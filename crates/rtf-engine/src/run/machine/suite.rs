@@ -112,6 +112,9 @@ impl<'p> SuiteMachine<'p> {
             Input::Deadline(deadline) => self.deadline(deadline, &mut cx),
             Input::Stop(stop) => self.stop(&stop, &mut cx),
         }
+        if let Some(ended) = self.running.as_mut().and_then(|test| test.take_end(&mut cx)) {
+            self.test_ended(&ended, &mut cx);
+        }
         self.proceed(&mut cx);
         self.hosts = hosts;
     }
@@ -126,9 +129,8 @@ impl<'p> SuiteMachine<'p> {
 
     fn host(&mut self, host: HostId, input: HostInput, cx: &mut Context<'_>) {
         if self.running.as_ref().is_some_and(|test| test.host() == host) {
-            let ended = self.running.as_mut().and_then(|test| test.handle(input, cx));
-            if let Some(ended) = ended {
-                self.test_ended(&ended, cx);
+            if let Some(test) = &mut self.running {
+                test.handle(input, cx);
             }
         } else if let Some(place) = self.fixtures.place_of(host) {
             let change = self.fixtures.get(place).handle(input, cx);
@@ -248,7 +250,10 @@ impl<'p> SuiteMachine<'p> {
         if let Some(text) = &ended.critical {
             self.end_early(format!("a critical assertion of `{}` did not hold: {text}", plan.name));
         } else if plan.critical && !ended.verdict.is_green() && !rerun {
-            self.end_early(format!("the critical test `{}` did not pass: it is {}", plan.name, ended.verdict));
+            self.end_early(format!(
+                "the critical test `{}` did not pass: it is {}",
+                plan.name, ended.verdict
+            ));
         }
         self.checked = false;
         self.cursor = self.cursor.next(rerun, plan.repetitions);

@@ -29,6 +29,9 @@ const SIGTERM: i32 = 15;
 pub const TERM_GRACE: Duration = Duration::from_secs(1);
 /// A stack dump takes no longer than this; the shell answers earlier.
 const STACK_LIMIT: Duration = Duration::from_secs(15);
+/// A test that did not pass waits this long for a fixture's collapse: a connection
+/// breaks before the kernel tells of the death at its other end.
+const SETTLE: Duration = Duration::from_millis(200);
 /// The process is killed again when it is still there after this time.
 const KILL_AGAIN: Duration = Duration::from_secs(5);
 
@@ -44,6 +47,17 @@ enum Step {
     Terminated,
     /// It got SIGKILL.
     Killed,
+}
+
+/// How far its process is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Process {
+    /// It lives, or is being started.
+    Alive,
+    /// It is gone, but a fixture may turn out to have collapsed before.
+    Settling,
+    /// It is gone, and nothing more is waited for.
+    Over,
 }
 
 /// What an attempt that is over means for the suite.
@@ -71,6 +85,10 @@ pub struct TestRun<'p> {
     stack: StackSupport,
     stack_taken: bool,
     step: Option<Step>,
+    process: Process,
+    /// Whether there are fixtures that may have collapsed.
+    has_fixtures: bool,
+    leak: Option<String>,
     captures: [Capture; 2],
     critical: Option<String>,
 }
@@ -108,6 +126,9 @@ impl<'p> TestRun<'p> {
             stack: StackSupport::None,
             stack_taken: false,
             step: None,
+            process: Process::Alive,
+            has_fixtures: !suite.fixtures.is_empty(),
+            leak: None,
             captures: [Capture::new(source, Stream::Stdout), Capture::new(source, Stream::Stderr)],
             critical: None,
         }
@@ -127,15 +148,14 @@ impl<'p> TestRun<'p> {
         self.host
     }
 
-    /// Takes in what its process did; `Some` when the attempt is over. The
-    /// caller then emits `test-finished` with [`finished`].
-    pub fn handle(&mut self, input: HostInput, cx: &mut Context<'_>) -> Option<Ended> {
+    /// Takes in what its process did.
+    pub fn handle(&mut self, input: HostInput, cx: &mut Context<'_>) {
         match input {
             HostInput::SpawnFailed(reason) => {
                 self.note(Verdict::Error, reason);
-                return Some(self.end(None, Vec::new(), cx));
+                self.process = Process::Over;
             }
-            HostInput::Exited(status, left) => return Some(self.end(Some(status), left, cx)),
+            HostInput::Exited(status, left) => self.exited(status, left, cx),
             HostInput::Told(notification) => self.told(notification, cx),
             HostInput::Attached(Ok(attachment)) => {
                 cx.emit(EventKind::Attached { test: self.plan.id, attachment });
@@ -153,7 +173,6 @@ impl<'p> TestRun<'p> {
             HostInput::StackTaken(text) => self.stack_taken(text, cx),
             HostInput::ProbesHold | HostInput::ProbeFailed(_) => {}
         }
-        None
     }
 
     fn told(&mut self, notification: Notification, cx: &mut Context<'_>) {
@@ -260,9 +279,17 @@ impl<'p> TestRun<'p> {
         if self.evidence.stopped.is_some() {
             return;
         }
+        if self.process != Process::Alive && cause != StopCause::Collapse {
+            self.process = Process::Over;
+            return;
+        }
         cx.emit(EventKind::TestStopping { test: self.plan.id, cause, reason: reason.clone() });
         cx.clear(Deadline::Test(TestTimer::Slow));
         self.evidence.stopped = Some((cause, reason, self.phase));
+        if self.process != Process::Alive {
+            self.process = Process::Over;
+            return;
+        }
         if cause == StopCause::Timeout {
             self.dump_stack(Step::DumpThenAsk, cx);
         } else {
@@ -304,6 +331,9 @@ impl<'p> TestRun<'p> {
 
     /// Kills its process and everything below it, now.
     pub fn kill(&mut self, cx: &mut Context<'_>) {
+        if self.process != Process::Alive {
+            return;
+        }
         self.step = Some(Step::Killed);
         cx.out(Effect::KillTree(self.host));
         cx.set(Deadline::Test(TestTimer::Limit), KILL_AGAIN);
@@ -313,6 +343,10 @@ impl<'p> TestRun<'p> {
     pub fn deadline(&mut self, timer: TestTimer, cx: &mut Context<'_>) {
         if timer == TestTimer::Slow {
             return cx.emit(EventKind::TestSlow { test: self.plan.id });
+        }
+        if self.process != Process::Alive {
+            self.process = Process::Over;
+            return;
         }
         match self.step {
             None => {
@@ -339,31 +373,43 @@ impl<'p> TestRun<'p> {
         }
     }
 
-    fn end(
-        &mut self,
-        exit: Option<ExitStatus>,
-        left: Vec<LeftProcess>,
-        cx: &mut Context<'_>,
-    ) -> Ended {
-        cx.clear(Deadline::Test(TestTimer::Limit));
+    fn exited(&mut self, exit: ExitStatus, left: Vec<LeftProcess>, cx: &mut Context<'_>) {
         cx.clear(Deadline::Test(TestTimer::Slow));
         for capture in &mut self.captures {
             if let Some(output) = capture.finish() {
                 cx.emit(EventKind::Output(output));
             }
         }
-        let leak = leak_of(self.plan.leaks, &left);
+        self.leak = leak_of(self.plan.leaks, &left);
         if !left.is_empty() {
             let source = Source::Test(self.plan.id);
             cx.emit(EventKind::ProcessesLeft { source, processes: left });
         }
-        self.evidence.exit = exit;
+        self.evidence.exit = Some(exit);
+        let (verdict, ..) = judge(&self.evidence, self.phase);
+        let may_be_collapsed = self.has_fixtures && self.evidence.stopped.is_none();
+        if may_be_collapsed && !verdict.is_green() {
+            self.process = Process::Settling;
+            cx.set(Deadline::Test(TestTimer::Limit), SETTLE);
+        } else {
+            self.process = Process::Over;
+        }
+    }
+
+    /// Whether it is over. The caller then emits `test-finished` with [`finished`].
+    pub fn take_end(&mut self, cx: &mut Context<'_>) -> Option<Ended> {
+        if self.process != Process::Over {
+            return None;
+        }
+        cx.clear(Deadline::Test(TestTimer::Limit));
+        cx.clear(Deadline::Test(TestTimer::Slow));
         let (mut verdict, mut reason, phase) = judge(&self.evidence, self.phase);
-        if let (Verdict::Passed, Some(problem)) = (verdict, leak) {
+        if let (Verdict::Passed, Some(problem)) = (verdict, self.leak.take()) {
             verdict = Verdict::Error;
             reason = Some(problem);
         }
-        Ended { verdict, reason, phase, exit, critical: self.critical.take() }
+        let exit = self.evidence.exit;
+        Some(Ended { verdict, reason, phase, exit, critical: self.critical.take() })
     }
 
     /// The last event of this attempt.

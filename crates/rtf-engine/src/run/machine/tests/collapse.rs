@@ -243,3 +243,30 @@ fn a_collapse_during_the_last_tear_down_is_not_green() {
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Passed));
     assert!(!world.record.is_green());
 }
+
+/// A test notices a broken connection before the kernel tells of the death.
+#[test]
+fn a_test_that_errs_just_before_the_collapse_is_told_is_collapsed() {
+    let plan = suite(1, 1);
+    let mut world = until_test_runs(&plan);
+    world.failure(TEST, "connection reset by peer", false);
+    world.answer(TEST, "failed");
+    world.exit(TEST, ExitStatus::Code(0));
+    assert!(world.record.tests[0].is_running(), "its last word is not spoken yet");
+    world.exit(FIXTURE, ExitStatus::Signal(9));
+    world.finish();
+    assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Collapsed));
+}
+
+#[test]
+fn a_test_that_fails_beside_a_healthy_fixture_has_failed_a_moment_later() {
+    let plan = suite(1, 1);
+    let mut world = until_test_runs(&plan);
+    world.failure(TEST, "the arm is stuck", false);
+    world.answer(TEST, "failed");
+    world.exit(TEST, ExitStatus::Code(0));
+    let before = world.now;
+    world.next_deadline();
+    assert!((world.now - before).as_millis() <= 200);
+    assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Failed));
+}

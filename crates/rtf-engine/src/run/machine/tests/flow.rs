@@ -100,6 +100,7 @@ fn a_critical_assertion_skips_the_rest_and_tears_down() {
     world.failure(test, "the emergency stop is pressed", true);
     world.answer(test, "failed");
     world.exit(test, ExitStatus::Code(0));
+    world.next_deadline();
     world.tear_down(0);
     world.finish();
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Failed));

@@ -31,6 +31,7 @@ fn fail(world: &mut World<'_>) {
     world.failure(TEST, "the arm is stuck", false);
     world.answer(TEST, "failed");
     world.exit(TEST, ExitStatus::Code(0));
+    world.next_deadline();
 }
 
 #[test]
@@ -51,19 +52,19 @@ fn after_a_failure_the_hook_runs_before_the_next_test() {
     0.0  test-phase phase=run test=0
     0.0  message source={test:0}
     0.0    → close the channel
-    0.0  test-finished exit={code:0} phase=run reason=the arm is stuck test=0 verdict=failed
-    0.0  hook-started hook=0 reason=`test0` is failed: the arm is stuck test=0 trigger=failure
-    0.0  hook-finished hook=0
-    0.0  test-started attempt=1 repetition=1 test=1
-    0.0  test-phase phase=setup test=1
-    0.0  test-phase phase=run test=1
-    0.0  test-phase phase=tear-down test=1
-    0.0    → close the channel
-    0.0  test-finished exit={code:0} phase=exit test=1 verdict=passed
-    0.0  fixture-stopping fixture=0
-    0.0    → close the channel
-    0.0  fixture-stopped fixture=0
-    0.0  suite-finished
+    0.2  test-finished exit={code:0} phase=run reason=the arm is stuck test=0 verdict=failed
+    0.2  hook-started hook=0 reason=`test0` is failed: the arm is stuck test=0 trigger=failure
+    0.2  hook-finished hook=0
+    0.2  test-started attempt=1 repetition=1 test=1
+    0.2  test-phase phase=setup test=1
+    0.2  test-phase phase=run test=1
+    0.2  test-phase phase=tear-down test=1
+    0.2    → close the channel
+    0.2  test-finished exit={code:0} phase=exit test=1 verdict=passed
+    0.2  fixture-stopping fixture=0
+    0.2    → close the channel
+    0.2  fixture-stopped fixture=0
+    0.2  suite-finished
     ");
     assert!(!world.record.hook_failed());
 }

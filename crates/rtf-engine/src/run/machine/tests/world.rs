@@ -294,12 +294,19 @@ impl<'p> World<'p> {
 
 fn line_of(json: &serde_json::Value) -> String {
     let mut line = json["type"].as_str().unwrap_or_default().to_owned();
-    for (key, value) in json.as_object().unwrap() {
-        if key != "type" && key != "suite" && key != "log_tail" && key != "message" {
-            line += &format!(" {key}={}", value.to_string().replace('"', ""));
+    // Their order in the map depends on features that others ask of serde_json.
+    let fields: BTreeMap<_, _> = json.as_object().unwrap().iter().collect();
+    for (key, value) in fields {
+        if !["type", "suite", "log_tail", "message"].contains(&key.as_str()) {
+            let text = text_of(value);
+            line += &format!(" {key}={text}");
         }
     }
     line
+}
+
+fn text_of(value: &serde_json::Value) -> String {
+    value.to_string().replace('"', "")
 }
 
 fn effect_of(effect: &Effect) -> String {
