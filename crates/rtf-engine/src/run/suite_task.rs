@@ -39,14 +39,14 @@ pub async fn run_suite(
         machine: SuiteMachine::new(plan),
         effects: Vec::new(),
         orders: HashMap::new(),
-        spare: None,
+        spares: Vec::new(),
         called: None,
         scopes: 0,
         deadlines: BTreeMap::new(),
         over: false,
     };
     task.run(queue, stops).await;
-    if let Some(spare) = task.spare.take() {
+    for spare in task.spares {
         spare.discard().await;
     }
 }
@@ -59,8 +59,8 @@ struct SuiteTask<'a> {
     machine: SuiteMachine<'a>,
     effects: Vec<Effect>,
     orders: HashMap<HostId, mpsc::UnboundedSender<Order>>,
-    /// A host that was started ahead of its need.
-    spare: Option<Launch>,
+    /// Hosts that were started ahead of their need.
+    spares: Vec<Launch>,
     /// What called for the hook that is started next.
     called: Option<HookBegins>,
     /// How many scopes were given out.
@@ -147,7 +147,7 @@ impl SuiteTask<'_> {
             Effect::SetDeadline(deadline, at) => drop(self.deadlines.insert(deadline, at)),
             Effect::ClearDeadline(deadline) => drop(self.deadlines.remove(&deadline)),
             Effect::Spawn { host, source, start } => self.spawn(host, source, start),
-            Effect::SpawnAhead(start) => self.spawn_ahead(start),
+            Effect::SpawnAhead(starts) => self.spawn_ahead(starts),
             Effect::Send(host, id, request) => self.order(host, Order::Send(id, request)),
             Effect::CloseChannel(host) => self.order(host, Order::CloseChannel),
             Effect::TakeStack(host, support) => self.order(host, Order::TakeStack(support)),
@@ -192,8 +192,8 @@ impl SuiteTask<'_> {
         let request = self.request(start);
         let (orders, queue) = mpsc::unbounded_channel();
         self.orders.insert(host, orders);
-        let launch = match self.spare.take_if(|spare| spare.request == request) {
-            Some(spare) => spare,
+        let launch = match self.spares.iter().position(|spare| spare.request == request) {
+            Some(place) => self.spares.remove(place),
             None => self.launch(request),
         };
         if let Some(called) = self.called.take_if(|_| matches!(source, Source::Hook(_))) {
@@ -203,15 +203,22 @@ impl SuiteTask<'_> {
         tokio::spawn(task::run(job, self.shared.clone(), queue, self.inputs.clone()));
     }
 
-    fn spawn_ahead(&mut self, start: Start) {
-        let request = self.request(start);
-        if let Some(other) = self.spare.take_if(|spare| spare.request != request) {
-            tokio::spawn(other.discard());
+    fn spawn_ahead(&mut self, starts: Vec<Start>) {
+        let mut before = std::mem::take(&mut self.spares);
+        for start in starts {
+            let request = self.request(start);
+            let spare = match before.iter().position(|spare| spare.request == request) {
+                Some(place) => before.remove(place),
+                None => {
+                    let mut launch = self.launch(request);
+                    launch.start_ahead(&self.shared.spawner);
+                    launch
+                }
+            };
+            self.spares.push(spare);
         }
-        if self.spare.is_none() {
-            let mut launch = self.launch(request);
-            launch.start_ahead(&self.shared.spawner);
-            self.spare = Some(launch);
+        for unwanted in before {
+            tokio::spawn(unwanted.discard());
         }
     }
 

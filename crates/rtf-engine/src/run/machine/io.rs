@@ -150,9 +150,10 @@ pub enum Effect {
         /// How.
         start: Start,
     },
-    /// A host like this will be needed next: start it while the test runs. It
-    /// is used when the next `Spawn` asks for the same.
-    SpawnAhead(Start),
+    /// Hosts like these will be needed next, in this order: start them while the
+    /// test runs. They are used when a later `Spawn` asks for the same. What was
+    /// started ahead and is not in this list is not needed any more.
+    SpawnAhead(Vec<Start>),
     /// Send a request or a notification.
     Send(HostId, Option<u64>, Request),
     /// No request will follow: the host ends when it is done.

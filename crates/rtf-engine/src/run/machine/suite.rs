@@ -20,7 +20,7 @@ use rtf_model::{EventKind, StopCause, TestId, Trigger, Verdict};
 use super::fixture::Change;
 use super::fixtures::Fixtures;
 use super::hooks::Hooks;
-use super::io::{Deadline, Effect, HostId, HostInput, Input, Stop, StopLevel};
+use super::io::{Deadline, Effect, HostId, HostInput, Input, Start, Stop, StopLevel};
 use super::test::{Ended, TestRun};
 use crate::plan::{AfterCollapse, SuitePlan};
 
@@ -55,6 +55,10 @@ impl Context<'_> {
         HostId(*self.hosts)
     }
 }
+
+/// How many hosts are started ahead of their need. Starting one takes longer than
+/// a short test; two keep a second core busy.
+const HOSTS_AHEAD: usize = 2;
 
 /// The test that is next, or runs.
 #[derive(Clone, Copy, Debug)]
@@ -300,10 +304,19 @@ impl<'p> SuiteMachine<'p> {
         let plan = &self.plan.tests[test];
         self.hooks.test_starts();
         self.running = Some(TestRun::start(self.plan, plan, (repetition, attempt), cx));
-        let next = if repetition < plan.repetitions { test } else { test + 1 };
-        if let Some(next) = self.plan.tests.get(next) {
-            cx.out(Effect::SpawnAhead(TestRun::host_start(self.plan, next)));
-        }
+        cx.out(Effect::SpawnAhead(self.hosts_ahead()));
+    }
+
+    /// How the hosts of the next tests are started.
+    fn hosts_ahead(&self) -> Vec<Start> {
+        let tests = &self.plan.tests;
+        let after = |cursor: &Cursor| {
+            let repetitions = tests.get(cursor.test).map_or(1, |plan| plan.repetitions);
+            Some(cursor.next(false, repetitions))
+        };
+        let next = std::iter::successors(after(&self.cursor), after).take(HOSTS_AHEAD);
+        let plans = next.filter_map(|cursor| tests.get(cursor.test));
+        plans.map(|plan| TestRun::host_start(self.plan, plan)).collect()
     }
 
     fn finish(&mut self, cx: &mut Context<'_>) {
