@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use rtf_model::{EventKind, LeftProcess};
 use rustix::event::{PollFd, PollFlags, poll};
 
-use super::closing::{self, Happened};
+use super::closing::{self, Ended, Happened, Told};
 use super::duties::{Duties, Duty, State};
 use super::hook::{self, Why};
 use super::unix::Signals;
@@ -51,6 +51,15 @@ pub fn finish(duties: Duties, reason: String, mut signals: Signals, forked: Inst
     let folder = duties.run.as_ref().and_then(|(journal, _)| journal.parent());
     let words = format!("the runner died: {reason}");
     let (mut parked, mut happened) = (Vec::new(), Vec::new());
+    let ended = ended(&duties.hooks);
+    for duty in &duties.hooks {
+        if let (State::Done | State::Over, Some(run)) = (&duty.state, &duty.last)
+            && run.problem.is_some()
+        {
+            let name = duty.hook.name.clone();
+            parked.push(Parked { name, problem: run.problem.clone() });
+        }
+    }
     for duty in in_order(duties.hooks) {
         if signals.asked >= KILLS {
             break;
@@ -66,12 +75,32 @@ pub fn finish(duties: Duties, reason: String, mut signals: Signals, forked: Inst
     happened.push(Happened { at: Instant::now(), kind: end });
     let (journal, problem) = match duties.run {
         Some((journal, started)) => {
-            let problem = closing::close(&journal, forked + started, happened).err();
+            let told = Told { ended, happened };
+            let problem = closing::close(&journal, forked + started, told).err();
             (Some(journal), problem)
         }
         None => (None, None),
     };
     Died { reason, hooks: parked, left, journal, problem }
+}
+
+/// What the runner told of hooks that came to their end.
+fn ended(hooks: &[Duty]) -> Vec<Ended> {
+    let over = hooks.iter().filter_map(|duty| Some((duty, duty.last.clone()?)));
+    over.map(|(duty, run)| {
+        let [began, ended] = run.times;
+        let begun = matches!(duty.state, State::Begun(_));
+        Ended {
+            hook: duty.hook.id,
+            number: duty.runs - u64::from(begun),
+            started: Happened { at: began, kind: run.begins.event() },
+            finished: Happened {
+                at: ended,
+                kind: EventKind::HookFinished { hook: duty.hook.id, problem: run.problem },
+            },
+        }
+    })
+    .collect()
 }
 
 /// The hooks that have begun, then the abort hooks that did not run since the
@@ -80,7 +109,7 @@ fn in_order(mut hooks: Vec<Duty>) -> Vec<Duty> {
     hooks.retain(|duty| match duty.state {
         State::Begun(_) => true,
         State::Due => duty.hook.aborts,
-        State::Done => false,
+        State::Done | State::Over => false,
     });
     hooks.sort_by_key(|duty| matches!(duty.state, State::Due));
     hooks

@@ -16,16 +16,46 @@ pub struct Happened {
     pub kind: EventKind,
 }
 
+/// A run of a hook that came to its end under the runner, which may not have
+/// lived long enough to write it.
+#[derive(Debug)]
+pub struct Ended {
+    /// The hook.
+    pub hook: HookId,
+    /// Which of its runs, from 1.
+    pub number: u64,
+    /// Its `hook-started`.
+    pub started: Happened,
+    /// Its `hook-finished`.
+    pub finished: Happened,
+}
+
+/// All that is to be written.
+#[derive(Debug)]
+pub struct Told {
+    /// Unless they are there: the ends of hooks under the runner.
+    pub ended: Vec<Ended>,
+    /// What happened after the runner's death.
+    pub happened: Vec<Happened>,
+}
+
 /// Cuts off a last line that is not whole and writes what happened since.
 /// `start` is zero on the run's clock. A journal that is closed, or has no
 /// event, stays as it is.
 ///
 /// # Errors
 /// The file cannot be read or written.
-pub fn close(journal: &Path, start: Instant, happened: Vec<Happened>) -> io::Result<()> {
+pub fn close(journal: &Path, start: Instant, told: Told) -> io::Result<()> {
     let file = OpenOptions::new().read(true).append(true).open(journal)?;
     let Some(mut closing) = Closing::read(&file, start)? else { return Ok(()) };
-    for Happened { at, kind } in happened {
+    for ended in told.ended {
+        let written = closing.finished.iter().filter(|hook| **hook == ended.hook).count();
+        if (written as u64) < ended.number {
+            closing.add(ended.started.at, ended.started.kind);
+            closing.offer(ended.finished.at, ended.finished.kind);
+        }
+    }
+    for Happened { at, kind } in told.happened {
         closing.add(at, kind);
     }
     file.set_len(closing.whole)?;
@@ -43,6 +73,8 @@ struct Closing {
     order: Option<OrderChecker>,
     /// The suites of hooks, as planned.
     suites: Vec<(HookId, SuiteId)>,
+    /// The hooks that came to an end, once for each time.
+    finished: Vec<HookId>,
     lines: Vec<u8>,
 }
 
@@ -50,8 +82,16 @@ impl Closing {
     /// `None` when there is nothing to close.
     fn read(file: &File, start: Instant) -> io::Result<Option<Self>> {
         let order = Some(OrderChecker::default());
-        let (last_at, suites, lines) = (Micros::default(), Vec::new(), Vec::new());
-        let mut closing = Self { whole: 0, next: 0, last_at, start, order, suites, lines };
+        let mut closing = Self {
+            whole: 0,
+            next: 0,
+            last_at: Micros::default(),
+            start,
+            order,
+            suites: Vec::new(),
+            finished: Vec::new(),
+            lines: Vec::new(),
+        };
         let mut reader = BufReader::with_capacity(64 * 1024, file);
         let mut line = Vec::new();
         while reader.read_until(b'\n', &mut line)? > 0 && line.ends_with(b"\n") {
@@ -71,8 +111,10 @@ impl Closing {
     fn pass(&mut self, event: &Event) {
         self.next = event.seq.saturating_add(1);
         self.last_at = event.at;
-        if let EventKind::HookPlanned(plan) = &event.kind {
-            self.suites.push((plan.hook, plan.suite));
+        match &event.kind {
+            EventKind::HookPlanned(plan) => self.suites.push((plan.hook, plan.suite)),
+            EventKind::HookFinished { hook, .. } => self.finished.push(*hook),
+            _ => {}
         }
         self.order.take_if(|order| order.check(event).is_err());
     }

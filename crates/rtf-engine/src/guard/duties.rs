@@ -34,6 +34,21 @@ pub struct Duty {
     pub hook: Hook,
     /// What became of it.
     pub state: State,
+    /// How often it was begun.
+    pub runs: u64,
+    /// Its last run that came to an end.
+    pub last: Option<Run>,
+}
+
+/// A run of a hook that came to its end.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// What the runner told before it.
+    pub begins: HookBegins,
+    /// When it began and ended.
+    pub times: [Instant; 2],
+    /// Why the robot may not be in a safe state.
+    pub problem: Option<String>,
 }
 
 /// What became of a hook since the last test began.
@@ -45,6 +60,8 @@ pub enum State {
     Begun(Begun),
     /// It ran.
     Done,
+    /// Its suite is over.
+    Over,
 }
 
 /// A hook that was begun by the runner.
@@ -58,8 +75,6 @@ pub struct Begun {
     pub pid: Option<i32>,
     /// Its streams.
     pub streams: Streams,
-    /// Whether a host was asked to run the plug-in.
-    pub asked: bool,
 }
 
 impl Duties {
@@ -70,21 +85,29 @@ impl Duties {
             Note::RunBegins { journal, started } => self.run = Some((journal, started)),
             Note::RunEnds => self.over = true,
             Note::SuiteBegins { hooks, .. } => {
-                self.hooks.extend(hooks.into_iter().map(|hook| Duty { hook, state: State::Due }));
+                let due = |hook| Duty { hook, state: State::Due, runs: 0, last: None };
+                self.hooks.extend(hooks.into_iter().map(due));
             }
-            Note::SuiteEnds { suite } => self.hooks.retain(|duty| duty.hook.suite != suite),
+            // The journal may not know yet how they ended.
+            Note::SuiteEnds { suite } => {
+                for duty in self.hooks.iter_mut().filter(|duty| duty.hook.suite == suite) {
+                    duty.state = State::Over;
+                }
+            }
             Note::TestBegins { test, name } => {
                 self.test = Some((test, name));
-                for duty in &mut self.hooks {
+                let of_suite = |duty: &&mut Duty| !matches!(duty.state, State::Over);
+                for duty in self.hooks.iter_mut().filter(of_suite) {
                     duty.state = State::Due;
                 }
             }
             Note::TestEnds => self.test = None,
             Note::HookBegins(begins) => {
-                let hook = begins.hook;
-                let (pid, streams, asked) = (None, Vec::new(), false);
-                let begun = Begun { begins, at: now, pid, streams, asked };
-                self.set(hook, State::Begun(begun));
+                if let Some(duty) = self.duty(begins.hook) {
+                    duty.runs += 1;
+                    let (pid, streams) = (None, Vec::new());
+                    duty.state = State::Begun(Begun { begins, at: now, pid, streams });
+                }
             }
             Note::HookStarted { hook, pid, streams } => {
                 let streams = announced(streams, received);
@@ -93,12 +116,7 @@ impl Duties {
                     begun.streams = streams;
                 }
             }
-            Note::HookAsked { hook } => {
-                if let Some(begun) = self.begun(hook) {
-                    begun.asked = true;
-                }
-            }
-            Note::HookEnds { hook } => self.set(hook, State::Done),
+            Note::HookEnds { hook, problem } => self.end(hook, problem, now),
             Note::FixtureStarted { pid, streams } => {
                 self.fixtures.insert(pid, announced(streams, received));
             }
@@ -106,17 +124,21 @@ impl Duties {
         }
     }
 
-    fn set(&mut self, hook: HookId, state: State) {
-        if let Some(duty) = self.hooks.iter_mut().find(|duty| duty.hook.id == hook) {
-            duty.state = state;
+    fn duty(&mut self, hook: HookId) -> Option<&mut Duty> {
+        self.hooks.iter_mut().find(|duty| duty.hook.id == hook)
+    }
+
+    fn end(&mut self, hook: HookId, problem: Option<String>, now: Instant) {
+        let Some(duty) = self.duty(hook) else { return };
+        if let State::Begun(begun) = std::mem::replace(&mut duty.state, State::Done) {
+            duty.last = Some(Run { begins: begun.begins, times: [begun.at, now], problem });
         }
     }
 
     fn begun(&mut self, hook: HookId) -> Option<&mut Begun> {
-        let duty = self.hooks.iter_mut().find(|duty| duty.hook.id == hook)?;
-        match &mut duty.state {
+        match &mut self.duty(hook)?.state {
             State::Begun(begun) => Some(begun),
-            State::Due | State::Done => None,
+            State::Due | State::Done | State::Over => None,
         }
     }
 }

@@ -13,6 +13,7 @@ use rtf_model::{EventKind, TestId, Trigger};
 use super::attend::{Attended, attend};
 use super::closing::Happened;
 use super::duties::{Begun, State, Streams};
+use super::gate;
 use super::note::{Hook, HookBegins, Kept};
 use super::unix::Signals;
 use crate::host::{codec, tree};
@@ -74,15 +75,9 @@ pub fn run(hook: &Hook, state: State, why: &Why<'_>, signals: &mut Signals) -> R
             (started, begins) = (begun.at, begun.begins.clone());
             find(hook, begun)
         }
-        State::Due | State::Done => Found::Nothing,
+        State::Due | State::Done | State::Over => Found::Nothing,
     };
-    let kind = EventKind::HookStarted {
-        hook: hook.id,
-        trigger: begins.trigger,
-        reason: begins.reason.clone(),
-        test: begins.test,
-    };
-    let mut happened = vec![Happened { at: started, kind }];
+    let mut happened = vec![Happened { at: started, kind: begins.event() }];
     let process = match found {
         Found::Process(process) => Ok(process),
         Found::Over => Err("it ended, and how was lost with the runner".to_owned()),
@@ -104,25 +99,35 @@ pub fn run(hook: &Hook, state: State, why: &Why<'_>, signals: &mut Signals) -> R
     Ran { problem, happened }
 }
 
-/// Looks for the process of a hook that the runner had begun.
+/// Looks for the process of a hook that the runner had begun. It waits until it
+/// is asked, which the runner does once the guard knows the process.
 fn find(hook: &Hook, begun: Begun) -> Found {
-    // A host that was not asked for anything does nothing, and will not.
-    let idle = hook.plugin.is_some() && !begun.asked;
-    let pid = begun.pid.or_else(|| tree::child_of_scope(&begun.begins.scope));
-    match pid {
-        Some(pid) if idle => {
-            tree::kill_tree(pid);
+    match begun.pid {
+        Some(pid) if tree::is_child(pid) => {
+            ask(hook, &begun.streams);
+            let limit = begun.at + hook.limit;
+            Found::Process(Process { pid, streams: begun.streams, limit, adopted: true })
+        }
+        Some(_) => Found::Over,
+        None => {
+            if let Some(pid) = tree::child_of_scope(&begun.begins.scope) {
+                tree::kill_tree(pid);
+            }
             Found::Nothing
         }
-        None if idle => Found::Nothing,
-        Some(pid) if tree::is_child(pid) => Found::Process(Process {
-            pid,
-            streams: begun.streams,
-            limit: begun.at + hook.limit,
-            adopted: true,
-        }),
-        Some(_) => Found::Over,
-        None => Found::Nothing,
+    }
+}
+
+/// Asks again: one that was asked before ends without looking at the second time.
+fn ask(hook: &Hook, streams: &Streams) {
+    let asked = match &hook.plugin {
+        Some(plugin) => codec::encode(Some(RUN), Request::RunTest(plugin.clone())),
+        None => Ok(gate::GO.to_vec()),
+    };
+    let channel = streams.iter().find(|(kind, _)| *kind == Kept::Channel);
+    if let (Ok(line), Some((_, channel))) = (asked, channel) {
+        // It may have ended meanwhile.
+        let _ = rustix::io::write(channel, &line);
     }
 }
 

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use rtf_model::{Source, SuiteId, TestId};
+use rtf_model::{HookId, Source, SuiteId, TestId};
 use rustix::net::{SendAncillaryBuffer, SendAncillaryMessage, SendFlags, sendmsg};
 
 use super::note::{Hook, HookBegins, Kept, Note};
@@ -114,20 +114,15 @@ impl Link {
         self.tell_with(&note, &descriptors);
     }
 
-    /// The host of a process was asked to run its test.
-    pub fn process_asked(&self, source: Source) {
-        if let Source::Hook(hook) = source {
-            self.tell(&Note::HookAsked { hook });
-        }
+    /// A hook is over; to be told before anybody else is.
+    pub fn hook_ends(&self, hook: HookId, problem: Option<String>) {
+        self.tell(&Note::HookEnds { hook, problem });
     }
 
-    /// A process has ended, or could not be started.
+    /// A process has ended.
     pub fn process_ended(&self, source: Source, pid: i32) {
-        match source {
-            Source::Test(_) => {}
-            _ if !self.has_hooks() => {}
-            Source::Hook(hook) => self.tell(&Note::HookEnds { hook }),
-            Source::Fixture(_) => self.tell(&Note::FixtureEnds { pid }),
+        if matches!(source, Source::Fixture(_)) && self.has_hooks() {
+            self.tell(&Note::FixtureEnds { pid });
         }
     }
 

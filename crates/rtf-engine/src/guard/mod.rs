@@ -17,6 +17,7 @@ mod after;
 mod attend;
 mod closing;
 mod duties;
+pub mod gate;
 mod hook;
 mod link;
 mod note;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use rtf_model::protocol::{ENVIRONMENT_VARIABLE, OWNER_VARIABLE, Plugin};
-use rtf_model::{HookId, SuiteId, TestId, Trigger};
+use rtf_model::{EventKind, HookId, SuiteId, TestId, Trigger};
 use serde::{Deserialize, Serialize};
 
 use crate::plan::{HookBody, HookPlan, SuitePlan};
@@ -46,7 +46,7 @@ pub enum Note {
     TestEnds,
     /// A hook is about to be started.
     HookBegins(HookBegins),
-    /// The hook's process is there.
+    /// The hook's process is there, and waits to be asked.
     HookStarted {
         /// Which.
         hook: HookId,
@@ -55,15 +55,12 @@ pub enum Note {
         /// Which descriptors come with this line, in this order.
         streams: Vec<Kept>,
     },
-    /// The hook's host was asked to run its test.
-    HookAsked {
-        /// Which.
-        hook: HookId,
-    },
     /// The hook is over.
     HookEnds {
         /// Which.
         hook: HookId,
+        /// Why the robot may not be in a safe state.
+        problem: Option<String>,
     },
     /// A fixture's process is there. It must live on while hooks run.
     FixtureStarted {
@@ -92,6 +89,19 @@ pub struct HookBegins {
     pub reason: String,
     /// The test that it is about.
     pub test: Option<TestId>,
+}
+
+impl HookBegins {
+    /// The same as an event.
+    #[must_use]
+    pub fn event(&self) -> EventKind {
+        EventKind::HookStarted {
+            hook: self.hook,
+            trigger: self.trigger,
+            reason: self.reason.clone(),
+            test: self.test,
+        }
+    }
 }
 
 /// An end of a process's stream that the guard keeps, too.

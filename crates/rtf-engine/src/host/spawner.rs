@@ -6,7 +6,7 @@
 //! the time does not grow with the runner's memory.
 
 use std::io::{self, Write};
-use std::os::fd::AsRawFd;
+use std::os::fd::{AsRawFd, OwnedFd};
 use std::path::PathBuf;
 use std::process::Stdio;
 
@@ -17,6 +17,7 @@ use tokio::process::{Child, ChildStderr, ChildStdout, Command};
 use tokio::sync::oneshot;
 
 use super::{tree, unix};
+use crate::guard::gate;
 
 /// Which outputs of a process are captured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -158,10 +159,14 @@ fn spawn(request: &SpawnRequest) -> io::Result<Process> {
         // It is short: it fits into the socket's buffer before anybody reads.
         (&ours).write_all(greeting)?;
         ours.set_nonblocking(true)?;
-        unix::let_inherit(&host)?;
-        command.env(CHANNEL_VARIABLE, format!("fd:{}", host.as_raw_fd()));
         channel = Some(UnixStream::from_std(ours)?);
-        theirs = Some(host);
+        if gate::is_behind(&request.command) {
+            command.stdin(OwnedFd::from(host));
+        } else {
+            unix::let_inherit(&host)?;
+            command.env(CHANNEL_VARIABLE, format!("fd:{}", host.as_raw_fd()));
+            theirs = Some(host);
+        }
     }
     let pid_of = |child: &io::Result<Child>| i32::try_from(child.as_ref().ok()?.id()?).ok();
     let child = tree::start_own_child(|| command.spawn(), pid_of);

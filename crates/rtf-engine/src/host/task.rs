@@ -19,7 +19,7 @@ use super::codec::{self, FromHost, LINE_LIMIT};
 use super::launch::Launch;
 use super::spawner::{End, Process, Spawner};
 use super::{stack, tree, unix};
-use crate::guard::{Kept, Link};
+use crate::guard::{Kept, Link, gate};
 use crate::plan::ProcessPlan;
 use crate::run::Sink;
 use crate::run::machine::{HostId, HostInput};
@@ -98,13 +98,13 @@ pub async fn run(
         Ok(process) => {
             let mut task = Task::new(job, shared, process, inputs);
             task.tell_guard();
+            task.open_gate().await;
             task.watch_ready(started_at);
             task.run(orders).await;
         }
         Err(error) => {
             let program = job.launch.request.command.first().map_or("", String::as_str);
             let reason = format!("`{program}` cannot be started: {error}");
-            shared.guard.process_ended(job.source, 0);
             drop(inputs.send((host, HostInput::SpawnFailed(reason))).await);
         }
     }
@@ -133,6 +133,16 @@ impl Task {
         let stderr = stderr.as_ref().map(|end| (Kept::Stderr, end.as_fd()));
         let streams: Vec<_> = [channel, stdout, stderr].into_iter().flatten().collect();
         self.shared.guard.process_started(self.job.source, self.process.pid, &streams);
+    }
+
+    /// The guard knows the process: a hook's command may begin.
+    async fn open_gate(&mut self) {
+        if let Some(channel) = &mut self.process.channel
+            && gate::is_behind(&self.job.launch.request.command)
+        {
+            // One that has ended is noticed by its exit.
+            let _ = channel.write_all(gate::GO).await;
+        }
     }
 
     fn watch_ready(&mut self, started_at: SystemTime) {
@@ -219,7 +229,6 @@ impl Task {
     }
 
     async fn send(&mut self, id: Option<u64>, mut request: Request) {
-        let asks = matches!(request, Request::RunTest(_));
         if let Request::RunTest(plugin) = &mut request {
             let folder = self.shared.run_folder.join(self.keep_folder());
             plugin.keep_folder = Some(folder.to_string_lossy().into_owned());
@@ -227,9 +236,6 @@ impl Task {
         if let (Ok(line), Some(channel)) = (codec::encode(id, request), &mut self.process.channel) {
             // A host that is gone or does not read is noticed by its exit or its limit.
             let _ = tokio::time::timeout(DRAIN_LIMIT, channel.write_all(&line)).await;
-            if asks {
-                self.shared.guard.process_asked(self.job.source);
-            }
         }
     }
 

@@ -14,7 +14,7 @@ use super::events::Events;
 use super::machine::{
     Deadline, Effect, HostId, HostInput, Input, Program, Start, Stop, SuiteMachine,
 };
-use crate::guard::HookBegins;
+use crate::guard::{HookBegins, gate};
 use crate::host::launch::Launch;
 use crate::host::spawner::{SpawnRequest, Streams};
 use crate::host::task::{self, Job, Order, Shared};
@@ -168,6 +168,7 @@ impl SuiteTask<'_> {
                 guard.test_begins(*test, plan.map_or("", |plan| &plan.name));
             }
             EventKind::TestFinished(_) => guard.test_ends(),
+            EventKind::HookFinished { hook, problem } => guard.hook_ends(*hook, problem.clone()),
             EventKind::HookStarted { hook, trigger, reason, test } => {
                 let (reason, scope) = (reason.clone(), String::new());
                 let (hook, trigger, test) = (*hook, *trigger, *test);
@@ -232,7 +233,7 @@ impl SuiteTask<'_> {
                 (plan.command.clone(), Some(Vec::new()))
             }
             Program::Process(plan) => (plan.command.clone(), None),
-            Program::Command(command) => (command, None),
+            Program::Command(command) => (gate::behind(&command), Some(Vec::new())),
         };
         let folder = Some(start.folder);
         SpawnRequest { command, env, folder, channel, streams: Streams::Both }

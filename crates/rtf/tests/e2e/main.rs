@@ -13,6 +13,7 @@ mod bad_suites;
 mod collapse;
 mod conformance;
 mod cpp_fixture;
+mod guard;
 mod inputs;
 mod killed;
 mod predecessor;

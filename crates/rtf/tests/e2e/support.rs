@@ -71,7 +71,12 @@ impl Folder {
     pub fn start(&self, args: &[&str]) -> Running {
         let mut command = self.command(args);
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        Running { child: command.spawn().expect("rtf starts"), folder: self.path().to_owned() }
+        self.watch(command.spawn().expect("rtf starts"))
+    }
+
+    /// A runner that was started in this folder.
+    pub fn watch(&self, child: Child) -> Running {
+        Running { child, folder: self.path().to_owned() }
     }
 
     /// The newest journal, complete and in order.
@@ -152,8 +157,18 @@ impl Running {
 
     /// Kills the runner with SIGKILL.
     pub fn kill_runner(&self) {
-        let status = Command::new("kill").args(["-KILL", &self.runner().to_string()]).status();
-        assert!(status.expect("kill").success());
+        assert!(self.try_kill_runner(), "the runner has ended before");
+    }
+
+    /// Kills the runner with SIGKILL; whether it was still there.
+    pub fn try_kill_runner(&self) -> bool {
+        let guard = self.child.id();
+        let children = std::fs::read_to_string(format!("/proc/{guard}/task/{guard}/children"));
+        let children = children.unwrap_or_default();
+        children.split_whitespace().next().is_some_and(|runner| {
+            let kill = Command::new("kill").args(["-KILL", runner]).stderr(Stdio::null()).status();
+            kill.expect("kill").success()
+        })
     }
 
     pub fn signal(&self, signal: &str) {
