@@ -168,7 +168,7 @@ fn the_end_is_the_end() {
     assert_eq!(wrong(&[run_started()]), "event 1: the stream ends with neither run-finished nor runner-died");
     assert_eq!(
         wrong(&[run_started(), run_finished.clone(), run_finished]),
-        "event 2: nothing follows run-finished"
+        "event 2: nothing follows run-finished or runner-died"
     );
     assert_eq!(wrong(&[run_started(), suite_finished]), "event 1: suite 0 is not running");
 }

@@ -61,7 +61,7 @@ fn shown(text: &str) -> String {
 
 #[test]
 fn not_supported_yet() {
-    let suite = "<suite isolate=\"network\">\n  <hook on=\"failure\"> Park.lua </hook>\n  \
+    let suite = "<suite isolate=\"network\">\n  \
                  <test isolation=\"shared\" retries=\"2\">ArmTest.lua</test>\n</suite>";
     assert_snapshot!(shown(suite), @r#"
     error: `isolate` is not supported by this version of rtf
@@ -70,22 +70,16 @@ fn not_supported_yet() {
     1 | <suite isolate="network">
       |        ^^^^^^^
 
-    error: `<hook>` is not supported by this version of rtf
-     --> suite.xml:2:3
-      |
-    2 |   <hook on="failure"> Park.lua </hook>
-      |   ^^^^^
-
     error: `isolation="shared"` is not supported by this version of rtf
-     --> suite.xml:3:20
+     --> suite.xml:2:20
       |
-    3 |   <test isolation="shared" retries="2">ArmTest.lua</test>
+    2 |   <test isolation="shared" retries="2">ArmTest.lua</test>
       |                    ^^^^^^
 
     error: `retries` is not supported by this version of rtf
-     --> suite.xml:3:28
+     --> suite.xml:2:28
       |
-    3 |   <test isolation="shared" retries="2">ArmTest.lua</test>
+    2 |   <test isolation="shared" retries="2">ArmTest.lua</test>
       |                            ^^^^^^^
     "#);
 }
