@@ -13,7 +13,7 @@ use super::duties::{Duties, Duty, State};
 use super::hook::{self, Why};
 use super::unix::Signals;
 use super::watch::KILLS;
-use crate::host::tree;
+use crate::host::{prepare_process, tree};
 
 /// Processes that were killed are waited for this long. One that hangs in the
 /// kernel (a device that does not answer) is named, and left.
@@ -45,6 +45,8 @@ pub struct Parked {
 
 /// Does it.
 pub fn finish(duties: Duties, reason: String, mut signals: Signals, forked: Instant) -> Died {
+    // What the guard inherited is not for hooks; it starts processes only now.
+    let _ = prepare_process();
     // No hook runs beside a test.
     let mut left = tree::kill_owned("test ");
     keep_reading(duties.fixtures.into_values().flatten().map(|(_, end)| end).collect());

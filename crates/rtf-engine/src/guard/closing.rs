@@ -167,3 +167,6 @@ impl Closing {
         true
     }
 }
+
+#[cfg(test)]
+mod tests;
