@@ -85,6 +85,11 @@ example_01() {
     python3 tools/check_example_01.py "$TARGET/release/rtf" examples/01-simulated-arm/arm.xml
 }
 
+example_02() {
+  PATH="$simulation:$PATH" python3 tools/check_example_02.py "$TARGET/release/rtf" \
+    examples/02-supervised-simulator/supervised.xml
+}
+
 tools/bootstrap.sh test
 checkers=$(tools/venv.sh test)
 simulation=$(tools/venv.sh demo)
@@ -104,6 +109,7 @@ step 'rust tests' cargo test --workspace --locked --no-fail-fast
 step 'build release' tools/build.sh
 step 'example 01 plug-ins' tools/plugins.sh examples/01-simulated-arm
 step 'example 01' example_01
+step 'example 02' example_02
 step 'guide' tools/check_docs.py "$TARGET/release/rtf" README.md docs/getting-started.md \
   docs/writing-tests.md
 step 'installed copy' tests/install/run.sh

@@ -1,4 +1,4 @@
-"""Does the shoulder follow while it sweeps to and fro?"""
+"""Tests whether the shoulder follows while it sweeps to and fro."""
 
 from __future__ import annotations
 
