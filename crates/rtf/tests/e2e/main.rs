@@ -12,6 +12,7 @@ mod bad_plugins;
 mod bad_suites;
 mod collapse;
 mod conformance;
+mod hooks;
 mod cpp_fixture;
 mod guard;
 mod inputs;
