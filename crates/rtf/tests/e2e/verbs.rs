@@ -122,6 +122,8 @@ fn help_lists_the_exit_codes() {
       1    a test did not pass, or a fixture collapsed or broke
       2    bad input, or no tests: nothing was started
       3    rtf could not do its own work, for example write a report
+      4    a hook failed: the robot may not be in a safe state, whatever else happened
+      5    the runner died (SIGKILL, out of memory, a defect): its guard stopped everything
       128+N  the run was ended by signal N (130 for Ctrl-C)
     ----- stderr
     ");
