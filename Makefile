@@ -4,12 +4,13 @@ PREFIX ?= /usr/local
 DESTDIR ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help build demo test bench install uninstall clean
+.PHONY: help build demo test chaos bench install uninstall clean
 
 help:
 	@echo "make demo       install what is missing, build, and test a simulated robot arm"
 	@echo "make build      build rtf and its hosts (target/release)"
 	@echo "make test       every check there is: Rust, SDKs, examples, lints, installation"
+	@echo "make chaos      kill fixtures and runners at random moments, for half an hour"
 	@echo "make bench      measure speed and memory"
 	@echo "make install    install into PREFIX=$(PREFIX); DESTDIR is put before it"
 	@echo "make uninstall  remove what make install has put there"
@@ -24,6 +25,12 @@ demo:
 
 test:
 	@tools/test.sh
+
+# RTF_CHAOS_SEED=N repeats the random numbers of a run, which prints its seed.
+chaos:
+	@tools/bootstrap.sh test
+	@RTF_CHAOS_SUITES=3000 RTF_CHAOS_RUNS=1000 cargo test --workspace --test e2e -- \
+	  --nocapture chaos guard::a_runner_killed_at_any_moment
 
 bench:
 	@tools/bench.sh

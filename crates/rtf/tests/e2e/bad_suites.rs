@@ -14,7 +14,7 @@ fn an_unknown_element() {
     2 |   <tets>EncoderTest.lua</tets>
       |   ^^^^^ not known in `<suite>`
       |
-      = note: `<suite>` can have the elements `description`, `environment`, `env`, `fixture`, `test`
+      = note: `<suite>` can have the elements `description`, `environment`, `env`, `fixture`, `hook`, `test`
       = help: did you mean `test`?
 
     1 error; nothing was started
@@ -30,7 +30,7 @@ fn an_unknown_attribute() {
     2 |   <test timout="3s">EncoderTest.lua</test>
       |         ^^^^^^ not known in `<test>`
       |
-      = note: `<test>` can have the attributes `name`, `type`, `param`, `repetition`, `tags`, `timeout`, `load-timeout`, `setup-timeout`, `teardown-timeout`, `slow`, `grace`, `after-collapse`, `critical`, `isolation`
+      = note: `<test>` can have the attributes `name`, `type`, `param`, `repetition`, `tags`, `timeout`, `load-timeout`, `setup-timeout`, `teardown-timeout`, `slow`, `grace`, `after-collapse`, `leaks`, `critical`, `isolation`
       = help: did you mean `timeout`?
 
     1 error; nothing was started
@@ -135,7 +135,7 @@ fn five_mistakes_are_five_messages() {
     1 | <suite name="arm" tag="smoke">
       |                   ^^^ not known in `<suite>`
       |
-      = note: `<suite>` can have the attributes `name`, `timeout`, `tags`, `tolerate-collapse`, `after-collapse`, `test-timeout`, `test-load-timeout`, `test-setup-timeout`, `test-teardown-timeout`, `test-slow`, `test-grace`
+      = note: `<suite>` can have the attributes `name`, `timeout`, `tags`, `tolerate-collapse`, `after-collapse`, `leaks`, `test-timeout`, `test-load-timeout`, `test-setup-timeout`, `test-teardown-timeout`, `test-slow`, `test-grace`
       = help: did you mean `tags`?
 
     error: unknown element `<fixtures>`
@@ -144,7 +144,7 @@ fn five_mistakes_are_five_messages() {
     2 |   <fixtures/>
       |   ^^^^^^^^^ not known in `<suite>`
       |
-      = note: `<suite>` can have the elements `description`, `environment`, `env`, `fixture`, `test`
+      = note: `<suite>` can have the elements `description`, `environment`, `env`, `fixture`, `hook`, `test`
       = help: did you mean `fixture`?
 
     error: `timeout` is not a duration: `soon`

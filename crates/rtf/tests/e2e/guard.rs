@@ -2,11 +2,11 @@
 
 use std::os::unix::process::CommandExt;
 use std::process::{Command, Stdio};
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 use rtf_model::{EventKind, HookId, Phase, Source, TestId, Verdict};
 
-use crate::support::{Folder, Journal, Running, nothing_left, wait_until};
+use crate::support::{Folder, Journal, Random, Running, nothing_left, number, wait_until};
 
 /// A simulator that prints all the time, and a daemon that detaches itself twice.
 const SIMULATOR: &str = "<fixture type='process' name='arm'>\
@@ -224,24 +224,10 @@ fn exit_codes_pass_through() {
     }
 }
 
-/// Numbers that look random, from a seed that is shown when a test fails.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, limit: u64) -> u64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % limit
-    }
-}
-
 #[test]
 fn a_runner_killed_at_any_moment_leaves_nothing_and_parks_once() {
-    let seed = std::env::var("RTF_SEED").ok().and_then(|seed| seed.parse().ok());
-    let seed: u64 = seed.unwrap_or_else(|| u64::try_from(seed_time()).unwrap_or_default());
-    println!("RTF_SEED={seed}");
-    let mut random = Random(seed);
-    for run in 0..30 {
+    let mut random = Random::from_environment();
+    for run in 0..number("RTF_CHAOS_RUNS").unwrap_or(100) {
         let folder = Folder::new();
         let test =
             "import rtf\nclass T(rtf.TestCase):\n    def run(self):\n        self.sleep(0.1)\n";
@@ -256,12 +242,6 @@ fn a_runner_killed_at_any_moment_leaves_nothing_and_parks_once() {
         assert!(nothing_left(&folder), "{context}");
         check_any_moment(&folder, over, finished.code, &context);
     }
-}
-
-fn seed_time() -> u128 {
-    SystemTime::now()
-        .duration_since(SystemTime::UNIX_EPOCH)
-        .map_or(0, |time| time.as_nanos() % (1 << 60))
 }
 
 fn check_any_moment(folder: &Folder, over: bool, code: Option<i32>, context: &str) {

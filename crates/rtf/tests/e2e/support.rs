@@ -187,6 +187,33 @@ impl Running {
     }
 }
 
+/// Random numbers that a seed repeats (SplitMix64).
+pub struct Random(u64);
+
+impl Random {
+    /// The seed is `RTF_CHAOS_SEED`, or a new one; it is printed.
+    pub fn from_environment() -> Self {
+        let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+        let new = now.map_or(0, |now| u64::from(now.subsec_nanos()));
+        let seed = number("RTF_CHAOS_SEED").unwrap_or(new);
+        println!("RTF_CHAOS_SEED={seed}");
+        Self(seed)
+    }
+
+    pub fn below(&mut self, limit: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut mixed = self.0;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        (mixed ^ (mixed >> 31)) % limit
+    }
+}
+
+/// A number in an environment variable.
+pub fn number(variable: &str) -> Option<u64> {
+    std::env::var(variable).ok().and_then(|value| value.parse().ok())
+}
+
 /// Asks until there is an answer; fails after a minute.
 pub fn wait_until<T>(what: &str, mut ask: impl FnMut() -> Option<T>) -> T {
     let start = Instant::now();

@@ -1,0 +1,98 @@
+//! Fixtures of many suites are killed at random moments: in set-up, while a
+//! test runs, in tear-down.
+//!
+//! `RTF_CHAOS_SUITES` says how many suites (`make chaos` runs more), and
+//! `RTF_CHAOS_SEED` repeats a run's random numbers, which are printed.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use rtf_model::{Record, Verdict};
+
+use crate::support::{Folder, Random, nothing_left, number};
+
+const SUITES: u64 = 200;
+const TEST: &str = "TestCase = {}\nfunction TestCase.run() rtf.sleep(0.05) end\n";
+
+fn suite(name: &str, random: &mut Random) -> String {
+    let fixture = |name: &str, more: &str| {
+        format!(
+            "  <fixture type='process' name='{name}' restarts='50' restart-delay='1ms' {more}>\n    \
+             <command>sh -c 'echo up; exec sleep 1000'</command>\n    <ready log='up'/>\n  </fixture>\n"
+        )
+    };
+    let independent = if random.below(2) == 0 { "depends=''" } else { "" };
+    let rerun = if random.below(2) == 0 { " after-collapse='rerun'" } else { "" };
+    let tests = format!("  <test{rerun}>T.lua</test>\n").repeat(3);
+    let fixtures = fixture("driver", "") + &fixture("simulator", independent);
+    format!("<suite name='{name}'>\n{fixtures}{tests}</suite>\n")
+}
+
+/// The fixtures' processes: those of this folder that sleep.
+fn sleepers(folder: &Path) -> Vec<u32> {
+    let entries = std::fs::read_dir("/proc").expect("/proc").flatten();
+    let pids = entries.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
+    pids.filter(|pid| {
+        let of = |file: &str| PathBuf::from(format!("/proc/{pid}/{file}"));
+        let sleeps = std::fs::read(of("cmdline")).is_ok_and(|line| line.starts_with(b"sleep\0"));
+        sleeps && std::fs::read_link(of("cwd")).is_ok_and(|cwd| cwd == folder)
+    })
+    .collect()
+}
+
+#[test]
+fn whoever_is_killed_whenever_the_verdicts_are_true() {
+    let mut random = Random::from_environment();
+    let folder = Folder::new();
+    folder.file("T.lua", TEST);
+    let names: Vec<String> =
+        (0..number("RTF_CHAOS_SUITES").unwrap_or(SUITES)).map(|n| format!("{n}.xml")).collect();
+    for name in &names {
+        folder.file(name, &suite(name, &mut random));
+    }
+    let path = folder.path().canonicalize().expect("a path");
+    let over = AtomicBool::new(false);
+    let finished = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            while !over.load(Ordering::Relaxed) {
+                // Not to wait for something: the moments are what is drawn.
+                std::thread::sleep(Duration::from_millis(random.below(300)));
+                let victims = sleepers(&path);
+                if !victims.is_empty() {
+                    let victim = victims[random.below(victims.len() as u64) as usize];
+                    let _ = Command::new("kill").args(["-9", &victim.to_string()]).output();
+                }
+            }
+        });
+        let mut args = vec!["run"];
+        args.extend(names.iter().map(String::as_str));
+        let finished = folder.rtf(&args);
+        over.store(true, Ordering::Relaxed);
+        finished
+    });
+    assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
+    check(&folder.journal().record, names.len());
+    assert!(nothing_left(&folder));
+}
+
+/// The order of the events was checked when the journal was read.
+fn check(record: &Record, suites: usize) {
+    let totals = record.totals();
+    assert_eq!(totals.done() as usize, 3 * suites, "each test has one last word");
+    let collapses: Vec<_> =
+        record.fixtures.iter().flat_map(|f| f.collapses.iter().map(|(at, _)| *at)).collect();
+    assert!(collapses.len() >= suites / 4, "only {} collapses", collapses.len());
+    for test in &record.tests {
+        for attempt in &test.attempts {
+            let (end, finished) = attempt.finished.as_ref().expect("an end");
+            let overlaps = collapses.iter().any(|at| *at > attempt.started && at < end);
+            assert!(!overlaps || finished.verdict == Verdict::Collapsed, "{finished:?}");
+            let expected = [Verdict::Passed, Verdict::Collapsed];
+            assert!(expected.contains(&finished.verdict), "{finished:?}");
+        }
+    }
+    let restarts: u32 = record.fixtures.iter().map(|fixture| fixture.starts - 1).sum();
+    println!("{} collapses, {restarts} restarts", collapses.len());
+}
