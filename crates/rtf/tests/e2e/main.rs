@@ -2,6 +2,7 @@
 //! the real hosts → exit code, output, journal.
 
 #![expect(clippy::expect_used, reason = "a helper that cannot go on fails its test")]
+#![expect(clippy::print_stdout, reason = "a seed has to be seen")]
 
 mod support;
 
