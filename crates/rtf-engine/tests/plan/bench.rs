@@ -16,15 +16,15 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// `bin/` with `rtf` and its hosts, and the empty current folder `work/`.
+    /// `bin/` with `rtf` and its hosts, and the empty current folder `cell/`.
     pub fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
         let root = folder.path().canonicalize().unwrap();
-        std::fs::create_dir(root.join("work")).unwrap();
+        std::fs::create_dir(root.join("cell")).unwrap();
         let variables =
             [("PATH".to_owned(), format!("{}:/usr/bin:/bin", root.join("bin").display()))];
         let surroundings = Surroundings {
-            current_folder: root.join("work"),
+            current_folder: root.join("cell"),
             executable: root.join("bin/rtf"),
             variables: variables.into_iter().collect(),
         };
@@ -88,7 +88,7 @@ impl Bench {
     /// What is wrong with a suite of this text, as a text: for each problem its
     /// code and message, its places, its notes and its hint.
     pub fn shown(&self, suite: &str) -> String {
-        self.file("work/s.xml", suite);
+        self.file("cell/s.xml", suite);
         let outcome = self.build(&["s.xml"]);
         let mut out = String::new();
         for found in &outcome.diagnostics {

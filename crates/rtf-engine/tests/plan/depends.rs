@@ -10,8 +10,8 @@ use crate::bench::Bench;
 /// A bench in which everything is found.
 fn bench() -> Bench {
     let bench = Bench::new();
-    bench.file("work/A.lua", "");
-    bench.program("work/sim", "");
+    bench.file("cell/A.lua", "");
+    bench.program("cell/sim", "");
     bench
 }
 
@@ -37,7 +37,7 @@ fn shown(plan: &Plan) -> Vec<String> {
 
 fn planned(fixtures: &[&str]) -> Vec<String> {
     let bench = bench();
-    bench.file("work/s.xml", &suite(fixtures));
+    bench.file("cell/s.xml", &suite(fixtures));
     shown(&bench.plan(&["s.xml"]))
 }
 
@@ -155,7 +155,7 @@ fn two_circles_and_a_long_one() {
 #[test]
 fn restarts_wait_as_told() {
     let bench = bench();
-    bench.file("work/s.xml", &suite(&["restart-delay='2s'", ""]));
+    bench.file("cell/s.xml", &suite(&["restart-delay='2s'", ""]));
     let plan = bench.plan(&["s.xml"]);
     let delays: Vec<_> = plan.suites[0].fixtures.iter().map(|f| f.restart_delay).collect();
     assert_eq!(delays, [Duration::from_secs(2), Duration::from_millis(100)]);

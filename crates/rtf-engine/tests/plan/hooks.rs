@@ -16,10 +16,10 @@ fn bench() -> Bench {
                   */F.lua) echo '{\"file\":\"'$f'\",\"ok\":true,\"kinds\":[\"fixture\"]}';;\n\
                   *) echo '{\"file\":\"'$f'\",\"ok\":true,\"kinds\":[\"test\"]}';;\nesac; done";
     bench.program("bin/rtf-host-lua", script);
-    bench.file("work/A.lua", "");
-    bench.file("work/F.lua", "");
-    bench.file("work/Park.lua", "");
-    bench.program("work/park.sh", "");
+    bench.file("cell/A.lua", "");
+    bench.file("cell/F.lua", "");
+    bench.file("cell/Park.lua", "");
+    bench.program("cell/park.sh", "");
     bench
 }
 
@@ -66,7 +66,7 @@ fn shown(bench: &Bench, plan: &Plan) -> String {
 fn a_suite_with_all_of_it() {
     let bench = bench();
     bench.file(
-        "work/s.xml",
+        "cell/s.xml",
         "<suite leaks='fail'>\n\
          <fixture name='driver' depends='sim' restart-delay='1s'>F.lua</fixture>\n\
          <fixture name='sim' type='process' depends=''><command>./park.sh sim</command></fixture>\n\
@@ -79,22 +79,22 @@ fn a_suite_with_all_of_it() {
          <hook on='end'><command>here</command><env name='PATH' value='tools'/></hook>\n\
          <test>A.lua</test><test leaks='report'>A.lua</test></suite>",
     );
-    bench.program("work/tools/here", "");
+    bench.program("cell/tools/here", "");
     let plan = bench.plan(&["s.xml"]);
     assert_eq!(plan.hooks, 5);
     assert_snapshot!(shown(&bench, &plan), @r#"
     fixture 0 sim (process) depends [] restart 100ms
     fixture 1 driver (lua) depends [0] restart 1s
     hook 0 park on failure collapse timeout within 10s env [("SPEED", "0.1")]
-      [ROOT]/work/Park.lua ["--slow"]
+      [ROOT]/cell/Park.lua ["--slow"]
     hook 1 Park on end within 30s env []
-      [ROOT]/work/Park.lua []
+      [ROOT]/cell/Park.lua []
     hook 2 park.sh on interrupt fixture-broken within 30s env []
-      ["[ROOT]/work/park.sh", "--fast", "a b"]
+      ["[ROOT]/cell/park.sh", "--fast", "a b"]
     hook 3 Park#2 on end within 30s env []
-      [ROOT]/work/Park.lua []
+      [ROOT]/cell/Park.lua []
     hook 4 here on end within 30s env [("PATH", "tools")]
-      ["[ROOT]/work/tools/here"]
+      ["[ROOT]/cell/tools/here"]
     test 0 A leaks Fail
     test 1 A#2 leaks Report
     "#);
@@ -103,7 +103,7 @@ fn a_suite_with_all_of_it() {
 #[test]
 fn ids_of_hooks_go_on_in_the_next_suite() {
     let bench = bench();
-    bench.file("work/s.xml", &hook("on='end'", "Park.lua"));
+    bench.file("cell/s.xml", &hook("on='end'", "Park.lua"));
     let plan = bench.plan(&["s.xml", "s.xml", "A.lua"]);
     let ids: Vec<_> =
         plan.suites.iter().flat_map(|suite| &suite.hooks).map(|hook| hook.id.0).collect();
@@ -172,14 +172,14 @@ fn what_a_hook_runs_has_to_be_there() {
     no-such-plugin: there is no plug-in `Parc.lua` of type `lua`
       2:16 Parc.lua
       note: looked for `Parc.lua` in
-      [ROOT]/work
+      [ROOT]/cell
       [ROOT]/lib/rtf/plugins
       hint: did you mean `Park`?
     ");
     assert_snapshot!(bench.shown(&hook("on='end'", "<command>./parc.sh</command>")), @"
     no-such-program: there is no program `./parc.sh`
       2:25 ./parc.sh
-      note: looked for [ROOT]/work/parc.sh
+      note: looked for [ROOT]/cell/parc.sh
     ");
     assert_snapshot!(bench.shown(&hook("on='end'", "<command/>")), @"
     incomplete: `<command>` needs a program as its text

@@ -5,12 +5,12 @@ use crate::bench::{Bench, names};
 #[test]
 fn a_folder_is_its_suites_or_else_its_plugins() {
     let mut bench = Bench::new();
-    bench.file("work/all/b.xml", "<suite><test>../A.lua</test></suite>");
-    bench.file("work/all/a.xml", "<suite><test>../A.lua</test></suite>");
-    bench.file("work/all/launch.xml", "<robot/>");
-    bench.file("work/all/C.lua", "");
-    bench.file("work/all/below/c.xml", "<suite><test>../../A.lua</test></suite>");
-    bench.file("work/A.lua", "");
+    bench.file("cell/all/b.xml", "<suite><test>../A.lua</test></suite>");
+    bench.file("cell/all/a.xml", "<suite><test>../A.lua</test></suite>");
+    bench.file("cell/all/launch.xml", "<robot/>");
+    bench.file("cell/all/C.lua", "");
+    bench.file("cell/all/below/c.xml", "<suite><test>../../A.lua</test></suite>");
+    bench.file("cell/A.lua", "");
     let files = |bench: &Bench| {
         let plan = bench.plan(&["all"]);
         plan.suites.iter().map(|suite| suite.file.clone()).collect::<Vec<_>>()
@@ -19,7 +19,7 @@ fn a_folder_is_its_suites_or_else_its_plugins() {
     bench.options.recursive = true;
     assert_eq!(files(&bench), ["all/a.xml", "all/b.xml", "all/below/c.xml"]);
     for name in ["b.lua", "a.py", "c.so", "note.txt", ".hidden.lua", "sub/d.lua", ".git/e.lua"] {
-        bench.file(&format!("work/plain/{name}"), "");
+        bench.file(&format!("cell/plain/{name}"), "");
     }
     let plan = bench.plan(&["plain"]);
     assert_eq!(names(&plan, 0), ["a", "b", "c", "d"]);
@@ -31,9 +31,9 @@ fn a_folder_is_its_suites_or_else_its_plugins() {
 #[test]
 fn plugins_given_directly_make_one_suite() {
     let mut bench = Bench::new();
-    bench.file("work/A.lua", "");
-    bench.file("work/b/A.lua", "");
-    bench.file("work/s.xml", "<suite name='plug-ins'><test>A.lua</test></suite>");
+    bench.file("cell/A.lua", "");
+    bench.file("cell/b/A.lua", "");
+    bench.file("cell/s.xml", "<suite name='plug-ins'><test>A.lua</test></suite>");
     bench.options.param = "--n 3".to_owned();
     bench.options.environment = "--robot r".to_owned();
     bench.options.repetitions = 4;
@@ -42,7 +42,7 @@ fn plugins_given_directly_make_one_suite() {
     assert_eq!(suites, ["plug-ins", "plug-ins#2", "plug-ins#3"]);
     let suite = &plan.suites[2];
     assert_eq!(names(&plan, 2), ["A", "A#2"]);
-    assert_eq!((suite.file.as_str(), bench.relative(&suite.folder).as_str()), ("", "work"));
+    assert_eq!((suite.file.as_str(), bench.relative(&suite.folder).as_str()), ("", "cell"));
     assert_eq!(suite.environment, "--robot r");
     assert_eq!((suite.tests[0].repetitions, suite.tests[0].plugin.args.len()), (4, 2));
     assert_eq!((suite.tests[1].id.0, plan.tests), (3, 4));
@@ -57,9 +57,9 @@ fn plugins_given_directly_make_one_suite() {
 #[test]
 fn nothing_to_run_is_an_error() {
     let bench = Bench::new();
-    bench.file("work/empty/note.txt", "");
-    bench.file("work/none.xml", "<suite><description>x</description></suite>");
-    bench.file("work/robot.xml", "<robot/>");
+    bench.file("cell/empty/note.txt", "");
+    bench.file("cell/none.xml", "<suite><description>x</description></suite>");
+    bench.file("cell/robot.xml", "<robot/>");
     let code = |path: &str| {
         let outcome = bench.build(&[path]);
         assert!(outcome.plan.is_none());

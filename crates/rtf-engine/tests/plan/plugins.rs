@@ -8,46 +8,46 @@ use crate::bench::Bench;
 #[test]
 fn a_folder_named_like_a_library_is_no_library() {
     let bench = Bench::new();
-    bench.file("work/my.sources/Arm.so", "");
-    bench.file("work/my.sources/libArm.so/x", "");
-    bench.file("work/my.sources/Gaze.lua", "");
-    bench.file("work/my.sources/s.xml", "<suite><test>Arm</test><test>Gaze.lua</test></suite>");
-    bench.file("work/s.xml", "<suite><test>my.sources/Arm</test></suite>");
+    bench.file("cell/my.sources/Arm.so", "");
+    bench.file("cell/my.sources/libArm.so/x", "");
+    bench.file("cell/my.sources/Gaze.lua", "");
+    bench.file("cell/my.sources/s.xml", "<suite><test>Arm</test><test>Gaze.lua</test></suite>");
+    bench.file("cell/s.xml", "<suite><test>my.sources/Arm</test></suite>");
     let plan = bench.plan(&["my.sources/s.xml", "s.xml", "my.sources/Arm.so"]);
     for test in plan.suites.iter().map(|suite| &suite.tests[0]) {
-        assert_eq!(bench.relative(&test.plugin.file), "work/my.sources/Arm.so");
+        assert_eq!(bench.relative(&test.plugin.file), "cell/my.sources/Arm.so");
     }
 }
 
 #[test]
 fn plugins_are_searched_in_order() {
     let mut bench = Bench::new();
-    bench.file("work/s.xml", "<suite><test>Arm</test></suite>");
+    bench.file("cell/s.xml", "<suite><test>Arm</test></suite>");
     let found =
         |bench: &Bench| bench.relative(&bench.plan(&["s.xml"]).suites[0].tests[0].plugin.file);
     bench.file("lib/rtf/plugins/libArm.so", "");
     assert_eq!(found(&bench), "lib/rtf/plugins/libArm.so");
-    bench.file("work/system/Arm.so", "");
+    bench.file("cell/system/Arm.so", "");
     bench.set("LD_LIBRARY_PATH", "system");
-    assert_eq!(found(&bench), "work/system/Arm.so");
+    assert_eq!(found(&bench), "cell/system/Arm.so");
     bench.file("own/Arm.so", "");
     let own = format!("{}:{}", bench.path("nowhere"), bench.path("own"));
     bench.set("RTF_PLUGIN_PATH", &own);
     assert_eq!(found(&bench), "own/Arm.so");
-    bench.file("work/Arm", "a program, not a plug-in, but of this name");
-    assert_eq!(found(&bench), "work/Arm");
-    bench.file("work/libArm.so", "");
-    assert_eq!(found(&bench), "work/libArm.so");
-    bench.file("work/Arm.so", "");
-    assert_eq!(found(&bench), "work/Arm.so");
+    bench.file("cell/Arm", "a program, not a plug-in, but of this name");
+    assert_eq!(found(&bench), "cell/Arm");
+    bench.file("cell/libArm.so", "");
+    assert_eq!(found(&bench), "cell/libArm.so");
+    bench.file("cell/Arm.so", "");
+    assert_eq!(found(&bench), "cell/Arm.so");
     // The suite's own variables go over the user's, and start in its folder.
-    bench.file("work/deep/only/Gaze.so", "");
+    bench.file("cell/deep/only/Gaze.so", "");
     bench.file(
-        "work/deep/s.xml",
+        "cell/deep/s.xml",
         "<suite><env name='RTF_PLUGIN_PATH' value='only'/><test>Gaze</test></suite>",
     );
     let plan = bench.plan(&["deep/s.xml"]);
-    assert_eq!(bench.relative(&plan.suites[0].tests[0].plugin.file), "work/deep/only/Gaze.so");
+    assert_eq!(bench.relative(&plan.suites[0].tests[0].plugin.file), "cell/deep/only/Gaze.so");
 }
 
 #[test]
@@ -55,7 +55,7 @@ fn a_missing_plugin_says_every_path_that_was_searched() {
     let mut bench = Bench::new();
     bench.set("RTF_PLUGIN_PATH", "/p1:/p2");
     bench.set("LD_LIBRARY_PATH", "/l1");
-    bench.file("work/s.xml", "<suite>\n<test>Arm</test>\n<test type='lua'>Arm</test></suite>");
+    bench.file("cell/s.xml", "<suite>\n<test>Arm</test>\n<test type='lua'>Arm</test></suite>");
     let outcome = bench.build(&["s.xml"]);
     assert!(outcome.plan.is_none());
     let (dll, lua) = (&outcome.diagnostics[0], &outcome.diagnostics[1]);
@@ -64,14 +64,14 @@ fn a_missing_plugin_says_every_path_that_was_searched() {
         dll.notes,
         [format!(
             "looked for `Arm.so`, `libArm.so`, `Arm` in\n  {}\n  /p1\n  /p2\n  /l1\n  {installed}",
-            bench.path("work")
+            bench.path("cell")
         )]
     );
     assert_eq!(
         lua.notes,
         [format!(
             "looked for `Arm.lua`, `Arm` in\n  {}\n  /p1\n  /p2\n  {installed}",
-            bench.path("work")
+            bench.path("cell")
         )]
     );
     assert_eq!((dll.labels[0].line, dll.labels[0].column), (2, 7));
@@ -81,7 +81,7 @@ fn a_missing_plugin_says_every_path_that_was_searched() {
 fn a_plugin_that_is_missed_often_is_reported_once() {
     let bench = Bench::new();
     let tests = "<test>Arm</test>\n".repeat(10);
-    bench.file("work/s.xml", &format!("<suite>{tests}</suite>"));
+    bench.file("cell/s.xml", &format!("<suite>{tests}</suite>"));
     let outcome = bench.build(&["s.xml"]);
     assert_eq!(outcome.diagnostics.len(), 1);
     assert_eq!(outcome.diagnostics[0].labels.len(), 3);
@@ -91,8 +91,8 @@ fn a_plugin_that_is_missed_often_is_reported_once() {
 #[test]
 fn python_is_the_users_own() {
     let mut bench = Bench::new();
-    bench.file("work/A.py", "");
-    bench.file("work/s.xml", "<suite><test>A.py</test></suite>");
+    bench.file("cell/A.py", "");
+    bench.file("cell/s.xml", "<suite><test>A.py</test></suite>");
     let host = |bench: &Bench, suite: &str| {
         let host = Arc::clone(&bench.plan(&[suite]).suites[0].tests[0].plugin.host);
         (host.command.clone(), host.env.clone())
@@ -114,17 +114,17 @@ fn python_is_the_users_own() {
     assert_eq!(host(&bench, "s.xml").1, path("share/rtf/python"));
     // What a suite adds stays behind ours.
     bench.file(
-        "work/t.xml",
+        "cell/t.xml",
         "<suite><env name='PYTHONPATH' value='theirs'/><test>A.py</test></suite>",
     );
     let expected = format!("{}:theirs", bench.path("share/rtf/python"));
     assert_eq!(host(&bench, "t.xml").1[0].1, expected);
     // A relative one starts where whoever wrote it is.
-    bench.program("work/mine/python", "");
+    bench.program("cell/mine/python", "");
     bench.set("RTF_PYTHON", "mine/python");
-    bench.file("work/deep/A.py", "");
-    bench.file("work/deep/s.xml", "<suite><test>A.py</test></suite>");
-    assert_eq!(host(&bench, "deep/s.xml").0[0], bench.path("work/mine/python"));
+    bench.file("cell/deep/A.py", "");
+    bench.file("cell/deep/s.xml", "<suite><test>A.py</test></suite>");
+    assert_eq!(host(&bench, "deep/s.xml").0[0], bench.path("cell/mine/python"));
     let other = bench.program("other/python3.12", "");
     bench.set("RTF_PYTHON", other.to_str().unwrap());
     assert_eq!(host(&bench, "s.xml").0[0], other.to_str().unwrap());
@@ -134,15 +134,15 @@ fn python_is_the_users_own() {
 fn a_host_that_is_not_there_is_reported_once_beside_the_rest() {
     let bench = Bench::new();
     std::fs::remove_file(bench.root.join("bin/rtf-host-lua")).unwrap();
-    bench.file("work/A.lua", "");
+    bench.file("cell/A.lua", "");
     bench.file(
-        "work/s.xml",
+        "cell/s.xml",
         "<suite><test>A.lua</test><test>A.lua</test><test type='lua'>B</test></suite>",
     );
     let codes: Vec<_> = bench.problems(&["s.xml"]).into_iter().map(|(code, _)| code).collect();
     assert_eq!(codes, ["no-such-host", "no-such-plugin"]);
     bench.program("libexec/rtf/rtf-host-lua", "");
-    bench.file("work/B.lua", "");
+    bench.file("cell/B.lua", "");
     let plan = bench.plan(&["s.xml"]);
     let host = &plan.suites[0].tests[0].plugin.host;
     assert_eq!(host.command, [bench.path("libexec/rtf/rtf-host-lua")]);

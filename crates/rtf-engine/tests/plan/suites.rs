@@ -10,10 +10,10 @@ use crate::bench::{Bench, names};
 #[test]
 fn a_suite_becomes_a_plan() {
     let bench = Bench::new();
-    bench.file("work/lib/libArm.so", "");
-    bench.file("work/lib/Encoder.lua", "");
+    bench.file("cell/lib/libArm.so", "");
+    bench.file("cell/lib/Encoder.lua", "");
     bench.file(
-        "work/lib/arm.xml",
+        "cell/lib/arm.xml",
         "<suite tags='sim'><environment>--robot r</environment><env name='A' value='1'/>\
          <test param='--n \"a b\"'>Arm</test><test type='lua' tags='x sim'>Encoder</test>\
          <test name='again'>Arm</test><test>Arm</test></suite>",
@@ -22,11 +22,11 @@ fn a_suite_becomes_a_plan() {
     assert_eq!((plan.suites.len(), plan.fixtures, plan.tests), (1, 0, 4));
     let suite = &plan.suites[0];
     assert_eq!((suite.name.as_str(), suite.file.as_str()), ("arm", "lib/arm.xml"));
-    assert_eq!(bench.relative(&suite.folder), "work/lib");
+    assert_eq!(bench.relative(&suite.folder), "cell/lib");
     assert_eq!(suite.environment, "--robot r");
     assert_eq!(names(&plan, 0), ["Arm", "Encoder", "again", "Arm#2"]);
     let (arm, encoder) = (&suite.tests[0], &suite.tests[1]);
-    assert_eq!(bench.relative(&arm.plugin.file), "work/lib/libArm.so");
+    assert_eq!(bench.relative(&arm.plugin.file), "cell/lib/libArm.so");
     assert_eq!(arm.plugin.args, ["--n", "a b"]);
     assert_eq!(arm.plugin.host.command, [bench.path("bin/rtf-host-native")]);
     assert_eq!(encoder.tags, ["sim", "x"]);
@@ -50,10 +50,10 @@ fn a_suite_becomes_a_plan() {
 #[test]
 fn fixtures_with_their_defaults() {
     let bench = Bench::new();
-    bench.file("work/A.lua", "");
-    bench.program("work/sim", "");
+    bench.file("cell/A.lua", "");
+    bench.program("cell/sim", "");
     bench.file(
-        "work/s.xml",
+        "cell/s.xml",
         "<suite><fixture type='process'><command>./sim --fast</command><ready file='up'/>\
          <ready tcp='h:1'/><alive command='sh -c true'/></fixture>\
          <fixture depends='sim'>A.lua</fixture><fixture>A.lua</fixture><test>A.lua</test></suite>",
@@ -70,10 +70,10 @@ fn fixtures_with_their_defaults() {
         (limits, 3, None)
     );
     let FixtureBody::Process(process) = &fixtures[0].body else { panic!("a process") };
-    assert_eq!(process.command, [bench.path("work/sim"), "--fast".to_owned()]);
+    assert_eq!(process.command, [bench.path("cell/sim"), "--fast".to_owned()]);
     assert_eq!((process.stop_signal, process.stop_grace), (15, secs(5)));
     let ProbeKind::File(file) = &process.ready[0].kind else { panic!("a file") };
-    assert_eq!(bench.relative(file), "work/up");
+    assert_eq!(bench.relative(file), "cell/up");
     assert_eq!(process.ready[1].every, Duration::from_millis(100));
     assert_eq!((process.alive[0].every, process.alive[0].timeout), (secs(1), secs(1)));
     let ProbeKind::Command(words) = &process.alive[0].kind else { panic!("a command") };
@@ -84,7 +84,7 @@ fn fixtures_with_their_defaults() {
 fn unknown_types_list_the_known_ones() {
     let bench = Bench::new();
     bench.file(
-        "work/s.xml",
+        "cell/s.xml",
         "<suite><fixture type='procss'>A</fixture><test type='Lua'>A</test></suite>",
     );
     let outcome = bench.build(&["s.xml"]);
@@ -101,8 +101,8 @@ fn unknown_types_list_the_known_ones() {
 #[test]
 fn problems_of_all_files_come_at_once() {
     let bench = Bench::new();
-    bench.file("work/a.xml", "<suite><test timeout='x'>A</test></suite>");
-    bench.file("work/b.xml", "<suite><test>A</suite>");
+    bench.file("cell/a.xml", "<suite><test timeout='x'>A</test></suite>");
+    bench.file("cell/b.xml", "<suite><test>A</suite>");
     let codes: Vec<_> =
         bench.problems(&["b.xml", "a.xml", "c.xml"]).into_iter().map(|(code, _)| code).collect();
     assert_eq!(codes, ["malformed-xml", "invalid-value", "no-such-plugin", "no-such-file"]);
@@ -113,8 +113,8 @@ fn problems_of_all_files_come_at_once() {
 #[test]
 fn warnings_do_not_stop_a_plan() {
     let mut bench = Bench::new();
-    bench.file("work/A.lua", "");
-    bench.file("work/a.xml", "<suite><!-- -- --><test>A.lua</test></suite>");
+    bench.file("cell/A.lua", "");
+    bench.file("cell/a.xml", "<suite><!-- -- --><test>A.lua</test></suite>");
     bench.options.param = "x".to_owned();
     let outcome = bench.build(&["a.xml"]);
     let codes: Vec<_> = outcome.diagnostics.iter().map(|found| found.code.as_str()).collect();
@@ -125,11 +125,11 @@ fn warnings_do_not_stop_a_plan() {
 #[test]
 fn programs_are_found_or_reported() {
     let bench = Bench::new();
-    bench.file("work/A.lua", "");
-    bench.file("work/plain", "");
+    bench.file("cell/A.lua", "");
+    bench.file("cell/plain", "");
     let message = |command: &str| {
         bench.file(
-            "work/s.xml",
+            "cell/s.xml",
             &format!(
                 "<suite><fixture type='process'><command>{command}</command></fixture>\
              <test>A.lua</test></suite>"
@@ -166,11 +166,11 @@ fn programs_are_found_or_reported() {
 fn a_large_suite_is_planned_quickly() {
     const TESTS: usize = 20_000;
     let bench = Bench::new();
-    bench.file("work/A.lua", "");
+    bench.file("cell/A.lua", "");
     let tests: String = (0..TESTS)
         .map(|n| format!("  <test type=\"lua\" param=\"--n {n}\" tags=\"large\"> A </test>\n"))
         .collect();
-    bench.file("work/s.xml", &format!("<suite>\n{tests}</suite>\n"));
+    bench.file("cell/s.xml", &format!("<suite>\n{tests}</suite>\n"));
     let before = Instant::now();
     let plan = bench.plan(&["s.xml"]);
     // Far above what it takes, far below what anything quadratic would take.

@@ -15,10 +15,10 @@ fn bench(script: &str) -> Bench {
     bench.options.verify = Some(Duration::from_secs(20));
     bench.program("bin/rtf-host-lua", &format!("test \"$1\" = --check || exit 9\nshift\n{script}"));
     for name in ["A", "B", "C"] {
-        bench.file(&format!("work/{name}.lua"), "one\ntwo\n  three\n");
+        bench.file(&format!("cell/{name}.lua"), "one\ntwo\n  three\n");
     }
     bench.file(
-        "work/s.xml",
+        "cell/s.xml",
         "<suite>\n<test>A.lua</test>\n<test>B.lua</test>\n<test>C.lua</test>\n<test>B.lua</test>\n</suite>",
     );
     bench
@@ -54,7 +54,7 @@ fn a_syntax_error_is_shown_in_the_suite_and_in_the_plugin() {
     assert_eq!(found.message, "the plug-in `B.lua` cannot be loaded: unexpected symbol near x");
     let places: Vec<_> =
         found.labels.iter().map(|label| (label.file.as_str(), label.line, label.column)).collect();
-    let plugin = bench.path("work/B.lua");
+    let plugin = bench.path("cell/B.lua");
     assert_eq!(places, [("s.xml", 3, 7), ("s.xml", 5, 7), (plugin.as_str(), 3, 3)]);
     assert!(outcome.sources.text(&plugin).is_some());
 }
@@ -76,7 +76,7 @@ fn a_fixture_is_no_test_and_the_other_way_round() {
     let outcome = bench.build(&["s.xml"]);
     assert_eq!(only(&outcome).message, "the plug-in `B.lua` is a fixture, not a test");
     assert_eq!(only(&outcome).hint.as_deref(), Some("in a suite it is written as `<fixture>`"));
-    bench.file("work/s.xml", "<suite><fixture>A.lua</fixture><test>A.lua</test></suite>");
+    bench.file("cell/s.xml", "<suite><fixture>A.lua</fixture><test>A.lua</test></suite>");
     let outcome = bench.build(&["s.xml"]);
     assert_eq!(only(&outcome).message, "the plug-in `A.lua` is a test, not a fixture");
 }
@@ -107,7 +107,7 @@ fn a_plugin_that_hangs_is_blamed_and_its_host_killed() {
     bench.options.verify = Some(Duration::from_millis(500));
     let outcome = bench.build(&["s.xml"]);
     assert_eq!(only(&outcome).message, "loading `B.lua` takes longer than 500ms");
-    let pid = std::fs::read_to_string(bench.root.join("work/pid")).unwrap();
+    let pid = std::fs::read_to_string(bench.root.join("cell/pid")).unwrap();
     assert!(!std::path::Path::new("/proc").join(pid.trim()).exists());
 }
 
@@ -131,14 +131,14 @@ fn what_plugins_print_while_they_are_loaded_is_no_answer() {
 #[test]
 fn plugins_of_a_folder_that_hold_no_test_are_left_out() {
     let bench = bench(&answer_b("\"ok\":true,\"kinds\":[\"fixture\"]"));
-    std::fs::remove_file(bench.root.join("work/s.xml")).unwrap();
+    std::fs::remove_file(bench.root.join("cell/s.xml")).unwrap();
     let plan = bench.plan(&["."]);
     assert_eq!(names(&plan, 0), ["A", "C"]);
     // One that is named is not.
     let problems = bench.problems(&["B.lua"]);
     assert_eq!(problems[0].1, "the plug-in `B.lua` is a fixture, not a test");
     // A folder of helpers only has nothing to run.
-    bench.file("work/only/B.lua", "");
+    bench.file("cell/only/B.lua", "");
     assert_eq!(bench.problems(&["only"])[0].0, "no-tests");
 }
 
@@ -146,9 +146,9 @@ fn plugins_of_a_folder_that_hold_no_test_are_left_out() {
 fn hosts_check_with_the_folder_and_the_variables_of_the_suite() {
     let script = "test \"$MODE\" = fast && test -f here || exit 3\n";
     let bench = bench(&format!("{script}{}", answer_b("\"ok\":true")));
-    bench.file("work/sub/here", "");
+    bench.file("cell/sub/here", "");
     bench.file(
-        "work/sub/s.xml",
+        "cell/sub/s.xml",
         "<suite><env name='MODE' value='fast'/><test>../A.lua</test></suite>",
     );
     assert_eq!(bench.plan(&["sub/s.xml"]).tests, 1);
@@ -161,8 +161,8 @@ fn each_file_is_checked_once() {
     let tests: String = (0..500)
         .map(|n| format!("<test param='{n}'>{}.lua</test>", ["A", "B", "C"][n % 3]))
         .collect();
-    bench.file("work/s.xml", &format!("<suite>{tests}</suite>"));
+    bench.file("cell/s.xml", &format!("<suite>{tests}</suite>"));
     assert_eq!(bench.plan(&["s.xml"]).tests, 500);
-    let checked = std::fs::read_to_string(bench.root.join("work/checked")).unwrap();
+    let checked = std::fs::read_to_string(bench.root.join("cell/checked")).unwrap();
     assert_eq!(checked.lines().count(), 3);
 }
