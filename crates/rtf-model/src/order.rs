@@ -119,8 +119,10 @@ impl OrderChecker {
     /// # Errors
     /// The stream ends with neither `run-finished` nor `runner-died`.
     pub fn finish(&self) -> Result<(), OrderError> {
-        ensure(self.stage == Stage::After, || "the stream ends with neither run-finished nor runner-died".into())
-            .map_err(|rule| OrderError { seq: self.next_seq, rule })
+        ensure(self.stage == Stage::After, || {
+            "the stream ends with neither run-finished nor runner-died".into()
+        })
+        .map_err(|rule| OrderError { seq: self.next_seq, rule })
     }
 
     fn check_envelope(&mut self, event: &Event) -> Rule {

@@ -165,7 +165,10 @@ fn the_end_is_the_end() {
         wrong(&[run_started(), suite(0), run_finished.clone()]),
         "event 2: suite 0 did not finish"
     );
-    assert_eq!(wrong(&[run_started()]), "event 1: the stream ends with neither run-finished nor runner-died");
+    assert_eq!(
+        wrong(&[run_started()]),
+        "event 1: the stream ends with neither run-finished nor runner-died"
+    );
     assert_eq!(
         wrong(&[run_started(), run_finished.clone(), run_finished]),
         "event 2: nothing follows run-finished or runner-died"
