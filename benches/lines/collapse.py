@@ -26,23 +26,24 @@ PLUGIN = "plug-in"
 def group(bench: Bench) -> Group:
     """A program that is a fixture, and a fixture plug-in whose host is killed."""
     pid = bench.folder / "victim.pid"
-    common = f'name="victim" restarts="{COUNT}"'
+    common = 'name="victim" restarts="0"'
     fixtures = {
         PROCESS: (
             f'<fixture type="process" {common}>'
             f'<command>"{bench.folder}/victim" "{pid}"</command><ready log="^ready$"/></fixture>'
         ),
-        PLUGIN: f'<fixture type="dll" {common} param=\'"{pid}"\'>VictimFixture</fixture>',
+        PLUGIN: f'<fixture type="dll" {common} param=\'"{pid}"\'>../VictimFixture</fixture>',
     }
     works = []
     lines: list[Line] = []
     for kind, fixture in fixtures.items():
-        file = suite.write(
-            bench,
-            f"collapse-{kind}",
-            [fixture, f'<test repetition="{COUNT}" param=\'"{pid}"\'>Killer</test>'],
-        )
-        works.append(Work(kind, lambda file=file: collapses(bench, file)))  # type: ignore[misc]
+        # A suite for each collapse: within one, restarts wait ever longer.
+        folder = bench.folder / f"collapse-{kind}"
+        folder.mkdir(exist_ok=True)
+        for number in range(COUNT):
+            test = f"<test param='\"{pid}\"'>../Killer</test>"
+            suite.write(bench, f"{folder.name}/{number:02}", [fixture, test])
+        works.append(Work(kind, lambda folder=folder: collapses(bench, folder)))  # type: ignore[misc]
         lines += lines_of(kind)
     return Group("collapse", tuple(works), tuple(lines), rounds=3, warm_up=False)
 
@@ -58,9 +59,9 @@ def lines_of(kind: str) -> list[Line]:
     ]
 
 
-def collapses(bench: Bench, file: Path) -> Samples:
-    """Runs the test as often as it is repeated; each time its fixture dies."""
-    with suite.Run(bench, file, codes=(1,)) as run:
+def collapses(bench: Bench, folder: Path) -> Samples:
+    """Runs the suites of a folder; in each the fixture dies."""
+    with suite.Run(bench, folder, codes=(1,)) as run:
         run.expect("test-finished", COUNT, '"verdict":"collapsed"')
         events = run.events()
     latencies = [latency(event) for event in events if event["type"] == "measured"]
