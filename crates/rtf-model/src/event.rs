@@ -6,8 +6,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Attachment, Diagnostic, FixtureId, HookId, Measurement, Message, Micros, SuiteId, TestId,
-    Verdict,
+    Attachment, Diagnostic, FixtureId, HookId, Manifest, Measurement, Message, Micros, SuiteId,
+    SuitePrepared, TestId, Verdict,
 };
 
 /// One fact about a run.
@@ -43,11 +43,22 @@ pub enum EventKind {
         /// What was noticed.
         diagnostic: Diagnostic,
     },
+    /// A suite waits for a lock that it requires. It has not begun.
+    SuiteWaiting {
+        /// The suite.
+        suite: SuiteId,
+        /// The resource's name.
+        lock: String,
+        /// Who has it, in words.
+        held_by: String,
+    },
     /// A suite begins.
     SuiteStarted {
         /// The suite.
         suite: SuiteId,
     },
+    /// What a suite got for itself. After its start, before anything of it begins.
+    SuitePrepared(SuitePrepared),
     /// A fixture is being set up. Ends with `fixture-stopped`.
     FixtureStarting {
         /// The fixture.
@@ -231,6 +242,9 @@ pub struct RunStarted {
     pub suites: u32,
     /// How many tests are planned.
     pub tests: u32,
+    /// What was asked for.
+    #[serde(default)]
+    pub manifest: Box<Manifest>,
 }
 
 /// A suite that will be run.
@@ -265,7 +279,7 @@ pub struct FixturePlanned {
     pub suite: SuiteId,
     /// Its name, unique in the suite.
     pub name: String,
-    /// The plug-in's type (`dll`, `lua`, `python`, `process`).
+    /// The plug-in's type (`dll`, `lua`, `python`, `ruby`, `process`).
     pub plugin_type: String,
 }
 
@@ -343,7 +357,7 @@ pub struct TestPlanned {
     pub suite: SuiteId,
     /// Its name, unique in the suite.
     pub name: String,
-    /// The plug-in's type (`dll`, `lua`, `python`).
+    /// The plug-in's type (`dll`, `lua`, `python`, `ruby`).
     pub plugin_type: String,
     /// The plug-in's file.
     pub plugin: String,

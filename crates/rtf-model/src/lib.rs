@@ -11,7 +11,9 @@
 mod diagnostic;
 mod event;
 mod ids;
+mod manifest;
 mod order;
+mod prepared;
 pub mod protocol;
 mod record;
 mod report;
@@ -23,10 +25,12 @@ pub use event::{
     RunStarted, Source, StopCause, Stream, SuitePlanned, TestFinished, TestPlanned, Trigger,
 };
 pub use ids::{FixtureId, HookId, Micros, SuiteId, TestId};
+pub use manifest::Manifest;
 pub use order::{OrderChecker, OrderError};
+pub use prepared::{OwnNetwork, OwnPort, OwnVariable, SuitePrepared};
 pub use record::{
-    AttemptRecord, FixtureRecord, FixtureState, HookRecord, HookRun, Record, RunState, SuiteRecord,
-    TestRecord, Totals,
+    AttemptRecord, Counts, FixtureLife, FixtureRecord, FixtureState, HookRecord, HookRun, Record,
+    RunState, SuiteRecord, TestRecord, Totals,
 };
 pub use report::{
     Attachment, Comparison, Location, Measurement, Message, MessageKind, format_number,

@@ -19,8 +19,9 @@ impl std::fmt::Display for OrderError {
 
 impl std::error::Error for OrderError {}
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Stage {
+    #[default]
     Before,
     Planning,
     Running,
@@ -30,6 +31,8 @@ enum Stage {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Bracket {
     Planned,
+    /// Started, and nothing of the suite has happened yet.
+    Fresh,
     Open,
     Closed,
 }
@@ -72,7 +75,7 @@ impl Test {
 
 /// Checks a stream event by event. [`OrderChecker::finish`] then tells whether
 /// everything that began also ended.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct OrderChecker {
     next_seq: u64,
     last_at: u64,
@@ -81,20 +84,6 @@ pub struct OrderChecker {
     fixtures: Vec<Fixture>,
     hooks: Vec<(SuiteId, bool)>,
     tests: Vec<Test>,
-}
-
-impl Default for OrderChecker {
-    fn default() -> Self {
-        Self {
-            next_seq: 0,
-            last_at: 0,
-            stage: Stage::Before,
-            suites: Vec::new(),
-            fixtures: Vec::new(),
-            hooks: Vec::new(),
-            tests: Vec::new(),
-        }
-    }
 }
 
 type Rule = Result<(), String>;
@@ -148,7 +137,9 @@ impl OrderChecker {
             EventKind::HookPlanned(plan) => self.plan_hook(plan.hook, plan.suite),
             EventKind::TestPlanned(plan) => self.plan_test(plan.test, plan.suite, plan.repetitions),
             EventKind::Warning { .. } => Ok(()),
+            EventKind::SuiteWaiting { suite, .. } => self.wait(*suite),
             EventKind::SuiteStarted { suite } => self.start_suite(*suite),
+            EventKind::SuitePrepared(prepared) => self.prepare(prepared.suite),
             EventKind::FixtureStarting { fixture, attempt } => self.start(*fixture, *attempt),
             EventKind::FixtureReady { fixture } => {
                 self.advance(*fixture, &[FixtureStage::Starting], FixtureStage::Ready)
@@ -248,6 +239,12 @@ impl OrderChecker {
         Ok(())
     }
 
+    fn wait(&self, suite: SuiteId) -> Rule {
+        ensure(self.suites.get(suite.index()) == Some(&Bracket::Planned), || {
+            format!("suite {suite} waits, but was not planned, or has begun")
+        })
+    }
+
     fn start_suite(&mut self, suite: SuiteId) -> Rule {
         self.stage = Stage::Running;
         let bracket = self.suites.get_mut(suite.index());
@@ -255,15 +252,26 @@ impl OrderChecker {
             format!("suite {suite} was not planned, or started twice")
         })?;
         if let Some(bracket) = bracket {
-            *bracket = Bracket::Open;
+            *bracket = Bracket::Fresh;
         }
         Ok(())
     }
 
-    fn suite_open(&self, suite: SuiteId) -> Rule {
-        ensure(self.suites.get(suite.index()) == Some(&Bracket::Open), || {
-            format!("suite {suite} is not running")
-        })
+    fn prepare(&mut self, suite: SuiteId) -> Rule {
+        ensure(self.suites.get(suite.index()) == Some(&Bracket::Fresh), || {
+            format!("suite {suite} is prepared once, before anything else of it")
+        })?;
+        self.suite_open(suite)
+    }
+
+    fn suite_open(&mut self, suite: SuiteId) -> Rule {
+        match self.suites.get_mut(suite.index()) {
+            Some(bracket @ (Bracket::Fresh | Bracket::Open)) => {
+                *bracket = Bracket::Open;
+                Ok(())
+            }
+            _ => Err(format!("suite {suite} is not running")),
+        }
     }
 
     fn fixture(&mut self, fixture: FixtureId) -> Result<&mut Fixture, String> {

@@ -4,6 +4,9 @@
 //! `spec/protocol.md` is the text for people; these types are the same in code.
 //! Unknown fields are ignored on both sides, unknown methods are refused.
 
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
 use serde::{Deserialize, Serialize};
 
 use crate::{Attachment, Measurement, Message, Outcome, Phase};
@@ -23,6 +26,10 @@ pub const OWNER_VARIABLE: &str = "RTF_OWNER";
 /// The environment variable that holds the suite's environment string.
 pub const ENVIRONMENT_VARIABLE: &str = "RTF_ENVIRONMENT";
 
+/// The environment variable that makes a host a server that forks hosts:
+/// `fd:N`, then blanks as room for the variables of a [`ForkRequest`].
+pub const FORK_SERVER_VARIABLE: &str = "RTF_FORK_SERVER";
+
 /// JSON-RPC error code: the method is not known.
 pub const METHOD_NOT_FOUND: i32 = -32601;
 
@@ -31,6 +38,28 @@ pub const INVALID_PARAMS: i32 = -32602;
 
 /// JSON-RPC error code: runner and host speak different protocol versions.
 pub const VERSION_MISMATCH: i32 = -32001;
+
+/// What the runner asks of a forking host: one more process. Three descriptors
+/// come with it: the channel, the standard output, the standard error.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ForkRequest {
+    /// The working folder.
+    pub folder: PathBuf,
+    /// Environment variables that only this process has.
+    pub env: BTreeMap<String, String>,
+}
+
+/// What a forking host answers.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum ForkReply {
+    /// The id of the new process.
+    Pid(i32),
+    /// Why there is none.
+    Error(String),
+}
 
 /// What the runner asks of a host. All but `interrupt` and `dump-stack` are answered.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -22,6 +22,23 @@ pub enum FixtureState {
     Broken,
 }
 
+/// One life of a fixture, from its set-up to the end of its tear-down.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FixtureLife {
+    /// When its set-up began.
+    pub starting: Micros,
+    /// When its set-up succeeded.
+    pub ready: Option<Micros>,
+    /// When and why it was not there any more.
+    pub collapsed: Option<(Micros, String)>,
+    /// When its tear-down began.
+    pub stopping: Option<Micros>,
+    /// When its tear-down ended.
+    pub stopped: Option<Micros>,
+    /// What went wrong in its set-up or tear-down.
+    pub problem: Option<String>,
+}
+
 /// What is known of one fixture.
 #[derive(Clone, Debug)]
 pub struct FixtureRecord {
@@ -35,6 +52,8 @@ pub struct FixtureRecord {
     pub started: Option<Micros>,
     /// When the set-up of its last start succeeded.
     pub ready: Option<Micros>,
+    /// Its lives, the oldest first.
+    pub lives: Vec<FixtureLife>,
     /// Its collapses: when, and why.
     pub collapses: Vec<(Micros, String)>,
     /// The first cause, once it broke.
@@ -57,6 +76,7 @@ impl FixtureRecord {
             starts: 0,
             started: None,
             ready: None,
+            lives: Vec::new(),
             collapses: Vec::new(),
             broken: None,
             problems: Vec::new(),
@@ -67,6 +87,7 @@ impl FixtureRecord {
     }
 
     pub(super) fn apply(&mut self, at: Micros, kind: &EventKind) {
+        self.live(at, kind);
         match kind {
             EventKind::FixtureStarting { attempt, .. } => {
                 self.starts = *attempt;
@@ -98,6 +119,25 @@ impl FixtureRecord {
             }
             EventKind::Message { message, .. } => self.keep(message),
             EventKind::ProcessesLeft { processes, .. } => self.left.extend_from_slice(processes),
+            _ => {}
+        }
+    }
+
+    fn live(&mut self, at: Micros, kind: &EventKind) {
+        if let EventKind::FixtureStarting { .. } = kind {
+            self.lives.push(FixtureLife { starting: at, ..FixtureLife::default() });
+        }
+        let Some(life) = self.lives.last_mut() else { return };
+        match kind {
+            EventKind::FixtureReady { .. } => life.ready = Some(at),
+            EventKind::FixtureCollapsed { reason, .. } => {
+                life.collapsed = Some((at, reason.clone()));
+            }
+            EventKind::FixtureStopping { .. } => life.stopping = Some(at),
+            EventKind::FixtureStopped { problem, .. } => {
+                life.stopped = Some(at);
+                life.problem.clone_from(problem);
+            }
             _ => {}
         }
     }

@@ -3,6 +3,7 @@
 //! [`Record::apply`] is the only place that counts. The console's summary, the
 //! JUnit file and every other report read a `Record`; none keeps a state of its own.
 
+mod counts;
 mod fixture;
 mod gap;
 mod hook;
@@ -10,7 +11,8 @@ mod left;
 mod suite;
 mod test;
 
-pub use fixture::{FixtureRecord, FixtureState};
+pub use counts::Counts;
+pub use fixture::{FixtureLife, FixtureRecord, FixtureState};
 pub use hook::{HookRecord, HookRun};
 pub use suite::SuiteRecord;
 pub use test::{AttemptRecord, TestRecord};
@@ -87,9 +89,17 @@ pub struct Record {
     pub left: Vec<crate::LeftProcess>,
     /// What the user should look at.
     pub warnings: Vec<Diagnostic>,
+    lean: bool,
 }
 
 impl Record {
+    /// A record that counts what tests report, print, measure and attach, and
+    /// keeps none of it: for those who keep the journal at hand.
+    #[must_use]
+    pub fn lean() -> Self {
+        Self { lean: true, ..Self::default() }
+    }
+
     /// Takes in the next event. An event about something that was never
     /// planned is ignored: [`crate::OrderChecker`] is there to complain.
     pub fn apply(&mut self, event: &Event) {
@@ -108,6 +118,9 @@ impl Record {
                 }
             }
             EventKind::SuiteStarted { suite } => self.suite(*suite, |s| s.started = Some(at)),
+            EventKind::SuitePrepared(prepared) => {
+                self.suite(prepared.suite, |s| s.prepared = Some(prepared.clone()));
+            }
             EventKind::SuiteFinished { suite } => self.suite(*suite, |s| s.finished = Some(at)),
             EventKind::FixturePlanned(plan) => {
                 let missing = |index| gap::fixture(index, plan.suite);
@@ -148,7 +161,7 @@ impl Record {
         match source_of(kind) {
             Some(Source::Test(id)) => {
                 if let Some(test) = self.tests.get_mut(id.index()) {
-                    test.apply(at, kind);
+                    test.apply(at, kind, self.lean);
                 }
             }
             Some(Source::Fixture(id)) => {
@@ -253,6 +266,35 @@ impl Record {
         self.within(test.plan.suite, &test.plan.name)
     }
 
+    /// Whether suites could run side by side, so that an event may be about
+    /// another suite than the one before.
+    #[must_use]
+    pub fn is_side_by_side(&self) -> bool {
+        self.run.as_ref().is_some_and(|run| run.manifest.jobs.is_some_and(|jobs| jobs > 1))
+    }
+
+    /// Whose suite it is.
+    #[must_use]
+    pub fn suite_of(&self, source: Source) -> Option<SuiteId> {
+        match source {
+            Source::Test(id) => self.tests.get(id.index()).map(|test| test.plan.suite),
+            Source::Fixture(id) => self.fixture(id).map(|fixture| fixture.plan.suite),
+            Source::Hook(id) => self.hooks.get(id.index()).map(|hook| hook.plan.suite),
+        }
+    }
+
+    /// A fixture's name, with its suite's where suites run side by side.
+    #[must_use]
+    pub fn fixture_name(&self, fixture: FixtureId) -> String {
+        match self.fixture(fixture) {
+            Some(fixture) if self.is_side_by_side() => {
+                self.within(fixture.plan.suite, &fixture.plan.name)
+            }
+            Some(fixture) => fixture.plan.name.clone(),
+            None => "?".to_owned(),
+        }
+    }
+
     /// A hook's name with its suite's: `arm/park`.
     #[must_use]
     pub fn full_hook_name(&self, hook: HookId) -> String {
@@ -294,7 +336,14 @@ impl Record {
         self.state == RunState::Finished { interrupted: None }
             && !self.tests.is_empty()
             && self.tests.iter().all(|test| test.verdict().is_some_and(Verdict::is_green))
+            && !(self.flaky_fails() && self.tests.iter().any(TestRecord::is_flaky))
             && self.suites.iter().all(|s| self.suite_problems(s.plan.suite).is_empty())
+    }
+
+    /// Whether a test that passed only when it was tried again counts as failed.
+    #[must_use]
+    pub fn flaky_fails(&self) -> bool {
+        self.run.as_ref().is_some_and(|run| run.manifest.flaky_fails)
     }
 
     /// The fixture with this id.

@@ -1,6 +1,6 @@
 //! What is known of one suite.
 
-use crate::{FixtureId, HookId, Micros, SuitePlanned, TestId};
+use crate::{FixtureId, HookId, Micros, SuitePlanned, SuitePrepared, TestId};
 
 /// What is known of one suite.
 #[derive(Clone, Debug)]
@@ -13,6 +13,8 @@ pub struct SuiteRecord {
     pub hooks: Vec<HookId>,
     /// Its tests, in the order of the plan.
     pub tests: Vec<TestId>,
+    /// What it got for itself, if anything.
+    pub prepared: Option<SuitePrepared>,
     /// When it started.
     pub started: Option<Micros>,
     /// When it ended.
@@ -26,6 +28,7 @@ impl SuiteRecord {
             fixtures: Vec::new(),
             hooks: Vec::new(),
             tests: Vec::new(),
+            prepared: None,
             started: None,
             finished: None,
         }

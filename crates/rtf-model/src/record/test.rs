@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use super::counts::{Counts, is_detail};
 use crate::{
     Attachment, EventKind, LeftProcess, Measurement, Message, MessageKind, Micros, Phase,
     TestFinished, TestPlanned, Verdict,
@@ -35,6 +36,8 @@ pub struct AttemptRecord {
     pub messages: Vec<Message>,
     /// How many messages were counted and not kept; the journal has them.
     pub messages_omitted: u64,
+    /// How much there was of everything, kept or not.
+    pub counts: Counts,
     /// What it measured.
     pub measurements: Vec<Measurement>,
     /// What it attached.
@@ -48,6 +51,7 @@ pub struct AttemptRecord {
     /// Whether it took longer than its `slow` limit.
     pub slow: bool,
     kept: [u32; 4],
+    lean: bool,
 }
 
 impl TestRecord {
@@ -55,10 +59,12 @@ impl TestRecord {
         Self { plan, attempts: Vec::new(), skipped: None }
     }
 
-    pub(super) fn apply(&mut self, at: Micros, kind: &EventKind) {
+    /// `lean`: see [`super::Record::lean`].
+    pub(super) fn apply(&mut self, at: Micros, kind: &EventKind, lean: bool) {
         match kind {
             EventKind::TestStarted { repetition, attempt, .. } => {
-                self.attempts.push(AttemptRecord::new(*repetition, *attempt, at));
+                let attempt = AttemptRecord::new(*repetition, *attempt, at);
+                self.attempts.push(AttemptRecord { lean, ..attempt });
             }
             EventKind::TestSkipped { reason, .. } => self.skipped = Some(reason.clone()),
             kind => {
@@ -118,6 +124,16 @@ impl TestRecord {
         })
     }
 
+    /// Whether it passed, but not at the first attempt: one before it failed. (An
+    /// attempt that a collapse ended says nothing of the test.)
+    #[must_use]
+    pub fn is_flaky(&self) -> bool {
+        use Verdict::{Crashed, Error, Failed, TimedOut};
+        let fails = |v: Verdict| matches!(v, Failed | Error | Crashed | TimedOut);
+        self.verdict() == Some(Verdict::Passed)
+            && self.attempts.iter().filter_map(AttemptRecord::verdict).any(fails)
+    }
+
     /// Why it did not pass, in words.
     #[must_use]
     pub fn reason(&self) -> Option<&str> {
@@ -146,6 +162,7 @@ impl AttemptRecord {
             finished: None,
             messages: Vec::new(),
             messages_omitted: 0,
+            counts: Counts::default(),
             measurements: Vec::new(),
             attachments: Vec::new(),
             output: String::new(),
@@ -153,11 +170,14 @@ impl AttemptRecord {
             left: Vec::new(),
             slow: false,
             kept: [0; 4],
+            lean: false,
         }
     }
 
     fn apply(&mut self, at: Micros, kind: &EventKind) {
+        self.counts.count(kind);
         match kind {
+            _ if self.lean && is_detail(kind) => {}
             EventKind::TestPhase { phase, .. } => self.phases.push((*phase, at)),
             EventKind::Message { message, .. } => self.keep(message),
             EventKind::Measured { measurement, .. } => self.measurements.push(measurement.clone()),

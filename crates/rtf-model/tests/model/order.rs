@@ -2,7 +2,9 @@
 
 use crate::support::*;
 use proptest::prelude::*;
-use rtf_model::{Event, EventKind, OrderChecker, Source, Trigger, Verdict};
+use rtf_model::{
+    Diagnostic, Event, EventKind, OrderChecker, Source, SuiteId, SuitePrepared, Trigger, Verdict,
+};
 
 pub fn check(events: &[Event]) -> Result<(), String> {
     let mut checker = OrderChecker::default();
@@ -227,4 +229,62 @@ proptest! {
         prop_assert_eq!(totals.done() as usize, record.tests.len());
         prop_assert!(!record.is_green() || record.is_complete());
     }
+}
+
+fn prepared(suite: u32) -> EventKind {
+    EventKind::SuitePrepared(SuitePrepared {
+        suite: SuiteId(suite),
+        network: None,
+        ports: Vec::new(),
+        variables: Vec::new(),
+        join: String::new(),
+    })
+}
+
+#[test]
+fn a_suite_is_prepared_once_and_before_anything_of_it() {
+    let warning = || EventKind::Warning { diagnostic: Diagnostic::warning("w", "careful") };
+    let test = || [started(1, 1), finished(Verdict::Passed)];
+    let legal = [warning(), prepared(0), warning()].into_iter().chain(test());
+    assert_eq!(check_body(1, legal), Ok(()));
+    let rule = |body: Vec<EventKind>| check_body(1, body).unwrap_err();
+    for body in [
+        vec![prepared(0), prepared(0)],
+        vec![prepared(1)],
+        [vec![starting(1)], vec![prepared(0)]].concat(),
+        [test().to_vec(), vec![prepared(0)]].concat(),
+    ] {
+        let told = rule(body);
+        assert!(told.ends_with("is prepared once, before anything else of it"), "{told}");
+    }
+}
+
+#[test]
+fn suites_may_run_side_by_side() {
+    let [first, second] = [0, 1].map(SuiteId);
+    let plans = || [run_started(), suite(0), test(0, 0, 1), suite(1), test(1, 1, 1)];
+    let both = |suite| EventKind::SuiteStarted { suite };
+    let end = |suite| EventKind::SuiteFinished { suite };
+    let over = || EventKind::RunFinished { interrupted: None };
+    let test = || [started(1, 1), finished(Verdict::Passed)];
+    let check_body =
+        |body: Vec<EventKind>| check(&stream(plans().into_iter().chain(body).chain([over()])));
+    let starts = || vec![both(first), both(second)];
+    let legal = [
+        starts(),
+        // Each is prepared before anything of its own.
+        vec![prepared(1), prepared(0)],
+        test().to_vec(),
+        vec![skipped(1), end(second), end(first)],
+    ];
+    assert_eq!(check_body(legal.concat()), Ok(()));
+    let late = [starts(), test().to_vec(), vec![prepared(1), prepared(0)]];
+    let told = check_body(late.concat()).unwrap_err();
+    assert!(told.ends_with("suite 0 is prepared once, before anything else of it"), "{told}");
+    let open = [starts(), test().to_vec(), vec![end(first), skipped(1)]];
+    let told = check_body(open.concat()).unwrap_err();
+    assert!(told.ends_with("suite 1 did not finish"), "{told}");
+    let early = [vec![both(first)], test().to_vec(), vec![skipped(1)]];
+    let told = check_body(early.concat()).unwrap_err();
+    assert!(told.ends_with("suite 1 is not running"), "{told}");
 }

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use crate::support::*;
 use rtf_model::{
-    AttemptRecord, EventKind, FixtureState, Message, MessageKind, Output, Record, Source, Stream,
-    TestId, Verdict,
+    AttemptRecord, EventKind, FixtureLife, FixtureState, Message, MessageKind, Output, Record,
+    Source, Stream, TestId, Verdict,
 };
 
 pub fn record(kinds: impl IntoIterator<Item = EventKind>) -> Record {
@@ -29,6 +29,53 @@ fn message(kind: MessageKind) -> EventKind {
 fn printed(text: &str, omitted: u64) -> EventKind {
     let source = Source::Test(TEST);
     EventKind::Output(Output { source, stream: Stream::Stdout, omitted, text: text.into() })
+}
+
+/// What was reported is counted in both, and kept by one.
+#[test]
+fn a_lean_record_counts_what_it_does_not_keep() {
+    let body = [
+        started(1, 1),
+        message(MessageKind::Report),
+        message(MessageKind::Failure),
+        printed("four", 3),
+        finished(Verdict::Failed),
+    ];
+    let mut lean = Record::lean();
+    let events = stream(opened(1).into_iter().chain(body.clone()).chain(closed()));
+    events.iter().for_each(|event| lean.apply(event));
+    let full = run(1, body);
+    let [lean, full] = [&lean, &full].map(|record| &record.tests[0].attempts[0]);
+    assert_eq!((lean.counts.messages, lean.counts.failures), (2, 1));
+    assert_eq!(lean.counts.output_bytes, 4);
+    assert_eq!(lean.counts, full.counts);
+    assert_eq!((lean.messages.len(), full.messages.len()), (0, 2));
+    assert_eq!((lean.output.len(), full.output.is_empty()), (0, false));
+    assert_eq!(lean.finished, full.finished);
+}
+
+#[test]
+fn each_life_of_a_fixture_is_known() {
+    let fixture = SIMULATOR;
+    let gone =
+        || EventKind::FixtureCollapsed { fixture, reason: "gone".to_owned(), log_tail: Vec::new() };
+    let life = |attempt, collapsed: bool| {
+        let mut life = vec![
+            EventKind::FixtureStarting { fixture, attempt },
+            EventKind::FixtureReady { fixture },
+        ];
+        life.extend(collapsed.then(gone));
+        life.push(EventKind::FixtureStopping { fixture });
+        life.push(EventKind::FixtureStopped { fixture, problem: None, log_tail: Vec::new() });
+        life
+    };
+    let record = run(1, [life(1, true), life(2, false), vec![skipped(0)]].concat());
+    let lives = &record.fixtures[0].lives;
+    let reasons: Vec<_> = lives.iter().map(|life| life.collapsed.as_ref().map(|c| &*c.1)).collect();
+    assert_eq!(reasons, [Some("gone"), None]);
+    let order =
+        |life: &FixtureLife| Some(life.starting) < life.ready && life.stopping < life.stopped;
+    assert!(lives.iter().all(order), "{lives:?}");
 }
 
 #[test]

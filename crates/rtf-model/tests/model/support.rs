@@ -20,6 +20,7 @@ pub fn run_started() -> EventKind {
         folder: "/robot".into(),
         suites: 1,
         tests: 1,
+        manifest: Box::default(),
     })
 }
 

@@ -1,0 +1,62 @@
+//! How much an attempt reported: known also where what it reported is not kept.
+
+use crate::{EventKind, MessageKind};
+
+/// How much an attempt reported, whether it was kept or not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Messages of all kinds.
+    pub messages: u64,
+    /// Failures and errors among them.
+    pub failures: u64,
+    /// Measurements.
+    pub measurements: u64,
+    /// Measurements outside their limits.
+    pub violations: u64,
+    /// Attached files.
+    pub attachments: u64,
+    /// Printed bytes, without those that were left out.
+    pub output_bytes: u64,
+}
+
+impl Counts {
+    pub(super) fn count(&mut self, kind: &EventKind) {
+        match kind {
+            EventKind::Message { message, .. } => {
+                self.messages += 1;
+                let fails = matches!(message.kind, MessageKind::Failure | MessageKind::Error);
+                self.failures += u64::from(fails);
+            }
+            EventKind::Measured { measurement, .. } => {
+                self.measurements += 1;
+                self.violations += u64::from(!measurement.is_within_limits());
+            }
+            EventKind::Attached { .. } => self.attachments += 1,
+            EventKind::Output(output) => self.output_bytes += output.text.len() as u64,
+            _ => {}
+        }
+    }
+}
+
+impl std::ops::AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        self.messages += other.messages;
+        self.failures += other.failures;
+        self.measurements += other.measurements;
+        self.violations += other.violations;
+        self.attachments += other.attachments;
+        self.output_bytes += other.output_bytes;
+    }
+}
+
+/// What a lean record counts and does not keep.
+pub(super) fn is_detail(kind: &EventKind) -> bool {
+    matches!(
+        kind,
+        EventKind::Message { .. }
+            | EventKind::Measured { .. }
+            | EventKind::Attached { .. }
+            | EventKind::Output(_)
+            | EventKind::StackDumped { .. }
+    )
+}
