@@ -1,0 +1,119 @@
+//! Puts what a suite was given into its plan: ports into its texts, variables
+//! into its environment.
+
+use std::sync::Arc;
+
+use rtf_model::{OwnPort, SuitePrepared};
+
+use crate::plan::{
+    FixtureBody, Given, HookBody, PluginPlan, Probe, ProbeKind, ProcessPlan, SuitePlan,
+};
+use crate::suite::port;
+
+/// Fills it in.
+pub fn fill(plan: &mut SuitePlan, given: Given) {
+    if let Given::All(prepared) = &given {
+        // Where there is no port, a text may still have one that is escaped.
+        Filler(&prepared.ports).suite(plan);
+        let env = prefixed(prepared, &plan.env);
+        plan.env = Arc::new(env);
+    }
+    plan.given = given;
+}
+
+/// The suite's environment behind what it was given: what it sets itself counts.
+fn prefixed(prepared: &SuitePrepared, own: &[(String, String)]) -> Vec<(String, String)> {
+    let ids = prepared.variables.iter().filter(|variable| !variable.kept);
+    let ids = ids.map(|variable| (variable.name.clone(), variable.value.clone()));
+    let ports = prepared.ports.iter();
+    let ports = ports.map(|own| (OwnPort::variable(&own.name), own.port.to_string()));
+    ids.chain(ports).chain(own.iter().cloned()).collect()
+}
+
+struct Filler<'a>(&'a [OwnPort]);
+
+impl Filler<'_> {
+    fn text(&self, text: &mut String) {
+        if port::mentions(text) {
+            let number = |name: &str| {
+                let own = self.0.iter().find(|own| own.name == name);
+                own.map_or_else(|| format!("${{port:{name}}}"), |own| own.port.to_string())
+            };
+            *text = port::expand(text, number);
+        }
+    }
+
+    fn texts(&self, texts: &mut [String]) {
+        texts.iter_mut().for_each(|text| self.text(text));
+    }
+
+    fn env(&self, env: &mut [(String, String)]) {
+        env.iter_mut().for_each(|(_, value)| self.text(value));
+    }
+
+    fn suite(&self, plan: &mut SuitePlan) {
+        self.text(&mut plan.environment);
+        self.env(Arc::make_mut(&mut plan.env).as_mut_slice());
+        for fixture in &mut plan.fixtures {
+            self.env(&mut fixture.env);
+            match &mut fixture.body {
+                FixtureBody::Plugin(plugin) => self.plugin(plugin),
+                FixtureBody::Process(process) => self.process(Arc::make_mut(process)),
+                FixtureBody::Attached(attached) => {
+                    let attached = Arc::make_mut(attached);
+                    self.probes(&mut attached.ready);
+                    self.probes(&mut attached.alive);
+                }
+            }
+        }
+        for hook in &mut plan.hooks {
+            self.env(&mut hook.env);
+            match &mut hook.body {
+                HookBody::Plugin(plugin) => self.plugin(plugin),
+                HookBody::Command(command) => self.texts(command),
+            }
+        }
+        for test in &mut plan.tests {
+            self.env(&mut test.env);
+            self.plugin(&mut test.plugin);
+        }
+    }
+
+    fn plugin(&self, plugin: &mut PluginPlan) {
+        self.text(&mut plugin.param);
+        self.texts(&mut plugin.args);
+        // What the suite sets of `PATH` and the like is in the host's, too.
+        if plugin.host.env.iter().any(|(_, value)| port::mentions(value)) {
+            self.env(&mut Arc::make_mut(&mut plugin.host).env);
+        }
+    }
+
+    fn process(&self, process: &mut ProcessPlan) {
+        self.texts(&mut process.command);
+        if let Some(remote) = &mut process.remote {
+            self.text(&mut remote.host);
+            self.texts(&mut remote.ssh);
+        }
+        self.probes(&mut process.ready);
+        self.probes(&mut process.alive);
+    }
+
+    fn probes(&self, probes: &mut [Probe]) {
+        probes.iter_mut().for_each(|probe| self.probe(probe));
+    }
+
+    fn probe(&self, probe: &mut Probe) {
+        match &mut probe.kind {
+            ProbeKind::Tcp(text) | ProbeKind::Http(text) => self.text(text),
+            ProbeKind::Command(command) => self.texts(command),
+            ProbeKind::File(path) => {
+                if let Some(text) = path.to_str().filter(|text| port::mentions(text)) {
+                    let mut text = text.to_owned();
+                    self.text(&mut text);
+                    *path = text.into();
+                }
+            }
+            ProbeKind::Log(_) => {}
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! The environment variables that name a suite's own middleware.
+
+use rtf_model::{OwnPort, OwnVariable};
+
+use crate::plan::{FixtureBody, FixturePlan, OwnMiddleware, SuitePlan};
+
+const ROS_MASTER: &str = "ros-master";
+const GAZEBO_MASTER: &str = "gazebo-master";
+
+/// The ports that a suite with middleware of its own has in any case.
+pub const PORTS: [&str; 2] = [ROS_MASTER, GAZEBO_MASTER];
+
+/// What the variables are made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Own<'a> {
+    /// The run.
+    pub run: &'a str,
+    /// A number that no other suite has.
+    pub domain: u16,
+    /// The suite's ports.
+    pub ports: &'a [OwnPort],
+}
+
+impl Own<'_> {
+    /// The variables. What the suite itself sets is left out; `user` is the
+    /// environment in which the run was started.
+    pub fn variables(
+        &self,
+        plan: &SuitePlan,
+        user: impl Fn(&str) -> Option<String>,
+    ) -> Vec<OwnVariable> {
+        let keep = plan.isolate.middleware == OwnMiddleware::UnlessSet;
+        let written = |name: &str| plan.env.iter().any(|(known, _)| known == name);
+        let user = |name: &str| user(name).filter(|value| keep && !value.is_empty());
+        let own_domain = user("ROS_DOMAIN_ID").is_none() && !written("ROS_DOMAIN_ID");
+        let is_remote = |fixture: &FixturePlan| match &fixture.body {
+            FixtureBody::Process(process) => process.remote.is_some(),
+            FixtureBody::Plugin(_) | FixtureBody::Attached(_) => false,
+        };
+        let local_domain = own_domain && !plan.fixtures.iter().any(is_remote);
+        let mut variables = Vec::new();
+        for (name, value) in self.all(plan) {
+            // The range belongs to the domain: another one may span machines.
+            let spans_machines = name == "ROS_AUTOMATIC_DISCOVERY_RANGE" && !local_domain;
+            if written(name) || (spans_machines && user(name).is_none()) {
+                continue;
+            }
+            let name = name.to_owned();
+            variables.push(match user(&name) {
+                Some(value) => OwnVariable { name, value, kept: true },
+                None => OwnVariable { name, value, kept: false },
+            });
+        }
+        variables
+    }
+
+    fn all(&self, plan: &SuitePlan) -> [(&'static str, String); 7] {
+        let partition = format!("rtf-{}-{}", self.run, plan.id);
+        [
+            ("ROS_DOMAIN_ID", self.domain.to_string()),
+            ("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST".to_owned()),
+            ("ROS_MASTER_URI", self.address(ROS_MASTER)),
+            ("YARP_NAMESPACE", format!("/rtf{}", self.domain)),
+            ("GZ_PARTITION", partition.clone()),
+            ("IGN_PARTITION", partition),
+            ("GAZEBO_MASTER_URI", self.address(GAZEBO_MASTER)),
+        ]
+    }
+
+    fn address(&self, name: &str) -> String {
+        let port = self.ports.iter().find(|own| own.name == name).map_or(0, |own| own.port);
+        format!("http://127.0.0.1:{port}")
+    }
+}

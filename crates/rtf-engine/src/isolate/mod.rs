@@ -1,0 +1,179 @@
+//! What a suite gets for itself when it starts: a network namespace, ports, and
+//! ids for its middleware. `spec/suite.md`, "Isolation", says what a user sees.
+//!
+//! - [`Prepared`]: all of it, for one suite; given back with its end.
+//! - [`Network`]: a network namespace and the process that holds it ([`hold`]).
+//! - `lease`: numbers that no other run on this machine has.
+//! - `middleware`: the environment variables.
+//! - `fill`: puts what was given into the texts of a plan.
+//!
+//! Why it is like this: `docs/decisions/0009-isolation.md`.
+
+mod fill;
+mod holder;
+mod lease;
+mod middleware;
+mod namespaces;
+mod network;
+mod pass;
+#[cfg(test)]
+mod tests;
+mod unix;
+
+use std::borrow::Cow;
+use std::os::fd::{AsFd, BorrowedFd};
+use std::sync::Arc;
+
+use rtf_model::{OwnNetwork, OwnPort, OwnVariable, SuitePrepared};
+
+pub use holder::hold;
+pub use namespaces::Namespaces;
+pub use network::{Network, connect};
+
+use crate::host::spawner::Spawner;
+use crate::locks::Lock;
+use crate::plan::{Given, OwnMiddleware, SuitePlan};
+use lease::{Lease, LeaseError};
+use network::Holder;
+
+/// The first argument of a process of this program that holds a namespace.
+pub const HOLD: &str = "--hold-network";
+
+/// Why a suite cannot have what it needs.
+#[derive(Debug, thiserror::Error)]
+enum RefusedError {
+    #[error("cannot lease a number: {0}")]
+    Lease(#[from] LeaseError),
+    #[error("no network of its own: {0}")]
+    Network(#[from] network::NetworkError),
+}
+
+/// A suite with all that it got for itself.
+#[derive(Debug)]
+pub struct Prepared<'p> {
+    /// The plan, in which everything is filled in.
+    pub plan: Cow<'p, SuitePlan>,
+    holder: Option<Holder>,
+    leases: Vec<Lease>,
+    locks: Vec<Lock>,
+}
+
+impl<'p> Prepared<'p> {
+    /// Gets what a suite needs, unless the locks that it requires are held by
+    /// somebody else. `run` is unique on this machine.
+    pub async fn get(
+        plan: &'p SuitePlan,
+        locks: Result<Vec<Lock>, String>,
+        run: &str,
+        spawner: &Spawner,
+    ) -> Self {
+        let (plan, leases, holder) = (Cow::Borrowed(plan), Vec::new(), None);
+        let mut prepared = Self { plan, holder, leases, locks: Vec::new() };
+        match locks {
+            Ok(locks) => prepared.locks = locks,
+            Err(held) => {
+                fill::fill(prepared.plan.to_mut(), Given::Refused(held));
+                return prepared;
+            }
+        }
+        let plan = prepared.plan.clone();
+        let given = match prepared.acquire(&plan, run, spawner).await {
+            Ok(None) => return prepared,
+            Ok(Some(given)) => Given::All(given),
+            Err(refused) => Given::Refused(refused.to_string()),
+        };
+        fill::fill(prepared.plan.to_mut(), given);
+        prepared
+    }
+
+    async fn acquire(
+        &mut self,
+        plan: &SuitePlan,
+        run: &str,
+        spawner: &Spawner,
+    ) -> Result<Option<SuitePrepared>, RefusedError> {
+        let wanted = &plan.isolate;
+        let own = wanted.middleware != OwnMiddleware::No;
+        if !own && !wanted.network && wanted.ports.is_empty() {
+            return Ok(None);
+        }
+        let seed = format!("{run}.{}", plan.id);
+        let mut ports = Vec::new();
+        let always = middleware::PORTS.iter().copied().filter(|_| own);
+        for name in always.chain(wanted.ports.iter().map(String::as_str)) {
+            if ports.iter().all(|known: &OwnPort| known.name != name) {
+                let lease = lease::port(&seed)?;
+                let port = lease.number();
+                ports.push(OwnPort { name: name.to_owned(), port });
+                self.leases.push(lease);
+            }
+        }
+        ports.sort_by(|a, b| a.name.cmp(&b.name));
+        let mut variables = Vec::new();
+        if own {
+            let domain = lease::domain(&seed)?;
+            let own = middleware::Own { run, domain: domain.number(), ports: &ports };
+            variables = own.variables(plan, |name| std::env::var(name).ok());
+            self.leases.push(domain);
+        }
+        if wanted.network {
+            self.holder = Some(Holder::start(spawner).await?);
+        }
+        let network = self.holder.as_ref().map(Holder::told);
+        let join = join(network, &ports, &variables);
+        Ok(Some(SuitePrepared { suite: plan.id, network, ports, variables, join }))
+    }
+
+    /// The network of its processes.
+    #[must_use]
+    pub fn network(&self) -> Option<Network> {
+        self.holder.as_ref().map(Holder::network)
+    }
+
+    /// The namespaces, and the process that holds them.
+    #[must_use]
+    pub fn held(&self) -> Option<(Arc<Namespaces>, i32)> {
+        let holder = self.holder.as_ref()?;
+        Some((holder.network().namespaces().clone(), holder.told().pid))
+    }
+
+    /// What keeps others from what it requires.
+    pub fn locks(&self) -> impl Iterator<Item = BorrowedFd<'_>> {
+        self.locks.iter().map(AsFd::as_fd)
+    }
+
+    /// What keeps its numbers from other runs.
+    pub fn leases(&self) -> impl Iterator<Item = BorrowedFd<'_>> {
+        self.leases.iter().map(AsFd::as_fd)
+    }
+
+    /// Gives everything back.
+    pub async fn give_back(self, spawner: &Spawner) {
+        // Nothing of the suite is left that could use what is locked.
+        self.locks.into_iter().for_each(Lock::release);
+        if let Some(holder) = self.holder {
+            let network = holder.network();
+            holder.end().await;
+            // Its fork servers are in the namespace, too.
+            spawner.finish(Some(network)).await;
+        }
+    }
+}
+
+/// A command for a shell, with which a person joins in.
+fn join(network: Option<OwnNetwork>, ports: &[OwnPort], variables: &[OwnVariable]) -> String {
+    let ports = ports.iter().map(|own| (OwnPort::variable(&own.name), own.port.to_string()));
+    let ids = variables.iter().map(|own| (own.name.clone(), own.value.clone()));
+    let words = ids.chain(ports).map(|(name, value)| {
+        let value = shell_words::quote(&value);
+        format!("{name}={value}")
+    });
+    let words = words.collect::<Vec<_>>().join(" ");
+    match network {
+        None => format!("export {words}"),
+        Some(OwnNetwork { pid, user_namespace }) => {
+            let user = if user_namespace { "--user --preserve-credentials " } else { "" };
+            format!("nsenter --target {pid} {user}--net env {words} ${{SHELL:-sh}}")
+        }
+    }
+}

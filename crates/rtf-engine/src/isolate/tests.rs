@@ -1,0 +1,185 @@
+//! What is made of a plan, without taking anything.
+
+use std::sync::Arc;
+
+use rtf_model::{OwnNetwork, OwnPort, OwnVariable, SuiteId, SuitePrepared};
+
+use super::middleware::Own;
+use super::{fill, join};
+use crate::plan::{
+    FixtureBody, Given, OwnMiddleware, Probe, ProbeKind, ProcessPlan, RemotePlan, SuitePlan,
+};
+use crate::run::machine::tests::world::{SECOND, suite};
+
+fn ports() -> Vec<OwnPort> {
+    [("gazebo-master", 20_001), ("ros-master", 20_002), ("sim", 20_003)]
+        .map(|(name, port)| OwnPort { name: name.to_owned(), port })
+        .to_vec()
+}
+
+fn variables(
+    middleware: OwnMiddleware,
+    written: &[(&str, &str)],
+    user: &[(&str, &str)],
+) -> Vec<String> {
+    let mut plan = suite(1, 1);
+    plan.isolate.middleware = middleware;
+    plan.env = Arc::new(written.iter().map(|(n, v)| (n.to_string(), v.to_string())).collect());
+    let ports = ports();
+    let own = Own { run: "RUN", domain: 42, ports: &ports };
+    let of_user = |name: &str| {
+        user.iter().find(|(known, _)| *known == name).map(|(_, value)| (*value).to_owned())
+    };
+    let shown = |own: OwnVariable| {
+        format!("{}={}{}", own.name, own.value, if own.kept { " kept" } else { "" })
+    };
+    own.variables(&plan, of_user).into_iter().map(shown).collect()
+}
+
+#[test]
+fn a_fixture_on_another_machine_is_found_by_ros_2() {
+    let mut plan = plan_of("");
+    plan.isolate.middleware = OwnMiddleware::Always;
+    plan.env = Arc::default();
+    let FixtureBody::Process(process) = &mut plan.fixtures[1].body else { panic!("a process") };
+    let remote = RemotePlan { host: "pi@robot".to_owned(), ssh: vec!["ssh".to_owned()] };
+    Arc::make_mut(process).remote = Some(remote);
+    let own = Own { run: "RUN", domain: 42, ports: &ports() };
+    let names: Vec<_> = own.variables(&plan, |_| None).into_iter().map(|own| own.name).collect();
+    assert_eq!(names.len(), 6);
+    assert!(!names.contains(&"ROS_AUTOMATIC_DISCOVERY_RANGE".to_owned()));
+}
+
+const ALL: [&str; 7] = [
+    "ROS_DOMAIN_ID=42",
+    "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST",
+    "ROS_MASTER_URI=http://127.0.0.1:20002",
+    "YARP_NAMESPACE=/rtf42",
+    "GZ_PARTITION=rtf-RUN-0",
+    "IGN_PARTITION=rtf-RUN-0",
+    "GAZEBO_MASTER_URI=http://127.0.0.1:20001",
+];
+
+#[test]
+fn a_suite_has_middleware_of_its_own() {
+    for middleware in [OwnMiddleware::UnlessSet, OwnMiddleware::Always] {
+        assert_eq!(variables(middleware, &[], &[("ROS_MASTER_URI_OLD", "x")]), ALL);
+    }
+    // An empty variable names nothing.
+    assert_eq!(variables(OwnMiddleware::UnlessSet, &[], &[("ROS_DOMAIN_ID", "")]), ALL);
+}
+
+#[test]
+fn what_the_user_set_is_kept_unless_the_suite_wants_its_own() {
+    let user = [("ROS_DOMAIN_ID", "7"), ("GZ_PARTITION", "lab")];
+    let kept = variables(OwnMiddleware::UnlessSet, &[], &user);
+    // A domain that is not ours may span machines: its range is left alone.
+    let expected = [
+        "ROS_DOMAIN_ID=7 kept",
+        "ROS_MASTER_URI=http://127.0.0.1:20002",
+        "YARP_NAMESPACE=/rtf42",
+        "GZ_PARTITION=lab kept",
+        "IGN_PARTITION=rtf-RUN-0",
+        "GAZEBO_MASTER_URI=http://127.0.0.1:20001",
+    ];
+    assert_eq!(kept, expected);
+    assert_eq!(variables(OwnMiddleware::Always, &[], &user), ALL);
+}
+
+#[test]
+fn what_the_suite_sets_itself_is_left_to_it() {
+    let written = [("ROS_DOMAIN_ID", "3"), ("YARP_NAMESPACE", "/lab")];
+    for middleware in [OwnMiddleware::UnlessSet, OwnMiddleware::Always] {
+        let left = variables(middleware, &written, &[("ROS_DOMAIN_ID", "7")]);
+        assert_eq!(left, [ALL[2], ALL[4], ALL[5], ALL[6]]);
+    }
+}
+
+fn prepared() -> SuitePrepared {
+    let variable = |name: &str, value: &str, kept| {
+        let (name, value) = (name.to_owned(), value.to_owned());
+        OwnVariable { name, value, kept }
+    };
+    SuitePrepared {
+        suite: SuiteId(0),
+        network: None,
+        ports: ports(),
+        variables: vec![variable("A", "own", false), variable("B", "kept", true)],
+        join: String::new(),
+    }
+}
+
+/// A plan with the same text in every place where a port may stand.
+fn plan_of(text: &str) -> SuitePlan {
+    let mut plan = suite(2, 1);
+    let env = vec![("V".to_owned(), text.to_owned()), ("A".to_owned(), "written".to_owned())];
+    plan.environment = text.to_owned();
+    plan.env = Arc::new(env.clone());
+    let probe = |kind| Probe { kind, every: SECOND, timeout: SECOND };
+    plan.fixtures[1].body = FixtureBody::Process(Arc::new(ProcessPlan {
+        command: vec!["sim".to_owned(), text.to_owned()],
+        ready: vec![
+            probe(ProbeKind::Tcp(text.to_owned())),
+            probe(ProbeKind::Http(text.to_owned())),
+            probe(ProbeKind::File(text.into())),
+            probe(ProbeKind::Command(vec!["ask".to_owned(), text.to_owned()])),
+        ],
+        alive: vec![probe(ProbeKind::Tcp(text.to_owned()))],
+        stop_signal: 15,
+        stop_grace: SECOND,
+        remote: None,
+    }));
+    plan.fixtures[1].env = env.clone();
+    let test = &mut plan.tests[0];
+    test.env = env;
+    test.plugin.param = text.to_owned();
+    test.plugin.args = vec!["--port".to_owned(), text.to_owned()];
+    plan.fixtures[0].body = FixtureBody::Plugin(test.plugin.clone());
+    plan
+}
+
+#[test]
+fn ports_are_filled_in_everywhere() {
+    let mut plan = plan_of("${port:sim}, $${port:sim}, ${HOME}");
+    fill::fill(&mut plan, Given::All(prepared()));
+    let filled = plan_of("20003, ${port:sim}, ${HOME}");
+    assert_eq!(format!("{:?}", plan.fixtures), format!("{:?}", filled.fixtures));
+    assert_eq!(format!("{:?}", plan.tests), format!("{:?}", filled.tests));
+    assert_eq!(plan.environment, filled.environment);
+    // What the suite sets comes last, and counts; what was kept is there already.
+    let names: Vec<_> = plan.env.iter().map(|(name, value)| format!("{name}={value}")).collect();
+    let expected = [
+        "A=own",
+        "RTF_PORT_GAZEBO_MASTER=20001",
+        "RTF_PORT_ROS_MASTER=20002",
+        "RTF_PORT_SIM=20003",
+        "V=20003, ${port:sim}, ${HOME}",
+        "A=written",
+    ];
+    assert_eq!(names, expected);
+}
+
+#[test]
+fn a_suite_that_is_refused_keeps_its_texts() {
+    let mut plan = plan_of("${port:sim}");
+    fill::fill(&mut plan, Given::Refused("no".to_owned()));
+    assert_eq!(plan.tests[0].plugin.param, "${port:sim}");
+    assert_eq!(plan.given, Given::Refused("no".to_owned()));
+}
+
+#[test]
+fn a_person_can_join_in() {
+    let variable = OwnVariable { name: "A".to_owned(), value: "a b".to_owned(), kept: false };
+    let ports = [OwnPort { name: "name-server".to_owned(), port: 20_000 }];
+    let line = |network| join(network, &ports, std::slice::from_ref(&variable));
+    let inside = |user_namespace| Some(OwnNetwork { pid: 7, user_namespace });
+    assert_eq!(line(None), "export A='a b' RTF_PORT_NAME_SERVER=20000");
+    assert_eq!(
+        line(inside(false)),
+        "nsenter --target 7 --net env A='a b' RTF_PORT_NAME_SERVER=20000 ${SHELL:-sh}"
+    );
+    assert!(
+        line(inside(true))
+            .starts_with("nsenter --target 7 --user --preserve-credentials --net env A=")
+    );
+}
