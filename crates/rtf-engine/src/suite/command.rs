@@ -3,9 +3,9 @@
 use roxmltree::Node;
 use rtf_model::Diagnostic;
 
-use super::Spanned;
 use super::shape::{self, Shape, check};
 use super::value::Reader;
+use super::{Spanned, port};
 
 /// Reads a `<command>`; no words when it cannot be read.
 pub(super) fn read(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Spanned<Vec<String>> {
@@ -26,6 +26,7 @@ pub(super) fn words(
     name: &str,
     line: &Spanned<String>,
 ) -> Option<Vec<String>> {
+    port::check(reader, name, line);
     let Ok(words) = split(&line.value) else {
         reader.wrong(name, line, "has a quote that is not closed", None);
         return None;

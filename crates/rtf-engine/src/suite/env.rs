@@ -3,6 +3,7 @@
 use roxmltree::Node;
 use rtf_model::{Diagnostic, protocol};
 
+use super::port;
 use super::shape::{self, check};
 use super::value::Reader;
 
@@ -29,7 +30,7 @@ pub(super) fn read(reader: &mut Reader<'_>, parent: Node<'_, '_>) -> Vec<(String
         };
         if name.value.contains('=') {
             reader.wrong("name", &name, "cannot have a `=`", None);
-        } else if RESERVED.contains(&name.value.as_str()) {
+        } else if is_reserved(&name.value) {
             reader.wrong("name", &name, "is a variable that rtf sets itself", None);
         } else if found.iter().any(|(known, _)| *known == name.value) {
             let message = format!("the variable `{}` is set twice", name.value);
@@ -40,7 +41,13 @@ pub(super) fn read(reader: &mut Reader<'_>, parent: Node<'_, '_>) -> Vec<(String
             reader.missing(node, "the attribute `value`; it may be empty");
             continue;
         };
+        port::check(reader, "value", &value);
         found.push((name.value, value.value));
     }
     found
+}
+
+/// Whether a variable is rtf's own.
+pub(crate) fn is_reserved(name: &str) -> bool {
+    RESERVED.contains(&name) || name.starts_with("RTF_PORT_")
 }

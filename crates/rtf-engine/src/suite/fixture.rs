@@ -1,4 +1,5 @@
-//! `<fixture>`, with a plug-in or `type="process"`.
+//! `<fixture>`, with a plug-in or `type="process"`; what is in the latter is
+//! read by [`process`].
 
 use std::time::Duration;
 
@@ -7,12 +8,23 @@ use rtf_model::Diagnostic;
 
 use super::shape::{self, check};
 use super::value::Reader;
-use super::{Fixture, FixtureKind, Process, Span, Spanned, command, env, probe, signal, test};
+use super::{Fixture, FixtureKind, Span, env, process, test};
 
 /// Reads a `<fixture>`; `None` when it does not say what it is.
 pub(super) fn read(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Option<Fixture> {
     let is_process = is_process(reader, node);
-    check(reader, node, if is_process { &shape::PROCESS } else { &shape::FIXTURE });
+    let is_attached = reader.truth(node, "attach").unwrap_or_default();
+    let shape = match (is_process, is_attached) {
+        (true, true) => &shape::ATTACHED,
+        (true, false) => &shape::PROCESS,
+        (false, _) => &shape::FIXTURE,
+    };
+    check(reader, node, shape);
+    if !is_process {
+        for name in ["attach", "host"] {
+            only_for_processes(reader, node, name);
+        }
+    }
     let name = reader.word(node, "name");
     let depends = node.has_attribute("depends").then(|| reader.words(node, "depends"));
     let setup = reader.duration(node, "timeout");
@@ -22,10 +34,10 @@ pub(super) fn read(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Option<Fixtur
     let restart_delay = restart_delay(reader, node);
     let check_every = reader.duration(node, "check-every");
     let env = env::read(reader, node);
-    let body = if is_process {
-        FixtureKind::Process(Box::new(process(reader, node)))
-    } else {
-        FixtureKind::Plugin(test::plugin(reader, node)?)
+    let body = match (is_process, is_attached) {
+        (true, true) => FixtureKind::Attached(process::attached(reader, node)),
+        (true, false) => FixtureKind::Process(Box::new(process::read(reader, node))),
+        (false, _) => FixtureKind::Plugin(test::plugin(reader, node)?),
     };
     let span = Reader::tag(node);
     Some(Fixture {
@@ -41,6 +53,26 @@ pub(super) fn read(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Option<Fixtur
         restart_delay,
         check_every,
     })
+}
+
+/// A plug-in decides itself what its `setup` and `tearDown` do, and where.
+fn only_for_processes(reader: &mut Reader<'_>, node: Node<'_, '_>, name: &str) {
+    let Some(attribute) = node.attribute_node(name).filter(|written| written.value() != "false")
+    else {
+        return;
+    };
+    let (message, hint) = match name {
+        "attach" => (
+            "only `type=\"process\"` can be attached",
+            "a plug-in that only watches needs no `attach`: it has a `check`, and no `setup`",
+        ),
+        _ => (
+            "only `type=\"process\"` can run on another machine",
+            "write a `<command>` that is started there",
+        ),
+    };
+    let label = reader.source.label(Span::new(attribute.range_qname()), "");
+    reader.report(Diagnostic::error("wrong-type", message).label(label).hint(hint));
 }
 
 /// A wait that grows with each restart never gets longer than this; one that
@@ -77,48 +109,4 @@ fn is_process(reader: &mut Reader<'_>, node: Node<'_, '_>) -> bool {
         reader.report(problem);
     }
     meant
-}
-
-fn process(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Process {
-    let mut process = Process {
-        command: Spanned::new(Vec::new(), Span::default()),
-        ready: Vec::new(),
-        alive: Vec::new(),
-        stop_signal: None,
-        stop_grace: None,
-    };
-    let mut command_seen = None;
-    let mut stop_seen = None;
-    for child in node.children().filter(Node::is_element) {
-        match child.tag_name().name() {
-            "command" => {
-                reader.once(child, &mut command_seen);
-                process.command = command::read(reader, child);
-            }
-            "ready" => process.ready.extend(probe::read(reader, child, &shape::READY)),
-            "alive" => process.alive.extend(probe::read(reader, child, &shape::ALIVE)),
-            "stop" => {
-                reader.once(child, &mut stop_seen);
-                check(reader, child, &shape::STOP);
-                process.stop_signal = stop_signal(reader, child);
-                process.stop_grace = reader.duration(child, "grace");
-            }
-            _ => {}
-        }
-    }
-    if command_seen.is_none() {
-        reader.missing(node, "a `<command>` for `type=\"process\"`");
-    }
-    process
-}
-
-fn stop_signal(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Option<i32> {
-    let attribute = reader.word(node, "signal")?;
-    let number = signal::number(&attribute.value);
-    if number.is_none() {
-        let names: Vec<_> = signal::names().map(|name| format!("`{name}`")).collect();
-        let hint = format!("known are {} and the numbers 1 to 31", names.join(", "));
-        reader.wrong("signal", &attribute, "is not a signal", Some(&hint));
-    }
-    number
 }

@@ -1,8 +1,10 @@
 //! Splits a parameter string into arguments, as the predecessor did.
 
-/// Splits `param` at white space and double quotes.
+/// Splits `param` at blanks and double quotes.
 ///
-/// What stands between two double quotes is one argument with its white space;
+/// A blank is the space character: a tab or a line break belongs to its argument.
+/// (In an attribute XML makes blanks of those that are not written as `&#10;`.)
+/// What stands between two double quotes is one argument with its blanks;
 /// a quote ends the argument before it, so `a"b c"d` is three arguments, and
 /// `--from="a b.ini"` is two. Single quotes, backslashes and `#` mean
 /// themselves: Windows paths, regular expressions and colours pass unchanged.
@@ -17,17 +19,17 @@ pub fn split_param(param: &str) -> Vec<String> {
         if first == '"' {
             let body = &rest[1..];
             let (quoted, after) = body.split_once('"').unwrap_or((body, ""));
-            let alone = after_space && after.chars().next().is_none_or(char::is_whitespace);
+            let alone = after_space && after.chars().next().is_none_or(|next| next == ' ');
             if !quoted.is_empty() || (alone && body.starts_with('"')) {
                 arguments.push(quoted.to_owned());
             }
             rest = after;
             after_space = false;
-        } else if first.is_whitespace() {
-            rest = rest.trim_start();
+        } else if first == ' ' {
+            rest = rest.trim_start_matches(' ');
             after_space = true;
         } else {
-            let end = rest.find(|c: char| c == '"' || c.is_whitespace()).unwrap_or(rest.len());
+            let end = rest.find(['"', ' ']).unwrap_or(rest.len());
             arguments.push(rest[..end].to_owned());
             rest = &rest[end..];
             after_space = false;
@@ -52,7 +54,15 @@ mod tests {
         assert_eq!(split(r#"a"b c"d"#), ["a", "b c", "d"]);
         assert_eq!(split(r#"--from="a b.ini""#), ["--from=", "a b.ini"]);
         assert_eq!(split(r#"open "to the end "#), ["open", "to the end "]);
+        assert_eq!(split(r#""a""b""#), ["a", "b"]);
+        assert_eq!(split("\" \" x\" \"y"), [" ", "x", " ", "y"]);
         assert_eq!(split(""), [""; 0]);
+    }
+
+    #[test]
+    fn other_white_space_belongs_to_its_argument() {
+        assert_eq!(split("a\tb\nc d\re"), ["a\tb\nc", "d\re"]);
+        assert_eq!(split("a\u{a0}b \n c"), ["a\u{a0}b", "\n", "c"]);
     }
 
     /// Defect 8 of the predecessor: at most 128 arguments, written past an array.
@@ -86,7 +96,7 @@ mod tests {
 
         #[test]
         fn no_character_but_space_and_quote_is_lost(param in any::<String>()) {
-            let keep = |c: &char| *c != '"' && !c.is_whitespace();
+            let keep = |c: &char| *c != '"' && *c != ' ';
             let split: String = split_param(&param).concat();
             let kept: String = split.chars().filter(keep).collect();
             prop_assert_eq!(kept, param.chars().filter(keep).collect::<String>());

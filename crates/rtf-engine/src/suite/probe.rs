@@ -6,7 +6,7 @@ use rtf_model::Diagnostic;
 use super::command::words;
 use super::shape::{Shape, check};
 use super::value::Reader;
-use super::{Probe, Question, Span, Spanned};
+use super::{Probe, Question, Span, Spanned, port};
 
 /// The attributes that say what is asked; each probe has exactly one of them.
 const QUESTIONS: [&str; 6] = ["tcp", "http", "log", "log-bad", "file", "command"];
@@ -39,9 +39,15 @@ pub(super) fn read(reader: &mut Reader<'_>, node: Node<'_, '_>, shape: &Shape) -
 }
 
 fn question(reader: &mut Reader<'_>, name: &str, value: &Spanned<String>) -> Option<Question> {
+    // Commands are looked at with all others, patterns have none.
+    if matches!(name, "tcp" | "http" | "file") && !port::check(reader, name, value) {
+        return None;
+    }
+    // Any port will do to see whether the rest is right.
+    let example = crate::config::sample(&port::expand(&value.value, |_| "1".to_owned()));
     match name {
         "tcp" => {
-            let port = value.value.rsplit_once(':').filter(|(host, _)| !host.is_empty());
+            let port = example.rsplit_once(':').filter(|(host, _)| !host.is_empty());
             if port.is_none_or(|(_, port)| port.parse::<u16>().unwrap_or(0) == 0) {
                 let hint = Some("write it like `127.0.0.1:5000`");
                 reader.wrong(name, value, "is not a host and a port", hint);
@@ -50,7 +56,7 @@ fn question(reader: &mut Reader<'_>, name: &str, value: &Spanned<String>) -> Opt
             Some(Question::Tcp(value.value.clone()))
         }
         "http" => {
-            if value.value.get(..6).is_some_and(|start| start.eq_ignore_ascii_case("https:")) {
+            if example.get(..6).is_some_and(|start| start.eq_ignore_ascii_case("https:")) {
                 let hint = format!(
                     "probes speak plain HTTP; ask with `command=\"curl -fsS {}\"`",
                     value.value
@@ -58,7 +64,7 @@ fn question(reader: &mut Reader<'_>, name: &str, value: &Spanned<String>) -> Opt
                 reader.wrong(name, value, "cannot ask over TLS", Some(&hint));
                 return None;
             }
-            let url = reqwest::Url::parse(&value.value).ok();
+            let url = url::Url::parse(&example).ok();
             if url.is_none_or(|url| url.scheme() != "http" || !url.has_host()) {
                 let hint = Some("write it like `http://127.0.0.1:8080/health`");
                 reader.wrong(name, value, "is not a URL with `http://`", hint);
@@ -68,6 +74,11 @@ fn question(reader: &mut Reader<'_>, name: &str, value: &Spanned<String>) -> Opt
         }
         "file" => Some(Question::File(value.value.clone())),
         "command" => words(reader, name, value).map(Question::Command),
+        _ if port::mentions(&value.value) => {
+            let hint = "write what the number looks like, `\\d+`";
+            reader.wrong(name, value, "cannot have a `${port:…}`", Some(hint));
+            None
+        }
         _ => match regex::Regex::new(&value.value) {
             Ok(pattern) => Some(Question::Log(pattern)),
             Err(error) => {

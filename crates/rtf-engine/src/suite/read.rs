@@ -6,7 +6,10 @@ use rtf_model::Diagnostic;
 use super::shape::{self, check};
 use super::test::{self, Defaults};
 use super::value::Reader;
-use super::{Source, Suite, env, fixture, hook, xml};
+use super::{
+    Middleware, Retries, Source, Spanned, Suite, WrittenIsolation, env, fixture, hook, port,
+    requires, xml,
+};
 
 /// Reads a suite file's text.
 ///
@@ -18,7 +21,7 @@ pub fn load(source: &Source, problems: &mut Vec<Diagnostic>) -> Option<Suite> {
     let scan = xml::prepare(source, problems)?;
     let document = xml::parse(source, &scan.text, problems)?;
     let root = document.root_element();
-    let mut reader = Reader { source, problems };
+    let mut reader = Reader { source, problems, ports: port::Ports::default() };
     let name = root.tag_name();
     if name.name() != "suite" || name.namespace().is_some() {
         reader.report(not_a_suite(source, root));
@@ -47,6 +50,7 @@ fn read_suite(reader: &mut Reader<'_>, root: Node<'_, '_>) -> Suite {
         limits: test::limits(reader, root, "test-"),
         after_collapse: test::after_collapse(reader, root).unwrap_or_default(),
         leaks: test::leaks(reader, root).unwrap_or_default(),
+        retries: test::retries(reader, root, Retries::default()),
     };
     let mut suite = Suite {
         span: Reader::tag(root),
@@ -56,6 +60,8 @@ fn read_suite(reader: &mut Reader<'_>, root: Node<'_, '_>) -> Suite {
         env: env::read(reader, root),
         timeout: reader.duration(root, "timeout"),
         tags: test::values(reader.words(root, "tags")),
+        isolate: isolation(reader, root),
+        requires: requires::read(reader, root),
         tolerates_collapse: reader.truth(root, "tolerate-collapse").unwrap_or(false),
         fixtures: Vec::new(),
         hooks: Vec::new(),
@@ -65,15 +71,20 @@ fn read_suite(reader: &mut Reader<'_>, root: Node<'_, '_>) -> Suite {
         match node.tag_name().name() {
             "description" => {
                 let text = only_text(reader, node, "description");
-                suite.description = text.split_whitespace().collect::<Vec<_>>().join(" ");
+                suite.description = text.value.split_whitespace().collect::<Vec<_>>().join(" ");
             }
-            "environment" => suite.environment = only_text(reader, node, "environment"),
+            "environment" => {
+                let text = only_text(reader, node, "environment");
+                port::check(reader, "<environment>", &text);
+                suite.environment = text.value;
+            }
             "fixture" => suite.fixtures.extend(fixture::read(reader, node)),
             "hook" => suite.hooks.extend(hook::read(reader, node)),
             "test" => suite.tests.extend(test::read(reader, node, defaults)),
             _ => {}
         }
     }
+    suite.isolate.ports = reader.ports.names();
     // An element of another name may be a test that was mistyped: that is told.
     let may_be_test = |node: &Node<'_, '_>| {
         node.has_tag_name("test") || !shape::SUITE.elements.contains(&node.tag_name().name())
@@ -86,9 +97,18 @@ fn read_suite(reader: &mut Reader<'_>, root: Node<'_, '_>) -> Suite {
     suite
 }
 
+fn isolation(reader: &mut Reader<'_>, root: Node<'_, '_>) -> WrittenIsolation {
+    let middleware = [("own", Middleware::Own), ("shared", Middleware::Shared)];
+    WrittenIsolation {
+        network: reader.choice(root, "isolate", &[("network", ())]).is_some(),
+        middleware: reader.choice(root, "middleware", &middleware),
+        ports: Vec::new(),
+    }
+}
+
 /// The trimmed text of an element that there is once. The predecessor took the
 /// last one; so do we, but tell.
-fn only_text(reader: &mut Reader<'_>, node: Node<'_, '_>, name: &'static str) -> String {
+fn only_text(reader: &mut Reader<'_>, node: Node<'_, '_>, name: &'static str) -> Spanned<String> {
     check(reader, node, &shape::text(name));
     let earlier = node.prev_siblings().skip(1).find(|sibling| sibling.has_tag_name(name));
     if let Some(earlier) = earlier {
@@ -98,5 +118,5 @@ fn only_text(reader: &mut Reader<'_>, node: Node<'_, '_>, name: &'static str) ->
             .label(reader.source.label(Reader::tag(earlier), "the earlier one"));
         reader.report(problem);
     }
-    reader.text(node).map(|text| text.value).unwrap_or_default()
+    reader.text(node).unwrap_or_else(|| Spanned::new(String::new(), Reader::tag(node)))
 }

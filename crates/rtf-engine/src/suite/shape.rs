@@ -30,9 +30,14 @@ pub(super) const SUITE: Shape = Shape {
         "name",
         "timeout",
         "tags",
+        "isolate",
+        "requires",
+        "middleware",
         "tolerate-collapse",
         "after-collapse",
         "leaks",
+        "retries",
+        "retry-delay",
         "test-timeout",
         "test-load-timeout",
         "test-setup-timeout",
@@ -42,7 +47,7 @@ pub(super) const SUITE: Shape = Shape {
     ],
     elements: &["description", "environment", "env", "fixture", "hook", "test"],
     text: false,
-    planned: &["isolate", "requires"],
+    planned: &[],
 };
 
 /// `<test>`.
@@ -62,12 +67,14 @@ pub(super) const TEST: Shape = Shape {
         "grace",
         "after-collapse",
         "leaks",
+        "retries",
+        "retry-delay",
         "critical",
         "isolation",
     ],
     elements: &["env"],
     text: true,
-    planned: &["retries"],
+    planned: &[],
 };
 
 /// `<fixture>` with a plug-in.
@@ -84,10 +91,12 @@ pub(super) const FIXTURE: Shape = Shape {
         "restarts",
         "restart-delay",
         "check-every",
+        "attach",
+        "host",
     ],
     elements: &["env"],
     text: true,
-    planned: &["attach", "host"],
+    planned: &[],
 };
 
 /// `<fixture type="process">`.
@@ -102,10 +111,30 @@ pub(super) const PROCESS: Shape = Shape {
         "restarts",
         "restart-delay",
         "check-every",
+        "attach",
+        "host",
     ],
     elements: &["command", "ready", "alive", "stop", "env"],
     text: false,
-    planned: &["attach", "host"],
+    planned: &[],
+};
+
+/// `<fixture type="process" attach="true">`: what is neither started nor stopped.
+pub(super) const ATTACHED: Shape = Shape {
+    name: "fixture attach=\"true\"",
+    attributes: &[
+        "name",
+        "type",
+        "depends",
+        "timeout",
+        "restarts",
+        "restart-delay",
+        "check-every",
+        "attach",
+    ],
+    elements: &["ready", "alive", "env"],
+    text: false,
+    planned: &[],
 };
 
 /// `<hook>`. What goes with a plug-in only is told apart in `hook.rs`.

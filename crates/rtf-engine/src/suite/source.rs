@@ -20,6 +20,19 @@ impl Span {
         let cut = |offset| u32::try_from(offset).unwrap_or(u32::MAX);
         Self { start: cut(range.start), end: cut(range.end) }
     }
+
+    /// The bytes, as a range.
+    #[must_use]
+    pub fn range(self) -> std::ops::Range<usize> {
+        self.start as usize..self.end as usize
+    }
+
+    /// A part of it, counted from its start.
+    #[must_use]
+    pub fn part(self, part: std::ops::Range<usize>) -> Self {
+        let start = self.start as usize;
+        Self::new(start + part.start..start + part.end)
+    }
 }
 
 /// A value and where it was written.

@@ -5,7 +5,7 @@ use rtf_model::Diagnostic;
 
 use super::shape::{self, check};
 use super::value::Reader;
-use super::{AfterCollapse, Leaks, Plugin, Spanned, Test, WrittenLimits, env};
+use super::{AfterCollapse, Leaks, Plugin, Retries, Spanned, Test, WrittenLimits, env, port};
 
 /// What the suite says for all of its tests.
 #[derive(Clone, Copy, Default)]
@@ -16,6 +16,8 @@ pub(super) struct Defaults {
     pub after_collapse: AfterCollapse,
     /// Its `leaks`.
     pub leaks: Leaks,
+    /// Its `retries` and `retry-delay`.
+    pub retries: Retries,
 }
 
 /// Reads a `<test>`; `None` when it names no plug-in.
@@ -40,6 +42,7 @@ pub(super) fn read(
     let repetitions = reader.number(node, "repetition", 1).unwrap_or(1);
     let after_collapse = after_collapse(reader, node).unwrap_or(defaults.after_collapse);
     let leaks = leaks(reader, node).unwrap_or(defaults.leaks);
+    let retries = retries(reader, node, defaults.retries);
     let critical = reader.truth(node, "critical").unwrap_or(false);
     let tags = values(reader.words(node, "tags"));
     let env = env::read(reader, node);
@@ -53,6 +56,7 @@ pub(super) fn read(
         limits,
         after_collapse,
         leaks,
+        retries,
         critical,
         tags,
         env,
@@ -93,10 +97,21 @@ pub(super) fn leaks(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Option<Leaks
     reader.choice(node, "leaks", &[("report", Leaks::Report), ("fail", Leaks::Fail)])
 }
 
+/// The attributes of `<suite>` and of `<test>`.
+pub(super) fn retries(reader: &mut Reader<'_>, node: Node<'_, '_>, given: Retries) -> Retries {
+    Retries {
+        count: reader.number(node, "retries", 0).unwrap_or(given.count),
+        delay: reader.duration(node, "retry-delay").unwrap_or(given.delay),
+    }
+}
+
 /// The plug-in of a test, a fixture or a hook.
 pub(super) fn plugin(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Option<Plugin> {
     let plugin_type = reader.word(node, "type");
     let param = reader.attribute(node, "param");
+    if let Some(param) = &param {
+        port::check(reader, "param", param);
+    }
     if let Some(param) = &param
         && param.value.bytes().filter(|byte| *byte == b'"').count() % 2 == 1
     {

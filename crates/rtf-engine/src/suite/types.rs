@@ -23,6 +23,10 @@ pub struct Suite {
     pub timeout: Option<Duration>,
     /// Tags that all its tests have.
     pub tags: Vec<String>,
+    /// What it gets for itself.
+    pub isolate: WrittenIsolation,
+    /// What nobody else may use meanwhile, sorted by name.
+    pub requires: Vec<Resource>,
     /// Whether a fixture's collapse leaves the suite green.
     pub tolerates_collapse: bool,
     /// The fixtures, in order.
@@ -31,6 +35,35 @@ pub struct Suite {
     pub hooks: Vec<Hook>,
     /// The tests, in order.
     pub tests: Vec<Test>,
+}
+
+/// Something of which there is a certain number in the world.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Resource {
+    /// Its name: `robot:icub`.
+    pub name: String,
+    /// How many suites may have one of it at the same time.
+    pub slots: u32,
+}
+
+/// What a suite asks to get for itself.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WrittenIsolation {
+    /// Whether it gets a network of its own.
+    pub network: bool,
+    /// Which middleware it talks to, if it says so.
+    pub middleware: Option<Middleware>,
+    /// The names of its ports, sorted.
+    pub ports: Vec<String>,
+}
+
+/// Which middleware the processes of a suite talk to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Middleware {
+    /// The suite's own.
+    Own,
+    /// What runs already.
+    Shared,
 }
 
 /// A `<test>`.
@@ -50,12 +83,23 @@ pub struct Test {
     pub after_collapse: AfterCollapse,
     /// What is said of it when it leaves processes behind.
     pub leaks: Leaks,
+    /// How often it is tried again when it fails.
+    pub retries: Retries,
     /// Whether the rest of the suite is skipped when it does not pass.
     pub critical: bool,
     /// Its own tags.
     pub tags: Vec<String>,
     /// Environment variables beside the suite's.
     pub env: Vec<(String, String)>,
+}
+
+/// How often a test is tried again when it fails.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Retries {
+    /// The most attempts after the first one, of each repetition.
+    pub count: u32,
+    /// How long each of them waits.
+    pub delay: Duration,
 }
 
 /// What a plug-in is called.
@@ -142,6 +186,17 @@ pub enum FixtureKind {
     Plugin(Plugin),
     /// The built-in `type="process"`.
     Process(Box<Process>),
+    /// The same with `attach="true"`.
+    Attached(Attached),
+}
+
+/// A `<fixture type="process" attach="true">`.
+#[derive(Clone, Debug)]
+pub struct Attached {
+    /// The `<ready>` probes.
+    pub ready: Vec<Probe>,
+    /// The `<alive>` probes.
+    pub alive: Vec<Probe>,
 }
 
 /// A `<fixture type="process">`.
@@ -157,6 +212,8 @@ pub struct Process {
     pub stop_signal: Option<i32>,
     /// How long it may take to stop.
     pub stop_grace: Option<Duration>,
+    /// The machine that it runs on, if it is another one.
+    pub host: Option<Spanned<String>>,
 }
 
 /// A `<hook>`.

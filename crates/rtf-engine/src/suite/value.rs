@@ -5,6 +5,7 @@ use std::time::Duration;
 use roxmltree::Node;
 use rtf_model::Diagnostic;
 
+use super::port::Ports;
 use super::shape::nearest;
 use super::{DurationError, Source, Span, Spanned, parse_duration};
 
@@ -14,6 +15,8 @@ pub(super) struct Reader<'a> {
     pub source: &'a Source,
     /// What is wrong with it so far.
     pub problems: &'a mut Vec<Diagnostic>,
+    /// The ports that it names so far.
+    pub ports: Ports,
 }
 
 impl Reader<'_> {
