@@ -2,18 +2,60 @@
 
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, HashMap, HashSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use rtf_model::{Diagnostic, FixtureId, HookId, Severity, SuiteId, TestId};
+use rtf_model::{Diagnostic, Severity};
 
-use super::context::Context;
+use super::context::{Context, folder_of};
 use super::inputs::{self, Found, Input};
 use super::names::Names;
 use super::suite::{Single, plan, plan_singles};
 use super::{Plan, SuitePlan, Surroundings};
+use crate::config::{self, Asked};
 use crate::suite::{self, Source, Sources};
+
+/// What the user asks for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Request {
+    /// A suite, a plug-in, or a folder of either: the path tells.
+    Any(PathBuf),
+    /// A plug-in, by its path, or by its name as in a suite.
+    Plugin(PathBuf),
+    /// The plug-ins of a folder.
+    Plugins(PathBuf),
+    /// A suite file.
+    Suite(PathBuf),
+    /// The suites of a folder.
+    Suites(PathBuf),
+}
+
+impl Request {
+    /// The path, as the user gave it.
+    fn path(&self) -> &Path {
+        match self {
+            Self::Any(path)
+            | Self::Plugin(path)
+            | Self::Plugins(path)
+            | Self::Suite(path)
+            | Self::Suites(path) => path,
+        }
+    }
+}
+
+/// By whose rules names are looked up and options apply.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Manner {
+    /// Ours: a suite's names start in its folder, where its processes work.
+    #[default]
+    Own,
+    /// robot-testing-framework 2.x's: a suite's names start in the current
+    /// folder, where all processes work, and only then in the suite's; plug-ins
+    /// run before suites; parameters, environment and repetitions are for the
+    /// plug-ins that were named, not for those of folders.
+    Predecessor,
+}
 
 /// What the user asks for beside the paths.
 #[derive(Clone, Debug)]
@@ -29,8 +71,12 @@ pub struct Options {
     /// How long a host may be silent while it checks a plug-in; `None`: the
     /// plug-ins are not checked.
     pub verify: Option<Duration>,
+    /// By whose rules.
+    pub manner: Manner,
     /// Where the planner runs.
     pub surroundings: Surroundings,
+    /// The profile and the parameters.
+    pub asked: Asked,
 }
 
 impl Options {
@@ -43,8 +89,18 @@ impl Options {
             environment: String::new(),
             repetitions: 1,
             verify: Some(Duration::from_secs(30)),
+            manner: Manner::default(),
             surroundings,
+            asked: Asked::default(),
         }
+    }
+}
+
+impl Options {
+    /// Whether parameters, environment and repetitions are for plug-ins that
+    /// are in no suite file, and lie in a folder that was given or were named.
+    pub(super) fn are_for(&self, from_folder: bool) -> bool {
+        self.manner == Manner::Own || !from_folder
     }
 }
 
@@ -67,25 +123,34 @@ pub struct Outcome {
 /// check the plug-ins.
 #[must_use]
 pub fn build(paths: &[PathBuf], options: &Options) -> Outcome {
+    let requests: Vec<_> = paths.iter().cloned().map(Request::Any).collect();
+    build_requests(&requests, options)
+}
+
+/// As [`build`], where the user says what a path is.
+#[must_use]
+pub fn build_requests(requests: &[Request], options: &Options) -> Outcome {
     let mut context = Context::new(options);
     let mut sources = Sources::default();
-    let surroundings = &options.surroundings;
-    let inputs = inputs::collect(paths, options.recursive, surroundings, &mut context.problems);
+    let inputs = inputs::collect(requests, options, &mut context.problems);
     let mut suites = Vec::new();
     let mut singles = Vec::new();
     for input in inputs {
         match input {
-            Input::Suite(found) => suites.extend(one_suite(&mut context, &found, &mut sources)),
+            Input::Suite(found, wanted) => {
+                let mut suite = one_suite(&mut context, &found, &mut sources);
+                if let Some(suite) = suite.as_mut().filter(|_| !wanted.is_empty()) {
+                    context.problems.extend(keep_only(suite, &wanted));
+                }
+                suites.extend(suite);
+            }
             Input::Plugin { found, kind, from_folder } => {
                 singles.push(Single { found, kind, from_folder });
             }
         }
     }
-    if singles.is_empty() {
-        context.problems.extend(unused(options));
-    } else {
-        suites.push(plan_singles(&mut context, &singles));
-    }
+    gather(&mut context, singles, &mut suites);
+    files(&mut context, requests, &mut sources);
     let left_out = verify(&mut context, &mut suites, &mut sources);
     // Those of files were reported; the gathered one may have lost all of its own.
     suites.retain(|suite| !suite.tests.is_empty());
@@ -97,6 +162,39 @@ pub fn build(paths: &[PathBuf], options: &Options) -> Outcome {
         context.problems.push(notes.fold(problem, Diagnostic::note));
     }
     outcome(context.problems, suites, sources)
+}
+
+/// Gathers the plug-ins that are in no suite file.
+fn gather(context: &mut Context<'_>, singles: Vec<Single>, suites: &mut Vec<SuitePlan>) {
+    let options = context.options;
+    let is_used = |single: &Single| options.are_for(single.from_folder);
+    if !singles.iter().any(is_used) {
+        context.problems.extend(unused(options));
+    }
+    let groups = match options.manner {
+        Manner::Own => vec![singles],
+        Manner::Predecessor => {
+            let (named, found) = singles.into_iter().partition(is_used);
+            vec![named, found]
+        }
+    };
+    let groups = groups.iter().filter(|group| !group.is_empty());
+    let gathered: Vec<_> = groups.map(|group| plan_singles(context, group)).collect();
+    let at = if options.manner == Manner::Own { suites.len() } else { 0 };
+    suites.splice(at..at, gathered);
+}
+
+/// Takes in what is wrong with the `rtf.toml` files, also those that concern
+/// only the run.
+fn files(context: &mut Context<'_>, requests: &[Request], sources: &mut Sources) {
+    let Options { surroundings, asked, .. } = context.options;
+    for request in requests {
+        let path = surroundings.absolute(request.path());
+        context.files.above(&config::folder_of_input(&path));
+    }
+    context.problems.append(&mut context.files.problems);
+    context.problems.extend(asked.check_profile(&context.files));
+    sources.append(context.files.sources());
 }
 
 fn one_suite(context: &mut Context<'_>, found: &Found, sources: &mut Sources) -> Option<SuitePlan> {
@@ -111,10 +209,30 @@ fn one_suite(context: &mut Context<'_>, found: &Found, sources: &mut Sources) ->
         }
     };
     let before = context.problems.len();
-    let suite = suite::load(&source, &mut context.problems);
+    let mut suite = suite::load(&source, &mut context.problems);
+    if let Some(suite) = &mut suite {
+        context.configure(&folder_of(&found.path), &source, suite);
+    }
     let plan = suite.map(|suite| plan(context, found, &source, suite));
     keep(sources, &source, &context.problems[before..]);
     plan
+}
+
+/// Keeps the tests of these names; what is wrong with the names.
+fn keep_only(suite: &mut SuitePlan, wanted: &[String]) -> Vec<Diagnostic> {
+    let names: Vec<&str> = suite.tests.iter().map(|test| test.name.as_str()).collect();
+    let unknown = wanted.iter().filter(|name| !names.contains(&name.as_str()));
+    let problems = unknown.map(|name| {
+        let message = format!("there is no test `{name}` in `{}`", suite.file);
+        let problem = Diagnostic::error("unknown-test", message);
+        match suite::nearest(name, names.iter().copied()) {
+            Some(near) => problem.hint(format!("did you mean `{near}`?")),
+            None => problem.hint(format!("`rtf list {}` shows its tests", suite.file)),
+        }
+    });
+    let problems = problems.collect();
+    suite.tests.retain(|test| wanted.contains(&test.name));
+    problems
 }
 
 /// A text is kept while something may point at it.
@@ -160,13 +278,23 @@ fn verify(
     verified.left_out
 }
 
-fn outcome(mut problems: Vec<Diagnostic>, suites: Vec<SuitePlan>, mut sources: Sources) -> Outcome {
+fn outcome(
+    mut problems: Vec<Diagnostic>,
+    mut suites: Vec<SuitePlan>,
+    mut sources: Sources,
+) -> Outcome {
     sort(&mut problems);
     let files: HashSet<&str> =
         problems.iter().flat_map(|p| &p.labels).map(|label| label.file.as_str()).collect();
     sources.retain(|file| files.contains(file));
     let broken = problems.iter().any(|problem| problem.severity == Severity::Error);
-    let plan = (!broken).then(|| number(suites));
+    let plan = (!broken).then(|| {
+        let mut names = Names::default();
+        for suite in &mut suites {
+            suite.name = names.unique(&suite.name);
+        }
+        Plan::new(suites)
+    });
     Outcome { plan, diagnostics: problems, sources }
 }
 
@@ -185,27 +313,4 @@ fn sort(problems: &mut [Diagnostic]) {
         None => (usize::MAX, 0),
     };
     problems.sort_by_key(|problem| (Reverse(problem.severity), rank(problem)));
-}
-
-/// Gives the ids, and each suite a name of its own.
-fn number(mut suites: Vec<SuitePlan>) -> Plan {
-    let mut names = Names::default();
-    let (mut fixtures, mut hooks, mut tests) = (0, 0, 0);
-    for (id, suite) in (0..).zip(&mut suites) {
-        suite.id = SuiteId(id);
-        suite.name = names.unique(&suite.name);
-        for fixture in &mut suite.fixtures {
-            fixture.id = FixtureId(fixtures);
-            fixtures += 1;
-        }
-        for hook in &mut suite.hooks {
-            hook.id = HookId(hooks);
-            hooks += 1;
-        }
-        for test in &mut suite.tests {
-            test.id = TestId(tests);
-            tests += 1;
-        }
-    }
-    Plan { suites, fixtures, hooks, tests }
 }

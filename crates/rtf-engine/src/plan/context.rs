@@ -11,7 +11,8 @@ use super::plugin::{self, Finder};
 use super::scope::{Env, Scope, decisive};
 use super::verify::{Checks, Wanted};
 use super::{HostPlan, Options, PluginPlan};
-use crate::suite::{Plugin, Source, Span, split_param};
+use crate::config::{self, Files, View};
+use crate::suite::{Plugin, Source, Span, Suite, split_param};
 
 /// Where a problem is shown.
 #[derive(Clone, Debug)]
@@ -67,13 +68,36 @@ pub(super) struct Context<'a> {
     pub problems: Vec<Diagnostic>,
     /// What the hosts will be asked to look at.
     pub checks: Checks,
+    /// The `rtf.toml` files.
+    pub files: Files,
     hosts: Vec<Arc<HostPlan>>,
 }
 
 impl<'a> Context<'a> {
     /// A context without problems.
     pub fn new(options: &'a Options) -> Self {
-        Self { options, problems: Vec::new(), checks: Checks::default(), hosts: Vec::new() }
+        let files = Files::new(&options.surroundings.current_folder);
+        Self { options, problems: Vec::new(), checks: Checks::default(), files, hosts: Vec::new() }
+    }
+
+    /// Lays the nearest `rtf.toml` over a suite.
+    pub fn configure(&mut self, folder: &Path, source: &Source, suite: &mut Suite) {
+        let Options { asked, surroundings, .. } = self.options;
+        let view = self.files.above(folder).map(|file| View::of(file, asked));
+        let user = &surroundings.variables;
+        let mut problems = config::lay(suite, source, view.as_ref(), (asked, user));
+        // What is not there may be in what could not be read.
+        if self.files.problems.iter().any(|problem| problem.code == "not-toml") {
+            problems.clear();
+        }
+        self.problems.append(&mut problems);
+    }
+
+    /// What holds for plug-ins that are given directly.
+    pub fn config_of_singles(&mut self, folder: &Path, environment: &str) -> config::Singles {
+        let Options { asked, surroundings, .. } = self.options;
+        let view = self.files.above(folder).map(|file| View::of(file, asked));
+        config::of_singles(view.as_ref(), environment, (asked, &surroundings.variables))
     }
 
     /// The host, shared with whoever needs the same.
@@ -171,7 +195,9 @@ impl<'a, 'c> PluginPlanner<'a, 'c> {
         kind: &'static HostKind,
         from_folder: bool,
     ) -> Option<PluginPlan> {
-        let param = self.context.options.param.clone();
+        let options = self.context.options;
+        let param =
+            if options.are_for(from_folder) { options.param.clone() } else { String::new() };
         let place = &Place::CommandLine;
         self.finish(file, param, Use { kind, role: Role::Test, own: &[], place, from_folder })
     }

@@ -10,19 +10,19 @@ use super::names::Names;
 use super::plugin::base_name;
 use super::scope::Scope;
 use super::{
-    FixtureBody, FixtureLimits, FixturePlan, Probe, ProbeKind, ProcessPlan, depends, program,
+    AttachedPlan, FixtureBody, FixtureLimits, FixturePlan, Probe, ProbeKind, ProcessPlan,
+    RemotePlan, defaults, depends, program,
 };
-use crate::suite::{self, Fixture, FixtureKind, Process, Question, Source, Spanned};
+use crate::suite::{self, Attached, Fixture, FixtureKind, Process, Question, Source, Spanned};
 
 /// `spec/suite.md` lists these.
-const SETUP: Duration = Duration::from_secs(60);
-const CHECK: Duration = Duration::from_secs(5);
-const TEARDOWN: Duration = Duration::from_secs(30);
 const RESTARTS: u32 = 3;
 const RESTART_DELAY: Duration = Duration::from_millis(100);
 const READY_EVERY: Duration = Duration::from_millis(100);
 const ALIVE_EVERY: Duration = Duration::from_secs(1);
 const ANSWER: Duration = Duration::from_secs(1);
+/// The user's `ssh`, with options: a command line.
+const SSH_VARIABLE: &str = "RTF_SSH";
 const STOP_SIGNAL: i32 = 15;
 const STOP_GRACE: Duration = Duration::from_secs(5);
 
@@ -57,6 +57,7 @@ fn base_of(fixture: &Fixture) -> &str {
     match &fixture.body {
         FixtureKind::Plugin(plugin) => base_name(&plugin.name.value),
         FixtureKind::Process(process) => program::base_name(&process.command.value),
+        FixtureKind::Attached(_) => "attached",
     }
 }
 
@@ -67,9 +68,9 @@ fn plan(
     name: String,
 ) -> Option<FixturePlan> {
     let limits = FixtureLimits {
-        setup: fixture.setup.unwrap_or(SETUP),
-        check: fixture.check.unwrap_or(CHECK),
-        teardown: fixture.teardown.unwrap_or(TEARDOWN),
+        setup: fixture.setup.unwrap_or(defaults::FIXTURE.setup),
+        check: fixture.check.unwrap_or(defaults::FIXTURE.check),
+        teardown: fixture.teardown.unwrap_or(defaults::FIXTURE.teardown),
     };
     let check_every = fixture.check_every;
     let body = match fixture.body {
@@ -81,7 +82,14 @@ fn plan(
             let scope = suite_scope.with(&fixture.env);
             let mut planner =
                 ProcessPlanner { source, scope, problems: &mut planner.context.problems };
-            FixtureBody::Process(Box::new(planner.plan(*process, check_every)))
+            FixtureBody::Process(Arc::new(planner.plan(*process, check_every)))
+        }
+        FixtureKind::Attached(attached) => {
+            let suite_scope = planner.scope();
+            let scope = suite_scope.with(&fixture.env);
+            let mut planner =
+                ProcessPlanner { source, scope, problems: &mut planner.context.problems };
+            FixtureBody::Attached(Arc::new(planner.plan_attached(attached, check_every)))
         }
     };
     Some(FixturePlan {
@@ -111,14 +119,39 @@ impl ProcessPlanner<'_> {
         };
         let ready = probes(written.ready, READY_EVERY);
         let alive = probes(written.alive, alive_every);
+        let remote = written.host.map(|host| RemotePlan { ssh: self.ssh(&host), host: host.value });
+        let command = match remote {
+            Some(_) => written.command.value,
+            None => self.command(written.command),
+        };
         ProcessPlan {
-            command: self.command(written.command),
-            folder: self.scope.folder.to_path_buf(),
+            command,
             ready,
             alive,
             stop_signal: written.stop_signal.unwrap_or(STOP_SIGNAL),
             stop_grace: written.stop_grace.unwrap_or(STOP_GRACE),
+            remote,
         }
+    }
+
+    /// It is ready when all its probes hold; without `<alive>` the `<ready>` ones
+    /// are asked all the time.
+    fn plan_attached(&mut self, written: Attached, check_every: Option<Duration>) -> AttachedPlan {
+        let every = check_every.unwrap_or(ALIVE_EVERY);
+        let often: Vec<_> = written.ready.iter().map(|probe| probe.every).collect();
+        let mut probes = |probes: Vec<suite::Probe>, every| -> Vec<Probe> {
+            probes.into_iter().map(|probe| self.probe(probe, every)).collect()
+        };
+        let mut ready = probes(written.ready, READY_EVERY);
+        let mut alive = probes(written.alive, every);
+        let at = |probe: &Probe, every| Probe { every, ..probe.clone() };
+        if alive.is_empty() {
+            let both = ready.iter().zip(often);
+            alive = both.map(|(probe, often)| at(probe, often.unwrap_or(every))).collect();
+        } else {
+            ready.extend(alive.iter().map(|probe| at(probe, READY_EVERY)));
+        }
+        AttachedPlan { ready, alive }
     }
 
     fn probe(&mut self, written: suite::Probe, every: Duration) -> Probe {
@@ -135,6 +168,20 @@ impl ProcessPlanner<'_> {
             kind,
             every: written.every.unwrap_or(every),
             timeout: written.timeout.unwrap_or(ANSWER),
+        }
+    }
+
+    /// The user's `ssh` with its options.
+    fn ssh(&mut self, host: &Spanned<String>) -> Vec<String> {
+        let written = self.scope.variable(SSH_VARIABLE).unwrap_or("ssh");
+        match shell_words::split(written) {
+            Ok(words) if !words.is_empty() => self.command(Spanned::new(words, host.span)),
+            _ => {
+                let message = format!("`{SSH_VARIABLE}` is no command: `{written}`");
+                let label = self.source.label(host.span, "");
+                self.problems.push(Diagnostic::error("invalid-value", message).label(label));
+                Vec::new()
+            }
         }
     }
 

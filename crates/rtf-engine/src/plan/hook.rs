@@ -1,18 +1,14 @@
 //! The hooks of a suite → [`HookPlan`]s.
 
 use std::sync::Arc;
-use std::time::Duration;
 
 use rtf_model::HookId;
 
 use super::context::{PluginPlanner, Role};
 use super::names::Names;
 use super::plugin::base_name;
-use super::{HookBody, HookPlan, program};
+use super::{HookBody, HookPlan, defaults, program};
 use crate::suite::{Hook, HookKind, Source};
-
-/// `spec/suite.md` says so.
-const TIMEOUT: Duration = Duration::from_secs(30);
 
 /// Plans all hooks of a suite, in the order of the file.
 pub(super) fn plan_all(
@@ -58,6 +54,6 @@ fn plan(
             HookBody::Command(program::command(command, &scope, source, problems))
         }
     };
-    let timeout = hook.timeout.unwrap_or(TIMEOUT);
+    let timeout = hook.timeout.unwrap_or(defaults::HOOK);
     Some(HookPlan { id: HookId(0), name, on: hook.on, body, env: hook.env, timeout })
 }

@@ -71,7 +71,7 @@ const LIBRARY_PATH: &str = if cfg!(target_os = "macos") {
 };
 
 /// All of them; the first is the type of a test that does not say its own.
-pub(super) static HOSTS: [HostKind; 3] = [
+pub(super) static HOSTS: [HostKind; 4] = [
     HostKind {
         name: "dll",
         extensions: NATIVE_EXTENSIONS,
@@ -103,11 +103,28 @@ pub(super) static HOSTS: [HostKind; 3] = [
             },
         },
     },
+    HostKind {
+        name: "ruby",
+        extensions: &["rb"],
+        prefixes: &[""],
+        library_path: None,
+        start: Start::Interpreter {
+            program: "ruby",
+            variable: "RTF_RUBY",
+            arguments: &["-e", "require 'rtf/host'; RTF::Host.main", "--"],
+            sdk: Sdk {
+                installed: "share/rtf/ruby/lib",
+                source: "sdk/ruby/lib",
+                marker: "rtf/host.rb",
+                variable: "RUBYLIB",
+            },
+        },
+    },
 ];
 
-/// The type of this name.
+/// The type of this name. The predecessor took capital letters, too.
 pub(super) fn by_name(name: &str) -> Option<&'static HostKind> {
-    HOSTS.iter().find(|kind| kind.name == name)
+    HOSTS.iter().find(|kind| kind.name.eq_ignore_ascii_case(name))
 }
 
 /// The type that a file's own extension tells. The rest of the path does not
@@ -127,13 +144,13 @@ impl HostKind {
         match &self.start {
             Start::Own { program } => {
                 let file = own_program(program, scope)?;
-                Ok(HostPlan { command: vec![text(&file)?], env: Vec::new() })
+                Ok(HostPlan { command: vec![text(&file)?], env: Vec::new(), forks: true })
             }
             Start::Interpreter { program, variable, arguments, sdk } => {
                 let file = interpreter(self.name, program, variable, scope)?;
                 let mut command = vec![text(&file)?];
                 command.extend(arguments.iter().map(|argument| (*argument).to_owned()));
-                Ok(HostPlan { command, env: sdk.env(scope)? })
+                Ok(HostPlan { command, env: sdk.env(scope)?, forks: false })
             }
         }
     }
@@ -183,7 +200,7 @@ fn interpreter(
 ) -> Result<PathBuf, Box<Diagnostic>> {
     if let Some(wanted) = scope.variable(variable).filter(|wanted| !wanted.is_empty()) {
         let base = scope.base(variable);
-        let within = Scope { folder: base, ..*scope };
+        let within = Scope { folder: base, beside: None, ..*scope };
         return super::program::find(wanted, &within).map_err(|mut problem| {
             problem.code = "no-such-interpreter".into();
             problem.message = format!("the interpreter `{wanted}` is not there");

@@ -5,15 +5,18 @@ use std::path::{Path, PathBuf};
 
 use rtf_model::Diagnostic;
 
-use super::Surroundings;
-use super::hosts::{self, HostKind};
+use super::hosts::{self, HOSTS, HostKind};
+use super::plugin::{self, Finder};
+use super::scope::Scope;
+use super::{Options, Request};
 use crate::suite::is_suite_file;
 
 /// One thing to run.
 #[derive(Debug)]
 pub(super) enum Input {
-    /// A suite file.
-    Suite(Found),
+    /// A suite file, and the names of the only tests that are wanted of it;
+    /// none stands for all.
+    Suite(Found, Vec<String>),
     /// A plug-in.
     Plugin {
         /// Its file.
@@ -35,43 +38,104 @@ pub(super) struct Found {
     pub name: String,
 }
 
+/// What of a folder is wanted.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Content {
+    /// Its suites, and when it has none its plug-ins.
+    Any,
+    Suites,
+    Plugins,
+}
+
 /// Looks at each path.
 pub(super) fn collect(
-    paths: &[PathBuf],
-    recursive: bool,
-    surroundings: &Surroundings,
+    requests: &[Request],
+    options: &Options,
     problems: &mut Vec<Diagnostic>,
 ) -> Vec<Input> {
     let mut inputs = Vec::new();
-    for path in paths {
-        let found =
-            Found { path: surroundings.absolute(path), name: path.to_string_lossy().into_owned() };
-        let looked = if found.path.is_dir() {
-            folder(&found, recursive)
-        } else {
-            file(found).map(|input| vec![input])
-        };
-        match looked {
-            Ok(more) => inputs.extend(more),
+    for request in requests {
+        match look(request, options) {
+            Ok(more) => more.into_iter().for_each(|input| add(&mut inputs, input)),
             Err(problem) => problems.push(*problem),
         }
     }
     inputs
 }
 
+/// Several tests of a suite are one input.
+fn add(inputs: &mut Vec<Input>, input: Input) {
+    if let (Some(Input::Suite(last, wanted)), Input::Suite(found, more)) =
+        (inputs.last_mut(), &input)
+        && last.path == found.path
+        && !wanted.is_empty()
+        && !more.is_empty()
+    {
+        wanted.extend_from_slice(more);
+        return;
+    }
+    inputs.push(input);
+}
+
+/// `suite.xml::EncoderTest`: one test of a suite.
+fn one_test(found: &Found) -> Option<Input> {
+    let path = found.path.to_str()?;
+    let (file, name) = (path.match_indices("::"))
+        .map(|(at, _)| (Path::new(&path[..at]), &path[at + 2..]))
+        .find(|(file, _)| file.is_file())?;
+    let suite_name = found.name.strip_suffix(name)?.strip_suffix("::")?.to_owned();
+    let suite = Found { path: file.to_owned(), name: suite_name };
+    is_suite_file(file).then(|| Input::Suite(suite, vec![name.to_owned()]))
+}
+
+fn look(request: &Request, options: &Options) -> Result<Vec<Input>, Box<Diagnostic>> {
+    let found = |path: &Path| Found {
+        path: options.surroundings.absolute(path),
+        name: path.to_string_lossy().into_owned(),
+    };
+    let one = |input: Input| vec![input];
+    match request {
+        Request::Any(path) if found(path).path.is_dir() => {
+            folder(&found(path), Content::Any, options.recursive)
+        }
+        Request::Any(path) => file(found(path)).map(one),
+        Request::Plugins(path) => folder(&found(path), Content::Plugins, options.recursive),
+        Request::Suites(path) => folder(&found(path), Content::Suites, options.recursive),
+        Request::Suite(path) => match found(path) {
+            found if found.path.exists() => Ok(one(Input::Suite(found, Vec::new()))),
+            found => Err(missing(&found).into()),
+        },
+        Request::Plugin(path) => named_plugin(found(path), options).map(one),
+    }
+}
+
+/// A plug-in that is named like in a suite, or by its path.
+fn named_plugin(found: Found, options: &Options) -> Result<Input, Box<Diagnostic>> {
+    let kind = hosts::by_extension(&found.path).unwrap_or(&HOSTS[0]);
+    let surroundings = &options.surroundings;
+    let folder = &surroundings.current_folder;
+    let scope = Scope { surroundings, folder, beside: None, suite: &[], own: &[] };
+    match Finder::new().find(&found.name, kind, &scope) {
+        Some(path) => {
+            Ok(Input::Plugin { found: Found { path, ..found }, kind, from_folder: false })
+        }
+        None => Err(plugin::not_found(&found.name, kind, &scope, true).into()),
+    }
+}
+
 /// A file that the user named: a suite, or a plug-in by its extension.
 fn file(found: Found) -> Result<Input, Box<Diagnostic>> {
     if !found.path.exists() {
-        return Err(missing(&found).into());
+        return one_test(&found).ok_or_else(|| missing(&found).into());
     }
     if has_extension(&found.path, "xml") {
-        return Ok(Input::Suite(found));
+        return Ok(Input::Suite(found, Vec::new()));
     }
     if let Some(kind) = hosts::by_extension(&found.path) {
         return Ok(Input::Plugin { found, kind, from_folder: false });
     }
     if is_suite_file(&found.path) {
-        return Ok(Input::Suite(found));
+        return Ok(Input::Suite(found, Vec::new()));
     }
     let known: Vec<_> = hosts::HOSTS
         .iter()
@@ -101,7 +165,11 @@ fn missing(found: &Found) -> Diagnostic {
 }
 
 /// A folder stands for its suites, and when it has none for its plug-ins.
-fn folder(folder: &Found, recursive: bool) -> Result<Vec<Input>, Box<Diagnostic>> {
+fn folder(
+    folder: &Found,
+    content: Content,
+    recursive: bool,
+) -> Result<Vec<Input>, Box<Diagnostic>> {
     let mut files = Vec::new();
     list(&folder.path, recursive, &mut files).map_err(|error| {
         let message = format!("cannot read the folder `{}`: {error}", folder.name);
@@ -114,15 +182,22 @@ fn folder(folder: &Found, recursive: bool) -> Result<Vec<Input>, Box<Diagnostic>
         let name = Path::new(&folder.name).join(inside).to_string_lossy().into_owned();
         Found { path, name }
     };
-    let is_suite = |path: &&PathBuf| has_extension(path, "xml") && is_suite_file(path);
-    let suites: Vec<PathBuf> = files.iter().filter(is_suite).cloned().collect();
-    let inputs: Vec<Input> = if suites.is_empty() {
-        files.into_iter().filter_map(|path| plugin_in_folder(named(path))).collect()
-    } else {
-        suites.into_iter().map(|path| Input::Suite(named(path))).collect()
-    };
+    let is_suite = |path: &PathBuf| has_extension(path, "xml") && is_suite_file(path);
+    let mut inputs: Vec<Input> = Vec::new();
+    if content != Content::Plugins {
+        let suites = files.iter().filter(|path| is_suite(path)).cloned();
+        inputs.extend(suites.map(|path| Input::Suite(named(path), Vec::new())));
+    }
+    if inputs.is_empty() && content != Content::Suites {
+        inputs.extend(files.into_iter().filter_map(|path| plugin_in_folder(named(path))));
+    }
     if inputs.is_empty() {
-        let message = format!("the folder `{}` holds neither a suite nor a plug-in", folder.name);
+        let what = match content {
+            Content::Any => "neither a suite nor a plug-in",
+            Content::Suites => "no suite",
+            Content::Plugins => "no plug-in",
+        };
+        let message = format!("the folder `{}` holds {what}", folder.name);
         let problem = Diagnostic::error("no-tests", message);
         let hint = "folders inside of it are searched with `--recursive`";
         return Err(if recursive { problem } else { problem.hint(hint) }.into());

@@ -7,6 +7,7 @@
 
 mod build;
 mod context;
+pub(crate) mod defaults;
 mod depends;
 mod fixture;
 mod hook;
@@ -22,6 +23,6 @@ mod types;
 mod unix;
 mod verify;
 
-pub use build::{Options, Outcome, build};
+pub use build::{Manner, Options, Outcome, Request, build, build_requests};
 pub use surroundings::Surroundings;
 pub use types::*;

@@ -68,6 +68,7 @@ impl Finder {
 /// Where plug-ins are searched, in order.
 fn search_folders(kind: &HostKind, scope: &Scope<'_>) -> Vec<PathBuf> {
     let mut folders = vec![scope.folder.to_path_buf()];
+    folders.extend(scope.beside.map(Path::to_path_buf));
     folders.extend(scope.folders("RTF_PLUGIN_PATH"));
     folders.extend(kind.library_path.map(|name| scope.folders(name)).unwrap_or_default());
     folders.extend(scope.surroundings.prefix().map(|prefix| prefix.join("lib/rtf/plugins")));

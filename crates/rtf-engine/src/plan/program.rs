@@ -37,7 +37,10 @@ pub(super) fn base_name(command: &[String]) -> &str {
 /// in the suite's folder, without one it is searched in `PATH`.
 pub(super) fn find(name: &str, scope: &Scope<'_>) -> Result<PathBuf, Box<Diagnostic>> {
     if name.contains('/') {
-        let file: PathBuf = scope.folder.join(name).components().collect();
+        let files = std::iter::once(scope.folder).chain(scope.beside);
+        let mut files = files.map(|folder| folder.join(name).components().collect::<PathBuf>());
+        let first = files.next().unwrap_or_default();
+        let file = if first.exists() { first } else { files.next().unwrap_or(first) };
         return if is_executable(&file) {
             Ok(file)
         } else if file.is_file() {

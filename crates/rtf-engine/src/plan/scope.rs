@@ -7,12 +7,15 @@ use super::Surroundings;
 
 /// The variables that decide which file a name means or whether it loads. A
 /// test that sets one of them is looked up and checked on its own.
-pub(super) const DECISIVE: [&str; 9] = [
+pub(super) const DECISIVE: [&str; 12] = [
     "PATH",
     "RTF_PLUGIN_PATH",
     "RTF_PYTHON",
     "PYTHONPATH",
     "PYTHONHOME",
+    "RTF_RUBY",
+    "RUBYLIB",
+    "RUBYOPT",
     "LUA_PATH",
     "LUA_CPATH",
     "LD_LIBRARY_PATH",
@@ -29,6 +32,8 @@ pub(super) struct Scope<'a> {
     pub surroundings: &'a Surroundings,
     /// The working folder of the suite's processes.
     pub folder: &'a Path,
+    /// A further folder where plug-ins and programs are searched after that one.
+    pub beside: Option<&'a Path>,
     /// The suite's variables.
     pub suite: &'a Env,
     /// The test's or the fixture's own variables.

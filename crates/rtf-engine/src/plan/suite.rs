@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Duration;
 
 use rtf_model::{SuiteId, TestId};
 
@@ -13,21 +12,15 @@ use super::inputs::Found;
 use super::names::Names;
 use super::plugin::base_name;
 use super::scope::Scope;
-use super::{AfterCollapse, Leaks, SuitePlan, TestLimits, TestPlan, fixture, hook};
-use crate::suite::{Source, Suite, Test, WrittenLimits};
+use super::{
+    AfterCollapse, Given, Isolation, Leaks, Manner, OwnMiddleware, Retries, SuitePlan, TestLimits,
+    TestPlan, defaults, fixture, hook,
+};
+use crate::config;
+use crate::suite::{FixtureKind, Middleware, Source, Suite, Test, WrittenLimits};
 
 /// The name of the suite that gathers the plug-ins of the command line.
 pub(super) const PLUGINS: &str = "plug-ins";
-
-/// The limits of a test that says nothing; `spec/suite.md` lists them.
-const DEFAULTS: TestLimits = TestLimits {
-    load: Duration::from_secs(30),
-    setup: Duration::from_secs(60),
-    run: Duration::from_secs(300),
-    teardown: Duration::from_secs(30),
-    slow: Duration::from_secs(60),
-    grace: Duration::from_secs(2),
-};
 
 /// Shares the limits between tests that have the same.
 #[derive(Default)]
@@ -39,12 +32,12 @@ impl Limits {
     fn of(&mut self, written: WrittenLimits) -> Arc<TestLimits> {
         let limits = self.known.entry(written).or_insert_with(|| {
             Arc::new(TestLimits {
-                load: written.load.unwrap_or(DEFAULTS.load),
-                setup: written.setup.unwrap_or(DEFAULTS.setup),
-                run: written.run.unwrap_or(DEFAULTS.run),
-                teardown: written.teardown.unwrap_or(DEFAULTS.teardown),
-                slow: written.slow.unwrap_or(DEFAULTS.slow),
-                grace: written.grace.unwrap_or(DEFAULTS.grace),
+                load: written.load.unwrap_or(defaults::TEST.load),
+                setup: written.setup.unwrap_or(defaults::TEST.setup),
+                run: written.run.unwrap_or(defaults::TEST.run),
+                teardown: written.teardown.unwrap_or(defaults::TEST.teardown),
+                slow: written.slow.unwrap_or(defaults::TEST.slow),
+                grace: written.grace.unwrap_or(defaults::TEST.grace),
             })
         });
         Arc::clone(limits)
@@ -58,13 +51,19 @@ pub(super) fn plan(
     source: &Arc<Source>,
     suite: Suite,
 ) -> SuitePlan {
-    let folder = folder_of(&found.path);
+    let own_folder = folder_of(&found.path);
+    let surroundings = &context.options.surroundings;
+    let (folder, beside) = match context.options.manner {
+        Manner::Own => (own_folder, None),
+        Manner::Predecessor => (surroundings.current_folder.clone(), Some(own_folder)),
+    };
+    let isolate = isolation(&suite);
     let env = Arc::new(suite.env);
     let name = suite.name.map(|name| name.value).unwrap_or_else(|| stem(&found.path));
     let given = suite.tests.iter().map(|test| test.name.as_ref());
     let mut names = Names::given("test", given, source, &mut context.problems);
-    let surroundings = &context.options.surroundings;
-    let scope = Scope { surroundings, folder: &folder, suite: &env, own: &[] };
+    let beside = beside.as_deref();
+    let scope = Scope { surroundings, folder: &folder, beside, suite: &env, own: &[] };
     let mut planner = PluginPlanner::new(context, scope);
     let fixtures = fixture::plan_all(&mut planner, source, suite.fixtures);
     let hooks = hook::plan_all(&mut planner, source, suite.hooks);
@@ -88,6 +87,7 @@ pub(super) fn plan(
             limits,
             after_collapse: test.after_collapse,
             leaks: test.leaks,
+            retries: test.retries,
             critical: test.critical,
             tags,
         });
@@ -102,11 +102,40 @@ pub(super) fn plan(
         environment: suite.environment,
         env,
         timeout: suite.timeout,
+        isolate,
+        given: Given::Nothing,
+        requires: suite.requires,
         tolerates_collapse: suite.tolerates_collapse,
         fixtures,
         hooks,
         tests,
     }
+}
+
+/// What the suite is to get for itself; `spec/suite.md` says when.
+fn isolation(suite: &Suite) -> Isolation {
+    let network = suite.isolate.network;
+    // What runs already has its ids, and ours are unique on this machine only.
+    // Whether a plug-in starts middleware or uses what runs cannot be told; a
+    // suite that the predecessor runs finds what it finds there.
+    let (mut starts, mut elsewhere) = (false, false);
+    for fixture in &suite.fixtures {
+        match &fixture.body {
+            FixtureKind::Attached(_) => elsewhere = true,
+            FixtureKind::Process(process) if process.host.is_some() => elsewhere = true,
+            FixtureKind::Process(_) => starts = true,
+            FixtureKind::Plugin(_) => {}
+        }
+    }
+    let middleware = match suite.isolate.middleware {
+        Some(Middleware::Own) => OwnMiddleware::Always,
+        Some(Middleware::Shared) => OwnMiddleware::No,
+        // What the user's environment names cannot be reached from there.
+        None if network => OwnMiddleware::Always,
+        None if starts && !elsewhere => OwnMiddleware::UnlessSet,
+        None => OwnMiddleware::No,
+    };
+    Isolation { network, middleware, ports: suite.isolate.ports.clone() }
 }
 
 /// The suite's tags, then the test's own ones.
@@ -137,11 +166,14 @@ pub(super) struct Single {
 /// Gathers the plug-ins of the command line into one suite.
 pub(super) fn plan_singles(context: &mut Context<'_>, singles: &[Single]) -> SuitePlan {
     let options = context.options;
+    let named = singles.iter().any(|single| options.are_for(single.from_folder));
     let folder = options.surroundings.current_folder.clone();
     let surroundings = &options.surroundings;
-    let scope = Scope { surroundings, folder: &folder, suite: &[], own: &[] };
+    let given = if named { options.environment.as_str() } else { "" };
+    let config::Singles { environment, env, limits } = context.config_of_singles(&folder, given);
+    let scope = Scope { surroundings, folder: &folder, beside: None, suite: &env, own: &[] };
     let mut names = Names::default();
-    let limits = Limits::default().of(WrittenLimits::default());
+    let limits = Limits::default().of(limits);
     let mut planner = PluginPlanner::new(context, scope);
     let mut tests = Vec::with_capacity(singles.len());
     for single in singles {
@@ -154,10 +186,11 @@ pub(super) fn plan_singles(context: &mut Context<'_>, singles: &[Single]) -> Sui
             name: names.unique(base_name(&single.found.name)),
             plugin,
             env: Vec::new(),
-            repetitions: options.repetitions.max(1),
+            repetitions: if named { options.repetitions.max(1) } else { 1 },
             limits: Arc::clone(&limits),
             after_collapse: AfterCollapse::default(),
             leaks: Leaks::default(),
+            retries: Retries::default(),
             critical: false,
             tags: Vec::new(),
         });
@@ -168,9 +201,12 @@ pub(super) fn plan_singles(context: &mut Context<'_>, singles: &[Single]) -> Sui
         file: String::new(),
         folder,
         description: String::new(),
-        environment: options.environment.clone(),
-        env: Arc::new(Vec::new()),
+        environment,
+        env: Arc::new(env),
         timeout: None,
+        isolate: Isolation::default(),
+        given: Given::Nothing,
+        requires: Vec::new(),
         tolerates_collapse: false,
         fixtures: Vec::new(),
         hooks: Vec::new(),

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use rtf_model::{FixtureId, HookId, SuiteId, TestId, Trigger};
+use rtf_model::{FixtureId, HookId, SuiteId, SuitePrepared, TestId, Trigger};
 
-pub use crate::suite::{AfterCollapse, Leaks};
+pub use crate::suite::{AfterCollapse, Leaks, Resource, Retries};
 
 /// Everything that a run will do. Nothing in it can fail to be understood
 /// any more; what can still fail is the world.
@@ -20,6 +20,30 @@ pub struct Plan {
     pub hooks: u32,
     /// The number of tests over all suites.
     pub tests: u32,
+}
+
+impl Plan {
+    /// The plan of these suites, whose names differ: gives the ids.
+    #[must_use]
+    pub fn new(mut suites: Vec<SuitePlan>) -> Self {
+        let (mut fixtures, mut hooks, mut tests) = (0, 0, 0);
+        for (id, suite) in (0..).zip(&mut suites) {
+            suite.id = SuiteId(id);
+            for fixture in &mut suite.fixtures {
+                fixture.id = FixtureId(fixtures);
+                fixtures += 1;
+            }
+            for hook in &mut suite.hooks {
+                hook.id = HookId(hooks);
+                hooks += 1;
+            }
+            for test in &mut suite.tests {
+                test.id = TestId(tests);
+                tests += 1;
+            }
+        }
+        Self { suites, fixtures, hooks, tests }
+    }
 }
 
 /// One suite.
@@ -41,6 +65,12 @@ pub struct SuitePlan {
     pub env: Arc<Vec<(String, String)>>,
     /// The limit for the whole suite, set-up and tear-down of fixtures included.
     pub timeout: Option<Duration>,
+    /// What it is to get for itself when it starts.
+    pub isolate: Isolation,
+    /// What it got.
+    pub given: Given,
+    /// What nobody else may use meanwhile, sorted by name.
+    pub requires: Vec<Resource>,
     /// Whether a fixture's collapse leaves the suite green.
     pub tolerates_collapse: bool,
     /// The fixtures: each after those that it depends on, else in the order of the file.
@@ -49,6 +79,41 @@ pub struct SuitePlan {
     pub hooks: Vec<HookPlan>,
     /// The tests, in the order in which they run.
     pub tests: Vec<TestPlan>,
+}
+
+/// What a suite is to get for itself. Its texts still have their `${port:name}`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Isolation {
+    /// Whether it gets a network of its own.
+    pub network: bool,
+    /// Whether it gets middleware of its own.
+    pub middleware: OwnMiddleware,
+    /// The names of its ports, sorted.
+    pub ports: Vec<String>,
+}
+
+/// Whether a suite gets middleware of its own.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OwnMiddleware {
+    /// It talks to what runs already.
+    #[default]
+    No,
+    /// Where the user's environment does not say which to use.
+    UnlessSet,
+    /// Whatever the user's environment says.
+    Always,
+}
+
+/// What a suite got for itself. A plan that was just made knows nothing of it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Given {
+    /// It needs nothing.
+    #[default]
+    Nothing,
+    /// All that it needs.
+    All(SuitePrepared),
+    /// It cannot have what it needs, for this reason: nothing of it is started.
+    Refused(String),
 }
 
 /// One fixture.
@@ -93,7 +158,9 @@ pub enum FixtureBody {
     /// A fixture plug-in in a host.
     Plugin(PluginPlan),
     /// The built-in `type="process"`.
-    Process(Box<ProcessPlan>),
+    Process(Arc<ProcessPlan>),
+    /// Something that runs already, and is only watched.
+    Attached(Arc<AttachedPlan>),
 }
 
 /// One declared test.
@@ -115,6 +182,8 @@ pub struct TestPlan {
     pub after_collapse: AfterCollapse,
     /// What is said of it when it leaves processes behind.
     pub leaks: Leaks,
+    /// How often it is tried again when it fails.
+    pub retries: Retries,
     /// Whether the rest of the suite is skipped when it does not pass.
     pub critical: bool,
     /// The tags given in the suite.
@@ -167,7 +236,7 @@ pub enum HookBody {
 /// A plug-in and the host that runs it.
 #[derive(Clone, Debug)]
 pub struct PluginPlan {
-    /// The type as in the suite: `dll`, `lua`, `python`.
+    /// The type as in the suite: `dll`, `lua`, `python`, `ruby`.
     pub plugin_type: Arc<str>,
     /// The plug-in's file, absolute.
     pub file: PathBuf,
@@ -186,6 +255,8 @@ pub struct HostPlan {
     pub command: Vec<String>,
     /// Environment variables that it needs.
     pub env: Vec<(String, String)>,
+    /// Whether it can be started once and forked for each test.
+    pub forks: bool,
 }
 
 /// The built-in `type="process"` fixture.
@@ -193,8 +264,6 @@ pub struct HostPlan {
 pub struct ProcessPlan {
     /// The program (absolute or found in the path) and its arguments.
     pub command: Vec<String>,
-    /// The folder it runs in.
-    pub folder: PathBuf,
     /// All must hold before it is ready; empty: ready once it was started.
     pub ready: Vec<Probe>,
     /// Each must hold while it is ready.
@@ -203,6 +272,26 @@ pub struct ProcessPlan {
     pub stop_signal: i32,
     /// How long it may take to stop before it is killed.
     pub stop_grace: Duration,
+    /// The other machine that it runs on.
+    pub remote: Option<RemotePlan>,
+}
+
+/// Another machine.
+#[derive(Clone, Debug)]
+pub struct RemotePlan {
+    /// The machine, as in the suite.
+    pub host: String,
+    /// The `ssh` command and the user's options.
+    pub ssh: Vec<String>,
+}
+
+/// The built-in `type="process"` with `attach="true"`.
+#[derive(Clone, Debug)]
+pub struct AttachedPlan {
+    /// All must hold before it is ready.
+    pub ready: Vec<Probe>,
+    /// Each must hold while it is ready.
+    pub alive: Vec<Probe>,
 }
 
 /// A question about a process fixture.

@@ -6,7 +6,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use rtf_engine::plan::{self, Options, Outcome, Plan, Surroundings};
+use rtf_engine::plan::{self, Options, Outcome, Plan, Request, Surroundings};
 
 pub struct Bench {
     // Kept for its end, which removes the files.
@@ -71,6 +71,18 @@ impl Bench {
     pub fn build(&self, paths: &[&str]) -> Outcome {
         let paths: Vec<PathBuf> = paths.iter().map(PathBuf::from).collect();
         plan::build(&paths, &self.options)
+    }
+
+    /// The plan of requests that are all right.
+    pub fn plan_requests(&self, requests: &[Request]) -> Plan {
+        let outcome = plan::build_requests(requests, &self.options);
+        outcome.plan.unwrap_or_else(|| panic!("{:#?}", outcome.diagnostics))
+    }
+
+    /// The codes of what is wrong with requests.
+    pub fn request_problems(&self, requests: &[Request]) -> Vec<String> {
+        let outcome = plan::build_requests(requests, &self.options);
+        outcome.diagnostics.into_iter().map(|found| found.code).collect()
     }
 
     /// The plan of paths that are all right.

@@ -36,6 +36,7 @@ fn shown(bench: &Bench, plan: &Plan) -> String {
         let kind = match &fixture.body {
             FixtureBody::Plugin(plugin) => &plugin.plugin_type,
             FixtureBody::Process(_) => "process",
+            FixtureBody::Attached(_) => "attached",
         };
         let (id, name, delay) = (fixture.id, &fixture.name, fixture.restart_delay);
         writeln!(
@@ -160,7 +161,7 @@ fn a_plugin_or_a_command() {
     assert_snapshot!(bench.shown(&hook("on='end' type='process'", "./park.sh")), @"
     unknown-type: unknown type `process`
       2:22 process
-      note: known types are `dll`, `lua`, `python`
+      note: known types are `dll`, `lua`, `python`, `ruby`
       hint: a program is written as `<command>`, without a `type`
     ");
 }
@@ -238,21 +239,9 @@ fn leaks_are_reported_or_fail() {
 
 #[test]
 fn what_is_not_built_is_refused() {
-    let text = "<suite isolate='network' requires='arm'>\n\
-                <fixture attach='true' host='a@b'>F.lua</fixture>\n\
-                <test retries='1' isolation='shared'>A.lua</test></suite>";
+    let text = "<suite>\n<test isolation='shared'>A.lua</test></suite>";
     assert_snapshot!(bench().shown(text), @r#"
-    not-supported: `isolate` is not supported by this version of rtf
-      1:8 isolate
-    not-supported: `requires` is not supported by this version of rtf
-      1:26 requires
-    not-supported: `attach` is not supported by this version of rtf
-      2:10 attach
-    not-supported: `host` is not supported by this version of rtf
-      2:24 host
-    not-supported: `retries` is not supported by this version of rtf
-      3:7 retries
     not-supported: `isolation="shared"` is not supported by this version of rtf
-      3:30 shared
+      2:18 shared
     "#);
 }

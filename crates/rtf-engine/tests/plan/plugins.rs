@@ -131,6 +131,31 @@ fn python_is_the_users_own() {
 }
 
 #[test]
+fn ruby_is_the_users_own() {
+    let mut bench = Bench::new();
+    bench.file("cell/A.rb", "");
+    bench.file("cell/s.xml", "<suite><test>A.rb</test></suite>");
+    let path = bench.path("bin");
+    bench.set("PATH", &path);
+    assert_eq!(bench.build(&["s.xml"]).diagnostics[0].code, "no-such-interpreter");
+    let ruby = bench.program("bin/ruby", "");
+    bench.file("sdk/ruby/lib/rtf/host.rb", "");
+    bench.set("RUBYLIB", "/mine");
+    let plugin = bench.plan(&["s.xml"]).suites[0].tests[0].plugin.clone();
+    assert_eq!(&*plugin.plugin_type, "ruby");
+    let program = "require 'rtf/host'; RTF::Host.main";
+    assert_eq!(plugin.host.command, [ruby.to_str().unwrap(), "-e", program, "--"]);
+    let library = format!("{}:/mine", bench.path("sdk/ruby/lib"));
+    assert_eq!(plugin.host.env, [("RUBYLIB".to_owned(), library)]);
+    let other = bench.program("other/ruby3.4", "");
+    bench.set("RTF_RUBY", other.to_str().unwrap());
+    assert_eq!(
+        bench.plan(&["s.xml"]).suites[0].tests[0].plugin.host.command[0],
+        other.to_str().unwrap()
+    );
+}
+
+#[test]
 fn a_host_that_is_not_there_is_reported_once_beside_the_rest() {
     let bench = Bench::new();
     std::fs::remove_file(bench.root.join("bin/rtf-host-lua")).unwrap();

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use rtf_engine::plan::{FixtureBody, FixtureLimits, ProbeKind, TestLimits};
 
 use crate::bench::{Bench, names};
+use insta::assert_snapshot;
 
 #[test]
 fn a_suite_becomes_a_plan() {
@@ -85,16 +86,16 @@ fn unknown_types_list_the_known_ones() {
     let bench = Bench::new();
     bench.file(
         "cell/s.xml",
-        "<suite><fixture type='procss'>A</fixture><test type='Lua'>A</test></suite>",
+        "<suite><fixture type='procss'>A</fixture><test type='Lau'>A</test></suite>",
     );
     let outcome = bench.build(&["s.xml"]);
     let found = |index: usize| {
         let found = &outcome.diagnostics[index];
         (found.code.as_str(), found.notes[0].as_str(), found.hint.as_deref())
     };
-    let known = "known types are `dll`, `lua`, `python`, `process`";
+    let known = "known types are `dll`, `lua`, `python`, `ruby`, `process`";
     assert_eq!(found(0), ("unknown-type", known, Some("did you mean `process`?")));
-    let known = "known types are `dll`, `lua`, `python`";
+    let known = "known types are `dll`, `lua`, `python`, `ruby`";
     assert_eq!(found(1), ("unknown-type", known, Some("did you mean `lua`?")));
 }
 
@@ -181,4 +182,132 @@ fn a_large_suite_is_planned_quickly() {
     assert_eq!(tests[TESTS - 1].plugin.args[1], (TESTS - 1).to_string());
     assert!(tests.iter().enumerate().all(|(index, test)| test.id.index() == index));
     assert!(tests.iter().all(|test| Arc::ptr_eq(&test.plugin.host, &tests[0].plugin.host)));
+}
+
+#[test]
+fn an_attached_fixture_is_watched_by_all_its_probes() {
+    let bench = Bench::new();
+    bench.file("cell/A.lua", "");
+    bench.file(
+        "cell/s.xml",
+        "<suite><fixture type='process' attach='true'><ready tcp='127.0.0.1:5' every='7s'/>\
+         <ready file='up'/></fixture><fixture type='process' name='robot' attach='true' check-every='3s'>\
+         <ready file='up'/><alive tcp='127.0.0.1:5'/></fixture><test>A.lua</test></suite>",
+    );
+    let plan = bench.plan(&["s.xml"]);
+    let fixtures = &plan.suites[0].fixtures;
+    let times = |probes: &[rtf_engine::plan::Probe]| -> Vec<u128> {
+        probes.iter().map(|probe| probe.every.as_millis()).collect()
+    };
+    let attached = |index: usize| match &fixtures[index].body {
+        FixtureBody::Attached(attached) => (times(&attached.ready), times(&attached.alive)),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(fixtures[0].name, "attached");
+    assert_eq!(attached(0), (vec![7000, 100], vec![7000, 1000]));
+    assert_eq!(attached(1), (vec![100, 100], vec![3000]));
+}
+
+#[test]
+fn what_an_attached_fixture_cannot_have_is_told() {
+    let bench = Bench::new();
+    bench.file("cell/A.lua", "");
+    let text = "<suite><fixture type='process' attach='true'/>\n\
+                <fixture type='process' attach='true' name='b'><command>sleep 1</command>\n\
+                <ready log='up'/><alive log-bad='down'/><stop grace='1s'/></fixture>\n\
+                <fixture attach='true' name='c'>A.lua</fixture>\n\
+                <test>A.lua</test></suite>";
+    assert_snapshot!(bench.shown(text), @r#"
+    incomplete: `<fixture>` needs a `<ready>` or an `<alive>` with `attach="true"`
+      1:8 <fixture
+    unknown-element: unknown element `<command>`
+      2:48 <command not known in `<fixture attach="true">`
+      note: `<fixture attach="true">` can have the elements `ready`, `alive`, `env`
+    no-output: what is attached prints nothing that could be seen here
+      3:13 up
+    no-output: what is attached prints nothing that could be seen here
+      3:34 down
+    unknown-element: unknown element `<stop>`
+      3:41 <stop not known in `<fixture attach="true">`
+      note: `<fixture attach="true">` can have the elements `ready`, `alive`, `env`
+    wrong-type: only `type="process"` can be attached
+      4:10 attach
+      hint: a plug-in that only watches needs no `attach`: it has a `check`, and no `setup`
+    "#);
+}
+
+#[test]
+fn a_fixture_on_another_machine_needs_ssh_here_and_its_program_there() {
+    let mut bench = Bench::new();
+    bench.file("cell/A.lua", "");
+    bench.program("bin/ssh", "exit 0");
+    bench.set("RTF_SSH", "ssh -p 22 -i 'a key'");
+    bench.file(
+        "cell/s.xml",
+        "<suite><fixture type='process' host='pi@robot'><command>no-such-program 'a b'</command>\
+         </fixture><test>A.lua</test></suite>",
+    );
+    let plan = bench.plan(&["s.xml"]);
+    let FixtureBody::Process(process) = &plan.suites[0].fixtures[0].body else { panic!() };
+    let remote = process.remote.as_ref().unwrap();
+    assert_eq!(process.command, ["no-such-program", "a b"]);
+    assert_eq!(remote.host, "pi@robot");
+    assert_eq!(remote.ssh, [&bench.path("bin/ssh"), "-p", "22", "-i", "a key"]);
+}
+
+#[test]
+fn what_cannot_be_on_another_machine_is_told() {
+    let mut bench = Bench::new();
+    bench.file("cell/A.lua", "");
+    bench.set("PATH", &bench.path("bin"));
+    let text = "<suite><fixture type='process' host='pi@robot:22'><command>a</command></fixture>\n\
+                <fixture type='process' host='-oProxyCommand=x'><command>a</command></fixture>\n\
+                <fixture type='process' host='pi@robot'><command>a</command><ready file='b'/></fixture>\n\
+                <fixture host='pi@robot' name='c'>A.lua</fixture>\n\
+                <fixture type='process' attach='true' host='pi@robot' name='d'><ready tcp='a:1'/></fixture>\n\
+                <test>A.lua</test></suite>";
+    assert_snapshot!(bench.shown(text), @r#"
+    invalid-value: `host` is no machine that `ssh` would find: `pi@robot:22`
+      1:38 pi@robot:22
+      hint: write it like `user@machine` or `ssh://user@machine:2222`
+    no-such-program: there is no program `ssh`
+      1:38 pi@robot:22
+      note: searched `PATH`:
+      [ROOT]/bin
+    invalid-value: `host` is no machine that `ssh` would find: `-oProxyCommand=x`
+      2:31 -oProxyCommand=x
+      hint: write it like `user@machine` or `ssh://user@machine:2222`
+    no-such-program: there is no program `ssh`
+      2:31 -oProxyCommand=x
+      note: searched `PATH`:
+      [ROOT]/bin
+    no-such-program: there is no program `ssh`
+      3:31 pi@robot
+      note: searched `PATH`:
+      [ROOT]/bin
+    other-machine: a `file` is looked for on this machine, and the fixture runs on another one
+      3:74 b
+      hint: ask with `log`, `tcp` or `http`, or with `command="ssh …"`
+    wrong-type: only `type="process"` can run on another machine
+      4:10 host
+      hint: write a `<command>` that is started there
+    unknown-attribute: unknown attribute `host`
+      5:39 host not known in `<fixture attach="true">`
+      note: `<fixture attach="true">` can have the attributes `name`, `type`, `depends`, `timeout`, `restarts`, `restart-delay`, `check-every`, `attach`
+    "#);
+    let text = "<suite isolate='network'><fixture type='process' host='pi@robot'><command>a</command></fixture>\n\
+                <fixture type='process' host='a' name='d'><command>a</command>\n\
+                <env name='RTF_SSH' value=\"ssh 'x\"/></fixture><test>A.lua</test></suite>";
+    assert_snapshot!(bench.shown(text), @"
+    other-machine: a suite with a network of its own reaches no other machine
+      1:56 pi@robot
+    no-such-program: there is no program `ssh`
+      1:56 pi@robot
+      note: searched `PATH`:
+      [ROOT]/bin
+    other-machine: a suite with a network of its own reaches no other machine
+      2:31 a
+    invalid-value: `RTF_SSH` is no command: `ssh 'x`
+      2:31 a
+    ");
 }
