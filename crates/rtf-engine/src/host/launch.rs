@@ -3,9 +3,11 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use rtf_model::LeftProcess;
 use rtf_model::protocol::SCOPE_VARIABLE;
 use tokio::sync::oneshot;
 
+use super::cgroup::{Cgroup, Cgroups};
 use super::spawner::{Process, SpawnRequest, Spawner};
 use super::{codec, tree};
 
@@ -19,6 +21,8 @@ pub struct Launch {
     pub scope: String,
     /// Where a host that answers a signal with a stack dump writes it.
     pub stack_file: PathBuf,
+    /// Its control group, once it was started.
+    pub cgroup: Option<Cgroup>,
     ahead: Option<oneshot::Receiver<io::Result<Process>>>,
 }
 
@@ -27,7 +31,7 @@ impl Launch {
     #[must_use]
     pub fn new(request: SpawnRequest, scope: String, scratch: &Path) -> Self {
         let stack_file = scratch.join(format!("{scope}.stack"));
-        Self { request, scope, stack_file, ahead: None }
+        Self { request, scope, stack_file, cgroup: None, ahead: None }
     }
 
     /// Starts it now, for a need that is to come.
@@ -39,12 +43,37 @@ impl Launch {
     ///
     /// # Errors
     /// It cannot be started.
-    pub async fn start(&mut self, spawner: &Spawner) -> io::Result<Process> {
+    pub async fn start(
+        &mut self,
+        spawner: &Spawner,
+        groups: Option<&Cgroups>,
+    ) -> io::Result<Process> {
         let started = match self.ahead.take() {
             Some(started) => started,
             None => spawner.begin(self.full_request()),
         };
-        Spawner::started(started).await
+        let process = Spawner::started(started).await?;
+        self.cgroup = groups.and_then(|groups| groups.enter(&self.scope, process.pid));
+        Ok(process)
+    }
+
+    /// Kills a process that was started and everything below it.
+    pub fn kill(&self, process: &Process) {
+        if let Some(group) = &self.cgroup {
+            group.kill();
+        }
+        tree::kill_tree(process.pid);
+    }
+
+    /// Kills what a process that has ended left. Returns what was killed.
+    pub async fn sweep(&mut self) -> Vec<LeftProcess> {
+        let mut left = Vec::new();
+        if let Some(group) = self.cgroup.take() {
+            left = group.clear().await;
+        }
+        // They come here when they have ended, and are taken in by this.
+        tree::add(&mut left, tree::sweep(&self.scope));
+        left
     }
 
     /// Ends a process that was started ahead and is not needed.

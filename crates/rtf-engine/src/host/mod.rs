@@ -4,13 +4,21 @@
 //! - [`task`]: one task around each process, from its start to the sweep of
 //!   what it left behind.
 //! - [`launch`]: a process that is to be started, or was started ahead.
+//! - [`attached`]: a task like that around what runs already.
+//! - [`fork`]: hosts that are forked instead of executed.
+//! - [`remote`]: process fixtures on another machine.
+//! - [`cgroup`]: control groups, where there are any.
 //! - [`codec`]: lines of the protocol.
 //! - [`tree`]: everything below a process, and orphans.
 //! - [`stack`]: stack dumps of processes that hang.
 //! - [`unix`]: the system calls.
 
+pub mod attached;
+pub mod cgroup;
 pub mod codec;
+pub mod fork;
 pub mod launch;
+pub mod remote;
 pub mod spawner;
 pub mod stack;
 pub mod task;

@@ -3,21 +3,25 @@
 //! Starting a process blocks until the kernel has executed it, and a channel's
 //! descriptor must be inheritable for just that moment: both are reasons for a
 //! single place. `posix_spawn` is used (no code runs between fork and exec), so
-//! the time does not grow with the runner's memory.
+//! the time does not grow with the runner's memory; only a process that enters a
+//! network of its suite is forked.
 
 use std::io::{self, Write};
-use std::os::fd::{AsRawFd, OwnedFd};
+use std::os::fd::{AsFd, AsRawFd, OwnedFd};
 use std::path::PathBuf;
 use std::process::Stdio;
 
 use rtf_model::ExitStatus;
 use rtf_model::protocol::CHANNEL_VARIABLE;
+use tokio::io::unix::AsyncFd;
 use tokio::net::UnixStream;
 use tokio::process::{Child, ChildStderr, ChildStdout, Command};
 use tokio::sync::oneshot;
 
-use super::{tree, unix};
+use super::fork::{Ends, ForkServers, Forks};
+use super::{remote, tree, unix};
 use crate::guard::gate;
+use crate::isolate::Network;
 
 /// Which outputs of a process are captured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,6 +48,10 @@ pub struct SpawnRequest {
     pub channel: Option<Vec<u8>>,
     /// What is captured.
     pub streams: Streams,
+    /// Whether the command is a host that can be forked, and may be.
+    pub forks: bool,
+    /// The network that it enters; the runner's own when `None`.
+    pub network: Option<Network>,
 }
 
 /// A process that was started.
@@ -65,7 +73,16 @@ pub struct Process {
 #[derive(Debug)]
 pub struct End {
     pid: i32,
-    child: Child,
+    child: Started,
+}
+
+/// How the end is told.
+#[derive(Debug)]
+enum Started {
+    /// By tokio, of a process that was executed.
+    Executed(Child),
+    /// By the kernel, of one that was forked.
+    Forked(AsyncFd<OwnedFd>),
 }
 
 impl End {
@@ -74,13 +91,37 @@ impl End {
     /// # Errors
     /// The kernel does not tell.
     pub async fn wait(&mut self) -> io::Result<ExitStatus> {
-        let status = self.child.wait().await?;
+        let status = match &mut self.child {
+            Started::Executed(child) => unix::exit_status(child.wait().await?),
+            Started::Forked(process) => loop {
+                let mut told = process.readable().await?;
+                match unix::take_status(process.as_fd())? {
+                    Some(status) => break status,
+                    None => told.clear_ready(),
+                }
+            },
+        };
         tree::remove_own_child(self.pid);
-        Ok(unix::exit_status(status))
+        Ok(status)
     }
 }
 
-type Job = (SpawnRequest, oneshot::Sender<io::Result<Process>>);
+impl Drop for End {
+    /// A process that nobody waits for is not wanted. (Tokio does the same.)
+    fn drop(&mut self) {
+        if let Started::Forked(process) = &self.child
+            && tree::is_own_child(self.pid)
+        {
+            tree::kill_tree(self.pid);
+            let _ = unix::take_status(process.as_fd());
+        }
+    }
+}
+
+enum Job {
+    Start(SpawnRequest, oneshot::Sender<io::Result<Process>>),
+    Finish(Option<Network>, oneshot::Sender<()>),
+}
 
 /// A handle to the thread that starts processes.
 #[derive(Clone, Debug)]
@@ -96,14 +137,21 @@ impl Spawner {
     ///
     /// # Panics
     /// Outside of a tokio runtime.
-    pub fn start() -> io::Result<Self> {
+    pub fn start(forks: Forks) -> io::Result<Self> {
         let (jobs, queue) = std::sync::mpsc::channel::<Job>();
         let runtime = tokio::runtime::Handle::current();
         std::thread::Builder::new().name("rtf-spawner".to_owned()).spawn(move || {
             let _entered = runtime.enter();
-            for (request, answer) in queue {
-                // The asker may be gone: then the process is killed by its drop.
-                let _ = answer.send(spawn(&request));
+            let mut servers = ForkServers::new(forks);
+            for job in queue {
+                match job {
+                    // The asker may be gone: then the process is killed by its drop.
+                    Job::Start(request, answer) => drop(answer.send(spawn(&request, &mut servers))),
+                    Job::Finish(within, done) => {
+                        servers.end(within.as_ref());
+                        let _ = done.send(());
+                    }
+                }
             }
         })?;
         Ok(Self { jobs })
@@ -122,8 +170,17 @@ impl Spawner {
     pub fn begin(&self, request: SpawnRequest) -> oneshot::Receiver<io::Result<Process>> {
         let (answer, started) = oneshot::channel();
         // When the thread is gone, so is the other end of the answer.
-        let _ = self.jobs.send((request, answer));
+        let _ = self.jobs.send(Job::Start(request, answer));
         started
+    }
+
+    /// Ends the processes that the spawner keeps for itself, all of them or those
+    /// that are in a network.
+    pub async fn finish(&self, within: Option<Network>) {
+        let (done, finished) = oneshot::channel();
+        let _ = self.jobs.send(Job::Finish(within, done));
+        // When the thread is gone, so are they.
+        let _ = finished.await;
     }
 
     /// Waits for what [`Spawner::begin`] asked for.
@@ -136,7 +193,53 @@ impl Spawner {
     }
 }
 
-fn spawn(request: &SpawnRequest) -> io::Result<Process> {
+fn spawn(request: &SpawnRequest, servers: &mut ForkServers) -> io::Result<Process> {
+    let (mut ours, mut theirs) = (None, None);
+    if let Some(greeting) = &request.channel {
+        let (runner, host) = unix::channel_pair()?;
+        // It is short: it fits into the socket's buffer before anybody reads.
+        (&runner).write_all(greeting)?;
+        runner.set_nonblocking(true)?;
+        ours = Some(UnixStream::from_std(runner)?);
+        theirs = Some(OwnedFd::from(host));
+    }
+    if request.forks
+        && let Some(host) = &theirs
+        && let Some(process) = fork(request, host, servers)?
+    {
+        return Ok(Process { channel: ours, ..process });
+    }
+    let process = execute(request, theirs)?;
+    Ok(Process { channel: ours, ..process })
+}
+
+/// Lets a server fork the process; `None` when it must be executed.
+fn fork(
+    request: &SpawnRequest,
+    channel: &OwnedFd,
+    servers: &mut ForkServers,
+) -> io::Result<Option<Process>> {
+    let (stdout, their_stdout) = io::pipe()?;
+    let (stderr, their_stderr) = io::pipe()?;
+    let (channel, out, err) = (channel.as_fd(), their_stdout.as_fd(), their_stderr.as_fd());
+    let ends = Ends { channel, stdout: out, stderr: err };
+    let forked = tree::start_own_child(|| servers.fork(request, &ends), |pid| *pid);
+    let Some(pid) = forked else { return Ok(None) };
+    unix::lead_group(pid);
+    let stdout = ChildStdout::from_std(OwnedFd::from(stdout).into())?;
+    let stderr = ChildStderr::from_std(OwnedFd::from(stderr).into())?;
+    let child =
+        unix::open_process(pid).map(Started::Forked).inspect_err(|_| tree::kill_tree(pid))?;
+    let end = End { pid, child };
+    Ok(Some(Process { pid, channel: None, stdout: Some(stdout), stderr: Some(stderr), end }))
+}
+
+/// Whether a command takes its channel as its standard input.
+fn on_stdin(command: &[String]) -> bool {
+    gate::is_behind(command) || remote::is_remote(command)
+}
+
+fn execute(request: &SpawnRequest, channel: Option<OwnedFd>) -> io::Result<Process> {
     let Some((program, arguments)) = request.command.split_first() else {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "an empty command"));
     };
@@ -152,21 +255,18 @@ fn spawn(request: &SpawnRequest) -> io::Result<Process> {
     if let Some(folder) = &request.folder {
         command.current_dir(folder);
     }
-    let mut channel = None;
+    if let Some(network) = &request.network {
+        network.namespaces().enter(command.as_std_mut());
+    }
     let mut theirs = None;
-    if let Some(greeting) = &request.channel {
-        let (ours, host) = unix::channel_pair()?;
-        // It is short: it fits into the socket's buffer before anybody reads.
-        (&ours).write_all(greeting)?;
-        ours.set_nonblocking(true)?;
-        channel = Some(UnixStream::from_std(ours)?);
-        if gate::is_behind(&request.command) {
-            command.stdin(OwnedFd::from(host));
-        } else {
+    match channel {
+        Some(host) if on_stdin(&request.command) => drop(command.stdin(host)),
+        Some(host) => {
             unix::let_inherit(&host)?;
             command.env(CHANNEL_VARIABLE, format!("fd:{}", host.as_raw_fd()));
             theirs = Some(host);
         }
+        None => {}
     }
     let pid_of = |child: &io::Result<Child>| i32::try_from(child.as_ref().ok()?.id()?).ok();
     let child = tree::start_own_child(|| command.spawn(), pid_of);
@@ -175,5 +275,6 @@ fn spawn(request: &SpawnRequest) -> io::Result<Process> {
     let mut child = child?;
     let pid = child.id().and_then(|pid| i32::try_from(pid).ok()).unwrap_or_default();
     let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
-    Ok(Process { pid, channel, stdout, stderr, end: End { pid, child } })
+    let end = End { pid, child: Started::Executed(child) };
+    Ok(Process { pid, channel: None, stdout, stderr, end })
 }

@@ -4,32 +4,38 @@
 //! process said, printed, and how it ended. Everything that the process said
 //! and printed is delivered before its end is told.
 
+mod keep;
+
 use std::os::fd::AsFd;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, SystemTime};
 
 use rtf_model::protocol::{Notification, Request, StackSupport};
-use rtf_model::{Attachment, ExitStatus, Source, Stream};
+use rtf_model::{ExitStatus, Source, Stream};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::sync::mpsc;
 use tokio::task::JoinSet;
 
+use super::cgroup::Cgroups;
 use super::codec::{self, FromHost, LINE_LIMIT};
 use super::launch::Launch;
 use super::spawner::{End, Process, Spawner};
-use super::{stack, tree, unix};
+use super::{remote, stack, tree, unix};
 use crate::guard::{Kept, Link, gate};
 use crate::plan::ProcessPlan;
 use crate::run::Sink;
 use crate::run::machine::{HostId, HostInput};
-use crate::run::probe::{self, Asker};
+use crate::run::probe::{self, Asker, Watch};
 
 /// After its end, a process's outputs are read for this long at the most: a
 /// descendant that could not be found may hold them open.
 const DRAIN_LIMIT: Duration = Duration::from_millis(500);
 /// How often a task that waits for slow reporters looks again.
 const CONGESTED_WAIT: Duration = Duration::from_millis(1);
+const SIGKILL: i32 = 9;
+/// How long a fixture on another machine may take to be killed there.
+const REMOTE_KILL: Duration = Duration::from_secs(1);
 /// How much is read at once: what a pipe holds at most.
 const READ_BYTES: usize = 64 * 1024;
 
@@ -48,6 +54,8 @@ pub enum Order {
     KillTree,
     /// Ask the `alive` probes from now on.
     WatchAlive,
+    /// Say whether it lives, after all that it has told so far.
+    LookAlive,
 }
 
 /// What all processes of a run share.
@@ -63,6 +71,8 @@ pub struct Shared {
     pub scratch: PathBuf,
     /// The way to the guard.
     pub guard: Arc<Link>,
+    /// The control groups, where there are any.
+    pub cgroups: Option<Cgroups>,
 }
 
 /// What one process is.
@@ -74,6 +84,8 @@ pub struct Job {
     pub source: Source,
     /// How to start it, unless it was started ahead.
     pub launch: Launch,
+    /// Whether it gets a control group, where there are any.
+    pub grouped: bool,
     /// Its probes, when it is a process fixture.
     pub process: Option<Arc<ProcessPlan>>,
 }
@@ -89,12 +101,13 @@ pub async fn run(
     inputs: Inputs,
 ) {
     let host = job.host;
-    if let Some(taken) = probe::already_answers(job.process.as_deref()).await {
+    if let Some(taken) = probe::already_answers(job.process.as_deref(), &job.launch.request).await {
         let reason = format!("{taken} answers already, before the fixture was started");
         return drop(inputs.send((host, HostInput::SpawnFailed(reason))).await);
     }
     let started_at = SystemTime::now();
-    match job.launch.start(&shared.spawner).await {
+    let groups = shared.cgroups.as_ref().filter(|_| job.grouped);
+    match job.launch.start(&shared.spawner, groups).await {
         Ok(process) => {
             let mut task = Task::new(job, shared, process, inputs);
             task.tell_guard();
@@ -116,13 +129,23 @@ struct Task {
     process: Process,
     inputs: Inputs,
     line: Vec<u8>,
+    /// Whether it has to say that it lives.
+    looked_at: bool,
     /// Probes and stack dumps; they end with the task.
     side: JoinSet<()>,
 }
 
 impl Task {
     fn new(job: Job, shared: Arc<Shared>, process: Process, inputs: Inputs) -> Self {
-        Self { job, shared, process, inputs, line: Vec::new(), side: JoinSet::new() }
+        Self {
+            job,
+            shared,
+            process,
+            inputs,
+            line: Vec::new(),
+            looked_at: false,
+            side: JoinSet::new(),
+        }
     }
 
     /// Hooks and fixtures must be able to go on when the runner dies.
@@ -146,18 +169,16 @@ impl Task {
     }
 
     fn watch_ready(&mut self, started_at: SystemTime) {
-        if let Some(plan) = self.job.process.clone() {
-            let (inputs, host, asker) = (self.inputs.clone(), self.job.host, self.asker());
-            self.side.spawn(async move {
-                probe::wait_until_ready(&plan.ready, started_at, &asker).await;
-                drop(inputs.send((host, HostInput::ProbesHold)).await);
-            });
+        if let Some(plan) = &self.job.process {
+            let probes = plan.ready.clone();
+            self.side.spawn(self.watch().until_ready(probes, Some(started_at)));
         }
     }
 
-    fn asker(&self) -> Asker {
+    fn watch(&self) -> Watch {
         let like = self.job.launch.full_request();
-        Asker { spawner: self.shared.spawner.clone(), like }
+        let asker = Asker { spawner: self.shared.spawner.clone(), like };
+        Watch { host: self.job.host, inputs: self.inputs.clone(), asker }
     }
 
     async fn run(&mut self, mut orders: mpsc::UnboundedReceiver<Order>) {
@@ -170,6 +191,7 @@ impl Task {
                 Some(order) = orders.recv() => self.obey(order).await,
                 _ = read(&mut process.channel, &mut buffers.channel), if !congested =>
                     self.heard(&buffers.channel).await,
+                () = std::future::ready(()), if self.looked_at => self.look_alive().await,
                 _ = read(&mut process.stdout, &mut buffers.stdout), if !congested =>
                     self.printed(Stream::Stdout, &buffers.stdout).await,
                 _ = read(&mut process.stderr, &mut buffers.stderr), if !congested =>
@@ -184,7 +206,7 @@ impl Task {
     /// The process has ended: kill what it left, deliver what it said.
     async fn end(&mut self, status: ExitStatus, buffers: &mut Buffers) {
         self.side.abort_all();
-        let left = tree::sweep(&self.job.launch.scope);
+        let left = self.job.launch.sweep().await;
         let _ = tokio::time::timeout(DRAIN_LIMIT, self.drain(buffers)).await;
         let _ = std::fs::remove_file(&self.job.launch.stack_file);
         self.shared.guard.process_ended(self.job.source, self.process.pid);
@@ -219,12 +241,42 @@ impl Task {
                     let _ = channel.shutdown().await;
                 }
             }
+            Order::Signal(signal) if self.is_remote() => self.signal_remote(signal).await,
             Order::Signal(signal) => {
                 unix::signal_group(pid, signal);
             }
-            Order::KillTree => tree::kill_tree(pid),
+            Order::KillTree if self.is_remote() => {
+                self.signal_remote(SIGKILL).await;
+                // The connection may be stuck.
+                self.side.spawn(async move {
+                    tokio::time::sleep(REMOTE_KILL).await;
+                    tree::kill_tree(pid);
+                });
+            }
+            Order::KillTree => self.job.launch.kill(&self.process),
             Order::TakeStack(support) => self.take_stack(support).await,
             Order::WatchAlive => self.watch_alive(),
+            Order::LookAlive => self.looked_at = true,
+        }
+    }
+
+    /// One that is dying says nothing: its end follows.
+    async fn look_alive(&mut self) {
+        self.looked_at = false;
+        if !tree::is_dying(self.process.pid) {
+            self.tell(HostInput::Lives).await;
+        }
+    }
+
+    fn is_remote(&self) -> bool {
+        self.job.process.as_ref().is_some_and(|process| process.remote.is_some())
+    }
+
+    async fn signal_remote(&mut self, signal: i32) {
+        if let Some(channel) = &mut self.process.channel {
+            let line = remote::signal_line(signal);
+            // A connection that is stuck is noticed by its limit.
+            let _ = tokio::time::timeout(DRAIN_LIMIT, channel.write_all(&line)).await;
         }
     }
 
@@ -252,14 +304,10 @@ impl Task {
     }
 
     fn watch_alive(&mut self) {
-        let Some(plan) = self.job.process.clone() else {
-            return;
-        };
-        let (inputs, host, asker) = (self.inputs.clone(), self.job.host, self.asker());
-        self.side.spawn(async move {
-            let reason = probe::wait_until_unwell(&plan.alive, &asker).await;
-            drop(inputs.send((host, HostInput::ProbeFailed(reason))).await);
-        });
+        if let Some(plan) = &self.job.process {
+            let probes = plan.alive.clone();
+            self.side.spawn(self.watch().until_unwell(probes));
+        }
     }
 
     /// Bytes came over the channel; none when it was closed.
@@ -302,38 +350,6 @@ impl Task {
         self.tell(input).await;
     }
 
-    /// The folder for what this process attaches, relative to the run's.
-    fn keep_folder(&self) -> String {
-        match self.job.source {
-            Source::Test(id) => format!("attachments/{id}/{}", self.job.host.0),
-            Source::Fixture(id) => format!("attachments/fixture-{id}/{}", self.job.host.0),
-            Source::Hook(id) => format!("attachments/hook-{id}/{}", self.job.host.0),
-        }
-    }
-
-    /// Names an attached file relative to the run's folder. A host that did not
-    /// copy it there itself has it copied now.
-    async fn keep(&self, attachment: Attachment) -> Result<Attachment, String> {
-        let folder = self.keep_folder();
-        let own = self.shared.run_folder.join(&folder);
-        let work = self.job.launch.request.folder.clone().unwrap_or_default();
-        let source = work.join(&attachment.path);
-        let cannot =
-            |error: std::io::Error| format!("`{}` cannot be attached: {error}", attachment.path);
-        let copied = source.parent() == Some(own.as_path());
-        let name = match (copied, source.file_name()) {
-            (true, Some(name)) => name.to_string_lossy().into_owned(),
-            _ => attachment.name.chars().map(safe).collect(),
-        };
-        if copied {
-            tokio::fs::metadata(&source).await.map_err(cannot)?;
-        } else {
-            tokio::fs::create_dir_all(&own).await.map_err(cannot)?;
-            tokio::fs::copy(&source, own.join(&name)).await.map_err(cannot)?;
-        }
-        Ok(Attachment { path: format!("{folder}/{name}"), ..attachment })
-    }
-
     async fn printed(&mut self, stream: Stream, bytes: &[u8]) {
         if bytes.is_empty() {
             match stream {
@@ -347,14 +363,6 @@ impl Task {
 
     async fn tell(&self, input: HostInput) {
         drop(self.inputs.send((self.job.host, input)).await);
-    }
-}
-
-fn safe(character: char) -> char {
-    if character.is_alphanumeric() || matches!(character, '.' | '-' | '_') {
-        character
-    } else {
-        '_'
     }
 }
 

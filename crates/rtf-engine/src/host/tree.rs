@@ -14,7 +14,7 @@ use std::sync::{LazyLock, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use rtf_model::LeftProcess;
-use rtf_model::protocol::{OWNER_VARIABLE, SCOPE_VARIABLE};
+use rtf_model::protocol::{FORK_SERVER_VARIABLE, OWNER_VARIABLE, SCOPE_VARIABLE};
 
 use super::unix;
 
@@ -50,7 +50,8 @@ pub fn remove_own_child(pid: i32) {
     OWN_CHILDREN.lock().unwrap_or_else(PoisonError::into_inner).remove(&pid);
 }
 
-fn is_own_child(pid: i32) -> bool {
+/// Whether the runner started a process itself and has not waited for it yet.
+pub fn is_own_child(pid: i32) -> bool {
     OWN_CHILDREN.lock().unwrap_or_else(PoisonError::into_inner).contains(&pid)
 }
 
@@ -128,6 +129,14 @@ pub fn kill_owned(prefix: &str) -> Vec<LeftProcess> {
     }
 }
 
+/// Kills a child of this process and takes its end, without a word.
+pub fn end_own(child: i32) {
+    if is_child(child) {
+        unix::signal_process(child, SIGKILL);
+        unix::await_end(child);
+    }
+}
+
 /// The child of this process that has this scope.
 #[must_use]
 pub fn child_of_scope(scope: &str) -> Option<i32> {
@@ -165,6 +174,7 @@ fn sweep_if(belongs: impl Fn(i32) -> bool) -> Vec<LeftProcess> {
     let mut left = Vec::new();
     let mut seen = HashSet::new();
     loop {
+        let before = seen.len();
         let starts = STARTS.load(Ordering::SeqCst);
         let orphans = children_of(OWN).into_iter();
         let found: Vec<i32> = orphans
@@ -174,21 +184,27 @@ fn sweep_if(belongs: impl Fn(i32) -> bool) -> Vec<LeftProcess> {
             .collect();
         // One that is just being started may look like a dead orphan.
         let is_quiet = starts.is_multiple_of(2) && STARTS.load(Ordering::SeqCst) == starts;
-        let before = left.len();
         for pid in &found {
             if is_zombie(*pid) {
                 if is_quiet {
                     unix::reap(*pid);
                 }
             } else if seen.insert(*pid) {
-                left.push(described(*pid));
+                if !is_fork_server(*pid) {
+                    left.push(described(*pid));
+                }
                 unix::signal_process(*pid, SIGKILL);
             }
         }
-        if left.len() == before {
+        if seen.len() == before {
             return left;
         }
     }
+}
+
+/// Whether a process is the runner's own and none of a test's or a fixture's.
+fn is_fork_server(pid: i32) -> bool {
+    variable_of(pid, FORK_SERVER_VARIABLE).is_some()
 }
 
 /// Everything below a process, parents before children.
@@ -218,6 +234,33 @@ fn children_of(tasks: impl AsRef<Path>) -> Vec<i32> {
         .collect()
 }
 
+/// Whether a process is ending, or has ended and was not waited for. It may
+/// have been killed just now: then the signal is still waiting for it.
+#[must_use]
+pub fn is_dying(pid: i32) -> bool {
+    const EXITING: u64 = 0x4;
+    let Ok(stat) = std::fs::read_to_string(format!("/proc/{pid}/stat")) else {
+        return true;
+    };
+    let Some((_, rest)) = stat.rsplit_once(") ") else { return true };
+    let mut fields = rest.split(' ');
+    let state = fields.next().unwrap_or("X");
+    // Its parent, group, session, terminal, and that one's group are between.
+    let flags = fields.nth(5).and_then(|flags| flags.parse::<u64>().ok()).unwrap_or_default();
+    matches!(state, "Z" | "X" | "x") || flags & EXITING != 0 || is_killed(pid)
+}
+
+/// Whether SIGKILL waits for it.
+fn is_killed(pid: i32) -> bool {
+    const KILL: u64 = 1 << (SIGKILL - 1);
+    let status = std::fs::read_to_string(format!("/proc/{pid}/status")).unwrap_or_default();
+    let pending = status.lines().filter_map(|line| {
+        let line = line.strip_prefix("SigPnd:").or_else(|| line.strip_prefix("ShdPnd:"))?;
+        u64::from_str_radix(line.trim(), 16).ok()
+    });
+    pending.into_iter().any(|pending| pending & KILL != 0)
+}
+
 fn is_zombie(pid: i32) -> bool {
     let Ok(stat) = std::fs::read_to_string(format!("/proc/{pid}/stat")) else {
         return false;
@@ -242,7 +285,8 @@ fn environ_of(pid: i32) -> Option<Vec<u8>> {
     None
 }
 
-fn described(pid: i32) -> LeftProcess {
+/// A process as it is told of.
+pub(super) fn described(pid: i32) -> LeftProcess {
     LeftProcess { pid, command: command_of(pid), owner: owner_of(pid) }
 }
 
@@ -279,4 +323,33 @@ fn command_of(pid: i32) -> String {
     }
     let name = std::fs::read_to_string(format!("/proc/{pid}/comm")).unwrap_or_default();
     OsStr::new(name.trim()).to_string_lossy().into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::process::Command;
+
+    use super::is_dying;
+
+    #[test]
+    fn a_process_is_dying_from_its_kill_on_until_it_is_reaped() {
+        let mut sleeper = Command::new("sleep").arg("1000").spawn().unwrap();
+        let pid = i32::try_from(sleeper.id()).unwrap();
+        assert!(!is_dying(pid));
+        sleeper.kill().unwrap();
+        // Never alive again, in whichever instant it is looked at.
+        (0..1000).for_each(|_| assert!(is_dying(pid)));
+        sleeper.wait().unwrap();
+        assert!(is_dying(pid));
+    }
+
+    #[test]
+    fn a_stopped_process_lives() {
+        let mut sleeper = Command::new("sleep").arg("1000").spawn().unwrap();
+        let pid = i32::try_from(sleeper.id()).unwrap();
+        super::signal(pid, 19);
+        assert!(!is_dying(pid));
+        sleeper.kill().unwrap();
+        sleeper.wait().unwrap();
+    }
 }
