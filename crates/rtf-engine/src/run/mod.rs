@@ -4,26 +4,40 @@
 //! the processes of [`crate::host`], the probes and the clock. A collapse
 //! interrupts a test in `machine/suite.rs`, `fixture_changed`.
 
+mod control;
 mod events;
+mod fail_limit;
+mod http;
+mod lineup;
 pub mod machine;
 pub mod probe;
 pub mod suite_task;
 
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use futures_util::StreamExt;
+use futures_util::stream::FuturesUnordered;
 use rtf_model::{
     Diagnostic, EventKind, FixturePlanned, HookPlanned, RunStarted, SuitePlanned, TestPlanned,
 };
 use tokio::sync::watch;
 
+pub use control::{Control, Controls};
 pub use events::{Events, Sink};
+use fail_limit::FailLimit;
+use lineup::Lineup;
 pub use machine::{Stop, StopLevel};
 
 use crate::guard::Link;
+use crate::host::cgroup::Cgroups;
+pub use crate::host::fork::Forks;
 use crate::host::spawner::Spawner;
 use crate::host::task::Shared;
 use crate::host::{prepare_process, tree};
+use crate::isolate::Prepared;
+use crate::locks::{self, LockOptions};
 use crate::plan::{FixtureBody, FixturePlan, Plan, SuitePlan, TestPlan};
 
 /// What a run needs beside its plan.
@@ -39,9 +53,19 @@ pub struct RunOptions {
     pub journal: PathBuf,
     /// The way to the guard.
     pub guard: Arc<Link>,
+    /// When hosts are forked.
+    pub forks: Forks,
+    /// After how many tests that did not pass the rest is skipped.
+    pub max_fail: Option<u32>,
+    /// How many suites run at the same time at the most.
+    pub jobs: NonZeroUsize,
+    /// What is asked of the run while it goes on.
+    pub controls: Controls,
+    /// How locks are waited for.
+    pub locks: LockOptions,
 }
 
-/// Runs every suite of a plan, one after the other.
+/// Runs every suite of a plan, as many at the same time as the options say.
 ///
 /// # Errors
 /// Nothing could be started: a thread, a folder or a system call is missing.
@@ -54,11 +78,12 @@ pub async fn execute(
     prepare_process()?;
     let scratch = scratch_folder()?;
     let shared = Arc::new(Shared {
-        spawner: Spawner::start()?,
+        spawner: Spawner::start(options.forks)?,
         sink: sink.clone(),
         run_folder: options.folder,
         scratch: scratch.clone(),
         guard: options.guard.clone(),
+        cgroups: Cgroups::get(),
     });
     let events = Events::new(options.started.run.clone(), sink);
     options.guard.run_begins(&options.journal, events.start());
@@ -69,11 +94,12 @@ pub async fn execute(
     for suite in &plan.suites {
         announce(suite, &events);
     }
-    for suite in &plan.suites {
-        options.guard.suite_begins(suite);
-        suite_task::run_suite(suite, &shared, &events, stops.clone()).await;
-        options.guard.suite_ends(suite.id);
-    }
+    let (stopped, controls) = (stops.clone(), options.controls);
+    let fails = FailLimit::new(options.max_fail);
+    let asked = suite_task::Asked { stops: stopped, controls, fails };
+    let all = AllSuites { shared: &shared, events: &events, locks: &options.locks, asked };
+    all.run(&plan.suites, options.jobs).await;
+    shared.spawner.finish(None).await;
     let left = tree::sweep_all();
     if !left.is_empty() {
         let mut diagnostic = Diagnostic::warning(
@@ -90,6 +116,41 @@ pub async fn execute(
     options.guard.run_ends();
     let _ = std::fs::remove_dir_all(scratch);
     Ok(())
+}
+
+/// What all suites of a run have in common.
+struct AllSuites<'a> {
+    shared: &'a Arc<Shared>,
+    events: &'a Events,
+    locks: &'a LockOptions,
+    asked: suite_task::Asked,
+}
+
+impl AllSuites<'_> {
+    async fn run(&self, suites: &[SuitePlan], jobs: NonZeroUsize) {
+        let mut lineup = Lineup::new(suites, jobs);
+        let mut running = FuturesUnordered::new();
+        loop {
+            while let Some(suite) = lineup.next() {
+                running.push(self.one(suite));
+            }
+            let Some(ended) = running.next().await else { return };
+            lineup.ended(ended);
+        }
+    }
+
+    /// One suite from its locks until it has given everything back.
+    async fn one<'p>(&self, suite: &'p SuitePlan) -> &'p SuitePlan {
+        let Self { shared, events, locks, asked } = self;
+        let locks = locks::wait(suite, locks, events, &mut asked.stops.clone()).await;
+        let run = events.run_token();
+        let prepared = Prepared::get(suite, locks, run, &shared.spawner).await;
+        shared.guard.suite_begins(&prepared);
+        suite_task::run_suite(&prepared, shared, events, asked.clone()).await;
+        shared.guard.suite_ends(&prepared);
+        prepared.give_back(&shared.spawner).await;
+        suite
+    }
 }
 
 /// A folder of this process for files that live as long as a process does.
@@ -133,6 +194,7 @@ fn type_of(fixture: &FixturePlan) -> &str {
     match &fixture.body {
         FixtureBody::Plugin(plugin) => &plugin.plugin_type,
         FixtureBody::Process(_) => "process",
+        FixtureBody::Attached(_) => "attached",
     }
 }
 

@@ -4,26 +4,73 @@
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
-use tokio::net::TcpStream;
 use tokio::time::timeout;
+use url::Url;
 
+use super::http;
 use crate::host::spawner::{SpawnRequest, Spawner, Streams};
+use crate::host::task::Inputs;
 use crate::host::tree;
+use crate::isolate::{Network, connect};
 use crate::plan::{Probe, ProbeKind, ProcessPlan};
+use crate::run::machine::{HostId, HostInput};
 
 /// How long somebody else may take to answer.
 const TAKEN_WAIT: Duration = Duration::from_millis(200);
 
+/// Asks the probes of one fixture and tells the suite's task what comes of it.
+#[derive(Clone, Debug)]
+pub struct Watch {
+    /// The fixture's process, or what stands for it.
+    pub host: HostId,
+    /// Where it is told.
+    pub inputs: Inputs,
+    /// Where the probes are asked.
+    pub asker: Asker,
+}
+
+impl Watch {
+    /// Tells when each of these probes has held once, and why one does not
+    /// whenever the reason changes. A file counts when it was written `since`.
+    pub async fn until_ready(self, probes: Vec<Probe>, since: Option<SystemTime>) {
+        let mut told = String::new();
+        for probe in &probes {
+            while let Err(reason) = ask(probe, since, &self.asker).await {
+                if reason != told {
+                    told.clone_from(&reason);
+                    self.tell(HostInput::ProbeWaits(reason)).await;
+                }
+                tokio::time::sleep(probe.every).await;
+            }
+        }
+        self.tell(HostInput::ProbesHold).await;
+    }
+
+    /// Tells when one of these probes does not hold any more.
+    pub async fn until_unwell(self, probes: Vec<Probe>) {
+        let reason = wait_until_unwell(&probes, &self.asker).await;
+        self.tell(HostInput::ProbeFailed(reason)).await;
+    }
+
+    async fn tell(&self, input: HostInput) {
+        drop(self.inputs.send((self.host, input)).await);
+    }
+}
+
 /// A TCP or HTTP address that a fixture will be ready by and that answers
 /// before the fixture was started: somebody else's.
-pub async fn already_answers(process: Option<&ProcessPlan>) -> Option<String> {
+pub async fn already_answers(
+    process: Option<&ProcessPlan>,
+    request: &SpawnRequest,
+) -> Option<String> {
+    let network = request.network.as_ref();
     for probe in process.map_or(&[][..], |process| &process.ready) {
         let address = match &probe.kind {
             ProbeKind::Tcp(address) => address.clone(),
             ProbeKind::Http(url) => address_of(url)?,
             _ => continue,
         };
-        if matches!(timeout(TAKEN_WAIT, TcpStream::connect(&address)).await, Ok(Ok(_))) {
+        if matches!(timeout(TAKEN_WAIT, connect(network, &address)).await, Ok(Ok(_))) {
             return Some(address);
         }
     }
@@ -31,8 +78,7 @@ pub async fn already_answers(process: Option<&ProcessPlan>) -> Option<String> {
 }
 
 fn address_of(url: &str) -> Option<String> {
-    let url = reqwest::Url::parse(url).ok()?;
-    Some(format!("{}:{}", url.host_str()?, url.port_or_known_default()?))
+    http::address(&Url::parse(url).ok()?)
 }
 
 /// Where the probes of a process are asked.
@@ -44,17 +90,8 @@ pub struct Asker {
     pub like: SpawnRequest,
 }
 
-/// Returns when each probe has held once.
-pub async fn wait_until_ready(probes: &[Probe], started_at: SystemTime, asker: &Asker) {
-    for probe in probes {
-        while ask(probe, Some(started_at), asker).await.is_err() {
-            tokio::time::sleep(probe.every).await;
-        }
-    }
-}
-
 /// Returns when a probe does not hold any more, with the reason.
-pub async fn wait_until_unwell(probes: &[Probe], asker: &Asker) -> String {
+async fn wait_until_unwell(probes: &[Probe], asker: &Asker) -> String {
     let asked: Vec<&Probe> =
         probes.iter().filter(|probe| !matches!(probe.kind, ProbeKind::Log(_))).collect();
     let mut due: Vec<_> = asked.iter().map(|p| tokio::time::Instant::now() + p.every).collect();
@@ -72,13 +109,14 @@ pub async fn wait_until_unwell(probes: &[Probe], asker: &Asker) -> String {
 }
 
 async fn ask(probe: &Probe, since: Option<SystemTime>, asker: &Asker) -> Result<(), String> {
+    let network = asker.like.network.as_ref();
     let answer = async {
         match &probe.kind {
-            ProbeKind::Tcp(address) => match TcpStream::connect(address).await {
+            ProbeKind::Tcp(address) => match connect(network, address).await {
                 Ok(_) => Ok(()),
                 Err(error) => Err(format!("no TCP connection to {address}: {error}")),
             },
-            ProbeKind::Http(url) => ask_http(url).await,
+            ProbeKind::Http(url) => ask_http(network, url).await,
             ProbeKind::File(path) => ask_file(path, since),
             ProbeKind::Command(command) => ask_command(command, asker).await,
             ProbeKind::Log(_) => Ok(()),
@@ -100,14 +138,10 @@ fn subject(probe: &Probe) -> String {
     }
 }
 
-async fn ask_http(url: &str) -> Result<(), String> {
-    let answer =
-        reqwest::get(url).await.map_err(|error| format!("no answer from {url}: {error}"))?;
-    if answer.status().is_success() {
-        Ok(())
-    } else {
-        Err(format!("{url} answers {}", answer.status()))
-    }
+async fn ask_http(network: Option<&Network>, url: &str) -> Result<(), String> {
+    let status = http::get(network, url).await;
+    let status = status.map_err(|error| format!("no answer from {url}: {error}"))?;
+    if status.is_success() { Ok(()) } else { Err(format!("{url} answers {status}")) }
 }
 
 /// A file from before the start says nothing about this start.
@@ -129,6 +163,7 @@ async fn ask_command(command: &[String], asker: &Asker) -> Result<(), String> {
         command: command.to_vec(),
         streams: Streams::None,
         channel: None,
+        forks: false,
         ..asker.like.clone()
     };
     let started = asker.spawner.spawn(request).await;

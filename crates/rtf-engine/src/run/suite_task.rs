@@ -6,37 +6,55 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_model::protocol::ENVIRONMENT_VARIABLE;
-use rtf_model::{EventKind, Source};
+use rtf_model::{EventKind, Source, TestId};
 use tokio::sync::{mpsc, watch};
 use tokio::time::Instant;
 
+use super::control::{Controls, Unseen};
 use super::events::Events;
+use super::fail_limit::FailLimit;
 use super::machine::{
     Deadline, Effect, HostId, HostInput, Input, Program, Start, Stop, SuiteMachine,
 };
 use crate::guard::{HookBegins, gate};
+use crate::host::attached::{self, Attached};
 use crate::host::launch::Launch;
+use crate::host::remote;
 use crate::host::spawner::{SpawnRequest, Streams};
 use crate::host::task::{self, Job, Order, Shared};
-use crate::plan::SuitePlan;
+use crate::isolate::{Network, Prepared};
+use crate::plan::{Leaks, SuitePlan, TestPlan};
 
 /// How many inputs may wait; then processes wait.
 const INPUTS: usize = 1024;
 
+/// What may come from outside while a suite runs.
+#[derive(Clone, Debug)]
+pub struct Asked {
+    /// The request to end the run.
+    pub stops: watch::Receiver<Option<Stop>>,
+    /// Everything else.
+    pub controls: Controls,
+    /// How many tests of the run have failed, and may.
+    pub fails: FailLimit,
+}
+
 /// Runs a suite to its end.
 pub async fn run_suite(
-    plan: &SuitePlan,
+    prepared: &Prepared<'_>,
     shared: &Arc<Shared>,
     events: &Events,
-    stops: watch::Receiver<Option<Stop>>,
+    asked: Asked,
 ) {
     let (inputs, queue) = mpsc::channel(INPUTS);
+    let plan = &*prepared.plan;
     let mut task = SuiteTask {
         plan,
+        network: prepared.network(),
         shared,
         events,
         inputs,
-        machine: SuiteMachine::new(plan),
+        machine: SuiteMachine::new(plan, asked.fails.clone()),
         effects: Vec::new(),
         orders: HashMap::new(),
         spares: Vec::new(),
@@ -45,7 +63,7 @@ pub async fn run_suite(
         deadlines: BTreeMap::new(),
         over: false,
     };
-    task.run(queue, stops).await;
+    task.run(queue, asked).await;
     for spare in task.spares {
         spare.discard().await;
     }
@@ -53,6 +71,7 @@ pub async fn run_suite(
 
 struct SuiteTask<'a> {
     plan: &'a SuitePlan,
+    network: Option<Network>,
     shared: &'a Arc<Shared>,
     events: &'a Events,
     inputs: task::Inputs,
@@ -73,11 +92,12 @@ impl SuiteTask<'_> {
     async fn run(
         &mut self,
         mut queue: mpsc::Receiver<(HostId, HostInput)>,
-        mut stops: watch::Receiver<Option<Stop>>,
+        Asked { mut stops, controls, .. }: Asked,
     ) {
         let stop = stops.borrow_and_update().clone();
-        if let Some(stop) = stop {
-            self.feed(Input::Stop(stop));
+        let (mut controls, skip) = Unseen::at_start(controls, self.plan);
+        for input in stop.map(Input::Stop).into_iter().chain(skip) {
+            self.feed(input);
         }
         self.feed(Input::Start);
         while !self.over {
@@ -90,6 +110,7 @@ impl SuiteTask<'_> {
                         self.feed(Input::Stop(stop));
                     }
                 }
+                input = controls.next(self.plan) => self.feed(input),
                 () = self.sleep_until(next) => self.deadlines_passed(),
                 Some((host, input)) = queue.recv() => self.host_input(host, input),
             }
@@ -154,6 +175,7 @@ impl SuiteTask<'_> {
             Effect::Signal(host, signal) => self.order(host, Order::Signal(signal)),
             Effect::KillTree(host) => self.order(host, Order::KillTree),
             Effect::WatchAlive(host) => self.order(host, Order::WatchAlive),
+            Effect::LookAlive(host) => self.order(host, Order::LookAlive),
             Effect::Done => self.over = true,
         }
     }
@@ -163,11 +185,10 @@ impl SuiteTask<'_> {
         let guard = &self.shared.guard;
         match kind {
             EventKind::TestStarted { test, .. } => {
-                let first = self.plan.tests.first().map_or(0, |first| first.id.index());
-                let plan = self.plan.tests.get(test.index() - first);
-                guard.test_begins(*test, plan.map_or("", |plan| &plan.name));
+                let name = self.test(*test).map_or("", |plan| &plan.name);
+                guard.test_begins(self.plan, *test, name);
             }
-            EventKind::TestFinished(_) => guard.test_ends(),
+            EventKind::TestFinished(_) => guard.test_ends(self.plan),
             EventKind::HookFinished { hook, problem } => guard.hook_ends(*hook, problem.clone()),
             EventKind::HookStarted { hook, trigger, reason, test } => {
                 let (reason, scope) = (reason.clone(), String::new());
@@ -186,28 +207,50 @@ impl SuiteTask<'_> {
     }
 
     fn spawn(&mut self, host: HostId, source: Source, start: Start) {
-        let process = match &start.what {
-            Program::Host(_) | Program::Command(_) => None,
-            Program::Process(plan) => Some(plan.clone()),
-        };
-        let request = self.request(start);
+        let (mut process, mut attached) = (None, None);
+        match &start.what {
+            Program::Host(_) | Program::Command(_) => {}
+            Program::Process(plan) => process = Some(plan.clone()),
+            Program::Attached(plan) => attached = Some(plan.clone()),
+        }
+        let request = self.request(start, matches!(source, Source::Test(_)));
         let (orders, queue) = mpsc::unbounded_channel();
         self.orders.insert(host, orders);
         let launch = match self.spares.iter().position(|spare| spare.request == request) {
             Some(place) => self.spares.remove(place),
             None => self.launch(request),
         };
+        if let Some(plan) = attached {
+            let attached = Attached { host, plan, launch };
+            let watch = attached::run(attached, self.shared.clone(), queue, self.inputs.clone());
+            return drop(tokio::spawn(watch));
+        }
         if let Some(called) = self.called.take_if(|_| matches!(source, Source::Hook(_))) {
             self.shared.guard.hook_begins(HookBegins { scope: launch.scope.clone(), ..called });
         }
-        let job = Job { host, source, launch, process };
+        let grouped = self.is_grouped(source);
+        let job = Job { host, source, launch, grouped, process };
         tokio::spawn(task::run(job, self.shared.clone(), queue, self.inputs.clone()));
+    }
+
+    fn test(&self, test: TestId) -> Option<&TestPlan> {
+        let first = self.plan.tests.first()?.id.index();
+        self.plan.tests.get(test.index() - first)
+    }
+
+    /// Joining a control group may take longer than a short test: it is for those
+    /// that live long, and where each leak counts.
+    fn is_grouped(&self, source: Source) -> bool {
+        match source {
+            Source::Test(test) => self.test(test).is_some_and(|plan| plan.leaks == Leaks::Fail),
+            Source::Fixture(_) | Source::Hook(_) => true,
+        }
     }
 
     fn spawn_ahead(&mut self, starts: Vec<Start>) {
         let mut before = std::mem::take(&mut self.spares);
         for start in starts {
-            let request = self.request(start);
+            let request = self.request(start, true);
             let spare = match before.iter().position(|spare| spare.request == request) {
                 Some(place) => before.remove(place),
                 None => {
@@ -223,20 +266,28 @@ impl SuiteTask<'_> {
         }
     }
 
-    fn request(&self, start: Start) -> SpawnRequest {
+    /// What is to be started; as a fork only if it may be one.
+    fn request(&self, start: Start, may_fork: bool) -> SpawnRequest {
+        let mut forks = false;
         let mut env = vec![(ENVIRONMENT_VARIABLE.to_owned(), self.plan.environment.clone())];
         env.extend(start.env);
         let (command, channel) = match start.what {
             Program::Host(plan) => {
                 // Last: the plan has put what the suite says into it already.
                 env.extend_from_slice(&plan.env);
+                forks = may_fork && plan.forks;
                 (plan.command.clone(), Some(Vec::new()))
             }
-            Program::Process(plan) => (plan.command.clone(), None),
+            Program::Process(plan) => match &plan.remote {
+                None => (plan.command.clone(), None),
+                Some(remote) => (remote::command(&plan, remote, &env), Some(Vec::new())),
+            },
+            Program::Attached(_) => (Vec::new(), None),
             Program::Command(command) => (gate::behind(&command), Some(Vec::new())),
         };
         let folder = Some(start.folder);
-        SpawnRequest { command, env, folder, channel, streams: Streams::Both }
+        let (streams, network) = (Streams::Both, self.network.clone());
+        SpawnRequest { command, env, folder, channel, streams, forks, network }
     }
 
     fn launch(&mut self, request: SpawnRequest) -> Launch {

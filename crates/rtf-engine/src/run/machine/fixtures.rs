@@ -7,7 +7,7 @@
 use super::fixture::{FixtureRun, State};
 use super::io::HostId;
 use super::suite::Context;
-use crate::plan::SuitePlan;
+use crate::plan::{FixtureBody, SuitePlan};
 
 /// The fixtures of a suite, in the order of its plan.
 #[derive(Debug)]
@@ -111,8 +111,8 @@ impl<'p> Fixtures<'p> {
     }
 
     /// Kills everything, the last fixture first.
-    pub fn kill_all(&mut self, cx: &mut Context<'_>) {
-        self.runs.iter_mut().rev().for_each(|fixture| fixture.kill(cx));
+    pub fn kill_all(&mut self, why: Option<&str>, cx: &mut Context<'_>) {
+        self.runs.iter_mut().rev().for_each(|fixture| fixture.kill(why, cx));
     }
 
     /// Takes one of a fixture's restarts; false when they are used up.
@@ -121,8 +121,15 @@ impl<'p> Fixtures<'p> {
             return false;
         }
         self.restarts[place] += 1;
-        self.runs[place].delay_restart(self.restarts[place]);
+        self.runs[place].delay_restart();
         true
+    }
+
+    /// The processes of all that are ready; what is attached has none.
+    pub fn processes(&self) -> Vec<HostId> {
+        let ready = self.runs.iter().filter(|fixture| fixture.state() == State::Ready);
+        let own = ready.filter(|f| !matches!(f.plan().body, FixtureBody::Attached(_)));
+        own.filter_map(FixtureRun::host).collect()
     }
 
     /// Asks each plug-in whether it is well.

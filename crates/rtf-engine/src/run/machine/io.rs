@@ -5,9 +5,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_model::protocol::{Notification, OWNER_VARIABLE, Reply, Request, StackSupport};
-use rtf_model::{Attachment, EventKind, ExitStatus, LeftProcess, Source, Stream};
+use rtf_model::{Attachment, EventKind, ExitStatus, LeftProcess, Source, Stream, TestId};
 
-use crate::plan::{HostPlan, ProcessPlan, SuitePlan};
+use crate::plan::{AttachedPlan, HostPlan, ProcessPlan, SuitePlan};
 
 /// One process that the machine asked for. Never used twice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -24,6 +24,10 @@ pub enum Input {
     Deadline(Deadline),
     /// The suite must end early.
     Stop(Stop),
+    /// This test is to be stopped, if it runs: by whom.
+    StopTest(TestId, String),
+    /// The rest of the suite is to be skipped: by whom.
+    Skip(String),
 }
 
 /// What happened to a process.
@@ -43,8 +47,13 @@ pub enum HostInput {
     Printed(Stream, Vec<u8>),
     /// All probes that are asked from outside hold: a process fixture is ready.
     ProbesHold,
+    /// A probe does not hold yet, which set-up waits for: why. Told again when
+    /// the reason is another one.
+    ProbeWaits(String),
     /// A probe of a process fixture does not hold any more.
     ProbeFailed(String),
+    /// It lives, and has told nothing that was not delivered.
+    Lives,
     /// The stacks of its threads, or why there are none.
     StackTaken(String),
     /// It ended, everything that it printed was delivered, and what it left
@@ -68,6 +77,9 @@ pub struct Stop {
     pub level: StopLevel,
     /// Why, in words: `SIGINT`.
     pub reason: String,
+    /// How long it may take until it is over, tear-downs and hooks included.
+    /// Then it goes on as with [`StopLevel::Kill`].
+    pub limit: Duration,
 }
 
 /// A point in time that the machine waits for. Setting it again moves it.
@@ -75,10 +87,14 @@ pub struct Stop {
 pub enum Deadline {
     /// The suite's own limit.
     Suite,
+    /// The limit of its end after a stop request.
+    Shutdown,
     /// About the running test.
     Test(TestTimer),
     /// About the fixture at this place of the suite's plan.
     Fixture(usize, FixtureTimer),
+    /// The next attempt of a test that failed.
+    Retry,
     /// The limit of the running hook, or of a step of its stop.
     Hook,
 }
@@ -134,6 +150,9 @@ pub enum Program {
     Host(Arc<HostPlan>),
     /// A process fixture, with its probes.
     Process(Arc<ProcessPlan>),
+    /// Nothing: what runs already is watched. It "ends" when its channel is
+    /// closed, or it is signalled or killed.
+    Attached(Arc<AttachedPlan>),
     /// A command, without a channel.
     Command(Vec<String>),
 }
@@ -167,6 +186,8 @@ pub enum Effect {
     KillTree(HostId),
     /// Ask the `alive` probes of a process fixture from now on.
     WatchAlive(HostId),
+    /// Look whether the process lives; answered by [`HostInput::Lives`], or by its end.
+    LookAlive(HostId),
     /// Wait for a moment, in the time of `now`.
     SetDeadline(Deadline, Duration),
     /// Do not wait for it any more.

@@ -56,6 +56,11 @@ impl LogWatch {
         self.awaited.is_empty()
     }
 
+    /// An awaited pattern that was not seen.
+    pub fn awaited(&self) -> Option<&Regex> {
+        self.awaited.first()
+    }
+
     /// The first line with a forbidden pattern, told once.
     pub fn take_found(&mut self) -> Option<String> {
         self.found.take()

@@ -24,7 +24,7 @@ mod log_watch;
 mod suite;
 mod test;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub use io::{
     Deadline, Effect, FixtureTimer, HostId, HostInput, Input, Program, Start, Stop, StopLevel,

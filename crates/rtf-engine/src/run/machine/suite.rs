@@ -11,18 +11,28 @@
 //! 5. A fixture is not there: set it up.
 //! 6. Ask plug-in fixtures for their `check`, then start the next test.
 //!
+//! How it is ended early is in [`ending`], how a test that failed is tried again in
+//! [`retries`].
+//!
 //! **A collapse interrupts a test in [`SuiteMachine::fixture_changed`].**
+
+mod cursor;
+mod ending;
+mod looking;
+mod retries;
 
 use std::time::Duration;
 
-use rtf_model::{EventKind, StopCause, TestId, Trigger, Verdict};
+use rtf_model::{EventKind, Phase, StopCause, TestFinished, TestId, Trigger, Verdict};
 
 use super::fixture::Change;
 use super::fixtures::Fixtures;
 use super::hooks::Hooks;
-use super::io::{Deadline, Effect, HostId, HostInput, Input, Start, Stop, StopLevel};
+use super::io::{Deadline, Effect, HostId, HostInput, Input, Start};
 use super::test::{Ended, TestRun};
-use crate::plan::{AfterCollapse, SuitePlan};
+use crate::plan::{AfterCollapse, Given, SuitePlan};
+use crate::run::FailLimit;
+use cursor::Cursor;
 
 /// What a step of the machine may use: the time, and a list for its effects.
 #[derive(Debug)]
@@ -33,6 +43,10 @@ pub struct Context<'a> {
 }
 
 impl Context<'_> {
+    pub fn now(&self) -> Duration {
+        self.now
+    }
+
     pub fn out(&mut self, effect: Effect) {
         self.out.push(effect);
     }
@@ -60,14 +74,6 @@ impl Context<'_> {
 /// a short test; two keep a second core busy.
 const HOSTS_AHEAD: usize = 2;
 
-/// The test that is next, or runs.
-#[derive(Clone, Copy, Debug)]
-struct Cursor {
-    test: usize,
-    repetition: u32,
-    attempt: u32,
-}
-
 /// The state machine of one suite.
 #[derive(Debug)]
 pub struct SuiteMachine<'p> {
@@ -75,11 +81,21 @@ pub struct SuiteMachine<'p> {
     fixtures: Fixtures<'p>,
     hooks: Hooks<'p>,
     running: Option<TestRun<'p>>,
+    /// The fixtures' processes that were not seen to live since the test ended.
+    unseen: Vec<HostId>,
     cursor: Cursor,
     /// Whether `check` was asked for the test that is next.
     checked: bool,
+    /// Whether the next attempt of a test that failed is not due yet.
+    waiting: bool,
+    /// Why no more repetitions of the running test follow.
+    given_up: Option<String>,
     /// Why the rest is skipped.
     ending: Option<String>,
+    /// How many tests of the run have failed, and may.
+    fails: FailLimit,
+    /// When the run was asked to end: how long that may take, and who asked.
+    shutdown: Option<(Duration, String)>,
     /// Whether the `end` hooks were called for.
     end_called: bool,
     started: bool,
@@ -88,17 +104,23 @@ pub struct SuiteMachine<'p> {
 }
 
 impl<'p> SuiteMachine<'p> {
-    /// The machine of a suite that has not started.
+    /// The machine of a suite that has not started, in a run in which so many
+    /// tests have failed until now.
     #[must_use]
-    pub fn new(plan: &'p SuitePlan) -> Self {
+    pub fn new(plan: &'p SuitePlan, fails: FailLimit) -> Self {
         Self {
             plan,
+            ending: fails.reached(),
+            fails,
             fixtures: Fixtures::new(plan),
             hooks: Hooks::new(plan),
             running: None,
-            cursor: Cursor { test: 0, repetition: 1, attempt: 1 },
+            unseen: Vec::new(),
+            cursor: Cursor::at(0),
+            waiting: false,
             checked: false,
-            ending: None,
+            given_up: None,
+            shutdown: None,
             end_called: false,
             started: false,
             over: false,
@@ -114,7 +136,9 @@ impl<'p> SuiteMachine<'p> {
             Input::Start => self.start(&mut cx),
             Input::Host(host, input) => self.host(host, input, &mut cx),
             Input::Deadline(deadline) => self.deadline(deadline, &mut cx),
-            Input::Stop(stop) => self.stop(&stop, &mut cx),
+            Input::Stop(stop) => self.stop(stop, &mut cx),
+            Input::StopTest(test, by) => self.stop_test(test, &by, &mut cx),
+            Input::Skip(by) => self.skip(&by, &mut cx),
         }
         if let Some(ended) = self.running.as_mut().and_then(|test| test.take_end(&mut cx)) {
             self.test_ended(&ended, &mut cx);
@@ -126,9 +150,35 @@ impl<'p> SuiteMachine<'p> {
     fn start(&mut self, cx: &mut Context<'_>) {
         self.started = true;
         cx.emit(EventKind::SuiteStarted { suite: self.plan.id });
+        match &self.plan.given {
+            Given::Refused(reason) if self.ending.is_none() => return self.refuse(reason, cx),
+            Given::Nothing | Given::Refused(_) => {}
+            Given::All(prepared) => cx.emit(EventKind::SuitePrepared(prepared.clone())),
+        }
         if let Some(timeout) = self.plan.timeout {
             cx.set(Deadline::Suite, timeout);
         }
+    }
+
+    /// The suite cannot have what it needs: nothing of it is started, and that
+    /// is an error of each of its tests.
+    fn refuse(&mut self, reason: &str, cx: &mut Context<'_>) {
+        for plan in &self.plan.tests {
+            cx.emit(EventKind::TestStarted { test: plan.id, repetition: 1, attempt: 1 });
+            cx.emit(EventKind::TestFinished(TestFinished {
+                test: plan.id,
+                verdict: Verdict::Error,
+                reason: Some(reason.to_owned()),
+                phase: Phase::Load,
+                exit: None,
+                rerun: false,
+            }));
+            if plan.repetitions > 1 {
+                cx.emit(EventKind::TestSkipped { test: plan.id, reason: reason.to_owned() });
+            }
+        }
+        self.cursor.test = self.plan.tests.len();
+        self.end_called = true;
     }
 
     fn host(&mut self, host: HostId, input: HostInput, cx: &mut Context<'_>) {
@@ -136,7 +186,11 @@ impl<'p> SuiteMachine<'p> {
             if let Some(test) = &mut self.running {
                 test.handle(input, cx);
             }
+            self.look_alive(cx);
         } else if let Some(place) = self.fixtures.place_of(host) {
+            if matches!(input, HostInput::Lives) {
+                self.seen_alive(host);
+            }
             let change = self.fixtures.get(place).handle(input, cx);
             self.fixture_changed(place, change, cx);
         } else if self.hooks.owns(host) {
@@ -147,6 +201,8 @@ impl<'p> SuiteMachine<'p> {
     fn deadline(&mut self, deadline: Deadline, cx: &mut Context<'_>) {
         match deadline {
             Deadline::Suite => self.limit_reached(cx),
+            Deadline::Retry => self.waiting = false,
+            Deadline::Shutdown => self.shutdown_took_too_long(cx),
             Deadline::Test(timer) => {
                 if let Some(test) = &mut self.running {
                     test.deadline(timer, cx);
@@ -158,37 +214,6 @@ impl<'p> SuiteMachine<'p> {
             }
             Deadline::Hook => self.hooks.deadline(cx),
         }
-    }
-
-    fn limit_reached(&mut self, cx: &mut Context<'_>) {
-        let limit = self.plan.timeout.unwrap_or_default();
-        let reason = format!("the suite did not end within {limit:?}");
-        self.hooks.call(Trigger::Timeout, &reason, self.running_test());
-        if let Some(test) = &mut self.running {
-            test.stop(StopCause::Timeout, reason.clone(), cx);
-        }
-        self.end_early(reason);
-    }
-
-    fn stop(&mut self, stop: &Stop, cx: &mut Context<'_>) {
-        let reason = format!("stopped by {}", stop.reason);
-        if self.started && stop.level == StopLevel::TearDown {
-            self.hooks.call(Trigger::Interrupt, &reason, self.running_test());
-        }
-        if let Some(test) = &mut self.running {
-            test.stop(StopCause::Interrupt, reason.clone(), cx);
-            if stop.level == StopLevel::Kill {
-                test.kill(cx);
-            }
-        }
-        if stop.level == StopLevel::Kill {
-            self.fixtures.kill_all(cx);
-        }
-        self.end_early(reason);
-    }
-
-    fn end_early(&mut self, reason: String) {
-        self.ending.get_or_insert(reason);
     }
 
     fn running_test(&self) -> Option<(TestId, String)> {
@@ -229,13 +254,20 @@ impl<'p> SuiteMachine<'p> {
         let Some(run) = self.running.take() else { return };
         let plan = &self.plan.tests[self.cursor.test];
         let collapsed = ended.verdict == Verdict::Collapsed;
-        let rerun =
-            collapsed && plan.after_collapse == AfterCollapse::Rerun && self.ending.is_none();
+        let rerun = collapsed
+            && plan.after_collapse == AfterCollapse::Rerun
+            && self.ending.is_none()
+            && self.given_up.is_none();
+        let retry = self.is_retried(ended);
+        let rerun = rerun || retry;
         let mut finished = run.finished(ended, rerun);
         if let (true, AfterCollapse::Skip, EventKind::TestFinished(finished)) =
             (collapsed, plan.after_collapse, &mut finished)
         {
             finished.verdict = Verdict::Skipped;
+        }
+        if let EventKind::TestFinished(finished) = &finished {
+            self.fails.count(finished);
         }
         cx.emit(finished);
         let trigger = match ended.verdict {
@@ -261,6 +293,10 @@ impl<'p> SuiteMachine<'p> {
         }
         self.checked = false;
         self.cursor = self.cursor.next(rerun, plan.repetitions);
+        if retry {
+            self.retry(plan.retries.delay, cx);
+        }
+        self.give_up_repetitions(cx);
     }
 
     fn proceed(&mut self, cx: &mut Context<'_>) {
@@ -272,6 +308,10 @@ impl<'p> SuiteMachine<'p> {
                 test.stop(StopCause::Interrupt, reason.clone(), cx);
             }
             return;
+        }
+        // Tests of other suites may have failed meanwhile.
+        if let Some(reason) = self.fails.reached() {
+            self.end_early(reason);
         }
         if self.hooks.run_next(cx) {
             return;
@@ -287,7 +327,7 @@ impl<'p> SuiteMachine<'p> {
         }
         if self.fixtures.start_next(cx) {
             self.checked = false;
-        } else if self.fixtures.all_ready() {
+        } else if self.fixtures.all_ready() && !self.waiting {
             self.check_then_test(cx);
         }
     }
@@ -300,7 +340,7 @@ impl<'p> SuiteMachine<'p> {
         if self.fixtures.any_checking() {
             return;
         }
-        let Cursor { test, repetition, attempt } = self.cursor;
+        let Cursor { test, repetition, attempt, .. } = self.cursor;
         let plan = &self.plan.tests[test];
         self.hooks.test_starts();
         self.running = Some(TestRun::start(self.plan, plan, (repetition, attempt), cx));
@@ -340,21 +380,9 @@ impl<'p> SuiteMachine<'p> {
         }
         self.over = true;
         cx.clear(Deadline::Suite);
+        cx.clear(Deadline::Retry);
+        cx.clear(Deadline::Shutdown);
         cx.emit(EventKind::SuiteFinished { suite: self.plan.id });
         cx.out(Effect::Done);
-    }
-}
-
-impl Cursor {
-    /// What comes after an attempt.
-    fn next(self, rerun: bool, repetitions: u32) -> Self {
-        let Self { test, repetition, attempt } = self;
-        if rerun {
-            Self { attempt: attempt + 1, ..self }
-        } else if repetition < repetitions {
-            Self { test, repetition: repetition + 1, attempt: 1 }
-        } else {
-            Self { test: test + 1, repetition: 1, attempt: 1 }
-        }
     }
 }

@@ -28,7 +28,8 @@ const RUN_TEST: u64 = 2;
 /// From SIGTERM to SIGKILL.
 pub const TERM_GRACE: Duration = Duration::from_secs(1);
 /// A test that did not pass waits this long for a fixture's collapse: a connection
-/// breaks before the kernel tells of the death at its other end.
+/// breaks before the kernel tells of the death at its other end. One that passed
+/// waits until the fixtures were seen to live, this long at the most.
 const SETTLE: Duration = Duration::from_millis(200);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,6 +51,8 @@ enum Step {
 enum Process {
     /// It lives, or is being started.
     Alive,
+    /// It is gone and would have passed, if all fixtures live.
+    Looking,
     /// It is gone, but a fixture may turn out to have collapsed before.
     Settling,
     /// It is gone, and nothing more is waited for.
@@ -167,7 +170,10 @@ impl<'p> TestRun<'p> {
                 }
             }
             HostInput::StackTaken(text) => self.stack_taken(text, cx),
-            HostInput::ProbesHold | HostInput::ProbeFailed(_) => {}
+            HostInput::ProbesHold
+            | HostInput::ProbeWaits(_)
+            | HostInput::ProbeFailed(_)
+            | HostInput::Lives => {}
         }
     }
 
@@ -285,10 +291,24 @@ impl<'p> TestRun<'p> {
         self.evidence.exit = Some(exit);
         let (verdict, ..) = judge(&self.evidence, self.phase);
         let may_be_collapsed = self.has_fixtures && self.evidence.stopped.is_none();
-        if may_be_collapsed && !verdict.is_green() {
-            self.process = Process::Settling;
+        self.process = match (may_be_collapsed, verdict.is_green()) {
+            (false, _) => Process::Over,
+            (true, true) => Process::Looking,
+            (true, false) => Process::Settling,
+        };
+        if may_be_collapsed {
             cx.set(Deadline::Test(TestTimer::Limit), SETTLE);
-        } else {
+        }
+    }
+
+    /// Whether it passes once all fixtures were seen to live.
+    pub fn is_looking(&self) -> bool {
+        self.process == Process::Looking
+    }
+
+    /// All fixtures live: its verdict is final.
+    pub fn seen_alive(&mut self) {
+        if self.is_looking() {
             self.process = Process::Over;
         }
     }

@@ -2,12 +2,14 @@
 //! order, each test has exactly one last word, and nothing overlaps a collapse
 //! and is green.
 
+use std::time::Duration;
+
 use proptest::prelude::*;
 use rtf_model::protocol::{Notification, Reply};
-use rtf_model::{ExitStatus, Message, MessageKind, Phase, Trigger, Verdict};
+use rtf_model::{ExitStatus, Message, MessageKind, Phase, TestId, Trigger, Verdict};
 
 use super::world::{SECOND, World, hook, suite};
-use crate::plan::AfterCollapse;
+use crate::plan::{AfterCollapse, Retries};
 use crate::run::machine::{HostInput, Input, StopLevel};
 
 fn act(world: &mut World<'_>, choice: u8, which: usize) {
@@ -46,6 +48,11 @@ fn act(world: &mut World<'_>, choice: u8, which: usize) {
         14 => drop((!world.deadlines.is_empty()).then(|| world.next_deadline())),
         _ if choice == 255 => world.stop(StopLevel::Kill),
         _ if choice == 239 => world.stop(StopLevel::TearDown),
+        _ if choice == 223 => world.feed(Input::Skip("a person".to_owned())),
+        _ if choice % 32 == 15 => {
+            let test = TestId(u32::try_from(which).unwrap_or_default());
+            world.feed(Input::StopTest(test, "a person".to_owned()));
+        }
         _ => world.feed(Input::Host(host, HostInput::Garbage("it wrote `x`".to_owned()))),
     }
 }
@@ -83,6 +90,8 @@ proptest! {
         }
         plan.tests[0].after_collapse = AfterCollapse::Rerun;
         plan.tests[tests - 1].repetitions = 2;
+        let delay = if independent { SECOND } else { Duration::ZERO };
+        plan.tests[tests / 2].retries = Retries { count: restarts, delay };
         plan.hooks = vec![hook(0, &Trigger::ALL), hook(1, &[Trigger::End])];
         let mut world = World::new(&plan);
         world.start();

@@ -244,6 +244,48 @@ fn a_collapse_during_the_last_tear_down_is_not_green() {
     assert!(!world.record.is_green());
 }
 
+/// It is told a moment after its death: what it left is swept first.
+#[test]
+fn a_test_that_passes_beside_a_dying_fixture_is_collapsed() {
+    let plan = suite(2, 1);
+    let mut world = until_test_runs(&plan);
+    world.unseen = true;
+    world.answer(TEST, "passed");
+    world.exit(TEST, ExitStatus::Code(0));
+    world.input(Source::Fixture(FixtureId(1)), HostInput::Lives);
+    assert!(world.record.tests[0].is_running(), "its last word is not spoken yet");
+    world.exit(FIXTURE, ExitStatus::Signal(9));
+    world.tear_down(1);
+    world.finish();
+    assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Collapsed));
+}
+
+#[test]
+fn a_test_passes_at_once_when_all_fixtures_were_seen_to_live() {
+    let plan = suite(2, 1);
+    let mut world = until_test_runs(&plan);
+    world.unseen = true;
+    world.answer(TEST, "passed");
+    world.exit(TEST, ExitStatus::Code(0));
+    for fixture in 0..2 {
+        world.input(Source::Fixture(FixtureId(fixture)), HostInput::Lives);
+    }
+    assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Passed));
+    assert_eq!(world.now, std::time::Duration::ZERO);
+}
+
+#[test]
+fn a_fixture_that_cannot_be_seen_holds_a_test_up_for_a_moment_only() {
+    let plan = suite(1, 1);
+    let mut world = until_test_runs(&plan);
+    world.unseen = true;
+    world.answer(TEST, "passed");
+    world.exit(TEST, ExitStatus::Code(0));
+    world.next_deadline();
+    assert!(world.now.as_millis() <= 200);
+    assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Passed));
+}
+
 /// A test notices a broken connection before the kernel tells of the death.
 #[test]
 fn a_test_that_errs_just_before_the_collapse_is_told_is_collapsed() {

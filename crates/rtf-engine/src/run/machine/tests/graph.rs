@@ -93,6 +93,49 @@ fn each_further_restart_waits_twice_as_long() {
 }
 
 #[test]
+fn after_a_quiet_time_the_restart_delay_starts_anew_but_restarts_are_counted_on() {
+    let mut plan = suite(1, 1);
+    plan.fixtures[0].restarts = 4;
+    plan.fixtures[0].restart_delay = SECOND;
+    let mut world = World::new(&plan);
+    world.start();
+    world.answer(fixture(0), "passed");
+    let mut waited = Vec::new();
+    // How long it is ready before each collapse.
+    for ready in [29, 29, 30, 0] {
+        world.now += ready * SECOND;
+        world.exit(fixture(0), ExitStatus::Code(1));
+        let before = world.now;
+        assert_eq!(world.next_deadline(), Deadline::Fixture(0, FixtureTimer::RestartDue));
+        waited.push((world.now - before).as_secs());
+        world.answer(fixture(0), "passed");
+    }
+    assert_eq!(waited, [1, 2, 1, 2]);
+    world.now += 100 * SECOND;
+    world.exit(fixture(0), ExitStatus::Code(1));
+    world.finish();
+    assert!(world.record.fixtures[0].broken.is_some(), "its restarts are used up");
+}
+
+#[test]
+fn a_restart_whose_set_up_takes_long_was_not_a_quiet_time() {
+    let mut plan = suite(1, 1);
+    plan.fixtures[0].restarts = 3;
+    plan.fixtures[0].restart_delay = SECOND;
+    plan.fixtures[0].limits.setup = 100 * SECOND;
+    let mut world = World::new(&plan);
+    world.start();
+    world.answer(fixture(0), "passed");
+    world.exit(fixture(0), ExitStatus::Code(1));
+    world.next_deadline();
+    world.now += 60 * SECOND;
+    world.exit(fixture(0), ExitStatus::Code(1));
+    let before = world.now;
+    assert_eq!(world.next_deadline(), Deadline::Fixture(0, FixtureTimer::RestartDue));
+    assert_eq!(world.now - before, 2 * SECOND);
+}
+
+#[test]
 fn a_stop_while_a_restart_waits_starts_nothing() {
     let mut plan = suite(1, 1);
     plan.fixtures[0].restart_delay = SECOND;

@@ -1,10 +1,10 @@
 //! Limits: what happens, and in which order, when something takes too long.
 
 use insta::assert_snapshot;
-use rtf_model::{ExitStatus, FixtureId, Phase, Source, TestId, Verdict};
+use rtf_model::{ExitStatus, FixtureId, HookId, Phase, Source, TestId, Trigger, Verdict};
 
-use super::world::{SECOND, World, suite};
-use crate::run::machine::{Deadline, HostInput, TestTimer};
+use super::world::{SECOND, World, hook, suite};
+use crate::run::machine::{Deadline, HostInput, StopLevel, TestTimer};
 
 const FIXTURE: Source = Source::Fixture(FixtureId(0));
 const TEST: Source = Source::Test(TestId(0));
@@ -129,4 +129,107 @@ fn the_limit_of_the_suite_ends_it_with_tear_down() {
     world.finish();
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::TimedOut));
     assert_eq!(world.record.tests[1].reason(), Some("the suite did not end within 1s"));
+}
+
+/// Each step is within its own limit, and all of them together are not.
+#[test]
+fn a_shutdown_that_takes_too_long_goes_on_by_force_and_the_hooks_still_run() {
+    let mut plan = suite(2, 1);
+    plan.hooks = vec![hook(0, &[Trigger::Interrupt]), hook(1, &[Trigger::End])];
+    plan.hooks[0].timeout = 15 * SECOND;
+    plan.fixtures[1].limits.teardown = 100 * SECOND;
+    let mut world = World::new(&plan);
+    world.start();
+    world.answer(FIXTURE, "passed");
+    world.answer(Source::Fixture(FixtureId(1)), "passed");
+    (0..2).for_each(|number| world.answer(Source::Fixture(FixtureId(number)), "passed"));
+    world.now = SECOND;
+    world.stop(StopLevel::TearDown);
+    world.answer(TEST, "interrupted");
+    world.exit(TEST, ExitStatus::Code(0));
+    world.now = 12 * SECOND;
+    world.exit(Source::Hook(HookId(0)), ExitStatus::Code(0));
+    world.exit(Source::Hook(HookId(1)), ExitStatus::Code(0));
+    assert_eq!(world.next_deadline(), Deadline::Shutdown);
+    (0..2).rev().for_each(|number| {
+        world.exit(Source::Fixture(FixtureId(number)), ExitStatus::Signal(9));
+    });
+    world.finish();
+    assert_snapshot!(world.story(), @"
+     0.0  suite-started
+     0.0  fixture-starting attempt=1 fixture=0
+     0.0  fixture-ready fixture=0
+     0.0  fixture-starting attempt=1 fixture=1
+     0.0  fixture-ready fixture=1
+     0.0  test-started attempt=1 repetition=1 test=0
+     1.0  test-stopping cause=interrupt reason=stopped by SIGINT test=0
+     1.0    → close the channel
+     1.0  test-finished exit={code:0} phase=load reason=stopped by SIGINT test=0 verdict=interrupted
+     1.0  hook-started hook=0 reason=stopped by SIGINT test=0 trigger=interrupt
+    12.0  hook-finished hook=0
+    12.0  hook-started hook=1 reason=the suite ends trigger=end
+    12.0  hook-finished hook=1
+    12.0  fixture-stopping fixture=1
+    21.0  warning diagnostic={code:shutdown-timeout,hint:`--shutdown-timeout` says how long tear-downs and hooks may take,message:the run did not end within 20s of SIGINT: what was left was killed,severity:warning}
+    21.0    → kill the tree
+    21.0  fixture-stopping fixture=0
+    21.0    → kill the tree
+    21.0  fixture-stopped fixture=1 problem=it was killed: the run did not end within 20s of SIGINT
+    21.0  fixture-stopped fixture=0 problem=it was killed: the run did not end within 20s of SIGINT
+    21.0  suite-finished
+    ");
+}
+
+#[test]
+fn a_hook_that_runs_when_the_shutdown_is_over_comes_to_its_end() {
+    let mut plan = suite(1, 1);
+    plan.hooks = vec![hook(0, &[Trigger::Interrupt]), hook(1, &[Trigger::End])];
+    plan.hooks[0].timeout = 30 * SECOND;
+    let mut world = World::new(&plan);
+    world.start();
+    world.answer(FIXTURE, "passed");
+    world.answer(FIXTURE, "passed");
+    world.stop(StopLevel::TearDown);
+    world.exit(TEST, ExitStatus::Code(0));
+    assert_eq!(world.next_deadline(), Deadline::Shutdown);
+    world.exit(FIXTURE, ExitStatus::Signal(9));
+    world.now = 29 * SECOND;
+    world.exit(Source::Hook(HookId(0)), ExitStatus::Code(0));
+    world.exit(Source::Hook(HookId(1)), ExitStatus::Code(0));
+    world.finish();
+    assert_snapshot!(world.story(), @"
+     0.0  suite-started
+     0.0  fixture-starting attempt=1 fixture=0
+     0.0  fixture-ready fixture=0
+     0.0  test-started attempt=1 repetition=1 test=0
+     0.0  test-stopping cause=interrupt reason=stopped by SIGINT test=0
+     0.0  test-finished exit={code:0} phase=load reason=stopped by SIGINT test=0 verdict=interrupted
+     0.0  hook-started hook=0 reason=stopped by SIGINT test=0 trigger=interrupt
+    20.0  warning diagnostic={code:shutdown-timeout,hint:`--shutdown-timeout` says how long tear-downs and hooks may take,message:the run did not end within 20s of SIGINT: what was left was killed,severity:warning}
+    20.0  fixture-stopping fixture=0
+    20.0    → kill the tree
+    20.0  fixture-stopped fixture=0 problem=it was killed: the run did not end within 20s of SIGINT
+    29.0  hook-finished hook=0
+    29.0  hook-started hook=1 reason=the suite ends trigger=end
+    29.0  hook-finished hook=1
+    29.0  suite-finished
+    ");
+}
+
+#[test]
+fn a_stubborn_test_is_killed_when_the_shutdown_is_over() {
+    let mut plan = suite(0, 2);
+    let limits = crate::plan::TestLimits { grace: 100 * SECOND, ..*plan.tests[0].limits };
+    plan.tests[0].limits = std::sync::Arc::new(limits);
+    let mut world = World::new(&plan);
+    world.start();
+    world.phase(TEST, Phase::Run);
+    world.next_deadline();
+    world.stop(StopLevel::TearDown);
+    assert_eq!(world.next_deadline(), Deadline::Shutdown);
+    assert_eq!(world.now, 22 * SECOND);
+    world.exit(TEST, ExitStatus::Signal(9));
+    world.finish();
+    assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Interrupted));
+    assert_eq!(world.record.verdict(TestId(1)), Some(Verdict::Skipped));
 }

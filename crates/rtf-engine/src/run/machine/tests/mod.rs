@@ -1,9 +1,13 @@
 //! The state machine with invented times: no processes, no sleeps.
 
+mod attached;
 mod chaos;
 mod collapse;
+mod control;
 mod flow;
 mod graph;
 mod hooks;
 mod limits;
-mod world;
+mod prepared;
+mod retries;
+pub(crate) mod world;

@@ -13,6 +13,7 @@ use rtf_model::{
 };
 
 use crate::plan::*;
+use crate::run::FailLimit;
 use crate::run::machine::{
     Deadline, Effect, HostId, HostInput, Input, Stop, StopLevel, SuiteMachine,
 };
@@ -29,6 +30,9 @@ pub fn suite(fixtures: usize, tests: usize) -> SuitePlan {
         environment: String::new(),
         env: Arc::default(),
         timeout: None,
+        isolate: Isolation::default(),
+        given: Given::Nothing,
+        requires: Vec::new(),
         tolerates_collapse: false,
         fixtures: (0..fixtures).map(fixture).collect(),
         hooks: Vec::new(),
@@ -42,7 +46,11 @@ fn plugin() -> PluginPlan {
         file: PathBuf::from("plugin.so"),
         param: String::new(),
         args: Vec::new(),
-        host: Arc::new(HostPlan { command: vec!["host".to_owned()], env: Vec::new() }),
+        host: Arc::new(HostPlan {
+            command: vec!["host".to_owned()],
+            env: Vec::new(),
+            forks: false,
+        }),
     }
 }
 
@@ -90,6 +98,7 @@ fn test(index: usize) -> TestPlan {
         limits: Arc::new(limits),
         after_collapse: AfterCollapse::Fail,
         leaks: Leaks::Report,
+        retries: Retries::default(),
         critical: false,
         tags: Vec::new(),
     }
@@ -105,6 +114,8 @@ pub struct World<'p> {
     pub log: Vec<String>,
     pub deadlines: BTreeMap<Deadline, Duration>,
     pub done: bool,
+    /// Whether it cannot be seen that fixtures live.
+    pub unseen: bool,
     order: OrderChecker,
     seq: u64,
 }
@@ -113,13 +124,14 @@ impl<'p> World<'p> {
     pub fn new(plan: &'p SuitePlan) -> Self {
         let mut world = Self {
             now: Duration::ZERO,
-            machine: SuiteMachine::new(plan),
+            machine: SuiteMachine::new(plan, FailLimit::default()),
             record: Record::default(),
             hosts: BTreeMap::new(),
             sent: Vec::new(),
             log: Vec::new(),
             deadlines: BTreeMap::new(),
             done: false,
+            unseen: false,
             order: OrderChecker::default(),
             seq: 0,
         };
@@ -137,6 +149,7 @@ impl<'p> World<'p> {
             folder: String::new(),
             suites: 1,
             tests: u32::try_from(plan.tests.len()).unwrap(),
+            manifest: Box::default(),
         }));
         self.emit(EventKind::SuitePlanned(SuitePlanned {
             suite: plan.id,
@@ -187,8 +200,10 @@ impl<'p> World<'p> {
     pub fn feed(&mut self, input: Input) {
         let mut effects = Vec::new();
         self.machine.handle(input, self.now, &mut effects);
+        let mut looked_at = Vec::new();
         for effect in effects {
             match effect {
+                Effect::LookAlive(host) => looked_at.push(host),
                 Effect::Emit(kind) => self.emit(kind),
                 Effect::Spawn { host, source, .. } => drop(self.hosts.insert(host, source)),
                 Effect::Send(host, id, request) => self.sent.push((host, id, request)),
@@ -203,6 +218,8 @@ impl<'p> World<'p> {
                 )),
             }
         }
+        looked_at.retain(|host| !self.unseen && self.hosts.contains_key(host));
+        looked_at.into_iter().for_each(|host| self.feed(Input::Host(host, HostInput::Lives)));
     }
 
     pub fn start(&mut self) {
@@ -210,7 +227,8 @@ impl<'p> World<'p> {
     }
 
     pub fn stop(&mut self, level: StopLevel) {
-        self.feed(Input::Stop(Stop { level, reason: "SIGINT".to_owned() }));
+        let (reason, limit) = ("SIGINT".to_owned(), 20 * SECOND);
+        self.feed(Input::Stop(Stop { level, reason, limit }));
     }
 
     /// The host of a source that is alive.
@@ -306,7 +324,13 @@ fn line_of(json: &serde_json::Value) -> String {
 }
 
 fn text_of(value: &serde_json::Value) -> String {
-    value.to_string().replace('"', "")
+    sorted(value).to_string().replace('"', "")
+}
+
+fn sorted(value: &serde_json::Value) -> serde_json::Value {
+    let Some(object) = value.as_object() else { return value.clone() };
+    let fields: BTreeMap<_, _> = object.iter().map(|(key, value)| (key, sorted(value))).collect();
+    fields.into_iter().map(|(key, value)| (key.clone(), value)).collect()
 }
 
 fn effect_of(effect: &Effect) -> String {

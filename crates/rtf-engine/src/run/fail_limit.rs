@@ -1,0 +1,46 @@
+//! How many tests may fail before the rest of the run is skipped.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use rtf_model::{TestFinished, TestId, Verdict};
+
+/// Counts tests that did not pass, over all suites of a run: each suite has a
+/// clone, and all of them count together.
+#[derive(Clone, Debug, Default)]
+pub struct FailLimit {
+    /// The number at which it is enough; none is never enough.
+    most: Option<u32>,
+    /// How many were counted by any clone.
+    seen: Arc<AtomicU32>,
+    /// The test that this suite counted last: each is counted once, and its
+    /// repetitions follow one another.
+    last: Option<TestId>,
+}
+
+impl FailLimit {
+    /// A limit at which nothing was counted yet.
+    #[must_use]
+    pub fn new(most: Option<u32>) -> Self {
+        Self { most, ..Self::default() }
+    }
+
+    /// Takes the end of an attempt in.
+    pub fn count(&mut self, finished: &TestFinished) {
+        let says_nothing = matches!(finished.verdict, Verdict::Skipped | Verdict::Interrupted);
+        if finished.verdict.is_green() || finished.rerun || says_nothing {
+            return;
+        }
+        if self.last.replace(finished.test) != Some(finished.test) {
+            self.seen.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+
+    /// Why nothing more is run, once it is enough.
+    #[must_use]
+    pub fn reached(&self) -> Option<String> {
+        let most = self.most.filter(|most| self.seen.load(Ordering::Relaxed) >= *most)?;
+        let tests = if most == 1 { "1 test has".to_owned() } else { format!("{most} tests have") };
+        Some(format!("{tests} not passed (--max-fail {most})"))
+    }
+}

@@ -1,0 +1,94 @@
+//! How a suite, or one of its tests, is ended early: by the suite's own limit, by a
+//! stop request, by a person, and by force when that takes too long.
+
+use rtf_model::{Diagnostic, EventKind, StopCause, TestId, Trigger};
+
+use super::{Context, Cursor, SuiteMachine};
+use crate::run::machine::io::{Deadline, Stop, StopLevel};
+
+impl SuiteMachine<'_> {
+    pub(super) fn limit_reached(&mut self, cx: &mut Context<'_>) {
+        let limit = self.plan.timeout.unwrap_or_default();
+        let reason = format!("the suite did not end within {limit:?}");
+        self.hooks.call(Trigger::Timeout, &reason, self.running_test());
+        if let Some(test) = &mut self.running {
+            test.stop(StopCause::Timeout, reason.clone(), cx);
+        }
+        self.end_early(reason);
+    }
+
+    pub(super) fn stop(&mut self, stop: Stop, cx: &mut Context<'_>) {
+        let reason = format!("stopped by {}", stop.reason);
+        if self.started && stop.level == StopLevel::TearDown {
+            self.hooks.call(Trigger::Interrupt, &reason, self.running_test());
+        }
+        if let Some(test) = &mut self.running {
+            test.stop(StopCause::Interrupt, reason.clone(), cx);
+        }
+        match stop.level {
+            StopLevel::TearDown if self.started && self.shutdown.is_none() => {
+                cx.set(Deadline::Shutdown, stop.limit);
+                self.shutdown = Some((stop.limit, stop.reason));
+            }
+            StopLevel::TearDown => {}
+            StopLevel::Kill => self.kill(None, cx),
+        }
+        self.end_early(reason);
+    }
+
+    /// Stops a test, if it runs. The suite goes on with the next one.
+    pub(super) fn stop_test(&mut self, test: TestId, by: &str, cx: &mut Context<'_>) {
+        let about = self.running_test().filter(|(running, _)| *running == test);
+        let (Some(about), Some(run)) = (about, &mut self.running) else { return };
+        let reason = format!("stopped by {by}");
+        run.stop(StopCause::Interrupt, reason.clone(), cx);
+        self.hooks.call(Trigger::Interrupt, &reason, Some(about));
+        self.given_up.get_or_insert(reason);
+    }
+
+    /// Skips what is left of the repetitions of a test that a person stopped.
+    pub(super) fn give_up_repetitions(&mut self, cx: &mut Context<'_>) {
+        let Some(reason) = self.given_up.take() else { return };
+        let Cursor { test, repetition, .. } = self.cursor;
+        if let (Some(plan), 2..) = (self.plan.tests.get(test), repetition) {
+            cx.emit(EventKind::TestSkipped { test: plan.id, reason });
+            self.cursor = Cursor::at(test + 1);
+        }
+    }
+
+    /// Stops the running test, and skips the rest of the suite.
+    pub(super) fn skip(&mut self, by: &str, cx: &mut Context<'_>) {
+        let reason = format!("skipped by {by}");
+        if self.started {
+            self.hooks.call(Trigger::Interrupt, &reason, self.running_test());
+        }
+        if let Some(test) = &mut self.running {
+            test.stop(StopCause::Interrupt, reason.clone(), cx);
+        }
+        self.end_early(reason);
+    }
+
+    /// From now on it goes on as after a second stop request.
+    pub(super) fn shutdown_took_too_long(&mut self, cx: &mut Context<'_>) {
+        let Some((limit, by)) = &self.shutdown else { return };
+        let reason = format!("the run did not end within {limit:?} of {by}");
+        let message = format!("{reason}: what was left was killed");
+        let diagnostic = Diagnostic::warning("shutdown-timeout", message)
+            .hint("`--shutdown-timeout` says how long tear-downs and hooks may take");
+        cx.emit(EventKind::Warning { diagnostic });
+        self.kill(Some(&reason), cx);
+    }
+
+    /// Kills the running test and all fixtures, without tear-down.
+    fn kill(&mut self, why: Option<&str>, cx: &mut Context<'_>) {
+        if let Some(test) = &mut self.running {
+            test.kill(cx);
+        }
+        cx.clear(Deadline::Shutdown);
+        self.fixtures.kill_all(why, cx);
+    }
+
+    pub(super) fn end_early(&mut self, reason: String) {
+        self.ending.get_or_insert(reason);
+    }
+}

@@ -1,0 +1,71 @@
+//! What a suite got for itself, or could not get.
+
+use insta::assert_snapshot;
+use rtf_model::{FixtureId, Source, SuiteId, SuitePrepared, TestId, Trigger, Verdict};
+
+use super::world::{World, hook, suite};
+use crate::plan::{Given, SuitePlan};
+use crate::run::machine::StopLevel;
+
+fn refused() -> SuitePlan {
+    let mut plan = suite(1, 2);
+    plan.hooks = vec![hook(0, &Trigger::ALL)];
+    plan.tests[1].repetitions = 3;
+    plan.timeout = Some(super::world::SECOND);
+    plan.given = Given::Refused("no network of its own: refused".to_owned());
+    plan
+}
+
+#[test]
+fn it_is_told_before_anything_begins() {
+    let mut plan = suite(1, 1);
+    plan.given = Given::All(SuitePrepared {
+        suite: SuiteId(0),
+        network: None,
+        ports: Vec::new(),
+        variables: Vec::new(),
+        join: "export A=1".to_owned(),
+    });
+    let mut world = World::new(&plan);
+    world.start();
+    assert_snapshot!(world.story(), @"
+    0.0  suite-started
+    0.0  suite-prepared join=export A=1
+    0.0  fixture-starting attempt=1 fixture=0
+    ");
+    assert_eq!(world.record.suites[0].prepared.as_ref().expect("it").join, "export A=1");
+}
+
+#[test]
+fn without_it_each_test_is_an_error_and_nothing_is_started() {
+    let plan = refused();
+    let mut world = World::new(&plan);
+    world.start();
+    world.finish();
+    assert!(world.hosts.is_empty(), "{:?}", world.hosts);
+    assert_snapshot!(world.story(), @"
+    0.0  suite-started
+    0.0  test-started attempt=1 repetition=1 test=0
+    0.0  test-finished phase=load reason=no network of its own: refused test=0 verdict=error
+    0.0  test-started attempt=1 repetition=1 test=1
+    0.0  test-finished phase=load reason=no network of its own: refused test=1 verdict=error
+    0.0  test-skipped reason=no network of its own: refused test=1
+    0.0  suite-finished
+    ");
+    for test in [TestId(0), TestId(1)] {
+        assert_eq!(world.record.verdict(test), Some(Verdict::Error));
+    }
+    assert!(!world.record.is_green());
+}
+
+#[test]
+fn a_stop_before_its_start_skips_its_tests_all_the_same() {
+    let plan = refused();
+    let mut world = World::new(&plan);
+    world.stop(StopLevel::TearDown);
+    world.start();
+    world.deadlines.clear();
+    world.finish();
+    assert!(!world.hosts.values().any(|of| *of == Source::Fixture(FixtureId(0))));
+    assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Skipped));
+}

@@ -1,0 +1,175 @@
+//! A test that fails is tried again.
+
+use std::time::Duration;
+
+use insta::assert_snapshot;
+use rtf_model::{ExitStatus, Phase, Source, TestId, Verdict};
+
+use super::world::{SECOND, World, hook, suite};
+use crate::plan::{Retries, SuitePlan};
+use crate::run::FailLimit;
+use crate::run::machine::{Deadline, StopLevel, SuiteMachine};
+
+const TEST: Source = Source::Test(TestId(0));
+
+fn plan(count: u32, delay: Duration) -> SuitePlan {
+    let mut plan = suite(0, 2);
+    plan.tests[0].retries = Retries { count, delay };
+    plan
+}
+
+fn fail(world: &mut World<'_>, critical: bool) {
+    world.phase(TEST, Phase::Run);
+    world.failure(TEST, "stuck", critical);
+    world.answer(TEST, "failed");
+    world.exit(TEST, ExitStatus::Code(0));
+}
+
+#[test]
+fn a_pass_at_the_second_attempt_is_flaky() {
+    let plan = plan(2, Duration::ZERO);
+    let mut world = World::new(&plan);
+    world.start();
+    fail(&mut world, false);
+    world.pass(0);
+    world.pass(1);
+    world.finish();
+    assert_snapshot!(world.story(), @"
+    0.0  suite-started
+    0.0  test-started attempt=1 repetition=1 test=0
+    0.0  test-phase phase=run test=0
+    0.0  message source={test:0}
+    0.0    → close the channel
+    0.0  test-finished exit={code:0} phase=run reason=stuck rerun=true test=0 verdict=failed
+    0.0  test-started attempt=2 repetition=1 test=0
+    0.0  test-phase phase=setup test=0
+    0.0  test-phase phase=run test=0
+    0.0  test-phase phase=tear-down test=0
+    0.0    → close the channel
+    0.0  test-finished exit={code:0} phase=exit test=0 verdict=passed
+    0.0  test-started attempt=1 repetition=1 test=1
+    0.0  test-phase phase=setup test=1
+    0.0  test-phase phase=run test=1
+    0.0  test-phase phase=tear-down test=1
+    0.0    → close the channel
+    0.0  test-finished exit={code:0} phase=exit test=1 verdict=passed
+    0.0  suite-finished
+    ");
+    assert!(world.record.is_green());
+    assert!(world.record.tests[0].is_flaky());
+    assert!(!world.record.tests[1].is_flaky());
+}
+
+#[test]
+fn each_repetition_has_its_own_retries_and_then_it_has_failed() {
+    let mut plan = plan(1, Duration::ZERO);
+    plan.tests[0].repetitions = 2;
+    let mut world = World::new(&plan);
+    world.start();
+    fail(&mut world, false);
+    world.pass(0);
+    fail(&mut world, false);
+    fail(&mut world, false);
+    world.pass(1);
+    world.finish();
+    let numbers: Vec<_> =
+        world.record.tests[0].attempts.iter().map(|a| (a.repetition, a.attempt)).collect();
+    assert_eq!(numbers, [(1, 1), (1, 2), (2, 1), (2, 2)]);
+    assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Failed));
+    assert!(!world.record.tests[0].is_flaky());
+}
+
+#[test]
+fn a_retry_waits_and_ctrl_c_ends_the_wait() {
+    let plan = plan(5, 10 * SECOND);
+    let mut world = World::new(&plan);
+    world.start();
+    fail(&mut world, false);
+    assert!(world.hosts.is_empty());
+    assert_eq!(world.next_deadline(), Deadline::Retry);
+    fail(&mut world, false);
+    assert!(world.hosts.is_empty());
+    world.stop(StopLevel::TearDown);
+    world.finish();
+    assert_snapshot!(world.story(), @"
+     0.0  suite-started
+     0.0  test-started attempt=1 repetition=1 test=0
+     0.0  test-phase phase=run test=0
+     0.0  message source={test:0}
+     0.0    → close the channel
+     0.0  test-finished exit={code:0} phase=run reason=stuck rerun=true test=0 verdict=failed
+    10.0  test-started attempt=2 repetition=1 test=0
+    10.0  test-phase phase=run test=0
+    10.0  message source={test:0}
+    10.0    → close the channel
+    10.0  test-finished exit={code:0} phase=run reason=stuck rerun=true test=0 verdict=failed
+    10.0  test-skipped reason=stopped by SIGINT test=0
+    10.0  test-skipped reason=stopped by SIGINT test=1
+    10.0  suite-finished
+    ");
+    assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Failed));
+}
+
+#[test]
+fn nothing_follows_a_critical_assertion_and_hooks_see_each_attempt() {
+    let mut plan = plan(5, Duration::ZERO);
+    plan.hooks = vec![hook(0, &[rtf_model::Trigger::Failure])];
+    let mut world = World::new(&plan);
+    world.start();
+    let park = Source::Hook(rtf_model::HookId(0));
+    for critical in [false, true] {
+        fail(&mut world, critical);
+        world.exit(park, ExitStatus::Code(0));
+    }
+    world.finish();
+    assert_eq!(world.record.tests[0].attempts.len(), 2);
+    assert_eq!(world.record.verdict(TestId(1)), Some(Verdict::Skipped));
+    assert_eq!(world.record.hooks[0].runs.len(), 2);
+}
+
+#[test]
+fn when_it_is_enough_the_rest_is_skipped() {
+    let mut plan = suite(1, 3);
+    plan.tests[0].repetitions = 3;
+    let mut world = World::new(&plan);
+    let fails = FailLimit::new(Some(1));
+    world.machine = SuiteMachine::new(&plan, fails.clone());
+    world.start();
+    let fixture = Source::Fixture(rtf_model::FixtureId(0));
+    world.answer(fixture, "passed");
+    world.answer(fixture, "passed");
+    fail(&mut world, false);
+    world.tear_down(0);
+    world.finish();
+    let why = Some("1 test has not passed (--max-fail 1)");
+    assert_eq!(world.record.tests[2].skipped.as_deref(), why);
+    // The next suite of the run begins nothing at all.
+    let mut next = World::new(&plan);
+    next.machine = SuiteMachine::new(&plan, fails);
+    next.start();
+    next.finish();
+    assert_eq!(next.record.totals().of(Verdict::Skipped), 3);
+}
+
+#[test]
+fn what_fails_in_a_suite_beside_it_ends_a_suite_after_its_test() {
+    let plan = suite(0, 3);
+    let fails = FailLimit::new(Some(1));
+    let [mut failing, mut other] = [(); 2].map(|()| {
+        let mut world = World::new(&plan);
+        world.machine = SuiteMachine::new(&plan, fails.clone());
+        world.start();
+        world
+    });
+    fail(&mut failing, false);
+    failing.finish();
+    // What runs comes to its end, and nothing follows.
+    let test = Source::Test(TestId(0));
+    other.answer(test, "passed");
+    other.exit(test, ExitStatus::Code(0));
+    other.finish();
+    assert_eq!(other.record.verdict(TestId(0)), Some(Verdict::Passed));
+    let why = Some("1 test has not passed (--max-fail 1)");
+    assert_eq!(other.record.tests[1].skipped.as_deref(), why);
+    assert_eq!(other.record.totals().of(Verdict::Skipped), 2);
+}
