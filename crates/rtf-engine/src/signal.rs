@@ -3,6 +3,7 @@
 //! They come through the [`crate::guard`], whose own death counts as one.
 
 use std::io;
+use std::time::Duration;
 
 use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::watch;
@@ -17,13 +18,17 @@ const ENDING: [(i32, &str); 3] = [(2, "SIGINT"), (15, "SIGTERM"), (1, "SIGHUP")]
 /// Turns signals, and the guard's death, into stop requests, for as long as it
 /// is polled:
 ///
-/// 1. stop the test, tear down, report;
+/// 1. stop the test, tear down, report, all within `limit`;
 /// 2. kill everything, report;
 /// 3. kill everything and return the signal's number: the process should end.
 ///
 /// # Errors
 /// A signal's handler cannot be installed.
-pub async fn forward(stops: &watch::Sender<Option<Stop>>, guard: &Link) -> io::Result<i32> {
+pub async fn forward(
+    stops: &watch::Sender<Option<Stop>>,
+    guard: &Link,
+    limit: Duration,
+) -> io::Result<i32> {
     let mut signals = Signals::install()?;
     let died = async {
         guard.guard_died().await;
@@ -39,22 +44,29 @@ pub async fn forward(stops: &watch::Sender<Option<Stop>>, guard: &Link) -> io::R
                 reason
             }
         };
-        stops.send_replace(Some(Stop { level, reason: reason.to_owned() }));
+        stops.send_replace(Some(Stop { level, reason: reason.to_owned(), limit }));
     }
     let (number, _) = signals.next().await;
     let _ = tree::kill_everything();
     Ok(number)
 }
 
-struct Signals([Signal; 3]);
+/// The signals that end a run, as they come to this process.
+#[derive(Debug)]
+pub struct Signals([Signal; 3]);
 
 impl Signals {
-    fn install() -> io::Result<Self> {
+    /// Takes them from now on.
+    ///
+    /// # Errors
+    /// A signal's handler cannot be installed.
+    pub fn install() -> io::Result<Self> {
         let [int, term, hup] = ENDING.map(|(number, _)| signal(SignalKind::from_raw(number)));
         Ok(Self([int?, term?, hup?]))
     }
 
-    async fn next(&mut self) -> (i32, &'static str) {
+    /// Waits for the next one: its number and its name.
+    pub async fn next(&mut self) -> (i32, &'static str) {
         let [int, term, hup] = &mut self.0;
         tokio::select! {
             _ = int.recv() => ENDING[0],

@@ -67,10 +67,16 @@ pub fn finish(duties: Duties, reason: String, mut signals: Signals, forked: Inst
             break;
         }
         let hook = with_folder(duty.hook, folder);
-        let why = Why { reason: &words, test: duties.test.as_ref() };
+        let network = duties.held.get(&hook.suite).and_then(|held| held.network.as_ref());
+        let network = network.map(|(namespaces, _)| namespaces);
+        let why = Why { reason: &words, test: duties.tests.get(&hook.suite), network };
         let ran = hook::run(&hook, duty.state, &why, &mut signals);
         parked.push(Parked { name: hook.name, problem: ran.problem });
         happened.extend(ran.happened);
+    }
+    // The namespaces' holders are not what a suite left: they are rtf's own.
+    for (_, holder) in duties.held.values().filter_map(|held| held.network.as_ref()) {
+        tree::end_own(*holder);
     }
     tree::add(&mut left, tree::clear(SWEEP_LIMIT));
     let end = EventKind::RunnerDied { reason: reason.clone(), left: left.clone() };
@@ -106,7 +112,7 @@ fn ended(hooks: &[Duty]) -> Vec<Ended> {
 }
 
 /// The hooks that have begun, then the abort hooks that did not run since the
-/// last test began.
+/// last test of their suite began.
 fn in_order(mut hooks: Vec<Duty>) -> Vec<Duty> {
     hooks.retain(|duty| match duty.state {
         State::Begun(_) => true,

@@ -3,9 +3,12 @@
 use std::collections::{HashMap, VecDeque};
 use std::os::fd::OwnedFd;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use rtf_model::{HookId, TestId};
+use rtf_model::{HookId, SuiteId, TestId};
+
+use crate::isolate::Namespaces;
 
 use super::note::{Hook, HookBegins, Kept, Note};
 
@@ -21,10 +24,33 @@ pub struct Duties {
     pub over: bool,
     /// The hooks of the suites that run.
     pub hooks: Vec<Duty>,
-    /// The test that runs.
-    pub test: Option<(TestId, String)>,
+    /// The tests that run: one of a suite at the most.
+    pub tests: HashMap<SuiteId, (TestId, String)>,
     /// The streams of the fixtures' processes.
     pub fixtures: HashMap<i32, Streams>,
+    /// What the suites that run have for themselves.
+    pub held: HashMap<SuiteId, Held>,
+}
+
+/// What a suite has for itself.
+#[derive(Debug, Default)]
+pub struct Held {
+    /// Its namespaces, and the process that holds them.
+    pub network: Option<(Arc<Namespaces>, i32)>,
+    /// What keeps its numbers from other runs.
+    leases: Vec<OwnedFd>,
+}
+
+impl Held {
+    fn add(&mut self, descriptors: Vec<OwnedFd>, holder: Option<i32>) {
+        match holder {
+            Some(holder) => {
+                let namespaces = Namespaces::new(descriptors);
+                self.network = namespaces.map(|namespaces| (Arc::new(namespaces), holder));
+            }
+            None => self.leases.extend(descriptors),
+        }
+    }
 }
 
 /// A hook, and what became of it.
@@ -51,7 +77,7 @@ pub struct Run {
     pub problem: Option<String>,
 }
 
-/// What became of a hook since the last test began.
+/// What became of a hook since the last test of its suite began.
 #[derive(Debug)]
 pub enum State {
     /// It did not run.
@@ -84,24 +110,34 @@ impl Duties {
         match note {
             Note::RunBegins { journal, started } => self.run = Some((journal, started)),
             Note::RunEnds => self.over = true,
+            Note::SuiteHolds { suite, descriptors, holder } => {
+                let came = descriptors.min(received.len());
+                let came = received.drain(..came).collect();
+                self.held.entry(suite).or_default().add(came, holder);
+            }
             Note::SuiteBegins { hooks, .. } => {
                 let due = |hook| Duty { hook, state: State::Due, runs: 0, last: None };
                 self.hooks.extend(hooks.into_iter().map(due));
             }
             // The journal may not know yet how they ended.
             Note::SuiteEnds { suite } => {
+                self.held.remove(&suite);
+                self.tests.remove(&suite);
                 for duty in self.hooks.iter_mut().filter(|duty| duty.hook.suite == suite) {
                     duty.state = State::Over;
                 }
+                // Without hooks, the runner does not tell of fixtures that end.
+                if self.hooks.iter().all(|duty| matches!(duty.state, State::Over)) {
+                    self.fixtures.clear();
+                }
             }
-            Note::TestBegins { test, name } => {
-                self.test = Some((test, name));
-                let of_suite = |duty: &&mut Duty| !matches!(duty.state, State::Over);
-                for duty in self.hooks.iter_mut().filter(of_suite) {
+            Note::TestBegins { suite, test, name } => {
+                self.tests.insert(suite, (test, name));
+                for duty in self.hooks.iter_mut().filter(|duty| duty.hook.suite == suite) {
                     duty.state = State::Due;
                 }
             }
-            Note::TestEnds => self.test = None,
+            Note::TestEnds { suite } => drop(self.tests.remove(&suite)),
             Note::HookBegins(begins) => {
                 if let Some(duty) = self.duty(begins.hook) {
                     duty.runs += 1;
@@ -145,4 +181,84 @@ impl Duties {
 
 fn announced(names: Vec<Kept>, received: &mut VecDeque<OwnedFd>) -> Streams {
     names.into_iter().map_while(|name| Some((name, received.pop_front()?))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hook(id: u32, suite: u32) -> Hook {
+        Hook {
+            id: HookId(id),
+            suite: SuiteId(suite),
+            name: "park".to_owned(),
+            aborts: true,
+            command: vec!["true".to_owned()],
+            env: Vec::new(),
+            folder: PathBuf::new(),
+            limit: Duration::from_secs(1),
+            plugin: None,
+        }
+    }
+
+    fn begins(hook: u32) -> Note {
+        Note::HookBegins(HookBegins {
+            hook: HookId(hook),
+            scope: String::new(),
+            trigger: rtf_model::Trigger::Failure,
+            reason: String::new(),
+            test: None,
+        })
+    }
+
+    /// Which hooks are due, and the names of the tests that run.
+    fn told(notes: impl IntoIterator<Item = Note>) -> (Vec<u32>, Vec<String>) {
+        let mut duties = Duties::default();
+        for note in notes {
+            duties.take(note, &mut VecDeque::new(), Instant::now());
+        }
+        let due = duties.hooks.iter().filter(|duty| matches!(duty.state, State::Due));
+        let due = due.map(|duty| duty.hook.id.0).collect();
+        let mut tests: Vec<_> = duties.tests.into_values().map(|(_, name)| name).collect();
+        tests.sort();
+        (due, tests)
+    }
+
+    #[test]
+    fn each_suite_has_its_own_test_and_its_own_hooks() {
+        let [one, two] = [0, 1].map(SuiteId);
+        let suite =
+            |suite: SuiteId| Note::SuiteBegins { suite, hooks: vec![hook(suite.0, suite.0)] };
+        let test = |suite: SuiteId, name: &str| {
+            let (test, name) = (TestId(suite.0), name.to_owned());
+            Note::TestBegins { suite, test, name }
+        };
+        let parked =
+            |hook: u32| [begins(hook), Note::HookEnds { hook: HookId(hook), problem: None }];
+        let both = || vec![suite(one), suite(two), test(one, "arm"), test(two, "hand")];
+        assert_eq!(told(both()), (vec![0, 1], vec!["arm".to_owned(), "hand".to_owned()]));
+        // A test makes its own suite's hooks due again, and no others.
+        let mut notes = both();
+        notes.extend(parked(0).into_iter().chain(parked(1)));
+        notes.extend([Note::TestEnds { suite: two }, test(two, "grip")]);
+        assert_eq!(told(notes), (vec![1], vec!["arm".to_owned(), "grip".to_owned()]));
+        let mut notes = both();
+        notes.push(Note::SuiteEnds { suite: one });
+        assert_eq!(told(notes), (vec![1], vec!["hand".to_owned()]));
+    }
+
+    #[test]
+    fn fixtures_of_a_suite_without_hooks_are_kept_as_long_as_there_are_hooks() {
+        let mut duties = Duties::default();
+        let mut take = |note| {
+            duties.take(note, &mut VecDeque::new(), Instant::now());
+            duties.fixtures.len()
+        };
+        for suite in [0, 1] {
+            take(Note::SuiteBegins { suite: SuiteId(suite), hooks: vec![hook(suite, suite)] });
+        }
+        take(Note::FixtureStarted { pid: 1, streams: Vec::new() });
+        assert_eq!(take(Note::SuiteEnds { suite: SuiteId(0) }), 1);
+        assert_eq!(take(Note::SuiteEnds { suite: SuiteId(1) }), 0);
+    }
 }

@@ -3,6 +3,7 @@
 use std::io;
 use std::os::unix::process::CommandExt;
 use std::process::{Command, Stdio};
+use std::sync::Arc;
 use std::time::Instant;
 
 use rtf_model::protocol::{
@@ -17,17 +18,20 @@ use super::gate;
 use super::note::{Hook, HookBegins, Kept};
 use super::unix::Signals;
 use crate::host::{codec, tree};
+use crate::isolate::Namespaces;
 
 /// The number of `run-test` on a hook's channel.
 pub(super) const RUN: u64 = 2;
 
-/// Why hooks are run now.
+/// Why a hook is run now, and where.
 #[derive(Debug)]
 pub struct Why<'a> {
     /// In words.
     pub reason: &'a str,
-    /// The test that ran.
+    /// The test of its suite that ran.
     pub test: Option<&'a (TestId, String)>,
+    /// The network of the suite.
+    pub network: Option<&'a Arc<Namespaces>>,
 }
 
 /// A hook that ran.
@@ -143,6 +147,9 @@ fn start(hook: &Hook, begins: &HookBegins, why: &Why<'_>) -> io::Result<Process>
     command.env("RTF_HOOK_REASON", &begins.reason);
     command.env("RTF_HOOK_TEST", why.test.map_or("", |(_, name)| name.as_str()));
     command.env(SCOPE_VARIABLE, &begins.scope);
+    if let Some(network) = why.network {
+        network.enter(&mut command);
+    }
     let mut streams = Streams::new();
     let mut theirs = None;
     if let Some(plugin) = &hook.plugin {

@@ -5,7 +5,7 @@ use std::mem::MaybeUninit;
 use std::os::fd::BorrowedFd;
 use std::os::unix::net::UnixStream;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -13,11 +13,15 @@ use rtf_model::{HookId, Source, SuiteId, TestId};
 use rustix::net::{SendAncillaryBuffer, SendAncillaryMessage, SendFlags, sendmsg};
 
 use super::note::{Hook, HookBegins, Kept, Note};
+use crate::isolate::Prepared;
 use crate::plan::SuitePlan;
 
 /// A guard that does not read for this long (it was stopped by a debugger, say)
 /// is told no more: the run must not wait for it.
 const PATIENCE: Duration = Duration::from_secs(1);
+
+/// How many descriptors go with one line at the most.
+pub(super) const DESCRIPTORS: usize = 3;
 
 /// The way to the guard. Telling never fails: without a guard, or when it is
 /// gone, the run goes on.
@@ -28,9 +32,9 @@ pub struct Link {
     /// must not block, telling must.
     pulse: Option<UnixStream>,
     forked: Instant,
-    /// Whether the suite that runs has hooks: without, the guard needs to know
-    /// nothing of its tests and fixtures.
-    hooks: AtomicBool,
+    /// How many of the suites that run have hooks: without, the guard needs to
+    /// know nothing of tests and fixtures.
+    hooked: AtomicUsize,
 }
 
 impl Link {
@@ -47,12 +51,12 @@ impl Link {
     }
 
     fn with(socket: Option<UnixStream>) -> Self {
-        let (socket, hooks) = (Mutex::new(socket), AtomicBool::new(false));
-        Self { socket, pulse: None, forked: Instant::now(), hooks }
+        let (socket, hooked) = (Mutex::new(socket), AtomicUsize::new(0));
+        Self { socket, pulse: None, forked: Instant::now(), hooked }
     }
 
-    fn has_hooks(&self) -> bool {
-        self.hooks.load(Ordering::Relaxed)
+    fn any_hooks(&self) -> bool {
+        self.hooked.load(Ordering::Relaxed) > 0
     }
 
     /// The run begins; `start` is zero on the clock of its events.
@@ -66,33 +70,57 @@ impl Link {
         self.tell(&Note::RunEnds);
     }
 
-    /// A suite begins: from now on, the guard will run its abort hooks.
-    pub fn suite_begins(&self, suite: &SuitePlan) {
-        self.hooks.store(!suite.hooks.is_empty(), Ordering::Relaxed);
-        if self.has_hooks() {
+    /// A suite begins: from now on, the guard will run its abort hooks, in its
+    /// network, while nobody else gets its numbers.
+    pub fn suite_begins(&self, prepared: &Prepared<'_>) {
+        let suite = &*prepared.plan;
+        if let Some((namespaces, holder)) = prepared.held() {
+            let descriptors: Vec<_> = namespaces.descriptors().collect();
+            self.suite_holds(suite.id, &descriptors, Some(holder));
+        }
+        let locks: Vec<_> = prepared.locks().collect();
+        for some in locks.chunks(DESCRIPTORS) {
+            self.suite_holds(suite.id, some, None);
+        }
+        if !suite.hooks.is_empty() {
+            self.hooked.fetch_add(1, Ordering::Relaxed);
+            let leases: Vec<_> = prepared.leases().collect();
+            for some in leases.chunks(DESCRIPTORS) {
+                self.suite_holds(suite.id, some, None);
+            }
             let hooks = suite.hooks.iter().map(|hook| Hook::of(suite, hook)).collect();
             self.tell(&Note::SuiteBegins { suite: suite.id, hooks });
         }
     }
 
+    fn suite_holds(&self, suite: SuiteId, beside: &[BorrowedFd<'_>], holder: Option<i32>) {
+        let note = Note::SuiteHolds { suite, descriptors: beside.len(), holder };
+        self.tell_with(&note, beside);
+    }
+
     /// A suite is over.
-    pub fn suite_ends(&self, suite: SuiteId) {
-        if self.has_hooks() {
-            self.tell(&Note::SuiteEnds { suite });
+    pub fn suite_ends(&self, prepared: &Prepared<'_>) {
+        let holds = prepared.held().is_some() || prepared.locks().next().is_some();
+        let has_hooks = !prepared.plan.hooks.is_empty();
+        if has_hooks || holds {
+            self.tell(&Note::SuiteEnds { suite: prepared.plan.id });
+        }
+        if has_hooks {
+            self.hooked.fetch_sub(1, Ordering::Relaxed);
         }
     }
 
-    /// A test begins.
-    pub fn test_begins(&self, test: TestId, name: &str) {
-        if self.has_hooks() {
-            self.tell(&Note::TestBegins { test, name: name.to_owned() });
+    /// A test of a suite begins.
+    pub fn test_begins(&self, suite: &SuitePlan, test: TestId, name: &str) {
+        if !suite.hooks.is_empty() {
+            self.tell(&Note::TestBegins { suite: suite.id, test, name: name.to_owned() });
         }
     }
 
-    /// The test that ran is over.
-    pub fn test_ends(&self) {
-        if self.has_hooks() {
-            self.tell(&Note::TestEnds);
+    /// The test of a suite that ran is over.
+    pub fn test_ends(&self, suite: &SuitePlan) {
+        if !suite.hooks.is_empty() {
+            self.tell(&Note::TestEnds { suite: suite.id });
         }
     }
 
@@ -107,7 +135,7 @@ impl Link {
         let (names, descriptors): (Vec<_>, Vec<_>) = streams.iter().copied().unzip();
         let note = match source {
             Source::Test(_) => return,
-            _ if !self.has_hooks() => return,
+            _ if !self.any_hooks() => return,
             Source::Hook(hook) => Note::HookStarted { hook, pid, streams: names },
             Source::Fixture(_) => Note::FixtureStarted { pid, streams: names },
         };
@@ -119,9 +147,9 @@ impl Link {
         self.tell(&Note::HookEnds { hook, problem });
     }
 
-    /// A process has ended.
+    /// A process has ended. The guard needs to know as long as there are hooks.
     pub fn process_ended(&self, source: Source, pid: i32) {
-        if matches!(source, Source::Fixture(_)) && self.has_hooks() {
+        if matches!(source, Source::Fixture(_)) && self.any_hooks() {
             self.tell(&Note::FixtureEnds { pid });
         }
     }
@@ -156,7 +184,7 @@ fn write(socket: &UnixStream, note: &Note, mut fds: &[BorrowedFd<'_>]) -> std::i
     line.push(b'\n');
     let mut rest = line.as_slice();
     while !rest.is_empty() {
-        let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(3))];
+        let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(DESCRIPTORS))];
         let mut beside = SendAncillaryBuffer::new(&mut space);
         if !fds.is_empty() {
             beside.push(SendAncillaryMessage::ScmRights(fds));

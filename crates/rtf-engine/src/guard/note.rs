@@ -23,6 +23,16 @@ pub enum Note {
     },
     /// The run is over: there is nothing left to be done.
     RunEnds,
+    /// What a suite has for itself. The descriptors of its namespaces, or some
+    /// of what keeps its numbers from other runs, come with this line.
+    SuiteHolds {
+        /// Which.
+        suite: SuiteId,
+        /// How many descriptors.
+        descriptors: usize,
+        /// The process that holds the namespaces, when it is these.
+        holder: Option<i32>,
+    },
     /// A suite begins, with these hooks.
     SuiteBegins {
         /// Which.
@@ -35,15 +45,20 @@ pub enum Note {
         /// Which.
         suite: SuiteId,
     },
-    /// A test begins: every hook is due again.
+    /// A test begins: every hook of its suite is due again.
     TestBegins {
+        /// Its suite.
+        suite: SuiteId,
         /// Which.
         test: TestId,
         /// Its name.
         name: String,
     },
-    /// The test that ran is over.
-    TestEnds,
+    /// The test of a suite that ran is over.
+    TestEnds {
+        /// Which suite.
+        suite: SuiteId,
+    },
     /// A hook is about to be started.
     HookBegins(HookBegins),
     /// The hook's process is there, and waits to be asked.

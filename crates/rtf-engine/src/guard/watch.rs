@@ -13,9 +13,10 @@ use rustix::net::{RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, recvmsg}
 
 use super::after::{self, Died};
 use super::duties::Duties;
+use super::link::DESCRIPTORS;
 use super::note::Note;
 use super::unix::{self, Signals};
-use crate::host::tree;
+use crate::host::{cgroup, tree};
 
 /// The exit code of a Rust program that panicked.
 const PANICKED: i32 = 101;
@@ -90,7 +91,10 @@ impl Guard {
         };
         // What it told until it died.
         self.link.listen();
-        self.judge(status)
+        let runner = self.runner;
+        let ended = self.judge(status);
+        cgroup::remove_groups_of(runner);
+        ended
     }
 
     fn wait(&self) {
@@ -152,7 +156,7 @@ impl Link {
     fn listen(&mut self) {
         let mut bytes = vec![0; READ_BYTES];
         while let Some(socket) = &self.socket {
-            let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(3))];
+            let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(DESCRIPTORS))];
             let mut beside = RecvAncillaryBuffer::new(&mut space);
             let flags = RecvFlags::DONTWAIT | RecvFlags::CMSG_CLOEXEC;
             let mut room = [IoSliceMut::new(&mut bytes)];

@@ -18,6 +18,7 @@ fn beginning(events: usize) -> String {
         folder: String::new(),
         suites: 1,
         tests: 0,
+        manifest: Box::default(),
     };
     let suite = SuitePlanned {
         suite: SUITE,
