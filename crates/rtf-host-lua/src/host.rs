@@ -7,6 +7,7 @@ use rtf_host::{HostPlugin, LoadError, Role, Session, StackDumper, Step, StepEnd}
 use rtf_model::Location;
 use rtf_model::protocol::{Initialized, PROTOCOL_VERSION, Plugin, StackSupport};
 
+use crate::source::Style;
 use crate::{sdk, search, source, watch};
 
 /// The Lua host with at most one plug-in.
@@ -20,7 +21,9 @@ struct Loaded {
     /// `guard.call`: calls a function and tells how it ended.
     call: Function,
     table: Table,
+    style: Style,
     args: Vec<String>,
+    param: String,
 }
 
 impl LuaHost {
@@ -38,8 +41,8 @@ impl HostPlugin for LuaHost {
     fn load(&mut self, role: Role, plugin: &Plugin) -> Result<(), LoadError> {
         let lua = watch::new_state();
         let call = prepare(&lua, &self.session, plugin).map_err(unexpected)?;
-        let chunk = source::compile(&lua, Path::new(&plugin.file), &plugin.file)?;
-        match ended(call.call((chunk,))) {
+        let compiled = source::compile(&lua, Path::new(&plugin.file), &plugin.file)?;
+        match ended(call.call((compiled.chunk,))) {
             StepEnd::Done | StepEnd::Refused => {}
             StepEnd::Stopped => {
                 let message = format!("`{}` stopped while it was loaded", plugin.file);
@@ -48,7 +51,12 @@ impl HostPlugin for LuaHost {
             StepEnd::Broken(message, location) => return Err(LoadError { message, location }),
         }
         let table = table(&lua, role, &plugin.file)?;
-        self.loaded = Some(Loaded { lua, call, table, args: plugin.args.clone() });
+        if compiled.style == Style::Predecessor && table.metatable().is_none() {
+            // The plug-in made a table of its own.
+            sdk::lend_predecessor(&lua, &table).map_err(unexpected)?;
+        }
+        let (style, args, param) = (compiled.style, plugin.args.clone(), plugin.param.clone());
+        self.loaded = Some(Loaded { lua, call, table, style, args, param });
         Ok(())
     }
 
@@ -86,9 +94,19 @@ impl Loaded {
         }
         let mut args = MultiValue::from_iter([function]);
         if step == Step::Setup {
-            args.push_back(self.args.clone().into_lua(&self.lua)?);
+            args.push_back(match self.style {
+                Style::Present => self.args.clone().into_lua(&self.lua)?,
+                Style::Predecessor => self.param.as_str().into_lua(&self.lua)?,
+            });
         }
-        let end = ended(self.call.call(args));
+        let result = self.call.call(args);
+        if step == Step::Setup && self.style == Style::Predecessor && returned_nothing(&result) {
+            return Ok(StepEnd::Broken(
+                "setup returned nothing, it has to return true".into(),
+                None,
+            ));
+        }
+        let end = ended(result);
         // Only a set-up and a check are asked whether they succeeded.
         let asks = matches!(step, Step::Setup | Step::Check);
         Ok(if end == StepEnd::Refused && !asks { StepEnd::Done } else { end })
@@ -102,7 +120,9 @@ fn prepare(lua: &Lua, session: &Session, plugin: &Plugin) -> mlua::Result<Functi
     }
     // What was printed before a crash must not be lost with the buffer.
     lua.load("io.stdout:setvbuf('line')").set_name("=rtf").exec()?;
-    sdk::install(lua, session, plugin)
+    let call = sdk::install(lua, session, plugin)?;
+    sdk::lend_predecessor(lua, &lua.globals().get("TestCase")?)?;
+    Ok(call)
 }
 
 /// Finds the plug-in's table and looks whether there is something to do in it.
@@ -128,9 +148,16 @@ fn table(lua: &Lua, role: Role, file: &str) -> Result<Table, LoadError> {
     Err(failed(format!("`{file}` defines no function `{name}.{}`{hint}", functions[0])))
 }
 
-/// Reads what `guard.call` returned: `done, value`, `stopped`, or
+/// What `guard.call` returns: `done, value`, `stopped`, or
 /// `broken, text, file, line`.
-fn ended(result: mlua::Result<(String, Value, Value, Value)>) -> StepEnd {
+type Called = mlua::Result<(String, Value, Value, Value)>;
+
+/// The predecessor took that for a refusal.
+fn returned_nothing(called: &Called) -> bool {
+    matches!(called, Ok((word, Value::Nil, ..)) if word == "done")
+}
+
+fn ended(result: Called) -> StepEnd {
     let (word, first, file, line) = match result {
         Ok(result) => result,
         Err(error) => return StepEnd::Broken(error.to_string(), None),

@@ -1,5 +1,6 @@
 //! What a plug-in may call: the table `rtf`, made of the Lua code of `sdk/lua`
-//! and of the few functions that only the host can offer.
+//! and of the few functions that only the host can offer; and the tables of
+//! the predecessor.
 
 use std::ffi::CStr;
 use std::path::Path;
@@ -32,10 +33,23 @@ pub(crate) fn install(lua: &Lua, session: &Session, plugin: &Plugin) -> mlua::Re
     let rtf = include_str!("../../../sdk/lua/src/rtf.lua");
     let rtf: Table = part(lua, rtf, (host, near, text, &guard, stop))?;
     lua.globals().set("rtf", &rtf)?;
+    let predecessor = include_str!("../../../sdk/lua/src/predecessor.lua");
+    let predecessor: Table = part(lua, predecessor, (&rtf, plugin.name.as_str()))?;
+    for name in ["robottestingframework", "RTF"] {
+        lua.globals().set(name, &predecessor)?;
+    }
     // For those who write `local rtf = require("rtf")`.
     let package: Table = lua.globals().get("package")?;
     package.get::<Table>("loaded")?.set("rtf", rtf)?;
     guard.get("call")
+}
+
+/// Lets a plug-in find the predecessor's functions in its table `TestCase`,
+/// among its own.
+pub(crate) fn lend_predecessor(lua: &Lua, table: &Table) -> mlua::Result<()> {
+    let meta = lua.create_table()?;
+    meta.set("__index", lua.globals().get::<Table>("robottestingframework")?)?;
+    table.set_metatable(Some(meta))
 }
 
 fn part(lua: &Lua, source: &str, args: impl IntoLuaMulti) -> mlua::Result<Table> {

@@ -1,4 +1,6 @@
-//! Reads a plug-in's file and compiles it.
+//! Reads a plug-in's file, compiles it, and tells for whom it was written.
+
+mod style;
 
 use std::path::Path;
 
@@ -6,24 +8,33 @@ use mlua::{Error, Function, Lua};
 use rtf_host::LoadError;
 use rtf_model::Location;
 
+pub(crate) use style::Style;
+
 /// A chunk's name that is shorter than any file's, so that Lua's messages
 /// begin with something that can be told from a path with colons in it.
 const NAMELESS: &str = "=?";
 
+/// A file that was compiled, but not run.
+pub(crate) struct Compiled {
+    pub(crate) chunk: Function,
+    pub(crate) style: Style,
+}
+
 /// Compiles a file without running it. Its functions know it by `name`.
-pub(crate) fn compile(lua: &Lua, file: &Path, name: &str) -> Result<Function, LoadError> {
+pub(crate) fn compile(lua: &Lua, file: &Path, name: &str) -> Result<Compiled, LoadError> {
     let source = std::fs::read(file).map_err(|error| LoadError {
         message: format!("`{name}` cannot be read: {error}"),
         location: None,
     })?;
     let source = code(source);
     let load = |chunk_name: &str| lua.load(source.as_slice()).set_name(chunk_name).into_function();
-    load(&format!("@{name}")).map_err(|error| {
+    let chunk = load(&format!("@{name}")).map_err(|error| {
         // Compiled once more under a name that is easy to take off.
         let message = load(NAMELESS).err().map_or_else(|| error.to_string(), text);
         let (line, message) = split(&message);
         LoadError { message, location: Some(Location { file: name.to_owned(), line }) }
-    })
+    })?;
+    Ok(Compiled { chunk, style: Style::of(&String::from_utf8_lossy(&source)) })
 }
 
 /// Takes off what is allowed before the code: a byte order mark and a first

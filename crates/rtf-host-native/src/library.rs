@@ -27,8 +27,8 @@ pub(crate) enum LibraryError {
     NoSymbol,
     /// It was built for the predecessor.
     #[error(
-        "is a plug-in for robot-testing-framework 2; build it again with this SDK, \
-         with RTF_PLUGIN(Class) in it"
+        "was built for robot-testing-framework 2: build it again with rtf; \
+         its source need not change"
     )]
     Predecessor,
     /// `rtf_plugin` returned null.

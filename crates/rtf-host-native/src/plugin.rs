@@ -31,16 +31,20 @@ impl NativeHost {
     }
 }
 
+/// Nearly every plug-in is in C++, and loading its library takes longer
+/// than all the rest. A plug-in that does without does not see it.
+pub(crate) fn prepare() {
+    library::preload("libstdc++.so.6");
+}
+
 impl HostPlugin for NativeHost {
     fn describe(&self) -> Initialized {
         let host = concat!("native ", env!("CARGO_PKG_VERSION")).to_owned();
         Initialized { protocol: PROTOCOL_VERSION, host, stack: StackSupport::None }
     }
 
-    /// Nearly every plug-in is in C++, and loading its library takes longer
-    /// than all the rest. A plug-in that does without does not see it.
     fn idle(&mut self) {
-        library::preload("libstdc++.so.6");
+        prepare();
     }
 
     fn load(&mut self, role: Role, plugin: &Plugin) -> Result<(), LoadError> {

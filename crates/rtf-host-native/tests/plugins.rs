@@ -209,7 +209,7 @@ fn check_tells_what_is_wrong_with_a_file() {
         (bad("create.c", table, &["-DMAJOR=1", "-DSIZE=sizeof(t)"]), "no `create` function"),
         (
             bad("old.c", "void robottestingframework_dll_factory(void) {}", &[]),
-            "is a plug-in for robot-testing-framework 2",
+            "was built for robot-testing-framework 2: build it again",
         ),
         (driver::folder().join("undefined.c"), "cannot be loaded: invalid ELF header"),
         (driver::folder().join("nowhere.so"), "No such file or directory"),

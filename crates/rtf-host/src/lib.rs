@@ -1,7 +1,7 @@
 //! The protocol between the runner and a host process, from the host's side.
 //!
 //! A host is a small program that loads plug-ins of one kind. It implements
-//! [`HostPlugin`], opens a [`Session`] and calls [`serve`], which does
+//! [`HostPlugin`] and is a [`Host`], whose `serve` calls [`serve()`], which does
 //! everything that `spec/protocol.md` asks of every host alike: it answers
 //! requests in order, announces phases, applies the rule that *the first
 //! failure or error decides*, hears a request to stop while the plug-in runs,
@@ -12,7 +12,9 @@
 
 mod check;
 mod decode;
+mod fork;
 mod plugin;
+mod program;
 mod reader;
 mod serve;
 mod session;
@@ -22,5 +24,6 @@ mod writer;
 
 pub use check::{CheckedFile, check, files_to_check};
 pub use plugin::{HostPlugin, LoadError, Role, StackDumper, Step, StepEnd};
+pub use program::Host;
 pub use serve::serve;
 pub use session::{OpenError, Session};

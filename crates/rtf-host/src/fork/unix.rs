@@ -1,0 +1,195 @@
+//! What a server of forks asks of the operating system.
+#![expect(unsafe_code, reason = "a clone that no library offers, and the initial environment")]
+
+use std::ffi::{CString, OsString};
+use std::io;
+use std::mem::MaybeUninit;
+use std::os::fd::{BorrowedFd, FromRawFd, OwnedFd, RawFd};
+use std::os::unix::ffi::OsStringExt;
+
+use rtf_model::protocol::ForkRequest;
+use rustix::net::{
+    RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, ReturnFlags, SendFlags, recvmsg,
+};
+
+use crate::unix::restore_sigpipe;
+
+/// The place of a variable in the environment that the process was started
+/// with, which `/proc/PID/environ` shows.
+#[derive(Debug)]
+pub(crate) struct Room {
+    start: *mut u8,
+    length: usize,
+}
+
+impl Room {
+    /// Removes a variable from the environment; its value, and its place.
+    pub(crate) fn take(name: &str) -> Option<(String, Self)> {
+        let c_name = CString::new(name).ok()?;
+        // SAFETY: the process has one thread, which copies the value at once.
+        // The variable has not been set since the start, so that `NAME=` is
+        // before the value in the same, writable, memory, which stays.
+        let (value, room) = unsafe {
+            let value = libc::getenv(c_name.as_ptr());
+            if value.is_null() {
+                return None;
+            }
+            let length = libc::strlen(value);
+            let bytes = std::slice::from_raw_parts(value.cast::<u8>(), length).to_vec();
+            let start = value.cast::<u8>().sub(name.len() + 1);
+            libc::unsetenv(c_name.as_ptr());
+            (bytes, Self { start, length: name.len() + 1 + length })
+        };
+        Some((OsString::from_vec(value).to_string_lossy().into_owned(), room))
+    }
+
+    /// Writes variables there, as far as there is room for them.
+    fn write<'a>(&self, variables: impl Iterator<Item = (&'a String, &'a String)>) {
+        let mut bytes = Vec::with_capacity(self.length);
+        for (name, value) in variables {
+            let entry = format!("{name}={value}\0");
+            if bytes.len() + entry.len() <= self.length {
+                bytes.extend_from_slice(entry.as_bytes());
+            }
+        }
+        bytes.resize(self.length, 0);
+        // SAFETY: the memory of `take`, which nothing refers to any more.
+        unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), self.start, self.length) };
+    }
+}
+
+/// The only thread, as the C library knows it.
+#[derive(Debug)]
+pub(crate) struct MainThread {
+    /// Where the C library keeps the thread's id.
+    tid: *mut libc::pid_t,
+    robust_list: *mut libc::c_void,
+    robust_list_bytes: usize,
+}
+
+/// On which side of a fork this is.
+pub(crate) enum Forked {
+    /// In the new process.
+    Child,
+    /// In the old one: the id of the new one.
+    Parent(i32),
+}
+
+#[cfg(target_os = "linux")]
+impl MainThread {
+    /// Finds out what the C library's own `fork` would bring in order.
+    pub(crate) fn examine() -> io::Result<Self> {
+        let mut thread = Self {
+            tid: std::ptr::null_mut(),
+            robust_list: std::ptr::null_mut(),
+            robust_list_bytes: 0,
+        };
+        // SAFETY: both calls write what they are given room for.
+        let refused = unsafe {
+            libc::prctl(libc::PR_GET_TID_ADDRESS, &raw mut thread.tid) != 0
+                || libc::syscall(
+                    libc::SYS_get_robust_list,
+                    0,
+                    &raw mut thread.robust_list,
+                    &raw mut thread.robust_list_bytes,
+                ) != 0
+        };
+        if refused {
+            return Err(io::Error::last_os_error());
+        }
+        // SAFETY: where the C library told the kernel that the id is.
+        if thread.tid.is_null() || unsafe { *thread.tid } != rustix::thread::gettid().as_raw_pid() {
+            return Err(io::Error::other("the C library keeps the thread's id elsewhere"));
+        }
+        Ok(thread)
+    }
+
+    /// A copy of this process that is its parent's child. (The C library's
+    /// `fork` cannot do that; what it does beside, this does: the thread's id
+    /// and its list of robust locks. Other threads' locks cannot be held.)
+    pub(crate) fn fork(&self) -> io::Result<Forked> {
+        let flags = libc::CLONE_PARENT | libc::CLONE_CHILD_SETTID | libc::CLONE_CHILD_CLEARTID;
+        let flags = i64::from(flags | libc::SIGCHLD);
+        // The order of the last two differs between processors; the fifth, for
+        // thread-local storage, is not looked at without its flag.
+        let child_tid = self.tid;
+        // SAFETY: a copy of the memory, no stack given: as `fork` does it.
+        let pid = unsafe { libc::syscall(libc::SYS_clone, flags, 0, 0, child_tid, child_tid) };
+        match i32::try_from(pid) {
+            Ok(0) => {
+                let (list, bytes) = (self.robust_list, self.robust_list_bytes);
+                // SAFETY: what the C library had registered in the old process.
+                unsafe { libc::syscall(libc::SYS_set_robust_list, list, bytes) };
+                Ok(Forked::Child)
+            }
+            Ok(pid) if pid > 0 => Ok(Forked::Parent(pid)),
+            _ => Err(io::Error::last_os_error()),
+        }
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+impl MainThread {
+    pub(crate) fn examine() -> io::Result<Self> {
+        Err(io::Error::from(io::ErrorKind::Unsupported))
+    }
+
+    pub(crate) fn fork(&self) -> io::Result<Forked> {
+        Err(io::Error::from(io::ErrorKind::Unsupported))
+    }
+}
+
+/// Makes a forked process what an executed one would be.
+pub(crate) fn become_host(
+    request: &ForkRequest,
+    room: &Room,
+    stdout: &OwnedFd,
+    stderr: &OwnedFd,
+) -> io::Result<()> {
+    rustix::process::setpgid(None, None)?;
+    rustix::stdio::dup2_stdout(stdout)?;
+    rustix::stdio::dup2_stderr(stderr)?;
+    rustix::process::chdir(&request.folder)?;
+    for (name, value) in &request.env {
+        // SAFETY: the process has one thread.
+        unsafe { std::env::set_var(name, value) };
+    }
+    room.write(request.env.iter());
+    restore_sigpipe();
+    Ok(())
+}
+
+/// Takes over a descriptor that the runner left open for this process.
+pub(crate) fn take_descriptor(fd: RawFd) -> io::Result<OwnedFd> {
+    // SAFETY: only looked at; when it is not open, the call says so.
+    let borrowed = unsafe { BorrowedFd::borrow_raw(fd) };
+    rustix::io::fcntl_setfd(borrowed, rustix::io::FdFlags::CLOEXEC)?;
+    // SAFETY: it is open, and the variable that gave it to us is removed.
+    Ok(unsafe { OwnedFd::from_raw_fd(fd) })
+}
+
+/// Waits for a packet; its length (0 at the end) and the descriptors with it.
+pub(crate) fn receive(socket: &OwnedFd, packet: &mut [u8]) -> io::Result<(usize, Vec<OwnedFd>)> {
+    let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(3))];
+    let mut control = RecvAncillaryBuffer::new(&mut space);
+    let mut into = [io::IoSliceMut::new(packet)];
+    let received = rustix::io::retry_on_intr(|| {
+        recvmsg(socket, &mut into, &mut control, RecvFlags::CMSG_CLOEXEC)
+    })?;
+    let mut descriptors = Vec::with_capacity(3);
+    for message in control.drain() {
+        if let RecvAncillaryMessage::ScmRights(rights) = message {
+            descriptors.extend(rights);
+        }
+    }
+    if received.flags.contains(ReturnFlags::TRUNC) {
+        return Err(io::Error::other("a request is too long"));
+    }
+    Ok((received.bytes, descriptors))
+}
+
+/// Sends a packet.
+pub(crate) fn send_packet(socket: &OwnedFd, packet: &[u8]) -> io::Result<()> {
+    rustix::io::retry_on_intr(|| rustix::net::send(socket, packet, SendFlags::NOSIGNAL))?;
+    Ok(())
+}

@@ -1,0 +1,85 @@
+//! The program of a host: what it was started for, and how it ends.
+
+use std::error::Error;
+use std::ffi::{CStr, OsStr, OsString, c_char, c_int};
+use std::io::Write;
+use std::os::unix::ffi::OsStrExt;
+use std::path::Path;
+
+use crate::fork::ForkServer;
+use crate::{CheckedFile, Session, check, files_to_check};
+
+/// The exit code of a host that could not do its work.
+const BROKEN: c_int = 2;
+
+/// What one kind of plug-ins needs of its host.
+#[derive(Clone, Copy, Debug)]
+pub struct Host {
+    /// Says of a file whether it can be loaded.
+    pub check: fn(&Path) -> CheckedFile,
+    /// Loads what most plug-ins need, before a server forks its first host.
+    /// The process has one thread and must have one afterwards.
+    pub prepare: fn(),
+    /// Serves a runner to the end of the session.
+    pub serve: fn(&Session) -> std::io::Result<()>,
+}
+
+impl Host {
+    /// Does what the program was started for; its exit code.
+    ///
+    /// The program starts as a C program does, without Rust's start-up code,
+    /// which would leave signal handlers and a second signal stack in a process
+    /// that belongs to the plug-in.
+    ///
+    /// # Safety
+    /// `argv` holds `argc` strings: what C's `main` was called with.
+    #[expect(unsafe_code, reason = "the arguments are C's")]
+    #[must_use]
+    pub unsafe fn main(self, argc: c_int, argv: *const *const c_char) -> c_int {
+        let count = usize::try_from(argc).unwrap_or(0);
+        let args = (1..count).map(|index| {
+            // SAFETY: the system passes `argc` strings.
+            let arg = unsafe { CStr::from_ptr(*argv.add(index)) };
+            OsStr::from_bytes(arg.to_bytes()).to_owned()
+        });
+        match self.run(args.collect()) {
+            Ok(()) => 0,
+            Err(error) => {
+                say(&*error);
+                BROKEN
+            }
+        }
+    }
+
+    fn run(self, args: Vec<OsString>) -> Result<(), Box<dyn Error>> {
+        if let Some(files) = files_to_check(args.iter().cloned()) {
+            return Ok(check(&files, self.check)?);
+        }
+        if let Some(arg) = args.first() {
+            let arg = arg.to_string_lossy();
+            return Err(
+                format!("unexpected argument `{arg}`; only `--check FILE…` is known").into()
+            );
+        }
+        let session = match ForkServer::open()? {
+            Some(server) => {
+                (self.prepare)();
+                server.serve()?
+            }
+            None => Some(Session::open()?),
+        };
+        session.map_or(Ok(()), |session| Ok((self.serve)(&session)?))
+    }
+}
+
+/// Prints the error with its causes. The runner shows it as the host's output.
+fn say(error: &dyn Error) {
+    let mut text = format!("error: {error}\n");
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        text.push_str(&format!("caused by: {error}\n"));
+        cause = error.source();
+    }
+    // When even this cannot be written, the exit code is left.
+    drop(std::io::stderr().write_all(text.as_bytes()));
+}
