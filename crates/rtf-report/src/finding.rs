@@ -1,0 +1,190 @@
+//! What speaks against a run, each with the place in the sources that shows it
+//! best: what code hosts mark in a change.
+
+mod place;
+
+use rtf_model::{HookRun, Record, Severity, SuiteRecord, TestRecord, Verdict};
+
+pub(crate) use place::{Place, Roots};
+
+use crate::escape;
+use crate::explain::{self, Extent};
+
+/// How much of a test is told; hosts cut long texts.
+const EXTENT: Extent = Extent { items: 10, stack_lines: 30 };
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rank {
+    /// The robot may not be in a safe state.
+    Unsafe,
+    /// The bench is wrong, or the run is incomplete.
+    Bench,
+    /// The robot is wrong.
+    Robot,
+    /// Worth a look.
+    Warning,
+}
+
+/// One thing that speaks against a run.
+#[derive(Clone, Debug)]
+pub(crate) struct Finding {
+    /// How bad it is.
+    pub rank: Rank,
+    /// A stable word for its kind: `failed`, `fixture`, `hook`.
+    pub kind: String,
+    /// What it is about, stable from run to run: `arm/EncoderTest`.
+    pub about: String,
+    /// One line.
+    pub title: String,
+    /// Everything that explains it, on one or more lines.
+    pub text: String,
+    /// Where to show it.
+    pub place: Option<Place>,
+}
+
+/// All of them: first the run, then hooks, fixtures and tests, so that what
+/// a host shows of many is the cause, not what followed from it.
+pub(crate) fn all(record: &Record, roots: &Roots<'_>) -> Vec<Finding> {
+    let mut findings: Vec<Finding> = of_run(record, roots).into_iter().collect();
+    findings.extend(record.suites.iter().flat_map(|suite| of_hooks(record, suite, roots)));
+    findings.extend(record.suites.iter().flat_map(|suite| of_fixtures(record, suite, roots)));
+    findings.extend(record.tests.iter().filter_map(|test| of_test(record, test, roots)));
+    findings.extend(record.warnings.iter().map(|warning| of_warning(warning, roots)));
+    findings
+}
+
+/// What is wrong with the run as a whole, in words.
+pub(crate) fn run_problem(record: &Record) -> Option<String> {
+    if let Some(reason) = record.interrupted() {
+        Some(format!("the run was interrupted: {reason}"))
+    } else if let Some(reason) = record.died() {
+        Some(format!("the runner died: {reason}"))
+    } else if !record.is_complete() {
+        Some("the runner did not reach the end of this run".to_owned())
+    } else if record.tests.is_empty() {
+        Some("the run has no tests".to_owned())
+    } else {
+        None
+    }
+}
+
+fn of_run(record: &Record, roots: &Roots<'_>) -> Option<Finding> {
+    let problem = run_problem(record)?;
+    let place = record.suites.first().and_then(|suite| roots.suite(suite));
+    Some(Finding {
+        rank: Rank::Bench,
+        kind: "run".to_owned(),
+        about: "run".to_owned(),
+        title: escape::line(&problem).into_owned(),
+        text: escape::block(&problem).into_owned(),
+        place,
+    })
+}
+
+fn of_hooks(record: &Record, suite: &SuiteRecord, roots: &Roots<'_>) -> Vec<Finding> {
+    let hooks = suite.hooks.iter().filter_map(|id| record.hooks.get(id.index()));
+    let failed = hooks.flat_map(|hook| {
+        let bad = hook.runs.iter().filter(|run| run.problem().is_some());
+        bad.map(move |run| (hook, run))
+    });
+    failed
+        .map(|(hook, run)| {
+            let about = record.full_hook_name(hook.plan.hook);
+            Finding {
+                rank: Rank::Unsafe,
+                kind: "hook".to_owned(),
+                title: format!("hook {} failed", escape::line(&about)),
+                text: hook_text(run),
+                place: roots.suite(suite),
+                about,
+            }
+        })
+        .collect()
+}
+
+fn hook_text(run: &HookRun) -> String {
+    let mut lines = vec!["the robot may not be in a safe state".to_owned()];
+    let sink = &mut |_, line: &str| lines.push(line.to_owned());
+    explain::hook(run, EXTENT, sink);
+    explain::block(explain::Tone::Dim, &run.reason, "called for: ", sink);
+    lines.join("\n")
+}
+
+fn of_fixtures(record: &Record, suite: &SuiteRecord, roots: &Roots<'_>) -> Vec<Finding> {
+    let fixtures = suite.fixtures.iter().filter_map(|id| record.fixture(*id));
+    fixtures
+        .filter_map(|fixture| {
+            let problems = fixture.problems(suite.plan.tolerates_collapse);
+            problems.first()?;
+            let about = format!("{}/{}", suite.plan.name, fixture.plan.name);
+            let mut lines: Vec<_> =
+                problems.iter().map(|p| escape::block(p).into_owned()).collect();
+            let sink = &mut |_, line: &str| lines.push(line.to_owned());
+            fixture.messages.iter().take(EXTENT.items).for_each(|m| explain::message(m, sink));
+            explain::left(&fixture.left, sink);
+            explain::printed(fixture.log_tail.iter().map(String::as_str), sink);
+            Some(Finding {
+                rank: Rank::Bench,
+                kind: "fixture".to_owned(),
+                title: format!("fixture {}", escape::line(&about)),
+                text: lines.join("\n"),
+                place: roots.suite(suite),
+                about,
+            })
+        })
+        .collect()
+}
+
+fn of_test(record: &Record, test: &TestRecord, roots: &Roots<'_>) -> Option<Finding> {
+    let verdict = test.final_verdict();
+    let rank = match verdict {
+        Verdict::Failed => Rank::Robot,
+        // What was not run says nothing: why it was not is a finding of its own.
+        Verdict::Skipped => return None,
+        verdict if verdict.is_green() => return None,
+        _ => Rank::Bench,
+    };
+    let about = record.full_name(test.plan.test);
+    let mut lines = Vec::new();
+    if let Some(attempt) = test.decisive_attempt() {
+        let sink = &mut |_, line: &str| lines.push(line.to_owned());
+        explain::explain(attempt, EXTENT, sink);
+        explain::left(&attempt.left, sink);
+    }
+    if lines.is_empty() {
+        lines.push(escape::block(test.reason().unwrap_or(verdict.as_str())).into_owned());
+    }
+    Some(Finding {
+        rank,
+        kind: verdict.as_str().to_owned(),
+        title: format!("{} {verdict}", escape::line(&about)),
+        text: lines.join("\n"),
+        place: roots.test(record, test),
+        about,
+    })
+}
+
+fn of_warning(warning: &rtf_model::Diagnostic, roots: &Roots<'_>) -> Finding {
+    let mut lines = vec![escape::block(&warning.message).into_owned()];
+    lines.extend(warning.notes.iter().map(|note| format!("note: {}", escape::block(note))));
+    lines.extend(warning.hint.iter().map(|hint| format!("hint: {}", escape::block(hint))));
+    let place = warning.labels.first().and_then(|label| {
+        Some(Place {
+            line: label.line,
+            column: label.column,
+            ..roots.place(&label.file, label.line)?
+        })
+    });
+    Finding {
+        rank: match warning.severity {
+            Severity::Error => Rank::Bench,
+            Severity::Warning => Rank::Warning,
+        },
+        kind: warning.code.clone(),
+        about: warning.message.clone(),
+        title: escape::line(&warning.message).into_owned(),
+        text: lines.join("\n"),
+        place,
+    }
+}

@@ -1,0 +1,105 @@
+//! Where in the repository something is shown.
+
+use std::path::{Component, Path, PathBuf};
+
+use rtf_model::{Location, Record, SuiteRecord, TestRecord};
+
+/// A place in a file of the repository.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Place {
+    /// The file, from the repository's root, with `/`.
+    pub file: String,
+    /// The line, from 1; 0 when it is unknown.
+    pub line: u32,
+    /// The column, from 1; 0 when it is unknown.
+    pub column: u32,
+}
+
+/// Where paths begin.
+pub(crate) struct Roots<'a> {
+    /// The folder in which the run's command was given.
+    folder: &'a Path,
+    /// The repository's root.
+    repository: &'a Path,
+}
+
+impl<'a> Roots<'a> {
+    /// Those of a run. Without a repository, the run's folder stands for it.
+    pub fn new(record: &'a Record, repository: Option<&'a Path>) -> Self {
+        let folder = Path::new(record.run.as_ref().map_or("", |run| run.folder.as_str()));
+        Self { folder, repository: repository.unwrap_or(folder) }
+    }
+
+    /// A place in a file; `None` when the file is not in the repository.
+    pub fn place(&self, file: &str, line: u32) -> Option<Place> {
+        if file.is_empty() {
+            return None;
+        }
+        let absolute = normal(&self.folder.join(file));
+        let inside = absolute.strip_prefix(normal(self.repository)).ok()?;
+        let parts: Vec<_> =
+            inside.components().map(|part| part.as_os_str().to_string_lossy()).collect();
+        Some(Place { file: parts.join("/"), line, column: 0 })
+    }
+
+    /// The file of a suite.
+    pub fn suite(&self, suite: &SuiteRecord) -> Option<Place> {
+        self.place(&suite.plan.file, 0)
+    }
+
+    /// Where a test went wrong: the first failure with a place in the
+    /// repository, else its suite's file, else its plug-in.
+    pub fn test(&self, record: &Record, test: &TestRecord) -> Option<Place> {
+        let attempt = test.decisive_attempt();
+        let failures = attempt.into_iter().flat_map(|attempt| attempt.failures());
+        let violations = attempt.into_iter().flat_map(|attempt| attempt.violations());
+        let mut locations = failures
+            .filter_map(|failure| failure.location.as_ref())
+            .chain(violations.filter_map(|violation| violation.location.as_ref()));
+        let at = |Location { file, line }: &Location| self.place(file, *line);
+        let suite = || record.suites.get(test.plan.suite.index());
+        locations
+            .find_map(at)
+            .or_else(|| self.suite(suite()?))
+            .or_else(|| self.place(&test.plan.plugin, 0))
+    }
+}
+
+/// The path without `.` and `..`, as far as its text tells.
+fn normal(path: &Path) -> PathBuf {
+    let mut normal = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir if normal.file_name().is_some() => {
+                normal.pop();
+            }
+            part => normal.push(part),
+        }
+    }
+    normal
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn placed(file: &str) -> Option<String> {
+        let roots = Roots {
+            folder: Path::new("/home/r/robot/tests"),
+            repository: Path::new("/home/r/robot"),
+        };
+        roots.place(file, 1).map(|place| place.file)
+    }
+
+    #[test]
+    fn files_are_named_from_the_repositorys_root() {
+        assert_eq!(placed("arm.xml").as_deref(), Some("tests/arm.xml"));
+        assert_eq!(placed("./a/../arm.xml").as_deref(), Some("tests/arm.xml"));
+        assert_eq!(placed("../src/rate.cpp").as_deref(), Some("src/rate.cpp"));
+        assert_eq!(placed("/home/r/robot/src/rate.cpp").as_deref(), Some("src/rate.cpp"));
+        assert_eq!(placed("/usr/include/c++/vector"), None);
+        assert_eq!(placed("/home/r/robot2/x.py"), None);
+        assert_eq!(placed(""), None);
+    }
+}

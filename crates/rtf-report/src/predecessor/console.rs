@@ -1,0 +1,141 @@
+//! What is shown while the run goes on, and the counts at its end.
+
+use std::io::{ErrorKind, Write};
+use std::path::Path;
+
+use anstyle::{AnsiColor, Style};
+use rtf_model::{Event, EventKind, Output, Record};
+
+use super::lines::{self, Line, Word};
+use super::summary;
+use crate::{ReportError, Reporter, escape};
+
+/// Lines are written at the latest when so many bytes wait.
+const PAGE: usize = 16 * 1024;
+
+/// How much is shown.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ConsoleOptions {
+    /// All messages, not only failures and errors.
+    pub verbose: bool,
+    /// The places of messages in their sources.
+    pub detail: bool,
+    /// The counts at the end.
+    pub summary: bool,
+}
+
+/// Shows lines as they come.
+pub struct Console {
+    options: ConsoleOptions,
+    out: Box<dyn Write + Send>,
+    page: String,
+    /// Whether a plug-in printed half of a line.
+    within_line: bool,
+}
+
+impl Console {
+    /// Writes to standard output, with colours where that is wanted.
+    #[must_use]
+    pub fn stdout(options: ConsoleOptions) -> Self {
+        Self::new(Box::new(anstream::AutoStream::auto(std::io::stdout())), options)
+    }
+
+    /// Writes to `out`, with colour codes: wrap it to be rid of them.
+    #[must_use]
+    pub fn new(out: Box<dyn Write + Send>, options: ConsoleOptions) -> Self {
+        Self { options, out, page: String::new(), within_line: false }
+    }
+
+    fn line(&mut self, line: &Line) {
+        let shown = matches!(line.word, Word::Warn | Word::Fail | Word::Error);
+        if !shown && !self.options.verbose {
+            return;
+        }
+        self.end_line();
+        let style = style(line.word);
+        if line.word == Word::Progress {
+            self.page += &format!("{style}{}{style:#}\n", line.text);
+        } else {
+            self.page += &format!("{style}{}{style:#}{}\n", line.word.as_str(), line.text);
+        }
+        if let Some(place) = line.place.as_ref().filter(|_| self.options.detail) {
+            self.page += &format!("{place}\n\n");
+        }
+    }
+
+    fn progress(&mut self, text: &str) {
+        self.line(&Line { word: Word::Progress, text: text.to_owned(), place: None });
+    }
+
+    /// What the plug-ins print, as it comes.
+    fn printed(&mut self, output: &Output) {
+        if output.omitted > 0 {
+            self.end_line();
+            self.page += &format!("[… {} bytes left out …]\n", output.omitted);
+        }
+        self.page += &escape::block(&output.text);
+        self.within_line = !output.text.is_empty() && !output.text.ends_with('\n');
+    }
+
+    fn end_line(&mut self) {
+        if std::mem::take(&mut self.within_line) {
+            self.page.push('\n');
+        }
+    }
+
+    fn flush(&mut self) -> Result<(), ReportError> {
+        if self.page.is_empty() {
+            return Ok(());
+        }
+        let written = self.out.write_all(self.page.as_bytes()).and_then(|()| self.out.flush());
+        self.page.clear();
+        if written.as_ref().is_err_and(|error| error.kind() == ErrorKind::BrokenPipe) {
+            // Who read along has seen enough; the exit code stays about the tests.
+            self.out = Box::new(std::io::sink());
+            return Ok(());
+        }
+        written.map_err(ReportError::at("what happens", Path::new("standard output")))
+    }
+}
+
+impl Reporter for Console {
+    fn event(&mut self, event: &Event, record: &Record) -> Result<(), ReportError> {
+        match &event.kind {
+            EventKind::RunStarted(_) => self.progress("Starting test runner."),
+            EventKind::Output(output) => self.printed(output),
+            _ => {}
+        }
+        for line in lines::of(event, record) {
+            self.line(&line);
+        }
+        if matches!(event.kind, EventKind::RunFinished { .. }) {
+            self.progress("Ending test runner.");
+        }
+        if self.page.len() > PAGE { self.flush() } else { Ok(()) }
+    }
+
+    fn idle(&mut self, _record: &Record) -> Result<(), ReportError> {
+        self.flush()
+    }
+
+    fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
+        for line in lines::left_open(record) {
+            self.line(&line);
+        }
+        self.end_line();
+        if self.options.summary {
+            self.page += &summary::of(record, "results");
+        }
+        self.flush()
+    }
+}
+
+fn style(word: Word) -> Style {
+    let color = match word {
+        Word::Progress => AnsiColor::BrightBlue,
+        Word::Info => AnsiColor::BrightGreen,
+        Word::Warn => AnsiColor::BrightYellow,
+        Word::Fail | Word::Error => AnsiColor::BrightRed,
+    };
+    color.on_default()
+}

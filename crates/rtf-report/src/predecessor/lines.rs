@@ -1,0 +1,153 @@
+//! From an event to the lines that tell it.
+
+use rtf_model::{
+    Event, EventKind, Measurement, Message, MessageKind, Record, Source, SuiteId, TestId,
+};
+
+use super::{problems, summary};
+use crate::escape;
+
+/// What a line means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Word {
+    /// The run, a suite or a test begins or ends.
+    Progress,
+    /// Information only.
+    Info,
+    /// Something to look at that does not count.
+    Warn,
+    /// The robot is wrong.
+    Fail,
+    /// The bench is wrong.
+    Error,
+}
+
+impl Word {
+    /// As it stands at the beginning of a line.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Progress => "",
+            Self::Info => "[INFO]  ",
+            Self::Warn => "[WARN]  ",
+            Self::Fail => "[FAIL]  ",
+            Self::Error => "[ERROR] ",
+        }
+    }
+}
+
+/// One line; a message may have several.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Line {
+    /// What it means.
+    pub word: Word,
+    /// What stands after the word.
+    pub text: String,
+    /// The place in the source.
+    pub place: Option<String>,
+}
+
+impl Line {
+    fn progress(text: String) -> Self {
+        Self { word: Word::Progress, text, place: None }
+    }
+
+    /// `(about) text`, made harmless.
+    pub fn about(word: Word, about: &str, text: &str) -> Self {
+        let text = format!("({}) {}", escape::line(about), escape::block(text));
+        Self { word, text, place: None }
+    }
+}
+
+/// The lines of one event; the record has taken it in already.
+pub(super) fn of(event: &Event, record: &Record) -> Vec<Line> {
+    match &event.kind {
+        EventKind::SuiteStarted { suite } => suite_line(record, *suite, "started..."),
+        EventKind::SuiteFinished { suite } => {
+            let passed = summary::suite_passed(record, *suite);
+            suite_line(record, *suite, if passed { "passed!" } else { "failed!" })
+        }
+        EventKind::TestStarted { test, repetition: 1, attempt: 1 } => {
+            vec![test_line(record, *test, "started...")]
+        }
+        EventKind::Message { source, message } => {
+            vec![of_message(&problems::name(record, *source), message)]
+        }
+        EventKind::Measured { test, measurement } => {
+            vec![of_measurement(&problems::name(record, Source::Test(*test)), measurement)]
+        }
+        EventKind::TestFinished(finished) => {
+            let mut lines: Vec<_> = problems::of_attempt(record, finished).into_iter().collect();
+            lines.extend(last_word(record, finished.test));
+            lines
+        }
+        EventKind::TestSkipped { test, reason } => {
+            let name = problems::name(record, Source::Test(*test));
+            let skipped = Line::about(Word::Error, &name, &format!("skipped: {reason}"));
+            std::iter::once(skipped).chain(last_word(record, *test)).collect()
+        }
+        kind => problems::of_bench(record, kind),
+    }
+}
+
+/// The end of a test, once its last word is spoken.
+fn last_word(record: &Record, test: TestId) -> Option<Line> {
+    let passed = record.verdict(test)?.is_green();
+    Some(test_line(record, test, if passed { "passed!" } else { "failed!" }))
+}
+
+/// What is to be told when no more events come: what an incomplete run left open.
+pub(super) fn left_open(record: &Record) -> Vec<Line> {
+    let mut lines = Vec::new();
+    if record.tests.is_empty() {
+        lines.push(Line::about(Word::Error, problems::RUNNER, "there are no tests"));
+    }
+    for test in record.tests.iter().filter(|test| test.verdict().is_none()) {
+        let why = if test.attempts.is_empty() {
+            "skipped: the run ended before the test began"
+        } else {
+            "interrupted: the run ended before the test did"
+        };
+        lines.push(Line::about(Word::Error, &test.plan.name, why));
+        lines.push(test_line(record, test.plan.test, "failed!"));
+    }
+    lines
+}
+
+fn suite_line(record: &Record, id: SuiteId, what: &str) -> Vec<Line> {
+    // Plug-ins of the command line were in no suite.
+    let suite = record.suites.get(id.index()).filter(|suite| summary::is_suite(suite));
+    let name = |suite: &rtf_model::SuiteRecord| escape::line(&suite.plan.name).into_owned();
+    let line = suite.map(|suite| Line::progress(format!("Test suite {} {what}", name(suite))));
+    line.into_iter().collect()
+}
+
+fn test_line(record: &Record, id: TestId, what: &str) -> Line {
+    let name = problems::name(record, Source::Test(id));
+    Line::progress(format!("Test case {} {what}", escape::line(&name)))
+}
+
+fn of_message(about: &str, message: &Message) -> Line {
+    let (word, verb) = match message.kind {
+        MessageKind::Report => (Word::Info, "reports: "),
+        MessageKind::Check => (Word::Info, "checks: "),
+        MessageKind::Failure => (Word::Fail, "checks: "),
+        MessageKind::Error => (Word::Error, ""),
+    };
+    let place = message.location.as_ref().map(place);
+    Line { place, ..Line::about(word, about, &format!("{verb}{}", message.text)) }
+}
+
+fn of_measurement(about: &str, measurement: &Measurement) -> Line {
+    let (word, text) = match measurement.problem() {
+        Some(problem) => (Word::Fail, problem),
+        None => (Word::Info, format!("{} = {}", measurement.name, measurement.value_with_unit())),
+    };
+    let place = measurement.location.as_ref().map(place);
+    Line { place, ..Line::about(word, about, &format!("measures: {text}")) }
+}
+
+/// `test.cpp at 12.`
+fn place(location: &rtf_model::Location) -> String {
+    let file = escape::line(&location.file);
+    if location.line == 0 { format!("{file}.") } else { format!("{file} at {}.", location.line) }
+}

@@ -1,0 +1,14 @@
+//! What the runner of robot-testing-framework 2.x printed and wrote, for the
+//! scripts that read it. `spec/testrunner.md` is the contract.
+//!
+//! [`lines`] turns an event into lines, [`Console`] shows some of them as they
+//! come, [`ResultFile`] makes a file of all of them when the run is over.
+
+mod console;
+mod file;
+mod lines;
+mod problems;
+mod summary;
+
+pub use console::{Console, ConsoleOptions};
+pub use file::ResultFile;

@@ -1,0 +1,125 @@
+//! Lines about whatever is not green and that no plug-in said: the reasons of
+//! verdicts, fixtures, hooks, the run itself.
+
+use rtf_model::{
+    EventKind, FixtureId, FixtureRecord, HookId, Record, Source, SuiteId, TestFinished, Verdict,
+};
+
+use super::lines::{Line, Word};
+use crate::explain;
+
+/// The runner, where a line is about nothing else.
+pub(super) const RUNNER: &str = "runner";
+
+/// The name that stands before a message.
+pub(super) fn name(record: &Record, source: Source) -> String {
+    let name = match source {
+        Source::Test(id) => record.tests.get(id.index()).map(|test| &test.plan.name),
+        Source::Fixture(id) => record.fixture(id).map(|fixture| &fixture.plan.name),
+        Source::Hook(id) => record.hooks.get(id.index()).map(|hook| &hook.plan.name),
+    };
+    name.map_or("?", String::as_str).to_owned()
+}
+
+/// Why an attempt did not pass, unless the test said so itself.
+pub(super) fn of_attempt(record: &Record, finished: &TestFinished) -> Option<Line> {
+    if finished.verdict.is_green() {
+        return None;
+    }
+    let attempt = record.tests.get(finished.test.index())?.attempts.last()?;
+    let reason = finished.reason.as_deref().unwrap_or(finished.verdict.as_str());
+    let said = attempt.failures().any(|message| message.text == reason)
+        || attempt.violations().any(|m| m.problem().as_deref() == Some(reason));
+    if said {
+        return None;
+    }
+    let about = name(record, Source::Test(finished.test));
+    Some(match finished.verdict {
+        Verdict::Failed => Line::about(Word::Fail, &about, reason),
+        Verdict::Error => Line::about(Word::Error, &about, reason),
+        verdict => Line::about(Word::Error, &about, &format!("{verdict}: {reason}")),
+    })
+}
+
+/// The lines of an event of the bench.
+pub(super) fn of_bench(record: &Record, kind: &EventKind) -> Vec<Line> {
+    let line = match kind {
+        EventKind::FixtureStarting { fixture, attempt } if *attempt > 1 => {
+            of_fixture(record, *fixture, |_| {
+                Some((Word::Info, "reports: restarting fixture setup".to_owned()))
+            })
+        }
+        EventKind::FixtureCollapsed { fixture, reason, .. } => {
+            of_fixture(record, *fixture, |fixture| {
+                let text = format!("Fixture collapsed: {}: {reason}", fixture.plan.name);
+                let suite = record.suites.get(fixture.plan.suite.index());
+                let tolerated = suite.is_some_and(|suite| suite.plan.tolerates_collapse);
+                Some((if tolerated { Word::Warn } else { Word::Error }, text))
+            })
+        }
+        EventKind::FixtureStopped { fixture, problem: Some(problem), .. } => {
+            of_fixture(record, *fixture, |fixture| stopped(fixture, problem))
+        }
+        EventKind::FixtureBroken { fixture, reason } => {
+            of_fixture(record, *fixture, |fixture| Some((Word::Error, broken(fixture, reason))))
+        }
+        EventKind::HookFinished { hook, problem } => of_hook(record, *hook, problem.as_deref()),
+        EventKind::ProcessesLeft { source, processes } => {
+            let about = name(record, *source);
+            return processes
+                .iter()
+                .map(|process| {
+                    let text = format!("left behind and killed: {}", explain::process(process));
+                    Line::about(Word::Warn, &about, &text)
+                })
+                .collect();
+        }
+        EventKind::RunnerDied { reason, .. } => {
+            Some(Line::about(Word::Error, RUNNER, &format!("the runner died: {reason}")))
+        }
+        EventKind::RunFinished { interrupted: Some(reason) } => {
+            Some(Line::about(Word::Error, RUNNER, &format!("the run was interrupted: {reason}")))
+        }
+        _ => None,
+    };
+    line.into_iter().collect()
+}
+
+fn of_fixture(
+    record: &Record,
+    id: FixtureId,
+    tell: impl Fn(&FixtureRecord) -> Option<(Word, String)>,
+) -> Option<Line> {
+    let fixture = record.fixture(id)?;
+    let (word, text) = tell(fixture)?;
+    Some(Line::about(word, &suite_name(record, fixture.plan.suite), &text))
+}
+
+/// A set-up or tear-down that went wrong. What breaks the fixture is told then.
+fn stopped(fixture: &FixtureRecord, problem: &str) -> Option<(Word, String)> {
+    fixture.ready?;
+    Some((Word::Error, format!("tearDown() failed!: {}: {problem}", fixture.plan.name)))
+}
+
+fn broken(fixture: &FixtureRecord, reason: &str) -> String {
+    let name = &fixture.plan.name;
+    match fixture.collapses.len() {
+        0 => format!("setup() failed!: {name}: {reason}"),
+        _ => format!("Fixture collapsed: {name}: it is not started again: {reason}"),
+    }
+}
+
+fn of_hook(record: &Record, id: HookId, problem: Option<&str>) -> Option<Line> {
+    let hook = record.hooks.get(id.index())?;
+    let run = hook.runs.last()?;
+    let (name, on) = (&hook.plan.name, run.trigger);
+    let (word, text) = match problem {
+        Some(problem) => (Word::Error, format!("hook {name} on {on} failed: {problem}")),
+        None => (Word::Info, format!("reports: hook {name} on {on} is done")),
+    };
+    Some(Line::about(word, &suite_name(record, hook.plan.suite), &text))
+}
+
+fn suite_name(record: &Record, id: SuiteId) -> String {
+    record.suites.get(id.index()).map_or("?", |suite| &suite.plan.name).to_owned()
+}
