@@ -1,0 +1,100 @@
+//! From the ids of a run to those of the merged run.
+
+use rtf_model::{EventKind, FixtureId, HookId, Source, SuiteId, TestId};
+
+use super::attachment_path;
+use super::plan::Plan;
+
+/// The ids of one run.
+#[derive(Debug)]
+pub(super) struct Ids<'a> {
+    pub plan: &'a Plan,
+    /// The run's place.
+    pub part: usize,
+}
+
+impl Ids<'_> {
+    /// The suites of this run, by their new ids.
+    pub fn suites(&self) -> impl Iterator<Item = SuiteId> {
+        self.plan.maps[self.part].suites.iter().copied()
+    }
+
+    /// Gives an event the new ids; answers to which suite it belongs. The plan's
+    /// and the run's own events belong to none.
+    pub fn translate(&self, kind: &mut EventKind) -> Option<SuiteId> {
+        match kind {
+            EventKind::RunStarted(_)
+            | EventKind::SuitePlanned(_)
+            | EventKind::FixturePlanned(_)
+            | EventKind::HookPlanned(_)
+            | EventKind::TestPlanned(_)
+            | EventKind::Warning { .. }
+            | EventKind::RunFinished { .. }
+            | EventKind::RunnerDied { .. } => None,
+            EventKind::SuiteWaiting { suite, .. }
+            | EventKind::SuiteStarted { suite }
+            | EventKind::SuiteFinished { suite } => Some(self.suite(suite)),
+            EventKind::SuitePrepared(prepared) => Some(self.suite(&mut prepared.suite)),
+            EventKind::FixtureStarting { fixture, .. }
+            | EventKind::FixtureReady { fixture }
+            | EventKind::FixtureCollapsed { fixture, .. }
+            | EventKind::FixtureStopping { fixture }
+            | EventKind::FixtureStopped { fixture, .. }
+            | EventKind::FixtureBroken { fixture, .. } => Some(self.fixture(fixture)),
+            EventKind::Message { source, .. }
+            | EventKind::StackDumped { source, .. }
+            | EventKind::ProcessesLeft { source, .. } => Some(self.source(source)),
+            EventKind::Output(output) => Some(self.source(&mut output.source)),
+            EventKind::TestStarted { test, .. }
+            | EventKind::TestPhase { test, .. }
+            | EventKind::Measured { test, .. }
+            | EventKind::TestSlow { test }
+            | EventKind::TestStopping { test, .. }
+            | EventKind::TestSkipped { test, .. } => Some(self.test(test)),
+            EventKind::TestFinished(finished) => Some(self.test(&mut finished.test)),
+            EventKind::Attached { test, attachment } => {
+                if let Some(path) = attachment_path(self.part, &attachment.path) {
+                    attachment.path = path;
+                }
+                Some(self.test(test))
+            }
+            EventKind::HookStarted { hook, test, .. } => {
+                // The order of events says nothing of this one.
+                *test = test
+                    .and_then(|test| self.plan.maps[self.part].tests.get(test.index()).copied());
+                Some(self.hook(hook))
+            }
+            EventKind::HookFinished { hook, .. } => Some(self.hook(hook)),
+        }
+    }
+
+    // These ids were planned: the order of the run's events was checked.
+
+    fn suite(&self, id: &mut SuiteId) -> SuiteId {
+        *id = self.plan.maps[self.part].suites[id.index()];
+        *id
+    }
+
+    fn fixture(&self, id: &mut FixtureId) -> SuiteId {
+        *id = self.plan.maps[self.part].fixtures[id.index()];
+        self.plan.fixtures[id.index()].suite
+    }
+
+    fn hook(&self, id: &mut HookId) -> SuiteId {
+        *id = self.plan.maps[self.part].hooks[id.index()];
+        self.plan.hooks[id.index()].suite
+    }
+
+    fn test(&self, id: &mut TestId) -> SuiteId {
+        *id = self.plan.maps[self.part].tests[id.index()];
+        self.plan.tests[id.index()].suite
+    }
+
+    fn source(&self, source: &mut Source) -> SuiteId {
+        match source {
+            Source::Test(id) => self.test(id),
+            Source::Fixture(id) => self.fixture(id),
+            Source::Hook(id) => self.hook(id),
+        }
+    }
+}

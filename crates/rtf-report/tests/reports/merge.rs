@@ -1,0 +1,146 @@
+//! Parts of a run, merged, are the run.
+
+mod runs;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use proptest::prelude::*;
+use rtf_model::{Event, EventKind, Micros, OrderChecker, Record, TestId, Verdict};
+use rtf_report::merge::{Header, Part, Problem, attachment_path, merge};
+
+use runs::{PARTS, Run, Suite, Test, Try, suites};
+
+fn header() -> Header {
+    let (run, rtf) = ("merged".to_owned(), "0.1.0".to_owned());
+    Header { run, rtf, command: vec!["rtf".into(), "merge".into()] }
+}
+
+fn merged(parts: impl IntoIterator<Item = Vec<Event>>) -> Result<Record, Vec<Problem>> {
+    let part = |(number, events)| Part { name: format!("run-{number}"), events };
+    let events = merge((1..).zip(parts).map(part).collect(), false)?.events(header());
+    let mut order = OrderChecker::default();
+    events.iter().for_each(|event| order.check(event).unwrap());
+    order.finish().unwrap();
+    Ok(record(&events))
+}
+
+fn record(events: &[Event]) -> Record {
+    let mut record = Record::default();
+    events.iter().for_each(|event| record.apply(event));
+    record
+}
+
+/// What is known of each test, without the times at which it happened.
+fn facts(record: &Record) -> BTreeMap<String, Vec<String>> {
+    let facts = (0..).map(TestId).zip(&record.tests).map(|(id, test)| {
+        let verdict = (record.final_verdict(id), test.is_flaky(), test.reason(), test.duration());
+        let attempts = test.attempts.iter().map(|attempt| {
+            let told = (&attempt.messages, &attempt.measurements, attempt.counts);
+            let files: Vec<_> = attempt.attachments.iter().map(|file| &file.name).collect();
+            let ends = (attempt.verdict(), attempt.duration());
+            format!("{:?} {ends:?} {told:?} {files:?}", (attempt.repetition, attempt.attempt))
+        });
+        (record.full_name(id), [format!("{verdict:?}")].into_iter().chain(attempts).collect())
+    });
+    facts.collect()
+}
+
+proptest! {
+    #[test]
+    fn the_parts_of_a_run_make_up_the_run(mut suites in suites()) {
+        // What a broken fixture lets be run depends on the part.
+        suites.iter_mut().for_each(|suite| suite.breaks = false);
+        let whole = record(&Run::of(&suites, None).unwrap());
+        let parts = (0..PARTS).filter_map(|part| Run::of(&suites, Some(part)));
+        let merged = merged(parts).unwrap();
+        prop_assert_eq!(facts(&merged), facts(&whole));
+        prop_assert_eq!(merged.totals(), whole.totals());
+        prop_assert_eq!(merged.is_green(), whole.is_green());
+        prop_assert_eq!(&merged.run.as_ref().unwrap().manifest, &whole.run.as_ref().unwrap().manifest);
+        let suites = |record: &Record| -> BTreeSet<String> {
+            record.suites.iter().map(|suite| format!("{:?}", (&suite.plan.name, suite.fixtures.len(), suite.hooks.len(), suite.tests.len()))).collect()
+        };
+        prop_assert_eq!(suites(&merged), suites(&whole));
+        let collapses = |record: &Record| record.fixtures.iter().map(|fixture| fixture.collapses.len()).sum::<usize>();
+        prop_assert_eq!(collapses(&merged), collapses(&whole));
+    }
+
+    /// Each part may have lost its runner, at any moment, or have fixtures that broke.
+    #[test]
+    fn parts_that_were_killed_are_told_as_such(
+        suites in suites(),
+        cuts in prop::collection::vec((any::<prop::sample::Index>(), 0..3_u8), PARTS as usize),
+    ) {
+        let mut parts: Vec<_> = (0..PARTS).filter_map(|part| Run::of(&suites, Some(part))).collect();
+        let mut killed = false;
+        for (events, (cut, how)) in parts.iter_mut().zip(cuts) {
+            if how > 0 {
+                events.truncate(1 + cut.index(events.len() - 1));
+                killed = true;
+            }
+            if how > 1 {
+                let (seq, at) = (events.len() as u64, Micros(events[events.len() - 1].at.0));
+                let kind = EventKind::RunnerDied { reason: "signal 9".into(), left: Vec::new() };
+                events.push(Event { seq, at, kind });
+            }
+        }
+        let apart: BTreeMap<_, _> = parts.iter().flat_map(|events| facts(&record(events))).collect();
+        let merged = merged(parts).unwrap();
+        prop_assert_eq!(facts(&merged), apart);
+        prop_assert_eq!(merged.died().is_some(), killed);
+        prop_assert!(!(killed && merged.is_green()));
+    }
+}
+
+/// A passing test of a suite with a fixture.
+fn single(part: u32) -> Suite {
+    let tried = Try { verdict: Verdict::Passed, takes: 100, messages: 1, measured: Some(1.0) };
+    let test = Test { repetitions: vec![vec![tried]], skipped: false, part };
+    Suite { fixtures: 1, hooks: 1, collapses: false, breaks: false, tests: vec![test] }
+}
+
+#[test]
+fn a_test_that_two_runs_have_is_told() {
+    let suites = [single(0)];
+    let run = || Run::of(&suites, None).unwrap();
+    let problems = merged([run(), run()]).unwrap_err();
+    let told: Vec<_> = problems.iter().map(ToString::to_string).collect();
+    assert_eq!(told, ["test `suite-0/test-0` is in `run-1` and in `run-2`"]);
+}
+
+#[test]
+fn a_part_that_is_missing_is_told_unless_it_has_no_test() {
+    let suites = [single(0), single(2)];
+    let part = |part| Run::of(&suites, Some(part)).unwrap();
+    assert!(merged([part(0), part(2)]).unwrap().is_green());
+    let problems = merged([part(2)]).unwrap_err();
+    let told: Vec<_> = problems.iter().map(ToString::to_string).collect();
+    assert_eq!(told, ["not all of 3 parts are there: 1/3, 2/3 are missing"]);
+}
+
+#[test]
+fn a_joined_suite_starts_once_and_its_fixture_in_each_part() {
+    let mut suite = single(0);
+    suite.tests.extend(single(1).tests);
+    let suites = [suite];
+    let merged = merged((0..2).map(|part| Run::of(&suites, Some(part)).unwrap())).unwrap();
+    assert_eq!((merged.suites.len(), merged.fixtures.len(), merged.hooks.len()), (1, 1, 1));
+    assert_eq!(merged.fixtures[0].starts, 2);
+    let tests: Vec<_> = merged.hooks[0].runs.iter().map(|run| run.test).collect();
+    assert_eq!(tests, [Some(TestId(0)), Some(TestId(1))], "each about its own part's test");
+    let paths: Vec<_> =
+        merged.tests.iter().map(|test| test.attempts[0].attachments[0].path.as_str()).collect();
+    assert_eq!(paths, ["attachments/part-1/0/1/plot.png", "attachments/part-2/0/1/plot.png"]);
+}
+
+#[test]
+fn no_path_leads_out_of_the_attachments() {
+    assert_eq!(
+        attachment_path(0, "attachments/0/1/a").as_deref(),
+        Some("attachments/part-1/0/1/a")
+    );
+    for path in ["attachments/../events.jsonl", "/etc/passwd", "../x", "attachments", "logs/a.log"]
+    {
+        assert_eq!(attachment_path(0, path), None, "{path}");
+    }
+}
