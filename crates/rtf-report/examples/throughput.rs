@@ -64,6 +64,7 @@ fn before() -> Vec<EventKind> {
             folder: String::new(),
             suites: 1,
             tests: 1,
+            manifest: Box::default(),
         }),
         EventKind::SuitePlanned(SuitePlanned {
             suite: SUITE,

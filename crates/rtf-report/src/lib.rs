@@ -4,22 +4,38 @@
 //! [`Reporter`] on a thread of its own. The [`journal`] is the truth from which
 //! every other report can be made again; [`console`] talks while the run goes
 //! on; [`text`] and [`junit`] write a file when it is over; [`logs`] keeps what
-//! each process printed. [`run_folder`] is where all of it goes.
+//! each process printed. [`tap`], [`event_stream`], [`github`], [`gitlab`] and
+//! [`code_quality`] talk to other programs. [`run_folder`] is where all of it goes.
+//! [`merge`] makes one run of several.
+//! [`predecessor`] tells and writes what robot-testing-framework 2.x did.
 //!
 //! This crate starts nothing and decides nothing about a run.
 
+pub mod code_quality;
 pub mod console;
 pub mod escape;
+pub mod event_stream;
 mod explain;
 mod fanout;
+mod finding;
+pub mod github;
+pub mod gitlab;
 pub mod journal;
 pub mod junit;
 pub mod logs;
+pub mod merge;
 pub mod output_file;
+pub mod predecessor;
+mod prepared;
+pub mod repeated;
+mod report_file;
 mod reporter;
 pub mod run_folder;
+mod stream;
+pub mod tap;
 pub mod text;
 mod words;
 
 pub use fanout::{Fanout, FanoutHandle, Finished};
+pub use report_file::{AtTheEnd, ReportFile, Tell, WriteReport};
 pub use reporter::{ReportError, Reporter};

@@ -8,9 +8,11 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use rtf_model::{Event, EventKind, FixtureId, HookId, Output, Record, Source, TestId};
+use rtf_model::{
+    Event, EventKind, FixtureId, HookId, Output, Record, Source, SuiteId, SuitePrepared, TestId,
+};
 
-use crate::{ReportError, Reporter};
+use crate::{ReportError, Reporter, prepared};
 
 const WHAT: &str = "a log";
 
@@ -35,8 +37,9 @@ pub fn attempt_log(record: &Record, id: TestId, number: (u32, u32)) -> PathBuf {
     };
     let (repetition, attempt) = number;
     let suite = record.suites.get(test.plan.suite.index()).map_or("", |s| &s.plan.name);
-    // A test that is named like a fixture's or a hook's log must not share it.
-    let ambiguous = ["fixture-", "hook-"].iter().any(|word| test.plan.name.starts_with(word));
+    // A test that is named like another log must not share it.
+    let ambiguous = ["fixture-", "hook-"].iter().any(|word| test.plan.name.starts_with(word))
+        || test.plan.name == "suite";
     let mut name = base(suite, &test.plan.name, ambiguous, &format!("t{id}"));
     if test.plan.repetitions > 1 {
         name += &format!(".r{repetition}");
@@ -48,12 +51,18 @@ pub fn attempt_log(record: &Record, id: TestId, number: (u32, u32)) -> PathBuf {
 /// `logs/arm.fixture-simulator.a2.log`.
 #[must_use]
 pub fn fixture_log(record: &Record, id: FixtureId) -> PathBuf {
+    fixture_start_log(record, id, record.fixture(id).map_or(1, |fixture| fixture.starts))
+}
+
+/// The log of one start of a fixture, counted from 1, relative to the run's folder.
+#[must_use]
+pub fn fixture_start_log(record: &Record, id: FixtureId, start: u32) -> PathBuf {
     let Some(fixture) = record.fixture(id) else {
         return PathBuf::from(format!("logs/fixture~{id}.log"));
     };
     let suite = record.suites.get(fixture.plan.suite.index()).map_or("", |s| &s.plan.name);
     let name = format!("fixture-{}", fixture.plan.name);
-    path(base(suite, &name, false, &format!("f{id}")), fixture.starts)
+    path(base(suite, &name, false, &format!("f{id}")), start)
 }
 
 /// The log of the newest run of a hook, relative to the run's folder:
@@ -85,6 +94,14 @@ pub fn log(record: &Record, source: Source) -> PathBuf {
         Source::Fixture(id) => fixture_log(record, id),
         Source::Hook(id) => hook_log(record, id),
     }
+}
+
+/// What a suite has for itself, relative to the run's folder:
+/// `logs/arm.suite.log`.
+#[must_use]
+pub fn suite_log(record: &Record, id: SuiteId) -> PathBuf {
+    let suite = record.suites.get(id.index()).map_or("", |s| &s.plan.name);
+    path(base(suite, "suite", false, &format!("s{id}")), 1)
 }
 
 fn path(mut name: String, attempt: u32) -> PathBuf {
@@ -142,6 +159,18 @@ impl Logs {
         log.print(output).map_err(ReportError::at(WHAT, &log.path))
     }
 
+    /// What a suite has for itself, for whoever looks at its logs while it runs.
+    fn prepared(&self, prepared: &SuitePrepared, record: &Record) -> Result<(), ReportError> {
+        let path = self.folder.join(suite_log(record, prepared.suite));
+        let mut text = String::new();
+        prepared::show(prepared, &mut |_, line| {
+            text += line;
+            text.push('\n');
+        });
+        let written = create(&path).and_then(|mut file| file.write_all(text.as_bytes()));
+        written.map_err(ReportError::at(WHAT, &path))
+    }
+
     fn close(&mut self, source: Source) -> Result<(), ReportError> {
         match self.open.remove(&source) {
             Some(mut log) => log.file.flush().map_err(ReportError::at(WHAT, &log.path)),
@@ -169,6 +198,7 @@ impl Log {
 impl Reporter for Logs {
     fn event(&mut self, event: &Event, record: &Record) -> Result<(), ReportError> {
         match &event.kind {
+            EventKind::SuitePrepared(prepared) => self.prepared(prepared, record),
             EventKind::Output(output) => self.print(output, record),
             EventKind::TestFinished(finished) => self.close(Source::Test(finished.test)),
             EventKind::FixtureStopped { fixture, .. } => self.close(Source::Fixture(*fixture)),

@@ -1,15 +1,15 @@
 //! What is told while the run goes on.
 
 use rtf_model::{
-    Event, EventKind, FixtureId, LeftProcess, Message, MessageKind, Micros, Record, Source,
-    StopCause, SuiteId, TestFinished, TestId, Verdict,
+    Event, EventKind, FixtureId, LeftProcess, Manifest, Message, MessageKind, Micros, Record,
+    Source, StopCause, SuiteId, SuitePrepared, TestFinished, TestId, Verdict,
 };
 
 use super::page::Page;
 use super::style::{self, BAD, BOLD, DIM, LOUD};
 use super::{ConsoleOptions, Verbosity, hooks};
 use crate::explain::{self, Extent, Tone};
-use crate::{escape, logs, words};
+use crate::{escape, logs, prepared, words};
 
 /// How much of a failed test is told at once; the reports have all of it.
 pub(super) const EXTENT: Extent = Extent { items: 10, stack_lines: 40 };
@@ -22,8 +22,14 @@ pub(super) fn show(page: &mut Page, options: &ConsoleOptions, event: &Event, rec
     let live = Live { options, record };
     let quiet = options.verbosity == Verbosity::Quiet;
     match &event.kind {
+        EventKind::RunStarted(run) if !quiet => chosen(page, &run.manifest),
         EventKind::Warning { .. } => live.warning(page),
+        EventKind::SuiteWaiting { suite, lock, held_by } => {
+            live.waiting(page, *suite, lock, held_by);
+        }
         EventKind::SuiteStarted { suite } if !quiet => live.suite(page, *suite),
+        EventKind::SuiteFinished { suite } if !quiet => live.suite_over(page, *suite),
+        EventKind::SuitePrepared(prepared) if !quiet => live.prepared(page, prepared),
         EventKind::FixtureStarting { fixture, attempt } if *attempt > 1 => {
             page.remark(
                 (LOUD, "restart"),
@@ -66,6 +72,19 @@ pub(super) fn show(page: &mut Page, options: &ConsoleOptions, event: &Event, rec
     }
 }
 
+/// Which tests are run, unless it is all of them as they are written.
+fn chosen(page: &mut Page, manifest: &Manifest) {
+    let mut parts = Vec::new();
+    if manifest.chosen_of > 0 {
+        parts.push(format!("a part of {}", words::count(manifest.chosen_of.into(), "test")));
+    }
+    parts.extend(manifest.shard.iter().map(|shard| format!("--shard {shard}")));
+    parts.extend(manifest.shuffle.iter().map(|seed| format!("--shuffle={seed}")));
+    if !parts.is_empty() {
+        page.remark((DIM, "chosen"), &parts.join(", "));
+    }
+}
+
 struct Live<'a> {
     options: &'a ConsoleOptions,
     record: &'a Record,
@@ -87,6 +106,12 @@ impl Live<'_> {
         }
     }
 
+    fn waiting(&self, page: &mut Page, id: SuiteId, lock: &str, held_by: &str) {
+        let suite = self.record.suites.get(id.index()).map_or("", |suite| &suite.plan.name);
+        let text = format!("suite {suite} waits for `{lock}`, held by {held_by}");
+        page.remark((LOUD, "waiting"), &escape::line(&text));
+    }
+
     fn suite(&self, page: &mut Page, id: SuiteId) {
         let Some(suite) = self.record.suites.get(id.index()) else { return };
         let mut parts = vec![words::count(suite.tests.len() as u64, "test")];
@@ -98,12 +123,52 @@ impl Live<'_> {
         if !suite.plan.file.is_empty() {
             line += &format!("  {}", style::paint(DIM, &escape::line(&suite.plan.file)));
         }
+        if self.record.is_side_by_side() {
+            // What follows is not only this suite's: it is no heading.
+            return page.remark((DIM, "begin"), &line);
+        }
         page.line(&line);
     }
 
+    /// The end of a suite, where it is not where another one begins.
+    fn suite_over(&self, page: &mut Page, id: SuiteId) {
+        let Some(suite) = self.record.suites.get(id.index()) else { return };
+        if self.record.is_side_by_side() {
+            let took = suite.started.zip(suite.finished).map(|(start, end)| end.since(start));
+            let time = words::time(took.unwrap_or_default());
+            page.entry((DIM, "end"), &time, &format!("suite {}", escape::line(&suite.plan.name)));
+        }
+    }
+
+    /// What a person must know who looks for the suite's processes.
+    fn prepared(&self, page: &mut Page, prepared: &SuitePrepared) {
+        let all = self.options.verbosity == Verbosity::Verbose;
+        let kept = prepared.variables.iter().any(|variable| variable.kept);
+        let suite = match self.record.suites.get(prepared.suite.index()) {
+            Some(suite) if self.record.is_side_by_side() => {
+                format!("suite {}", escape::line(&suite.plan.name))
+            }
+            _ => "the suite".to_owned(),
+        };
+        if all {
+            page.remark((DIM, "prepared"), &format!("what {suite} has for itself"));
+            prepared::show(prepared, &mut |tone, line| page.detail(tone, line));
+        } else if prepared.network.is_some() {
+            let text = format!("{suite} has a network of its own; to join in:");
+            page.remark((DIM, "isolated"), &text);
+            // The command is long, and seldom needed.
+            let log = self.options.shown(&logs::suite_log(self.record, prepared.suite));
+            let how = log.unwrap_or_else(|| escape::line(&prepared.join).into_owned());
+            page.detail(Tone::Dim, &how);
+        }
+        if kept && !all {
+            let whose = if self.record.is_side_by_side() { suite + ": " } else { String::new() };
+            page.remark((LOUD, "kept"), &(whose + &prepared::kept(prepared)));
+        }
+    }
+
     fn fixture(&self, id: FixtureId) -> String {
-        let name = self.record.fixture(id).map_or("?", |fixture| &fixture.plan.name);
-        format!("fixture {}", escape::line(name))
+        format!("fixture {}", escape::line(&self.record.fixture_name(id)))
     }
 
     fn test(&self, id: TestId) -> String {

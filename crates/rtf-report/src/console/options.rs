@@ -53,11 +53,15 @@ impl Default for ConsoleOptions {
     }
 }
 
-/// `rtf run SUITE`, or `rtf run PLUGIN` for a plug-in given on the command line.
+/// `rtf run SUITE::TEST`, or `rtf run PLUGIN` for a plug-in given on the command line.
 #[must_use]
 pub fn rerun_suite(record: &Record, test: TestId) -> Option<String> {
     let test = record.tests.get(test.index())?;
     let suite = record.suites.get(test.plan.suite.index())?;
-    let file = if suite.plan.file.is_empty() { &test.plan.plugin } else { &suite.plan.file };
-    (!file.is_empty()).then(|| format!("rtf run {}", words::quoted(file)))
+    let what = if suite.plan.file.is_empty() {
+        test.plan.plugin.clone()
+    } else {
+        format!("{}::{}", suite.plan.file, test.plan.name)
+    };
+    (!what.is_empty()).then(|| format!("rtf run {}", words::quoted(&what)))
 }

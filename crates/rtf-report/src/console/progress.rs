@@ -69,8 +69,8 @@ impl Progress {
     }
 
     fn fixture(&self, record: &Record, id: rtf_model::FixtureId, what: &str) {
-        let name = record.fixture(id).map_or("?", |fixture| &fixture.plan.name);
-        self.bar.set_message(format!("{what} fixture {}", escape::line(name)));
+        let name = record.fixture_name(id);
+        self.bar.set_message(format!("{what} fixture {}", escape::line(&name)));
     }
 
     fn step(&mut self) {

@@ -9,10 +9,14 @@ use rtf_model::{Phase, Record, TestId, Verdict};
 use super::page::Page;
 use super::style::{self, BAD, BOLD, GOOD, LOUD};
 use super::{ConsoleOptions, hooks};
+use crate::repeated::Repeated;
 use crate::{escape, explain, logs, words};
 
 /// How many names of skipped tests are listed for one reason.
 const NAMES: usize = 5;
+
+/// How many repetitions make a histogram worth a look.
+const HISTOGRAM: usize = 10;
 
 /// How many processes that had to be killed are listed.
 const PROCESSES: usize = 50;
@@ -22,6 +26,8 @@ pub(super) fn show(page: &mut Page, options: &ConsoleOptions, record: &Record) {
     hooks::summary(page, options, record);
     problems(page, record);
     failed(page, options, record);
+    flaky(page, record);
+    repeated(page, record);
     skipped(page, record);
     killed(page, record);
     page.line("");
@@ -124,6 +130,47 @@ fn skipped(page: &mut Page, record: &Record) {
     }
 }
 
+/// Tests that passed only when they were tried again, and what they said before.
+fn flaky(page: &mut Page, record: &Record) {
+    let mut tests = record.tests.iter().filter(|test| test.is_flaky()).peekable();
+    if tests.peek().is_none() {
+        return;
+    }
+    let style = if record.flaky_fails() { BAD } else { LOUD };
+    page.line("");
+    page.line(&style::paint(BOLD, "flaky tests, which passed only when they were tried again:"));
+    for test in tests {
+        let name = style::paint(style, &escape::line(&record.full_name(test.plan.test)));
+        let attempts = words::count(test.attempts.len() as u64, "attempt");
+        page.line(&format!("  {name}  {attempts}"));
+        let before = test.attempts.iter().filter_map(|attempt| attempt.finished.as_ref());
+        for (_, finished) in before.filter(|(_, finished)| !finished.verdict.is_green()) {
+            let reason = words::first_line(finished.reason.as_deref().unwrap_or_default());
+            page.fact("before", &format!("{}: {reason}", finished.verdict));
+        }
+    }
+}
+
+/// How tests that ran more than once did.
+fn repeated(page: &mut Page, record: &Record) {
+    let tests = record.tests.iter().filter_map(|test| Some((test, Repeated::of(test)?)));
+    let mut tests = tests.peekable();
+    if tests.peek().is_none() {
+        return;
+    }
+    page.line("");
+    page.line(&style::paint(BOLD, "repeated tests:"));
+    for (test, repeated) in tests {
+        let style = if repeated.passed == repeated.times.len() { GOOD } else { BAD };
+        let name = escape::line(&record.full_name(test.plan.test)).into_owned();
+        page.line(&format!("  {name}  {}", style::paint(style, &repeated.rate())));
+        page.fact("time", &repeated.spread());
+        if repeated.times.len() >= HISTOGRAM {
+            page.fact("", &format!("|{}|", repeated.histogram()));
+        }
+    }
+}
+
 /// Everything that had to be killed, whoever left it.
 fn killed(page: &mut Page, record: &Record) {
     let left = record.left_behind();
@@ -150,12 +197,16 @@ fn result(page: &mut Page, record: &Record) {
     let time = words::time(record.last_at.as_duration());
     let (style, word) = outcome(record);
     let counts = if counts.is_empty() { String::new() } else { format!(": {}", counts.join(", ")) };
+    let flaky = match record.tests.iter().filter(|test| test.is_flaky()).count() {
+        0 => String::new(),
+        flaky => format!(" ({flaky} flaky)"),
+    };
     let failed = record.failed_hooks().count();
     let hooks = match failed {
         0 => String::new(),
         failed => format!("; {} failed", words::count(failed as u64, "hook")),
     };
-    let rest = format!("{tests} in {suites}, {time}{counts}{hooks}");
+    let rest = format!("{tests} in {suites}, {time}{counts}{flaky}{hooks}");
     page.line(&format!("{}  {rest}", style::paint(style, &word)));
 }
 

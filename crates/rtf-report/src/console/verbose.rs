@@ -37,12 +37,16 @@ impl Key {
         }
     }
 
-    fn name(self, record: &Record) -> String {
+    fn source(self) -> Source {
         match self {
-            Self::Test(id, _) => name(record, Source::Test(id)),
-            Self::Fixture(id, _) => name(record, Source::Fixture(id)),
-            Self::Hook(id, _) => name(record, Source::Hook(id)),
+            Self::Test(id, _) => Source::Test(id),
+            Self::Fixture(id, _) => Source::Fixture(id),
+            Self::Hook(id, _) => Source::Hook(id),
         }
+    }
+
+    fn name(self, record: &Record) -> String {
+        name(record, self.source())
     }
 }
 
@@ -85,10 +89,16 @@ impl Verbose {
                 lines_of(page, &name(record, Source::Test(*test)), &[(Tone::Plain, text)]);
             }
             EventKind::Output(output) => self.output(page, output, record),
-            EventKind::TestFinished(_)
-            | EventKind::FixtureStopped { .. }
-            | EventKind::HookFinished { .. }
-            | EventKind::RunnerDied { .. } => self.flush(page, record),
+            EventKind::TestFinished(finished) => {
+                self.flush_suite(page, record, Source::Test(finished.test));
+            }
+            EventKind::FixtureStopped { fixture, .. } => {
+                self.flush_suite(page, record, Source::Fixture(*fixture));
+            }
+            EventKind::HookFinished { hook, .. } => {
+                self.flush_suite(page, record, Source::Hook(*hook));
+            }
+            EventKind::RunnerDied { .. } => self.flush(page, record),
             _ => {}
         }
     }
@@ -111,6 +121,17 @@ impl Verbose {
         print(page, &key.name(record), &text);
     }
 
+    /// Shows the lines of a suite that have not ended.
+    fn flush_suite(&mut self, page: &mut Page, record: &Record, source: Source) {
+        let suite = record.suite_of(source);
+        let (now, later) = std::mem::take(&mut self.partial)
+            .into_iter()
+            .partition(|(key, _)| record.suite_of(key.source()) == suite);
+        self.partial = now;
+        self.flush(page, record);
+        self.partial = later;
+    }
+
     /// Shows the lines that have not ended.
     pub fn flush(&mut self, page: &mut Page, record: &Record) {
         for (key, text) in std::mem::take(&mut self.partial) {
@@ -122,10 +143,7 @@ impl Verbose {
 fn name(record: &Record, source: Source) -> String {
     match source {
         Source::Test(id) => escape::line(&record.full_name(id)).into_owned(),
-        Source::Fixture(id) => {
-            let name = record.fixture(id).map_or("?", |fixture| &fixture.plan.name);
-            format!("fixture {}", escape::line(name))
-        }
+        Source::Fixture(id) => format!("fixture {}", escape::line(&record.fixture_name(id))),
         Source::Hook(id) => format!("hook {}", escape::line(&record.full_hook_name(id))),
     }
 }

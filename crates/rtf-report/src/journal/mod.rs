@@ -7,3 +7,35 @@ mod writer;
 
 pub use reader::{Damage, JournalError, Stored, read, read_with, replay};
 pub use writer::Journal;
+
+use std::fs::{File, TryLockError};
+
+/// Whether a runner that lives writes this journal. A file system that has no
+/// locks cannot tell; then one is believed to.
+#[must_use]
+pub fn is_written(journal: &File) -> bool {
+    match journal.try_lock_shared() {
+        Ok(()) => {
+            // Closing the file would do it too, and the file may be kept open.
+            drop(journal.unlock());
+            false
+        }
+        Err(TryLockError::WouldBlock | TryLockError::Error(_)) => true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_journal_is_written_for_as_long_as_its_writer_lives() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("events.jsonl");
+        let writer = Journal::create(&path).unwrap();
+        let reader = File::open(&path).unwrap();
+        assert!(is_written(&reader));
+        drop(writer);
+        assert!(!is_written(&reader));
+    }
+}

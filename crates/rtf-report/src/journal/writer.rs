@@ -27,6 +27,10 @@ impl Journal {
     /// The file exists or cannot be written.
     pub fn create(path: &Path) -> Result<Self, ReportError> {
         let file = File::create_new(path).map_err(ReportError::at(WHAT, path))?;
+        // Held until the runner ends, however it ends: see [`super::is_written`].
+        // Nobody else holds it for longer than a look. Some file systems have no
+        // locks; the run does not depend on them.
+        drop(file.lock());
         Ok(Self { path: path.to_owned(), file: BufWriter::with_capacity(BUFFER, file) })
     }
 

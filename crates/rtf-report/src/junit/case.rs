@@ -14,6 +14,9 @@ const MEASUREMENTS: usize = 100;
 /// What is said of a test that did not end although the run did.
 const CUT_SHORT: &str = "the run ended before the test did";
 
+/// What is said of a test that passed only when it was tried again, when that counts.
+const FLAKY: &str = "it is flaky: it passed only when it was tried again";
+
 /// What is said of a test that did not begin although the run ended.
 const NOT_BEGUN: &str = "the run ended before the test began";
 
@@ -61,6 +64,13 @@ fn kind(verdict: Verdict) -> NonSuccessKind {
 
 /// A pass names the attempts that did not, as flaky runs.
 fn passed(record: &Record, test: &TestRecord) -> TestCaseStatus {
+    if test.is_flaky() && record.flaky_fails() {
+        let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+        status.set_message(FLAKY);
+        status.set_type("flaky");
+        status.set_description(description(record, test, FLAKY));
+        return status;
+    }
     let mut status = TestCaseStatus::success();
     for attempt in &test.attempts {
         let Some((_, finished)) = &attempt.finished else { continue };

@@ -4,7 +4,7 @@ use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 use rtf_model::{FixtureRecord, Record, SuiteRecord};
 
 use super::text;
-use crate::explain;
+use crate::{explain, finding};
 
 /// The case of a fixture, when something went wrong with it.
 pub(super) fn of_fixture(
@@ -31,17 +31,7 @@ pub(super) fn of_fixture(
 
 /// A suite of its own for what is wrong with the run as a whole.
 pub(super) fn of_run(record: &Record) -> Option<TestSuite> {
-    let problem = if let Some(reason) = record.interrupted() {
-        format!("the run was interrupted: {reason}")
-    } else if let Some(reason) = record.died() {
-        format!("the runner died: {reason}")
-    } else if !record.is_complete() {
-        "the runner did not reach the end of this run".to_owned()
-    } else if record.tests.is_empty() {
-        "the run has no tests".to_owned()
-    } else {
-        return None;
-    };
+    let problem = finding::run_problem(record)?;
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
     status.set_message(text(&problem));
     status.set_type("run");

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use rtf_model::{Event, Record, SuiteRecord, Verdict};
 
-use crate::{ReportError, Reporter, explain, output_file, words};
+use crate::{ReportError, Reporter, explain, output_file, prepared, words};
 use lines::Lines;
 
 const WHAT: &str = "the text report";
@@ -95,6 +95,9 @@ fn show_suite(
     }
     if let (Some(start), Some(end)) = (suite.started, suite.finished) {
         lines.at(2, &format!("time: {}", words::time(end.since(start))));
+    }
+    if let Some(prepared) = &suite.prepared {
+        prepared::show(prepared, &mut |_, line| lines.at(2, line));
     }
     for fixture in suite.fixtures.iter().filter_map(|id| record.fixture(*id)) {
         fixtures::show(lines, fixture);

@@ -4,8 +4,11 @@
 
 mod console;
 mod fanout;
+mod hosts;
 mod journal;
 mod junit;
 mod logs;
+mod merge;
+mod predecessor;
 mod streams;
 mod support;

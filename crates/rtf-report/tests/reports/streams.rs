@@ -41,14 +41,15 @@ fn console() {
 
 #[test]
 fn quiet_console() {
-    for name in ["verdicts", "silent", "collapse-restart", "hooks", "leaked"] {
+    for name in ["verdicts", "silent", "collapse-restart", "hooks", "leaked", "prepared"] {
         insta::assert_snapshot!(format!("quiet-{name}"), plain(name, Verbosity::Quiet));
     }
 }
 
 #[test]
 fn verbose_console() {
-    for name in ["verdicts", "nasty", "killed", "hooks", "runner-died"] {
+    for name in ["verdicts", "nasty", "killed", "hooks", "runner-died", "prepared", "side-by-side"]
+    {
         insta::assert_snapshot!(format!("verbose-{name}"), plain(name, Verbosity::Verbose));
     }
 }

@@ -1,0 +1,67 @@
+//! A report that is made of the record when the run is over.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use rtf_model::{Event, Record};
+
+use crate::{ReportError, Reporter, output_file};
+
+/// Writes a report of a record.
+pub type WriteReport = Box<dyn Fn(&mut dyn Write, &Record) -> io::Result<()> + Send>;
+
+/// Tells something of the record when the run is over.
+pub type Tell = Box<dyn Fn(&Record) -> io::Result<()> + Send>;
+
+/// Tells something on standard error when the run is over.
+pub struct AtTheEnd(Tell);
+
+impl AtTheEnd {
+    /// Calls `tell` at the end.
+    #[must_use]
+    pub fn new(tell: Tell) -> Self {
+        Self(tell)
+    }
+}
+
+impl Reporter for AtTheEnd {
+    fn event(&mut self, _event: &Event, _record: &Record) -> Result<(), ReportError> {
+        Ok(())
+    }
+
+    fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
+        match (self.0)(record) {
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+            told => told.map_err(ReportError::at("annotations", Path::new("standard error"))),
+        }
+    }
+}
+
+/// Writes a file when the run is over.
+pub struct ReportFile {
+    what: &'static str,
+    path: PathBuf,
+    write: WriteReport,
+}
+
+impl ReportFile {
+    /// Checks that the file can be written: call it before the run. `what`
+    /// names the report in errors.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn new(what: &'static str, path: &Path, write: WriteReport) -> Result<Self, ReportError> {
+        output_file::probe(what, path)?;
+        Ok(Self { what, path: path.to_owned(), write })
+    }
+}
+
+impl Reporter for ReportFile {
+    fn event(&mut self, _event: &Event, _record: &Record) -> Result<(), ReportError> {
+        Ok(())
+    }
+
+    fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
+        output_file::write(self.what, &self.path, |out| (self.write)(out, record))
+    }
+}

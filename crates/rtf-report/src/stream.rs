@@ -1,0 +1,45 @@
+//! Standard output as a place for a stream of data.
+
+use std::io::{ErrorKind, Write};
+use std::path::Path;
+
+use crate::ReportError;
+
+/// So much may wait before it is written, however busy the run is.
+const PAGE: usize = 16 * 1024;
+
+/// Collects whole lines and writes them together.
+pub(crate) struct Stream {
+    what: &'static str,
+    out: Box<dyn Write + Send>,
+    /// What waits to be written: always whole lines.
+    pub page: Vec<u8>,
+}
+
+impl Stream {
+    /// A stream to `out`; `what` names it in errors.
+    pub fn new(what: &'static str, out: Box<dyn Write + Send>) -> Self {
+        Self { what, out, page: Vec::new() }
+    }
+
+    /// Writes when much waits.
+    pub fn flush_if_long(&mut self) -> Result<(), ReportError> {
+        if self.page.len() > PAGE { self.flush() } else { Ok(()) }
+    }
+
+    /// Writes what waits.
+    pub fn flush(&mut self) -> Result<(), ReportError> {
+        if self.page.is_empty() {
+            return Ok(());
+        }
+        let written = self.out.write_all(&self.page).and_then(|()| self.out.flush());
+        self.page.clear();
+        if written.as_ref().is_err_and(|error| error.kind() == ErrorKind::BrokenPipe) {
+            // Whoever read along has seen enough: the run goes on, and its exit
+            // code stays about the tests.
+            self.out = Box::new(std::io::sink());
+            return Ok(());
+        }
+        written.map_err(ReportError::at(self.what, Path::new("standard output")))
+    }
+}
