@@ -1,0 +1,112 @@
+//! A secret that is compared in constant time.
+
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest, Sha256};
+use subtle::ConstantTimeEq;
+
+/// How many random bytes a token has.
+const BYTES: usize = 32;
+
+/// The least number of characters of a token that somebody chose.
+const SHORTEST: usize = 16;
+
+/// There is no token.
+#[derive(Debug, thiserror::Error)]
+pub enum TokenError {
+    /// The system has no random bytes.
+    #[error("cannot make a token: {0}")]
+    Random(getrandom::Error),
+    /// The token's file cannot be read.
+    #[error("cannot read the token from `{}`", path.display())]
+    Read {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        #[source]
+        source: std::io::Error,
+    },
+    /// What stands in the file is no token.
+    #[error("the token in `{}` is not one line of at least {SHORTEST} visible ASCII characters", path.display())]
+    Weak {
+        /// Which.
+        path: PathBuf,
+    },
+}
+
+/// A token, or what a session's cookie holds.
+pub struct Secret(String);
+
+impl Secret {
+    /// A new one.
+    ///
+    /// # Errors
+    /// The system has no random bytes.
+    pub fn random() -> Result<Self, TokenError> {
+        let mut bytes = [0; BYTES];
+        getrandom::fill(&mut bytes).map_err(TokenError::Random)?;
+        Ok(Self(bytes.iter().map(|byte| format!("{byte:02x}")).collect()))
+    }
+
+    /// The first line of a file.
+    ///
+    /// # Errors
+    /// It cannot be read, or is too short for a token.
+    pub fn read(path: &Path) -> Result<Self, TokenError> {
+        let text = std::fs::read_to_string(path);
+        let text = text.map_err(|source| TokenError::Read { path: path.to_owned(), source })?;
+        let token = text.strip_suffix('\n').unwrap_or(&text);
+        let token = token.strip_suffix('\r').unwrap_or(token);
+        if token.len() < SHORTEST || !token.bytes().all(|byte| byte.is_ascii_graphic()) {
+            return Err(TokenError::Weak { path: path.to_owned() });
+        }
+        Ok(Self(token.to_owned()))
+    }
+
+    /// Whether this is it. Takes as long for every guess.
+    #[must_use]
+    pub fn is(&self, guess: &str) -> bool {
+        // Hashed, so that the length is not told either.
+        Sha256::digest(&self.0).ct_eq(&Sha256::digest(guess)).into()
+    }
+
+    /// The secret itself, to be shown once.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.0
+    }
+}
+
+impl std::fmt::Debug for Secret {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Secret(…)")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tokens_differ_and_are_only_what_they_are() {
+        let (token, other) = (Secret::random().unwrap(), Secret::random().unwrap());
+        assert_eq!(token.text().len(), 2 * BYTES);
+        assert!(token.is(token.text()) && !token.is(other.text()));
+        assert!(!token.is("") && !token.is(&token.text()[1..]));
+        assert_eq!(format!("{token:?}"), "Secret(…)");
+    }
+
+    #[test]
+    fn a_token_is_one_long_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("token");
+        let read = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            Secret::read(&path).map(|secret| secret.0).map_err(|error| error.to_string())
+        };
+        assert_eq!(read("0123456789abcdef\n").as_deref(), Ok("0123456789abcdef"));
+        for weak in ["", "short\n", "0123456789abcdef\nmore\n", "0123456789abcd f"] {
+            assert!(read(weak).is_err_and(|error| error.contains("16 visible")), "{weak}");
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! What a request asks for: its path and its query, or a problem in JSON.
+
+use axum::extract::{FromRequestParts, Path, Query};
+use axum::http::request::Parts;
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use utoipa::IntoParams;
+
+use crate::problem::Problem;
+
+/// Parts of the path.
+#[derive(Debug)]
+pub struct At<T>(pub T);
+
+/// The query.
+#[derive(Debug)]
+pub struct Asked<T>(pub T);
+
+impl<T: DeserializeOwned + Send, S: Send + Sync> FromRequestParts<S> for At<T> {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
+        let path = Path::<T>::from_request_parts(parts, state).await;
+        path.map(|Path(path)| Self(path)).map_err(|error| Problem::not_found(error.body_text()))
+    }
+}
+
+impl<T: DeserializeOwned + Send, S: Send + Sync> FromRequestParts<S> for Asked<T> {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
+        let query = Query::<T>::from_request_parts(parts, state).await;
+        query.map(|Query(query)| Self(query)).map_err(|e| Problem::bad_request(e.body_text()))
+    }
+}
+
+/// A page of a list.
+#[derive(Clone, Copy, Debug, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct Page {
+    /// The `next` of the page before.
+    pub after: Option<u64>,
+    /// How many entries at most.
+    #[param(minimum = 1, maximum = 1000, default = 100)]
+    pub limit: Option<usize>,
+}
+
+/// How many entries a page has when nobody says so.
+const PAGE: usize = 100;
+/// How many it may have.
+const LARGEST_PAGE: usize = 1000;
+
+impl Page {
+    /// How many entries are wanted.
+    ///
+    /// # Errors
+    /// More than a page may have, or none.
+    pub fn limit(&self) -> Result<usize, Problem> {
+        limit(self.limit, PAGE)
+    }
+}
+
+/// A limit that was asked for.
+///
+/// # Errors
+/// More than a page may have, or none.
+pub fn limit(asked: Option<usize>, usual: usize) -> Result<usize, Problem> {
+    match asked.unwrap_or(usual) {
+        limit @ 1..=LARGEST_PAGE => Ok(limit),
+        limit => Err(Problem::bad_request(format!(
+            "`limit` is {limit}, expected a number from 1 to {LARGEST_PAGE}"
+        ))),
+    }
+}

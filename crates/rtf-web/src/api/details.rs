@@ -1,0 +1,263 @@
+//! What one attempt of a test, start of a fixture or run of a hook reported and
+//! printed. It is read from the journal, page by page.
+
+use axum::extract::State;
+use rtf_model::{Event, EventKind, FixtureId, HookId, Source, TestId};
+use serde::Deserialize;
+use utoipa::IntoParams;
+
+use super::asked::{Asked, At, Page};
+use super::problems::Problems;
+use super::types::{
+    Attached, Attachments, Measured, Measurements, Messages, OutputPage, Printed, Said, Stack,
+    Stacks,
+};
+use crate::app::{App, JsonText};
+use crate::index::{Head, Lines};
+use crate::problem::Problem;
+use crate::runs::Run;
+
+/// How much text a page holds, apart from its last entry.
+const PAGE_BYTES: usize = 1 << 20;
+
+type Path3 = At<(String, u32, u32)>;
+type Answer = Result<JsonText, Problem>;
+
+/// Which part of the journal, and which page of it.
+struct Part {
+    source: Source,
+    number: u32,
+    kind: &'static str,
+    page: Page,
+}
+
+impl Part {
+    /// The entries of the page, and the number with which the next one goes on.
+    fn read<T>(
+        &self,
+        run: &Run,
+        mut pick: impl FnMut(Event) -> Option<T>,
+    ) -> Result<(Vec<T>, Option<u64>), Problem> {
+        let limit = self.page.limit()?;
+        let mut lines = self.lines(run)?;
+        let (mut entries, mut bytes, mut last) = (Vec::new(), 0, 0);
+        let failed = |error| Problem::unreadable(std::path::Path::new("events.jsonl"), &error);
+        while let Some(line) = lines.next().map_err(failed)? {
+            let Ok(head) = serde_json::from_slice::<Head>(line.text) else { continue };
+            let wanted = self.page.after.is_none_or(|after| head.seq > after);
+            if !wanted || *head.kind != *self.kind || head.detail_of() != Some(self.source) {
+                continue;
+            }
+            let Some(entry) = serde_json::from_slice(line.text).ok().and_then(&mut pick) else {
+                continue;
+            };
+            if entries.len() >= limit || bytes >= PAGE_BYTES {
+                return Ok((entries, Some(last)));
+            }
+            entries.push(entry);
+            bytes += line.text.len();
+            last = head.seq;
+        }
+        Ok((entries, None))
+    }
+
+    fn lines(&self, run: &Run) -> Result<Lines, Problem> {
+        let index = run.read()?;
+        let Some(place) = index.places().of(self.source, self.number) else {
+            let (what, id) = match self.source {
+                Source::Test(id) => ("attempt", format!("test {id}")),
+                Source::Fixture(id) => ("start", format!("fixture {id}")),
+                Source::Hook(id) => ("run", format!("hook {id}")),
+            };
+            let number = self.number;
+            return Err(Problem::not_found(format!("there is no {what} {number} of {id}")));
+        };
+        let known = self.page.after.map_or(0, |after| index.places().before(after));
+        let end = place.end.unwrap_or(index.offset());
+        let start = place.start.max(known);
+        drop(index);
+        let lines = Lines::between(run.journal()?, start, end);
+        lines.map_err(|error| Problem::unreadable(&run.folder, &error))
+    }
+}
+
+/// Which messages.
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct Kinds {
+    /// Only these kinds, separated by commas: `report`, `check`, `failure`, `error`.
+    kind: Option<String>,
+    /// The `next` of the page before.
+    after: Option<u64>,
+    /// How many entries at most.
+    #[param(minimum = 1, maximum = 1000, default = 100)]
+    limit: Option<usize>,
+}
+
+async fn messages(app: App, run: String, (source, number): (Source, u32), kinds: Kinds) -> Answer {
+    let page = Page { after: kinds.after, limit: kinds.limit };
+    let part = Part { source, number, kind: "message", page };
+    app.with_run(run, move |run| {
+        let (messages, next) = part.read(run, |event| {
+            let EventKind::Message { message, .. } = event.kind else { return None };
+            let kind = serde_json::to_value(message.kind).ok()?;
+            let named = |list: &String| list.split(',').any(|name| Some(name) == kind.as_str());
+            let said = Said { seq: event.seq, at: event.at.0, message };
+            kinds.kind.as_ref().is_none_or(named).then_some(said)
+        })?;
+        JsonText::of(&Messages { messages, next })
+    })
+    .await
+}
+
+/// What an attempt of a test reported.
+#[utoipa::path(get, path = "/runs/{run}/tests/{test}/attempts/{number}/messages", tag = "details",
+    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), Kinds),
+    responses((status = 200, body = Messages), Problems))]
+pub async fn test_messages(
+    State(app): State<App>,
+    At((run, test, number)): Path3,
+    Asked(kinds): Asked<Kinds>,
+) -> Answer {
+    messages(app, run, (Source::Test(TestId(test)), number), kinds).await
+}
+
+/// What a fixture reported after one of its starts.
+#[utoipa::path(get, path = "/runs/{run}/fixtures/{fixture}/starts/{number}/messages",
+    tag = "details",
+    params(("run" = String, Path), ("fixture" = u32, Path), ("number" = u32, Path), Kinds),
+    responses((status = 200, body = Messages), Problems))]
+pub async fn fixture_messages(
+    State(app): State<App>,
+    At((run, fixture, number)): Path3,
+    Asked(kinds): Asked<Kinds>,
+) -> Answer {
+    messages(app, run, (Source::Fixture(FixtureId(fixture)), number), kinds).await
+}
+
+/// What a run of a hook reported.
+#[utoipa::path(get, path = "/runs/{run}/hooks/{hook}/runs/{number}/messages", tag = "details",
+    params(("run" = String, Path), ("hook" = u32, Path), ("number" = u32, Path), Kinds),
+    responses((status = 200, body = Messages), Problems))]
+pub async fn hook_messages(
+    State(app): State<App>,
+    At((run, hook, number)): Path3,
+    Asked(kinds): Asked<Kinds>,
+) -> Answer {
+    messages(app, run, (Source::Hook(HookId(hook)), number), kinds).await
+}
+
+/// What an attempt of a test measured.
+#[utoipa::path(get, path = "/runs/{run}/tests/{test}/attempts/{number}/measurements",
+    tag = "details",
+    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), Page),
+    responses((status = 200, body = Measurements), Problems))]
+pub async fn measurements(
+    State(app): State<App>,
+    At((run, test, number)): Path3,
+    Asked(page): Asked<Page>,
+) -> Answer {
+    let part = Part { source: Source::Test(TestId(test)), number, kind: "measured", page };
+    app.with_run(run, move |run| {
+        let (measurements, next) = part.read(run, |event| {
+            let EventKind::Measured { measurement, .. } = event.kind else { return None };
+            let within = measurement.is_within_limits();
+            Some(Measured { seq: event.seq, at: event.at.0, measurement, within })
+        })?;
+        JsonText::of(&Measurements { measurements, next })
+    })
+    .await
+}
+
+/// What an attempt of a test attached.
+#[utoipa::path(get, path = "/runs/{run}/tests/{test}/attempts/{number}/attachments",
+    tag = "details",
+    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), Page),
+    responses((status = 200, body = Attachments), Problems))]
+pub async fn attachments(
+    State(app): State<App>,
+    At((run, test, number)): Path3,
+    Asked(page): Asked<Page>,
+) -> Answer {
+    let part = Part { source: Source::Test(TestId(test)), number, kind: "attached", page };
+    app.with_run(run, move |run| {
+        let (attachments, next) = part.read(run, |event| {
+            let EventKind::Attached { attachment, .. } = event.kind else { return None };
+            let url = super::files::url(&run.name, &attachment.path);
+            Some(Attached { seq: event.seq, at: event.at.0, attachment, url })
+        })?;
+        JsonText::of(&Attachments { attachments, next })
+    })
+    .await
+}
+
+/// Where an attempt of a test was before it was stopped by force.
+#[utoipa::path(get, path = "/runs/{run}/tests/{test}/attempts/{number}/stacks", tag = "details",
+    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), Page),
+    responses((status = 200, body = Stacks), Problems))]
+pub async fn stacks(
+    State(app): State<App>,
+    At((run, test, number)): Path3,
+    Asked(page): Asked<Page>,
+) -> Answer {
+    let part = Part { source: Source::Test(TestId(test)), number, kind: "stack-dumped", page };
+    app.with_run(run, move |run| {
+        let (stacks, next) = part.read(run, |event| {
+            let EventKind::StackDumped { text, .. } = event.kind else { return None };
+            Some(Stack { seq: event.seq, at: event.at.0, text })
+        })?;
+        JsonText::of(&Stacks { stacks, next })
+    })
+    .await
+}
+
+async fn output(app: App, run: String, (source, number): (Source, u32), page: Page) -> Answer {
+    let part = Part { source, number, kind: "output", page };
+    app.with_run(run, move |run| {
+        let (output, next) = part.read(run, |event| {
+            let EventKind::Output(output) = event.kind else { return None };
+            let omitted = Some(output.omitted).filter(|omitted| *omitted > 0);
+            let (stream, text) = (output.stream, output.text);
+            Some(Printed { seq: event.seq, at: event.at.0, stream, omitted, text })
+        })?;
+        JsonText::of(&OutputPage { output, next })
+    })
+    .await
+}
+
+/// What an attempt of a test printed.
+#[utoipa::path(get, path = "/runs/{run}/tests/{test}/attempts/{number}/output", tag = "details",
+    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), Page),
+    responses((status = 200, body = OutputPage), Problems))]
+pub async fn test_output(
+    State(app): State<App>,
+    At((run, test, number)): Path3,
+    Asked(page): Asked<Page>,
+) -> Answer {
+    output(app, run, (Source::Test(TestId(test)), number), page).await
+}
+
+/// What a fixture printed after one of its starts.
+#[utoipa::path(get, path = "/runs/{run}/fixtures/{fixture}/starts/{number}/output",
+    tag = "details",
+    params(("run" = String, Path), ("fixture" = u32, Path), ("number" = u32, Path), Page),
+    responses((status = 200, body = OutputPage), Problems))]
+pub async fn fixture_output(
+    State(app): State<App>,
+    At((run, fixture, number)): Path3,
+    Asked(page): Asked<Page>,
+) -> Answer {
+    output(app, run, (Source::Fixture(FixtureId(fixture)), number), page).await
+}
+
+/// What a run of a hook printed.
+#[utoipa::path(get, path = "/runs/{run}/hooks/{hook}/runs/{number}/output", tag = "details",
+    params(("run" = String, Path), ("hook" = u32, Path), ("number" = u32, Path), Page),
+    responses((status = 200, body = OutputPage), Problems))]
+pub async fn hook_output(
+    State(app): State<App>,
+    At((run, hook, number)): Path3,
+    Asked(page): Asked<Page>,
+) -> Answer {
+    output(app, run, (Source::Hook(HookId(hook)), number), page).await
+}

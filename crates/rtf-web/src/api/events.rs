@@ -1,0 +1,82 @@
+//! The events of a run as they happen, as server-sent events.
+
+use std::convert::Infallible;
+use std::time::Duration;
+
+use axum::extract::State;
+use axum::http::{HeaderMap, StatusCode};
+use axum::response::sse::{KeepAlive, Sse};
+use axum::response::{IntoResponse, Response};
+use futures_util::stream::{self, StreamExt};
+use serde::Deserialize;
+use utoipa::{IntoParams, ToSchema};
+
+use super::asked::{Asked, At};
+use super::problems::Problems;
+use crate::app::App;
+use crate::feed::{Details, Feed};
+use crate::problem::Problem;
+
+/// How long nothing is sent at most.
+const SILENCE: Duration = Duration::from_secs(1);
+
+/// Which events.
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct Which {
+    /// The number of the first event; the next one to come when it is left out.
+    from: Option<u64>,
+    /// Whose messages, measurements and outputs: `all`, `none`, or a list like
+    /// `test:3,fixture:0,hook:1`.
+    details: Option<String>,
+}
+
+/// What is sent of a stream, again and again.
+#[derive(ToSchema)]
+#[expect(dead_code, reason = "axum writes it; this describes it")]
+pub struct Sent {
+    /// The number of the event.
+    id: String,
+    /// `message` (not written), `progress`, `resync` or `end`.
+    #[schema(required = false)]
+    event: String,
+    /// JSON: of a `message` an `Event`, of the others see `spec/web.md`.
+    #[schema(content_media_type = "application/json")]
+    data: String,
+}
+
+/// The events of a run as they happen.
+#[utoipa::path(get, path = "/runs/{run}/events", tag = "events",
+    params(("run" = String, Path), Which,
+        ("last-event-id" = Option<u64>, Header, description = "the last event that was seen")),
+    responses(
+        (status = 200, content_type = "text/event-stream", body = Sent),
+        (status = 204, description = "the run is over, and nothing follows"),
+        Problems))]
+pub async fn events(
+    State(app): State<App>,
+    At(run): At<String>,
+    Asked(which): Asked<Which>,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let details = Details::parse(which.details.as_deref().unwrap_or("all"))?;
+    let last = headers.get("last-event-id").and_then(|id| id.to_str().ok()?.parse::<u64>().ok());
+    let from = last.map(|last| last.saturating_add(1)).or(which.from);
+    let place = app.streams.clone().try_acquire_owned().map_err(|_| {
+        Problem::new(StatusCode::SERVICE_UNAVAILABLE, "there are too many event streams")
+    })?;
+    let feed = app.with_run(run, move |run| Feed::open(run.clone(), from, details)).await?;
+    let Some(mut feed) = feed else { return Ok(StatusCode::NO_CONTENT.into_response()) };
+    feed.listen(app.grown.clone(), app.ending.clone());
+    let batches = stream::unfold(feed, |mut feed| async move {
+        let batch = feed.next().await?;
+        Some((batch, feed))
+    });
+    let events = batches.flat_map(|batch| stream::iter(batch.into_iter().map(Ok::<_, Infallible>)));
+    // The place is given back when the client has gone.
+    let events = events.map(move |event| {
+        let _ = &place;
+        event
+    });
+    Ok(Sse::new(events).keep_alive(KeepAlive::new().interval(SILENCE)).into_response())
+}

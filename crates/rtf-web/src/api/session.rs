@@ -1,0 +1,100 @@
+//! What this server is, and sessions of browsers.
+
+use std::time::SystemTime;
+
+use axum::Json;
+use axum::extract::State;
+use axum::extract::rejection::JsonRejection;
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::problems::{ChangeProblems, Problems};
+use crate::access::Who;
+use crate::app::{App, JsonText, blocking};
+use crate::problem::Problem;
+
+/// What this server is.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Server {
+    /// The version of the API.
+    api: u32,
+    /// The version of the runner.
+    rtf: &'static str,
+    /// `run` when it makes a run, `serve` when it shows the runs of others.
+    mode: &'static str,
+    /// The run that goes on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    current: Option<String>,
+    /// Whether there is a run here that can be controlled.
+    control: bool,
+    /// Whether this request came with the token or a session.
+    authorised: bool,
+    /// Whether reading needs the token.
+    token_to_read: bool,
+    /// The server's time of day, in seconds since 1970.
+    seconds: f64,
+}
+
+/// What this server is.
+#[utoipa::path(get, path = "", tag = "server", responses((status = 200, body = Server), Problems))]
+pub async fn server(State(app): State<App>, headers: HeaderMap) -> Result<JsonText, Problem> {
+    let authorised = app.access.who(&headers) != Who::Nobody;
+    let token_to_read = app.access.token_to_read();
+    blocking(move || {
+        let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+        let tells = authorised || !token_to_read;
+        JsonText::of(&Server {
+            api: 1,
+            rtf: env!("CARGO_PKG_VERSION"),
+            mode: if app.control.is_some() { "run" } else { "serve" },
+            current: app.runs.current().filter(|_| tells),
+            control: app.control.is_some(),
+            authorised,
+            token_to_read,
+            seconds: now.as_secs_f64(),
+        })
+    })
+    .await
+}
+
+/// What opens a session.
+#[derive(Deserialize, ToSchema)]
+pub struct Opening {
+    /// The token that was printed at the start.
+    token: String,
+}
+
+/// Opens a session: sets its cookie.
+#[utoipa::path(post, path = "/session", tag = "server", request_body = Opening,
+    responses((status = 204), ChangeProblems))]
+pub async fn open(
+    State(app): State<App>,
+    body: Result<Json<Opening>, JsonRejection>,
+) -> Result<Response, Problem> {
+    let Json(Opening { token }) = body.map_err(rejected)?;
+    let Some(cookie) = app.access.open_session(&token) else {
+        return Err(Problem::new(StatusCode::UNAUTHORIZED, "this is not the token")
+            .hint("it is part of the address that was printed at the start"));
+    };
+    Ok((StatusCode::NO_CONTENT, [(header::SET_COOKIE, cookie)]).into_response())
+}
+
+/// Ends the session of this browser.
+#[utoipa::path(delete, path = "/session", tag = "server",
+    responses((status = 204), ChangeProblems))]
+pub async fn close(State(app): State<App>) -> Response {
+    let cookie = app.access.closed_session();
+    (StatusCode::NO_CONTENT, [(header::SET_COOKIE, cookie)]).into_response()
+}
+
+/// Why a body was not taken.
+pub fn rejected(rejection: JsonRejection) -> Problem {
+    // A body that is JSON and not what was asked for is a bad request, as any other.
+    let status = match rejection.status() {
+        StatusCode::UNPROCESSABLE_ENTITY => StatusCode::BAD_REQUEST,
+        status => status,
+    };
+    Problem::new(status, rejection.body_text())
+}

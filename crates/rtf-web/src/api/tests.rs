@@ -1,0 +1,99 @@
+//! The tests of a run.
+
+use axum::extract::State;
+use rtf_model::{Record, TestRecord};
+use serde::Deserialize;
+use utoipa::IntoParams;
+
+use super::asked::{Asked, At, limit};
+use super::parts::entry;
+use super::problems::Problems;
+use super::types::{Attempt, Test, TestDetail, TestPage, TestState};
+use crate::app::{App, JsonText};
+use crate::problem::Problem;
+
+/// How many tests a page has when nobody says so.
+const PAGE: usize = 100;
+
+/// Which tests. All conditions hold.
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct Which {
+    /// Tests of this suite.
+    suite: Option<u32>,
+    /// Tests in this state.
+    #[param(inline)]
+    state: Option<TestState>,
+    /// Tests with one of these verdicts, separated by commas.
+    verdict: Option<String>,
+    /// Tests with this tag.
+    tag: Option<String>,
+    /// Tests with this in `suite/name`, whatever the case.
+    q: Option<String>,
+    /// The `next` of the page before.
+    after: Option<u32>,
+    /// How many at most.
+    #[param(minimum = 1, maximum = 1000, default = 100)]
+    limit: Option<usize>,
+}
+
+impl Which {
+    fn matches(&self, test: &Test, record: &Record) -> bool {
+        let verdict = test.verdict.map(|verdict| verdict.as_str());
+        let name = || {
+            let suite = record.suites.get(test.suite as usize);
+            let suite = suite.map_or("", |suite| &suite.plan.name);
+            format!("{suite}/{}", test.name).to_lowercase()
+        };
+        self.suite.is_none_or(|suite| suite == test.suite)
+            && self.state.is_none_or(|state| state == test.state)
+            && self.verdict.as_ref().is_none_or(|list| list.split(',').any(|v| Some(v) == verdict))
+            && self.tag.as_ref().is_none_or(|tag| test.tags.contains(tag))
+            && self.q.as_ref().is_none_or(|q| name().contains(&q.to_lowercase()))
+    }
+
+    fn page(&self, record: &Record, over: bool) -> Result<TestPage, Problem> {
+        let limit = limit(self.limit, PAGE)?;
+        let (mut page, mut more) = (TestPage { tests: Vec::new(), total: 0, next: None }, false);
+        let view = |test: &TestRecord| Test::of(test, over);
+        for test in record.tests.iter().map(view).filter(|test| self.matches(test, record)) {
+            page.total += 1;
+            let wanted = self.after.is_none_or(|after| test.id > after);
+            match wanted && page.tests.len() < limit {
+                true => page.tests.push(test),
+                false => more |= wanted,
+            }
+        }
+        page.next = page.tests.last().filter(|_| more).map(|test| test.id);
+        Ok(page)
+    }
+}
+
+/// Tests, filtered, page by page.
+#[utoipa::path(get, path = "/runs/{run}/tests", tag = "tests",
+    params(("run" = String, Path), Which),
+    responses((status = 200, body = TestPage), Problems))]
+pub async fn list(
+    State(app): State<App>,
+    At(run): At<String>,
+    Asked(which): Asked<Which>,
+) -> Result<JsonText, Problem> {
+    app.read(run, move |_, index| which.page(index.record(), index.state().is_over())).await
+}
+
+/// One test with its attempts.
+#[utoipa::path(get, path = "/runs/{run}/tests/{test}", tag = "tests",
+    params(("run" = String, Path), ("test" = u32, Path)),
+    responses((status = 200, body = TestDetail), Problems))]
+pub async fn test(
+    State(app): State<App>,
+    At((run, test)): At<(String, u32)>,
+) -> Result<JsonText, Problem> {
+    app.read(run, move |_, index| {
+        let test = entry(&index.record().tests, test, "test")?;
+        let attempts = test.attempts.iter().zip(1..).map(|(a, number)| Attempt::of(a, number));
+        let attempts = attempts.collect();
+        Ok(TestDetail { test: Test::of(test, index.state().is_over()), attempts })
+    })
+    .await
+}

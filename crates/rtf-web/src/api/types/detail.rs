@@ -1,0 +1,110 @@
+//! What one attempt, start or run reported and printed, page by page.
+
+use rtf_model::{Attachment, Measurement, Message, Stream};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::model;
+
+/// A message.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Said {
+    /// The number of the event.
+    pub seq: u64,
+    /// When.
+    pub at: u64,
+    /// The message.
+    #[schema(value_type = model::Message)]
+    pub message: Message,
+}
+
+/// A measurement.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Measured {
+    /// The number of the event.
+    pub seq: u64,
+    /// When.
+    pub at: u64,
+    /// The measurement.
+    #[schema(value_type = model::Measurement)]
+    pub measurement: Measurement,
+    /// Whether it lies within its limits.
+    pub within: bool,
+}
+
+/// An attached file.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Attached {
+    /// The number of the event.
+    pub seq: u64,
+    /// When.
+    pub at: u64,
+    /// The file.
+    #[schema(value_type = model::Attachment)]
+    pub attachment: Attachment,
+    /// Where this server has it.
+    pub url: String,
+}
+
+/// A stack dump.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Stack {
+    /// The number of the event.
+    pub seq: u64,
+    /// When.
+    pub at: u64,
+    /// The stacks of all threads.
+    pub text: String,
+}
+
+/// A piece of what was printed.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Printed {
+    /// The number of the event.
+    pub seq: u64,
+    /// When.
+    pub at: u64,
+    /// Where to.
+    #[schema(value_type = model::Stream)]
+    pub stream: Stream,
+    /// Bytes left out just before the text.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub omitted: Option<u64>,
+    /// The text.
+    pub text: String,
+}
+
+macro_rules! page {
+    ($(#[$doc:meta])* $name:ident, $list:ident: $item:ident) => {
+        $(#[$doc])*
+        #[derive(Debug, Serialize, ToSchema)]
+        pub struct $name {
+            /// The entries, in order.
+            pub $list: Vec<$item>,
+            /// The `after` of the next page.
+            #[serde(skip_serializing_if = "Option::is_none")]
+            pub next: Option<u64>,
+        }
+    };
+}
+
+page!(
+    /// A page of messages.
+    Messages, messages: Said
+);
+page!(
+    /// A page of measurements.
+    Measurements, measurements: Measured
+);
+page!(
+    /// A page of attached files.
+    Attachments, attachments: Attached
+);
+page!(
+    /// A page of stack dumps.
+    Stacks, stacks: Stack
+);
+page!(
+    /// A page of what was printed.
+    OutputPage, output: Printed
+);

@@ -1,0 +1,164 @@
+//! What is known of a run as a whole.
+
+use std::collections::BTreeMap;
+
+use rtf_model::{Record, Verdict};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use crate::index::{Index, State};
+use crate::problem::Problem;
+
+/// A run as a whole.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct RunInfo {
+    /// Its name.
+    pub run: String,
+    /// The time of day when it started, RFC 3339.
+    pub started_at: String,
+    /// The version of the runner.
+    pub rtf: String,
+    /// Its command line.
+    pub command: Vec<String>,
+    /// The folder in which the command was given.
+    pub folder: String,
+    /// How far it is.
+    pub state: State,
+    /// The signal or request that cut it short.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub interrupted: Option<String>,
+    /// How the runner ended, when it died.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub died: Option<String>,
+    /// Whether nothing speaks against the robot or the bench; left out while it runs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub green: Option<bool>,
+    /// The number of the next event.
+    pub seq: u64,
+    /// When the last event happened, in microseconds since the start.
+    pub last_at: u64,
+    /// How many suites it has.
+    pub suites: usize,
+    /// How long its journal is, as far as it was read.
+    pub bytes: u64,
+    /// How many tests are in which state.
+    pub totals: Totals,
+    /// What went wrong beside its tests.
+    pub problems: Vec<String>,
+    /// What of the journal could not be read.
+    pub damages: Vec<DamageAt>,
+}
+
+/// A place of a journal that could not be read.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct DamageAt {
+    /// The line, from 1.
+    pub line: u64,
+    /// What is wrong with it.
+    pub problem: String,
+}
+
+/// How many tests are in which state.
+#[derive(Clone, Debug, Default, Serialize, ToSchema)]
+pub struct Totals {
+    /// All.
+    pub planned: u32,
+    /// Those that wait.
+    pub pending: u32,
+    /// Those that run.
+    pub running: u32,
+    /// Those that have their last word.
+    pub done: u32,
+    /// These by their verdicts.
+    pub verdicts: BTreeMap<&'static str, u32>,
+}
+
+impl From<&rtf_model::Totals> for Totals {
+    fn from(totals: &rtf_model::Totals) -> Self {
+        Self {
+            planned: totals.planned,
+            pending: totals.pending,
+            running: totals.running,
+            done: totals.done(),
+            verdicts: Verdict::ALL.map(|v| (v.as_str(), totals.of(v))).into_iter().collect(),
+        }
+    }
+}
+
+/// A page of the list of runs.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct RunList {
+    /// The runs, the newest first.
+    pub runs: Vec<RunInfo>,
+    /// The `before` of the next page.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub next: Option<String>,
+}
+
+impl RunInfo {
+    /// What is known of a run.
+    #[must_use]
+    pub fn of(name: &str, index: &Index) -> Self {
+        let record = index.record();
+        let state = index.state();
+        let suites = record.suites.iter();
+        let totals = if state.is_over() { record.final_totals() } else { record.totals() };
+        let started = record.run.as_ref();
+        Self {
+            started_at: started.map(|run| run.started_at.clone()).unwrap_or_default(),
+            rtf: started.map(|run| run.rtf.clone()).unwrap_or_default(),
+            command: started.map(|run| run.command.clone()).unwrap_or_default(),
+            folder: started.map(|run| run.folder.clone()).unwrap_or_default(),
+            interrupted: record.interrupted().map(str::to_owned),
+            died: record.died().map(str::to_owned),
+            green: state.is_over().then(|| record.is_green()),
+            seq: index.next_seq(),
+            last_at: record.last_at.0,
+            bytes: index.offset(),
+            totals: Totals::from(&totals),
+            problems: suites.flat_map(|suite| record.suite_problems(suite.plan.suite)).collect(),
+            damages: index.damages().iter().map(DamageAt::from).collect(),
+            ..Self::empty(name, state, record)
+        }
+    }
+
+    fn empty(name: &str, state: State, record: &Record) -> Self {
+        Self {
+            run: name.to_owned(),
+            started_at: String::new(),
+            rtf: String::new(),
+            command: Vec::new(),
+            folder: String::new(),
+            state,
+            interrupted: None,
+            died: None,
+            green: None,
+            seq: 0,
+            last_at: 0,
+            suites: record.suites.len(),
+            bytes: 0,
+            totals: Totals::from(&rtf_model::Totals::default()),
+            problems: Vec::new(),
+            damages: Vec::new(),
+        }
+    }
+
+    /// A run of which nothing was read yet.
+    #[must_use]
+    pub fn unread(name: &str) -> Self {
+        Self::empty(name, State::Unread, &Record::default())
+    }
+
+    /// A run that cannot be read.
+    #[must_use]
+    pub fn unreadable(name: &str, problem: &Problem) -> Self {
+        let problems = vec![problem.detail.clone()];
+        Self { problems, ..Self::empty(name, State::Incomplete, &Record::default()) }
+    }
+}
+
+impl From<&rtf_report::journal::Damage> for DamageAt {
+    fn from(damage: &rtf_report::journal::Damage) -> Self {
+        Self { line: damage.line, problem: damage.problem.clone() }
+    }
+}

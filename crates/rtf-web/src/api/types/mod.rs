@@ -1,0 +1,19 @@
+//! What the API answers: views of a record, made to be written as JSON.
+
+mod detail;
+mod fixture;
+mod hook;
+mod info;
+pub mod model;
+mod suite;
+mod test;
+
+pub use detail::{
+    Attached, Attachments, Measured, Measurements, Messages, OutputPage, Printed, Said, Stack,
+    Stacks,
+};
+pub use fixture::{Fixture, Fixtures};
+pub use hook::{Hook, Hooks};
+pub use info::{RunInfo, RunList, Totals};
+pub use suite::{Snapshot, Suite, Suites};
+pub use test::{Attempt, Test, TestDetail, TestPage, TestState};

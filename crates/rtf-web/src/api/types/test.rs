@@ -1,0 +1,246 @@
+//! Tests and their attempts.
+
+use rtf_model::{AttemptRecord, ExitStatus, LeftProcess, Phase, TestRecord, Verdict};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::model;
+
+/// Where a test is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TestState {
+    /// It waits, also for its next repetition.
+    Pending,
+    /// It runs.
+    Running,
+    /// Its last word is spoken.
+    Done,
+}
+
+/// A test.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Test {
+    /// Its id.
+    pub id: u32,
+    /// Its suite.
+    pub suite: u32,
+    /// Its name, unique in the suite.
+    pub name: String,
+    /// The plug-in's type.
+    pub plugin_type: String,
+    /// The plug-in's file.
+    pub plugin: String,
+    /// How often it is to be run.
+    pub repetitions: u32,
+    /// The tags given in the suite.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schema(required = false)]
+    pub tags: Vec<String>,
+    /// Where it is.
+    pub state: TestState,
+    /// Its last word.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<model::Verdict>)]
+    pub verdict: Option<Verdict>,
+    /// Why it did not pass.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// The phase in which it is, while it runs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<model::Phase>)]
+    pub phase: Option<Phase>,
+    /// Microseconds in all attempts that ended.
+    pub duration_us: u64,
+    /// Whether an attempt took longer than its `slow` limit.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[schema(required = false)]
+    pub slow: bool,
+    /// Its attempts, in order.
+    pub attempts: Vec<AttemptRow>,
+    /// How much it reported in all of them.
+    pub counts: Counts,
+}
+
+/// One attempt of a test, in short.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct AttemptRow {
+    /// Counts all attempts of the test, from 1.
+    pub number: usize,
+    /// The repetition, from 1.
+    pub repetition: u32,
+    /// The attempt at this repetition, from 1.
+    pub attempt: u32,
+    /// When it started.
+    pub started: u64,
+    /// When it ended.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub finished: Option<u64>,
+    /// The judgement.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<model::Verdict>)]
+    pub verdict: Option<Verdict>,
+    /// Whether the same repetition is run again.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[schema(required = false)]
+    pub rerun: bool,
+}
+
+/// How much was reported.
+#[derive(Clone, Copy, Debug, Default, Serialize, ToSchema)]
+pub struct Counts {
+    /// Messages of all kinds.
+    pub messages: u64,
+    /// Failures and errors among them.
+    pub failures: u64,
+    /// Measurements.
+    pub measurements: u64,
+    /// Measurements outside their limits.
+    pub violations: u64,
+    /// Attached files.
+    pub attachments: u64,
+    /// Printed bytes.
+    pub output_bytes: u64,
+}
+
+/// A page of the list of tests.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct TestPage {
+    /// The tests, by their ids.
+    pub tests: Vec<Test>,
+    /// How many there are that match.
+    pub total: usize,
+    /// The `after` of the next page.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub next: Option<u32>,
+}
+
+/// A test with all that is known of its attempts, apart from what they reported.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct TestDetail {
+    /// The test.
+    pub test: Test,
+    /// Its attempts, in order.
+    pub attempts: Vec<Attempt>,
+}
+
+/// One attempt of a test.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Attempt {
+    /// In short.
+    #[serde(flatten)]
+    pub row: AttemptRow,
+    /// The phases that it entered.
+    pub phases: Vec<PhaseAt>,
+    /// Why it did not pass.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// The phase in which the verdict fell.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<model::Phase>)]
+    pub phase: Option<Phase>,
+    /// How its process ended.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<model::ExitStatus>)]
+    pub exit: Option<ExitStatus>,
+    /// Whether it took longer than its `slow` limit.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[schema(required = false)]
+    pub slow: bool,
+    /// How much it reported.
+    pub counts: Counts,
+    /// Processes of it that had to be killed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schema(value_type = Vec<model::LeftProcess>, required = false)]
+    pub left: Vec<LeftProcess>,
+}
+
+/// When a phase began.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct PhaseAt {
+    /// The phase.
+    #[schema(value_type = model::Phase)]
+    pub phase: Phase,
+    /// When.
+    pub at: u64,
+}
+
+impl Test {
+    /// A view of a test; `over` when its run will not go on.
+    #[must_use]
+    pub fn of(test: &TestRecord, over: bool) -> Self {
+        let plan = &test.plan;
+        let verdict = if over { Some(test.final_verdict()) } else { test.verdict() };
+        let running = test.attempts.last().filter(|_| verdict.is_none() && test.is_running());
+        let mut counts = rtf_model::Counts::default();
+        test.attempts.iter().for_each(|attempt| counts += attempt.counts);
+        Self {
+            id: plan.test.0,
+            suite: plan.suite.0,
+            name: plan.name.clone(),
+            plugin_type: plan.plugin_type.clone(),
+            plugin: plan.plugin.clone(),
+            repetitions: plan.repetitions,
+            tags: plan.tags.clone(),
+            state: match (verdict, running) {
+                (Some(_), _) => TestState::Done,
+                (None, Some(_)) => TestState::Running,
+                (None, None) => TestState::Pending,
+            },
+            verdict,
+            reason: test.reason().map(str::to_owned),
+            phase: running.and_then(|attempt| attempt.phases.last()).map(|(phase, _)| *phase),
+            duration_us: u64::try_from(test.duration().as_micros()).unwrap_or(u64::MAX),
+            slow: test.attempts.iter().any(|attempt| attempt.slow),
+            attempts: test.attempts.iter().zip(1..).map(|(a, n)| AttemptRow::of(a, n)).collect(),
+            counts: counts.into(),
+        }
+    }
+}
+
+impl AttemptRow {
+    fn of(attempt: &AttemptRecord, number: usize) -> Self {
+        let finished = attempt.finished.as_ref();
+        Self {
+            number,
+            repetition: attempt.repetition,
+            attempt: attempt.attempt,
+            started: attempt.started.0,
+            finished: finished.map(|(at, _)| at.0),
+            verdict: attempt.verdict(),
+            rerun: finished.is_some_and(|(_, finished)| finished.rerun),
+        }
+    }
+}
+
+impl Attempt {
+    /// A view of an attempt.
+    #[must_use]
+    pub fn of(attempt: &AttemptRecord, number: usize) -> Self {
+        let finished = attempt.finished.as_ref().map(|(_, finished)| finished);
+        let phase = |(phase, at): &(Phase, rtf_model::Micros)| PhaseAt { phase: *phase, at: at.0 };
+        Self {
+            row: AttemptRow::of(attempt, number),
+            phases: attempt.phases.iter().map(phase).collect(),
+            reason: finished.and_then(|finished| finished.reason.clone()),
+            phase: finished.map(|finished| finished.phase),
+            exit: finished.and_then(|finished| finished.exit),
+            slow: attempt.slow,
+            counts: attempt.counts.into(),
+            left: attempt.left.clone(),
+        }
+    }
+}
+
+impl From<rtf_model::Counts> for Counts {
+    fn from(counts: rtf_model::Counts) -> Self {
+        Self {
+            messages: counts.messages,
+            failures: counts.failures,
+            measurements: counts.measurements,
+            violations: counts.violations,
+            attachments: counts.attachments,
+            output_bytes: counts.output_bytes,
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! What every answer is made from.
+
+use std::sync::Arc;
+
+use axum::body::Bytes;
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use rtf_model::{SuiteId, TestId};
+use serde::Serialize;
+use tokio::sync::{Semaphore, watch};
+
+use crate::access::Access;
+use crate::index::Index;
+use crate::problem::Problem;
+use crate::runs::{Run, Runs};
+
+/// How many event streams there may be at the same time.
+const STREAMS: usize = 256;
+
+/// What a person may ask of the run that this process makes.
+pub trait Control: Send + Sync {
+    /// End the run as SIGINT does.
+    fn stop_run(&self);
+    /// Stop a test that runs.
+    fn stop_test(&self, test: TestId);
+    /// Skip the rest of a suite.
+    fn skip_suite(&self, suite: SuiteId);
+}
+
+/// What every answer is made from. Cheap to clone.
+#[derive(Clone)]
+pub struct App {
+    /// The runs.
+    pub runs: Arc<Runs>,
+    /// Who may do what.
+    pub access: Arc<Access>,
+    /// The way to the run that this process makes.
+    pub control: Option<Arc<dyn Control>>,
+    /// Changes when the journal of that run has grown.
+    pub grown: watch::Receiver<u64>,
+    /// Turns true when the server ends.
+    pub ending: watch::Receiver<bool>,
+    /// Places for event streams.
+    pub streams: Arc<Semaphore>,
+}
+
+impl std::fmt::Debug for App {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("App").field("runs", &self.runs).finish_non_exhaustive()
+    }
+}
+
+impl App {
+    /// Places for event streams.
+    #[must_use]
+    pub fn streams() -> Arc<Semaphore> {
+        Arc::new(Semaphore::new(STREAMS))
+    }
+
+    /// Makes an answer from a run and its index, on a thread that may wait.
+    ///
+    /// # Errors
+    /// There is no such run, it cannot be read, or `view` says no.
+    pub async fn read<T: Serialize>(
+        &self,
+        run: String,
+        view: impl FnOnce(&Run, &Index) -> Result<T, Problem> + Send + 'static,
+    ) -> Result<JsonText, Problem> {
+        let runs = self.runs.clone();
+        blocking(move || {
+            let run = runs.find(&run)?;
+            let value = view(&run, &*run.read()?)?;
+            JsonText::of(&value)
+        })
+        .await
+    }
+
+    /// As [`App::read`]; the index is not locked while the answer is made.
+    ///
+    /// # Errors
+    /// There is no such run, or `view` says no.
+    pub async fn with_run<T: Send + 'static>(
+        &self,
+        run: String,
+        view: impl FnOnce(&Arc<Run>) -> Result<T, Problem> + Send + 'static,
+    ) -> Result<T, Problem> {
+        let runs = self.runs.clone();
+        blocking(move || view(&runs.find(&run)?)).await
+    }
+}
+
+/// Does what may wait on a thread for that.
+///
+/// # Errors
+/// What `act` says; 500 when it panicked.
+pub async fn blocking<T: Send + 'static>(
+    act: impl FnOnce() -> Result<T, Problem> + Send + 'static,
+) -> Result<T, Problem> {
+    let failed = |_| Problem::new(StatusCode::INTERNAL_SERVER_ERROR, "the answer failed");
+    tokio::task::spawn_blocking(act).await.map_err(failed)?
+}
+
+/// JSON that was made on a thread that may wait.
+#[derive(Debug)]
+pub struct JsonText(Bytes);
+
+impl JsonText {
+    /// The text of a value.
+    ///
+    /// # Errors
+    /// It cannot be written as JSON.
+    pub fn of<T: Serialize>(value: &T) -> Result<Self, Problem> {
+        let text = serde_json::to_vec(value)
+            .map_err(|error| Problem::new(StatusCode::INTERNAL_SERVER_ERROR, error.to_string()))?;
+        Ok(Self(text.into()))
+    }
+}
+
+impl IntoResponse for JsonText {
+    fn into_response(self) -> Response {
+        let kind = HeaderValue::from_static("application/json");
+        ([(header::CONTENT_TYPE, kind)], self.0).into_response()
+    }
+}

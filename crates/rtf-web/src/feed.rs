@@ -1,0 +1,266 @@
+//! One client's way through a journal: from an event on, as fast as the client
+//! takes it, and then as the run goes on.
+//!
+//! A feed holds its place in the file and one batch of events. What the client
+//! does not take stays in the file, so that a client that does not read costs
+//! nothing; when it comes back and is too far behind, it is told to start anew.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use axum::response::sse::Event;
+use rtf_model::{FixtureId, HookId, Source, TestId};
+use serde_json::json;
+use tokio::sync::watch;
+
+use crate::app::blocking;
+use crate::index::{Head, Lines, State};
+use crate::problem::Problem;
+use crate::runs::Run;
+
+/// A client that is further behind than this many bytes is told to start anew.
+const BEHIND: u64 = 8 << 20;
+/// How much of the journal is looked through at once.
+const BATCH: u64 = 256 * 1024;
+/// How often a journal is looked at when nobody tells that it has grown.
+const LOOK: Duration = Duration::from_millis(100);
+/// How long growth is collected.
+const COLLECT: Duration = Duration::from_millis(20);
+/// How often the client is told how far the run is, while details are left out.
+const PROGRESS: Duration = Duration::from_secs(1);
+/// How long a journal that nobody writes may still get its end from the guard.
+const ABANDONED: Duration = Duration::from_secs(10);
+
+/// Whose messages, measurements and outputs a client wants.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Details {
+    /// Everybody's.
+    All,
+    /// Of these.
+    Of(Vec<Source>),
+}
+
+impl Details {
+    /// Reads `all`, `none`, or a list like `test:3,fixture:0`.
+    ///
+    /// # Errors
+    /// It is none of these.
+    pub fn parse(text: &str) -> Result<Self, Problem> {
+        let source = |item: &str| {
+            let (kind, id) = item.split_once(':')?;
+            let id = id.parse().ok()?;
+            match kind {
+                "test" => Some(Source::Test(TestId(id))),
+                "fixture" => Some(Source::Fixture(FixtureId(id))),
+                "hook" => Some(Source::Hook(HookId(id))),
+                _ => None,
+            }
+        };
+        match text {
+            "all" => Ok(Self::All),
+            "none" => Ok(Self::Of(Vec::new())),
+            list => {
+                let sources = list.split(',').map(source).collect::<Option<_>>().map(Self::Of);
+                sources.ok_or_else(|| {
+                    let expected = "expected `all`, `none`, or a list like `test:3,fixture:0`";
+                    Problem::bad_request(format!("`details` is `{list}`, {expected}"))
+                })
+            }
+        }
+    }
+
+    fn want(&self, head: &Head) -> bool {
+        match (self, head.detail_of()) {
+            (Self::All, _) | (_, None) => true,
+            (Self::Of(sources), Some(source)) => sources.contains(&source),
+        }
+    }
+}
+
+/// One client's way through a journal.
+#[derive(Debug)]
+pub struct Feed {
+    at: Option<Place>,
+    grown: Option<watch::Receiver<u64>>,
+    ending: Option<watch::Receiver<bool>>,
+    ended: bool,
+}
+
+/// Where in the journal a client is.
+#[derive(Debug)]
+struct Place {
+    run: Arc<Run>,
+    details: Details,
+    /// Whole lines were looked at up to here.
+    offset: u64,
+    /// The number of the next event.
+    next: u64,
+    /// The last event that was left out, since the client was told.
+    left_out: Option<(u64, u64)>,
+    told: Instant,
+    /// Since when nothing came.
+    quiet: Instant,
+    /// Where the client has to start anew, before anything else is sent.
+    anew: Option<&'static str>,
+}
+
+/// What a look at the journal brings.
+#[derive(Debug, Default)]
+struct Batch {
+    events: Vec<Event>,
+    /// Nothing is left for now.
+    is_last: bool,
+    /// The run is over, and everything was sent.
+    is_over: bool,
+}
+
+impl Feed {
+    /// A client that wants the events from `from` on; nothing when there are
+    /// none and never will be.
+    ///
+    /// # Errors
+    /// The journal cannot be read.
+    pub fn open(
+        run: Arc<Run>,
+        from: Option<u64>,
+        details: Details,
+    ) -> Result<Option<Self>, Problem> {
+        let index = run.read()?;
+        let coming = index.next_seq();
+        let next = from.unwrap_or(coming);
+        if next >= coming && index.state().is_over() && index.state() != State::Incomplete {
+            return Ok(None);
+        }
+        let anew = (next > coming).then_some("these events have not happened yet");
+        let offset = if next >= coming { index.offset() } else { index.places().before(next) };
+        drop(index);
+        let (left_out, now) = (None, Instant::now());
+        let next = next.min(coming);
+        let at = Place { run, details, offset, next, left_out, told: now, quiet: now, anew };
+        Ok(Some(Self { at: Some(at), grown: None, ending: None, ended: false }))
+    }
+
+    /// Listens to who tells that the journal has grown, and that the server ends.
+    pub fn listen(&mut self, grown: watch::Receiver<u64>, ending: watch::Receiver<bool>) {
+        (self.grown, self.ending) = (Some(grown), Some(ending));
+    }
+
+    /// The next events; nothing when the stream is over.
+    pub async fn next(&mut self) -> Option<Vec<Event>> {
+        while !self.ended {
+            let ending = self.ending.as_ref().is_some_and(|ending| *ending.borrow());
+            let batch = self.look().await?;
+            self.ended = batch.is_over || (ending && batch.is_last);
+            if !batch.events.is_empty() {
+                return Some(batch.events);
+            }
+            if !self.ended && batch.is_last {
+                self.wait().await;
+            }
+        }
+        None
+    }
+
+    async fn look(&mut self) -> Option<Batch> {
+        // The place goes to a thread that may wait, and comes back.
+        let mut at = self.at.take()?;
+        let (at, batch) = blocking(move || {
+            let batch = at.look()?;
+            Ok((at, batch))
+        })
+        .await
+        .ok()?;
+        self.at = Some(at);
+        Some(batch)
+    }
+
+    async fn wait(&mut self) {
+        let grown = async {
+            let Some(grown) = &mut self.grown else { return std::future::pending().await };
+            match grown.changed().await {
+                Ok(()) => tokio::time::sleep(COLLECT).await,
+                Err(_) => std::future::pending().await,
+            }
+        };
+        let ending = async {
+            let Some(ending) = &mut self.ending else { return std::future::pending().await };
+            if ending.wait_for(|ending| *ending).await.is_err() {
+                std::future::pending::<()>().await;
+            }
+        };
+        tokio::select! {
+            () = grown => {}
+            () = ending => {}
+            () = tokio::time::sleep(LOOK) => {}
+        }
+    }
+}
+
+impl Place {
+    fn look(&mut self) -> Result<Batch, Problem> {
+        let index = self.run.read()?;
+        let (end, coming, state) = (index.offset(), index.next_seq(), index.state());
+        drop(index);
+        let mut batch = Batch::default();
+        if self.anew.is_none() && end.saturating_sub(self.offset) > BEHIND {
+            self.anew = Some("the client was too far behind");
+            (self.offset, self.next) = (end, coming);
+        }
+        if let Some(reason) = self.anew.take() {
+            batch.events.push(resync(self.next, reason));
+        }
+        let failed = |error| Problem::unreadable(&self.run.folder, &error);
+        let stop = end.min(self.offset.saturating_add(BATCH));
+        let journal = self.run.journal()?;
+        let mut lines = Lines::between(journal, self.offset, stop).map_err(failed)?;
+        while let Some(line) = lines.next().map_err(failed)? {
+            self.offset = line.end;
+            let Ok(head) = serde_json::from_slice::<Head>(line.text) else { continue };
+            let Ok(text) = str::from_utf8(line.text) else { continue };
+            if head.seq < self.next {
+                continue;
+            }
+            if head.seq > self.next {
+                batch.events.push(resync(head.seq, "the journal is damaged"));
+            }
+            self.next = head.seq.saturating_add(1);
+            if self.details.want(&head) {
+                self.left_out = None;
+                batch.events.push(Event::default().id(head.seq.to_string()).data(text));
+            } else {
+                self.left_out = Some((head.seq, head.at));
+            }
+        }
+        batch.is_last = self.offset >= end;
+        self.tell_progress(&mut batch);
+        self.end(state, &mut batch);
+        Ok(batch)
+    }
+
+    fn tell_progress(&mut self, batch: &mut Batch) {
+        if let Some((seq, at)) = self.left_out.filter(|_| self.told.elapsed() >= PROGRESS) {
+            (self.left_out, self.told) = (None, Instant::now());
+            batch.events.push(named("progress", seq, &json!({ "seq": seq + 1, "last_at": at })));
+        }
+        if !batch.events.is_empty() || !batch.is_last {
+            self.quiet = Instant::now();
+        }
+    }
+
+    fn end(&self, state: State, batch: &mut Batch) {
+        let settled = state != State::Incomplete || self.quiet.elapsed() >= ABANDONED;
+        if batch.is_last && state.is_over() && settled {
+            batch.is_over = true;
+            let seq = self.next.saturating_sub(1);
+            batch.events.push(named("end", seq, &json!({ "state": state })));
+        }
+    }
+}
+
+fn resync(from: u64, reason: &str) -> Event {
+    named("resync", from.saturating_sub(1), &json!({ "from": from, "reason": reason }))
+}
+
+fn named(name: &str, id: u64, data: &serde_json::Value) -> Event {
+    Event::default().event(name).id(id.to_string()).data(data.to_string())
+}

@@ -1,0 +1,88 @@
+//! Where in a journal the events of one attempt are, and where an event with a
+//! given number is.
+
+use rtf_model::{Event, EventKind, Source};
+
+/// Every so many events their place is kept.
+const EVERY: u64 = 256;
+
+/// A part of a journal, in bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The start of its first line.
+    pub start: u64,
+    /// The end of its last line, once that is written.
+    pub end: Option<u64>,
+}
+
+/// The places of a run.
+#[derive(Debug, Default)]
+pub struct Places {
+    tests: Vec<Vec<Place>>,
+    fixtures: Vec<Vec<Place>>,
+    hooks: Vec<Vec<Place>>,
+    /// Numbers of events and where their lines start, both growing.
+    marks: Vec<(u64, u64)>,
+}
+
+impl Places {
+    /// Takes in an event, the start of its line and the end.
+    pub(super) fn take(&mut self, event: &Event, start: u64, end: u64) {
+        if self.marks.last().is_none_or(|(seq, _)| event.seq >= seq + EVERY) {
+            self.marks.push((event.seq, start));
+        }
+        let (source, begins) = match &event.kind {
+            EventKind::TestStarted { test, .. } => (Source::Test(*test), true),
+            EventKind::TestFinished(finished) => (Source::Test(finished.test), false),
+            EventKind::FixtureStarting { fixture, .. } => (Source::Fixture(*fixture), true),
+            EventKind::FixtureStopped { fixture, .. } => (Source::Fixture(*fixture), false),
+            EventKind::HookStarted { hook, .. } => (Source::Hook(*hook), true),
+            EventKind::HookFinished { hook, .. } => (Source::Hook(*hook), false),
+            _ => return,
+        };
+        let (list, index) = match source {
+            Source::Test(id) => (&mut self.tests, id.index()),
+            Source::Fixture(id) => (&mut self.fixtures, id.index()),
+            Source::Hook(id) => (&mut self.hooks, id.index()),
+        };
+        if begins && list.len() <= index {
+            // The number may be damaged: it is worth no more than a journal's line.
+            if index - list.len() > 1_000_000 {
+                return;
+            }
+            list.resize_with(index + 1, Vec::new);
+        }
+        let Some(places) = list.get_mut(index) else { return };
+        match places.last_mut() {
+            _ if begins => places.push(Place { start, end: None }),
+            Some(place) => place.end = Some(end),
+            None => {}
+        }
+    }
+
+    /// The attempt, start or run of a source with this number, from 1.
+    #[must_use]
+    pub fn of(&self, source: Source, number: u32) -> Option<Place> {
+        let (list, index) = match source {
+            Source::Test(id) => (&self.tests, id.index()),
+            Source::Fixture(id) => (&self.fixtures, id.index()),
+            Source::Hook(id) => (&self.hooks, id.index()),
+        };
+        let place = usize::try_from(number.checked_sub(1)?).ok()?;
+        list.get(index)?.get(place).copied()
+    }
+
+    /// A line's start at or before the event with this number.
+    #[must_use]
+    pub fn before(&self, seq: u64) -> u64 {
+        let after = self.marks.partition_point(|(known, _)| *known <= seq);
+        after.checked_sub(1).and_then(|index| self.marks.get(index)).map_or(0, |(_, start)| *start)
+    }
+
+    /// A line's start near this offset, before it.
+    #[must_use]
+    pub fn at(&self, offset: u64) -> u64 {
+        let after = self.marks.partition_point(|(_, start)| *start <= offset);
+        after.checked_sub(1).and_then(|index| self.marks.get(index)).map_or(0, |(_, start)| *start)
+    }
+}

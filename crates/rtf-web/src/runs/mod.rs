@@ -1,0 +1,156 @@
+//! The runs of a results folder: finding one by its name, and keeping the
+//! indexes of those that are looked at.
+
+mod list;
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use rtf_report::journal;
+use rtf_report::run_folder::{JOURNAL, LATEST};
+
+use crate::index::Index;
+use crate::problem::Problem;
+
+/// How many indexes are kept; one of 10 000 tests has about 10 MB.
+const KEPT: usize = 4;
+
+/// Among how many of the newest runs one that goes on is looked for.
+const CURRENT_AMONG: usize = 20;
+
+/// A run that is looked at.
+#[derive(Debug)]
+pub struct Run {
+    /// Its name.
+    pub name: String,
+    /// Its folder.
+    pub folder: PathBuf,
+    index: Mutex<Index>,
+}
+
+impl Run {
+    fn open(results: &Path, name: &str) -> Result<Self, Problem> {
+        let folder = results.join(name);
+        let path = folder.join(JOURNAL);
+        let index = Index::open(&path).map_err(|error| Problem::unreadable(&path, &error))?;
+        Ok(Self { name: name.to_owned(), folder, index: Mutex::new(index) })
+    }
+
+    /// Its index, read as far as the journal is written. Takes as long as that
+    /// takes: not to be called from the threads that serve.
+    ///
+    /// # Errors
+    /// The journal cannot be read.
+    pub fn read(&self) -> Result<MutexGuard<'_, Index>, Problem> {
+        let mut index = self.index.lock().unwrap_or_else(PoisonError::into_inner);
+        let advanced = index.advance();
+        advanced.map_err(|error| Problem::unreadable(index.path(), &error))?;
+        Ok(index)
+    }
+
+    /// The journal, opened anew.
+    ///
+    /// # Errors
+    /// It cannot be opened.
+    pub fn journal(&self) -> Result<File, Problem> {
+        let path = self.folder.join(JOURNAL);
+        File::open(&path).map_err(|error| Problem::unreadable(&path, &error))
+    }
+}
+
+/// The runs of a results folder.
+#[derive(Debug)]
+pub struct Runs {
+    results: PathBuf,
+    /// The run that this process makes.
+    own: Option<String>,
+    /// The one used last is the last.
+    open: Mutex<Vec<Arc<Run>>>,
+    listed: list::Listed,
+}
+
+impl Runs {
+    /// The runs in `results`; `own` is the name of the one that this process makes.
+    #[must_use]
+    pub fn new(results: &Path, own: Option<String>) -> Self {
+        let results = results.to_owned();
+        Self { results, own, open: Mutex::default(), listed: list::Listed::default() }
+    }
+
+    /// The name of the run that goes on, if there is one.
+    #[must_use]
+    pub fn current(&self) -> Option<String> {
+        if let Some(own) = &self.own {
+            return Some(own.clone());
+        }
+        let newest = self.names().into_iter().take(CURRENT_AMONG);
+        newest.into_iter().find(|name| {
+            let journal = File::open(self.results.join(name).join(JOURNAL));
+            journal.is_ok_and(|journal| journal::is_written(&journal))
+        })
+    }
+
+    /// Whether this is the run that this process makes.
+    #[must_use]
+    pub fn is_own(&self, run: &Run) -> bool {
+        self.own.as_ref() == Some(&run.name)
+    }
+
+    /// Finds a run by its name, `latest` or `current`.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn find(&self, asked: &str) -> Result<Arc<Run>, Problem> {
+        let name = match asked {
+            "current" => self.current().ok_or_else(|| Problem::not_found("no run goes on"))?,
+            LATEST => self.latest().ok_or_else(|| Problem::not_found("there are no runs"))?,
+            name => name.to_owned(),
+        };
+        let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(place) = open.iter().position(|run| run.name == name) {
+            let run = open.remove(place);
+            open.push(run.clone());
+            return Ok(run);
+        }
+        if !is_plain(&name) || !self.results.join(&name).join(JOURNAL).is_file() {
+            return Err(Problem::not_found(format!("there is no run `{asked}`")));
+        }
+        let run = Arc::new(Run::open(&self.results, &name)?);
+        open.push(run.clone());
+        // The run that this process makes is needed until its end.
+        while open.len() > KEPT {
+            let oldest = open.iter().position(|run| !self.is_own(run)).unwrap_or(0);
+            open.remove(oldest);
+        }
+        Ok(run)
+    }
+
+    /// The newest run: where the link leads, or the last name.
+    fn latest(&self) -> Option<String> {
+        let linked = fs::read_link(self.results.join(LATEST)).ok();
+        let linked = linked.and_then(|path| path.to_str().map(str::to_owned));
+        let is_run = |name: &String| self.results.join(name).join(JOURNAL).is_file();
+        linked
+            .filter(|name| is_plain(name))
+            .filter(is_run)
+            .or_else(|| self.names().into_iter().next())
+    }
+
+    /// The names of all runs, the newest first.
+    fn names(&self) -> Vec<String> {
+        let Ok(entries) = fs::read_dir(&self.results) else { return Vec::new() };
+        let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+        let is_run = |name: &String| {
+            name != LATEST && is_plain(name) && self.results.join(name).join(JOURNAL).is_file()
+        };
+        let mut names: Vec<_> = names.filter(is_run).collect();
+        names.sort_unstable_by(|a, b| b.cmp(a));
+        names
+    }
+}
+
+/// Whether this is the name of a folder in the results folder, and of none elsewhere.
+fn is_plain(name: &str) -> bool {
+    !name.is_empty() && !name.starts_with('.') && !name.contains(['/', '\\', '\0'])
+}

@@ -1,0 +1,306 @@
+//! The server: its address, its thread, its end.
+
+use std::io;
+use std::net::{IpAddr, SocketAddr, TcpListener};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use axum::routing::get;
+use axum::{Router, middleware};
+use axum_server::Handle;
+use tokio::sync::watch;
+use tower_http::catch_panic::CatchPanicLayer;
+use tower_http::compression::{CompressionLayer, CompressionLevel};
+
+use crate::access::{self, Access, Hosts, Secret, TokenError};
+use crate::app::{App, Control};
+use crate::live::Live;
+use crate::runs::Runs;
+use crate::tls::{self, Tls, TlsError};
+use crate::{api, legacy, page};
+
+/// How many ports are tried when the first one is taken.
+const PORTS: u16 = 50;
+/// How long browsers have to take what was sent last.
+const PARTING: Duration = Duration::from_millis(500);
+/// How nice this server's threads are to those that run tests.
+const NICE: i32 = 10;
+
+/// How to serve.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Where to listen. Port 0 is any that is free.
+    pub address: SocketAddr,
+    /// Whether somebody beyond this machine may connect.
+    pub allow_remote: bool,
+    /// A file with the token; a new one is made without it.
+    pub token_file: Option<PathBuf>,
+    /// A certificate and its key.
+    pub tls: Option<(PathBuf, PathBuf)>,
+    /// Other names under which this server is reached.
+    pub hosts: Vec<String>,
+}
+
+/// Why nothing is served.
+#[derive(Debug, thiserror::Error)]
+pub enum ServeError {
+    /// The address is not of this machine alone.
+    #[error("`{0}` can be reached from beyond this machine")]
+    Remote(IpAddr),
+    /// The address cannot be listened on.
+    #[error("cannot listen on `{address}`")]
+    Listen {
+        /// Where.
+        address: SocketAddr,
+        /// Why.
+        #[source]
+        source: io::Error,
+    },
+    /// There is no token.
+    #[error(transparent)]
+    Token(#[from] TokenError),
+    /// There is no TLS.
+    #[error(transparent)]
+    Tls(#[from] TlsError),
+    /// The system has no thread to give.
+    #[error("cannot start the server")]
+    Start(#[source] io::Error),
+}
+
+impl ServeError {
+    /// What to do about it.
+    #[must_use]
+    pub fn hint(&self) -> Option<&'static str> {
+        match self {
+            Self::Remote(_) => Some(
+                "`--web-allow-remote` allows that: reading then needs the token, and TLS is used",
+            ),
+            Self::Listen { .. } => Some("choose another address with `--web=ADDR:PORT`"),
+            _ => None,
+        }
+    }
+}
+
+/// What is served.
+pub struct Served<'a> {
+    /// The results folder.
+    pub results: &'a Path,
+    /// The run that this process makes, and the way to it.
+    pub own: Option<(String, Arc<dyn Control>)>,
+}
+
+/// A server that has its address.
+#[derive(Debug)]
+pub struct Bound {
+    listener: TcpListener,
+    address: SocketAddr,
+    wanted: SocketAddr,
+    token: Secret,
+    tls: Option<Tls>,
+    hosts: Hosts,
+    remote: bool,
+}
+
+/// A server that runs.
+#[derive(Debug)]
+pub struct Server {
+    address: SocketAddr,
+    wanted: SocketAddr,
+    token: Option<String>,
+    fingerprint: Option<String>,
+    tls: bool,
+    ending: watch::Sender<bool>,
+    grown: watch::Sender<u64>,
+    thread: JoinHandle<io::Result<()>>,
+}
+
+impl Bound {
+    /// Takes the address. Whoever connects waits until [`Bound::serve`].
+    ///
+    /// # Errors
+    /// The settings do not allow it, or the system does not.
+    pub fn new(settings: &Settings) -> Result<Self, ServeError> {
+        let Settings { address: wanted, allow_remote: remote, .. } = *settings;
+        if !wanted.ip().is_loopback() && !remote {
+            return Err(ServeError::Remote(wanted.ip()));
+        }
+        let token = match &settings.token_file {
+            Some(path) => Secret::read(path)?,
+            None => Secret::random()?,
+        };
+        let tls = match &settings.tls {
+            Some((certificate, key)) => Some(tls::given(certificate, key)?),
+            None if remote => {
+                let names = [access::machine(), format!("{}.local", access::machine())];
+                let names: Vec<_> = settings.hosts.iter().cloned().chain(names).collect();
+                Some(tls::self_signed(wanted.ip(), &names)?)
+            }
+            None => None,
+        };
+        let listener = listen(wanted)?;
+        let address = listener.local_addr().map_err(ServeError::Start)?;
+        let hosts = Hosts::new(address, remote, &settings.hosts);
+        Ok(Self { listener, address, wanted, token, tls, hosts, remote })
+    }
+
+    /// Serves on a thread of its own.
+    ///
+    /// # Errors
+    /// The system has no thread to give.
+    pub fn serve(self, served: Served<'_>) -> Result<Server, ServeError> {
+        let Self { listener, address, wanted, token, tls, hosts, remote } = self;
+        let shown = (served.own.is_some() || remote).then(|| token.text().to_owned());
+        let access = Access::new(token, hosts, remote, tls.is_some())?;
+        let (ending, ends) = watch::channel(false);
+        let (grown, grows) = watch::channel(0);
+        let (own, control) = served.own.unzip();
+        let app = App {
+            runs: Arc::new(Runs::new(served.results, own)),
+            access: Arc::new(access),
+            control,
+            grown: grows,
+            ending: ends,
+            streams: App::streams(),
+        };
+        let fingerprint = tls.as_ref().and_then(|tls| tls.fingerprint.clone());
+        let (is_tls, token) = (tls.is_some(), shown);
+        let run = move || serve(listener, tls, app);
+        let thread = std::thread::Builder::new().name("web".into()).spawn(run);
+        let thread = thread.map_err(ServeError::Start)?;
+        Ok(Server { address, wanted, token, fingerprint, tls: is_tls, ending, grown, thread })
+    }
+}
+
+impl Server {
+    /// The address to open, with the token where one is needed.
+    #[must_use]
+    pub fn url(&self) -> String {
+        let scheme = if self.tls { "https" } else { "http" };
+        let token = self.token.as_ref().map_or(String::new(), |token| format!("#token={token}"));
+        let (ip, port) = (self.address.ip(), self.address.port());
+        // Nobody can open the address that means all addresses.
+        let host = match ip {
+            ip if ip.is_unspecified() => access::machine(),
+            IpAddr::V4(ip) => ip.to_string(),
+            IpAddr::V6(ip) => format!("[{ip}]"),
+        };
+        format!("{scheme}://{host}:{port}/{token}")
+    }
+
+    /// Where it listens.
+    #[must_use]
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// The port that was asked for, when it was taken.
+    #[must_use]
+    pub fn taken(&self) -> Option<u16> {
+        let wanted = self.wanted.port();
+        (wanted != 0 && wanted != self.address.port()).then_some(wanted)
+    }
+
+    /// The SHA-256 of the certificate, when this server signed it itself.
+    #[must_use]
+    pub fn fingerprint(&self) -> Option<&str> {
+        self.fingerprint.as_deref()
+    }
+
+    /// The reporter of the run that is served live.
+    #[must_use]
+    pub fn live(&self) -> Live {
+        Live::new(self.grown.clone())
+    }
+
+    /// Waits until the server ends, which it does not by itself.
+    ///
+    /// # Errors
+    /// Why it ended.
+    pub fn wait(self) -> io::Result<()> {
+        self.thread.join().unwrap_or_else(|_| Err(io::Error::other("the server panicked")))
+    }
+
+    /// Sends what is left to those who listen, and ends.
+    ///
+    /// # Errors
+    /// Why it had ended before.
+    pub fn stop(self) -> io::Result<()> {
+        self.ending.send_replace(true);
+        self.wait()
+    }
+}
+
+/// Listens on the address, or on the next port that is free.
+fn listen(wanted: SocketAddr) -> Result<TcpListener, ServeError> {
+    let mut address = wanted;
+    loop {
+        match TcpListener::bind(address) {
+            Ok(listener) => return Ok(listener),
+            Err(error)
+                if error.kind() == io::ErrorKind::AddrInUse
+                    && address.port() < wanted.port().saturating_add(PORTS)
+                    && address.port() < u16::MAX =>
+            {
+                address.set_port(address.port() + 1);
+            }
+            Err(source) => return Err(ServeError::Listen { address, source }),
+        }
+    }
+}
+
+fn router(app: App) -> Router {
+    let guard = middleware::from_fn_with_state(app.clone(), access::guard);
+    api::router()
+        .route("/status", get(legacy::status))
+        .route("/update", get(legacy::update))
+        .route("/api/docs", get(page::docs))
+        .fallback_service(get(page::page))
+        .layer(CompressionLayer::new().quality(CompressionLevel::Fastest))
+        .layer(guard)
+        .layer(CatchPanicLayer::new())
+        .layer(middleware::from_fn(page::headers))
+        .with_state(app)
+}
+
+fn serve(listener: TcpListener, tls: Option<Tls>, app: App) -> io::Result<()> {
+    listener.set_nonblocking(true)?;
+    give_way();
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .thread_name("web-read")
+        .max_blocking_threads(4)
+        .on_thread_start(give_way)
+        .build()?;
+    let served = runtime.block_on(async {
+        let handle = Handle::new();
+        let mut ending = app.ending.clone();
+        let parting = handle.clone();
+        tokio::spawn(async move {
+            // An error means that nobody can end the server any more.
+            let _ = ending.wait_for(|ending| *ending).await;
+            parting.graceful_shutdown(Some(PARTING));
+        });
+        let service = router(app).into_make_service();
+        match tls {
+            Some(tls) => {
+                let server = axum_server::from_tcp_rustls(listener, tls.config)?;
+                server.handle(handle).serve(service).await
+            }
+            None => axum_server::from_tcp(listener)?.handle(handle).serve(service).await,
+        }
+    });
+    runtime.shutdown_background();
+    served
+}
+
+/// Lets the threads of the run go first, where the processor is short.
+fn give_way() {
+    // On Linux this is about the calling thread alone. Elsewhere nothing is done:
+    // it would be about the whole process.
+    if cfg!(target_os = "linux") {
+        // A system that does not allow it serves as well.
+        let _ = rustix::process::setpriority_process(None, NICE);
+    }
+}

@@ -1,0 +1,11 @@
+//! The real server on loopback, over journals that the tests write.
+
+#![expect(clippy::expect_used, clippy::unwrap_used, reason = "what cannot go on fails its test")]
+
+mod client;
+mod files;
+mod reading;
+mod security;
+mod streams;
+mod tls;
+mod world;

@@ -1,0 +1,159 @@
+//! Who may do what, and what nobody may.
+
+use crate::client::{ask, get};
+use crate::world::{World, Writer, settings};
+use rtf_web::{Bound, ServeError};
+
+const STOP: &str = "/api/v1/runs/own/stop";
+
+fn running() -> (World, Writer) {
+    let (world, mut run) = World::new();
+    run.plan("arm", &["first"]);
+    run.start(crate::world::TEST);
+    run.flush();
+    (world, run)
+}
+
+/// The cookie of a session, as a browser would send it.
+fn session(world: &World) -> String {
+    let body = format!("{{\"token\":\"{}\"}}", world.token());
+    let answer = world.post("/api/v1/session", &["Content-Type: application/json"], &body);
+    assert_eq!(answer.status, 204);
+    let cookie = answer.header("set-cookie").unwrap();
+    assert!(cookie.contains("; HttpOnly; SameSite=Strict; Path=/"), "{cookie}");
+    assert!(!cookie.contains(&world.token()), "the token itself stays out of the browser");
+    format!("Cookie: other=1; {}", cookie.split(';').next().unwrap())
+}
+
+#[test]
+fn control_needs_the_token() {
+    let (world, _run) = running();
+    let bearer = format!("Authorization: Bearer {}", world.token());
+    for lines in [&[][..], &["Authorization: Bearer guess"], &["Cookie: rtf=1"]] {
+        assert_eq!(world.post(STOP, lines, "").status, 401, "{lines:?}");
+    }
+    let wrong =
+        world.post("/api/v1/session", &["Content-Type: application/json"], "{\"token\":\"x\"}");
+    assert_eq!((wrong.status, wrong.header("set-cookie")), (401, None));
+    assert!(world.asked().is_empty());
+    assert_eq!(world.post(STOP, &[&bearer], "").status, 202);
+    assert_eq!(world.post("/api/v1/runs/own/tests/0/stop", &[&bearer], "").status, 202);
+    assert_eq!(world.post("/api/v1/runs/own/suites/0/skip", &[&bearer], "").status, 202);
+    assert_eq!(world.asked(), ["stop", "stop test 0", "skip suite 0"]);
+    assert_eq!(world.post("/api/v1/runs/own/tests/7/stop", &[&bearer], "").status, 404);
+}
+
+#[test]
+fn a_browser_controls_from_its_own_page_only() {
+    let (world, _run) = running();
+    let (cookie, host) = (session(&world), world.address());
+    let own = format!("Origin: http://{host}");
+    let post = |lines: &[&str]| world.post(STOP, &[&[&*cookie][..], lines].concat(), "").status;
+    assert_eq!(post(&[]), 403, "a cookie alone proves nothing");
+    for foreign in ["http://evil.example", "null", "https://localhost:1", "http://127.0.0.1"] {
+        assert_eq!(post(&[&format!("Origin: {foreign}")]), 403, "{foreign}");
+    }
+    assert_eq!(post(&[&own, "Sec-Fetch-Site: cross-site"]), 403);
+    assert!(world.asked().is_empty());
+    assert_eq!(post(&[&own, "Sec-Fetch-Site: same-origin"]), 202);
+    let server = ask(host, "GET /api/v1", &[&cookie], "").json();
+    assert_eq!((&server["control"], &server["authorised"]), (&true.into(), &true.into()));
+}
+
+/// What a form on another site can send without asking first.
+#[test]
+fn a_form_of_another_site_does_nothing() {
+    let (world, _run) = running();
+    let (cookie, token) = (session(&world), world.token());
+    let own = format!("Origin: http://{}", world.address());
+    for kind in ["application/x-www-form-urlencoded", "multipart/form-data", "text/plain"] {
+        let kind = format!("Content-Type: {kind}");
+        let own = [&*kind, &*cookie, &*own];
+        assert_eq!(world.post(STOP, &own, "a=b").status, 415, "{kind}");
+        let evil = [&*kind, &*cookie, "Origin: http://evil.example"];
+        assert_eq!(world.post(STOP, &evil, "a=b").status, 403, "{kind}");
+        let body = format!("{{\"token\":\"{token}\"}}");
+        assert_eq!(world.post("/api/v1/session", &[&kind], &body).status, 415, "{kind}");
+    }
+    let long = format!("{{\"token\":\"{}\"}}", "x".repeat(5000));
+    let long = world.post("/api/v1/session", &["Content-Type: application/json"], &long);
+    assert_eq!(long.status, 413);
+    assert!(world.asked().is_empty());
+}
+
+/// A page whose name leads here (DNS rebinding) reads nothing.
+#[test]
+fn another_host_is_refused_everywhere() {
+    let (world, _run) = running();
+    let port = world.address().port();
+    for path in ["/", "/api/v1", "/api/v1/runs", "/status", "/update", "/api/v1/openapi.json"] {
+        let get = |host: &str| {
+            ask(world.address(), &format!("GET {path}"), &[&format!("Host: {host}")], "").status
+        };
+        assert_eq!(get(&format!("localhost:{port}")), 200, "{path}");
+        assert_eq!(get(&format!("evil.example:{port}")), 421, "{path}");
+        assert_eq!(get("localhost:1"), 421, "{path}");
+        assert_eq!(get(""), 421, "{path}");
+    }
+}
+
+#[test]
+fn every_answer_has_its_headers() {
+    let (world, _run) = running();
+    for path in ["/", "/nothing", "/api/v1", "/api/v1/runs/none", "/api/docs", "/status"] {
+        let answer = world.get(path);
+        let policy = answer.header("content-security-policy").unwrap_or_default();
+        assert!(policy.starts_with("default-src 'self'"), "{path}: {policy}");
+        assert!(
+            policy.contains("frame-ancestors 'none'") && !policy.contains("script-src"),
+            "{path}"
+        );
+        assert_eq!(answer.header("x-content-type-options"), Some("nosniff"), "{path}");
+        assert_eq!(answer.header("referrer-policy"), Some("no-referrer"), "{path}");
+        assert_eq!(answer.header("access-control-allow-origin"), None, "{path}");
+    }
+    assert_eq!(world.get("/api/v1").header("cache-control"), Some("no-store"));
+    let wrong = ask(world.address(), "PUT /api/v1/runs", &[], "");
+    assert_eq!((wrong.status, wrong.json()["status"].as_u64()), (405, Some(405)));
+    let allowed = |path: &str| {
+        let wrong = ask(world.address(), &format!("TRACE {path}"), &[], "");
+        wrong.header("allow").map(str::to_owned)
+    };
+    assert_eq!(allowed("/api/v1/runs").as_deref(), Some("GET,HEAD"));
+    assert_eq!(allowed("/api/v1/session").as_deref(), Some("POST,DELETE"));
+}
+
+#[test]
+fn beyond_this_machine_nothing_is_read_without_the_token() {
+    let remote = "0.0.0.0:0".parse().unwrap();
+    let refused = Bound::new(&rtf_web::Settings { address: remote, ..settings() });
+    let error = refused.expect_err("it is not allowed");
+    assert!(matches!(error, ServeError::Remote(_)) && error.hint().is_some(), "{error}");
+}
+
+#[test]
+fn a_token_may_come_from_a_file() {
+    let temp = tempfile::tempdir().unwrap();
+    let path = temp.path().join("token");
+    std::fs::write(&path, "my-own-token-of-some-length\n").unwrap();
+    let (world, mut run) = World::with(&rtf_web::Settings { token_file: Some(path), ..settings() });
+    run.plan("arm", &["first"]);
+    run.flush();
+    let bearer = "Authorization: Bearer my-own-token-of-some-length";
+    assert_eq!(world.post(STOP, &[bearer], "").status, 202);
+    assert_eq!(world.asked(), ["stop"]);
+}
+
+#[test]
+fn a_run_of_others_and_one_that_is_over_are_not_controlled() {
+    let (world, run) = running();
+    let bearer = format!("Authorization: Bearer {}", world.token());
+    let mut other = Writer::new(world.temp.path(), "other");
+    other.plan("arm", &["first"]);
+    other.flush();
+    assert_eq!(world.post("/api/v1/runs/other/stop", &[&bearer], "").status, 409);
+    run.end();
+    assert_eq!(world.post(STOP, &[&bearer], "").status, 409);
+    assert!(world.asked().is_empty());
+    assert_eq!(get(world.address(), "/api/v1/runs/other").status, 200);
+}

@@ -1,0 +1,214 @@
+//! A results folder, a run that is being written, and a server over it.
+
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+
+use rtf_model::{
+    Attachment, Event, EventKind, Measurement, Message, MessageKind, Micros, Output, Phase, Record,
+    RunStarted, Source, Stream, SuiteId, SuitePlanned, TestFinished, TestId, TestPlanned, Verdict,
+};
+use rtf_report::Reporter;
+use rtf_report::journal::Journal;
+use rtf_report::logs::Logs;
+use rtf_web::{Bound, Control, Live, Served, Server, Settings};
+
+use crate::client::{self, Answer};
+
+pub const TEST: TestId = TestId(0);
+
+/// What the control was asked for.
+#[derive(Debug, Default)]
+pub struct Asked(pub Mutex<Vec<String>>);
+
+impl Control for Asked {
+    fn stop_run(&self) {
+        self.0.lock().unwrap().push("stop".to_owned());
+    }
+
+    fn stop_test(&self, test: TestId) {
+        self.0.lock().unwrap().push(format!("stop test {test}"));
+    }
+
+    fn skip_suite(&self, suite: SuiteId) {
+        self.0.lock().unwrap().push(format!("skip suite {suite}"));
+    }
+}
+
+/// A run that is written as a runner writes it.
+pub struct Writer {
+    pub folder: PathBuf,
+    journal: Journal,
+    logs: Logs,
+    live: Option<Live>,
+    record: Record,
+}
+
+impl Writer {
+    pub fn new(results: &Path, name: &str) -> Self {
+        let folder = results.join(name);
+        std::fs::create_dir_all(&folder).unwrap();
+        let journal = Journal::create(&folder.join("events.jsonl")).unwrap();
+        let logs = Logs::new(&folder);
+        Self { folder, journal, logs, live: None, record: Record::default() }
+    }
+
+    pub fn emit(&mut self, kind: EventKind) {
+        let seq = self.record.events;
+        let event = Event { seq, at: Micros(seq * 10), kind };
+        self.record.apply(&event);
+        self.journal.event(&event, &self.record).unwrap();
+        self.logs.event(&event, &self.record).unwrap();
+    }
+
+    /// As a runner does when nothing happens for a moment.
+    pub fn flush(&mut self) {
+        self.journal.idle(&self.record).unwrap();
+        self.logs.idle(&self.record).unwrap();
+        if let Some(live) = &mut self.live {
+            live.idle(&self.record).unwrap();
+        }
+    }
+
+    /// The plan: one suite, and tests of these names.
+    pub fn plan(&mut self, suite: &str, tests: &[&str]) {
+        self.emit(EventKind::RunStarted(RunStarted {
+            version: 1,
+            run: self.folder.file_name().unwrap().to_string_lossy().into_owned(),
+            rtf: "0.1.0".to_owned(),
+            started_at: "2026-11-21T06:30:12+00:00".to_owned(),
+            command: vec!["rtf".to_owned()],
+            folder: "/robot".to_owned(),
+            suites: 1,
+            tests: u32::try_from(tests.len()).unwrap(),
+            manifest: Default::default(),
+        }));
+        self.emit(EventKind::SuitePlanned(SuitePlanned {
+            suite: SuiteId(0),
+            name: suite.to_owned(),
+            file: String::new(),
+            description: String::new(),
+            environment: String::new(),
+            tolerates_collapse: false,
+        }));
+        for (id, name) in (0..).zip(tests) {
+            self.emit(EventKind::TestPlanned(TestPlanned {
+                test: TestId(id),
+                suite: SuiteId(0),
+                name: (*name).to_owned(),
+                plugin_type: "lua".to_owned(),
+                plugin: "/robot/test.lua".to_owned(),
+                repetitions: 1,
+                tags: Vec::new(),
+            }));
+        }
+        self.emit(EventKind::SuiteStarted { suite: SuiteId(0) });
+    }
+
+    pub fn start(&mut self, test: TestId) {
+        self.emit(EventKind::TestStarted { test, repetition: 1, attempt: 1 });
+    }
+
+    pub fn say(&mut self, kind: MessageKind, text: &str) {
+        let source = Source::Test(TEST);
+        let text = text.to_owned();
+        let message = Message { kind, text, location: None, comparison: None, critical: false };
+        self.emit(EventKind::Message { source, message });
+    }
+
+    pub fn print(&mut self, text: &str) {
+        let (source, stream, text) = (Source::Test(TEST), Stream::Stdout, text.to_owned());
+        self.emit(EventKind::Output(Output { source, stream, omitted: 0, text }));
+    }
+
+    pub fn measure(&mut self, value: f64, high: f64) {
+        let (name, unit) = ("settling".to_owned(), "s".to_owned());
+        let (value, high) = (Some(value), Some(high));
+        let measurement = Measurement { name, value, unit, low: None, high, location: None };
+        self.emit(EventKind::Measured { test: TEST, measurement });
+    }
+
+    /// Attaches a file that holds this.
+    pub fn attach(&mut self, name: &str, what: &[u8]) {
+        let path = format!("attachments/{name}");
+        std::fs::create_dir_all(self.folder.join("attachments")).unwrap();
+        std::fs::write(self.folder.join(&path), what).unwrap();
+        let (name, media_type) = (name.to_owned(), String::new());
+        let attachment = Attachment { name, path, media_type };
+        self.emit(EventKind::Attached { test: TEST, attachment });
+    }
+
+    pub fn finish(&mut self, test: TestId, verdict: Verdict) {
+        let reason = (!verdict.is_green()).then(|| "because".to_owned());
+        let phase = Phase::Run;
+        self.emit(EventKind::TestFinished(TestFinished {
+            test,
+            verdict,
+            reason,
+            phase,
+            exit: None,
+            rerun: false,
+        }));
+    }
+
+    pub fn end(mut self) {
+        self.emit(EventKind::SuiteFinished { suite: SuiteId(0) });
+        self.emit(EventKind::RunFinished { interrupted: None });
+        self.flush();
+    }
+}
+
+/// A server over a results folder of its own.
+pub struct World {
+    pub temp: tempfile::TempDir,
+    pub server: Server,
+    pub asked: Arc<Asked>,
+}
+
+pub fn settings() -> Settings {
+    Settings {
+        address: "127.0.0.1:0".parse().unwrap(),
+        allow_remote: false,
+        token_file: None,
+        tls: None,
+        hosts: Vec::new(),
+    }
+}
+
+impl World {
+    /// A server that makes the run `own`.
+    pub fn new() -> (Self, Writer) {
+        Self::with(&settings())
+    }
+
+    pub fn with(settings: &Settings) -> (Self, Writer) {
+        let temp = tempfile::tempdir().unwrap();
+        let mut writer = Writer::new(temp.path(), "own");
+        let asked = Arc::new(Asked::default());
+        let own = Some(("own".to_owned(), asked.clone() as Arc<dyn Control>));
+        let bound = Bound::new(settings).unwrap();
+        let server = bound.serve(Served { results: temp.path(), own }).unwrap();
+        writer.live = Some(server.live());
+        (Self { temp, server, asked }, writer)
+    }
+
+    pub fn address(&self) -> SocketAddr {
+        self.server.address()
+    }
+
+    pub fn token(&self) -> String {
+        self.server.url().split_once("#token=").unwrap().1.to_owned()
+    }
+
+    pub fn get(&self, path: &str) -> Answer {
+        client::get(self.address(), path)
+    }
+
+    pub fn post(&self, path: &str, lines: &[&str], body: &str) -> Answer {
+        client::ask(self.address(), &format!("POST {path}"), lines, body)
+    }
+
+    pub fn asked(&self) -> Vec<String> {
+        self.asked.0.lock().unwrap().clone()
+    }
+}
