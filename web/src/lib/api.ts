@@ -1,0 +1,100 @@
+// Requests to the server that the page came from (spec/web.md).
+
+import type { ApiRoot, Attempt, RunInfo, Snapshot, Test } from './api-types';
+
+const BASE = '/api/v1';
+
+/** An answer that is not a success, or no answer at all (`status` 0). */
+export class ApiError extends Error {
+    constructor(
+        readonly status: number,
+        message: string,
+    ) {
+        super(message);
+    }
+}
+
+interface Options {
+    method?: 'GET' | 'POST' | 'DELETE';
+    body?: unknown;
+    signal?: AbortSignal | null;
+}
+
+async function request(path: string, options: Options = {}): Promise<Response> {
+    const { method = 'GET', body, signal = null } = options;
+    const json = body === undefined ? {} : { 'Content-Type': 'application/json' };
+    const content = body === undefined ? null : JSON.stringify(body);
+    let response: Response;
+    try {
+        response = await fetch(BASE + path, { method, headers: json, body: content, signal });
+    } catch (problem) {
+        if (signal?.aborted) throw problem;
+        throw new ApiError(0, 'the server does not answer');
+    }
+    if (!response.ok) throw new ApiError(response.status, await reason(response));
+    return response;
+}
+
+/** What an error's body says. */
+async function reason(response: Response): Promise<string> {
+    const text = await response.text().catch(() => '');
+    try {
+        const problem: unknown = JSON.parse(text);
+        if (typeof problem === 'object' && problem !== null) {
+            const { detail, title, hint } = problem as Record<string, unknown>;
+            const words = [detail ?? title, hint].filter((each) => typeof each === 'string');
+            if (words.length > 0) return words.join('; ');
+        }
+    } catch {
+        // Not JSON: the status has to do.
+    }
+    return `the server answers ${response.status} ${response.statusText}`.trim();
+}
+
+export async function get<T>(path: string, signal: AbortSignal | null = null): Promise<T> {
+    return (await (await request(path, { signal })).json()) as T;
+}
+
+/** A path with its parts encoded and its query. */
+export function path(
+    parts: (string | number)[],
+    query: Record<string, string | number | undefined> = {},
+): string {
+    const route = parts.map((part) => `/${encodeURIComponent(part)}`).join('');
+    const pairs = Object.entries(query).flatMap(([name, value]) =>
+        value === undefined ? [] : [`${name}=${encodeURIComponent(value)}`],
+    );
+    return pairs.length === 0 ? route : `${route}?${pairs.join('&')}`;
+}
+
+/** The address of a route, for links and streams. */
+export function address(
+    parts: (string | number)[],
+    query: Record<string, string | number | undefined> = {},
+): string {
+    return BASE + path(parts, query);
+}
+
+export const root = () => get<ApiRoot>('');
+
+export const runs = (before?: string, limit = 50) =>
+    get<{ runs: RunInfo[]; next?: string }>(path(['runs'], { limit, before }));
+
+export const snapshot = (run: string, signal: AbortSignal | null = null) =>
+    get<Snapshot>(path(['runs', run, 'snapshot']), signal);
+
+export const test = (run: string, id: number, signal: AbortSignal | null = null) =>
+    get<{ test: Test; attempts: Attempt[] }>(path(['runs', run, 'tests', id]), signal);
+
+export const signIn = (token: string) => request('/session', { method: 'POST', body: { token } });
+
+export const signOut = () => request('/session', { method: 'DELETE' });
+
+export const stopRun = (run: string) =>
+    request(path(['runs', run, 'stop']), { method: 'POST', body: {} });
+
+export const stopTest = (run: string, id: number) =>
+    request(path(['runs', run, 'tests', id, 'stop']), { method: 'POST', body: {} });
+
+export const skipSuite = (run: string, id: number) =>
+    request(path(['runs', run, 'suites', id, 'skip']), { method: 'POST', body: {} });

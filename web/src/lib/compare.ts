@@ -1,0 +1,77 @@
+// What is different between two runs.
+
+import type { Test } from './api-types';
+import type { TestState } from './event';
+import { fullName } from './progress';
+import type { RunRecord } from './record/record';
+
+export type Change = 'broke' | 'fixed' | 'other' | 'slower' | 'faster' | 'same' | 'new' | 'gone';
+
+/** One test in both runs; `null` where it is not. */
+export interface Pair {
+    name: string;
+    old: Side | null;
+    new: Side | null;
+    change: Change;
+}
+
+export interface Side {
+    test: Test;
+    state: TestState;
+}
+
+/** In the order in which one wants to read them. */
+export const CHANGES: readonly Change[] = [
+    'broke',
+    'other',
+    'fixed',
+    'slower',
+    'faster',
+    'new',
+    'gone',
+    'same',
+];
+
+export const CHANGE_NAMES: Record<Change, string> = {
+    broke: 'passed before, not now',
+    other: 'not passed, another verdict',
+    fixed: 'passes now',
+    slower: 'slower',
+    faster: 'faster',
+    new: 'new',
+    gone: 'gone',
+    same: 'the same',
+};
+
+/** A difference in time counts from a quarter and from 100 ms on. */
+const FACTOR = 1.25;
+const LEAST_US = 100_000;
+
+export function compareRuns(before: RunRecord, after: RunRecord): Pair[] {
+    const side = (record: RunRecord, test: Test): Side => ({ test, state: record.stateOf(test) });
+    const old = new Map(before.tests.map((test) => [fullName(before, test), side(before, test)]));
+    const pairs = after.tests.map((test): Pair => {
+        const name = fullName(after, test);
+        const pair = { name, old: old.get(name) ?? null, new: side(after, test) };
+        old.delete(name);
+        return { ...pair, change: changeOf(pair.old, pair.new) };
+    });
+    for (const [name, gone] of old) {
+        pairs.push({ name, old: gone, new: null, change: 'gone' });
+    }
+    const rank = (pair: Pair) => CHANGES.indexOf(pair.change);
+    return pairs.sort((a, b) => rank(a) - rank(b));
+}
+
+function changeOf(old: Side | null, now: Side | null): Change {
+    if (old === null) return 'new';
+    if (now === null) return 'gone';
+    if (old.state !== now.state) {
+        if (old.state === 'passed') return 'broke';
+        return now.state === 'passed' ? 'fixed' : 'other';
+    }
+    const [a, b] = [old.test.duration_us, now.test.duration_us];
+    if (Math.abs(a - b) < LEAST_US) return 'same';
+    if (b > a * FACTOR) return 'slower';
+    return a > b * FACTOR ? 'faster' : 'same';
+}

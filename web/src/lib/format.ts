@@ -1,0 +1,85 @@
+// Numbers, times and sizes as people read them.
+
+/** A duration in microseconds: `0.8 ms`, `12.3 s`, `4 min 05 s`, `2 h 03 min`. */
+export function duration(micros: number): string {
+    const ms = micros / 1000;
+    if (ms < 10) return `${ms.toFixed(1)} ms`;
+    if (ms < 1000) return `${Math.round(ms)} ms`;
+    const seconds = ms / 1000;
+    if (seconds < 60) return `${seconds.toFixed(seconds < 9.95 ? 2 : 1)} s`;
+    return clock(seconds);
+}
+
+/** A duration that changes every second: `12 s`, `4 min 05 s`. */
+export function clock(seconds: number): string {
+    const whole = Math.max(0, Math.round(seconds));
+    const two = (number: number) => String(number).padStart(2, '0');
+    if (whole < 60) return `${whole} s`;
+    const minutes = Math.floor(whole / 60);
+    if (minutes < 60) return `${minutes} min ${two(whole % 60)} s`;
+    return `${Math.floor(minutes / 60)} h ${two(minutes % 60)} min`;
+}
+
+/** When in the run something happened: `+12.345 s`. */
+export function moment(micros: number): string {
+    return `+${(micros / 1e6).toFixed(3)} s`;
+}
+
+/** A number as measured: neither rounded away nor longer than it is. */
+export function number(value: number): string {
+    if (value === 0) return '0';
+    const size = Math.abs(value);
+    if (size < 1e-5 || size >= 1e15) return value.toExponential();
+    return String(value);
+}
+
+/** A number to be read at a glance: six digits. */
+export function rounded(value: number): string {
+    return number(Number(value.toPrecision(6)));
+}
+
+/** A number for an axis or a difference: four digits. */
+export function short(value: number): string {
+    return number(Number(value.toPrecision(4)));
+}
+
+/** A size in bytes: `12 B`, `3.4 kB`. */
+export function size(bytes: number): string {
+    if (bytes < 1000) return `${bytes} B`;
+    const units = ['kB', 'MB', 'GB', 'TB'];
+    let value = bytes;
+    let unit = -1;
+    while (value >= 999.5 && unit < units.length - 1) {
+        value /= 1000;
+        unit += 1;
+    }
+    return `${value.toFixed(value < 10 ? 1 : 0)} ${units[unit]}`;
+}
+
+/** A count with its noun: `1 test`, `12 000 tests`. */
+export function count(amount: number, one: string, many = `${one}s`): string {
+    return `${grouped(amount)} ${amount === 1 ? one : many}`;
+}
+
+/** A whole number in groups of three, from five digits on. */
+export function grouped(amount: number): string {
+    const digits = String(amount);
+    return digits.length < 5 ? digits : digits.replace(/\B(?=(\d{3})+$)/g, '\u202f');
+}
+
+/** A time of day of RFC 3339, in the reader's zone: `2026-11-21 07:30:12`. */
+export function timeOfDay(text: string): string {
+    const time = new Date(text);
+    if (Number.isNaN(time.getTime())) return text;
+    const two = (value: number) => String(value).padStart(2, '0');
+    const day = [time.getFullYear(), two(time.getMonth() + 1), two(time.getDate())].join('-');
+    return `${day} ${[time.getHours(), time.getMinutes(), time.getSeconds()].map(two).join(':')}`;
+}
+
+/** What a value has to keep: `95 … 105`, `≥ 0.5`, `≤ 2`; empty without limits. */
+export function limits(low: number | null | undefined, high: number | null | undefined): string {
+    if (low != null && high != null) return `${number(low)} … ${number(high)}`;
+    if (low != null) return `≥ ${number(low)}`;
+    if (high != null) return `≤ ${number(high)}`;
+    return '';
+}

@@ -1,0 +1,175 @@
+// Loads what one attempt of a test, one start of a fixture or one run of a hook
+// said, and keeps it up to date while the run goes on.
+
+import { get, path } from '../api';
+import type { Said } from '../api-types';
+import type { Event } from '../event';
+import { addToLists, append, emptyLists, LIST_NAMES, type ListName } from '../record/detail';
+import type { LiveRun } from './run.svelte';
+
+export interface Subject {
+    kind: 'test' | 'fixture' | 'hook';
+    id: number;
+    /** The number of the attempt, start or run, from 1. */
+    number: number;
+}
+
+/** What was said by others than tests has these lists only. */
+const LISTS: Record<Subject['kind'], readonly ListName[]> = {
+    test: LIST_NAMES,
+    fixture: ['messages', 'output'],
+    hook: ['messages', 'output'],
+};
+
+const PARTS = { test: 'attempts', fixture: 'starts', hook: 'runs' } as const;
+
+/** Pages that are loaded without being asked for: 5000 entries, 5 MB of output. */
+const FIRST_PAGES = 5;
+const PAGE = 1000;
+
+type Page = { next?: number } & { [list in ListName]?: Said[] };
+
+export class Details {
+    /** Grows with each change of the lists. */
+    version = $state(0);
+    isLoading = $state(true);
+    problem: string | null = $state(null);
+    /** Lists of which the server has more, and where it goes on. */
+    more: Partial<Record<ListName, number>> = $state.raw({});
+    private all = emptyLists();
+    private waiting: Event[] | null = [];
+    private latest: number;
+    private readonly closing = new AbortController();
+    private readonly unwatch: () => void;
+
+    constructor(
+        private readonly run: LiveRun,
+        readonly subject: Subject,
+    ) {
+        this.latest = this.known();
+        const source = `${subject.kind}:${subject.id}`;
+        // First listen, then ask: what comes in between is in both and is dropped once.
+        this.unwatch = run.watch(run.record.isOver ? [] : [source], (events) =>
+            this.receive(events),
+        );
+        void this.load();
+    }
+
+    get lists() {
+        // eslint-disable-next-line @typescript-eslint/no-unused-expressions
+        this.version;
+        return this.all;
+    }
+
+    close(): void {
+        this.closing.abort();
+        this.unwatch();
+    }
+
+    /** Loads the next page of a list. */
+    async loadMore(list: ListName): Promise<void> {
+        const after = this.more[list];
+        if (after === undefined) return;
+        await this.attempt(() => this.pages(list, after, 1));
+    }
+
+    private async load(): Promise<void> {
+        await this.attempt(async () => {
+            await Promise.all(
+                LISTS[this.subject.kind].map((list) => this.pages(list, undefined, FIRST_PAGES)),
+            );
+            const missed = this.waiting ?? [];
+            this.waiting = null;
+            missed.forEach((event) => this.add(event));
+        });
+        this.isLoading = false;
+    }
+
+    private async attempt(work: () => Promise<void>): Promise<void> {
+        try {
+            await work();
+            this.problem = null;
+        } catch (problem) {
+            if (this.closing.signal.aborted) return;
+            this.problem = problem instanceof Error ? problem.message : String(problem);
+        }
+        this.version += 1;
+    }
+
+    private async pages(list: ListName, from: number | undefined, most: number): Promise<void> {
+        const { kind, id, number } = this.subject;
+        const route = ['runs', this.run.name, `${kind}s`, id, PARTS[kind], number, list];
+        let after = from;
+        for (let page = 0; page < most; page += 1) {
+            const answer = await get<Page>(
+                path(route, { after, limit: PAGE }),
+                this.closing.signal,
+            );
+            const entries = this.all[list] as Said[];
+            for (const entry of answer[list] ?? []) append(entries, entry);
+            after = answer.next;
+            this.version += 1;
+            if (after === undefined) break;
+        }
+        const more = { ...this.more };
+        if (after === undefined) delete more[list];
+        else more[list] = after;
+        this.more = more;
+    }
+
+    private receive(events: Event[]): void {
+        let isChanged = false;
+        for (const event of events) {
+            if (!this.isOurs(event)) continue;
+            if (this.waiting !== null) this.waiting.push(event);
+            else this.add(event);
+            isChanged = true;
+        }
+        if (isChanged) this.version += 1;
+    }
+
+    /** Whether an event is about the subject, and about this attempt of it. */
+    private isOurs(event: Event): boolean {
+        const { kind, id, number } = this.subject;
+        if (event.type === 'test-started' && kind === 'test' && event.test === id) this.latest += 1;
+        if (event.type === 'fixture-starting' && kind === 'fixture' && event.fixture === id) {
+            this.latest = event.attempt;
+        }
+        if (event.type === 'hook-started' && kind === 'hook' && event.hook === id) this.latest += 1;
+        if (this.latest !== number) return false;
+        if ('source' in event) return (event.source as Record<string, number>)[kind] === id;
+        return kind === 'test' && 'test' in event && event.test === id;
+    }
+
+    private add(event: Event): void {
+        const list = listOf(event);
+        // The end of a list that is not all there would leave a hole.
+        if (list !== null && this.more[list] === undefined)
+            addToLists(this.all, event, this.run.name);
+    }
+
+    private known(): number {
+        const { kind, id } = this.subject;
+        const { tests, fixtures, hooks } = this.run.record;
+        if (kind === 'test') return tests[id]?.attempts.length ?? 0;
+        if (kind === 'fixture') return fixtures[id]?.starts.at(-1)?.number ?? 0;
+        return hooks[id]?.runs.length ?? 0;
+    }
+}
+
+function listOf(event: Event): ListName | null {
+    switch (event.type) {
+        case 'message':
+            return 'messages';
+        case 'measured':
+            return 'measurements';
+        case 'attached':
+            return 'attachments';
+        case 'stack-dumped':
+            return 'stacks';
+        case 'output':
+            return 'output';
+        default:
+            return null;
+    }
+}

@@ -1,0 +1,175 @@
+// Keeps a record up to date: gets the snapshot, follows the events, takes up
+// the stream where it was cut, and starts over when the server asks for it.
+
+import { address, ApiError, snapshot } from '../api';
+import type { RunStateName, Snapshot } from '../api-types';
+import type { Event } from '../event';
+import { RunRecord } from '../record/record';
+import { follow, type SseEvent } from './sse';
+
+export type Connection =
+    | { kind: 'loading' }
+    | { kind: 'live' }
+    | { kind: 'reconnecting'; reason: string }
+    | { kind: 'ended' }
+    | { kind: 'refused'; status: number; reason: string };
+
+export interface Listener {
+    /** A new record; what was known before is void. */
+    loaded: (record: RunRecord) => void;
+    /** The record has changed. `details` are the events that it does not keep. */
+    changed: (events: Event[]) => void;
+    connected: (connection: Connection) => void;
+}
+
+const FIRST_DELAY_MS = 250;
+const LAST_DELAY_MS = 5000;
+
+export class Feed {
+    private record: RunRecord | null = null;
+    /** The record has to be replaced by a new snapshot. */
+    private isStale = true;
+    private details = '';
+    private stream: AbortController | null = null;
+    private readonly closing = new AbortController();
+
+    constructor(
+        private readonly run: string,
+        private readonly listener: Listener,
+    ) {}
+
+    /** Loads and follows until the run is over or the feed is closed. */
+    async start(): Promise<void> {
+        let delay = FIRST_DELAY_MS;
+        while (!this.closing.signal.aborted) {
+            const step = await this.step();
+            if (step === 'over') return;
+            if (step === 'again') {
+                delay = FIRST_DELAY_MS;
+                continue;
+            }
+            await this.pause(delay);
+            delay = Math.min(delay * 2, LAST_DELAY_MS);
+        }
+    }
+
+    close(): void {
+        this.closing.abort();
+        this.stream?.abort();
+    }
+
+    /** Of whom messages, measurements and output are wanted: `test:3`. */
+    watch(sources: string[]): void {
+        const details = sources.join(',');
+        if (details === this.details) return;
+        this.details = details;
+        this.stream?.abort();
+    }
+
+    private async step(): Promise<'over' | 'again' | 'wait'> {
+        try {
+            if (this.isStale) await this.load();
+            return await this.listen();
+        } catch (problem) {
+            if (this.closing.signal.aborted) return 'over';
+            return this.failed(problem);
+        }
+    }
+
+    private failed(problem: unknown): 'over' | 'wait' {
+        if (this.record?.isOver) {
+            // The server has ended with its run: what is shown is all that there is.
+            this.listener.connected({ kind: 'ended' });
+            return 'over';
+        }
+        const status = problem instanceof ApiError ? problem.status : 0;
+        const reason = problem instanceof Error ? problem.message : String(problem);
+        if (status >= 400 && status < 500) {
+            this.listener.connected({ kind: 'refused', status, reason });
+            return 'over';
+        }
+        this.listener.connected({ kind: 'reconnecting', reason });
+        return 'wait';
+    }
+
+    private async load(): Promise<void> {
+        const data: Snapshot = await snapshot(this.run, this.closing.signal);
+        this.record = new RunRecord(data);
+        this.isStale = false;
+        this.listener.loaded(this.record);
+    }
+
+    private async listen(): Promise<'over' | 'again' | 'wait'> {
+        const { record } = this;
+        if (record === null) return 'again';
+        if (record.isOver) {
+            this.listener.connected({ kind: 'ended' });
+            return 'over';
+        }
+        const { seq } = record.info;
+        const stream = new AbortController();
+        this.stream = stream;
+        const details = this.details === '' ? 'none' : this.details;
+        let connected = false;
+        const end = await follow(address(['runs', this.run, 'events'], { from: seq, details }), {
+            signal: stream.signal,
+            lastEventId: seq === 0 ? null : seq - 1,
+            opened: () => {
+                connected = true;
+                this.listener.connected({ kind: 'live' });
+            },
+            received: (events) => this.receive(events, stream),
+        });
+        if (this.closing.signal.aborted) return 'over';
+        if (stream.signal.aborted) return 'again';
+        if ('status' in end && end.status === 204) {
+            // The run is over, and there is nothing after what is known.
+            this.isStale = true;
+            return 'again';
+        }
+        if ('status' in end) throw new ApiError(end.status, `the server answers ${end.status}`);
+        this.listener.connected({ kind: 'reconnecting', reason: 'the connection was lost' });
+        return connected ? 'again' : 'wait';
+    }
+
+    private receive(received: SseEvent[], stream: AbortController): void {
+        // What a stream still delivers after it was given up comes again in the next one.
+        if (stream.signal.aborted) return;
+        const { record } = this;
+        const events: Event[] = [];
+        for (const { type, id, data } of received) {
+            if (record === null) break;
+            if (type === 'message') {
+                const event = JSON.parse(data) as Event;
+                if (event.seq < record.info.seq) continue;
+                record.apply(event);
+                events.push(event);
+            } else if (type === 'progress') {
+                const { last_at } = JSON.parse(data) as { last_at: number };
+                record.progress(Number(id), last_at);
+            } else if (type === 'resync' || type === 'end') {
+                // Both are answered by a new snapshot, which has the last word.
+                this.isStale = true;
+                if (type === 'end')
+                    record.finish((JSON.parse(data) as { state: RunStateName }).state);
+                stream.abort();
+                break;
+            }
+        }
+        this.listener.changed(events);
+    }
+
+    private pause(milliseconds: number): Promise<void> {
+        return new Promise((resolve) => {
+            const done = () => {
+                clearTimeout(timer);
+                removeEventListener('online', done);
+                this.closing.signal.removeEventListener('abort', done);
+                resolve();
+            };
+            const timer = setTimeout(done, milliseconds);
+            addEventListener('online', done);
+            this.closing.signal.addEventListener('abort', done);
+        });
+    }
+}

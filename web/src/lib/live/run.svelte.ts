@@ -1,0 +1,92 @@
+// The run that is shown, for components. Ten thousand tests are too many to
+// watch each field of each of them: the record is plain data, and once a frame
+// there is a new view of it when something has changed. What is taken out of the
+// record keeps its identity while it changes; components copy what they show.
+
+import * as api from '../api';
+import type { Event } from '../event';
+import { RunRecord } from '../record/record';
+import { Feed, type Connection } from './feed';
+
+/** Gets what came in, as long as it wants to. */
+export type DetailListener = (events: Event[]) => void;
+
+export class LiveRun {
+    readonly name: string;
+    connection: Connection = $state.raw({ kind: 'loading' });
+    /** What is known, another object after each change. */
+    record: RunRecord = $state.raw(new RunRecord());
+    /** Grows with each new record: what was loaded beside it is old. */
+    generation = $state(0);
+    private readonly feed: Feed;
+    private readonly listeners = new Set<DetailListener>();
+    private readonly watched = new Map<symbol, string[]>();
+    private isDrawing = false;
+    /** The server's clock minus the browser's, in seconds. */
+    private skew = 0;
+
+    constructor(name: string) {
+        this.name = name;
+        this.feed = new Feed(name, {
+            loaded: (record) => {
+                this.record = record;
+                this.generation += 1;
+            },
+            changed: (events) => {
+                for (const listener of this.listeners) listener(events);
+                this.draw();
+            },
+            connected: (connection) => (this.connection = connection),
+        });
+        void this.feed.start();
+        api.root().then(
+            ({ seconds }) => (this.skew = seconds - Date.now() / 1000),
+            () => undefined,
+        );
+    }
+
+    close(): void {
+        this.feed.close();
+    }
+
+    /** Asks for the details of these sources until the answer is called. */
+    watch(sources: string[], listener: DetailListener): () => void {
+        const key = Symbol('watch');
+        this.watched.set(key, sources);
+        this.listeners.add(listener);
+        this.tellFeed();
+        return () => {
+            this.watched.delete(key);
+            this.listeners.delete(listener);
+            this.tellFeed();
+        };
+    }
+
+    /** Microseconds since the run started, by the server's clock. */
+    now(): number {
+        const { info, isOver } = this.record;
+        if (isOver) return info.last_at;
+        const started = Date.parse(info.started_at) / 1000;
+        const now = (Date.now() / 1000 + this.skew - started) * 1e6;
+        return Number.isFinite(now) ? Math.max(now, info.last_at) : info.last_at;
+    }
+
+    private tellFeed(): void {
+        // Together, so that going from one test to the next opens one stream.
+        queueMicrotask(() =>
+            this.feed.watch([...new Set([...this.watched.values()].flat())].sort()),
+        );
+    }
+
+    private draw(): void {
+        if (this.isDrawing) return;
+        this.isDrawing = true;
+        const done = () => {
+            this.isDrawing = false;
+            this.record = this.record.view();
+        };
+        // A page in the background gets no frames.
+        if (document.hidden) setTimeout(done, 250);
+        else requestAnimationFrame(done);
+    }
+}

@@ -1,0 +1,98 @@
+// Reads a stream of server-sent events. Unlike `EventSource` it hands over
+// all events of a piece of network at once, sees the server's heartbeat, and
+// learns why a connection was refused.
+
+export interface SseEvent {
+    type: string;
+    id: string;
+    data: string;
+}
+
+/** Cuts text that comes in arbitrary pieces into events (HTML Standard, 9.2.6). */
+export class SseParser {
+    private rest = '';
+    private type = '';
+    private data: string[] = [];
+    private id = '';
+
+    push(text: string): SseEvent[] {
+        const events: SseEvent[] = [];
+        const whole = this.rest + text;
+        let from = 0;
+        for (;;) {
+            const end = whole.indexOf('\n', from);
+            if (end === -1) break;
+            const stop = whole[end - 1] === '\r' && end > from ? end - 1 : end;
+            this.line(whole.slice(from, stop), events);
+            from = end + 1;
+        }
+        this.rest = whole.slice(from);
+        return events;
+    }
+
+    private line(line: string, events: SseEvent[]): void {
+        if (line === '') {
+            if (this.data.length > 0) {
+                const type = this.type === '' ? 'message' : this.type;
+                events.push({ type, id: this.id, data: this.data.join('\n') });
+            }
+            this.type = '';
+            this.data = [];
+            return;
+        }
+        const colon = line.indexOf(':');
+        if (colon === 0) return;
+        const name = colon === -1 ? line : line.slice(0, colon);
+        const value =
+            colon === -1 ? '' : line.slice(line[colon + 1] === ' ' ? colon + 2 : colon + 1);
+        if (name === 'data') this.data.push(value);
+        else if (name === 'event') this.type = value;
+        else if (name === 'id') this.id = value;
+    }
+}
+
+/** How a stream came to its end, when it was not aborted. */
+export type StreamEnd = { status: number } | { lost: true };
+
+interface Options {
+    signal: AbortSignal;
+    /** The last event that was seen; `null` for a first connection. */
+    lastEventId: number | null;
+    opened: () => void;
+    received: (events: SseEvent[]) => void;
+}
+
+/** The server sends at least a comment each second. */
+const SILENCE_MS = 8000;
+
+/** Follows a stream until it ends or its connection is lost. */
+export async function follow(url: string, options: Options): Promise<StreamEnd> {
+    const { signal, lastEventId } = options;
+    const silence = new AbortController();
+    let timer = setTimeout(() => silence.abort(), SILENCE_MS);
+    try {
+        const resume: Record<string, string> =
+            lastEventId === null ? {} : { 'Last-Event-ID': String(lastEventId) };
+        const response = await fetch(url, {
+            headers: { Accept: 'text/event-stream', ...resume },
+            cache: 'no-store',
+            signal: AbortSignal.any([signal, silence.signal]),
+        });
+        if (response.status !== 200 || response.body === null) return { status: response.status };
+        options.opened();
+        const parser = new SseParser();
+        const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
+        for (;;) {
+            const { done, value } = await reader.read();
+            if (done) return { lost: true };
+            clearTimeout(timer);
+            timer = setTimeout(() => silence.abort(), SILENCE_MS);
+            const events = parser.push(value);
+            if (events.length > 0) options.received(events);
+        }
+    } catch {
+        return { lost: true };
+    } finally {
+        clearTimeout(timer);
+    }
+}

@@ -1,0 +1,61 @@
+// How much of a run is left, in time.
+
+import type { Test } from './api-types';
+import type { RunRecord } from './record/record';
+
+export interface Estimate {
+    /** Seconds until the last test should be over. */
+    seconds: number;
+    /** What it is drawn from. */
+    basis: 'last run' | 'this run';
+}
+
+/** How long tests took in another run, by `suite/test`, in microseconds. */
+export type History = ReadonlyMap<string, number>;
+
+export function historyOf(record: RunRecord): History {
+    const history = new Map<string, number>();
+    for (const test of record.tests) {
+        if (test.verdict === undefined || test.verdict === 'skipped') continue;
+        history.set(fullName(record, test), test.duration_us);
+    }
+    return history;
+}
+
+export function fullName(record: RunRecord, test: Test): string {
+    return `${record.suites[test.suite]?.name ?? ''}/${test.name}`;
+}
+
+/**
+ * What is left: each test that is not over is expected to take what it took in
+ * the last run, or else as long as the tests of this run took on average.
+ * `null` while nothing is known to draw from.
+ */
+export function estimate(record: RunRecord, now: number, history: History): Estimate | null {
+    let spent = 0;
+    let repetitions = 0;
+    for (const test of record.tests) {
+        for (const { started, finished } of test.attempts) {
+            if (finished === undefined) continue;
+            spent += finished - started;
+            repetitions += 1;
+        }
+    }
+    const average = repetitions === 0 ? null : spent / repetitions;
+    let left = 0;
+    let known = 0;
+    let open = 0;
+    for (const test of record.tests) {
+        if (test.state === 'done') continue;
+        open += 1;
+        const before = history.get(fullName(record, test));
+        if (before !== undefined) known += 1;
+        const whole = before ?? (average === null ? null : average * test.repetitions);
+        if (whole === null) return null;
+        const running = test.attempts.at(-1);
+        const current = running && running.finished === undefined ? now - running.started : 0;
+        left += Math.max(0, whole - test.duration_us - current);
+    }
+    const basis = known * 2 > open ? 'last run' : 'this run';
+    return { seconds: left / 1e6, basis };
+}

@@ -1,0 +1,79 @@
+// What one attempt of a test, one start of a fixture or one run of a hook said:
+// the pages that the server sent, and the events that came after them.
+
+import type {
+    AttachmentEntry,
+    MeasurementEntry,
+    MessageEntry,
+    OutputEntry,
+    Said,
+    StackEntry,
+} from '../api-types';
+import { address } from '../api';
+import type { Event, LeftProcess, Measurement } from '../event';
+
+export interface Lists {
+    messages: MessageEntry[];
+    measurements: MeasurementEntry[];
+    attachments: AttachmentEntry[];
+    stacks: StackEntry[];
+    output: OutputEntry[];
+}
+
+export type ListName = keyof Lists;
+export const LIST_NAMES: readonly ListName[] = [
+    'messages',
+    'measurements',
+    'attachments',
+    'stacks',
+    'output',
+];
+
+export function emptyLists(): Lists {
+    return { messages: [], measurements: [], attachments: [], stacks: [], output: [] };
+}
+
+/** Puts an event of this source where it belongs. */
+export function addToLists(lists: Lists, event: Event, run: string): LeftProcess[] {
+    const { seq, at } = event;
+    switch (event.type) {
+        case 'message':
+            append(lists.messages, { seq, at, message: event.message });
+            break;
+        case 'measured': {
+            const { measurement } = event;
+            append(lists.measurements, { seq, at, measurement, within: isWithin(measurement) });
+            break;
+        }
+        case 'attached': {
+            const { attachment } = event;
+            const url = address(['runs', run, 'files', ...attachment.path.split('/')]);
+            append(lists.attachments, { seq, at, attachment, url });
+            break;
+        }
+        case 'stack-dumped':
+            append(lists.stacks, { seq, at, text: event.text });
+            break;
+        case 'output': {
+            const { stream, text, omitted } = event;
+            const gap = omitted === undefined ? {} : { omitted };
+            append(lists.output, { seq, at, stream, text, ...gap });
+            break;
+        }
+        case 'processes-left':
+            return event.processes;
+    }
+    return [];
+}
+
+/** Pages and events may overlap: an entry that is there already is dropped. */
+export function append<T extends Said>(list: T[], entry: T): void {
+    const last = list.at(-1);
+    if (last === undefined || last.seq < entry.seq) list.push(entry);
+}
+
+/** Whether a value lies within its limits; one that is not a finite number does not. */
+export function isWithin({ value, low, high }: Measurement): boolean {
+    if (value == null) return false;
+    return (low == null || value >= low) && (high == null || value <= high);
+}

@@ -1,0 +1,111 @@
+// What the events of a fixture make of it, and its life as spans and marks.
+
+import type { Fixture, Start } from '../api-types';
+import type { Event, FixturePlanned } from '../event';
+
+/** A stretch of a fixture's life; `to` is `null` while it lasts. */
+export interface Span {
+    state: 'starting' | 'ready' | 'collapsed' | 'stopping';
+    from: number;
+    to: number | null;
+}
+
+/** Something that happened to a fixture at one moment. */
+export interface Mark {
+    kind: 'collapsed' | 'restarted' | 'problem';
+    at: number;
+    text: string;
+}
+
+export function plannedFixture(plan: FixturePlanned): Fixture {
+    const { fixture, suite, name, plugin_type } = plan;
+    return { id: fixture, suite, name, plugin_type, state: 'pending', starts: [] };
+}
+
+/** Takes in an event of this fixture. */
+export function applyToFixture(fixture: Fixture, event: Event): void {
+    const { at } = event;
+    const last = fixture.starts.at(-1);
+    switch (event.type) {
+        case 'fixture-starting':
+            fixture.starts.push({ number: event.attempt, starting: at });
+            fixture.state = 'starting';
+            break;
+        case 'fixture-ready':
+            if (last !== undefined) last.ready = at;
+            fixture.state = 'ready';
+            break;
+        case 'fixture-collapsed':
+            if (last !== undefined) last.collapsed = { at, reason: event.reason };
+            fixture.log_tail = event.log_tail ?? [];
+            fixture.state = 'collapsed';
+            break;
+        case 'fixture-stopping':
+            if (last !== undefined) last.stopping = at;
+            fixture.state = 'stopping';
+            break;
+        case 'fixture-stopped':
+            if (last !== undefined) last.stopped = at;
+            fixture.state = fixture.broken === undefined ? 'stopped' : 'broken';
+            if (event.problem != null) {
+                if (last !== undefined) last.problem = event.problem;
+                fixture.log_tail = event.log_tail ?? [];
+            }
+            break;
+        case 'fixture-broken':
+            fixture.broken = event.reason;
+            fixture.state = 'broken';
+            break;
+    }
+}
+
+/** A fixture's life, for its lane. */
+export function spans(fixture: Fixture): Span[] {
+    return fixture.starts.flatMap((start) => {
+        const { starting, ready, collapsed, stopping, stopped } = start;
+        const steps: [Span['state'], number | undefined][] = [
+            ['starting', starting],
+            ['ready', ready],
+            ['collapsed', collapsed?.at],
+            ['stopping', stopping],
+        ];
+        const reached = steps.flatMap(([state, from]) =>
+            from === undefined ? [] : [{ state, from }],
+        );
+        return reached.map((step, index) => ({
+            ...step,
+            to: reached[index + 1]?.from ?? stopped ?? null,
+        }));
+    });
+}
+
+/** What happened in a fixture's life. */
+export function marks(fixture: Fixture): Mark[] {
+    return fixture.starts.flatMap((start, index) => [
+        ...(index === 0 ? [] : [mark('restarted', start.starting, `start ${start.number}`)]),
+        ...(start.collapsed ? [mark('collapsed', start.collapsed.at, start.collapsed.reason)] : []),
+        ...(start.problem ? [mark('problem', endOf(start), start.problem)] : []),
+    ]);
+}
+
+function mark(kind: Mark['kind'], at: number, text: string): Mark {
+    return { kind, at, text };
+}
+
+function endOf(start: Start): number {
+    return start.stopped ?? start.stopping ?? start.starting;
+}
+
+/** What speaks against the suite being green, in words. */
+export function fixtureProblems(fixture: Fixture, toleratesCollapse: boolean): string[] {
+    const name = `fixture \`${fixture.name}\``;
+    const problems: string[] = [];
+    if (fixture.broken !== undefined) problems.push(`${name} is broken: ${fixture.broken}`);
+    for (const { collapsed, problem } of fixture.starts) {
+        if (collapsed && !toleratesCollapse)
+            problems.push(`${name} collapsed: ${collapsed.reason}`);
+        if (problem !== undefined && problem !== fixture.broken)
+            problems.push(`${name}: ${problem}`);
+    }
+    return problems;
+}

@@ -1,0 +1,225 @@
+// What the page knows of a run: a snapshot, and the events that came after it.
+// It is the only place that takes in events; everything that is shown of the
+// run's state is read from here. A record that begins empty and gets all events
+// of a journal ends up the same as a snapshot.
+
+import type {
+    Fixture,
+    Hook,
+    RunInfo,
+    RunStateName,
+    Snapshot,
+    Suite,
+    Test,
+    Totals,
+} from '../api-types';
+import { VERDICTS, type Event, type Verdict } from '../event';
+import { applyToFixture, fixtureProblems, plannedFixture } from './fixture';
+import { applyToHook, hookProblems, plannedHook } from './hook';
+import { applyToTest, plannedTest, testState } from './test';
+
+export class RunRecord {
+    constructor(private readonly data: Snapshot = emptySnapshot()) {}
+
+    get info(): RunInfo {
+        return this.data.info;
+    }
+    get suites(): readonly Suite[] {
+        return this.data.suites;
+    }
+    get fixtures(): readonly Fixture[] {
+        return this.data.fixtures;
+    }
+    get hooks(): readonly Hook[] {
+        return this.data.hooks;
+    }
+    get tests(): readonly Test[] {
+        return this.data.tests;
+    }
+    get warnings() {
+        return this.data.warnings;
+    }
+    get left() {
+        return this.data.left;
+    }
+
+    /** Whether nothing more will come. */
+    get isOver(): boolean {
+        return this.info.state !== 'running';
+    }
+
+    /** The same record as another object, for those who compare. */
+    view(): RunRecord {
+        return new RunRecord(this.data);
+    }
+
+    /** Takes in the next event; one that is known already is dropped. */
+    apply(event: Event): void {
+        const { info } = this.data;
+        if (event.seq < info.seq) return;
+        info.seq = event.seq + 1;
+        info.last_at = Math.max(info.last_at, event.at);
+        if ('test' in event && event.type !== 'hook-started' && event.type !== 'test-planned') {
+            const test = this.data.tests[event.test];
+            if (test !== undefined) applyToTest(test, event);
+        } else if ('fixture' in event && event.type !== 'fixture-planned') {
+            const fixture = this.data.fixtures[event.fixture];
+            if (fixture !== undefined) applyToFixture(fixture, event);
+        } else if ('hook' in event && event.type !== 'hook-planned') {
+            const hook = this.data.hooks[event.hook];
+            if (hook !== undefined) applyToHook(hook, event);
+        } else {
+            this.applyToRun(event);
+        }
+    }
+
+    /** Notes how far the run is, when events were left out of a stream. */
+    progress(seq: number, at: number): void {
+        this.info.seq = Math.max(this.info.seq, seq + 1);
+        this.info.last_at = Math.max(this.info.last_at, at);
+    }
+
+    /** Notes that nothing more will come, and how the run ended. */
+    finish(state: RunStateName): void {
+        if (!this.isOver) this.info.state = state;
+    }
+
+    private applyToRun(event: Event): void {
+        const { data } = this;
+        switch (event.type) {
+            case 'run-started':
+                Object.assign(data.info, {
+                    run: event.run,
+                    started_at: event.started_at,
+                    rtf: event.rtf,
+                    command: event.command,
+                    folder: event.folder,
+                    suites: event.suites,
+                });
+                break;
+            case 'suite-planned':
+                data.suites[event.suite] = plannedSuite(event);
+                break;
+            case 'fixture-planned':
+                data.fixtures[event.fixture] = plannedFixture(event);
+                data.suites[event.suite]?.fixtures.push(event.fixture);
+                break;
+            case 'hook-planned':
+                data.hooks[event.hook] = plannedHook(event);
+                data.suites[event.suite]?.hooks.push(event.hook);
+                break;
+            case 'test-planned':
+                data.tests[event.test] = plannedTest(event);
+                break;
+            case 'warning':
+                data.warnings.push(event.diagnostic);
+                break;
+            case 'suite-started':
+                Object.assign(data.suites[event.suite] ?? {}, {
+                    state: 'running',
+                    started: event.at,
+                });
+                break;
+            case 'suite-finished':
+                Object.assign(data.suites[event.suite] ?? {}, {
+                    state: 'finished',
+                    finished: event.at,
+                });
+                break;
+            case 'run-finished':
+                data.info.state = event.interrupted == null ? 'finished' : 'interrupted';
+                if (event.interrupted != null) data.info.interrupted = event.interrupted;
+                data.info.green = this.isGreen();
+                break;
+            case 'runner-died':
+                data.info.state = 'died';
+                data.info.died = event.reason;
+                data.info.green = false;
+                data.left.push(...(event.left ?? []));
+                break;
+        }
+    }
+
+    /** What a test looks like now. */
+    stateOf(test: Test) {
+        return testState(test, this.isOver);
+    }
+
+    /** How many tests, of one suite or of all, are in which state. */
+    totals(suite?: number): Totals {
+        const totals = noTotals();
+        for (const test of this.tests) {
+            if (suite !== undefined && test.suite !== suite) continue;
+            const state = this.stateOf(test);
+            totals.planned += 1;
+            if (state === 'running' || state === 'pending') totals[state] += 1;
+            else {
+                totals.verdicts[state] += 1;
+                totals.done += 1;
+            }
+        }
+        return totals;
+    }
+
+    /** What went wrong in a suite beside its tests, in words. */
+    suiteProblems(suite: Suite): string[] {
+        const fixtures = suite.fixtures.flatMap((id) => this.fixtures[id] ?? []);
+        const hooks = suite.hooks.flatMap((id) => this.hooks[id] ?? []);
+        return [
+            ...fixtures.flatMap((each) => fixtureProblems(each, suite.tolerates_collapse === true)),
+            ...hooks.flatMap((each) => hookProblems(each, this.isOver)),
+        ];
+    }
+
+    private isGreen(): boolean {
+        return (
+            this.info.state === 'finished' &&
+            this.tests.length > 0 &&
+            this.tests.every((test) => test.verdict === 'passed') &&
+            this.suites.every((suite) => this.suiteProblems(suite).length === 0)
+        );
+    }
+}
+
+function plannedSuite(plan: Extract<Event, { type: 'suite-planned' }>): Suite {
+    return {
+        id: plan.suite,
+        name: plan.name,
+        file: plan.file ?? '',
+        description: plan.description ?? '',
+        environment: plan.environment ?? '',
+        ...(plan.tolerates_collapse ? { tolerates_collapse: true } : {}),
+        state: 'pending',
+        totals: noTotals(),
+        problems: [],
+        fixtures: [],
+        hooks: [],
+    };
+}
+
+export function noTotals(): Totals {
+    const verdicts = Object.fromEntries(VERDICTS.map((each) => [each, 0])) as Record<
+        Verdict,
+        number
+    >;
+    return { planned: 0, pending: 0, running: 0, done: 0, verdicts };
+}
+
+export function emptySnapshot(): Snapshot {
+    const info: RunInfo = {
+        run: '',
+        started_at: '',
+        rtf: '',
+        command: [],
+        folder: '',
+        state: 'running',
+        seq: 0,
+        last_at: 0,
+        suites: 0,
+        bytes: 0,
+        totals: noTotals(),
+        problems: [],
+        damages: [],
+    };
+    return { info, suites: [], fixtures: [], hooks: [], tests: [], warnings: [], left: [] };
+}

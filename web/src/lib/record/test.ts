@@ -1,0 +1,102 @@
+// What the events of a test make of it. The rules over its verdict are those
+// of rtf_model::TestRecord.
+
+import type { AttemptRow, Test } from '../api-types';
+import type { Event, TestPlanned, TestState, Verdict } from '../event';
+
+const NO_COUNTS = {
+    messages: 0,
+    failures: 0,
+    measurements: 0,
+    violations: 0,
+    attachments: 0,
+    output_bytes: 0,
+};
+
+export function plannedTest(plan: TestPlanned): Test {
+    const { test, suite, name, plugin_type, plugin, repetitions, tags } = plan;
+    return {
+        id: test,
+        suite,
+        name,
+        plugin_type,
+        plugin,
+        repetitions,
+        ...(tags === undefined ? {} : { tags }),
+        state: 'pending',
+        duration_us: 0,
+        attempts: [],
+        counts: { ...NO_COUNTS },
+    };
+}
+
+/** Takes in an event of this test. */
+export function applyToTest(test: Test, event: Event): void {
+    const last = test.attempts.at(-1);
+    switch (event.type) {
+        case 'test-started': {
+            const { repetition, attempt, at } = event;
+            const number = test.attempts.length + 1;
+            test.attempts.push({ number, repetition, attempt, started: at });
+            test.state = 'running';
+            break;
+        }
+        case 'test-phase':
+            test.phase = event.phase;
+            break;
+        case 'test-slow':
+            test.slow = true;
+            break;
+        case 'test-finished':
+            if (last === undefined) return;
+            last.finished = event.at;
+            last.verdict = event.verdict;
+            if (event.rerun) last.rerun = true;
+            if (event.reason != null) last.reason = event.reason;
+            test.duration_us += event.at - last.started;
+            delete test.phase;
+            test.state = 'pending';
+            if (!event.rerun && last.repetition >= test.repetitions) conclude(test, null);
+            break;
+        case 'test-skipped':
+            conclude(test, event.reason);
+            break;
+    }
+}
+
+/** Speaks the last word: the first attempt that counts and did not pass, if there is one. */
+function conclude(test: Test, skipped: string | null): void {
+    const bad = decidingAttempts(test).find(({ verdict }) => isBad(verdict));
+    test.state = 'done';
+    test.verdict = bad?.verdict ?? (skipped === null ? 'passed' : 'skipped');
+    const reason = bad?.reason ?? skipped;
+    if (reason !== null && test.verdict !== 'passed') test.reason = reason;
+}
+
+function isBad(verdict: Verdict | undefined): boolean {
+    return verdict !== undefined && verdict !== 'passed';
+}
+
+/** The attempts that count: the last one of each repetition. */
+export function decidingAttempts(test: Test): AttemptRow[] {
+    return test.attempts.filter(
+        (attempt, index) => test.attempts[index + 1]?.repetition !== attempt.repetition,
+    );
+}
+
+/** What a test looks like; `isOver` tells that nothing more will come of its run. */
+export function testState(test: Test, isOver: boolean): TestState {
+    if (test.verdict !== undefined) return test.verdict;
+    if (isOver) return test.attempts.length === 0 ? 'skipped' : 'interrupted';
+    return test.state === 'running' ? 'running' : 'pending';
+}
+
+/** Whether it passed only after a repetition was run again. */
+export function isFlaky(test: Test): boolean {
+    return test.verdict === 'passed' && test.attempts.some((attempt) => attempt.rerun === true);
+}
+
+/** The attempt to look at first: the one that decided, or else the last. */
+export function decisiveAttempt(test: Test): AttemptRow | undefined {
+    return decidingAttempts(test).find(({ verdict }) => isBad(verdict)) ?? test.attempts.at(-1);
+}

@@ -1,0 +1,77 @@
+// The places inside the page, behind the `#` of its address.
+
+export type Route =
+    | { at: 'home' }
+    | { at: 'runs' }
+    | { at: 'run'; run: string; show: Shown }
+    | { at: 'compare'; old: string; new: string };
+
+/** What of a run is looked at. */
+export type Shown =
+    | { what: 'overview' }
+    | { what: 'test'; id: number; attempt: number | null }
+    | { what: 'fixture'; id: number }
+    | { what: 'hook'; id: number };
+
+export function parseRoute(hash: string): Route {
+    const [route = '', query = ''] = hash.replace(/^#\/?/, '').split('?', 2);
+    const parts = route.split('/').map(decode);
+    const [where, first, kind, second] = parts;
+    if (where === 'compare' && first && kind) return { at: 'compare', old: first, new: kind };
+    if (where === 'runs' && first) {
+        return { at: 'run', run: first, show: shown(kind, second, new URLSearchParams(query)) };
+    }
+    return where === 'runs' ? { at: 'runs' } : { at: 'home' };
+}
+
+function shown(kind: string | undefined, text: string | undefined, query: URLSearchParams): Shown {
+    const id = Number(text);
+    if (text === undefined || !Number.isInteger(id) || id < 0) return { what: 'overview' };
+    if (kind === 'tests') {
+        const attempt = Number(query.get('attempt'));
+        return {
+            what: 'test',
+            id,
+            attempt: Number.isInteger(attempt) && attempt > 0 ? attempt : null,
+        };
+    }
+    if (kind === 'fixtures') return { what: 'fixture', id };
+    if (kind === 'hooks') return { what: 'hook', id };
+    return { what: 'overview' };
+}
+
+function decode(part: string): string {
+    try {
+        return decodeURIComponent(part);
+    } catch {
+        return part;
+    }
+}
+
+export function hrefOf(route: Route): string {
+    const run = (name: string) => encodeURIComponent(name);
+    switch (route.at) {
+        case 'home':
+            return '#/';
+        case 'runs':
+            return '#/runs';
+        case 'compare':
+            return `#/compare/${run(route.old)}/${run(route.new)}`;
+        case 'run':
+            return `#/runs/${run(route.run)}${tail(route.show)}`;
+    }
+}
+
+function tail(show: Shown): string {
+    if (show.what === 'overview') return '';
+    const attempt = show.what === 'test' && show.attempt !== null ? `?attempt=${show.attempt}` : '';
+    return `/${show.what}s/${show.id}${attempt}`;
+}
+
+export const testHref = (run: string, id: number, attempt: number | null = null) =>
+    hrefOf({ at: 'run', run, show: { what: 'test', id, attempt } });
+export const fixtureHref = (run: string, id: number) =>
+    hrefOf({ at: 'run', run, show: { what: 'fixture', id } });
+export const hookHref = (run: string, id: number) =>
+    hrefOf({ at: 'run', run, show: { what: 'hook', id } });
+export const runHref = (run: string) => hrefOf({ at: 'run', run, show: { what: 'overview' } });

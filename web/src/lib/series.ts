@@ -1,0 +1,69 @@
+// Measurements of one name as a series.
+
+import type { MeasurementEntry } from './api-types';
+import { isWithin } from './record/detail';
+
+export interface Point {
+    /** Microseconds since the run's start, or the number of an attempt. */
+    at: number;
+    value: number | null;
+}
+
+export interface Series {
+    key: string;
+    name: string;
+    unit: string;
+    /** The limits that were given last. */
+    low: number | null;
+    high: number | null;
+    points: Point[];
+    /** The last value; `null` when it is not a finite number. */
+    last: number | null;
+    least: number;
+    most: number;
+    mean: number;
+    violations: number;
+}
+
+/** Entries of the same name and unit, in the order in which the names came. */
+export function series(entries: readonly MeasurementEntry[]): Series[] {
+    const found = new Map<string, Series & { sum: number; finite: number }>();
+    for (const { at, measurement } of entries) {
+        const { name, unit = '', low = null, high = null, value = null } = measurement;
+        const key = `${name}\n${unit}`;
+        let one = found.get(key);
+        if (one === undefined) {
+            const fresh = { points: [], last: null, least: Infinity, most: -Infinity, mean: NaN };
+            one = { key, name, unit, low, high, ...fresh, violations: 0, sum: 0, finite: 0 };
+            found.set(key, one);
+        }
+        one.low = low;
+        one.high = high;
+        one.points.push({ at, value });
+        one.last = value;
+        if (!isWithin(measurement)) one.violations += 1;
+        if (value === null) continue;
+        one.least = Math.min(one.least, value);
+        one.most = Math.max(one.most, value);
+        one.sum += value;
+        one.finite += 1;
+    }
+    return [...found.values()].map(({ sum, finite, ...one }) => ({
+        ...one,
+        mean: finite === 0 ? NaN : sum / finite,
+    }));
+}
+
+/** What a drawing of the values against their limits reaches over; `null` without limits. */
+export function scaleOf(one: Series): { from: number; to: number } | null {
+    const { low, high, least, most } = one;
+    if (low === null && high === null) return null;
+    const known = [low, high, least, most].filter(
+        (each): each is number => each !== null && Number.isFinite(each),
+    );
+    const [from, to] = [Math.min(...known), Math.max(...known)];
+    const by = (to - from) * 0.15 || Math.abs(to) * 0.2 || 1;
+    const scale = { from: from - by, to: to + by };
+    // Numbers near the end of their range have no room beside them.
+    return Number.isFinite(scale.to - scale.from) ? scale : null;
+}

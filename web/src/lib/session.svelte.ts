@@ -1,0 +1,54 @@
+// Who the reader is to the server: what the server is, and whether this
+// browser may control it.
+
+import * as api from './api';
+import type { ApiRoot } from './api-types';
+
+class Session {
+    root: ApiRoot | null = $state.raw(null);
+    /** Why the server cannot be asked, in words. */
+    problem: string | null = $state(null);
+
+    /** Whether a run is here that this browser may control. */
+    get mayControl(): boolean {
+        return this.root !== null && this.root.control && this.root.authorised;
+    }
+
+    /** Whether not even reading is allowed without the token. */
+    get isLocked(): boolean {
+        return this.root !== null && this.root.token_to_read && !this.root.authorised;
+    }
+
+    async refresh(): Promise<void> {
+        try {
+            this.root = await api.root();
+            this.problem = null;
+        } catch (problem) {
+            this.problem = problem instanceof Error ? problem.message : String(problem);
+        }
+    }
+
+    /** Takes the token out of the page's address, and out of sight. */
+    async begin(): Promise<void> {
+        const token = /^#token=(.+)$/.exec(location.hash)?.[1];
+        if (token !== undefined) {
+            history.replaceState(null, '', location.pathname + location.search);
+            dispatchEvent(new HashChangeEvent('hashchange'));
+            await this.signIn(decodeURIComponent(token)).catch(() => undefined);
+        }
+        if (this.root === null) await this.refresh();
+    }
+
+    /** Throws an `ApiError` when the token is not the right one. */
+    async signIn(token: string): Promise<void> {
+        await api.signIn(token);
+        await this.refresh();
+    }
+
+    async signOut(): Promise<void> {
+        await api.signOut();
+        await this.refresh();
+    }
+}
+
+export const session = new Session();

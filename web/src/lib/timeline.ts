@@ -1,0 +1,164 @@
+// Where everything of a run lies in time: lanes with bars and marks, without
+// a word about how they are drawn.
+
+import type { TestState } from './event';
+import { marks, spans, type Mark, type Span } from './record/fixture';
+import type { RunRecord } from './record/record';
+
+export type BarState = TestState | Span['state'] | 'hook' | 'hook-failed';
+
+export interface Bar {
+    from: number;
+    /** `null` while it lasts. */
+    to: number | null;
+    state: BarState;
+    label: string;
+    /** Where a click leads to. */
+    target: { what: 'test' | 'fixture' | 'hook'; id: number; attempt: number | null };
+}
+
+export interface Lane {
+    kind: 'suite' | 'fixture' | 'hook';
+    id: number;
+    name: string;
+    bars: Bar[];
+    marks: Mark[];
+}
+
+/** The lanes of a run: for each suite its tests, its fixtures, its hooks. */
+export function lanes(record: RunRecord): Lane[] {
+    const bars = record.suites.map(() => [] as Bar[]);
+    for (const test of record.tests) {
+        for (const attempt of test.attempts) {
+            const { started, finished, verdict, number } = attempt;
+            bars[test.suite]?.push({
+                from: started,
+                to: finished ?? null,
+                state: verdict ?? (record.isOver ? 'interrupted' : 'running'),
+                label: test.attempts.length > 1 ? `${test.name} (${number})` : test.name,
+                target: { what: 'test', id: test.id, attempt: number },
+            });
+        }
+    }
+    return record.suites.flatMap((suite) => {
+        const fixtures = suite.fixtures.flatMap((id) => record.fixtures[id] ?? []);
+        const hooks = suite.hooks.flatMap((id) => record.hooks[id] ?? []);
+        return [
+            {
+                kind: 'suite',
+                id: suite.id,
+                name: suite.name,
+                // Suites may run side by side, the tests of one do not.
+                bars: (bars[suite.id] ?? []).sort((a, b) => a.from - b.from),
+                marks: [],
+            },
+            ...fixtures.map((fixture): Lane => ({
+                kind: 'fixture',
+                id: fixture.id,
+                name: fixture.name,
+                bars: spans(fixture).map((span) => ({
+                    ...span,
+                    label: `${fixture.name}: ${span.state}`,
+                    target: { what: 'fixture', id: fixture.id, attempt: null },
+                })),
+                marks: marks(fixture),
+            })),
+            ...hooks
+                .filter((hook) => hook.runs.length > 0)
+                .map((hook): Lane => ({
+                    kind: 'hook',
+                    id: hook.id,
+                    name: hook.name,
+                    bars: hook.runs.map((run) => ({
+                        from: run.started,
+                        to: run.finished ?? null,
+                        state: run.problem === undefined ? 'hook' : 'hook-failed',
+                        label: `${hook.name} on ${run.trigger}: ${run.reason}`,
+                        target: { what: 'hook', id: hook.id, attempt: null },
+                    })),
+                    marks: [],
+                })),
+        ];
+    });
+}
+
+/** A part of the run's time, in microseconds. */
+export interface View {
+    from: number;
+    to: number;
+}
+
+const LEAST_US = 1000;
+
+/** Zooms by a factor; the moment `at` stays where it is. */
+export function zoom(view: View, factor: number, at: number, end: number): View {
+    const width = Math.min(Math.max((view.to - view.from) * factor, LEAST_US), end);
+    const share = (at - view.from) / (view.to - view.from);
+    return clamp({ from: at - share * width, to: at - share * width + width }, end);
+}
+
+/** Moves by a share of what is seen. */
+export function pan(view: View, share: number, end: number): View {
+    const by = (view.to - view.from) * share;
+    return clamp({ from: view.from + by, to: view.to + by }, end);
+}
+
+function clamp({ from, to }: View, end: number): View {
+    const width = to - from;
+    const start = Math.min(Math.max(0, from), Math.max(0, end - width));
+    return { from: start, to: start + width };
+}
+
+/** Round moments for an axis, not more than `most` of them. */
+export function ticks({ from, to }: View, most: number): { at: number; label: string }[] {
+    const steps = [1, 2, 5].flatMap((digit) =>
+        Array.from({ length: 8 }, (_, power) => digit * 10 ** (power - 3)),
+    );
+    const seconds = [
+        ...steps.filter((step) => step < 60),
+        60,
+        120,
+        300,
+        600,
+        1800,
+        3600,
+        7200,
+        21600,
+    ];
+    const wanted = (to - from) / 1e6 / Math.max(1, most);
+    const step = seconds.sort((a, b) => a - b).find((each) => each >= wanted) ?? 86_400;
+    const first = Math.ceil(from / 1e6 / step);
+    const last = Math.floor(to / 1e6 / step);
+    return Array.from({ length: Math.max(0, last - first + 1) }, (_, index) => {
+        const at = (first + index) * step;
+        return { at: at * 1e6, label: tickLabel(at, step) };
+    });
+}
+
+function tickLabel(seconds: number, step: number): string {
+    if (step >= 60) {
+        const minutes = Math.round(seconds / 60);
+        return minutes < 60
+            ? `${minutes} min`
+            : `${Math.floor(minutes / 60)} h ${String(minutes % 60).padStart(2, '0')}`;
+    }
+    if (step >= 1) return `${Math.round(seconds)} s`;
+    if (step >= 0.001 && seconds < 1) return `${Math.round(seconds * 1000)} ms`;
+    return `${Number(seconds.toFixed(3))} s`;
+}
+
+/** The bar under a moment, in a lane whose bars are in order. */
+export function barAt(lane: Lane, at: number, slack: number, now: number): Bar | null {
+    let best: Bar | null = null;
+    let distance = slack;
+    for (const bar of lane.bars) {
+        if (bar.from - slack > at) break;
+        const to = bar.to ?? now;
+        const away = at < bar.from ? bar.from - at : at > to ? at - to : 0;
+        if (away <= distance) {
+            best = bar;
+            distance = away;
+        }
+    }
+    return best;
+}

@@ -1,0 +1,79 @@
+import { describe, expect, test } from 'vitest';
+import type { Snapshot } from '../lib/api-types';
+import { emptySnapshot, RunRecord } from '../lib/record/record';
+import { marks, spans } from '../lib/record/fixture';
+import { isFlaky } from '../lib/record/test';
+import { names, recordOf, stream } from './streams';
+
+/** A run in a few words: how it ended, then each test. */
+function told(record: RunRecord): string[] {
+    const { state, green } = record.info;
+    return [
+        `${state} ${green ? 'green' : 'not green'}`,
+        ...record.tests.map((each) => `${each.name}: ${record.stateOf(each)}`),
+        ...record.suites.flatMap((suite) => record.suiteProblems(suite)),
+    ];
+}
+
+describe('the fold over the stored streams', () => {
+    test.each(names())('%s', (name) => {
+        expect(told(recordOf(stream(name)))).toMatchSnapshot();
+    });
+
+    test.each(names())('%s ends the same from a snapshot at any moment', (name) => {
+        const events = stream(name);
+        const whole = told(recordOf(events));
+        const data = emptySnapshot();
+        const grown = new RunRecord(data);
+        for (const event of events) {
+            grown.apply(event);
+            // What a page gets that opens now, and then the same events again and the rest.
+            const opened = new RunRecord(structuredClone(data) as Snapshot);
+            for (const each of events) opened.apply(each);
+            expect(told(opened)).toEqual(whole);
+        }
+    });
+});
+
+test('each test of the plan is known before it runs', () => {
+    const record = recordOf(stream('verdicts').filter(({ type }) => type.endsWith('planned')));
+    const { planned, pending, done } = record.totals();
+    expect([planned, pending, done]).toEqual([8, 8, 0]);
+});
+
+test('a fixture that collapses is a lane with its marks', () => {
+    const [fixture] = recordOf(stream('collapse-restart')).fixtures;
+    if (fixture === undefined) throw new Error('the stream has a fixture');
+    expect(spans(fixture).map(({ state }) => state)).toEqual([
+        'starting',
+        'ready',
+        'collapsed',
+        'stopping',
+        'starting',
+        'ready',
+        'stopping',
+    ]);
+    expect(spans(fixture).every(({ to }) => to !== null)).toBe(true);
+    expect(marks(fixture).map(({ kind }) => kind)).toEqual(['collapsed', 'restarted']);
+});
+
+test('a test that passes in a rerun is flaky', () => {
+    const record = recordOf(stream('collapse-restart'));
+    expect(record.tests.map(isFlaky)).toEqual([true, false]);
+});
+
+test('an event that is known already changes nothing', () => {
+    const events = stream('repetitions');
+    const record = recordOf(events);
+    const before = JSON.stringify(record.tests);
+    for (const event of events) record.apply(event);
+    expect(JSON.stringify(record.tests)).toBe(before);
+});
+
+test('progress without events moves the place where the stream goes on', () => {
+    const record = recordOf(stream('measured').slice(0, 8));
+    record.progress(41, 9_000_000);
+    expect([record.info.seq, record.info.last_at]).toEqual([42, 9_000_000]);
+    record.progress(3, 5);
+    expect([record.info.seq, record.info.last_at]).toEqual([42, 9_000_000]);
+});

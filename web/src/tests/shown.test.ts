@@ -1,0 +1,179 @@
+import { describe, expect, test } from 'vitest';
+import { compareRuns } from '../lib/compare';
+import { clock, count, duration, grouped, limits, number, size } from '../lib/format';
+import { OutputRows } from '../lib/output';
+import { estimate, historyOf } from '../lib/progress';
+import { hrefOf, parseRoute, type Route } from '../lib/route';
+import { scaleOf, series } from '../lib/series';
+import { barAt, lanes, pan, ticks, zoom } from '../lib/timeline';
+import { rows } from '../lib/tree';
+import { recordOf, stream } from './streams';
+
+const NO_FILTER = { search: '', states: new Set<never>() };
+
+describe('numbers and times', () => {
+    test.each([
+        [duration(830), '0.8 ms'],
+        [duration(999_400), '999 ms'],
+        [duration(12_345_000), '12.3 s'],
+        [duration(245_000_000), '4 min 05 s'],
+        [clock(7384), '2 h 03 min'],
+        [number(1e-9), '1e-9'],
+        [number(0.1), '0.1'],
+        [limits(95, 105), '95 … 105'],
+        [limits(null, 0), '≤ 0'],
+        [size(1_234_567), '1.2 MB'],
+        [count(1, 'test'), '1 test'],
+        [grouped(1234567), '1\u202f234\u202f567'],
+    ])('%s', (shown, expected) => expect(shown).toBe(expected));
+});
+
+describe('places in the page', () => {
+    const routes: Route[] = [
+        { at: 'home' },
+        { at: 'runs' },
+        { at: 'compare', old: 'a/b', new: 'c?d' },
+        { at: 'run', run: '2026 %', show: { what: 'overview' } },
+        { at: 'run', run: 'r', show: { what: 'test', id: 3, attempt: 2 } },
+        { at: 'run', run: 'r', show: { what: 'test', id: 0, attempt: null } },
+        { at: 'run', run: 'r', show: { what: 'fixture', id: 1 } },
+        { at: 'run', run: 'r', show: { what: 'hook', id: 1 } },
+    ];
+    test.each(routes)('$at', (route) => expect(parseRoute(hrefOf(route))).toEqual(route));
+
+    test('an address that is nonsense leads home', () => {
+        expect(parseRoute('#/%zz/x')).toEqual({ at: 'home' });
+        expect(parseRoute('#/runs/r/tests/-1')).toMatchObject({ show: { what: 'overview' } });
+    });
+});
+
+describe('the list of tests', () => {
+    const record = recordOf(stream('verdicts'));
+    const found = (search: string, states: Parameters<typeof rows>[1]['states'] = new Set()) =>
+        rows(record, { search, states }, new Set()).flatMap((row) =>
+            row.kind === 'test' ? [row.test.name] : [],
+        );
+
+    test('all of it', () => expect(rows(record, NO_FILTER, new Set())).toHaveLength(10));
+    test('by words of suite and name', () => {
+        const name = record.tests[0]?.name ?? '';
+        expect(found(`ARM/ ${name.slice(1, 4).toLowerCase()}`)).toContain(name);
+        expect(found('no such test')).toEqual([]);
+    });
+    test('by verdict', () => {
+        expect(found('', new Set(['crashed']))).toHaveLength(1);
+    });
+    test('a closed suite has no rows below it', () => {
+        const all = rows(record, NO_FILTER, new Set(record.suites.map(({ id }) => id)));
+        expect(all.every((row) => row.kind === 'suite')).toBe(true);
+    });
+});
+
+describe('the time line', () => {
+    const record = recordOf(stream('collapse-restart'));
+    const all = lanes(record);
+
+    test('has the suite and its fixture', () => {
+        expect(all.map(({ kind, bars }) => [kind, bars.length])).toEqual([
+            ['suite', 3],
+            ['fixture', 7],
+        ]);
+    });
+    test('a moment leads to its test', () => {
+        const suite = all[0]!;
+        expect(barAt(suite, 1_770_000, 0, 0)?.target).toEqual({ what: 'test', id: 0, attempt: 2 });
+        expect(barAt(suite, 10, 0, 0)).toBeNull();
+    });
+    test('zoom keeps the moment, and stays inside the run', () => {
+        const view = zoom({ from: 0, to: 1000_000 }, 0.5, 250_000, 1000_000);
+        expect(view).toEqual({ from: 125_000, to: 625_000 });
+        expect(pan(view, -10, 1000_000)).toEqual({ from: 0, to: 500_000 });
+        expect(zoom(view, 100, 0, 1000_000)).toEqual({ from: 0, to: 1000_000 });
+    });
+    test('ticks are round', () => {
+        expect(ticks({ from: 0, to: 10e6 }, 5).map(({ label }) => label)).toEqual([
+            '0 s',
+            '2 s',
+            '4 s',
+            '6 s',
+            '8 s',
+            '10 s',
+        ]);
+    });
+});
+
+test('what is left is drawn from the last run', () => {
+    const events = stream('measured');
+    const history = historyOf(recordOf(events));
+    const now = recordOf(events.slice(0, 12));
+    expect(estimate(now, 14_040, history)).toEqual({
+        seconds: expect.closeTo(0.014),
+        basis: 'last run',
+    });
+    expect(estimate(now, 14_040, new Map())).toEqual({
+        seconds: expect.closeTo(0.014),
+        basis: 'this run',
+    });
+    expect(estimate(recordOf(events.slice(0, 4)), 0, new Map())).toBeNull();
+});
+
+test('two runs are compared by the names of their tests', () => {
+    const before = recordOf(stream('verdicts'));
+    const after = recordOf(stream('collapse-restart'));
+    const pairs = compareRuns(before, after);
+    expect(pairs).toHaveLength(
+        new Set([...before.tests, ...after.tests].map(({ name }) => name)).size,
+    );
+    expect(compareRuns(before, before).every(({ change }) => change === 'same')).toBe(true);
+    expect(compareRuns(after, recordOf(stream('no-tests'))).map(({ change }) => change)).toEqual([
+        'gone',
+        'gone',
+    ]);
+});
+
+describe('output', () => {
+    const row = (text: string, stream: 'stdout' | 'stderr' = 'stdout') => ({
+        seq: 0,
+        at: 0,
+        stream,
+        text,
+    });
+    const shown = (rows: OutputRows) =>
+        rows.rows.map(
+            ({ pieces, isContinued }) =>
+                (isContinued ? '+' : '') + pieces.map(({ text }) => text).join(''),
+        );
+
+    test('lines are rows, wherever their pieces were cut', () => {
+        const rows = new OutputRows(80);
+        for (const text of ['one\ntw', 'o\n\nthree']) rows.add(row(text));
+        expect(shown(rows)).toEqual(['one', 'two', '', 'three']);
+    });
+    test('long lines go on in the next row, and no character is split', () => {
+        const rows = new OutputRows(4);
+        rows.add(row('abc🤖defgh'));
+        expect(shown(rows)).toEqual(['abc', '+🤖de', '+fgh']);
+    });
+    test('a line of a megabyte', () => {
+        const rows = new OutputRows(100);
+        rows.add(row('x'.repeat(1_000_000)));
+        expect(rows.rows).toHaveLength(10_000);
+    });
+    test('streams do not share a row, and what was left out is told', () => {
+        const rows = new OutputRows(80);
+        rows.add(row('out'));
+        rows.add({ ...row('err\n', 'stderr'), omitted: 123 });
+        expect(shown(rows)).toEqual(['out', '… 123 bytes left out …', 'err']);
+    });
+});
+
+test('a measurement near the end of numbers has no scale, and does not break', () => {
+    const entries = stream('nasty').flatMap((event) =>
+        event.type === 'measured'
+            ? [{ seq: event.seq, at: event.at, measurement: event.measurement, within: false }]
+            : [],
+    );
+    const [one] = series(entries);
+    expect(one?.violations).toBe(1);
+    expect(scaleOf({ ...one!, most: Number.MAX_VALUE, least: -Number.MAX_VALUE })).toBeNull();
+});

@@ -1,0 +1,176 @@
+// The page by keyboard, on a narrow screen, and as assistive programs get it.
+
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { createRequire } from 'node:module';
+import { after, before, test } from 'node:test';
+import { Guarded, launch } from './support/browser.mjs';
+import { Bench } from './support/rtf.mjs';
+import { MIXED } from './support/suites.mjs';
+
+const AXE = await readFile(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+
+let browser;
+let bench;
+let serve;
+let names;
+
+before(async () => {
+    browser = await launch();
+    bench = await Bench.make();
+    await bench.runToEnd(MIXED);
+    await bench.runToEnd(MIXED);
+    serve = await bench.serve();
+    names = await bench.names();
+});
+after(async () => {
+    await browser.close();
+    await bench.close();
+});
+
+/** Each place of the page: its address, and what is there when it is drawn. */
+function places() {
+    const [old, now] = names;
+    const run = `#/runs/${now}`;
+    return [
+        { name: 'runs', hash: '#/runs', ready: now },
+        { name: 'a run', hash: run, ready: 'tests did not pass' },
+        { name: 'a test with plots', hash: `${run}/tests/0`, ready: /30 values/ },
+        { name: 'a repeated test', hash: `${run}/tests/1?attempt=2`, ready: /30 values/ },
+        { name: 'a failed test', hash: `${run}/tests/2`, ready: /outside its limits/ },
+        { name: 'a fixture', hash: `${run}/fixtures/0`, ready: 'Start 1' },
+        { name: 'a hook', hash: `${run}/hooks/0`, ready: 'parked' },
+        { name: 'a comparison', hash: `#/compare/${old}/${now}`, ready: 'Two runs compared' },
+    ];
+}
+
+async function goTo(guarded, { hash, ready }) {
+    await guarded.page.evaluate((to) => (location.hash = to), hash);
+    await guarded.page.getByText(ready).first().waitFor({ state: 'attached' });
+}
+
+/** What axe finds to be seriously wrong, in a line each. */
+async function violations({ page }) {
+    await page.evaluate(AXE);
+    const { violations: found } = await page.evaluate(() => globalThis.axe.run());
+    return found
+        .filter(({ impact }) => impact === 'serious' || impact === 'critical')
+        .flatMap(({ id, nodes }) => nodes.map(({ html }) => `${id}: ${html.slice(0, 160)}`));
+}
+
+for (const colorScheme of ['light', 'dark']) {
+    for (const width of [1280, 390]) {
+        test(`nothing is seriously wrong for axe: ${colorScheme}, ${width} px`, async () => {
+            const viewport = { width, height: 860 };
+            const guarded = await Guarded.open(browser, serve.url, { colorScheme, viewport });
+            for (const place of places()) {
+                await goTo(guarded, place);
+                assert.deepEqual(await violations(guarded), [], place.name);
+            }
+            await guarded.page.evaluate((run) => (location.hash = `#/runs/${run}`), names[1]);
+            await guarded.button('Table').click();
+            await guarded.page.getByRole('table', { name: 'Time line' }).waitFor();
+            assert.deepEqual(await violations(guarded), [], 'the time line as a table');
+            await guarded.close();
+        });
+    }
+}
+
+test('390 px are enough', async () => {
+    const viewport = { width: 390, height: 844 };
+    const guarded = await Guarded.open(browser, serve.url, { viewport, hasTouch: true });
+    for (const place of places()) {
+        await goTo(guarded, place);
+        const width = await guarded.page.evaluate(() => {
+            const main = document.getElementById('main');
+            return Math.max(document.documentElement.scrollWidth, main.scrollWidth);
+        });
+        assert.ok(width <= 390, `${place.name} is ${width} px wide`);
+    }
+    await guarded.page.evaluate((run) => (location.hash = `#/runs/${run}`), names[1]);
+    await guarded.row('Fails').tap();
+    await guarded.see(/elbow/, '#detail');
+    await guarded.page.getByRole('link', { name: '← Overview' }).tap();
+    await guarded.see('tests did not pass');
+    await guarded.close();
+});
+
+test('light and dark: as the system has it, or as chosen', async () => {
+    const guarded = await Guarded.open(browser, serve.url, { colorScheme: 'dark' });
+    const background = () =>
+        guarded.page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+    await guarded.see('Runs');
+    const dark = await background();
+    await guarded.button('Light').click();
+    const light = await background();
+    assert.notEqual(light, dark);
+    await guarded.page.reload();
+    assert.equal(await background(), light);
+    await guarded.button('As the system').click();
+    assert.equal(await background(), dark);
+    await guarded.close();
+});
+
+test('the keyboard is enough', async () => {
+    const guarded = await Guarded.open(browser, serve.url);
+    const { page } = guarded;
+    const { keyboard } = page;
+    const focused = () => page.evaluate(() => document.activeElement.getAttribute('aria-label'));
+    const tabTo = async (label) => {
+        for (let step = 0; step < 40; step += 1) {
+            if ((await focused()) === label) return;
+            await keyboard.press('Tab');
+        }
+        assert.fail(`Tab does not lead to ${label}`);
+    };
+
+    // Two runs are chosen and compared.
+    for (const name of names) {
+        await tabTo(`Compare ${name}`).catch(() => keyboard.press('Home'));
+        await page.getByLabel(`Compare ${name}`).focus();
+        await keyboard.press('Space');
+    }
+    await page.getByRole('link', { name: 'Compare the two' }).focus();
+    await keyboard.press('Enter');
+    await guarded.see('Two runs compared');
+
+    // A test is searched, and opened.
+    await page.getByRole('link', { name: names[1] }).focus();
+    await keyboard.press('Enter');
+    await guarded.rowIs('Fails', 'failed');
+    await keyboard.press('/');
+    await keyboard.type('fails');
+    await guarded.see('1 of 5', '.search');
+    await tabTo('Suites and tests');
+    await keyboard.press('ArrowDown');
+    await keyboard.press('Enter');
+    await guarded.see(/elbow/, '#detail');
+    assert.match(page.url(), /tests\/2$/);
+    await keyboard.press('ArrowUp');
+    await keyboard.press('ArrowLeft');
+    await page.getByRole('treeitem', { expanded: false }).waitFor();
+
+    // The time line is zoomed, and read as a table.
+    const range = page.locator('.range');
+    const whole = await range.innerText();
+    await page.getByRole('region', { name: /^Time line, drawn/ }).focus();
+    await keyboard.press('+');
+    await guarded.page.waitForFunction(
+        (text) => document.querySelector('.range').innerText !== text,
+        whole,
+    );
+    await keyboard.press('0');
+    await guarded.see(whole, '.range');
+    await guarded.button('Table').focus();
+    await keyboard.press('Enter');
+    await page.getByRole('table', { name: 'Time line' }).waitFor();
+
+    // Whoever does not want to go through all of the head skips it.
+    await page.reload();
+    await keyboard.press('Tab');
+    assert.equal(
+        await page.evaluate(() => document.activeElement.textContent),
+        'Skip to the content',
+    );
+    await guarded.close();
+});

@@ -1,0 +1,89 @@
+// Names, messages, output and attachments are text, whatever they hold.
+
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { Guarded, launch } from './support/browser.mjs';
+import { Bench } from './support/rtf.mjs';
+import { HOSTILE } from './support/suites.mjs';
+
+let browser;
+let bench;
+let guarded;
+
+before(async () => {
+    browser = await launch();
+    bench = await Bench.make();
+    await bench.runToEnd(HOSTILE);
+    const serve = await bench.serve();
+    guarded = await Guarded.open(browser, serve.url);
+    const [name] = await bench.names();
+    await guarded.page.getByRole('link', { name }).click();
+});
+after(async () => {
+    await guarded.close();
+    await browser.close();
+    await bench.close();
+});
+
+const SCRIPT = '<script>alert(1)</script>';
+
+test('names are text', async () => {
+    await guarded.see(`<b> "quoted" 'suite' &amp;`, '[role=tree]');
+    await guarded.see('<img src=x onerror=alert(1)>', 'article');
+    await guarded.see(SCRIPT, '[role=tree]');
+    // What turns the direction of text is spelled out.
+    await guarded.see('größe 🤖 ⟨U+202E⟩gnp.exe', '[role=tree]');
+    await guarded.see(SCRIPT, 'article, #detail');
+});
+
+test('search takes characters as they are', async () => {
+    const search = guarded.page.getByLabel('Search tests');
+    await search.fill('<script>');
+    await guarded.see('1 of 2', '.search');
+    await search.fill('(.*');
+    await guarded.see('No test fits.');
+    await search.fill('tag:<i>tag');
+    await guarded.see('1 of 2', '.search');
+    await search.fill('');
+});
+
+test('messages, measurements and output are text', async () => {
+    await guarded.row(SCRIPT).click();
+    await guarded.see(`<script>alert('x')</script><img src=x onerror=alert(1)>`, '#detail li');
+    await guarded.see('<b>bold</b>');
+    const output = guarded.page.getByRole('log', { name: 'Output', exact: true });
+    await output.press('Home');
+    const rows = output.locator('.row');
+    await rows.filter({ hasText: `<script>alert('x')</script>` }).waitFor();
+    const red = rows.locator('.ansi-red');
+    assert.equal(await red.innerText(), 'red');
+    await rows.filter({ hasText: /red {2}\s*after/ }).waitFor();
+    await rows.filter({ hasText: 'nul:⟨NUL⟩: right-to-left:⟨U+202E⟩gnp.exe emoji:🤖' }).waitFor();
+});
+
+test('a line of a megabyte is shown, piece by piece', async () => {
+    const output = guarded.page.getByRole('log', { name: 'Output', exact: true });
+    const drawn = await output.locator('.row').count();
+    assert.ok(drawn < 100, `${drawn} rows are drawn`);
+    await output.press('End');
+    await output.locator('.row').filter({ hasText: 'the last line' }).waitFor();
+    const long = await output.locator('.row').filter({ hasText: /^↳x+$/ }).count();
+    assert.ok(long > 5, 'it goes on over rows');
+});
+
+test('an attached page is not opened in this origin', async () => {
+    const link = guarded.page.getByRole('link', { name: '<svg onload=alert(1)>.html' });
+    const url = await link.getAttribute('href');
+    const answer = await guarded.page.request.get(new URL(url, guarded.page.url()).href);
+    assert.equal(answer.status(), 200);
+    assert.match(answer.headers()['content-disposition'], /^attachment/);
+    assert.match(answer.headers()['content-security-policy'], /sandbox/);
+    assert.equal(answer.headers()['content-type'], 'application/octet-stream');
+});
+
+test('none of it became a part of the page', async () => {
+    const { page } = guarded;
+    assert.equal(await page.locator('script').count(), 1);
+    assert.equal(await page.locator('main b, main i, main img').count(), 0);
+    assert.equal(await page.locator('[onerror], [onload]').count(), 0);
+});

@@ -1,0 +1,35 @@
+"""Prints, reports and attaches what a careless page would obey."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import rtf
+
+FOLDER = Path(os.environ["PAGE_TEST_FOLDER"])
+SCRIPT = "<script>alert('x')</script><img src=x onerror=alert(1)>"
+
+
+class Hostile(rtf.TestCase):
+    """All of it is text."""
+
+    def run(self) -> None:
+        write(f"{SCRIPT}\n")
+        write("\x1b[31mred\x1b[0m \x1b]0;owned\x07 \x1b[2J after\n")
+        write("quotes \" ' ` & &amp; \\ nul:\0: right-to-left:\u202egnp.exe emoji:🤖\n")
+        write("x" * 1_000_000 + "\n")
+        write("the last line\n")
+        self.report(SCRIPT)
+        self.measure("<b>bold</b>", 1.0, '"unit"')
+        page = FOLDER / "page.html"
+        page.write_text(SCRIPT, encoding="utf-8")
+        self.attach(page, "<svg onload=alert(1)>.html", "text/html")
+        self.fail(f'{SCRIPT} "quoted"')
+
+
+def write(text: str) -> None:
+    """Straight to the pipe."""
+    sys.stdout.write(text)
+    sys.stdout.flush()

@@ -1,0 +1,4 @@
+#!/usr/bin/env python3
+"""A hook that does its work."""
+
+print("parked")

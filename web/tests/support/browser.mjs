@@ -1,0 +1,109 @@
+// A real Chromium, and pages in it that may not err: whatever the page logs as
+// an error, asks of another origin or violates of its policy fails the test.
+
+import assert from 'node:assert/strict';
+import { existsSync } from 'node:fs';
+import { chromium } from 'playwright-core';
+
+const PROGRAMS = [process.env['CHROMIUM'], '/usr/bin/chromium', '/usr/bin/chromium-browser'];
+const PATIENCE_MS = 20_000;
+
+export function launch() {
+    const executablePath = PROGRAMS.find((each) => each !== undefined && existsSync(each));
+    assert.ok(executablePath, 'Chromium is not installed: tools/bootstrap.sh test');
+    return chromium.launch({
+        executablePath,
+        args: [
+            '--no-sandbox',
+            '--disable-dev-shm-usage',
+            '--disable-background-networking',
+            '--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1',
+        ],
+    });
+}
+
+/** A page, and what it did wrong. `mistakes` has to be empty at the end. */
+export class Guarded {
+    mistakes = [];
+    requests = [];
+
+    static async open(browser, url, options = {}) {
+        const guarded = new Guarded();
+        guarded.context = await browser.newContext({
+            viewport: { width: 1280, height: 860 },
+            ...options,
+        });
+        guarded.page = await guarded.context.newPage();
+        guarded.page.setDefaultTimeout(PATIENCE_MS);
+        guarded.watch(new URL(url).origin);
+        await guarded.page.goto(url);
+        return guarded;
+    }
+
+    watch(origin) {
+        const { page } = this;
+        page.on('console', (message) => {
+            // That a request failed is the browser's word, not the page's.
+            const isNetwork = /^Failed to load resource/.test(message.text());
+            if (message.type() === 'error' && !isNetwork) this.mistakes.push(message.text());
+        });
+        page.on('pageerror', (error) => this.mistakes.push(error.message));
+        page.on('dialog', (dialog) => {
+            this.mistakes.push(`a dialog: ${dialog.message()}`);
+            void dialog.dismiss();
+        });
+        page.on('request', (request) => {
+            this.requests.push(request);
+            if (new URL(request.url()).origin !== origin) {
+                this.mistakes.push(`a request to ${request.url()}`);
+            }
+        });
+    }
+
+    /** Waits until an element with this text can be seen. */
+    async see(text, within = 'body') {
+        const found = this.page.locator(within).getByText(text).filter({ visible: true }).first();
+        await found.waitFor().catch(async (late) => {
+            const shown = await this.page
+                .locator(within)
+                .first()
+                .innerText()
+                .catch(() => '');
+            throw new Error(`not seen: ${text}\n--- what is seen in ${within}:\n${shown}`, {
+                cause: late,
+            });
+        });
+        return found;
+    }
+
+    /** Waits until no element with this text can be seen. */
+    async gone(text, within = 'body') {
+        await this.page
+            .locator(within)
+            .getByText(text)
+            .filter({ visible: true })
+            .first()
+            .waitFor({ state: 'hidden' });
+    }
+
+    button(name) {
+        return this.page.getByRole('button', { name, exact: true });
+    }
+
+    row(name) {
+        return this.page.getByRole('treeitem').filter({ hasText: name });
+    }
+
+    /** Waits for a test in the list to be in a state. */
+    async rowIs(name, state) {
+        await this.page
+            .getByRole('treeitem')
+            .filter({ hasText: new RegExp(`${state}:\\s*${name}`) })
+            .waitFor();
+    }
+
+    async close() {
+        await this.context.close();
+        assert.deepEqual(this.mistakes, []);
+    }
+}

@@ -1,0 +1,46 @@
+// A network between the browser and the server that can be cut: a forward proxy
+// which hangs up on everybody and listens no more.
+
+import http from 'node:http';
+
+export class Network {
+    sockets = new Set();
+    server = http.createServer((request, response) => {
+        const { hostname, port, pathname, search } = new URL(request.url);
+        const { method, headers } = request;
+        const onward = http.request({ hostname, port, path: pathname + search, method, headers });
+        onward.on('response', (answer) => {
+            response.writeHead(answer.statusCode, answer.headers);
+            answer.pipe(response);
+        });
+        onward.on('error', () => response.destroy());
+        response.on('close', () => onward.destroy());
+        request.pipe(onward);
+    });
+
+    static async make() {
+        const network = new Network();
+        network.server.on('connection', (socket) => {
+            network.sockets.add(socket);
+            socket.on('close', () => network.sockets.delete(socket));
+        });
+        await network.join(0);
+        network.port = network.server.address().port;
+        return network;
+    }
+
+    /** What a browser's context has to be opened with to be behind it. */
+    get options() {
+        return { proxy: { server: `http://127.0.0.1:${this.port}`, bypass: '<-loopback>' } };
+    }
+
+    async cut() {
+        const closed = new Promise((resolve) => this.server.close(resolve));
+        for (const socket of this.sockets) socket.destroy();
+        await closed;
+    }
+
+    join(port = this.port) {
+        return new Promise((resolve) => this.server.listen(port, '127.0.0.1', resolve));
+    }
+}

@@ -1,0 +1,42 @@
+// The suites that are run before the browser's eyes.
+
+/** An arm whose simulator is killed on its first start; each step waits to be let go on. */
+export const ARM = `<suite name="arm" tolerate-collapse="true">
+  <description>An arm that loses its simulator</description>
+  <fixture name="simulator" type="process" restarts="2" restart-delay="100ms">
+    <command>python3 -u simulator.py</command>
+    <ready log="the simulator is up"/>
+  </fixture>
+  <hook name="park" on="collapse end"><command>python3 -u park.py</command></hook>
+  <test type="python" name="Sweep" param="sweep" after-collapse="rerun">Step</test>
+  <test type="python" name="Grip" param="grip" tags="slow">Step</test>
+</suite>`;
+
+/** Two suites' worth of tests that wait, to be stopped one by one. */
+export const WAITING = `<suite name="waiting">
+  <test type="python" name="First" param="never">Step</test>
+  <test type="python" name="Second" param="never">Step</test>
+  <test type="python" name="Third" param="never">Step</test>
+</suite>`;
+
+/** What passes, fails, goes wrong, and measures more than once. */
+export const MIXED = `<suite name="mixed">
+  <description>A bit of everything</description>
+  <fixture name="simulator" type="process">
+    <command>python3 -u simulator.py</command>
+    <ready log="the simulator is up"/>
+  </fixture>
+  <hook name="park" on="failure end"><command>python3 -u park.py</command></hook>
+  <test type="python" name="Measures" param="through">Step</test>
+  <test type="python" name="Repeats" param="through" repetition="3">Step</test>
+  <test type="python" name="Fails" param="fail">Ends</test>
+  <test type="python" name="Errs" param="error">Ends</test>
+  <test type="python" name="Crashes" param="crash">Ends</test>
+</suite>`;
+
+/** Names and output that a page could be fooled with. */
+export const HOSTILE = `<suite name="&lt;b&gt; &quot;quoted&quot; 'suite' &amp;amp;">
+  <description>&lt;img src=x onerror=alert(1)&gt;</description>
+  <test type="python" name="&lt;script&gt;alert(1)&lt;/script&gt;" tags="&lt;i&gt;tag">Hostile</test>
+  <test type="python" name="größe 🤖 \u202egnp.exe" param="through">Step</test>
+</suite>`;
