@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a runner can run: a test or a suite.
+#ifndef ROBOTTESTINGFRAMEWORK_TEST_H
+#define ROBOTTESTINGFRAMEWORK_TEST_H
+
+#include <string>
+
+namespace robottestingframework {
+
+class TestResult;
+
+class Test
+{
+public:
+    Test(std::string name, std::string description = "") : name_(name), description_(description) {}
+    virtual ~Test() {}
+
+    const std::string getName() const { return name_; }
+    const std::string getDescription() const { return description_; }
+    void setDescription(const std::string description) { description_ = description; }
+
+    // Runs it, and tells the result all that happens.
+    virtual void run(TestResult &result) = 0;
+
+    // Asks it to stop. Called from another thread than run().
+    virtual void interrupt() {}
+
+    // Whether the last run went well.
+    virtual bool succeeded() const = 0;
+
+protected:
+    void setName(std::string name) { name_ = name; }
+
+private:
+    std::string name_;
+    std::string description_;
+};
+
+} // namespace robottestingframework
+
+#endif

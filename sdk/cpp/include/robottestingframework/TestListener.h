@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is told of a run as it happens. Overrides what it wants to know.
+#ifndef ROBOTTESTINGFRAMEWORK_TESTLISTENER_H
+#define ROBOTTESTINGFRAMEWORK_TESTLISTENER_H
+
+#include "Test.h"
+#include "TestMessage.h"
+
+namespace robottestingframework {
+
+class TestListener
+{
+public:
+    TestListener() = default;
+    virtual ~TestListener() = default;
+
+    // `test` may be a suite.
+    virtual void addReport(const Test *test, TestMessage msg)
+    {
+        static_cast<void>(test);
+        static_cast<void>(msg);
+    }
+    virtual void addError(const Test *test, TestMessage msg)
+    {
+        static_cast<void>(test);
+        static_cast<void>(msg);
+    }
+    virtual void addFailure(const Test *test, TestMessage msg)
+    {
+        static_cast<void>(test);
+        static_cast<void>(msg);
+    }
+
+    virtual void startTest(const Test *test) { static_cast<void>(test); }
+    virtual void endTest(const Test *test) { static_cast<void>(test); }
+    virtual void startTestSuite(const Test *test) { static_cast<void>(test); }
+    virtual void endTestSuite(const Test *test) { static_cast<void>(test); }
+    virtual void startTestRunner() {}
+    virtual void endTestRunner() {}
+};
+
+} // namespace robottestingframework
+
+#endif

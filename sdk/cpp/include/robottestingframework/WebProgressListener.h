@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shows a run in a browser on this machine: http://127.0.0.1:<port>. The page
+// asks /events?from=N for what happened since its last question, in JSON.
+#ifndef ROBOTTESTINGFRAMEWORK_WEBPROGRESSLISTENER_H
+#define ROBOTTESTINGFRAMEWORK_WEBPROGRESSLISTENER_H
+
+#include <cstddef>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "TestListener.h"
+#include "internal/Json.h"
+#include "internal/LoopbackServer.h"
+#include "internal/WebPage.h"
+
+namespace robottestingframework {
+
+class WebProgressListener : public TestListener
+{
+public:
+    // Port 0: a free one. Verbose: with the place in the source of each message.
+    // When it cannot listen it says so on standard error, and the run goes on.
+    WebProgressListener(unsigned int port = 8080, bool verbose = false)
+        : verbose_(verbose), server_(new internal::LoopbackServer(
+                                 port, [this](const std::string &path) { return answer(path); }))
+    {
+        if (!server_->error().empty()) {
+            std::cerr << "error: web page: " << server_->error() << std::endl;
+        }
+    }
+    ~WebProgressListener() override { server_.reset(); }
+    WebProgressListener(const WebProgressListener &) = delete;
+    WebProgressListener &operator=(const WebProgressListener &) = delete;
+
+    // Where it listens; 0 when it does not.
+    unsigned int port() const { return server_->port(); }
+
+    void addReport(const Test *test, TestMessage msg) override { tell("report", test, msg); }
+    void addError(const Test *test, TestMessage msg) override { tell("error", test, msg); }
+    void addFailure(const Test *test, TestMessage msg) override { tell("failure", test, msg); }
+    void startTest(const Test *test) override { keep("test-started", test->getName(), ""); }
+    void endTest(const Test *test) override
+    {
+        keep("test-ended", test->getName(), test->succeeded() ? "passed" : "failed");
+    }
+    void startTestSuite(const Test *test) override { keep("suite-started", test->getName(), ""); }
+    void endTestSuite(const Test *test) override
+    {
+        keep("suite-ended", test->getName(), test->succeeded() ? "passed" : "failed");
+    }
+    void startTestRunner() override { set_running(true); }
+    void endTestRunner() override { set_running(false); }
+
+private:
+    void tell(const std::string &kind, const Test *test, const TestMessage &message)
+    {
+        std::string text = internal::text_of(message);
+        if (verbose_ && !message.getSourceFileName().empty()) {
+            text += " (" + message.getSourceFileName() + ":" +
+                    std::to_string(message.getSourceLineNumber()) + ")";
+        }
+        keep(kind, test->getName(), text);
+    }
+
+    void keep(const std::string &kind, const std::string &name, const std::string &text)
+    {
+        const std::string json = "{\"kind\":" + internal::json_string(kind) +
+                                 ",\"name\":" + internal::json_string(name) +
+                                 ",\"text\":" + internal::json_string(text) + "}";
+        const std::lock_guard<std::mutex> lock(mutex_);
+        events_.push_back(json);
+    }
+
+    void set_running(bool running)
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        running_ = running;
+    }
+
+    internal::Answer answer(const std::string &path)
+    {
+        const std::string events = "/events";
+        if (path == "/") {
+            return internal::Answer{200, "text/html", internal::web_page()};
+        }
+        if (path.compare(0, events.size(), events) != 0) {
+            return internal::Answer{404, "text/plain", "no such page\n"};
+        }
+        const std::size_t from = path.find("from=");
+        const std::size_t first =
+            from == std::string::npos
+                ? 0
+                : std::strtoul(path.c_str() + from + std::strlen("from="), nullptr, 10);
+        return internal::Answer{200, "application/json", news(first)};
+    }
+
+    std::string news(std::size_t first)
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        std::string json = "{\"running\":" + std::string(running_ ? "true" : "false") +
+                           ",\"next\":" + std::to_string(events_.size()) + ",\"events\":[";
+        for (std::size_t index = first; index < events_.size(); ++index) {
+            json += (index == first ? "" : ",") + events_[index];
+        }
+        return json + "]}";
+    }
+
+    bool verbose_;
+    std::mutex mutex_; // of what follows
+    std::vector<std::string> events_;
+    bool running_ = false;
+    // Last: it may be asked as soon as it is there.
+    std::unique_ptr<internal::LoopbackServer> server_;
+};
+
+} // namespace robottestingframework
+
+#endif

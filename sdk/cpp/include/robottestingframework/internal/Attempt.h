@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs a step of a test or a fixture; nothing that it throws goes further.
+#ifndef ROBOTTESTINGFRAMEWORK_INTERNAL_ATTEMPT_H
+#define ROBOTTESTINGFRAMEWORK_INTERNAL_ATTEMPT_H
+
+#include <cstdlib>
+#include <exception>
+#include <memory>
+#include <string>
+#include <typeinfo>
+
+#if defined(__GNUC__)
+#include <cxxabi.h>
+#endif
+
+#include "../Exception.h"
+#include "../TestResult.h"
+
+namespace robottestingframework {
+namespace internal {
+
+// The type of the exception that is being handled.
+inline std::string exception_type()
+{
+#if defined(__GNUC__)
+    const std::type_info *type = abi::__cxa_current_exception_type();
+    if (type != nullptr) {
+        int status = 0;
+        const std::unique_ptr<char, void (*)(void *)> name(
+            abi::__cxa_demangle(type->name(), nullptr, nullptr, &status), std::free);
+        return name ? name.get() : type->name();
+    }
+#endif
+    return "unknown type";
+}
+
+// What the exception says that is being handled.
+inline TestMessage exception_message()
+{
+    try {
+        throw;
+    } catch (const Exception &exception) {
+        return exception.message();
+    } catch (const std::exception &exception) {
+        return TestMessage(exception_type() + ": " + exception.what());
+    } catch (...) {
+        return TestMessage("exception of type " + exception_type());
+    }
+}
+
+enum class Phase { test, tear_down };
+
+// Whether the step came to its end. A failed assertion is a failure of the test,
+// but while it is torn down an error.
+template <class Step>
+bool attempt(const Test *test, TestResult &result, Phase phase, Step step)
+{
+    try {
+        step();
+        return true;
+    } catch (const TestFailureException &exception) {
+        if (phase == Phase::tear_down) {
+            result.addError(test, exception.message());
+        } else {
+            result.addFailure(test, exception.message());
+        }
+    } catch (...) {
+        result.addError(test, exception_message());
+    }
+    return false;
+}
+
+} // namespace internal
+} // namespace robottestingframework
+
+#endif
