@@ -1,0 +1,70 @@
+# frozen_string_literal: true
+
+require "rtf"
+require "rtf/host/predecessor"
+
+module RTF
+  module Host
+    # Loads a plug-in: a file with one class of ours.
+    module Load
+      # The file was read, but is no plug-in.
+      class NoPlugin < LoadError
+      end
+
+      @previous = nil
+
+      module_function
+
+      # Runs the file and makes an object of its one class.
+      def load(file, base)
+        forget_previous(file)
+        $LOAD_PATH.unshift(File.dirname(File.expand_path(file)))
+        Predecessor.lend_module
+        Kernel.load(file)
+        found = classes(file, base)
+        return found.first.new if found.length == 1
+
+        old = Predecessor.find(file) if base == TestCase && found.empty?
+        return Predecessor.new(old.new) if old
+
+        refuse(file, base, found)
+      end
+
+      def refuse(file, base, found)
+        message =
+          if found.empty?
+            others = classes(file, Plugin).map { |one| "`#{one}`" }
+            hint = others.empty? ? "" : "; it has #{others.join(", ")}"
+            "`#{file}` has no class that derives from #{base}#{hint}"
+          else
+            names = found.map { |one| "`#{one}`" }.join(", ")
+            "`#{file}` has several classes that derive from #{base}: #{names}"
+          end
+        raise NoPlugin, message
+      end
+
+      # The classes that the file itself defines and from which it derives no other.
+      def classes(file, base)
+        own = Plugin.derived.select { |one, path| path == file && one < base }.map(&:first)
+        own.reject { |one| own.any? { |other| other < one } }.sort_by(&:to_s)
+      end
+
+      # A plug-in before this one in the same process leaves no class behind
+      # that this one would reopen.
+      def forget_previous(file)
+        forget_constants(@previous) if @previous
+        Plugin.derived.clear
+        @previous = file
+      end
+
+      def forget_constants(file)
+        Object.constants.each do |name|
+          next if Object.autoload?(name)
+
+          place, = Object.const_source_location(name)
+          Object.send(:remove_const, name) if place == file
+        end
+      end
+    end
+  end
+end

@@ -1,0 +1,108 @@
+# frozen_string_literal: true
+
+require "rtf/host/load"
+require "rtf/session"
+
+module RTF
+  module Host
+    # Carries out the steps of a plug-in: set-up, run, check, tear-down.
+    module Steps
+      module_function
+
+      # Loads a test, sets it up, runs it and tears it down.
+      def run_test(session)
+        test = load(session, TestCase)
+        if test
+          phase(session, "setup")
+          if step(session, "setup") { test.setup(session.task.args) }
+            phase(session, "run")
+            session.judge.failures_are_errors = false
+            step(session, "run") { test.run }
+            session.judge.failures_are_errors = true
+          end
+          phase(session, "tear-down")
+          tear_down(session, test)
+        end
+        answer(session)
+      end
+
+      # Loads a fixture and sets it up. It is returned if it was loaded, well or not.
+      def set_up_fixture(session, present)
+        if present
+          session.judge.note("error", "a fixture is still set up in this host")
+          return [present, answer(session)]
+        end
+        fixture = load(session, FixtureManager)
+        step(session, "setup") { fixture.setup(session.task.args) } if fixture
+        [fixture, answer(session)]
+      end
+
+      # Asks a fixture whether it is well.
+      def check_fixture(session, fixture)
+        session.judge.failures_are_errors = false
+        if fixture
+          step(session, "check") { fixture.check }
+        else
+          session.judge.note("error", "no fixture is set up")
+        end
+        answer(session)
+      end
+
+      # Tears a fixture down. One that could not be loaded has nothing to tear down.
+      def tear_down_fixture(session, fixture)
+        tear_down(session, fixture) if fixture
+        answer(session)
+      end
+
+      # Makes an error of an exception, with its class, its text and where it came from.
+      def record(session, problem)
+        reason = "#{problem.class}: #{Text.utf8(problem.message)}"
+        place = Location.of_exception(problem, session.task.file)
+        lines = Location.backtrace(problem).map { |line| "  from #{Text.utf8(line)}" }
+        session.error(reason, text: [reason, *lines].join("\n"), location: place)
+      end
+
+      def phase(session, name)
+        session.notify("phase", { phase: name })
+      end
+
+      def load(session, base)
+        guard(session) { Load.load(session.task.file, base) }
+      end
+
+      # Carries out a step and looks at what it returns; whether all is well so far.
+      def step(session, what, &block)
+        result = guard(session, &block)
+        session.judge.note_failure("#{what} returned false") if result == false && what != "run"
+        session.judge.first.nil?
+      end
+
+      def tear_down(session, plugin)
+        session.judge.clear_stop
+        guard(session) { plugin.tear_down }
+      end
+
+      # Calls into the plug-in and records what it raises. Only SystemExit gets
+      # through: the plug-in ends its process, and the runner shall see that.
+      def guard(session, &block)
+        session.judge.enter_plugin(&block)
+      rescue SystemExit
+        raise
+      rescue StepEnded
+        nil # recorded before it was raised
+      rescue LoadError => problem
+        problem.is_a?(Load::NoPlugin) ? session.error(problem.message) : record(session, problem)
+        nil
+      rescue Exception => problem # rubocop:disable Lint/RescueException
+        record(session, problem)
+        nil
+      end
+
+      def answer(session)
+        [$stdout, $stderr].each(&:flush)
+        outcome, reason = session.judge.first
+        outcome ? { outcome: outcome, reason: reason } : { outcome: "passed" }
+      end
+    end
+  end
+end

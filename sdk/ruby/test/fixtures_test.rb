@@ -1,0 +1,62 @@
+# frozen_string_literal: true
+
+require_relative "driver"
+
+# Fixtures: set-up, checks, collapses, tear-down.
+class FixturesTest < HostTest
+  def fixture(body)
+    "require \"rtf\"\nclass Sim < RTF::FixtureManager\n#{body}\nend\n"
+  end
+
+  def set_up(body)
+    host = self.host
+    [host, host.ask("set-up-fixture", plugin(fixture(body)))["result"]]
+  end
+
+  def test_a_fixture_lives_through_many_requests
+    host, result = set_up("def setup(args) = (@args = args; true)\n" \
+                          "def check = (report(@args.first); @n = @n.to_i + 1; @n < 3)\n" \
+                          "def tear_down = report(\"down\")")
+    assert_equal({ "outcome" => "passed" }, result)
+    checks = Array.new(3) { host.ask("check-fixture", {})["result"] }
+    assert_equal({ "outcome" => "passed" }, checks[1])
+    assert_equal({ "outcome" => "failed", "reason" => "check returned false" }, checks[2])
+    assert_equal({ "outcome" => "passed" }, host.ask("tear-down-fixture", {})["result"])
+    assert_equal ([["report", "--rate"]] * 3) + [%w[report down]], host.texts
+  end
+
+  def test_a_collapse_is_told_from_any_thread
+    host, = set_up("def setup(_) = Thread.new { collapsed(:fell) }")
+    assert_equal({ "reason" => "fell" }, host.of("collapsed").first || host.wait_for("collapsed"))
+    assert_equal "passed", host.ask("tear-down-fixture", {})["result"]["outcome"]
+  end
+
+  def test_a_set_up_that_fails_is_an_error_and_can_be_torn_down
+    { "false" => "setup returned false", 'raise "no sim"' => "RuntimeError: no sim",
+      'error("no sim")' => "no sim", 'require(false, "up")' => "up" }.each do |line, reason|
+      host, result = set_up("def setup(_) = #{line}\ndef tear_down = report(\"down\")")
+      assert_equal({ "outcome" => "error", "reason" => reason }, result, line)
+      host.ask("tear-down-fixture", {})
+      assert_equal %w[report down], host.texts.last, line
+    end
+  end
+
+  def test_what_is_not_up_cannot_be_checked
+    host = self.host
+    assert_equal "no fixture is set up", host.ask("check-fixture", {})["result"]["reason"]
+    assert_equal "passed", host.ask("tear-down-fixture", {})["result"]["outcome"]
+  end
+
+  def test_one_fixture_at_a_time
+    host, = set_up("")
+    again = host.ask("set-up-fixture", plugin(fixture("")))["result"]
+    assert_equal "a fixture is still set up in this host", again["reason"]
+  end
+
+  def test_the_host_of_a_fixture_ends_with_its_runner
+    host, = set_up("def tear_down = report(\"down\")")
+    host.channel.shutdown(Socket::SHUT_WR)
+    assert_equal 1, host.finish.first.exitstatus
+    assert_empty host.texts
+  end
+end
