@@ -1,0 +1,130 @@
+--  SPDX-License-Identifier: Apache-2.0
+--  What a plug-in finds out. The place that goes with a message is the caller's.
+--
+--  All may be called from any task; those that end a step do so by an exception
+--  and belong into the task that runs the step.
+
+with GNAT.Source_Info;
+
+package RobotTestingFramework.Asserter is
+
+   package Source renames GNAT.Source_Info;
+
+   --  Tells the user something; it does not change the verdict.
+   procedure Report
+     (Message : String; File : String := Source.File; Line : Natural := Source.Line);
+
+   --  Checks that the condition holds, and goes on either way.
+   procedure Check
+     (Condition : Boolean;
+      Message   : String;
+      File      : String  := Source.File;
+      Line      : Natural := Source.Line);
+
+   --  Asserts that the condition holds; if it does not, this step ends.
+   procedure Require
+     (Condition : Boolean;
+      Message   : String;
+      File      : String  := Source.File;
+      Line      : Natural := Source.Line);
+
+   --  Asserts something without which it is unsafe to go on: if it does not hold
+   --  this test ends, and the rest of the suite is skipped.
+   procedure Require_Critical
+     (Condition : Boolean;
+      Message   : String;
+      File      : String  := Source.File;
+      Line      : Natural := Source.Line);
+
+   --  Says that the robot is wrong, and ends this step.
+   procedure Fail
+     (Message : String; File : String := Source.File; Line : Natural := Source.Line)
+     with No_Return;
+
+   --  Says that the bench is wrong, and ends this step.
+   procedure Error
+     (Message : String; File : String := Source.File; Line : Natural := Source.Line)
+     with No_Return;
+
+   type Numbers is array (Positive range <>) of Long_Float;
+
+   --  Checks that two numbers, or two vectors, differ by at most Tolerance anywhere.
+   procedure Check_Near
+     (Got, Expected, Tolerance : Long_Float;
+      What                     : String;
+      File                     : String  := Source.File;
+      Line                     : Natural := Source.Line);
+   procedure Check_Near
+     (Got, Expected : Numbers;
+      Tolerance     : Long_Float;
+      What          : String;
+      File          : String  := Source.File;
+      Line          : Natural := Source.Line);
+
+   --  The same as an assertion.
+   procedure Require_Near
+     (Got, Expected, Tolerance : Long_Float;
+      What                     : String;
+      File                     : String  := Source.File;
+      Line                     : Natural := Source.Line);
+   procedure Require_Near
+     (Got, Expected : Numbers;
+      Tolerance     : Long_Float;
+      What          : String;
+      File          : String  := Source.File;
+      Line          : Natural := Source.Line);
+
+   --  Checks angles in radians: 3.1 and -3.1 are 0.083 apart.
+   procedure Check_Angle_Near
+     (Got, Expected, Tolerance : Long_Float;
+      What                     : String;
+      File                     : String  := Source.File;
+      Line                     : Natural := Source.Line);
+   procedure Check_Angle_Near
+     (Got, Expected : Numbers;
+      Tolerance     : Long_Float;
+      What          : String;
+      File          : String  := Source.File;
+      Line          : Natural := Source.Line);
+
+   --  The same as an assertion.
+   procedure Require_Angle_Near
+     (Got, Expected, Tolerance : Long_Float;
+      What                     : String;
+      File                     : String  := Source.File;
+      Line                     : Natural := Source.Line);
+   procedure Require_Angle_Near
+     (Got, Expected : Numbers;
+      Tolerance     : Long_Float;
+      What          : String;
+      File          : String  := Source.File;
+      Line          : Natural := Source.Line);
+
+   --  The predecessor's names. Despite theirs, ErrorIf, FailIf and TestFailIf
+   --  are an error or a failure *unless* the condition holds.
+   procedure TestReport
+     (Message : String; File : String := Source.File; Line : Natural := Source.Line)
+     renames Report;
+   procedure TestCheck
+     (Condition : Boolean;
+      Message   : String;
+      File      : String  := Source.File;
+      Line      : Natural := Source.Line)
+     renames Check;
+   procedure TestFailIf
+     (Condition : Boolean;
+      Message   : String;
+      File      : String  := Source.File;
+      Line      : Natural := Source.Line);
+   procedure FailIf
+     (Condition : Boolean;
+      Message   : String;
+      File      : String  := Source.File;
+      Line      : Natural := Source.Line);
+   procedure ErrorIf
+     (Condition : Boolean;
+      Message   : String;
+      File      : String  := Source.File;
+      Line      : Natural := Source.Line);
+
+end RobotTestingFramework.Asserter;

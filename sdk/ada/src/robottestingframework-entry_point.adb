@@ -1,0 +1,264 @@
+--  SPDX-License-Identifier: Apache-2.0
+
+with Ada.Exceptions;
+with GNAT.IO;
+with GNAT.Most_Recent_Exception;
+with Interfaces.C;
+with RobotTestingFramework.ABI;
+with RobotTestingFramework.FixtureManager;
+with RobotTestingFramework.Host;
+with RobotTestingFramework.Process;
+with RobotTestingFramework.Registry;
+with RobotTestingFramework.Session;
+with RobotTestingFramework.TestCase;
+with System;
+
+package body RobotTestingFramework.Entry_Point is
+
+   use type FixtureManager.FixtureManager_Access;
+   use type Interfaces.C.size_t;
+   use type System.Address;
+   use type TestCase.TestCase_Access;
+
+   subtype Address is ABI.Address;
+   subtype Result is Interfaces.Integer_32;
+
+   --  The plug-in has no object of its own in C: what it gets back is the
+   --  address of this.
+   Self_Mark : aliased Integer := 0;
+
+   --  Made when the host asked for the table, and not used yet.
+   Is_Made : Boolean := False;
+
+   --  Makes the test or fixture, unless that was done already.
+   procedure Make is
+   begin
+      if not Is_Made then
+         TestCase.SetTest (null);
+         FixtureManager.SetFixture (null);
+         Registry.Make;
+         if TestCase.Current = null and then FixtureManager.Current = null then
+            raise Program_Error with "the plug-in made neither a test nor a fixture";
+         end if;
+         Is_Made := True;
+      end if;
+   end Make;
+
+   --  The line in `arm.adb:12 index check failed`, which the compiler writes.
+   procedure Find_Place (Text : String; Last : out Natural; Line : out Natural) is
+   begin
+      Last := 0;
+      Line := 0;
+      for Index in Text'First .. Text'Last - 4 loop
+         if Text (Index .. Index + 4) in ".adb:" | ".ads:" then
+            for Digit of Text (Index + 5 .. Text'Last) loop
+               exit when Digit not in '0' .. '9' or else Line > 100_000_000;
+               Line := Line * 10 + Character'Pos (Digit) - Character'Pos ('0');
+            end loop;
+            Last := Index + 3;
+            return;
+         end if;
+         exit when Text (Index) = ' ';
+      end loop;
+   end Find_Place;
+
+   --  Makes an error of an exception: its name, its text, and the addresses from
+   --  which it came, if the binder keeps them (switch -E).
+   procedure Report (Raised : Ada.Exceptions.Exception_Occurrence) is
+      Text  : constant String := Ada.Exceptions.Exception_Message (Raised);
+      Known : constant String := Ada.Exceptions.Exception_Information (Raised);
+      Trace : Natural         := Known'First;
+      Last  : Natural;
+      Line  : Natural;
+   begin
+      while Trace <= Known'Last and then Known (Trace) /= ASCII.LF loop
+         Trace := Trace + 1;
+      end loop;
+      Find_Place (Text, Last, Line);
+      Host.Send
+        (Kind  => ABI.Error,
+         Words => Ada.Exceptions.Exception_Name (Raised) & ": " & Text
+           & (if Trace < Known'Last then Known (Trace .. Known'Last - 1) else ""),
+         File  => (if Last = 0 then "" else Text (Text'First .. Last)),
+         Line  => Line);
+   end Report;
+
+   --  Carries out a step; what it raises becomes an error.
+   generic
+      with function Step return Boolean;
+   function Guarded return Result;
+
+   function Guarded return Result is
+   begin
+      return (if Step then ABI.Done else ABI.Refused);
+   exception
+      when Assertion_Ended | Stop_Requested =>
+         return ABI.Stopped;
+      when Raised : others =>
+         Report (Raised);
+         return ABI.Stopped;
+   end Guarded;
+
+   function Create (Host_Table : ABI.Host_Access) return Address
+     with Convention => C;
+   procedure Destroy (Self : Address) with Convention => C;
+   function Set_Up
+     (Self : Address; Count : Interfaces.C.int; Arguments : Address) return Result
+     with Convention => C;
+   function Run (Self : Address) return Result with Convention => C;
+   function Check (Self : Address) return Result with Convention => C;
+   function Tear_Down (Self : Address) return Result with Convention => C;
+
+   function Create (Host_Table : ABI.Host_Access) return Address is
+   begin
+      Host.Connect (Host_Table);
+      Make;
+      return Self_Mark'Address;
+   exception
+      when Raised : others =>
+         Report (Raised);
+         return System.Null_Address;
+   end Create;
+
+   procedure Destroy (Self : Address) is
+      pragma Unreferenced (Self);
+   begin
+      Is_Made := False;
+   end Destroy;
+
+   function Do_Setup return Boolean is
+     (if TestCase.Current /= null
+      then TestCase.Current.Setup (Session.Parameters)
+      else FixtureManager.Current.Setup (Session.Parameters));
+   function Guarded_Setup is new Guarded (Do_Setup);
+
+   function Set_Up
+     (Self : Address; Count : Interfaces.C.int; Arguments : Address) return Result
+   is
+      pragma Unreferenced (Self);
+   begin
+      Process.Keep (Count, Arguments);
+      return Guarded_Setup;
+   end Set_Up;
+
+   function Do_Run return Boolean is
+   begin
+      TestCase.Current.Run;
+      return True;
+   end Do_Run;
+   function Guarded_Run is new Guarded (Do_Run);
+
+   function Run (Self : Address) return Result is
+      pragma Unreferenced (Self);
+   begin
+      return Guarded_Run;
+   end Run;
+
+   function Do_Check return Boolean is (FixtureManager.Current.Check);
+   function Guarded_Check is new Guarded (Do_Check);
+
+   function Check (Self : Address) return Result is
+      pragma Unreferenced (Self);
+   begin
+      return Guarded_Check;
+   end Check;
+
+   function Do_Tear_Down return Boolean is
+   begin
+      if TestCase.Current /= null then
+         TestCase.Current.TearDown;
+      else
+         FixtureManager.Current.TearDown;
+      end if;
+      return True;
+   end Do_Tear_Down;
+   function Guarded_Tear_Down is new Guarded (Do_Tear_Down);
+
+   function Tear_Down (Self : Address) return Result is
+      pragma Unreferenced (Self);
+   begin
+      return Guarded_Tear_Down;
+   end Tear_Down;
+
+   Table : aliased ABI.Plugin_Table :=
+     (Size      => ABI.Plugin_Table'Size / System.Storage_Unit,
+      Create    => Create'Access,
+      Destroy   => Destroy'Access,
+      Set_Up    => Set_Up'Access,
+      Tear_Down => Tear_Down'Access,
+      others    => <>);
+
+   type Handler is access procedure (Signal : Interfaces.C.int) with Convention => C;
+
+   function C_Signal (Number : Interfaces.C.int; Handle : Handler) return Address
+     with Import, Convention => C, External_Name => "signal";
+
+   --  There in plug-ins with tasks, whose runtime needs SIGABRT for itself.
+   procedure Abort_Task
+     with Import, Convention => C,
+          External_Name => "system__task_primitives__operations__abort_task";
+   pragma Weak_External (Abort_Task);
+
+   --  Takes back the handlers by which Ada's runtime makes exceptions of faults
+   --  in machine code: a crash stays a crash, with its signal and its core. The
+   --  checks that the compiler writes are not concerned. Linux's numbers: SIGILL,
+   --  SIGBUS, SIGFPE, SIGSEGV and SIGABRT; a pragma Interrupt_State with their
+   --  names would bring the tasking runtime into each plug-in.
+   procedure Let_Crash is
+      Faults : constant array (1 .. 4) of Interfaces.C.int := (4, 7, 8, 11);
+      Before : Address;
+      pragma Unreferenced (Before);
+   begin
+      for Fault of Faults loop
+         Before := C_Signal (Fault, null);
+      end loop;
+      if Abort_Task'Address = System.Null_Address then
+         Before := C_Signal (6, null);
+      end if;
+   end Let_Crash;
+
+   function Plugin return Address
+     with Export, Convention => C, External_Name => "rtf_plugin";
+
+   --  What the plug-in is can only be told by making it. If that fails, create()
+   --  tells why: here is nobody yet to tell.
+   function Plugin return Address is
+      Is_Fixture : Boolean := False;
+   begin
+      Let_Crash;
+      begin
+         Make;
+         Is_Fixture := TestCase.Current = null;
+      exception
+         when others =>
+            Is_Made := False;
+      end;
+      Table.Kind  := (if Is_Fixture then ABI.Kind_Fixture else ABI.Kind_Test);
+      Table.Run   := (if Is_Fixture then null else Run'Access);
+      Table.Check := (if Is_Fixture then Check'Access else null);
+      return Table'Address;
+   end Plugin;
+
+   --  An exception that leaves an elaboration goes through the host's own code,
+   --  which ends the process by abort() without a word of it.
+   procedure Tell_And_Abort (Signal : Interfaces.C.int) with Convention => C;
+
+   procedure Tell_And_Abort (Signal : Interfaces.C.int) is
+      pragma Unreferenced (Signal);
+   begin
+      GNAT.IO.Put_Line
+        (GNAT.IO.Standard_Error,
+         "while the plug-in was elaborated: "
+         & Ada.Exceptions.Exception_Information (GNAT.Most_Recent_Exception.Occurrence));
+      Let_Crash;
+   end Tell_And_Abort;
+
+   Before : Address;
+   pragma Unreferenced (Before);
+
+begin
+   --  This is elaborated before all that depends on TestCase or FixtureManager.
+   if Abort_Task'Address = System.Null_Address then
+      Before := C_Signal (6, Tell_And_Abort'Access);
+   end if;
+end RobotTestingFramework.Entry_Point;

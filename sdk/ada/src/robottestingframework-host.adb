@@ -1,0 +1,75 @@
+--  SPDX-License-Identifier: Apache-2.0
+
+with Ada.Characters.Handling;
+with Interfaces.C;
+
+package body RobotTestingFramework.Host is
+
+   use Interfaces.C;
+   use type ABI.Host_Access;
+
+   Current : ABI.Host_Access with Atomic;
+
+   procedure Connect (To : ABI.Host_Access) is
+   begin
+      Current := To;
+   end Connect;
+
+   function Table return not null ABI.Host_Access is
+      Found : constant ABI.Host_Access := Current;
+   begin
+      if Found = null then
+         raise Program_Error
+           with "this works only in a plug-in that `rtf run` has started";
+      end if;
+      return Found;
+   end Table;
+
+   procedure Send
+     (Kind       : ABI.Message_Kind;
+      Words      : String;
+      File       : String;
+      Line       : Natural;
+      Critical   : Boolean     := False;
+      Comparison : ABI.Address := System.Null_Address)
+   is
+      Host   : constant not null ABI.Host_Access := Table;
+      Said   : aliased constant String           := Words;
+      Source : aliased constant String           := File & ASCII.NUL;
+   begin
+      Host.Message
+        (Host.Context,
+         (Size       => ABI.Message'Size / System.Storage_Unit,
+          Kind       => ABI.Message_Kind'Pos (Kind),
+          Critical   => Boolean'Pos (Critical),
+          Words      => To_C (Said),
+          File       => (if File = "" then System.Null_Address else Source'Address),
+          Line       => Interfaces.Unsigned_32 (Line),
+          Comparison => Comparison));
+   end Send;
+
+   function To_C (Words : aliased String) return ABI.Text is
+     ((Data => Words'Address, Length => Words'Length));
+
+   function To_Ada (Words : ABI.Text) return String is
+      Bytes : String (1 .. Natural (Words.Length)) with Import, Address => Words.Data;
+   begin
+      return (if Words.Length = 0 then "" else Bytes);
+   end To_Ada;
+
+   function Print
+     (Buffer : System.Address; Size : size_t; Format : char_array; Value : double) return int
+     with Import, Convention => C_Variadic_3, External_Name => "snprintf";
+
+   function Image (Number : Long_Float) return String is
+      Buffer : String (1 .. 64);
+      Length : int;
+   begin
+      if Number /= Number then
+         return "nan";
+      end if;
+      Length := Print (Buffer'Address, Buffer'Length, To_C ("%.6g"), double (Number));
+      return Ada.Characters.Handling.To_Lower (Buffer (1 .. Natural (Length)));
+   end Image;
+
+end RobotTestingFramework.Host;

@@ -1,0 +1,36 @@
+--  SPDX-License-Identifier: Apache-2.0
+
+with System;
+
+package body RobotTestingFramework.Registry is
+
+   use type System.Address;
+
+   Kept : Maker;
+
+   procedure Exported_Create with Import, Convention => C, External_Name => Test_Create_Symbol;
+   pragma Weak_External (Exported_Create);
+
+   function Keep (Make : not null Maker) return Boolean is
+   begin
+      if Kept /= null then
+         raise Program_Error with "a plug-in has one test or fixture, this one has several";
+      end if;
+      Kept := Make;
+      return True;
+   end Keep;
+
+   procedure Make is
+   begin
+      if Kept /= null then
+         Kept.all;
+      elsif Exported_Create'Address /= System.Null_Address then
+         Exported_Create;
+      else
+         raise Program_Error
+           with "the plug-in has no test: neither is TestCase.Register instantiated nor `"
+           & Test_Create_Symbol & "` exported";
+      end if;
+   end Make;
+
+end RobotTestingFramework.Registry;

@@ -1,0 +1,110 @@
+--  SPDX-License-Identifier: Apache-2.0
+
+with Interfaces.C;
+with RobotTestingFramework.ABI;
+with RobotTestingFramework.Asserter;
+with RobotTestingFramework.Host;
+with RobotTestingFramework.Process;
+with System;
+
+package body RobotTestingFramework.Session is
+
+   use type Interfaces.C.int;
+   use type Interfaces.C.size_t;
+
+   Poll : constant Duration := 0.01;
+
+   function Ask (Tell : not null ABI.Tell_Text) return String is
+     (Host.To_Ada (Tell (Host.Table.Context)));
+
+   function Name return String is (Ask (Host.Table.Name));
+
+   function Parameters return String is (Ask (Host.Table.Param));
+
+   function Environment return String is (Ask (Host.Table.Environment));
+
+   function Argument_Count return Natural is (Process.Argument_Count);
+
+   function Argument (Number : Positive) return String is (Process.Argument (Number));
+
+   function Repetition return Positive is
+     (Positive (Host.Table.Repetition (Host.Table.Context)));
+
+   function Interrupted return Boolean is
+     (Host.Table.Interrupted (Host.Table.Context) /= 0);
+
+   procedure Sleep (Time : Duration) is
+      Seconds : constant Interfaces.C.double := Interfaces.C.double (Time);
+   begin
+      if Host.Table.Wait (Host.Table.Context, Seconds) /= 0 then
+         raise Stop_Requested;
+      end if;
+   end Sleep;
+
+   procedure Wait_Until
+     (Timeout : Duration;
+      What    : String;
+      File    : String  := Source.File;
+      Line    : Natural := Source.Line)
+   is
+      Start : constant Duration := Process.Monotonic;
+      Left  : Duration;
+   begin
+      while not Condition loop
+         Left := Timeout - (Process.Monotonic - Start);
+         if Left <= 0.0 then
+            Asserter.Fail
+              (What & ": not within " & Host.Image (Long_Float (Timeout))
+               & " s (last value: false)", File, Line);
+         end if;
+         Sleep (Duration'Min (Poll, Left));
+      end loop;
+   end Wait_Until;
+
+   procedure Measure
+     (Name      : String;
+      Value     : Long_Float;
+      Unit      : String     := "";
+      Low       : Long_Float := No_Low;
+      High      : Long_Float := No_High;
+      File      : String     := Source.File;
+      Line      : Natural    := Source.Line)
+   is
+      Table        : constant not null ABI.Host_Access := Host.Table;
+      Name_Words   : aliased constant String := Name;
+      Unit_Words   : aliased constant String := Unit;
+      Lowest       : aliased constant Long_Float := Low;
+      Highest      : aliased constant Long_Float := High;
+      Source_Words : aliased constant String := File & ASCII.NUL;
+      Within       : constant Interfaces.C.int := Table.Measure
+        (Table.Context,
+         (Size  => ABI.Measurement'Size / System.Storage_Unit,
+          Name  => Host.To_C (Name_Words),
+          Value => Interfaces.C.double (Value),
+          Unit  => Host.To_C (Unit_Words),
+          Low   => (if Low = No_Low then System.Null_Address else Lowest'Address),
+          High  => (if High = No_High then System.Null_Address else Highest'Address),
+          File  => Source_Words'Address,
+          Line  => Interfaces.Unsigned_32 (Line)));
+      pragma Unreferenced (Within);
+   begin
+      if Low /= Low or else High /= High then
+         raise Constraint_Error with "a limit of `" & Name & "` is not a number";
+      end if;
+   end Measure;
+
+   procedure Attach (Path : String; Name : String := ""; Media_Type : String := "") is
+      Table      : constant not null ABI.Host_Access := Host.Table;
+      Path_Words : aliased constant String := Path;
+      Name_Words : aliased constant String := Name;
+      Type_Words : aliased constant String := Media_Type;
+   begin
+      Table.Attach
+        (Table.Context,
+         (Size       => ABI.Attachment'Size / System.Storage_Unit,
+          Path       => Host.To_C (Path_Words),
+          Name       => Host.To_C (Name_Words),
+          Media_Type => Host.To_C (Type_Words)));
+   end Attach;
+
+end RobotTestingFramework.Session;

@@ -1,0 +1,10 @@
+package body Elaboration is
+
+   procedure Calibrate is
+   begin
+      raise Program_Error with "no calibration";
+   end Calibrate;
+
+begin
+   Calibrate;
+end Elaboration;

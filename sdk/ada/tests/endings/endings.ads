@@ -1,0 +1,13 @@
+--  A test that ends as its first argument says.
+
+with RobotTestingFramework.TestCase;
+
+package Endings is
+
+   type Test is new RobotTestingFramework.TestCase.TestCase with null record;
+   overriding procedure Run (Self : in out Test);
+   overriding procedure TearDown (Self : in out Test);
+
+   package Plugin is new RobotTestingFramework.TestCase.Register (Test);
+
+end Endings;
