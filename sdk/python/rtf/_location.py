@@ -10,6 +10,10 @@ if TYPE_CHECKING:
     from types import TracebackType
 
 
+# Beside all modules whose names begin with `rtf.`.
+_OURS = frozenset({"rtf", "robottestingframework"})
+
+
 class Location:
     """A line of a source file."""
 
@@ -62,4 +66,4 @@ def _is_ours(names: dict[str, object]) -> bool:
     if module == "__main__":
         # `python3 -m rtf.host` runs under this name.
         return names.get("__package__") == "rtf.host"
-    return isinstance(module, str) and (module == "rtf" or module.startswith("rtf."))
+    return isinstance(module, str) and (module in _OURS or module.startswith("rtf."))

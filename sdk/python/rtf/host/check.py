@@ -6,6 +6,8 @@ import ast
 import json
 import sys
 
+from rtf.host.predecessor import CLASS_NAME
+
 _KINDS = {"TestCase": "test", "FixtureManager": "fixture"}
 
 
@@ -38,7 +40,7 @@ def check_file(file: str) -> dict[str, object]:
 
 
 def _kinds(tree: ast.Module) -> list[str] | None:
-    """Tell tests and fixtures by the bases that classes name.
+    """Tell tests and fixtures by the bases that classes name, and the predecessor's by their own.
 
     Nothing (`None`) is said of a file whose class derives from one of another
     file: that can be known only by running it. A file in which no class
@@ -49,6 +51,8 @@ def _kinds(tree: ast.Module) -> list[str] | None:
     for node in tree.body:
         if isinstance(node, ast.ClassDef):
             kinds = [kind_of[name] for name in map(_last_name, node.bases) if name in kind_of]
+            if node.name == CLASS_NAME:
+                kinds.append("test")
             if kinds:
                 kind_of[node.name] = kinds[0]
                 found.append(kinds[0])

@@ -6,6 +6,7 @@ import os
 import sys
 
 from rtf._plugin import Plugin
+from rtf.host import predecessor
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
@@ -26,6 +27,11 @@ def load(file: str, base: type[_P]) -> _P:
     found = _classes(module, base)
     if len(found) == 1:
         return found[0]()
+    old = predecessor.find(module)
+    if old is not None and not found:
+        test = predecessor.PredecessorTest(old())
+        if isinstance(test, base):
+            return test
     wanted = f"rtf.{base.__name__}"
     if found:
         names = ", ".join(f"`{one.__name__}`" for one in found)
@@ -39,13 +45,15 @@ def _run_file(file: str) -> ModuleType:
     # Not by `importlib`: that leaves a `__pycache__` beside the user's files
     # and insists on file names that are Python's own.
     with open(file, "rb") as stream:
-        code = compile(stream.read(), file, "exec", dont_inherit=True)
+        source = stream.read()
+    code = compile(source, file, "exec", dont_inherit=True)
     stem = os.path.splitext(os.path.basename(file))[0]
     name = f"rtf_plugin_{stem}"
     while name in sys.modules:
         name += "_"
     module = type(sys)(name)
     module.__file__ = file
+    predecessor.lend_module(module, source)
     sys.modules[name] = module
     sys.path.insert(0, os.path.dirname(os.path.abspath(file)))
     exec(code, module.__dict__)  # noqa: S102 - running the user's file is what a host is for
