@@ -1,0 +1,7 @@
+require "rtf"
+
+class Critical < RTF::TestCase
+  def run
+    require_critical(false, "the emergency stop is pressed")
+  end
+end

@@ -1,0 +1,7 @@
+require "rtf"
+
+class ForeignException < RTF::TestCase
+  def run
+    throw 42
+  end
+end
