@@ -1,9 +1,23 @@
 //! The command line.
 
+mod formats;
+mod past;
+mod web;
+
+use std::num::NonZeroU16;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use rtf_engine::run::Forks;
+use rtf_engine::select::Shard;
+use rtf_engine::suite::parse_duration;
+
+use formats::parse_setting;
+pub use formats::{Annotations, Format, Shown, parse_report};
+pub use past::{MergeArgs, ReportArgs, ShowArgs};
+pub use web::{ServeArgs, WebAccessArgs, WebRunArgs};
 
 /// Tests of robots: plug-ins in any language, on top of fixtures that are
 /// watched while the tests run
@@ -46,14 +60,28 @@ pub enum Color {
 pub enum Command {
     /// Run suites, plug-ins and folders
     Run(RunArgs),
+    /// Run again whenever a suite, a plug-in or an `rtf.toml` changes
+    Watch(RunArgs),
     /// Find every problem of suites and plug-ins, start nothing
-    Check(InputArgs),
+    Check(CheckArgs),
     /// List the tests that `run` would run
-    List(InputArgs),
+    List(ListArgs),
+    /// Show who has the locks of this machine, or wait for some
+    Locks(LocksArgs),
     /// Show a past run, or what is there of one that was killed
     Show(ShowArgs),
     /// Write a report of a past run
     Report(ReportArgs),
+    /// Make one run of several, as of the parts that `--shard` made
+    Merge(MergeArgs),
+    /// Show runs in a browser, past ones and those that go on
+    Serve(ServeArgs),
+    /// Tell what `rtf.toml` and others set
+    Config {
+        /// What to tell
+        #[command(subcommand)]
+        verb: ConfigVerb,
+    },
     /// Print a shell's completions
     Completions {
         /// The shell
@@ -67,11 +95,31 @@ pub enum Command {
     },
 }
 
+/// What to tell of settings.
+#[derive(Debug, Subcommand)]
+pub enum ConfigVerb {
+    /// Print what holds for a suite, and where each value comes from
+    Show(ConfigArgs),
+}
+
+/// About what.
+#[derive(Debug, Args)]
+pub struct ConfigArgs {
+    /// A suite, a plug-in or a folder
+    #[arg(value_name = "FILE", default_value = ".")]
+    pub input: PathBuf,
+
+    #[command(flatten)]
+    pub profile: ProfileArgs,
+}
+
 /// What to run.
 #[derive(Debug, Args)]
 pub struct InputArgs {
     /// Suites (.xml), plug-ins, and folders of either
-    #[arg(required = true, value_name = "FILE")]
+    ///
+    /// A suite's file may be followed by `::` and the name of one of its tests.
+    #[arg(required_unless_present = "rerun", value_name = "FILE")]
     pub inputs: Vec<PathBuf>,
 
     /// Descend into folders
@@ -89,6 +137,158 @@ pub struct InputArgs {
     /// How often plug-ins that are given by name are run
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub repetition: Option<u32>,
+
+    #[command(flatten)]
+    pub profile: ProfileArgs,
+
+    #[command(flatten)]
+    pub select: SelectArgs,
+
+    #[command(flatten)]
+    pub repeat: RepeatArgs,
+}
+
+/// What of `rtf.toml` holds.
+#[derive(Clone, Debug, Default, Args)]
+pub struct ProfileArgs {
+    /// The profile of `rtf.toml` that holds: `real`, `sim`, `ci`, …
+    #[arg(long, value_name = "NAME", env = "RTF_PROFILE")]
+    pub profile: Option<String>,
+
+    /// Set a parameter: suites find it as `${param:NAME}`, tests in RTF_PARAM_NAME
+    #[arg(long, value_name = "NAME=VALUE", value_parser = parse_setting)]
+    pub set: Vec<(String, String)>,
+}
+
+const CHOOSING: &str = "Choosing tests";
+
+/// Which tests, and in which order.
+#[derive(Clone, Debug, Default, Args)]
+pub struct SelectArgs {
+    /// Only tests that this holds for: `tag(slow) & !type(lua)`; several add up
+    #[arg(help_heading = CHOOSING, short = 'E', long = "filter", value_name = "FILTER")]
+    pub filters: Vec<String>,
+
+    /// Only those that failed, or were interrupted, in a past run: FILE is then the run, `latest`
+    /// unless it is given. They get what that run gave them
+    #[arg(help_heading = CHOOSING, long, value_name = "WHICH", value_delimiter = ',')]
+    pub rerun: Vec<Rerun>,
+
+    /// In a random order; the number that decides it is shown, and repeats it
+    #[arg(help_heading = CHOOSING, long, value_name = "SEED", num_args = 0..=1, require_equals = true)]
+    pub shuffle: Option<Option<u64>>,
+
+    /// Only one part of the tests, of several: `2/5`
+    #[arg(help_heading = CHOOSING, long, value_name = "N/OF")]
+    pub shard: Option<Shard>,
+
+    /// What decides to which part a test belongs: its `hash`, its place in the `count`, or its
+    /// `duration` in the run that follows as `duration=RUN`
+    #[arg(help_heading = CHOOSING, long, value_name = "WHAT", requires = "shard", default_value = "hash")]
+    pub shard_by: String,
+}
+
+const REPEATING: &str = "Repeating tests";
+
+/// How often each test is run.
+#[derive(Clone, Debug, Default, Args)]
+pub struct RepeatArgs {
+    /// Run each test so many times as often as its suite says
+    #[arg(help_heading = REPEATING, long, value_name = "N")]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub repeat: Option<u32>,
+
+    /// Try a test that fails so often again, whatever its suite says
+    #[arg(help_heading = REPEATING, long, value_name = "N")]
+    #[arg(value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
+    pub retries: Option<u32>,
+
+    /// What a test counts as that passes only when it is tried again [default: pass]
+    #[arg(help_heading = REPEATING, long, value_name = "RESULT")]
+    pub flaky_result: Option<FlakyResult>,
+
+    /// Skip the rest as soon as so many tests have not passed
+    #[arg(help_heading = REPEATING, long, value_name = "N")]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..))]
+    pub max_fail: Option<u32>,
+
+    /// Skip the rest as soon as a test has not passed
+    #[arg(help_heading = REPEATING, long, conflicts_with = "max_fail")]
+    pub until_fail: bool,
+}
+
+impl RepeatArgs {
+    /// After how many tests that have not passed the rest is skipped.
+    pub fn most_fails(&self) -> Option<u32> {
+        if self.until_fail { Some(1) } else { self.max_fail }
+    }
+}
+
+/// What a flaky test counts as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FlakyResult {
+    /// The run can be green
+    Pass,
+    /// The run is not green
+    Fail,
+}
+
+/// Which locks to show.
+#[derive(Debug, Args)]
+pub struct LocksArgs {
+    /// Only these resources
+    #[arg(value_name = "NAME")]
+    pub names: Vec<String>,
+
+    /// Wait until nobody has one of them
+    #[arg(long, requires = "names")]
+    pub wait: bool,
+
+    /// How long to wait; for ever, unless told
+    #[arg(long, value_name = "DURATION", value_parser = parse_duration, requires = "wait")]
+    pub timeout: Option<Duration>,
+}
+
+/// What of a past run is run again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Rerun {
+    /// Tests that failed, in whatever way
+    Failed,
+    /// Tests that were interrupted, skipped, or never begun
+    Interrupted,
+}
+
+/// What to list.
+#[derive(Debug, Args)]
+pub struct ListArgs {
+    #[command(flatten)]
+    pub input: InputArgs,
+
+    #[command(flatten)]
+    pub results: ResultsArgs,
+
+    /// The form of the list
+    #[arg(long, value_name = "FORMAT", default_value = "text")]
+    pub format: ListFormat,
+}
+
+/// The form of a list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ListFormat {
+    /// One test a line
+    Text,
+    /// One JSON document
+    Json,
+}
+
+/// What to check.
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    #[command(flatten)]
+    pub input: InputArgs,
+
+    #[command(flatten)]
+    pub results: ResultsArgs,
 }
 
 /// How to run it.
@@ -100,13 +300,47 @@ pub struct RunArgs {
     #[command(flatten)]
     pub results: ResultsArgs,
 
-    /// Also write a report: `junit=PATH` or `text=PATH`
+    /// What standard output has of the run
+    #[arg(long, value_name = "FORMAT", default_value = "console")]
+    pub format: Shown,
+
+    /// Also write a report: `junit=PATH`, `text=`, `tap=`, `code-quality=` or `github=`
     #[arg(long = "report", value_name = "FORMAT=PATH", value_parser = parse_report)]
     pub reports: Vec<(Format, PathBuf)>,
+
+    /// Tell a code host, on standard error or in the log, what went wrong
+    #[arg(long, value_name = "HOST", default_value = "auto")]
+    pub annotations: Annotations,
+
+    /// How long tear-downs and hooks may take altogether, once a signal ends the
+    /// run; then what is left is killed
+    #[arg(long, value_name = "DURATION", default_value = "60s", value_parser = parse_duration)]
+    pub shutdown_timeout: Duration,
 
     /// Show every message, measurement and output as it comes
     #[arg(short, long)]
     pub verbose: bool,
+
+    /// How many suites run at the same time, each with fixtures of its own
+    #[arg(short, long, value_name = "N", default_value = "1")]
+    pub jobs: NonZeroU16,
+
+    /// How long a suite waits for the locks that it requires; for ever, unless told
+    #[arg(long, value_name = "DURATION", value_parser = parse_duration)]
+    pub lock_timeout: Option<Duration>,
+
+    /// Only list the tests that would be run
+    #[arg(help_heading = CHOOSING, long)]
+    pub dry_run: bool,
+
+    /// Fork the hosts of C, C++ and Lua tests from one that is ready: `auto` (from the second test
+    /// on), `always`, or `never`
+    #[arg(long, value_name = "WHEN", default_value = "auto", env = "RTF_FORK")]
+    #[arg(value_parser = forks_parser(), hide_possible_values = true)]
+    pub fork: Forks,
+
+    #[command(flatten)]
+    pub web: WebRunArgs,
 }
 
 /// Where runs are kept.
@@ -117,73 +351,15 @@ pub struct ResultsArgs {
     pub results: PathBuf,
 }
 
-/// Which run to show.
-#[derive(Debug, Args)]
-pub struct ShowArgs {
-    /// The run: `latest`, its name, its folder, or its journal
-    #[arg(default_value = "latest", value_name = "RUN")]
-    pub run: String,
-
-    #[command(flatten)]
-    pub results: ResultsArgs,
-
-    /// Show every message, measurement and output
-    #[arg(short, long)]
-    pub verbose: bool,
+fn forks_parser() -> impl TypedValueParser<Value = Forks> {
+    PossibleValuesParser::new(["auto", "always", "never"]).map(|name| forks(&name))
 }
 
-/// Which report to write.
-#[derive(Debug, Args)]
-pub struct ReportArgs {
-    /// The run: `latest`, its name, its folder, or its journal
-    #[arg(default_value = "latest", value_name = "RUN")]
-    pub run: String,
-
-    #[command(flatten)]
-    pub results: ResultsArgs,
-
-    /// The report's format
-    #[arg(long, value_parser = format_parser())]
-    pub format: Format,
-
-    /// Where to write it; standard output when it is left out
-    #[arg(short, long, value_name = "PATH")]
-    pub output: Option<PathBuf>,
-}
-
-/// A report's format.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// Plain text.
-    Text,
-    /// JUnit XML.
-    Junit,
-}
-
-impl Format {
-    const NAMES: [&'static str; 2] = ["text", "junit"];
-
-    fn from_name(name: &str) -> Option<Self> {
-        match name {
-            "text" => Some(Self::Text),
-            "junit" => Some(Self::Junit),
-            _ => None,
-        }
+/// `auto`, `always` or `never`.
+pub fn forks(word: &str) -> Forks {
+    match word {
+        "always" => Forks::Always,
+        "never" => Forks::Never,
+        _ => Forks::Auto,
     }
-}
-
-fn format_parser() -> impl TypedValueParser<Value = Format> {
-    PossibleValuesParser::new(Format::NAMES)
-        .map(|name| Format::from_name(&name).unwrap_or(Format::Text))
-}
-
-fn parse_report(value: &str) -> Result<(Format, PathBuf), String> {
-    let expected = "expected `junit=PATH` or `text=PATH`";
-    let (name, path) = value.split_once('=').ok_or(expected)?;
-    let format =
-        Format::from_name(name).ok_or_else(|| format!("unknown format `{name}`, {expected}"))?;
-    if path.is_empty() {
-        return Err(format!("the path is missing, {expected}"));
-    }
-    Ok((format, PathBuf::from(path)))
 }

@@ -5,12 +5,12 @@ use std::process::ExitCode;
 
 use super::Outcome;
 use super::planning::{self, count};
-use crate::cli::InputArgs;
+use crate::cli::CheckArgs;
 use crate::error::Failure;
 
 /// Checks.
-pub fn run(args: &InputArgs) -> Outcome {
-    let planned = planning::plan(args)?;
+pub fn run(args: &CheckArgs) -> Outcome {
+    let planned = planning::plan(&args.input, &args.results)?;
     planned.show_warnings()?;
     let plan = planned.plan;
     let summary = [

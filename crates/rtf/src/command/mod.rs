@@ -2,13 +2,21 @@
 
 mod again;
 pub mod check;
+mod choosing;
 pub mod completions;
+pub mod config;
+pub mod job;
 pub mod list;
+pub mod locks;
 pub mod man;
-mod planning;
+pub mod merge;
+pub mod output;
+pub mod planning;
 pub mod report;
 pub mod run;
 pub mod show;
+pub mod watch;
+pub mod web;
 
 use std::process::ExitCode;
 

@@ -2,12 +2,16 @@
 //! every problem shown.
 
 use std::io::Write;
+use std::path::PathBuf;
+use std::time::Duration;
 
-use rtf_engine::plan::{self, Options, Plan, Surroundings};
+use rtf_engine::plan::{self, Options, Plan, Request, Surroundings};
+use rtf_engine::select::select;
 use rtf_engine::suite::Sources;
-use rtf_model::{Diagnostic, Severity};
+use rtf_model::{Diagnostic, Manifest, Severity};
 
-use crate::cli::InputArgs;
+use super::choosing;
+use crate::cli::{InputArgs, ResultsArgs};
 use crate::error::Failure;
 use crate::exit;
 use crate::render;
@@ -16,27 +20,115 @@ use crate::render;
 pub struct Planned {
     /// What will be done.
     pub plan: Plan,
+    /// What was asked for.
+    pub manifest: Manifest,
+    /// The folder to which the inputs are relative.
+    pub folder: PathBuf,
     /// Warnings. A run's reporters show them; other verbs do it themselves.
     pub warnings: Vec<Diagnostic>,
     sources: Sources,
 }
 
 /// Plans; shows every problem on standard error when there is an error.
-pub fn plan(args: &InputArgs) -> Result<Planned, Failure> {
-    let surroundings = Surroundings::of_process().map_err(Failure::own)?;
-    let mut options = Options::new(surroundings);
-    options.recursive = args.recursive;
-    options.param = args.param.clone().unwrap_or_default();
-    options.environment = args.environment.clone().unwrap_or_default();
-    options.repetitions = args.repetition.unwrap_or(1);
-    let outcome = plan::build(&args.inputs, &options);
-    if let Some(plan) = outcome.plan {
-        return Ok(Planned { plan, warnings: outcome.diagnostics, sources: outcome.sources });
+pub fn plan(args: &InputArgs, results: &ResultsArgs) -> Result<Planned, Failure> {
+    let verify = Options::new(Surroundings::default()).verify;
+    let draft = draft(args, results, verify)?;
+    let Draft { plan, of, mut manifest, folder, problems, sources } = draft;
+    let Some(mut plan) = plan else { return Err(refused(&problems, &sources)?) };
+    repeat(&mut plan, &manifest);
+    manifest.chosen_of = if of == plan.tests { 0 } else { of };
+    Ok(Planned { plan, manifest, folder, warnings: problems, sources })
+}
+
+/// What the command line comes to.
+pub struct Draft {
+    /// The chosen tests; `None` when there is an error among the problems.
+    pub plan: Option<Plan>,
+    /// Out of how many tests they were chosen.
+    of: u32,
+    manifest: Manifest,
+    /// The folder to which the inputs are relative.
+    pub folder: PathBuf,
+    /// Everything that is wrong or worth a look.
+    pub problems: Vec<Diagnostic>,
+    sources: Sources,
+}
+
+/// Plans and shows nothing. The hosts are asked about the plug-ins, unless
+/// `verify` is `None`: then nothing is started.
+pub fn draft(
+    args: &InputArgs,
+    results: &ResultsArgs,
+    verify: Option<Duration>,
+) -> Result<Draft, Failure> {
+    let asked = choosing::ask(args, results)?;
+    let mut surroundings = Surroundings::of_process().map_err(Failure::own)?;
+    if let Some(folder) = &asked.folder {
+        surroundings.current_folder.clone_from(folder);
     }
-    show(&outcome.diagnostics, &outcome.sources)?;
-    let told = writeln!(anstream::stderr(), "{}; nothing was started", sum(&outcome.diagnostics));
+    let folder = surroundings.current_folder.clone();
+    let options = Options { verify, ..options(&asked.manifest, surroundings) };
+    let outcome = plan::build(&inputs(&asked.manifest), &options);
+    let (mut problems, mut sources) = (outcome.diagnostics, outcome.sources);
+    let selection = asked.selection(&mut problems, &mut sources);
+    let broken = problems.iter().any(|problem| problem.severity == Severity::Error);
+    let mut of = 0;
+    let mut plan = outcome.plan.filter(|_| !broken);
+    if let Some(whole) = plan.take() {
+        let selected = select(whole, &selection);
+        problems.extend(selected.warnings);
+        if selected.plan.tests == 0 {
+            let what = format!("no test is chosen, of {}", count(selected.of, "test"));
+            problems.insert(0, Diagnostic::error("no-tests", what));
+        } else {
+            of = u32::try_from(selected.of).unwrap_or(u32::MAX);
+            plan = Some(selected.plan);
+        }
+    }
+    Ok(Draft { plan, of, manifest: asked.manifest, folder, problems, sources })
+}
+
+/// What the command line says of how often tests are run.
+fn repeat(plan: &mut Plan, manifest: &Manifest) {
+    let times = manifest.repeat.unwrap_or(1);
+    for test in plan.suites.iter_mut().flat_map(|suite| &mut suite.tests) {
+        test.repetitions = test.repetitions.saturating_mul(times);
+        test.retries.count = manifest.retries.unwrap_or(test.retries.count);
+    }
+}
+
+/// Plans what was asked for in another way, all of it. The run's manifest is
+/// empty: it cannot be run again by its names.
+pub fn plan_requests(requests: &[Request], options: &Options) -> Result<Planned, Failure> {
+    let outcome = plan::build_requests(requests, options);
+    let (warnings, sources) = (outcome.diagnostics, outcome.sources);
+    let Some(plan) = outcome.plan else { return Err(refused(&warnings, &sources)?) };
+    let folder = options.surroundings.current_folder.clone();
+    Ok(Planned { plan, manifest: Manifest::default(), folder, warnings, sources })
+}
+
+fn inputs(manifest: &Manifest) -> Vec<PathBuf> {
+    manifest.inputs.iter().map(PathBuf::from).collect()
+}
+
+fn options(manifest: &Manifest, surroundings: Surroundings) -> Options {
+    let mut options = Options::new(surroundings);
+    options.recursive = manifest.recursive;
+    options.param = manifest.param.clone().unwrap_or_default();
+    options.environment = manifest.environment.clone().unwrap_or_default();
+    options.repetitions = manifest.repetition.unwrap_or(1);
+    options.asked.profile.clone_from(&manifest.profile);
+    let set = manifest.set.iter().filter_map(|text| text.split_once('='));
+    options.asked.params = set.map(|(name, value)| (name.to_owned(), value.to_owned())).collect();
+    options
+}
+
+/// Shows what is wrong.
+pub fn refused(problems: &[Diagnostic], sources: &Sources) -> Result<Failure, Failure> {
+    show(problems, sources)?;
+    let told = writeln!(anstream::stderr(), "{}; nothing was started", sum(problems));
     Failure::unless_reader_left(told)?;
-    Err(Failure::told(exit::BAD_INPUT))
+    Ok(Failure::told(exit::BAD_INPUT))
 }
 
 impl Planned {

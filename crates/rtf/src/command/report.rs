@@ -1,39 +1,57 @@
 //! `rtf report`: a report of a past run.
 
 use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
 
-use rtf_report::{Reporter, journal, junit, text};
+use rtf_report::event_stream::{self, EventStream};
+use rtf_report::{ReportError, journal, output_file};
 
-use super::Outcome;
 use super::show::{find, tell_damage, unreadable};
+use super::{Outcome, output};
 use crate::cli::{Format, ReportArgs};
 use crate::error::Failure;
 
 /// Writes the report. Its exit code is about the writing, not about the run.
 pub fn run(args: &ReportArgs) -> Outcome {
     let path = find(&args.results, &args.run)?;
-    let folder = path.parent();
+    if args.format == Format::Json {
+        return events(&path, args.output.as_deref());
+    }
     let stored = journal::read(&path).map_err(unreadable)?;
     tell_damage(&stored)?;
     match &args.output {
         Some(output) => {
-            let mut report: Box<dyn Reporter> = match args.format {
-                Format::Text => Box::new(text::TextFile::new(output).map_err(Failure::input)?),
-                Format::Junit => {
-                    Box::new(junit::JunitFile::new(output, folder).map_err(Failure::input)?)
-                }
-            };
+            let mut report = output::open_report(args.format, output, path.parent())?;
             report.finish(&stored.record).map_err(Failure::own)?;
         }
         None => {
             let mut out = std::io::stdout().lock();
-            let written = match args.format {
-                Format::Text => text::write(&mut out, &stored.record),
-                Format::Junit => junit::write(&mut out, &stored.record, folder),
-            };
+            let written = output::write(args.format, &mut out, &stored.record, path.parent());
             Failure::unless_reader_left(written.and_then(|()| out.flush()))?;
         }
     }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The events themselves: those of a journal that can be read.
+fn events(journal: &Path, output: Option<&Path>) -> Outcome {
+    let stored = match output {
+        None => journal::replay(journal, &mut EventStream::new(Box::new(std::io::stdout()))),
+        Some(path) => {
+            let mut events = Vec::new();
+            let stored = journal::read_with(journal, |event, _| {
+                event_stream::write(&mut events, event).map_err(|source| ReportError {
+                    what: "the events",
+                    path: path.to_owned(),
+                    source,
+                })
+            });
+            output_file::write("the events", path, |out| out.write_all(&events))
+                .map_err(Failure::input)?;
+            stored
+        }
+    };
+    tell_damage(&stored.map_err(unreadable)?)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use rtf_model::Record;
 use rtf_report::console::{Console, ConsoleOptions, Verbosity};
 use rtf_report::journal::{self, JournalError, Stored};
 use rtf_report::run_folder;
@@ -24,10 +25,12 @@ pub fn run(args: &ShowArgs) -> Outcome {
     });
     let stored = journal::replay(&path, &mut console).map_err(unreadable)?;
     tell_damage(&stored)?;
-    if stored.record.is_complete() {
-        return Ok(exit::of_run(&stored.record));
-    }
-    Ok(ExitCode::from(exit::FAILED))
+    Ok(exit_code(&stored.record))
+}
+
+/// The exit code of a past run, which may have no end.
+pub fn exit_code(record: &Record) -> ExitCode {
+    if record.is_complete() { exit::of_run(record) } else { ExitCode::from(exit::FAILED) }
 }
 
 /// The journal of a run, in the run's own folder: what leads through `latest`

@@ -1,0 +1,97 @@
+//! Options about the browser's view of runs.
+
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::ResultsArgs;
+
+/// Where the options about the browser's view stand in the help.
+const HEADING: &str = "Web";
+/// Where it is when nobody says so.
+const ADDRESS: &str = "127.0.0.1:8080";
+/// Its port when only the address is said.
+const PORT: u16 = 8080;
+
+/// Whether and how a run is shown in a browser.
+#[derive(Debug, Args)]
+pub struct WebRunArgs {
+    /// Show the run live in a browser, on this address (127.0.0.1:8080) or the next free port
+    #[arg(help_heading = HEADING, long, value_name = "ADDR:PORT", value_parser = parse_address)]
+    #[arg(num_args = 0..=1, require_equals = true, default_missing_value = ADDRESS)]
+    pub web: Option<SocketAddr>,
+
+    #[command(flatten)]
+    pub access: WebAccessArgs,
+}
+
+/// Which runs to show in a browser.
+#[derive(Debug, Args)]
+pub struct ServeArgs {
+    #[command(flatten)]
+    pub results: ResultsArgs,
+
+    /// Where to listen; the next free port is taken when this one is not free
+    #[arg(help_heading = HEADING, long, value_name = "ADDR:PORT", default_value = ADDRESS)]
+    #[arg(value_parser = parse_address)]
+    pub web: SocketAddr,
+
+    #[command(flatten)]
+    pub access: WebAccessArgs,
+}
+
+/// Who may see it.
+#[derive(Debug, Default, Args)]
+pub struct WebAccessArgs {
+    /// Read the token from a file, instead of making a new one
+    #[arg(help_heading = HEADING, long, value_name = "FILE")]
+    pub web_token_file: Option<PathBuf>,
+
+    /// Let other machines connect: with the token, also for reading, and with TLS
+    #[arg(help_heading = HEADING, long)]
+    pub web_allow_remote: bool,
+
+    /// The certificate for TLS (PEM); beyond this machine one is made when none is given
+    #[arg(help_heading = HEADING, long, value_name = "FILE", requires = "web_key")]
+    pub web_cert: Option<PathBuf>,
+
+    /// The certificate's key (PEM)
+    #[arg(help_heading = HEADING, long, value_name = "FILE", requires = "web_cert")]
+    pub web_key: Option<PathBuf>,
+
+    /// Another name under which the server is reached
+    #[arg(help_heading = HEADING, long = "web-host", value_name = "NAME")]
+    pub web_hosts: Vec<String>,
+}
+
+fn parse_address(text: &str) -> Result<SocketAddr, String> {
+    let text = text.replace("localhost", "127.0.0.1");
+    if let Ok(address) = text.parse() {
+        return Ok(address);
+    }
+    if let Ok(port) = text.strip_prefix(':').unwrap_or(&text).parse::<u16>() {
+        return Ok(SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), port));
+    }
+    let address = text.parse::<IpAddr>().map(|address| SocketAddr::new(address, PORT));
+    address.map_err(|_| format!("expected an address and a port, like `{ADDRESS}`"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::parse_address;
+
+    #[test]
+    fn an_address_a_port_or_both() {
+        let parsed = |text: &str| parse_address(text).map(|address| address.to_string());
+        assert_eq!(parsed("127.0.0.1:9000").as_deref(), Ok("127.0.0.1:9000"));
+        assert_eq!(parsed("localhost:0").as_deref(), Ok("127.0.0.1:0"));
+        assert_eq!(parsed("9000").as_deref(), Ok("127.0.0.1:9000"));
+        assert_eq!(parsed(":9000").as_deref(), Ok("127.0.0.1:9000"));
+        assert_eq!(parsed("0.0.0.0").as_deref(), Ok("0.0.0.0:8080"));
+        assert_eq!(parsed("[::1]:80").as_deref(), Ok("[::1]:80"));
+        for bad in ["", "robot", "127.0.0.1:99999", "1.2.3"] {
+            assert!(parsed(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! One run of a plan: engine, reporters and signals together.
+
+use std::num::NonZeroU16;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use rtf_engine::guard::Link;
+use rtf_engine::locks::LockOptions;
+use rtf_engine::run::{Forks, RunOptions, Sink, execute};
+use rtf_engine::signal;
+use rtf_model::{EVENTS_VERSION, Event, Manifest, RunStarted};
+use rtf_report::run_folder::RunFolder;
+use rtf_report::{Fanout, FanoutHandle, Reporter};
+
+use super::Outcome;
+use super::planning::Planned;
+use super::web::Asks;
+use crate::error::Failure;
+use crate::exit;
+
+/// What is run, and how.
+pub struct Job<'a> {
+    /// The plan.
+    pub planned: &'a Planned,
+    /// Where the run is kept.
+    pub folder: &'a RunFolder,
+    /// Which hosts are forked.
+    pub forks: Forks,
+    /// What may be asked of it while it goes on.
+    pub asks: &'a Asks,
+    /// After how many tests that have not passed the rest is skipped.
+    pub max_fail: Option<u32>,
+    /// How locks are waited for.
+    pub locks: LockOptions,
+    /// How many suites run at the same time at the most.
+    pub jobs: NonZeroU16,
+}
+
+impl Job<'_> {
+    /// Runs under a guard; `reporters` tell of it, in this order.
+    pub fn perform(&self, reporters: Vec<Box<dyn Reporter>>, guard: Link) -> Outcome {
+        let fanout = Fanout::start(reporters).map_err(Failure::own)?;
+        let ended = self.run_plan(fanout.handle(), Arc::new(guard));
+        let finished = fanout.join();
+        let killed_by = ended.map_err(Failure::own)?;
+        let wrote_all = finished.errors.is_empty();
+        for error in finished.errors {
+            Failure::own(error).show();
+        }
+        Ok(match killed_by {
+            Some(signal) => ExitCode::from(u8::try_from(128 + signal).unwrap_or(exit::FAILED)),
+            None if wrote_all => exit::of_run(&finished.record),
+            None => ExitCode::from(exit::BROKEN),
+        })
+    }
+
+    /// Runs the plan; `Some` with the signal that ended `rtf` the hard way.
+    fn run_plan(&self, events: FanoutHandle, guard: Arc<Link>) -> std::io::Result<Option<i32>> {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+        let Asks { stops, controls, shutdown_timeout } = self.asks;
+        let stopped = stops.subscribe();
+        let options = RunOptions {
+            started: self.started(),
+            warnings: self.planned.warnings.clone(),
+            journal: self.folder.journal().canonicalize()?,
+            folder: self.folder.path.canonicalize()?,
+            guard: guard.clone(),
+            forks: self.forks,
+            max_fail: self.max_fail,
+            controls: controls.subscribe(),
+            locks: self.locks.clone(),
+            jobs: self.jobs.into(),
+        };
+        let sink: Arc<dyn Sink> = Arc::new(Reports(events));
+        let plan = &self.planned.plan;
+        runtime.block_on(async {
+            tokio::select! {
+                biased;
+                signal = signal::forward(stops, &guard, *shutdown_timeout) => signal.map(Some),
+                done = execute(plan, options, sink, stopped) => done.map(|()| None),
+            }
+        })
+    }
+
+    fn started(&self) -> RunStarted {
+        let plan = &self.planned.plan;
+        let jobs = Some(self.jobs.get().into()).filter(|jobs| *jobs > 1);
+        let manifest = Manifest { jobs, ..self.planned.manifest.clone() };
+        RunStarted {
+            version: EVENTS_VERSION,
+            run: self.folder.name.clone(),
+            rtf: env!("CARGO_PKG_VERSION").to_owned(),
+            started_at: self.folder.started_at.clone(),
+            command: std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect(),
+            folder: self.planned.folder.to_string_lossy().into_owned(),
+            suites: u32::try_from(plan.suites.len()).unwrap_or(u32::MAX),
+            tests: plan.tests,
+            manifest: Box::new(manifest),
+        }
+    }
+}
+
+/// The way of a run's events to the reporters.
+#[derive(Debug)]
+struct Reports(FanoutHandle);
+
+impl Sink for Reports {
+    fn emit(&self, event: Event) {
+        self.0.send(event);
+    }
+
+    fn is_congested(&self) -> bool {
+        self.0.is_congested()
+    }
+}

@@ -1,0 +1,128 @@
+//! The browser's view of a run, and of past ones: `--web`, and `rtf serve`.
+
+use std::io::Write;
+use std::net::SocketAddr;
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::Duration;
+
+use rtf_engine::run::{Control, Stop, StopLevel};
+use rtf_model::{SuiteId, TestId};
+use rtf_web::{Bound, Served, Server, Settings};
+use tokio::sync::watch;
+
+use super::Outcome;
+use crate::cli::{ServeArgs, WebAccessArgs};
+use crate::error::Failure;
+
+/// Who stops, in the words of verdicts.
+const PERSON: &str = "a person, in the browser";
+
+/// What may come from a browser into a run.
+#[derive(Debug)]
+pub struct Asks {
+    /// The end of the run.
+    pub stops: watch::Sender<Option<Stop>>,
+    /// Everything else.
+    pub controls: watch::Sender<Vec<Control>>,
+    /// How long the end of the run may take.
+    pub shutdown_timeout: Duration,
+}
+
+impl Asks {
+    /// Nobody asks for anything yet.
+    pub fn new(shutdown_timeout: Duration) -> Self {
+        let (stops, controls) = (watch::channel(None).0, watch::channel(Vec::new()).0);
+        Self { stops, controls, shutdown_timeout }
+    }
+}
+
+impl rtf_web::Control for Asks {
+    fn stop_run(&self) {
+        self.stops.send_if_modified(|stop| {
+            // A signal that came before asks for as much, or for more.
+            let first = stop.is_none();
+            if first {
+                let (level, limit) = (StopLevel::TearDown, self.shutdown_timeout);
+                *stop = Some(Stop { level, reason: PERSON.to_owned(), limit });
+            }
+            first
+        });
+    }
+
+    fn stop_test(&self, test: TestId) {
+        let by = PERSON.to_owned();
+        self.controls.send_modify(|asked| asked.push(Control::StopTest { test, by }));
+    }
+
+    fn skip_suite(&self, suite: SuiteId) {
+        let by = PERSON.to_owned();
+        self.controls.send_modify(|asked| asked.push(Control::SkipSuite { suite, by }));
+    }
+}
+
+/// Takes the address, before anything is started.
+pub fn bind(address: SocketAddr, args: &WebAccessArgs) -> Result<Bound, Failure> {
+    let settings = Settings {
+        address,
+        allow_remote: args.web_allow_remote,
+        token_file: args.web_token_file.clone(),
+        tls: args.web_cert.clone().zip(args.web_key.clone()),
+        hosts: args.web_hosts.clone(),
+    };
+    Bound::new(&settings).map_err(failed)
+}
+
+/// Takes a port of this machine alone, or the next one that is free.
+pub fn bind_loopback(port: u16) -> Result<Bound, Failure> {
+    let address = SocketAddr::from((std::net::Ipv4Addr::LOCALHOST, port));
+    bind(address, &WebAccessArgs::default())
+}
+
+/// Serves, and says where.
+pub fn serve(
+    bound: Bound,
+    results: &Path,
+    own: Option<(String, Arc<Asks>)>,
+) -> Result<Server, Failure> {
+    let own = own.map(|(name, asks)| (name, asks as Arc<dyn rtf_web::Control>));
+    let server = bound.serve(Served { results, own }).map_err(failed)?;
+    let mut err = anstream::stderr().lock();
+    Failure::unless_reader_left(tell(&mut err, &server))?;
+    Ok(server)
+}
+
+fn failed(error: rtf_web::ServeError) -> Failure {
+    let hint = error.hint().map(str::to_owned);
+    Failure::input(error).hint(hint)
+}
+
+fn tell(err: &mut impl Write, server: &Server) -> std::io::Result<()> {
+    let (bold, reset) = ("\u{1b}[1m", "\u{1b}[0m");
+    if let Some(taken) = server.taken() {
+        let port = server.address().port();
+        writeln!(err, "{bold}web{reset}: port {taken} is taken, port {port} is used")?;
+    }
+    writeln!(err, "{bold}web{reset}: {}", server.url())?;
+    if let Some(fingerprint) = server.fingerprint() {
+        writeln!(
+            err,
+            "{bold}web{reset}: the certificate is signed by rtf itself, SHA-256 {fingerprint}"
+        )?;
+    }
+    err.flush()
+}
+
+/// `rtf serve`: until it is stopped.
+pub fn run(args: &ServeArgs) -> Outcome {
+    let results = &args.results.results;
+    if !results.is_dir() {
+        let message = format!("there is no results folder `{}`", results.display());
+        let hint = "name one with `--results DIR`, or run something first";
+        return Err(Failure::input(message).hint(hint.to_owned()));
+    }
+    let server = serve(bind(args.web, &args.access)?, results, None)?;
+    server.wait().map_err(Failure::own)?;
+    Ok(ExitCode::SUCCESS)
+}
