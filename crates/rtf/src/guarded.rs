@@ -1,4 +1,4 @@
-//! `rtf run` under a guard: what the process does that the user started.
+//! A run under a guard: what the process does that the user started.
 //!
 //! The runner is its child. This module tells what the guard had to do.
 
@@ -6,37 +6,85 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-use rtf_engine::guard::{self, Died, Ended, Side};
-use rtf_model::LeftProcess;
-use rtf_report::journal;
+use rtf_engine::guard::{self, Died, Ended, Link, Side};
+use rtf_model::{LeftProcess, Record};
+use rtf_report::{Reporter, journal};
 
 use crate::cli::RunArgs;
-use crate::command::{self, Outcome};
+use crate::command::{self, Outcome, output};
 use crate::error::Failure;
 use crate::exit;
 
 /// Runs.
 pub fn run(args: &RunArgs) -> Outcome {
-    let ended = match guard::split().map_err(Failure::own)? {
-        Side::Runner(link) => return command::run::run(args, link),
-        Side::Guard(guard) => guard.watch(),
-    };
-    let mut err = anstream::stderr().lock();
-    match ended {
-        Ended::ByItself { code, left } => {
-            Failure::unless_reader_left(tell_left(&mut err, &left))?;
-            Ok(ExitCode::from(code))
+    let run = |link| command::run::run(args, link);
+    let close = |journal: &Path, record: &Record| {
+        for (format, path) in &args.reports {
+            finish(output::open_report(*format, path, journal.parent()), record);
         }
-        Ended::Died(died) => {
-            Failure::unless_reader_left(tell(&mut err, &died))?;
-            write_reports(args, died.journal.as_deref());
-            let unsafe_robot = died.hooks.iter().any(|hook| hook.problem.is_some());
-            Ok(ExitCode::from(if unsafe_robot { exit::HOOK_FAILED } else { exit::RUNNER_DIED }))
+        let closed = output::close(args, journal, record);
+        if let Err(failure) = Failure::unless_reader_left(closed) {
+            let _ = failure.show();
+        }
+    };
+    Guarded { run, close: &close, kept: true }.watch()
+}
+
+/// What runs under a guard.
+pub struct Guarded<'a, R> {
+    /// Runs, in the runner's process.
+    pub run: R,
+    /// What the runner would have written at its end, from the journal; in the
+    /// guard's process.
+    pub close: &'a dyn Fn(&Path, &Record),
+    /// Whether the journal is still there when the guard has ended.
+    pub kept: bool,
+}
+
+impl<R: FnOnce(Link) -> Outcome> Guarded<'_, R> {
+    /// Runs it.
+    pub fn watch(self) -> Outcome {
+        let ended = match guard::split().map_err(Failure::own)? {
+            Side::Runner(link) => return (self.run)(link),
+            Side::Guard(guard) => guard.watch(),
+        };
+        match ended {
+            Ended::ByItself { code, left } => {
+                let mut err = anstream::stderr().lock();
+                Failure::unless_reader_left(tell_left(&mut err, &left))?;
+                Ok(ExitCode::from(code))
+            }
+            Ended::Died(died) => {
+                let told = tell(&mut anstream::stderr().lock(), &died, self.kept);
+                Failure::unless_reader_left(told)?;
+                if let Some(journal) = &died.journal {
+                    close(self.close, journal);
+                }
+                let unsafe_robot = died.hooks.iter().any(|hook| hook.problem.is_some());
+                Ok(ExitCode::from(if unsafe_robot { exit::HOOK_FAILED } else { exit::RUNNER_DIED }))
+            }
         }
     }
 }
 
-fn tell(err: &mut impl Write, died: &Died) -> io::Result<()> {
+fn close(close: &dyn Fn(&Path, &Record), journal: &Path) {
+    match journal::read(journal) {
+        Ok(stored) => close(journal, &stored.record),
+        Err(error) => {
+            let _ = Failure::own(error).show();
+        }
+    }
+}
+
+/// Writes a report of a run that is over.
+pub fn finish(report: Result<Box<dyn Reporter>, Failure>, record: &Record) {
+    let written = report.and_then(|mut report| report.finish(record).map_err(Failure::own));
+    if let Err(failure) = written {
+        let _ = failure.show();
+    }
+}
+
+fn tell(err: &mut impl Write, died: &Died, kept: bool) -> io::Result<()> {
     let (red, green, bold, reset) = ("\u{1b}[1;31m", "\u{1b}[32m", "\u{1b}[1m", "\u{1b}[0m");
     writeln!(err, "{red}error{reset}: the runner died: {}", died.reason)?;
     for hook in &died.hooks {
@@ -52,6 +100,7 @@ fn tell(err: &mut impl Write, died: &Died) -> io::Result<()> {
         (Some(journal), Some(problem)) => {
             writeln!(err, "{bold}caused by{reset}: cannot close `{}`: {problem}", journal.display())
         }
+        (Some(_), None) if !kept => Ok(()),
         (Some(journal), None) => {
             let folder = journal.parent().unwrap_or(journal);
             writeln!(err, "{bold}hint{reset}: `rtf show {}` shows what was done", folder.display())
@@ -66,24 +115,4 @@ fn tell_left(err: &mut impl Write, left: &[LeftProcess]) -> io::Result<()> {
         writeln!(err, "  killed: {pid} {command}{owner}")?;
     }
     Ok(())
-}
-
-/// The reports that the runner would have written at its end.
-fn write_reports(args: &RunArgs, journal: Option<&Path>) {
-    let Some(journal) = journal.filter(|_| !args.reports.is_empty()) else { return };
-    let stored = match journal::read(journal) {
-        Ok(stored) => stored,
-        Err(error) => {
-            let _ = Failure::own(error).show();
-            return;
-        }
-    };
-    for (format, path) in &args.reports {
-        let report = command::run::open_report(*format, path, journal.parent());
-        let written =
-            report.and_then(|mut report| report.finish(&stored.record).map_err(Failure::own));
-        if let Err(failure) = written {
-            let _ = failure.show();
-        }
-    }
 }

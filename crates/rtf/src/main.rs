@@ -9,25 +9,44 @@ mod error;
 mod exit;
 mod guarded;
 mod render;
+mod settings;
+mod testrunner;
 
 use std::process::ExitCode;
 
-use clap::Parser;
-use cli::{Cli, Color, Command};
+use clap::{CommandFactory, FromArgMatches};
+use cli::{Cli, Color, Command, ConfigVerb};
+use rtf_engine::isolate;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    // Before anything else: this process must have one thread only.
+    if std::env::args_os().nth(1).is_some_and(|first| first == isolate::HOLD) {
+        return if isolate::hold().is_ok() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+    }
+    if testrunner::is_called() {
+        return testrunner::main();
+    }
+    let matches = Cli::command().get_matches();
+    let mut cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     match cli.color {
         Color::Auto => {}
         Color::Always => anstream::ColorChoice::Always.write_global(),
         Color::Never => anstream::ColorChoice::Never.write_global(),
     }
+    if let Err(failure) = settings::settle(&mut cli.command, &matches) {
+        return failure.show();
+    }
     let outcome = match &cli.command {
         Command::Run(args) => guarded::run(args),
+        Command::Watch(args) => command::watch::run(args),
         Command::Check(args) => command::check::run(args),
         Command::List(args) => command::list::run(args),
+        Command::Locks(args) => command::locks::run(args),
         Command::Show(args) => command::show::run(args),
         Command::Report(args) => command::report::run(args),
+        Command::Merge(args) => command::merge::run(args),
+        Command::Serve(args) => command::web::run(args),
+        Command::Config { verb: ConfigVerb::Show(args) } => command::config::show(args),
         Command::Completions { shell } => command::completions::run(*shell),
         Command::Man { folder } => command::man::run(folder),
     };

@@ -5,6 +5,7 @@
 //!     cargo run -p xtask -- header [--check]     sdk/c/include/rtf/plugin.h
 
 mod header;
+mod openapi;
 mod schemas;
 
 use std::error::Error;

@@ -1,4 +1,4 @@
-//! The JSON Schemas of the event stream and of the host protocol, for programs
+//! The JSON Schemas of the event stream, the host protocol and the web API, for programs
 //! that are not written in Rust.
 
 use std::fs;
@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 use rtf_model::protocol::{Answer, Initialized, Notification, Request};
 use rtf_model::{Diagnostic, Event};
 use schemars::{JsonSchema, SchemaGenerator};
+
+use crate::openapi;
 
 /// Where they are kept, relative to the workspace.
 const FOLDER: &str = "schemas";
@@ -75,6 +77,7 @@ fn all() -> Result<Vec<Named>, SchemaError> {
         ("notification.json", schema::<Notification>()?),
         ("initialized.json", schema::<Initialized>()?),
         ("answer.json", schema::<Answer>()?),
+        ("openapi.json", openapi::description().map_err(SchemaError::Text)? + "\n"),
     ])
 }
 

@@ -61,26 +61,13 @@ fn shown(text: &str) -> String {
 
 #[test]
 fn not_supported_yet() {
-    let suite = "<suite isolate=\"network\">\n  \
-                 <test isolation=\"shared\" retries=\"2\">ArmTest.lua</test>\n</suite>";
+    let suite = "<suite>\n  <test isolation=\"shared\">ArmTest.lua</test>\n</suite>";
     assert_snapshot!(shown(suite), @r#"
-    error: `isolate` is not supported by this version of rtf
-     --> suite.xml:1:8
-      |
-    1 | <suite isolate="network">
-      |        ^^^^^^^
-
     error: `isolation="shared"` is not supported by this version of rtf
      --> suite.xml:2:20
       |
-    2 |   <test isolation="shared" retries="2">ArmTest.lua</test>
+    2 |   <test isolation="shared">ArmTest.lua</test>
       |                    ^^^^^^
-
-    error: `retries` is not supported by this version of rtf
-     --> suite.xml:2:28
-      |
-    2 |   <test isolation="shared" retries="2">ArmTest.lua</test>
-      |                            ^^^^^^^
     "#);
 }
 
