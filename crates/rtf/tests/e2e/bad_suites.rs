@@ -30,7 +30,7 @@ fn an_unknown_attribute() {
     2 |   <test timout="3s">EncoderTest.lua</test>
       |         ^^^^^^ not known in `<test>`
       |
-      = note: `<test>` can have the attributes `name`, `type`, `param`, `repetition`, `tags`, `timeout`, `load-timeout`, `setup-timeout`, `teardown-timeout`, `slow`, `grace`, `after-collapse`, `leaks`, `critical`, `isolation`
+      = note: `<test>` can have the attributes `name`, `type`, `param`, `repetition`, `tags`, `timeout`, `load-timeout`, `setup-timeout`, `teardown-timeout`, `slow`, `grace`, `after-collapse`, `leaks`, `retries`, `retry-delay`, `critical`, `isolation`
       = help: did you mean `timeout`?
 
     1 error; nothing was started
@@ -96,7 +96,7 @@ fn an_unknown_type() {
     2 |   <test type="lau">EncoderTest</test>
       |               ^^^
       |
-      = note: known types are `dll`, `lua`, `python`
+      = note: known types are `dll`, `lua`, `python`, `ruby`
       = help: did you mean `lua`?
 
     1 error; nothing was started
@@ -135,7 +135,7 @@ fn five_mistakes_are_five_messages() {
     1 | <suite name="arm" tag="smoke">
       |                   ^^^ not known in `<suite>`
       |
-      = note: `<suite>` can have the attributes `name`, `timeout`, `tags`, `tolerate-collapse`, `after-collapse`, `leaks`, `test-timeout`, `test-load-timeout`, `test-setup-timeout`, `test-teardown-timeout`, `test-slow`, `test-grace`
+      = note: `<suite>` can have the attributes `name`, `timeout`, `tags`, `isolate`, `requires`, `middleware`, `tolerate-collapse`, `after-collapse`, `leaks`, `retries`, `retry-delay`, `test-timeout`, `test-load-timeout`, `test-setup-timeout`, `test-teardown-timeout`, `test-slow`, `test-grace`
       = help: did you mean `tags`?
 
     error: unknown element `<fixtures>`
@@ -161,7 +161,7 @@ fn five_mistakes_are_five_messages() {
     4 |   <test type="rust">EncoderTest</test>
       |               ^^^^
       |
-      = note: known types are `dll`, `lua`, `python`
+      = note: known types are `dll`, `lua`, `python`, `ruby`
 
     error: there is no plug-in `Missing.lua` of type `lua`
      --> arm.xml:5:9

@@ -93,6 +93,7 @@ fn check(record: &Record, suites: usize) {
             assert!(expected.contains(&finished.verdict), "{finished:?}");
         }
     }
-    let restarts: u32 = record.fixtures.iter().map(|fixture| fixture.starts - 1).sum();
+    // One that broke in its first set-up keeps those after it from being started.
+    let restarts: u32 = record.fixtures.iter().map(|f| f.starts.saturating_sub(1)).sum();
     println!("{} collapses, {restarts} restarts", collapses.len());
 }

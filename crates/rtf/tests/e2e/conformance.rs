@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use rtf_model::{AttemptRecord, Event, EventKind, Record, SuiteId};
 use serde_json::{Value, json};
 
-use crate::support::{Folder, build_cpp, nothing_left, root};
+use crate::support::{Folder, build_ada, build_cpp, nothing_left, root};
 
 struct Language {
     name: &'static str,
@@ -13,25 +13,52 @@ struct Language {
     file: &'static str,
 }
 
-const LANGUAGES: [Language; 3] = [
+const LANGUAGES: [Language; 5] = [
     Language { name: "cpp", plugin_type: "dll", file: "plugin.so" },
     Language { name: "lua", plugin_type: "lua", file: "plugin.lua" },
     Language { name: "python", plugin_type: "python", file: "plugin.py" },
+    Language { name: "ruby", plugin_type: "ruby", file: "plugin.rb" },
+    Language { name: "ada", plugin_type: "dll", file: "libplugin.so" },
 ];
 
 #[test]
 fn cpp() {
-    check_language(&LANGUAGES[0]);
+    check_language(&LANGUAGES[0], "never");
+}
+
+#[test]
+fn cpp_forked() {
+    check_language(&LANGUAGES[0], "always");
 }
 
 #[test]
 fn lua() {
-    check_language(&LANGUAGES[1]);
+    check_language(&LANGUAGES[1], "never");
+}
+
+#[test]
+fn lua_forked() {
+    check_language(&LANGUAGES[1], "always");
 }
 
 #[test]
 fn python() {
-    check_language(&LANGUAGES[2]);
+    check_language(&LANGUAGES[2], "auto");
+}
+
+#[test]
+fn ruby() {
+    check_language(&LANGUAGES[3], "auto");
+}
+
+#[test]
+fn ada() {
+    check_language(&LANGUAGES[4], "never");
+}
+
+#[test]
+fn ada_forked() {
+    check_language(&LANGUAGES[4], "always");
 }
 
 fn folder() -> PathBuf {
@@ -58,17 +85,23 @@ fn is_excepted(scenario: &str, language: &str) -> bool {
 
 fn plugin(scenario: &str, language: &Language, built: Option<&Path>) -> PathBuf {
     match built {
-        Some(built) => built.join(format!("{scenario}.so")),
+        Some(built) if language.name == "cpp" => built.join(format!("{scenario}.so")),
+        Some(built) => built.join(scenario).join(language.file),
         None => folder().join("scenarios").join(scenario).join(language.file),
     }
 }
 
 /// A suite for each scenario: the scenario's test, then one that must not suffer.
-fn check_language(language: &Language) {
-    let built = (language.name == "cpp").then(|| build_cpp(&folder(), "conformance"));
+/// The hosts are forked, or not.
+fn check_language(language: &Language, fork: &str) {
     let temp = Folder::new();
     let scenarios: Vec<String> =
         scenarios().into_iter().filter(|name| !is_excepted(name, language.name)).collect();
+    let built = match language.name {
+        "cpp" => Some(build_cpp(&folder(), "conformance")),
+        "ada" => Some(build_ada(&folder().join("conformance.gpr"), "SCENARIO", &scenarios)),
+        _ => None,
+    };
     for scenario in &scenarios {
         let path = |name: &str| plugin(name, language, built.as_deref());
         let (test, after) = (path(scenario), path("pass"));
@@ -86,7 +119,7 @@ fn check_language(language: &Language) {
         );
         temp.file(&format!("{scenario}.xml"), &suite);
     }
-    let finished = temp.rtf(&["run", "."]);
+    let finished = temp.rtf(&["run", "--fork", fork, "."]);
     assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
     let journal = temp.journal();
     let problems: Vec<String> = scenarios

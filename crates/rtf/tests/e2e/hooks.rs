@@ -115,3 +115,24 @@ fn a_test_that_leaves_a_process_behind_is_an_error_where_the_suite_says_so() {
     assert_eq!(record.verdict(TestId(1)), Some(Verdict::Passed));
     assert!(nothing_left(&folder));
 }
+
+/// Known by its control group where there is one, at the end of the run elsewhere.
+#[test]
+fn a_daemon_without_a_trace_is_found() {
+    let folder = Folder::new();
+    folder.file("T.lua", "TestCase = {}\nfunction TestCase.run() os.execute('setsid env -i sleep 1000 >/dev/null 2>&1 &') end\n");
+    folder.file("s.xml", "<suite name='s'><test leaks='fail'>T.lua</test></suite>");
+    let groups = rtf_engine::host::cgroup::Cgroups::get();
+    let finished = folder.rtf(&["run", "s.xml"]);
+    let record = folder.journal().record;
+    if groups.is_some() {
+        assert_eq!(finished.code, Some(1), "{}", finished.stdout);
+        let reason = record.tests[0].reason().expect("a reason");
+        // It may be seen before it has become `sleep`.
+        assert!(reason.starts_with("it left "), "{reason}");
+    } else {
+        let warned = record.warnings.iter().any(|warning| warning.code == "processes-left");
+        assert!(warned, "{}", finished.stdout);
+    }
+    assert!(nothing_left(&folder));
+}

@@ -6,21 +6,43 @@
 
 mod support;
 
+mod ada;
+mod attached;
 mod bad_input;
 mod bad_libraries;
 mod bad_outputs;
 mod bad_plugins;
 mod bad_suites;
 mod chaos;
+mod choosing;
+mod code_hosts;
 mod collapse;
 mod conformance;
 mod cpp_fixture;
+mod forks;
 mod guard;
 mod hooks;
+mod hostile_fixtures;
 mod inputs;
+mod isolation;
 mod killed;
+mod locks;
+mod merge;
+mod middleware;
 mod predecessor;
+mod predecessor_scripts;
 mod process_fixture;
+mod profiles;
+mod remote;
+mod repeating;
 mod reports;
+mod side_by_side;
 mod signals;
+mod testrunner;
+mod testrunner_truth;
+mod unprivileged;
 mod verbs;
+mod watch;
+mod web;
+#[path = "../../../rtf-web/tests/server/client.rs"]
+mod web_client;

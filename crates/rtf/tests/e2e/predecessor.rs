@@ -1,6 +1,6 @@
 //! The defects of robot-testing-framework 2.x that users suffered from, each
 //! with a test that it does not come back. The numbers are those of the list
-//! in `docs/coming-from-2.x.md`.
+//! in `docs/migrating.md`.
 
 use rtf_model::{MessageKind, TestId, Verdict};
 

@@ -48,3 +48,31 @@ fn the_second_signal_kills_without_tear_down() {
     assert!(folder.path().join("junit.xml").exists());
     assert!(nothing_left(&folder));
 }
+
+#[test]
+fn a_tear_down_that_hangs_ends_with_the_time_for_the_shutdown() {
+    let folder = Folder::new();
+    let hanging = FIXTURE.replace(
+        "'torn-down', 'w').close()",
+        "'torn-down', 'w').close()\n        import time\n        time.sleep(1000)",
+    );
+    let hook =
+        "<hook name='park' on='interrupt'><command>sh -c 'echo parked > parked'</command></hook>";
+    let suite = format!(
+        "<suite name='s'><fixture type='python' teardown-timeout='1h'>F</fixture>{hook}<test type='python'>T</test></suite>"
+    );
+    folder.file("F.py", &hanging).file("T.py", PATIENT).file("s.xml", &suite);
+    let running = folder.start(&["run", "s.xml", "--shutdown-timeout", "500ms"]);
+    running.wait_for(|kind| matches!(kind, EventKind::TestPhase { phase: Phase::Run, .. }));
+    running.signal("INT");
+    let finished = running.finish();
+    assert_eq!(finished.code, Some(130));
+    let told = "the run did not end within 500ms of SIGINT";
+    assert!(finished.stdout.contains(told), "{}", finished.stdout);
+    let record = folder.journal().record;
+    assert_eq!(record.verdict(TestId(0)), Some(Verdict::Interrupted));
+    assert_eq!(record.fixtures[0].problems[0].1, format!("it was killed: {told}"));
+    assert!(folder.path().join("torn-down").exists(), "its tear-down had begun");
+    assert!(folder.path().join("parked").exists());
+    assert!(nothing_left(&folder));
+}

@@ -1,5 +1,6 @@
 //! A temporary folder with suites and plug-ins, and the real runner in it.
 
+use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -22,6 +23,16 @@ pub struct Finished {
     pub code: Option<i32>,
     pub stdout: String,
     pub stderr: String,
+}
+
+impl Finished {
+    fn of(output: std::process::Output) -> Self {
+        Self {
+            code: output.status.code(),
+            stdout: String::from_utf8_lossy(&output.stdout).into_owned(),
+            stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
+        }
+    }
 }
 
 /// A journal, read.
@@ -51,7 +62,20 @@ impl Folder {
         let mut command = Command::new(env!("CARGO_BIN_EXE_rtf"));
         command.args(args).current_dir(self.path()).stdin(Stdio::null());
         // Cargo sets the library path, in which plug-ins are searched.
-        for variable in ["RTF_RESULTS", "RTF_PLUGIN_PATH", "RTF_PYTHON", "LD_LIBRARY_PATH"] {
+        for variable in [
+            "RTF_RESULTS",
+            "RTF_PLUGIN_PATH",
+            "RTF_PYTHON",
+            "RTF_RUBY",
+            "RTF_FORK",
+            "RTF_PROFILE",
+            "RTF_SSH",
+            "LD_LIBRARY_PATH",
+            "GITHUB_ACTIONS",
+            "GITHUB_WORKSPACE",
+            "GITLAB_CI",
+            "CI_PROJECT_DIR",
+        ] {
             command.env_remove(variable);
         }
         command.env("NO_COLOR", "1");
@@ -59,17 +83,33 @@ impl Folder {
     }
 
     pub fn rtf(&self, args: &[&str]) -> Finished {
-        let output = self.command(args).output().expect("rtf runs");
-        Finished {
-            code: output.status.code(),
-            stdout: String::from_utf8_lossy(&output.stdout).into_owned(),
-            stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
-        }
+        Finished::of(self.command(args).output().expect("rtf runs"))
+    }
+
+    /// `rtf` under the predecessor's name.
+    pub fn testrunner_command(&self, args: &[&str]) -> Command {
+        let mut command = self.command(args);
+        command.arg0("robottestingframework-testrunner");
+        command
+    }
+
+    /// Runs `rtf` under the predecessor's name.
+    pub fn testrunner(&self, args: &[&str]) -> Finished {
+        Finished::of(self.testrunner_command(args).output().expect("rtf runs"))
+    }
+
+    /// The text of a file.
+    pub fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path().join(name)).expect("a file")
     }
 
     /// Starts `rtf` and lets it run.
     pub fn start(&self, args: &[&str]) -> Running {
-        let mut command = self.command(args);
+        self.start_command(self.command(args))
+    }
+
+    /// Starts a command of this folder and lets it run.
+    pub fn start_command(&self, mut command: Command) -> Running {
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         self.watch(command.spawn().expect("rtf starts"))
     }
@@ -81,7 +121,12 @@ impl Folder {
 
     /// The newest journal, complete and in order.
     pub fn journal(&self) -> Journal {
-        let journal = read_journal(&self.path().join("rtf-results/latest/events.jsonl"));
+        self.journal_in("rtf-results")
+    }
+
+    /// The newest journal in a folder of results.
+    pub fn journal_in(&self, results: &str) -> Journal {
+        let journal = read_journal(&self.path().join(results).join("latest/events.jsonl"));
         let mut order = OrderChecker::default();
         for event in &journal.events {
             order.check(event).expect("events in order");
@@ -178,12 +223,7 @@ impl Running {
     }
 
     pub fn finish(self) -> Finished {
-        let output = self.child.wait_with_output().expect("rtf ends");
-        Finished {
-            code: output.status.code(),
-            stdout: String::from_utf8_lossy(&output.stdout).into_owned(),
-            stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
-        }
+        Finished::of(self.child.wait_with_output().expect("rtf ends"))
     }
 }
 
@@ -212,6 +252,12 @@ impl Random {
 /// A number in an environment variable.
 pub fn number(variable: &str) -> Option<u64> {
     std::env::var(variable).ok().and_then(|value| value.parse().ok())
+}
+
+/// A port that nobody listens at.
+pub fn free_port() -> u16 {
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    listener.local_addr().expect("its address").port()
 }
 
 /// Asks until there is an answer; fails after a minute.
@@ -268,7 +314,8 @@ pub fn build_cpp(sources: &Path, name: &str) -> PathBuf {
     static ONE_AT_A_TIME: std::sync::Mutex<()> = std::sync::Mutex::new(());
     let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let build = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let package = root().canonicalize().expect("a path").join("sdk/cpp/cmake");
+    let package =
+        root().canonicalize().expect("a path").join("sdk/cpp/cmake/RobotTestingFramework");
     let mut configure = Command::new("cmake");
     configure.arg("-S").arg(sources).arg("-B").arg(&build).arg("-DCMAKE_BUILD_TYPE=Debug");
     configure.arg(format!("-DRobotTestingFramework_DIR={}", package.display()));
@@ -277,8 +324,30 @@ pub fn build_cpp(sources: &Path, name: &str) -> PathBuf {
     build
 }
 
+/// Builds Ada plug-ins, one for each value of a project's variable; returns the
+/// folder with `<value>/`.
+pub fn build_ada(project: &Path, variable: &str, values: &[String]) -> PathBuf {
+    static ONE_AT_A_TIME: std::sync::Mutex<()> = std::sync::Mutex::new(());
+    let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let name = project.file_stem().expect("a name").to_string_lossy();
+    let build = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-ada"));
+    for value in values {
+        let build = format!("-XBUILD={}", build.display());
+        gprbuild(project, &[format!("-X{variable}={value}"), build]);
+    }
+    build
+}
+
+/// Builds an Ada project with the SDK's sources.
+pub fn gprbuild(project: &Path, more: &[String]) {
+    let sdk = root().canonicalize().expect("a path").join("sdk/ada");
+    let mut gprbuild = Command::new("gprbuild");
+    gprbuild.args(["-p", "-q", "-j2", "-P"]).arg(project).args(more);
+    run_quietly(gprbuild.env("GPR_PROJECT_PATH", &sdk));
+}
+
 fn run_quietly(command: &mut Command) {
-    let output = command.output().expect("cmake is installed");
+    let output = command.output().expect("the tool is installed");
     let text = String::from_utf8_lossy(&output.stdout).into_owned()
         + &String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{command:?}\n{text}");

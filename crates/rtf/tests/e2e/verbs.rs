@@ -93,10 +93,15 @@ fn help_lists_the_exit_codes() {
 
     Commands:
       run          Run suites, plug-ins and folders
+      watch        Run again whenever a suite, a plug-in or an `rtf.toml` changes
       check        Find every problem of suites and plug-ins, start nothing
       list         List the tests that `run` would run
+      locks        Show who has the locks of this machine, or wait for some
       show         Show a past run, or what is there of one that was killed
       report       Write a report of a past run
+      merge        Make one run of several, as of the parts that `--shard` made
+      serve        Show runs in a browser, past ones and those that go on
+      config       Tell what `rtf.toml` and others set
       completions  Print a shell's completions
       help         Print this message or the help of the given subcommand(s)
 
@@ -130,6 +135,7 @@ fn help_lists_the_exit_codes() {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "what is shown is long")]
 fn help_of_run() {
     let folder = Folder::new();
     let finished = folder.rtf(&["run", "-h"]);
@@ -138,24 +144,74 @@ fn help_of_run() {
     ----- stdout
     Run suites, plug-ins and folders
 
-    Usage: rtf run [OPTIONS] <FILE>...
+    Usage: rtf run [OPTIONS] [FILE]...
 
     Arguments:
-      <FILE>...  Suites (.xml), plug-ins, and folders of either
+      [FILE]...  Suites (.xml), plug-ins, and folders of either
 
     Options:
-          --color <WHEN>          When to use colours [default: auto] [possible values: auto, always,
-                                  never]
-      -r, --recursive             Descend into folders
-          --param <TEXT>          The parameter string of plug-ins that are given by name
-          --environment <TEXT>    The environment string of plug-ins that are given by name
-          --repetition <N>        How often plug-ins that are given by name are run
-          --results <DIR>         The folder of the runs' folders [env: RTF_RESULTS=] [default:
-                                  rtf-results]
-          --report <FORMAT=PATH>  Also write a report: `junit=PATH` or `text=PATH`
-      -v, --verbose               Show every message, measurement and output as it comes
-      -h, --help                  Print help (see more with '--help')
-      -V, --version               Print version
+          --color <WHEN>                 When to use colours [default: auto] [possible values: auto,
+                                         always, never]
+      -r, --recursive                    Descend into folders
+          --param <TEXT>                 The parameter string of plug-ins that are given by name
+          --environment <TEXT>           The environment string of plug-ins that are given by name
+          --repetition <N>               How often plug-ins that are given by name are run
+          --profile <NAME>               The profile of `rtf.toml` that holds: `real`, `sim`, `ci`, …
+                                         [env: RTF_PROFILE=]
+          --set <NAME=VALUE>             Set a parameter: suites find it as `${param:NAME}`, tests in
+                                         RTF_PARAM_NAME
+          --results <DIR>                The folder of the runs' folders [env: RTF_RESULTS=] [default:
+                                         rtf-results]
+          --format <FORMAT>              What standard output has of the run [default: console]
+                                         [possible values: console, json, tap]
+          --report <FORMAT=PATH>         Also write a report: `junit=PATH`, `text=`, `tap=`,
+                                         `code-quality=` or `github=`
+          --annotations <HOST>           Tell a code host, on standard error or in the log, what went
+                                         wrong [default: auto] [possible values: auto, github, gitlab,
+                                         none]
+          --shutdown-timeout <DURATION>  How long tear-downs and hooks may take altogether, once a
+                                         signal ends the run; then what is left is killed [default: [TIME]]
+      -v, --verbose                      Show every message, measurement and output as it comes
+      -j, --jobs <N>                     How many suites run at the same time, each with fixtures of its
+                                         own [default: 1]
+          --lock-timeout <DURATION>      How long a suite waits for the locks that it requires; for
+                                         ever, unless told
+          --fork <WHEN>                  Fork the hosts of C, C++ and Lua tests from one that is ready:
+                                         `auto` (from the second test on), `always`, or `never` [env:
+                                         RTF_FORK=] [default: auto]
+      -h, --help                         Print help (see more with '--help')
+      -V, --version                      Print version
+
+    Choosing tests:
+      -E, --filter <FILTER>   Only tests that this holds for: `tag(slow) & !type(lua)`; several add up
+          --rerun <WHICH>     Only those that failed, or were interrupted, in a past run: FILE is then
+                              the run, `latest` unless it is given. They get what that run gave them
+                              [possible values: failed, interrupted]
+          --shuffle[=<SEED>]  In a random order; the number that decides it is shown, and repeats it
+          --shard <N/OF>      Only one part of the tests, of several: `2/5`
+          --shard-by <WHAT>   What decides to which part a test belongs: its `hash`, its place in the
+                              `count`, or its `duration` in the run that follows as `duration=RUN`
+                              [default: hash]
+          --dry-run           Only list the tests that would be run
+
+    Repeating tests:
+          --repeat <N>             Run each test so many times as often as its suite says
+          --retries <N>            Try a test that fails so often again, whatever its suite says
+          --flaky-result <RESULT>  What a test counts as that passes only when it is tried again
+                                   [default: pass] [possible values: pass, fail]
+          --max-fail <N>           Skip the rest as soon as so many tests have not passed
+          --until-fail             Skip the rest as soon as a test has not passed
+
+    Web:
+          --web[=<ADDR:PORT>]      Show the run live in a browser, on this address (127.0.0.1:8080) or
+                                   the next free port
+          --web-token-file <FILE>  Read the token from a file, instead of making a new one
+          --web-allow-remote       Let other machines connect: with the token, also for reading, and
+                                   with TLS
+          --web-cert <FILE>        The certificate for TLS (PEM); beyond this machine one is made when
+                                   none is given
+          --web-key <FILE>         The certificate's key (PEM)
+          --web-host <NAME>        Another name under which the server is reached
     ----- stderr
     ");
 }
@@ -192,7 +248,7 @@ fn completions_know_every_verb() {
 fn bash_reads_its_completions() {
     let folder = Folder::new();
     folder.file("rtf.bash", &folder.rtf(&["completions", "bash"]).stdout);
-    let script = "source ./rtf.bash; COMP_WORDS=(rtf s); COMP_CWORD=1; _rtf rtf s rtf; echo \"${COMPREPLY[*]}\"";
+    let script = "source ./rtf.bash; COMP_WORDS=(rtf sh); COMP_CWORD=1; _rtf rtf sh rtf; echo \"${COMPREPLY[*]}\"";
     let mut bash = std::process::Command::new("bash");
     let output = bash.args(["-c", script]).current_dir(folder.path()).output().expect("bash");
     assert_eq!(
@@ -213,7 +269,20 @@ fn man_writes_a_page_for_each_verb() {
         .map(|page| page.expect("a page").file_name().into_string().expect("a name"))
         .collect();
     names.sort();
-    let verbs = ["check", "completions", "list", "report", "run", "show"];
+    let verbs = [
+        "check",
+        "completions",
+        "config-show",
+        "config",
+        "list",
+        "locks",
+        "merge",
+        "report",
+        "run",
+        "serve",
+        "show",
+        "watch",
+    ];
     let wanted: Vec<_> =
         verbs.iter().map(|verb| format!("rtf-{verb}.1")).chain(["rtf.1".into()]).collect();
     assert_eq!(names, wanted);

@@ -1,0 +1,174 @@
+//! Plug-ins in Ada: `sdk/ada/tests` and its example. What they have in common
+//! with other languages is in `conformance.rs`.
+
+use std::path::PathBuf;
+
+use rtf_model::{Record, TestId, Verdict};
+
+use crate::support::{Folder, build_ada, gprbuild, nothing_left, root};
+
+fn plugin(name: &str) -> PathBuf {
+    let project = root().canonicalize().expect("a path").join("sdk/ada/tests/tests.gpr");
+    let built = build_ada(&project, "PLUGIN", &[name.to_owned()]);
+    built.join(name).join(format!("lib{name}.so"))
+}
+
+fn texts(record: &Record, test: usize) -> Vec<String> {
+    let messages = record.tests[test].attempts[0].messages.iter();
+    messages.map(|m| format!("{:?}: {}", m.kind, m.text)).collect()
+}
+
+/// A source for 2.x, which exports the procedure that makes its test.
+#[test]
+fn a_test_of_the_predecessor() {
+    let folder = Folder::new();
+    let file = plugin("predecessor");
+    folder.file(
+        "s.xml",
+        &format!("<suite><test param='--rate 100'>{}</test></suite>", file.display()),
+    );
+    assert_eq!(folder.rtf(&["run", "s.xml"]).code, Some(1));
+    let record = folder.journal().record;
+    let expected = [
+        "Report: test name: MyTest",
+        "Report: setup: --rate 100",
+        "Check: checked 100% %s",
+        "Failure: not so",
+        "Failure: loud",
+        "Failure: the end",
+        "Report: torn down",
+    ];
+    assert_eq!(texts(&record, 0), expected);
+    assert_eq!(record.verdict(TestId(0)), Some(Verdict::Failed));
+    assert_eq!(record.tests[0].reason(), Some("not so"));
+    let places = record.tests[0].attempts[0].messages.iter().map(|message| {
+        let place = message.location.as_ref().expect("a place");
+        format!("{}:{}", place.file, place.line)
+    });
+    let lines = ["15", "28", "29", "31", "34"].map(|line| format!("predecessor.adb:{line}"));
+    let places: Vec<_> = places.collect();
+    assert_eq!([&places[1..4], &places[4..6]].concat(), lines);
+}
+
+/// Each ending of one plug-in: the verdict, and what is told before the tear-down.
+#[test]
+fn endings() {
+    let cases: [(&str, Verdict, &[&str]); 7] = [
+        (
+            "session 'a b'",
+            Verdict::Passed,
+            &["Report: session, session 'a b', --robot sim, 1, 2", "Report: a b"],
+        ),
+        ("beyond", Verdict::Error, &["Error: CONSTRAINT_ERROR: endings.adb:21 index check failed"]),
+        ("catch", Verdict::Failed, &["Failure: caught", "Report: went on"]),
+        ("wait", Verdict::Passed, &["Check: four turns"]),
+        (
+            "numbers",
+            Verdict::Failed,
+            &[
+                "Failure: length: got 2 values, expected 1",
+                "Failure: sensor: got nan, expected 0 ± 0.1",
+                "Check: nothing",
+                "Failure: yaw: got 0, expected 1 ± 0.1 (off by 1)",
+            ],
+        ),
+        (
+            "tolerance",
+            Verdict::Error,
+            &["Error: CONSTRAINT_ERROR: the tolerance -1 is not a finite number from 0"],
+        ),
+        (
+            "attach",
+            Verdict::Error,
+            &[
+                "Error: `/nowhere/trace.csv` cannot be attached: No such file or directory (os error 2)",
+            ],
+        ),
+    ];
+    let folder = Folder::new();
+    let file = plugin("endings");
+    let tests = cases.iter().map(|(param, ..)| {
+        let name = param.split(' ').next().expect("a word");
+        let param = param.replace('\'', "&quot;");
+        format!("<test name='{name}' param='{param}'>{}</test>\n", file.display())
+    });
+    let environment = "<environment>--robot sim</environment>";
+    folder.file("s.xml", &format!("<suite>{environment}{}</suite>", tests.collect::<String>()));
+    assert_eq!(folder.rtf(&["run", "s.xml"]).code, Some(1));
+    let record = folder.journal().record;
+    for (index, (ending, verdict, told)) in cases.iter().enumerate() {
+        let told = told.iter().map(|text| text.replace('\'', "\""));
+        let expected: Vec<_> = told.chain(["Report: torn down".to_owned()]).collect();
+        assert_eq!(texts(&record, index), expected, "{ending}");
+        assert_eq!(record.tests[index].verdict(), Some(*verdict), "{ending}");
+    }
+    let beyond = &record.tests[1].attempts[0].messages[0];
+    let place = beyond.location.as_ref().expect("the compiler's own place");
+    assert_eq!((place.file.as_str(), place.line), ("endings.adb", 21));
+}
+
+/// A watchdog task reports the collapse; a second fixture of the same library
+/// fails to set up.
+#[test]
+fn a_fixture_with_a_task() {
+    let folder = Folder::new();
+    let file = plugin("fixture").display().to_string();
+    folder.file(
+        "Breaks.lua",
+        "function TestCase.run() io.open('collapse', 'w'):close() rtf.sleep(60) end\n",
+    );
+    folder.file(
+        "s.xml",
+        &format!("<suite><fixture name='arm'>{file}</fixture><test>Breaks.lua</test></suite>"),
+    );
+    let bad =
+        format!("<suite><fixture param='fails'>{file}</fixture><test>Breaks.lua</test></suite>");
+    folder.file("t.xml", &bad);
+    let finished = folder.rtf(&["run", "s.xml", "t.xml"]);
+    assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
+    let record = folder.journal().record;
+    assert_eq!(record.tests[0].verdict(), Some(Verdict::Collapsed));
+    assert!(record.tests[0].reason().is_some_and(|reason| reason.contains("the arm fell")));
+    assert_eq!(record.tests[1].verdict(), Some(Verdict::Skipped));
+    assert!(nothing_left(&folder));
+}
+
+/// A fixture is no test, and a plug-in that cannot be made says why.
+#[test]
+fn plug_ins_that_are_none() {
+    let folder = Folder::new();
+    folder.file("s.xml", &format!("<suite><test>{}</test></suite>", plugin("fixture").display()));
+    let finished = folder.rtf(&["run", "s.xml"]);
+    assert_eq!(finished.code, Some(2));
+    assert!(finished.stderr.contains("is a fixture, not a test"), "{}", finished.stderr);
+    folder
+        .file("s.xml", &format!("<suite><test>{}</test></suite>", plugin("elaboration").display()));
+    let finished = folder.rtf(&["run", "s.xml"]);
+    assert_eq!(finished.code, Some(2));
+    assert!(
+        finished.stderr.contains("elaborated: raised PROGRAM_ERROR : no calibration"),
+        "{}",
+        finished.stderr
+    );
+    folder.file("s.xml", &format!("<suite><test>{}</test></suite>", plugin("no_test").display()));
+    assert_eq!(folder.rtf(&["run", "s.xml"]).code, Some(1));
+    let record = folder.journal().record;
+    assert_eq!(record.tests[0].verdict(), Some(Verdict::Error));
+    let reason = record.tests[0].reason().expect("a reason");
+    assert!(reason.contains("the plug-in has no test"), "{reason}");
+}
+
+/// The example is built where its user would: in a folder of their own.
+#[test]
+fn the_example() {
+    let folder = Folder::new();
+    let sources = root().join("sdk/ada/examples");
+    for name in ["move_test.ads", "move_test.adb", "move_test.gpr"] {
+        folder.file(name, &std::fs::read_to_string(sources.join(name)).expect("a source"));
+    }
+    gprbuild(&folder.path().join("move_test.gpr"), &[]);
+    folder.file("s.xml", "<suite><test param='0.4'>build/AdaMoveTest</test></suite>");
+    let finished = folder.rtf(&["run", "s.xml"]);
+    assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
+    assert_eq!(texts(&folder.journal().record, 0)[1], "Check: elbow");
+}

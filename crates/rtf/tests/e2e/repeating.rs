@@ -1,0 +1,149 @@
+//! Repetitions and retries of tests.
+
+use insta::assert_snapshot;
+
+use crate::support::Folder;
+
+/// Fails as often as the file `left` says.
+const FLAKY: &str = "TestCase = {}\nfunction TestCase.run()\n  local file = io.open('left')\n  \
+                     local left = tonumber(file:read('a'))\n  file:close()\n  \
+                     if left > 0 then\n    file = io.open('left', 'w')\n    file:write(left - 1)\n    \
+                     file:close()\n    rtf.fail('not yet')\n  end\nend\n";
+
+fn folder(fails: u32, attributes: &str) -> Folder {
+    let folder = Folder::new();
+    folder.file("Flaky.lua", FLAKY).file("left", &fails.to_string());
+    folder.file("P.lua", "TestCase = {}\nfunction TestCase.run() end\n");
+    let tests = format!("  <test {attributes}>Flaky.lua</test>\n  <test>P.lua</test>\n");
+    folder.file("s.xml", &format!("<suite>\n{tests}</suite>\n"));
+    folder
+}
+
+#[test]
+fn a_retry_that_passes_is_flaky() {
+    let folder = folder(1, "retries='2' retry-delay='1ms'");
+    let finished = folder.rtf(&["run", "s.xml", "--report", "junit=j.xml"]);
+    assert_snapshot!(folder.shown(&finished), @"
+    exit code 0
+    ----- stdout
+    suite s  2 tests  s.xml
+         failed     [TIME]  s/Flaky, will be run again
+                 failure: not yet
+                   at [FOLDER]/Flaky.lua:10
+         passed     [TIME]  s/Flaky, attempt 2
+         passed     [TIME]  s/P
+
+    flaky tests, which passed only when they were tried again:
+      s/Flaky  2 attempts
+        before  failed: not yet
+
+    results: rtf-results/[RUN]
+    PASSED  2 tests in 1 suite, [TIME]: 2 passed (1 flaky)
+    ----- stderr
+    ");
+    let junit = std::fs::read_to_string(folder.path().join("j.xml")).expect("a report");
+    assert!(junit.contains("flakyFailure"), "{junit}");
+}
+
+#[test]
+fn flaky_can_be_red() {
+    let folder = folder(1, "");
+    let args =
+        ["run", "s.xml", "--retries", "1", "--flaky-result", "fail", "--report", "junit=j.xml"];
+    let finished = folder.rtf(&args);
+    assert_eq!(finished.code, Some(1), "{}", finished.stdout);
+    let junit = std::fs::read_to_string(folder.path().join("j.xml")).expect("a report");
+    assert!(junit.contains("type=\"flaky\"") && junit.contains("failures=\"1\""), "{junit}");
+    // What the past run was asked for holds for `show` too.
+    assert_eq!(folder.rtf(&["show"]).code, Some(1));
+}
+
+#[test]
+fn retries_that_all_fail_are_a_failure() {
+    let folder = folder(9, "retries='1'");
+    let finished = folder.rtf(&["run", "s.xml"]);
+    assert_snapshot!(folder.shown(&finished), @"
+    exit code 1
+    ----- stdout
+    suite s  2 tests  s.xml
+         failed     [TIME]  s/Flaky, will be run again
+                 failure: not yet
+                   at [FOLDER]/Flaky.lua:10
+         failed     [TIME]  s/Flaky, attempt 2
+                 failure: not yet
+                   at [FOLDER]/Flaky.lua:10
+         passed     [TIME]  s/P
+
+    tests that did not pass:
+      s/Flaky  failed
+        reason  not yet
+        at      [FOLDER]/Flaky.lua:10
+        again   rtf run s.xml::Flaky
+
+    results: rtf-results/[RUN]
+    FAILED  2 tests in 1 suite, [TIME]: 1 passed, 1 failed
+    ----- stderr
+    ");
+    assert_eq!(folder.journal().record.tests[0].attempts.len(), 2);
+}
+
+#[test]
+fn many_repetitions_are_summed_up() {
+    let folder = folder(3, "repetition='5'");
+    let finished = folder.rtf(&["run", "--repeat", "4", "s.xml::Flaky"]);
+    assert_eq!(finished.code, Some(1));
+    assert!(finished.stdout.contains("s/Flaky  17 of 20 passed (85.0 %)"), "{}", finished.stdout);
+    assert!(finished.stdout.contains(", 95 % "), "{}", finished.stdout);
+}
+
+#[test]
+fn enough_is_enough() {
+    let folder = folder(9, "repetition='3'");
+    let plug_in = "Flaky.lua";
+    let all = folder.rtf(&["run", "--max-fail", "2", "s.xml", plug_in, "P.lua"]);
+    assert_snapshot!(folder.shown(&all), @"
+    exit code 1
+    ----- stdout
+    suite s  2 tests  s.xml
+         failed     [TIME]  s/Flaky (1 of 3)
+                 failure: not yet
+                   at [FOLDER]/Flaky.lua:10
+         failed     [TIME]  s/Flaky (2 of 3)
+                 failure: not yet
+                   at [FOLDER]/Flaky.lua:10
+         failed     [TIME]  s/Flaky (3 of 3)
+                 failure: not yet
+                   at [FOLDER]/Flaky.lua:10
+         passed     [TIME]  s/P
+    suite plug-ins  2 tests
+         failed     [TIME]  plug-ins/Flaky
+                 failure: not yet
+                   at [FOLDER]/Flaky.lua:10
+        skipped              plug-ins/P: 2 tests have not passed (--max-fail 2)
+
+    tests that did not pass:
+      s/Flaky  failed
+        reason  not yet
+        at      [FOLDER]/Flaky.lua:10
+        again   rtf run s.xml::Flaky
+      plug-ins/Flaky  failed
+        reason  not yet
+        at      [FOLDER]/Flaky.lua:10
+        again   rtf run [FOLDER]/Flaky.lua
+
+    repeated tests:
+      s/Flaky  0 of 3 passed (0.0 %)
+        time    min [TIME], mean [TIME], 95 % [TIME], max [TIME]
+
+    skipped tests:
+      1 test: 2 tests have not passed (--max-fail 2)
+        plug-ins/P
+
+    results: rtf-results/[RUN]
+    FAILED  4 tests in 2 suites, [TIME]: 1 passed, 2 failed, 1 skipped
+    ----- stderr
+    ");
+    let first = folder.rtf(&["run", "--until-fail", "--repeat", "100", "s.xml"]);
+    assert_eq!(first.code, Some(1));
+    assert_eq!(folder.journal().record.tests[0].attempts.len(), 1, "{}", first.stdout);
+}
