@@ -16,6 +16,9 @@ cp -R tests/install/downstream "$work/project"
 for file in bin/rtf libexec/rtf/rtf-host-native libexec/rtf/rtf-host-lua share/man/man1/rtf.1 \
   share/man/man1/rtf-run.1 share/bash-completion/completions/rtf share/zsh/site-functions/_rtf \
   share/fish/vendor_completions.d/rtf.fish share/rtf/spec/suite.md share/rtf/schemas/event.json \
+  lib/cmake/rtf/rtf-config.cmake include/robottestingframework/TestCase.h include/rtf1/TestCase.h \
+  share/rtf/python/robottestingframework.py share/rtf/ruby/lib/rtf/host.rb \
+  share/rtf/ada/robottestingframework.gpr share/rtf/ada/src/robottestingframework.ads \
   share/doc/rtf/README.md; do
   [ -s "$prefix/$file" ] || die "$file was not installed"
 done
@@ -34,6 +37,26 @@ status=0
 prefix/bin/rtf show latest >shown.txt || status=$? # the run's own exit code
 test "$status" -eq 1
 for name in CppTest LuaTest PythonTest FailingTest; do grep -q "$name" shown.txt; done
+prefix/bin/robottestingframework-testrunner --version
+status=0
+RTF_PLUGIN_PATH=project/build prefix/bin/robottestingframework-testrunner --suite project/suite.xml \
+  >output.txt 2>&1 || status=$?
+cat output.txt
+test "$status" -eq 1
+grep -q 'Number of failed test cases  : 1' output.txt
+grep -q '^Test case CppTest passed!$' result.txt
+cd project/build
+ctest --show-only=json-v1 >../../ctest.json
+ctest --label-regex '^bench$' --parallel 2 >../../ctest.txt && exit 1 # FailingTest is in the suite
+cat ../../ctest.txt
+for name in CppTest all/CppTest all/LuaTest all/PythonTest; do
+  grep -E "Test +#[0-9]+: $name .*Passed" ../../ctest.txt
+done
+grep -E 'Test +#[0-9]+: all/FailingTest .*Failed' ../../ctest.txt
+mv CppTest.so away.so
+ctest --output-on-failure >../../missing.txt && exit 1 # a plug-in is missing
+grep -E 'Test +#[0-9]+: all .*Failed' ../../missing.txt
+grep 'there is no plug-in `CppTest`' ../../missing.txt
 SESSION
 
 session=(env -i "PATH=$(dirname "$(command -v python3)"):/usr/bin:/bin" "HOME=$work" LC_ALL=C.UTF-8
@@ -71,6 +94,24 @@ for name in CppTest LuaTest PythonTest; do
 done
 [ "$(verdict FailingTest)" = failed ] || die "FailingTest: $(verdict FailingTest), expected failed"
 
+python3 - "$work/ctest.json" <<'PYTHON'
+import json, sys
+
+suite = {"LABELS": ["bench", "slow"], "RESOURCE_LOCK": ["robot", "table"], "TIMEOUT": 120.0}
+wanted = {
+    "all/CppTest": suite | {"LABELS": ["bench", "quick", "slow"]},
+    "all/LuaTest": suite,
+    "all/PythonTest": suite,
+    "all/FailingTest": suite,
+    "CppTest": {"LABELS": ["bench"], "RESOURCE_LOCK": ["robot"], "TIMEOUT": 60.0},
+}
+for test in json.load(open(sys.argv[1]))["tests"]:
+    got = {entry["name"]: entry["value"] for entry in test["properties"]}
+    for name, value in wanted.pop(test["name"]).items():
+        assert got[name] == value, f"{test['name']}: {name} is {got[name]}, expected {value}"
+assert not wanted, f"missing in CTest: {wanted}"
+PYTHON
+
 PREFIX=$prefix DESTDIR='' "$ROOT/tools/uninstall.sh"
-[ ! -e "$prefix" ] || [ -z "$(find "$prefix" -type f)" ] ||
-  die "left behind by make uninstall: $(find "$prefix" -type f | tr '\n' ' ')"
+[ ! -e "$prefix" ] || [ -z "$(find "$prefix" ! -type d)" ] ||
+  die "left behind by make uninstall: $(find "$prefix" ! -type d | tr '\n' ' ')"

@@ -1,0 +1,173 @@
+"""Runs robottestingframework-testrunner of 2.x and ours with the same options, and compares.
+
+command.py PREDECESSOR PREFIX: the unpacked packages, and an installed rtf. An outcome is
+`exit code | counts on standard output | the tests in the result file, with what they said`.
+Prints every case with its reason, and fails when one is not as the tables in options.py say.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from xml.etree import ElementTree
+
+from options import CASES, FILES, REFUSED, Case
+
+NAME = "robottestingframework-testrunner"
+SECONDS = 60
+# How the two introduce a text.
+VERBS = re.compile(
+    r"^(reports|checks|checking \(false\)|asserts (failure|error) with exception"
+    r"|setup\(\) failed!|crashed|interrupted|skipped): "
+)
+
+
+class Runner:
+    """One of the two."""
+
+    def __init__(self, prefix: Path) -> None:
+        """Where it is installed."""
+        self.program = prefix / "bin" / NAME
+        self.libraries = ":".join(map(str, sorted(prefix.glob("lib/*-linux-*"))))
+
+    def start(self, options: list[str], folder: Path) -> subprocess.Popen[str]:
+        """Starts it in a folder."""
+        environment = os.environ | {"LD_LIBRARY_PATH": self.libraries}
+        for name in ("RTF_PLUGIN_PATH", "RTF_RESULTS"):
+            environment.pop(name, None)
+        return subprocess.Popen(
+            [str(self.program), *options],
+            cwd=folder,
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            stdin=subprocess.DEVNULL,
+            text=True,
+            errors="replace",
+        )
+
+    def run(self, case: Case) -> str:
+        """The outcome of a case, in a folder of its own."""
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            write_files(folder)
+            process = self.start(case.options, folder)
+            if case.interrupt:
+                wait_for(folder / "started")
+                process.send_signal(signal.SIGINT)
+                # Who is interrupted ends; who is not needs to be let go.
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    process.wait(1)
+                (folder / "go").touch()
+            stdout, _ = process.communicate(timeout=SECONDS)
+            code = "died" if process.returncode < 0 else str(process.returncode)
+            result = folder / case.result
+            told = outcome(result, case) if result.is_file() else "no file"
+        return f"{code} | {counts(stdout)} | {told}"
+
+
+def write_files(folder: Path) -> None:
+    """What the cases run."""
+    for name, text in FILES.items():
+        file = folder / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+    (folder / "empty").mkdir()
+
+
+def wait_for(file: Path) -> None:
+    """Until a test has made it."""
+    end = time.monotonic() + SECONDS
+    while not file.exists():
+        if time.monotonic() > end:
+            raise TimeoutError(f"nobody made {file.name}")
+        os.sched_yield()
+
+
+def counts(stdout: str) -> str:
+    """`suites 2 = 1 + 1, cases 4 = 3 + 1`; total, passed, failed."""
+    found = re.findall(r"(?:Total number of|Number of \w+) test (\w+) +: (\d+)", stdout)
+    parts = []
+    for what in ("suites", "cases"):
+        numbers = [number for kind, number in found if kind == what]
+        if numbers:
+            parts.append(f"{what} {numbers[0]} = {' + '.join(numbers[1:])}")
+    return ", ".join(parts) or "no counts"
+
+
+def outcome(result: Path, case: Case) -> str:
+    """The tests of a result file."""
+    read = junit if case.options_name("--output-type") == "junit" else text
+    tests = read(result.read_text())
+    return ", ".join(sorted(tests) if case.in_any_order else tests)
+
+
+def text(content: str) -> list[str]:
+    """`Good passed: [INFO] closed; [FAIL] open` for each test; suites likewise."""
+    tests: list[str] = []
+    said: list[str] = []
+    for line in content.split("\n---------- summary", maxsplit=1)[0].splitlines():
+        ended = re.fullmatch(r"Test (case|suite) (.*) (passed|failed)!", line)
+        message = re.fullmatch(r"\[(\w+)\] +\([^)]*\) (.*)", line)
+        if ended:
+            words = f"{plain(ended[2])} {ended[3]}"
+            tests.append(": ".join([words, "; ".join(said)] if said else [words]))
+            said = []
+        elif message:
+            words = VERBS.sub("", message[2])
+            said.append(f"[{message[1]}] {words}" if len(words) < 200 else f"{len(words)} letters")
+    return tests + said
+
+
+def junit(content: str) -> list[str]:
+    """`Good passed`, `Bad failure`, `Broken error`."""
+    cases = ElementTree.fromstring(content).iter("testcase")
+    kinds = ("failure", "error")
+    found = ((case, [kind for kind in kinds if case.find(kind) is not None]) for case in cases)
+    return [f"{plain(case.get('name', ''))} {''.join(kind) or 'passed'}" for case, kind in found]
+
+
+def plain(name: str) -> str:
+    """2.x calls a test after its file; ours without the extension, and the second one `#2`."""
+    return re.sub(r"(\.lua|#[0-9]+)$", "", name)
+
+
+def main() -> int:
+    """Returns the exit code."""
+    # Shells start what runs in the background with SIGINT ignored, and 2.x leaves it so.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    old, new = (Runner(Path(argument).resolve()) for argument in sys.argv[1:3])
+    wrong = 0
+    for case in CASES:
+        got = (old.run(case), new.run(case))
+        expected = (case.old, case.new or case.old)
+        if expected[0] != expected[1] and not case.why:
+            raise ValueError(f"a difference without a reason: {case.options}")
+        mark = "equal" if expected[0] == expected[1] else "ours "
+        if got == expected:
+            print(f"ok     {mark} {' '.join(case.options)}")
+        else:
+            wrong += 1
+            print(f"WRONG  {' '.join(case.options)}\n  old {got[0]}\n  new {got[1]}")
+            print(f"  expected {expected[0]}\n           {expected[1]}")
+        if case.why:
+            print(f"               {case.why}")
+    for options, code in REFUSED:
+        case = Case(options, "")
+        codes = [runner.run(case).split(" | ", maxsplit=1)[0] for runner in (old, new)]
+        is_right = codes == [code, code]
+        wrong += not is_right
+        print(f"{'ok     equal' if is_right else 'WRONG '} {' '.join(options)}: exit codes {codes}")
+    print(f"{len(CASES) + len(REFUSED)} cases, {wrong} wrong")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
