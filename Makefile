@@ -4,11 +4,12 @@ PREFIX ?= /usr/local
 DESTDIR ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help build demo test chaos bench install uninstall clean
+.PHONY: help build web screenshots demo test chaos bench install uninstall clean
 
 help:
 	@echo "make demo       install what is missing, build, and test a simulated robot arm"
 	@echo "make build      build rtf and its hosts (target/release)"
+	@echo "make web        build the page that rtf shows in a browser (make build does, too)"
 	@echo "make test       every check there is: Rust, SDKs, examples, lints, installation"
 	@echo "make chaos      kill fixtures and runners at random moments, for half an hour"
 	@echo "make bench      measure speed and memory"
@@ -20,6 +21,13 @@ build:
 	@tools/bootstrap.sh build
 	@tools/build.sh
 
+web:
+	@tools/web.sh
+
+# The pictures in docs/images.
+screenshots:
+	@tools/screenshots.sh
+
 demo:
 	@tools/demo.sh
 
@@ -29,8 +37,9 @@ test:
 # RTF_CHAOS_SEED=N repeats the random numbers of a run, which prints its seed.
 chaos:
 	@tools/bootstrap.sh test
-	@RTF_CHAOS_SUITES=3000 RTF_CHAOS_RUNS=1000 cargo test --workspace --test e2e -- \
-	  --nocapture chaos guard::a_runner_killed_at_any_moment
+	@RTF_CHAOS_SUITES=3000 RTF_CHAOS_RUNS=1000 RTF_CHAOS_ROUNDS=50 cargo test --workspace --test e2e -- \
+	  --nocapture chaos guard::a_runner_killed_at_any_moment \
+	  side_by_side::twenty_suites side_by_side::a_runner_killed_at_any_moment
 
 bench:
 	@tools/bench.sh
@@ -42,5 +51,5 @@ uninstall:
 	@PREFIX='$(PREFIX)' DESTDIR='$(DESTDIR)' tools/uninstall.sh
 
 clean:
-	rm -rf build
+	rm -rf build web/dist web/node_modules web/src/generated
 	cargo clean

@@ -2,6 +2,7 @@
 # Installs what a goal needs and this machine lacks. What is there is left alone.
 #
 #   tools/bootstrap.sh build|demo|test
+#   tools/bootstrap.sh update             the lists of apt-get
 #
 # Programs and libraries come from Debian or Ubuntu; on other systems the
 # script says what is missing. Python packages go into a virtual environment
@@ -9,15 +10,17 @@
 
 . "$(dirname "$0")/env.sh"
 
-goal=${1:?goal: build, demo or test}
+goal=${1:?goal: build, demo, test or update}
 
 # The Debian packages of each goal.
 case $goal in
   build) packages=() ;;
   demo) packages=(cmake g++ lua-socket python3-venv) ;;
   test) packages=(cmake g++ lua-socket python3-venv libxml2-utils gdb shellcheck clang-format
-    procps) ;;
-  *) die "no goal \`$goal\`: build, demo or test" ;;
+    procps perl ruby ruby-minitest rubocop gnat gprbuild openssh-client openssh-server
+    chromium fonts-dejavu-core) ;;
+  update) packages=() ;;
+  *) die "no goal \`$goal\`: build, demo, test or update" ;;
 esac
 
 # Whether a package is needed is asked of the machine, not of dpkg: a Python
@@ -25,8 +28,15 @@ esac
 is_there() {
   case $1 in
     g++) have c++ ;;
+    gnat) have gnatmake ;;
     libxml2-utils) have xmllint ;;
     procps) have pgrep ;;
+    perl) have prove ;;
+    ruby-minitest) have ruby && ruby -e 'require "minitest"' 2>/dev/null ;;
+    chromium) have chromium || have chromium-browser ;;
+    fonts-dejavu-core) compgen -G '/usr/share/fonts/truetype/*/*.ttf' >/dev/null ;;
+    openssh-client) have ssh && have ssh-keygen ;;
+    openssh-server) [ -x /usr/sbin/sshd ] ;;
     python3-venv) python3 -c 'import ensurepip, venv' 2>/dev/null ;;
     lua-socket) compgen -G '/usr/lib/*/lua/5.4/socket/core.so' >/dev/null ||
       [ -e /usr/lib/lua/5.4/socket/core.so ] || [ -e /usr/local/lib/lua/5.4/socket/core.so ] ;;
@@ -53,6 +63,23 @@ apt() {
   quietly "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq "$@"
 }
 
+if [ "$goal" = update ]; then
+  apt update || die "apt-get update failed" "as root: apt-get update"
+  exit
+fi
+
+# Tests start an sshd of their own on loopback. The package would start one that
+# everybody reaches, now and with the machine: it is masked before it comes.
+keep_sshd_stopped() {
+  local root=()
+  [[ " ${missing[*]} " == *" openssh-server "* && -d /run/systemd/system ]] || return 0
+  [ "$(id -u)" -eq 0 ] || root=(sudo)
+  quietly "${root[@]}" systemctl mask ssh.service ssh.socket ||
+    die "openssh-server would start a server that everybody reaches" \
+      "install it by hand, or mask it: sudo systemctl mask ssh.service ssh.socket"
+  say "openssh-server will not start by itself; sudo systemctl unmask ssh.service ssh.socket undoes that"
+}
+
 have cargo || die "cargo is missing" \
   "the Rust toolchain, version 1.95 or later, comes from https://rustup.rs"
 
@@ -62,6 +89,7 @@ if [ ${#missing[@]} -gt 0 ]; then
   have apt-get || die "missing: ${missing[*]} (Debian's names)" \
     "install what this system calls them, then try again"
   say "installing: ${missing[*]}"
+  keep_sshd_stopped
   apt install -y --no-install-recommends "${missing[@]}" ||
     { apt update && apt install -y --no-install-recommends "${missing[@]}"; } ||
     die "missing and could not be installed: ${missing[*]}" "as root: $by_hand"

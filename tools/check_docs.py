@@ -52,7 +52,9 @@ def check(rtf: Path, page: Path, folder: Path) -> None:
 
 
 def build(folder: Path) -> None:
-    """Builds the page's C++ plug-ins by its own CMakeLists.txt, or by the obvious one."""
+    """Builds the page's Ada plug-ins, and its C++ ones by its own or the obvious CMakeLists.txt."""
+    for project in sorted(folder.glob("*.gpr")):
+        call(folder, "gprbuild", "-p", "-q", "-P", project.name)
     sources = sorted(folder.glob("*.cpp"))
     if not sources:
         return
@@ -63,14 +65,17 @@ def build(folder: Path) -> None:
             for source in sources
         ]
         cmake.write_text(CMAKE_HEADER + "".join(plugins))
-    package = TOP / "sdk" / "cpp" / "cmake"
+    package = TOP / "sdk" / "cpp" / "cmake" / "RobotTestingFramework"
     call(folder, "cmake", "-S", ".", "-B", "build", f"-DRobotTestingFramework_DIR={package}")
     call(folder, "cmake", "--build", "build")
 
 
 def call(folder: Path, *command: str) -> None:
     """Runs a command that must succeed."""
-    environment = os.environ | {"RTF_PLUGIN_PATH": str(folder / "build")}
+    environment = os.environ | {
+        "RTF_PLUGIN_PATH": str(folder / "build"),
+        "GPR_PROJECT_PATH": str(TOP / "sdk" / "ada"),
+    }
     subprocess.run(command, cwd=folder, env=environment, check=True)
 
 

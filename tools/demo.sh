@@ -11,5 +11,9 @@ quietly tools/plugins.sh examples/01-simulated-arm
 export PATH="$python:$PATH"
 export RTF_PLUGIN_PATH=$BUILD/examples/01-simulated-arm
 say
-say "\$ rtf run examples/01-simulated-arm/arm.xml"
-exec "$TARGET/release/rtf" run examples/01-simulated-arm/arm.xml
+say "\$ rtf run examples/01-simulated-arm/arm.xml --web"
+status=0
+"$TARGET/release/rtf" run examples/01-simulated-arm/arm.xml --web || status=$?
+say
+say "in a browser again: ${TARGET#"$ROOT"/}/release/rtf serve"
+exit "$status"

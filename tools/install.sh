@@ -22,6 +22,12 @@ put() {
   printf '%s\n' "$3" >>"$stage/manifest.txt"
 }
 
+# Installs a link: what it names, destination below the prefix.
+put_link() {
+  ln -sfn "$1" "$top/$2"
+  printf '%s\n' "$2" >>"$stage/manifest.txt"
+}
+
 # Installs the files of a folder whose names match one of the patterns, but not
 # what running or building something there has left.
 put_tree() {
@@ -58,13 +64,18 @@ for shell in bash zsh fish; do
 done
 
 put 755 "$release/rtf" bin/rtf
+put_link rtf bin/robottestingframework-testrunner # rtf, in its predecessor's manner
 put 755 "$release/rtf-host-native" libexec/rtf/rtf-host-native
 put 755 "$release/rtf-host-lua" libexec/rtf/rtf-host-lua
 put_tree sdk/c/include include '*.h'
 put_tree sdk/cpp/include include '*.h' '*.hpp'
-put_tree sdk/cpp/cmake lib/cmake/RobotTestingFramework '*.cmake'
+put_tree sdk/cpp/cmake lib/cmake '*.cmake'
 # The Lua SDK is part of rtf-host-lua.
 put_tree sdk/python/rtf share/rtf/python/rtf '*.py' py.typed
+put 644 sdk/python/robottestingframework.py share/rtf/python/robottestingframework.py
+put_tree sdk/ruby/lib share/rtf/ruby/lib '*.rb'
+put_tree sdk/ada/src share/rtf/ada/src '*.ads' '*.adb'
+put 644 sdk/ada/robottestingframework.gpr share/rtf/ada/robottestingframework.gpr
 put_tree spec share/rtf/spec '*.md' '*.xsd'
 put_tree schemas share/rtf/schemas '*.json'
 put_tree "$stage/man" share/man/man1 '*.1'
@@ -75,7 +86,7 @@ for page in README.md CHANGELOG.md LICENSE; do
   put 644 "$page" "share/doc/rtf/$page"
 done
 put_tree docs share/doc/rtf/docs '*.md'
-put_tree examples share/doc/rtf/examples '*.md' '*.xml' '*.py' '*.lua' '*.cpp' '*.hpp' CMakeLists.txt
+put_tree examples share/doc/rtf/examples '*.md' '*.xml' '*.py' '*.lua' '*.rb' '*.cpp' '*.hpp' CMakeLists.txt
 
 install -D -m 644 "$stage/manifest.txt" "$top/share/rtf/manifest.txt"
 say "installed $(wc -l <"$stage/manifest.txt") files below $top"

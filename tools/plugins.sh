@@ -9,5 +9,5 @@ folder=${1:?a folder with a CMakeLists.txt}
 
 cmake -S "$folder" -B "$BUILD/$folder" \
   -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-  -DRobotTestingFramework_DIR="$ROOT/sdk/cpp/cmake"
+  -DRobotTestingFramework_DIR="$ROOT/sdk/cpp/cmake/RobotTestingFramework"
 cmake --build "$BUILD/$folder" --parallel "$JOBS"

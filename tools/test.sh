@@ -60,11 +60,12 @@ lint_cpp() {
 }
 
 lint_python() {
-  "$checkers/ruff" check examples tools tests benches
-  "$checkers/ruff" format --check examples tools tests benches
+  "$checkers/ruff" check examples tools tests benches web/tests
+  "$checkers/ruff" format --check examples tools tests benches web/tests
   "$checkers/mypy" examples/01-simulated-arm/*.py tools/*.py
   "$checkers/mypy" examples/02-supervised-simulator/*.py
   "$checkers/mypy" benches/bench.py
+  "$checkers/mypy" tests/predecessor/*.py
 }
 
 sdk_python() {
@@ -73,6 +74,27 @@ sdk_python() {
   "$checkers/ruff" format --check .
   "$checkers/mypy"
   "$checkers/pytest"
+}
+
+web_api() {
+  PATH="$checkers:$PATH" python3 tools/check_web_api.py "$TARGET/debug/rtf"
+}
+
+lint_ruby() {
+  (cd sdk/ruby && rubocop .)
+  # Plug-ins are named by their files, and say in a line what they do.
+  files '*.rb' | grep -v '^sdk/ruby/' | xargs -d '\n' rubocop --config sdk/ruby/.rubocop.yml --except \
+    Style/Documentation,Style/FrozenStringLiteralComment,Lint/BinaryOperatorWithIdenticalOperands
+}
+
+sdk_ruby() {
+  local file
+  cd sdk/ruby
+  for file in test/*_test.rb; do
+    ruby -w -Itest "$file"
+  done
+  gem build --silent --output "$BUILD/robot-testing-framework.gem" \
+    robot-testing-framework.gemspec
 }
 
 suites_are_valid() {
@@ -90,6 +112,13 @@ example_02() {
     examples/02-supervised-simulator/supervised.xml
 }
 
+# The page's own checks; its tests in a browser need a built rtf.
+in_web() {
+  tools/web.sh modules
+  cd web
+  PATH=$("$ROOT/tools/node.sh"):$PATH npm run --silent "$@"
+}
+
 tools/bootstrap.sh test
 checkers=$(tools/venv.sh test)
 simulation=$(tools/venv.sh demo)
@@ -98,21 +127,31 @@ step 'lint shell' lint_shell
 step 'lint rust format' cargo fmt --all --check -- --color never
 step 'lint c++ format' lint_cpp
 step 'lint python' lint_python
+step 'lint ruby' lint_ruby
 step 'lint suites' suites_are_valid
+step 'lint page' in_web check
 step 'lint rust' cargo clippy --workspace --all-targets --locked -- -D warnings
 step 'generated schemas' cargo run --quiet --locked -p xtask -- schemas --check
 step 'generated c header' cargo run --quiet --locked -p xtask -- header --check
+step 'page' tools/web.sh
+step 'page unit tests' in_web test
 step 'build' cargo build --workspace --locked
 step 'sdk python' sdk_python
+step 'sdk ruby' sdk_ruby
 # Also builds the plug-ins in sdk/c and sdk/cpp, with cc and c++.
 step 'rust tests' cargo test --workspace --locked --no-fail-fast
+step 'web api' web_api
 step 'build release' tools/build.sh
 step 'example 01 plug-ins' tools/plugins.sh examples/01-simulated-arm
 step 'example 01' example_01
 step 'example 02' example_02
 step 'guide' tools/check_docs.py "$TARGET/release/rtf" README.md docs/getting-started.md \
-  docs/writing-tests.md
+  docs/writing-tests.md docs/isolation.md docs/migrating.md
+step 'page in a browser' tools/web-tests.sh
 step 'installed copy' tests/install/run.sh
+step 'predecessor command line' tests/predecessor/run.sh command
+step 'predecessor compared' tests/predecessor/run.sh compare
+step 'predecessor ours' tests/predecessor/run.sh ours
 
 for name in "${failed[@]}"; do
   printf 'failed: %s\n' "$name"
