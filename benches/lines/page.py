@@ -1,0 +1,128 @@
+"""The page of a run with 10 000 tests and a million events, in a real browser."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import signal
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from measuring import suite
+from measuring.bench import TOP, Bench
+from measuring.model import Group, Limit, Line, MeasuringError, Samples, Work, high_percentile
+
+TESTS = 10_000
+EVENTS = 1_000_000
+TICKER = "ticker"
+END_SECS = 60
+
+PAINT = "ms to the list"
+LATE = "ms late"
+FRAME = "ms a frame"
+MEMORY = "MB"
+
+LIVE = "page of a live run"
+SERVED = "page of a past run"
+
+
+def group(bench: Bench) -> Group:
+    """The million is there before the page is opened; the run then goes on."""
+    reports = f'<test type="dll" param="{EVENTS}">Reports</test>'
+    ticker = f'<test type="python" name="{TICKER}">Ticker</test>'
+    rest = suite.tests("dll", "Trivial", TESTS - 2)
+    file = suite.write(bench, "page", [reports, ticker, *rest])
+    live = Work(LIVE, lambda: measure_live(bench, file), missing())
+    served = Work(SERVED, lambda: measure_served(bench), missing())
+    name = "10 000 tests, 1 M events"
+    smooth = Limit(50, required=False)
+    lines = (
+        Line(f"{name}: the list is drawn", LIVE, PAINT, limit=Limit(1000)),
+        Line(f"{name}: event to screen", LIVE, LATE, limit=Limit(200), statistic=high_percentile),
+        Line(f"{name}: scrolling", LIVE, FRAME, limit=smooth, statistic=high_percentile),
+        Line(f"{name}: rtf serve, the list is drawn again", SERVED, PAINT, limit=Limit(1000)),
+        Line(f"{name}: memory of rtf serve", SERVED, MEMORY, limit=Limit(100)),
+    )
+    return Group("page", (live, served), lines, rounds=3, warm_up=False)
+
+
+def missing() -> str:
+    """Why the page cannot be looked at here."""
+    if shutil.which("chromium") or shutil.which("chromium-browser"):
+        return ""
+    return "Chromium is not installed"
+
+
+def measure_live(bench: Bench, file: Path) -> Samples:
+    """Opens the page while the ticker runs."""
+    with started(bench, "run", str(file)) as (_, url):
+        found = look(url, TICKER)
+    return {PAINT: found["paint"], LATE: found["lateness"], FRAME: found["frames"]}
+
+
+def measure_served(bench: Bench) -> Samples:
+    """Opens the page of the run that was measured before."""
+    with started(bench, "serve") as (pid, url):
+        name = (bench.results / "latest").resolve().name
+        found = look(f"{url.split('#')[0]}#/runs/{name}", "")
+        memory = peak_mb(pid)
+    return {PAINT: found["paint"], MEMORY: [memory]}
+
+
+@contextmanager
+def started(bench: Bench, verb: str, *rest: str) -> Iterator[tuple[int, str]]:
+    """An rtf with a page: its process and its address."""
+    command = [str(bench.rtf), verb, "--results", str(bench.results), "--web=127.0.0.1:0", *rest]
+    log = bench.folder / "page.log"
+    with log.open("wb") as output:
+        process = subprocess.Popen(
+            command,
+            cwd=bench.folder,
+            env=bench.environment(),
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=output,
+        )
+    try:
+        yield process.pid, await_address(process, log)
+    finally:
+        process.send_signal(signal.SIGINT)
+        process.wait(END_SECS)
+
+
+def await_address(process: subprocess.Popen[bytes], log: Path) -> str:
+    """What rtf prints when its page can be opened."""
+    while process.poll() is None:
+        found = re.search(r"http://\S+(?=\s)", log.read_text(encoding="utf-8", errors="replace"))
+        if found is not None:
+            return found[0]
+    raise MeasuringError(f"rtf ended: {log.read_text(encoding='utf-8', errors='replace')}")
+
+
+def look(url: str, test: str) -> dict[str, list[float]]:
+    """What a browser measures."""
+    node = run([str(TOP / "tools" / "node.sh")]).strip()
+    run([str(TOP / "tools" / "web.sh"), "modules"])
+    script = str(TOP / "web" / "tests" / "measure.mjs")
+    found = json.loads(run([f"{node}/node", script, url, test]))
+    return {name: value if isinstance(value, list) else [value] for name, value in found.items()}
+
+
+def run(command: list[str]) -> str:
+    """What a command prints."""
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise MeasuringError(f"`{' '.join(command)}` failed:\n{done.stderr}")
+    return done.stdout
+
+
+def peak_mb(pid: int) -> float:
+    """The largest resident set of a process so far."""
+    status = Path(f"/proc/{pid}/status").read_text(encoding="ascii")
+    found = re.search(r"VmHWM:\s+(\d+) kB", status)
+    if found is None:
+        raise MeasuringError(f"process {pid} has ended")
+    return int(found[1]) * 1024 / 1e6
