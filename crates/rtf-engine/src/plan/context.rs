@@ -178,7 +178,11 @@ impl<'a, 'c> PluginPlanner<'a, 'c> {
         } else {
             Finder::new().find(&written.name.value, kind, &self.scope.with(&own))
         };
-        let Some(file) = file else {
+        let of_ours = || {
+            let untyped = role == Role::Fixture && written.plugin_type.is_none();
+            untyped.then(|| plugin::shipped(&written.name.value, &self.scope)).flatten()
+        };
+        let Some((file, kind)) = file.map(|file| (file, kind)).or_else(of_ours) else {
             // The host is missed as well as the plug-in, not after it.
             self.host(kind, &own, &place);
             self.note_missing(&written.name.value, kind, &own, &place);

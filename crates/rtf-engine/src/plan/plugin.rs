@@ -72,9 +72,30 @@ fn search_folders(kind: &HostKind, scope: &Scope<'_>) -> Vec<PathBuf> {
     folders.extend(scope.folders("RTF_PLUGIN_PATH"));
     folders.extend(kind.library_path.map(|name| scope.folders(name)).unwrap_or_default());
     folders.extend(scope.surroundings.prefix().map(|prefix| prefix.join("lib/rtf/plugins")));
+    folders.extend(shipped_folder(scope));
     let mut seen = std::collections::HashSet::new();
     folders.retain(|folder| seen.insert(folder.clone()));
     folders
+}
+
+/// A fixture manager that comes with rtf, such as `roslaunch`, and its type: its
+/// name needs neither a folder nor a type. Plug-ins of the user go before it.
+pub(super) fn shipped(name: &str, scope: &Scope<'_>) -> Option<(PathBuf, &'static HostKind)> {
+    let is_name = Path::new(name).components().count() == 1;
+    let folder = shipped_folder(scope).filter(|_| is_name)?;
+    HOSTS.iter().find_map(|kind| {
+        let extension = kind.extensions.first()?;
+        let file = folder.join(format!("{name}.{extension}"));
+        file.is_file().then_some((file, kind))
+    })
+}
+
+/// The folder of what comes with rtf: below its prefix, or in the source tree.
+fn shipped_folder(scope: &Scope<'_>) -> Option<PathBuf> {
+    let installed = scope.surroundings.prefix().map(|prefix| prefix.join("share/rtf/fixtures"));
+    let above = scope.surroundings.executable.ancestors().skip(1);
+    let source = above.map(|folder| folder.join("fixtures"));
+    installed.into_iter().chain(source).find(|folder| folder.join("rtf_fixtures").is_dir())
 }
 
 /// The names that a plug-in's file can have. Only the file's own extension is

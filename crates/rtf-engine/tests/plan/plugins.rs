@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use rtf_engine::plan::FixtureBody;
+
 use crate::bench::Bench;
 
 /// Defect 11 of the predecessor: `.so` was searched anywhere in the path.
@@ -48,6 +50,28 @@ fn plugins_are_searched_in_order() {
     );
     let plan = bench.plan(&["deep/s.xml"]);
     assert_eq!(bench.relative(&plan.suites[0].tests[0].plugin.file), "cell/deep/only/Gaze.so");
+}
+
+/// A fixture manager of ours is found by its bare name; one of the user's goes
+/// before it, and a test never takes it.
+#[test]
+fn fixtures_that_come_with_rtf_have_a_name_only() {
+    let bench = Bench::new();
+    bench.file("share/rtf/fixtures/rtf_fixtures/__init__.py", "");
+    bench.file("share/rtf/fixtures/roscore.py", "");
+    bench.file("cell/Arm.so", "");
+    bench.file("cell/s.xml", "<suite><fixture>roscore</fixture><test>Arm</test></suite>");
+    bench.file("cell/t.xml", "<suite><test>roscore</test></suite>");
+    let found = |bench: &Bench| match &bench.plan(&["s.xml"]).suites[0].fixtures[0].body {
+        FixtureBody::Plugin(plugin) => {
+            (bench.relative(&plugin.file), plugin.plugin_type.to_string())
+        }
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(found(&bench), ("share/rtf/fixtures/roscore.py".into(), "python".into()));
+    assert!(bench.build(&["t.xml"]).plan.is_none());
+    bench.file("cell/roscore.so", "");
+    assert_eq!(found(&bench), ("cell/roscore.so".into(), "dll".into()));
 }
 
 #[test]
