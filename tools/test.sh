@@ -60,10 +60,11 @@ lint_cpp() {
 }
 
 lint_python() {
-  "$checkers/ruff" check examples tools tests benches web/tests
-  "$checkers/ruff" format --check examples tools tests benches web/tests
+  "$checkers/ruff" check examples fixtures tools tests benches web/tests
+  "$checkers/ruff" format --check examples fixtures tools tests benches web/tests
   "$checkers/mypy" examples/01-simulated-arm/*.py tools/*.py
   "$checkers/mypy" examples/02-supervised-simulator/*.py
+  "$checkers/mypy" fixtures
   "$checkers/mypy" benches/bench.py
   "$checkers/mypy" tests/predecessor/*.py
 }
