@@ -4,13 +4,14 @@ PREFIX ?= /usr/local
 DESTDIR ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help build web screenshots demo test chaos bench install uninstall clean
+.PHONY: help build web screenshots demo test test-quick chaos bench install uninstall clean
 
 help:
 	@echo "make demo       install what is missing, build, and test a simulated robot arm"
 	@echo "make build      build rtf and its hosts (target/release)"
 	@echo "make web        build the page that rtf shows in a browser (make build does, too)"
 	@echo "make test       every check there is: Rust, SDKs, examples, lints, installation"
+	@echo "make test-quick the same without what needs middleware (ROS, YARP): it says what it leaves out"
 	@echo "make chaos      kill fixtures and runners at random moments, for half an hour"
 	@echo "make bench      measure speed and memory"
 	@echo "make install    install into PREFIX=$(PREFIX); DESTDIR is put before it"
@@ -33,6 +34,9 @@ demo:
 
 test:
 	@tools/test.sh
+
+test-quick:
+	@tools/test.sh quick
 
 # RTF_CHAOS_SEED=N repeats the random numbers of a run, which prints its seed.
 chaos:

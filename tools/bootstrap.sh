@@ -9,6 +9,7 @@
 # in the user's cache, see tools/venv.sh.
 
 . "$(dirname "$0")/env.sh"
+. tools/packages.sh
 
 goal=${1:?goal: build, demo, test or update}
 
@@ -51,18 +52,6 @@ find_missing() {
   done
 }
 
-# Runs apt-get as root, by sudo if need be. A password is asked for only where
-# somebody can type it.
-apt() {
-  local root=()
-  if [ "$(id -u)" -ne 0 ]; then
-    have sudo || return 1
-    root=(sudo -n)
-    [ ! -t 0 ] || sudo -v || return 1
-  fi
-  quietly "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq "$@"
-}
-
 if [ "$goal" = update ]; then
   apt update || die "apt-get update failed" "as root: apt-get update"
   exit
@@ -85,14 +74,8 @@ have cargo || die "cargo is missing" \
 
 find_missing
 if [ ${#missing[@]} -gt 0 ]; then
-  by_hand="sudo apt-get install ${missing[*]}"
-  have apt-get || die "missing: ${missing[*]} (Debian's names)" \
-    "install what this system calls them, then try again"
-  say "installing: ${missing[*]}"
   keep_sshd_stopped
-  apt install -y --no-install-recommends "${missing[@]}" ||
-    { apt update && apt install -y --no-install-recommends "${missing[@]}"; } ||
-    die "missing and could not be installed: ${missing[*]}" "as root: $by_hand"
+  install_packages "${missing[@]}"
   find_missing
   [ ${#missing[@]} -eq 0 ] || die "still missing after apt-get install: ${missing[*]}"
 fi

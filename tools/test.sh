@@ -4,15 +4,22 @@
 # counts the steps.
 #
 #   tools/test.sh             all steps
+#   tools/test.sh quick       all but those that need middleware (ROS, YARP, …)
 #   tools/test.sh lint sdk    the steps whose names contain one of these words
 
 . "$(dirname "$0")/env.sh"
 
+quick=false
+if [ "${1:-}" = quick ]; then
+  quick=true
+  shift
+fi
 wanted=("$@")
 logs=$BUILD/test-logs
 mkdir -p "$logs"
 passed=0
 failed=()
+left_out=()
 
 is_wanted() {
   local word
@@ -42,6 +49,28 @@ step() {
   fi
   seconds=$(((${EPOCHREALTIME/./} - ${started/./}) / 100000))
   printf '%-6s  %-28s %4d.%d s\n' "$verdict" "$name" $((seconds / 10)) $((seconds % 10))
+}
+
+# Runs one step that needs middleware: its name, the middleware, then its command.
+step_with() {
+  local name=$1 middleware=$2
+  shift 2
+  is_wanted "$name" || return 0
+  if $quick; then
+    left_out+=("$name")
+  else
+    step "$name" with_middleware "$middleware" "$@"
+  fi
+}
+
+with_middleware() {
+  local settings
+  settings=$(tools/middleware.sh "$1")
+  shift
+  while IFS= read -r setting; do
+    [ -z "$setting" ] || export "${setting?}"
+  done <<<"$settings"
+  "$@"
 }
 
 lint_shell() {
@@ -157,6 +186,9 @@ step 'predecessor ours' tests/predecessor/run.sh ours
 for name in "${failed[@]}"; do
   printf 'failed: %s\n' "$name"
 done
+if [ ${#left_out[@]} -gt 0 ]; then
+  printf 'left out, because they need middleware: %s\n' "$(printf '%s, ' "${left_out[@]}" | sed 's/, $//')"
+fi
 printf '%d passed, %d failed\n' "$passed" ${#failed[@]}
 [ ${#failed[@]} -eq 0 ] || exit 1
 [ "$passed" -gt 0 ] || die "no step has a name with: $*"

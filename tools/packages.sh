@@ -1,0 +1,36 @@
+# shellcheck shell=bash
+# How Debian packages are installed; to be sourced after env.sh.
+
+# Runs apt-get as root, by sudo if need be. A password is asked for only where
+# somebody can type it.
+apt() {
+  local root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    have sudo || return 1
+    root=(sudo -n)
+    [ ! -t 0 ] || sudo -v || return 1
+  fi
+  quietly "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq \
+    -o DPkg::Lock::Timeout=300 "$@"
+}
+
+# Installs packages, or tells how it is done by hand.
+install_packages() {
+  local by_hand="sudo apt-get install $*"
+  have apt-get || die "missing: $* (Debian's names)" \
+    "install what this system calls them, then try again"
+  say "installing: $*"
+  apt install -y --no-install-recommends "$@" ||
+    { apt update && apt install -y --no-install-recommends "$@"; } ||
+    die "missing and could not be installed: $*" "as root: $by_hand"
+}
+
+# Installs those packages that dpkg does not know as installed.
+need_packages() {
+  local package missing=()
+  for package in "$@"; do
+    [ "$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
+      missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] || install_packages "${missing[@]}"
+}
