@@ -82,13 +82,13 @@ def simulator_killed(rtf: str, suite: str, folder: Path) -> None:
 class Run:
     """A run of rtf and its journal."""
 
-    def __init__(self, rtf: str, suite: str, folder: Path) -> None:
+    def __init__(self, rtf: str, suite: str, folder: Path, *options: str) -> None:
         folder.mkdir()
         self.journal = folder / "latest" / "events.jsonl"
         self.output = folder / "output"
         with self.output.open("wb") as output:
             self.process = subprocess.Popen(
-                [rtf, "run", "--results", str(folder), suite],
+                [rtf, "run", "--results", str(folder), *options, suite],
                 cwd=folder,
                 stdin=subprocess.DEVNULL,
                 stdout=output,

@@ -94,6 +94,7 @@ lint_python() {
   "$checkers/mypy" examples/01-simulated-arm/*.py tools/*.py
   "$checkers/mypy" examples/02-supervised-simulator/*.py
   "$checkers/mypy" fixtures
+  "$checkers/mypy" tests/fixtures/*.py tests/fixtures/ros2launch/*.py
   "$checkers/mypy" benches/bench.py
   "$checkers/mypy" tests/predecessor/*.py
 }
@@ -132,6 +133,15 @@ suites_are_valid() {
     xargs -d '\n' xmllint --noout --schema spec/suite.xsd
 }
 
+# What the fixture managers make of the words of middleware.
+fixtures_python() {
+  "$checkers/pytest" -q -p no:cacheprovider tests/fixtures
+}
+
+fixture_ros2launch() {
+  python3 tools/check_fixture_ros2launch.py "$TARGET/release/rtf" tests/fixtures/ros2launch/suite.xml
+}
+
 example_01() {
   PATH="$simulation:$PATH" RTF_PLUGIN_PATH=$BUILD/examples/01-simulated-arm \
     python3 tools/check_example_01.py "$TARGET/release/rtf" examples/01-simulated-arm/arm.xml
@@ -168,6 +178,7 @@ step 'page unit tests' in_web test
 step 'build' cargo build --workspace --locked
 step 'sdk python' sdk_python
 step 'sdk ruby' sdk_ruby
+step 'fixtures python' fixtures_python
 # Also builds the plug-ins in sdk/c and sdk/cpp, with cc and c++.
 step 'rust tests' cargo test --workspace --locked --no-fail-fast
 step 'web api' web_api
@@ -175,6 +186,7 @@ step 'build release' tools/build.sh
 step 'example 01 plug-ins' tools/plugins.sh examples/01-simulated-arm
 step 'example 01' example_01
 step 'example 02' example_02
+step_with 'fixture ros2launch' ros2 fixture_ros2launch
 step 'guide' tools/check_docs.py "$TARGET/release/rtf" README.md docs/getting-started.md \
   docs/writing-tests.md docs/isolation.md docs/migrating.md
 step 'page in a browser' tools/web-tests.sh

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Prints the bin folder of a virtual environment, which it makes when it is not there.
 #
-#   tools/venv.sh demo|test
+#   tools/venv.sh NAME      demo, test, …: one of tools/requirements-NAME.txt
 #
 # It lives in the user's cache under a key made of the interpreter and of the
 # wanted packages, tools/requirements-NAME.txt: another Python or another
@@ -9,7 +9,7 @@
 
 . "$(dirname "$0")/env.sh"
 
-name=${1:?name: demo or test}
+name=${1:?name: demo, test, …}
 requirements=tools/requirements-$name.txt
 [ -e "$requirements" ] || die "no such file: $requirements"
 
@@ -24,7 +24,7 @@ flock 9
 
 # Half an environment, left by an interrupted run, lacks this file.
 if [ ! -e "$venv/complete" ]; then
-  say "setting up $(grep -v '^#' "$requirements" | tr '\n' ' ')in $venv"
+  say "setting up what $requirements lists in $venv"
   rm -rf "$venv"
   quietly python3 -m venv "$venv" || die "python3 cannot make a virtual environment"
   quietly "$venv/bin/python" -m pip install --quiet --disable-pip-version-check \

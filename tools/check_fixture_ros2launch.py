@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+"""Runs the fixture `ros2launch` while what it launched is killed, stopped and missing.
+
+    check_fixture_ros2launch.py RTF SUITE
+
+The nodes are real ones. The `ros2` command stands in for the real one, which is
+in no registry of packages: it starts them, and says and does what was recorded
+of the real one.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import sys
+import tempfile
+from pathlib import Path
+
+from check_example_01 import Run, expect, is_a
+
+SECONDS = "--set=seconds=15"
+"""How long the first test listens: time enough to disturb it."""
+
+
+def main() -> int:
+    """Runs all and tells the first thing that is not as it should be."""
+    rtf, suite = (str(Path(argument).resolve()) for argument in sys.argv[1:])
+    before = shared_memory()
+    with tempfile.TemporaryDirectory() as folder:
+        home = Path(folder)
+        os.environ["ROS_LOG_DIR"] = str(home / "ros")
+        os.environ.pop("ROS_DOMAIN_ID", None)
+        without_ros2(rtf, suite, home / "without")
+        os.environ["PATH"] = f"{Path(suite).parent / 'bin'}:{os.environ['PATH']}"
+        undisturbed(rtf, suite, home / "undisturbed")
+        collapses(rtf, suite, home / "killed", signal.SIGKILL, "talker-1 died, exit code -9")
+        collapses(rtf, suite, home / "silent", signal.SIGSTOP, "no message on /chatter for 2 s")
+        launch_killed(rtf, suite, home / "launch-killed")
+        dies_early(rtf, suite, home / "early")
+        expect("nodes left", pids("talker.py"), [])
+        expect("shared memory left", shared_memory() - before, set())
+    return 0
+
+
+def without_ros2(rtf: str, suite: str, folder: Path) -> None:
+    """Where ROS 2 is missing, the reason says so and how to get it."""
+    if found := shutil.which("ros2"):
+        raise SystemExit(f"{found} is on PATH: this check needs a PATH without it")
+    run = Run(rtf, suite, folder)
+    expect("exit code without ros2", run.wait(), 1)
+    told = reason(run, "fixture-broken")
+    expect("what is missing is told", "there is no program `ros2` on PATH" in told, True)
+    expect("how it is installed is told", "https://docs.ros.org" in told, True)
+
+
+def undisturbed(rtf: str, suite: str, folder: Path) -> None:
+    """Everything passes, also with a process that does its work and ends."""
+    run = Run(rtf, suite, folder)
+    expect("exit code", run.wait(), 0)
+    expect("verdicts", set(run.verdicts().values()), {"passed"})
+    expect("nodes left", pids("talker.py"), [])
+
+
+def collapses(rtf: str, suite: str, folder: Path, number: signal.Signals, why: str) -> None:
+    """A signal to the talker: the test is `collapsed`, the next one has another talker."""
+    run = Run(rtf, suite, folder, SECONDS)
+    disturb(run, "talker.py", number)
+    expect(f"exit code after {number.name}", run.wait(), 1)
+    expect("verdicts", list(run.verdicts().values()), ["collapsed", "passed"])
+    expect("reason", reason(run, "fixture-collapsed"), why)
+    expect("starts", len([each for each in run.events() if is_a(each, "fixture-ready")]), 2)
+    expect("nodes left", pids("talker.py"), [])
+
+
+def launch_killed(rtf: str, suite: str, folder: Path) -> None:
+    """A SIGKILL to launch itself leaves its nodes behind: they are ended, too."""
+    run = Run(rtf, suite, folder, SECONDS)
+    disturb(run, "ros2", signal.SIGKILL)
+    expect("exit code", run.wait(), 1)
+    expect("reason", reason(run, "fixture-collapsed"), "ros2 was killed by SIGKILL")
+    expect("verdicts", list(run.verdicts().values()), ["collapsed", "passed"])
+    expect("nodes left", pids("talker.py"), [])
+
+
+def dies_early(rtf: str, suite: str, folder: Path) -> None:
+    """A node that dies before it is ready fails the set-up at once; its last words are shown."""
+    run = Run(rtf, suite, folder, "--set=rate=fast")
+    expect("exit code", run.wait(), 1)
+    told = reason(run, "fixture-broken")
+    expect(f"who died in `{told}`", "talker-1 died, exit code 1" in told, True)
+    output = run.output.read_text()
+    expect("last words are told", "could not convert string to float: 'fast'" in output, True)
+
+
+def disturb(run: Run, program: str, number: signal.Signals) -> None:
+    """Send a signal to a program while the first test runs."""
+    try:
+        run.wait_for(lambda event: is_a(event, "test-phase") and event["phase"] == "run")
+        (pid,) = pids(program)
+        os.kill(pid, number)
+        run.wait_for(lambda event: is_a(event, "fixture-collapsed"))
+    except BaseException:
+        run.stop()
+        raise
+
+
+def reason(run: Run, kind: str) -> str:
+    """The reason of the only event of this kind."""
+    (event,) = (event for event in run.events() if is_a(event, kind))
+    return str(event["reason"])
+
+
+def pids(program: str) -> list[int]:
+    """The processes whose program, or script, has this name, and which are not zombies."""
+    found = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            words = (folder / "cmdline").read_text(errors="replace").split("\0")
+            if program in {Path(word).name for word in words[:2]}:
+                found.append(int(folder.name))
+        except OSError:  # it has ended
+            continue
+    return found
+
+
+def shared_memory() -> set[str]:
+    """The files that Fast DDS has in shared memory."""
+    return {file.name for file in Path("/dev/shm").glob("*fastdds_*")}
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,5 @@
+# shellcheck shell=bash
+# ROS 2 as wheels: rclpy, Fast DDS and some messages, for Python 3.10 to 3.13. There
+# is no `ros2` command in them.
+
+printf 'PATH=%s:%s\n' "$(tools/venv.sh ros2)" "$PATH"
