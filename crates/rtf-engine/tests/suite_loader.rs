@@ -9,7 +9,8 @@ use std::time::Duration;
 
 use proptest::prelude::*;
 use rtf_engine::suite::{
-    self, AfterCollapse, FixtureKind, HookKind, Leaks, Question, Source, Suite, WrittenLimits,
+    self, AfterCollapse, FixtureKind, HookKind, Leaks, MiddlewareQuestion, Question, Source, Suite,
+    WrittenLimits,
 };
 use rtf_model::{Diagnostic, Severity, Trigger};
 
@@ -165,6 +166,9 @@ fn every_part_of_a_process_fixture_arrives() {
     assert_eq!(process.command.value, ["python3", "simulator.py", "two words", "#7"]);
     assert_eq!(process.stop_signal, Some(2));
     assert_eq!(process.stop_grace, Some(Duration::from_secs(3)));
+    let asked = |kind, name: &str, min_rate| {
+        format!("{:?}", MiddlewareQuestion { kind, name: name.to_owned(), min_rate })
+    };
     let kinds = |probes: &[suite::Probe]| {
         let kind = |probe: &suite::Probe| match &probe.question {
             Question::Tcp(address) => address.clone(),
@@ -172,6 +176,7 @@ fn every_part_of_a_process_fixture_arrives() {
             Question::Log(pattern) => pattern.to_string(),
             Question::Command(words) => words.join("|"),
             Question::File(path) => path.clone(),
+            Question::Middleware(asked) => format!("{asked:?}"),
         };
         probes.iter().map(kind).collect::<Vec<_>>()
     };
@@ -183,9 +188,19 @@ fn every_part_of_a_process_fixture_arrives() {
             "listening on port \\d+",
             "run/sim.pid",
             "python3|arm_client.py|time",
+            &asked("ros-node", "/robot/${param:node=driver}", None),
+            &asked("ros-service", "/reset", None),
         ]
     );
-    assert_eq!(kinds(&process.alive), ["python3|arm_client.py|time", "(?i)fatal", "[::1]:17681"]);
+    assert_eq!(
+        kinds(&process.alive),
+        [
+            "python3|arm_client.py|time",
+            "(?i)fatal",
+            "[::1]:17681",
+            &asked("ros-topic", "/joint_states", Some(99.5))
+        ]
+    );
     assert_eq!(process.ready[0].every, Some(Duration::from_millis(50)));
     assert_eq!(process.ready[0].timeout, Some(Duration::from_millis(500)));
     assert_eq!(suite.fixtures[0].depends, None);
@@ -266,7 +281,8 @@ fn what_is_wrong_with_a_process_fixture() {
     let probe = |probe: &str| fixture(&format!("<command>a</command>{probe}"));
     assert_eq!(
         probe("<ready/>"),
-        ["`<ready>` needs one of the attributes `tcp`, `http`, `log`, `file`, `command`"]
+        ["`<ready>` needs one of the attributes `tcp`, `http`, `log`, `file`, `command`, \
+          `ros-node`, `ros-topic`, `ros-service`"]
     );
     assert_eq!(
         probe("<ready tcp='a:1' file='b'/>"),
@@ -279,6 +295,18 @@ fn what_is_wrong_with_a_process_fixture() {
     assert_eq!(
         probe("<alive log-bad='x' timeout='1s'/>"),
         ["`timeout` has no effect beside `log-bad`"]
+    );
+    assert_eq!(
+        probe("<ready ros-topic='chatter'/>"),
+        ["`ros-topic` is not a name from the root: `chatter`"]
+    );
+    assert_eq!(
+        probe("<alive ros-topic='/chatter' min-rate='0'/>"),
+        ["`min-rate` is not a rate: `0`"]
+    );
+    assert_eq!(
+        probe("<alive ros-node='/talker' min-rate='5'/>"),
+        ["`min-rate` has no effect beside `ros-node`"]
     );
     assert_eq!(probe("<stop signal='x'/>"), ["`signal` is not a signal: `x`"]);
 }

@@ -213,6 +213,7 @@ impl Filler<'_> {
                     self.text(text, probe.span);
                 }
                 Question::Command(words) => self.words(words, probe.span),
+                Question::Middleware(asked) => self.text(&mut asked.name, probe.span),
                 Question::Log(_) => {}
             }
         }

@@ -106,6 +106,10 @@ impl Filler<'_> {
         match &mut probe.kind {
             ProbeKind::Tcp(text) | ProbeKind::Http(text) => self.text(text),
             ProbeKind::Command(command) => self.texts(command),
+            ProbeKind::Middleware { command, subject } => {
+                self.texts(command);
+                self.text(subject);
+            }
             ProbeKind::File(path) => {
                 if let Some(text) = path.to_str().filter(|text| port::mentions(text)) {
                     let mut text = text.to_owned();

@@ -38,6 +38,8 @@ impl Own<'_> {
             FixtureBody::Plugin(_) | FixtureBody::Attached(_) => false,
         };
         let local_domain = own_domain && !plan.fixtures.iter().any(is_remote);
+        let own_master = user("ROS_MASTER_URI").is_none() && !written("ROS_MASTER_URI");
+        let local_master = own_master && !plan.fixtures.iter().any(is_remote);
         let mut variables = Vec::new();
         for (name, value) in self.all(plan) {
             // The range belongs to the domain: another one may span machines.
@@ -45,8 +47,14 @@ impl Own<'_> {
             if written(name) || (spans_machines && user(name).is_none()) {
                 continue;
             }
+            // So does the address by which the nodes of a master are known; that
+            // of the user's shell is for the user's master.
+            let of_master = name == "ROS_HOSTNAME";
+            if of_master && !local_master {
+                continue;
+            }
             let name = name.to_owned();
-            variables.push(match user(&name) {
+            variables.push(match user(&name).filter(|_| !of_master) {
                 Some(value) => OwnVariable { name, value, kept: true },
                 None => OwnVariable { name, value, kept: false },
             });
@@ -54,12 +62,14 @@ impl Own<'_> {
         variables
     }
 
-    fn all(&self, plan: &SuitePlan) -> [(&'static str, String); 7] {
+    fn all(&self, plan: &SuitePlan) -> [(&'static str, String); 8] {
         let partition = format!("rtf-{}-{}", self.run, plan.id);
         [
             ("ROS_DOMAIN_ID", self.domain.to_string()),
             ("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST".to_owned()),
             ("ROS_MASTER_URI", self.address(ROS_MASTER)),
+            // With an address instead of this name roscpp listens everywhere.
+            ("ROS_HOSTNAME", "localhost".to_owned()),
             ("YARP_NAMESPACE", format!("/rtf{}", self.domain)),
             ("GZ_PARTITION", partition.clone()),
             ("IGN_PARTITION", partition),

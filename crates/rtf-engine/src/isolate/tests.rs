@@ -48,12 +48,14 @@ fn a_fixture_on_another_machine_is_found_by_ros_2() {
     let names: Vec<_> = own.variables(&plan, |_| None).into_iter().map(|own| own.name).collect();
     assert_eq!(names.len(), 6);
     assert!(!names.contains(&"ROS_AUTOMATIC_DISCOVERY_RANGE".to_owned()));
+    assert!(!names.contains(&"ROS_HOSTNAME".to_owned()));
 }
 
-const ALL: [&str; 7] = [
+const ALL: [&str; 8] = [
     "ROS_DOMAIN_ID=42",
     "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST",
     "ROS_MASTER_URI=http://127.0.0.1:20002",
+    "ROS_HOSTNAME=localhost",
     "YARP_NAMESPACE=/rtf42",
     "GZ_PARTITION=rtf-RUN-0",
     "IGN_PARTITION=rtf-RUN-0",
@@ -77,6 +79,7 @@ fn what_the_user_set_is_kept_unless_the_suite_wants_its_own() {
     let expected = [
         "ROS_DOMAIN_ID=7 kept",
         "ROS_MASTER_URI=http://127.0.0.1:20002",
+        "ROS_HOSTNAME=localhost",
         "YARP_NAMESPACE=/rtf42",
         "GZ_PARTITION=lab kept",
         "IGN_PARTITION=rtf-RUN-0",
@@ -86,12 +89,27 @@ fn what_the_user_set_is_kept_unless_the_suite_wants_its_own() {
     assert_eq!(variables(OwnMiddleware::Always, &[], &user), ALL);
 }
 
+/// By the name of a robot's network the nodes of a master on this machine would
+/// not be found; and with the user's own master that name is right.
+#[test]
+fn the_address_of_nodes_belongs_to_the_master() {
+    let hostname = |variables: Vec<String>| {
+        variables.into_iter().find(|variable| variable.starts_with("ROS_HOSTNAME"))
+    };
+    let name = ("ROS_HOSTNAME", "lab.local");
+    let own = variables(OwnMiddleware::UnlessSet, &[], &[name]);
+    assert_eq!(hostname(own), Some("ROS_HOSTNAME=localhost".to_owned()));
+    let user = [("ROS_MASTER_URI", "http://robot:11311"), name];
+    assert_eq!(hostname(variables(OwnMiddleware::UnlessSet, &[], &user)), None);
+    assert_eq!(hostname(variables(OwnMiddleware::UnlessSet, &user[..1], &[])), None);
+}
+
 #[test]
 fn what_the_suite_sets_itself_is_left_to_it() {
     let written = [("ROS_DOMAIN_ID", "3"), ("YARP_NAMESPACE", "/lab")];
     for middleware in [OwnMiddleware::UnlessSet, OwnMiddleware::Always] {
         let left = variables(middleware, &written, &[("ROS_DOMAIN_ID", "7")]);
-        assert_eq!(left, [ALL[2], ALL[4], ALL[5], ALL[6]]);
+        assert_eq!(left, [ALL[2], ALL[3], ALL[5], ALL[6], ALL[7]]);
     }
 }
 

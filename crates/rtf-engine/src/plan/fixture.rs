@@ -11,7 +11,7 @@ use super::plugin::base_name;
 use super::scope::Scope;
 use super::{
     AttachedPlan, FixtureBody, FixtureLimits, FixturePlan, Probe, ProbeKind, ProcessPlan,
-    RemotePlan, defaults, depends, program,
+    RemotePlan, defaults, depends, middleware, program,
 };
 use crate::suite::{self, Attached, Fixture, FixtureKind, Process, Question, Source, Spanned};
 
@@ -155,6 +155,7 @@ impl ProcessPlanner<'_> {
     }
 
     fn probe(&mut self, written: suite::Probe, every: Duration) -> Probe {
+        let mut timeout = written.timeout.unwrap_or(ANSWER);
         let kind = match written.question {
             Question::Tcp(address) => ProbeKind::Tcp(address),
             Question::Http(url) => ProbeKind::Http(url),
@@ -163,12 +164,16 @@ impl ProcessPlanner<'_> {
                 ProbeKind::Command(self.command(Spanned::new(words, written.span)))
             }
             Question::File(path) => ProbeKind::File(self.scope.folder.join(path)),
+            Question::Middleware(asked) => {
+                let limit = written.timeout.unwrap_or(middleware::ANSWER);
+                timeout = limit + middleware::START;
+                middleware::probe(&asked, limit, &self.scope).unwrap_or_else(|problem| {
+                    self.problems.push(problem.label(self.source.label(written.span, "")));
+                    ProbeKind::Command(Vec::new())
+                })
+            }
         };
-        Probe {
-            kind,
-            every: written.every.unwrap_or(every),
-            timeout: written.timeout.unwrap_or(ANSWER),
-        }
+        Probe { kind, every: written.every.unwrap_or(every), timeout }
     }
 
     /// The user's `ssh` with its options.

@@ -174,6 +174,11 @@ impl Sdk {
     }
 }
 
+/// The user's Python, for programs of ours.
+pub(super) fn python(scope: &Scope<'_>) -> Result<PathBuf, Box<Diagnostic>> {
+    interpreter("python", "python3", "RTF_PYTHON", scope)
+}
+
 /// A host of ours: beside `rtf`, below its prefix, or in `PATH`.
 fn own_program(program: &str, scope: &Scope<'_>) -> Result<PathBuf, Box<Diagnostic>> {
     let beside = scope.surroundings.executable.parent().map(Path::to_path_buf);

@@ -13,6 +13,7 @@ mod fixture;
 mod hook;
 mod hosts;
 mod inputs;
+mod middleware;
 mod names;
 mod plugin;
 mod program;

@@ -91,7 +91,7 @@ pub(super) fn shipped(name: &str, scope: &Scope<'_>) -> Option<(PathBuf, &'stati
 }
 
 /// The folder of what comes with rtf: below its prefix, or in the source tree.
-fn shipped_folder(scope: &Scope<'_>) -> Option<PathBuf> {
+pub(super) fn shipped_folder(scope: &Scope<'_>) -> Option<PathBuf> {
     let installed = scope.surroundings.prefix().map(|prefix| prefix.join("share/rtf/fixtures"));
     let above = scope.surroundings.executable.ancestors().skip(1);
     let source = above.map(|folder| folder.join("fixtures"));

@@ -14,7 +14,7 @@ use super::plugin::base_name;
 use super::scope::Scope;
 use super::{
     AfterCollapse, Given, Isolation, Leaks, Manner, OwnMiddleware, Retries, SuitePlan, TestLimits,
-    TestPlan, defaults, fixture, hook,
+    TestPlan, defaults, fixture, hook, middleware,
 };
 use crate::config;
 use crate::suite::{FixtureKind, Middleware, Source, Suite, Test, WrittenLimits};
@@ -116,7 +116,7 @@ pub(super) fn plan(
 fn isolation(suite: &Suite) -> Isolation {
     let network = suite.isolate.network;
     // What runs already has its ids, and ours are unique on this machine only.
-    // Whether a plug-in starts middleware or uses what runs cannot be told; a
+    // Whether a user's plug-in starts middleware or uses what runs cannot be told; a
     // suite that the predecessor runs finds what it finds there.
     let (mut starts, mut elsewhere) = (false, false);
     for fixture in &suite.fixtures {
@@ -124,7 +124,7 @@ fn isolation(suite: &Suite) -> Isolation {
             FixtureKind::Attached(_) => elsewhere = true,
             FixtureKind::Process(process) if process.host.is_some() => elsewhere = true,
             FixtureKind::Process(_) => starts = true,
-            FixtureKind::Plugin(_) => {}
+            FixtureKind::Plugin(plugin) => starts |= middleware::starts(plugin),
         }
     }
     let middleware = match suite.isolate.middleware {

@@ -318,4 +318,12 @@ pub enum ProbeKind {
     Command(Vec<String>),
     /// Whether the file exists.
     File(PathBuf),
+    /// Whether the program, which comes with rtf, ends with exit code 0; else
+    /// its output is the reason.
+    Middleware {
+        /// The program and its arguments.
+        command: Vec<String>,
+        /// What it looks at: "ROS topic `/chatter`".
+        subject: String,
+    },
 }

@@ -1,9 +1,11 @@
 //! The probes of process fixtures that ask the world: TCP, HTTP, a file, a
-//! command. (What a process prints is looked at by the state machine.)
+//! command, middleware. (What a process prints is looked at by the state machine.)
 
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
+use rtf_model::ExitStatus;
+use tokio::io::AsyncReadExt;
 use tokio::time::timeout;
 use url::Url;
 
@@ -17,6 +19,8 @@ use crate::run::machine::{HostId, HostInput};
 
 /// How long somebody else may take to answer.
 const TAKEN_WAIT: Duration = Duration::from_millis(200);
+/// How much of a reason is read, in bytes.
+const LONGEST_REASON: u64 = 4096;
 
 /// Asks the probes of one fixture and tells the suite's task what comes of it.
 #[derive(Clone, Debug)]
@@ -119,6 +123,9 @@ async fn ask(probe: &Probe, since: Option<SystemTime>, asker: &Asker) -> Result<
             ProbeKind::Http(url) => ask_http(network, url).await,
             ProbeKind::File(path) => ask_file(path, since),
             ProbeKind::Command(command) => ask_command(command, asker).await,
+            ProbeKind::Middleware { command, subject } => {
+                ask_middleware(command, subject, asker).await
+            }
             ProbeKind::Log(_) => Ok(()),
         }
     };
@@ -134,6 +141,7 @@ fn subject(probe: &Probe) -> String {
         ProbeKind::Http(url) => url.clone(),
         ProbeKind::File(path) => path.display().to_string(),
         ProbeKind::Command(command) => format!("`{}`", shown(command)),
+        ProbeKind::Middleware { subject, .. } => subject.clone(),
         ProbeKind::Log(pattern) => pattern.to_string(),
     }
 }
@@ -159,23 +167,45 @@ fn ask_file(path: &Path, since: Option<SystemTime>) -> Result<(), String> {
 
 async fn ask_command(command: &[String], asker: &Asker) -> Result<(), String> {
     let shown = shown(command);
+    match run(command, Streams::None, asker).await {
+        Ok((ExitStatus::Code(0), _)) => Ok(()),
+        Ok((status, _)) => Err(format!("`{shown}` ended with {status}")),
+        Err(error) => Err(format!("`{shown}` cannot run: {error}")),
+    }
+}
+
+/// The program tells in a line why it does not hold.
+async fn ask_middleware(command: &[String], subject: &str, asker: &Asker) -> Result<(), String> {
+    match run(command, Streams::StdoutOnly, asker).await {
+        Ok((ExitStatus::Code(0), _)) => Ok(()),
+        Ok((_, reason)) if !reason.is_empty() => Err(reason),
+        Ok((status, _)) => Err(format!("the program that asks {subject} ended with {status}")),
+        Err(error) => Err(format!("{subject} cannot be asked: {error}")),
+    }
+}
+
+/// Runs a program to its end; how it ended, and what it printed if that is wanted.
+async fn run(
+    command: &[String],
+    streams: Streams,
+    asker: &Asker,
+) -> std::io::Result<(ExitStatus, String)> {
     let request = SpawnRequest {
         command: command.to_vec(),
-        streams: Streams::None,
+        streams,
         channel: None,
         forks: false,
         ..asker.like.clone()
     };
-    let started = asker.spawner.spawn(request).await;
-    let mut process = started.map_err(|error| format!("`{shown}` cannot run: {error}"))?;
+    let mut process = asker.spawner.spawn(request).await?;
     let guard = KillOnDrop(process.pid);
-    let status = process.end.wait().await.map_err(|error| format!("`{shown}`: {error}"))?;
-    std::mem::forget(guard);
-    if status == rtf_model::ExitStatus::Code(0) {
-        Ok(())
-    } else {
-        Err(format!("`{shown}` ended with {status}"))
+    let mut printed = Vec::new();
+    if let Some(stdout) = process.stdout.take() {
+        stdout.take(LONGEST_REASON).read_to_end(&mut printed).await?;
     }
+    let status = process.end.wait().await?;
+    std::mem::forget(guard);
+    Ok((status, String::from_utf8_lossy(&printed).trim().to_owned()))
 }
 
 /// A command as the suite has it: the program was made absolute since.

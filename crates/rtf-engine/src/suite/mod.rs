@@ -12,6 +12,7 @@ mod duration;
 mod env;
 mod fixture;
 mod hook;
+mod middleware;
 mod open;
 mod param;
 mod places;

@@ -6,10 +6,11 @@ use rtf_model::Diagnostic;
 use super::command::words;
 use super::shape::{Shape, check};
 use super::value::Reader;
-use super::{Probe, Question, Span, Spanned, port};
+use super::{Probe, Question, Span, Spanned, middleware, port};
 
 /// The attributes that say what is asked; each probe has exactly one of them.
-const QUESTIONS: [&str; 6] = ["tcp", "http", "log", "log-bad", "file", "command"];
+const QUESTIONS: [&str; 9] =
+    ["tcp", "http", "log", "log-bad", "file", "command", "ros-node", "ros-topic", "ros-service"];
 
 /// Reads a probe; `None` when it cannot be asked.
 pub(super) fn read(reader: &mut Reader<'_>, node: Node<'_, '_>, shape: &Shape) -> Option<Probe> {
@@ -27,14 +28,19 @@ pub(super) fn read(reader: &mut Reader<'_>, node: Node<'_, '_>, shape: &Shape) -
     // A log is watched as it is written, and a file is there or not: neither
     // takes time to answer.
     let idle: &[&str] = match name {
-        "log" | "log-bad" => &["every", "timeout"],
-        "file" => &["timeout"],
-        _ => &[],
+        "log" | "log-bad" => &["every", "timeout", "min-rate"],
+        "file" => &["timeout", "min-rate"],
+        "ros-topic" => &[],
+        _ => &["min-rate"],
     };
     for unused in idle.iter().filter(|unused| node.has_attribute(**unused)) {
         without_effect(reader, node, unused, name);
     }
-    let question = question(reader, name, &value)?;
+    let question = if middleware::is_question(name) {
+        middleware::read(reader, node, name, &value)?
+    } else {
+        question(reader, name, &value)?
+    };
     Some(Probe { question, span: value.span, every, timeout })
 }
 

@@ -149,11 +149,39 @@ pub(super) const HOOK: Shape = Shape {
 /// `<env>`.
 pub(super) const ENV: Shape = leaf("env", &["name", "value"]);
 /// `<ready>`.
-pub(super) const READY: Shape =
-    leaf("ready", &["tcp", "http", "log", "file", "command", "timeout", "every"]);
+pub(super) const READY: Shape = leaf(
+    "ready",
+    &[
+        "tcp",
+        "http",
+        "log",
+        "file",
+        "command",
+        "ros-node",
+        "ros-topic",
+        "ros-service",
+        "min-rate",
+        "timeout",
+        "every",
+    ],
+);
 /// `<alive>`.
-pub(super) const ALIVE: Shape =
-    leaf("alive", &["tcp", "http", "log-bad", "file", "command", "timeout", "every"]);
+pub(super) const ALIVE: Shape = leaf(
+    "alive",
+    &[
+        "tcp",
+        "http",
+        "log-bad",
+        "file",
+        "command",
+        "ros-node",
+        "ros-topic",
+        "ros-service",
+        "min-rate",
+        "timeout",
+        "every",
+    ],
+);
 /// `<stop>`.
 pub(super) const STOP: Shape = leaf("stop", &["signal", "grace"]);
 /// `<command>`, `<description>`, `<environment>`.

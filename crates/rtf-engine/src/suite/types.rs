@@ -267,4 +267,17 @@ pub enum Question {
     Command(Vec<String>),
     /// Whether the file exists.
     File(String),
+    /// Whether something of a middleware is there and well.
+    Middleware(MiddlewareQuestion),
+}
+
+/// What is asked of a middleware.
+#[derive(Clone, Debug)]
+pub struct MiddlewareQuestion {
+    /// The attribute: `ros-node`, `ros-topic`, …
+    pub kind: &'static str,
+    /// The node, topic, service or port.
+    pub name: String,
+    /// How many messages a second a topic has at least.
+    pub min_rate: Option<f64>,
 }

@@ -9,6 +9,9 @@ fn bench() -> Bench {
     let bench = Bench::new();
     bench.file("cell/A.lua", "");
     bench.file("cell/F.lua", "");
+    for shipped in ["roscore.py", "rosbag.py", "rtf_fixtures/__init__.py"] {
+        bench.file(&format!("share/rtf/fixtures/{shipped}"), "");
+    }
     bench.program("cell/sim", "exit 0");
     bench.program("bin/ssh", "exit 0");
     bench
@@ -33,6 +36,9 @@ fn who_has_middleware_of_its_own() {
         ("", plugin, No),
         ("", local, UnlessSet),
         ("", &format!("{plugin}{local}"), UnlessSet),
+        ("", "<fixture>roscore</fixture>", UnlessSet),
+        ("", "<fixture>rosbag</fixture>", No),
+        ("", &format!("<fixture>roscore</fixture>{attached}"), No),
         ("middleware='own'", plugin, Always),
         ("", attached, No),
         ("", remote, No),

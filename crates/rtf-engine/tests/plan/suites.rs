@@ -81,6 +81,55 @@ fn fixtures_with_their_defaults() {
     assert!(words[0].starts_with('/') && words[0].ends_with("/sh"), "{words:?}");
 }
 
+/// What is asked of middleware becomes a program of ours; nothing is written in
+/// the suite that could be a command.
+#[test]
+fn middleware_is_asked_by_a_program_that_comes_with_rtf() {
+    let bench = Bench::new();
+    bench.file("cell/A.lua", "");
+    bench.file(
+        "cell/s.xml",
+        "<suite><fixture type='process'><command>sh</command>\
+         <ready ros-topic='/n${port:n}/x' min-rate='2.5' timeout='3s'/>\
+         <alive ros-node='/talker'/></fixture><test>A.lua</test></suite>",
+    );
+    let outcome = bench.build(&["s.xml"]);
+    let problem = &outcome.diagnostics[0];
+    assert!(problem.message.contains("`ros-topic` cannot be asked"), "{problem:?}");
+    assert_eq!(problem.labels[0].line, 1);
+
+    bench.file("share/rtf/fixtures/rtf_fixtures/probe.py", "");
+    let plan = bench.plan(&["s.xml"]);
+    let FixtureBody::Process(process) = &plan.suites[0].fixtures[0].body else {
+        panic!("a process")
+    };
+    let asked = |probe: &rtf_engine::plan::Probe| match &probe.kind {
+        ProbeKind::Middleware { command, subject } => {
+            let words: Vec<_> =
+                command.iter().map(|word| word.replace(&bench.path(""), "")).collect();
+            (words.join(" "), subject.clone(), probe.timeout)
+        }
+        other => panic!("{other:?}"),
+    };
+    let program = "bin/python3 -E -S share/rtf/fixtures/rtf_fixtures/probe.py";
+    assert_eq!(
+        asked(&process.ready[0]),
+        (
+            format!("{program} ros-topic /n${{port:n}}/x --timeout 3 --min-rate 2.5"),
+            "ros-topic `/n${port:n}/x`".to_owned(),
+            Duration::from_secs(5)
+        )
+    );
+    assert_eq!(
+        asked(&process.alive[0]),
+        (
+            format!("{program} ros-node /talker --timeout 5"),
+            "ros-node `/talker`".to_owned(),
+            Duration::from_secs(7)
+        )
+    );
+}
+
 #[test]
 fn unknown_types_list_the_known_ones() {
     let bench = Bench::new();
