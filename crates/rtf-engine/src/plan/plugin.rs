@@ -67,9 +67,7 @@ impl Finder {
 
 /// Where plug-ins are searched, in order.
 fn search_folders(kind: &HostKind, scope: &Scope<'_>) -> Vec<PathBuf> {
-    let mut folders = vec![scope.folder.to_path_buf()];
-    folders.extend(scope.beside.map(Path::to_path_buf));
-    folders.extend(scope.folders("RTF_PLUGIN_PATH"));
+    let mut folders = own_folders(scope);
     folders.extend(kind.library_path.map(|name| scope.folders(name)).unwrap_or_default());
     folders.extend(scope.surroundings.prefix().map(|prefix| prefix.join("lib/rtf/plugins")));
     folders.extend(shipped_folder(scope));
@@ -88,6 +86,20 @@ pub(super) fn shipped(name: &str, scope: &Scope<'_>) -> Option<(PathBuf, &'stati
         let file = folder.join(format!("{name}.{extension}"));
         file.is_file().then_some((file, kind))
     })
+}
+
+/// Whether a plug-in is where its user has put plug-ins, not merely among the
+/// libraries of the platform.
+pub(super) fn is_beside_suite(file: &Path, scope: &Scope<'_>) -> bool {
+    own_folders(scope).iter().any(|folder| file.starts_with(folder))
+}
+
+/// Where a user puts plug-ins.
+fn own_folders(scope: &Scope<'_>) -> Vec<PathBuf> {
+    let mut folders = vec![scope.folder.to_path_buf()];
+    folders.extend(scope.beside.map(Path::to_path_buf));
+    folders.extend(scope.folders("RTF_PLUGIN_PATH"));
+    folders
 }
 
 /// The folder of what comes with rtf: below its prefix, or in the source tree.

@@ -56,7 +56,7 @@ fn plugins_are_searched_in_order() {
 /// before it, and a test never takes it.
 #[test]
 fn fixtures_that_come_with_rtf_have_a_name_only() {
-    let bench = Bench::new();
+    let mut bench = Bench::new();
     bench.file("share/rtf/fixtures/rtf_fixtures/__init__.py", "");
     bench.file("share/rtf/fixtures/roscore.py", "");
     bench.file("cell/Arm.so", "");
@@ -70,6 +70,10 @@ fn fixtures_that_come_with_rtf_have_a_name_only() {
     };
     assert_eq!(found(&bench), ("share/rtf/fixtures/roscore.py".into(), "python".into()));
     assert!(bench.build(&["t.xml"]).plan.is_none());
+    // The middleware's own library, when its environment is set up.
+    bench.file("ros/lib/libroscore.so", "");
+    bench.set("LD_LIBRARY_PATH", &bench.path("ros/lib"));
+    assert_eq!(found(&bench), ("share/rtf/fixtures/roscore.py".into(), "python".into()));
     bench.file("cell/roscore.so", "");
     assert_eq!(found(&bench), ("cell/roscore.so".into(), "dll".into()));
 }
