@@ -93,6 +93,7 @@ lint_python() {
   "$checkers/ruff" format --check examples fixtures tools tests benches web/tests
   "$checkers/mypy" examples/01-simulated-arm/*.py tools/*.py
   "$checkers/mypy" examples/02-supervised-simulator/*.py
+  "$checkers/mypy" examples/06-ros2/*.py
   "$checkers/mypy" fixtures
   "$checkers/mypy" tests/fixtures/*.py tests/fixtures/ros2launch/*.py
   "$checkers/mypy" benches/bench.py
@@ -152,6 +153,10 @@ example_02() {
     examples/02-supervised-simulator/supervised.xml
 }
 
+example_06() {
+  python3 tools/check_example_06.py "$TARGET/release/rtf" examples/06-ros2/{left,right}.xml
+}
+
 # The page's own checks; its tests in a browser need a built rtf.
 in_web() {
   tools/web.sh modules
@@ -186,6 +191,7 @@ step 'build release' tools/build.sh
 step 'example 01 plug-ins' tools/plugins.sh examples/01-simulated-arm
 step 'example 01' example_01
 step 'example 02' example_02
+step_with 'example 06' ros2 example_06
 step_with 'fixture ros2launch' ros2 fixture_ros2launch
 step 'guide' tools/check_docs.py "$TARGET/release/rtf" README.md docs/getting-started.md \
   docs/writing-tests.md docs/isolation.md docs/migrating.md
