@@ -95,7 +95,8 @@ lint_python() {
   "$checkers/mypy" examples/02-supervised-simulator/*.py
   "$checkers/mypy" examples/06-ros2/*.py
   "$checkers/mypy" fixtures
-  "$checkers/mypy" tests/fixtures/*.py tests/fixtures/ros2launch/*.py
+  "$checkers/mypy" tests/fixtures/*.py tests/fixtures/ros2launch/*.py \
+    tests/fixtures/orocos/*.py
   "$checkers/mypy" benches/bench.py
   "$checkers/mypy" tests/predecessor/*.py
 }
@@ -130,13 +131,17 @@ sdk_ruby() {
 }
 
 suites_are_valid() {
-  files 'examples/*.xml' 'tests/install/*.xml' |
+  files 'examples/*.xml' 'tests/install/*.xml' 'tests/fixtures/*/suite.xml' |
     xargs -d '\n' xmllint --noout --schema spec/suite.xsd
 }
 
 # What the fixture managers make of the words of middleware.
 fixtures_python() {
   "$checkers/pytest" -q -p no:cacheprovider tests/fixtures
+}
+
+fixture_orocos() {
+  python3 tools/check_fixture_orocos.py "$TARGET/release/rtf" tests/fixtures/orocos
 }
 
 fixture_ros2launch() {
@@ -193,6 +198,7 @@ step 'example 01' example_01
 step 'example 02' example_02
 step_with 'example 06' ros2 example_06
 step_with 'fixture ros2launch' ros2 fixture_ros2launch
+step_with 'fixture orocos' orocos fixture_orocos
 step 'guide' tools/check_docs.py "$TARGET/release/rtf" README.md docs/getting-started.md \
   docs/writing-tests.md docs/isolation.md docs/migrating.md
 step 'page in a browser' tools/web-tests.sh

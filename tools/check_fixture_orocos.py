@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""Runs the fixture `orocos` while its deployer is killed, hangs, and has components that break.
+
+    check_fixture_orocos.py RTF FOLDER
+
+The program in the place of the deployer is built here: RTT is in no registry
+of packages. Its components are real CORBA objects, served by omniORB and named
+in omniNames; they have the interface that RTT has published.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from check_example_01 import Run, expect, is_a
+from check_fixture_ros2launch import pids, reason
+
+SECONDS = "--set=seconds=20"
+"""How long the first test runs: time enough to disturb it."""
+
+DEPLOYER = "deployer-corba"
+
+
+def main() -> int:
+    """Runs all and tells the first thing that is not as it should be."""
+    rtf, sources = (Path(argument).resolve() for argument in sys.argv[1:])
+    with tempfile.TemporaryDirectory() as folder:
+        home = Path(folder)
+        os.environ["TMPDIR"] = folder
+        missing(str(rtf), str(sources / "prompt.xml"), home / "missing")
+        build(sources, home / "bin")
+        os.environ["PATH"] = f"{home / 'bin'}:{os.environ['PATH']}"
+        checks(str(rtf), sources, home)
+        expect("deployers left", pids(DEPLOYER) + pids("deployer-gnulinux"), [])
+        expect("name servers left", pids("omniNames"), [])
+        expect("folders left", list(home.glob("rtf-orocos-*")), [])
+    return 0
+
+
+def checks(rtf: str, sources: Path, home: Path) -> None:
+    """What the fixture does with a deployer that is there."""
+    suite = str(sources / "suite.xml")
+    undisturbed(rtf, str(sources / "prompt.xml"), home / "prompt")
+    undisturbed(rtf, suite, home / "undisturbed")
+    fatal = ["arm is in state FatalError"]
+    collapses(Run(rtf, suite, home / "fatal", SECONDS), signal.SIGUSR1, fatal)
+    exception = ["arm is in state Exception"]
+    collapses(Run(rtf, suite, home / "exception", SECONDS), signal.SIGUSR2, exception)
+    # Whoever notices it first tells it.
+    killed = [f"{DEPLOYER} was killed by SIGKILL", "does not answer: CORBA exception"]
+    collapses(Run(rtf, suite, home / "killed", SECONDS), signal.SIGKILL, killed)
+    hangs = ["does not answer: CORBA exception TRANSIENT: 127.0.0.1:"]
+    collapses(Run(rtf, suite, home / "hangs", SECONDS), signal.SIGSTOP, hangs)
+    never_there(rtf, suite, home / "never")
+
+
+def build(sources: Path, folder: Path) -> None:
+    """Builds what stands in for both deployers."""
+    folder.mkdir()
+    subprocess.run(["omniidl", "-bcxx", str(sources / "TaskContext.idl")], cwd=folder, check=True)
+    libraries = ["-lomniORB4", "-lomnithread", "-pthread"]
+    program = ["-I.", str(sources / "deployer.cpp"), "TaskContextSK.cc", "-o", DEPLOYER]
+    flags = ["-std=c++17", "-O1", "-Wall", "-Wextra"]
+    subprocess.run(["c++", *flags, *program, *libraries], cwd=folder, check=True)
+    shutil.copy(folder / DEPLOYER, folder / "deployer-gnulinux")
+
+
+def missing(rtf: str, suite: str, folder: Path) -> None:
+    """Where there is no deployer, the reason says so."""
+    if found := shutil.which("deployer-gnulinux"):
+        raise SystemExit(f"{found} is on PATH: this check needs a PATH without it")
+    run = Run(rtf, suite, folder)
+    expect("exit code without a deployer", run.wait(), 1)
+    told = reason(run, "fixture-broken")
+    expect("it is told", "there is no program `deployer-gnulinux` on PATH" in told, True)
+
+
+def undisturbed(rtf: str, suite: str, folder: Path) -> None:
+    """Everything passes."""
+    run = Run(rtf, suite, folder)
+    expect("exit code", run.wait(), 0)
+    expect("verdicts", set(run.verdicts().values()), {"passed"})
+
+
+def collapses(run: Run, number: signal.Signals, reasons: list[str]) -> None:
+    """A signal to the deployer: the test is `collapsed`, the next one has another deployer."""
+    try:
+        run.wait_for(lambda event: is_a(event, "test-phase") and event["phase"] == "run")
+        (pid,) = pids(DEPLOYER)
+        os.kill(pid, number)
+        run.wait_for(lambda event: is_a(event, "fixture-collapsed"))
+    except BaseException:
+        run.stop()
+        raise
+    expect(f"exit code after {number.name}", run.wait(), 1)
+    told = reason(run, "fixture-collapsed")
+    expect(f"one of {reasons} in `{told}`", any(each in told for each in reasons), True)
+    expect("verdicts", list(run.verdicts().values()), ["collapsed", "passed"])
+    expect("deployers left", pids(DEPLOYER), [])
+
+
+def never_there(rtf: str, suite: str, folder: Path) -> None:
+    """A component that the script does not load: what was answered last is told."""
+    run = Run(rtf, suite, folder, "--set=second=elbow", "--set=timeout=1")
+    expect("exit code", run.wait(), 1)
+    told = reason(run, "fixture-broken")
+    expect(f"NotFound in `{told}`", "CORBA exception NotFound" in told, True)
+    expect("elbow in it", "component elbow is Running" in told, True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
