@@ -181,9 +181,8 @@ impl<'a, 'c> PluginPlanner<'a, 'c> {
         let untyped = role == Role::Fixture && written.plugin_type.is_none();
         let ours = untyped.then(|| plugin::shipped(&written.name.value, &self.scope)).flatten();
         // Middleware has libraries of these names: `librosbag.so` is no plug-in.
-        let theirs = file.filter(|file| {
-            ours.is_none() || plugin::is_beside_suite(file, &self.scope.with(&own))
-        });
+        let theirs = file
+            .filter(|file| ours.is_none() || plugin::is_beside_suite(file, &self.scope.with(&own)));
         let Some((file, kind)) = theirs.map(|file| (file, kind)).or(ours) else {
             // The host is missed as well as the plug-in, not after it.
             self.host(kind, &own, &place);
