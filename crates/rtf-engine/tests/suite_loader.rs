@@ -116,6 +116,7 @@ fn every_attribute_arrives() {
     assert_eq!(suite.timeout, Some(secs(5400)));
     assert_eq!(suite.tags, ["hardware", "slow"]);
     assert!(suite.tolerates_collapse);
+    assert_eq!(suite.parallel, 4);
     assert_eq!(
         suite.env,
         [("ARM_PORT", "17681"), ("EMPTY", "")].map(|(n, v)| (n.into(), v.into()))
@@ -137,10 +138,11 @@ fn every_attribute_arrives() {
         }
     );
     assert_eq!((test.after_collapse, test.leaks), (AfterCollapse::Skip, Leaks::Report));
-    assert!(test.critical);
+    assert!(test.critical && test.exclusive);
     assert_eq!(test.tags, ["reach", "slow"]);
     assert_eq!(test.env, [("SEED".to_owned(), "7".to_owned())]);
     let other = &suite.tests[1];
+    assert!(!other.critical && !other.exclusive);
     assert_eq!((other.after_collapse, other.leaks), (AfterCollapse::Rerun, Leaks::Fail));
     assert_eq!(
         other.limits,

@@ -267,6 +267,9 @@ pub struct SuitePlanned {
     /// Whether a collapse of a fixture leaves the suite green.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub tolerates_collapse: bool,
+    /// How many of its tests may run at once.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub parallel: u32,
 }
 
 /// A fixture that will be set up.
@@ -442,6 +445,15 @@ pub struct Output {
     pub omitted: u64,
     /// The text; bytes that are not UTF-8 are replaced by U+FFFD.
     pub text: String,
+}
+
+fn one() -> u32 {
+    1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it with a reference")]
+fn is_one(number: &u32) -> bool {
+    *number == 1
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it with a reference")]

@@ -1,6 +1,9 @@
 //! The grammar of an event stream: which event may follow which.
 
+mod beside;
+
 use crate::{Event, EventKind, FixtureId, HookId, Source, SuiteId, TestId};
+use beside::Beside;
 
 /// An event that may not come where it came.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -84,6 +87,7 @@ pub struct OrderChecker {
     fixtures: Vec<Fixture>,
     hooks: Vec<(SuiteId, bool)>,
     tests: Vec<Test>,
+    beside: Beside,
 }
 
 type Rule = Result<(), String>;
@@ -132,7 +136,7 @@ impl OrderChecker {
                 self.stage = Stage::Planning;
                 Ok(())
             }
-            EventKind::SuitePlanned(plan) => self.plan_suite(plan.suite),
+            EventKind::SuitePlanned(plan) => self.plan_suite(plan.suite, plan.parallel),
             EventKind::FixturePlanned(plan) => self.plan_fixture(plan.fixture, plan.suite),
             EventKind::HookPlanned(plan) => self.plan_hook(plan.hook, plan.suite),
             EventKind::TestPlanned(plan) => self.plan_test(plan.test, plan.suite, plan.repetitions),
@@ -180,12 +184,13 @@ impl OrderChecker {
         }
     }
 
-    fn plan_suite(&mut self, suite: SuiteId) -> Rule {
+    fn plan_suite(&mut self, suite: SuiteId, parallel: u32) -> Rule {
         ensure(self.stage == Stage::Planning, || {
             "plans come before the first suite starts".into()
         })?;
         ensure(suite.index() == self.suites.len(), || format!("suite {suite} out of order"))?;
         self.suites.push(Bracket::Planned);
+        self.beside.plan(parallel);
         Ok(())
     }
 
@@ -236,6 +241,7 @@ impl OrderChecker {
         self.suite_open(suite)?;
         ensure(was_open != open, || format!("hook {hook} started or finished twice"))?;
         self.hooks[hook.index()].1 = open;
+        self.beside.hook(suite.index(), open);
         Ok(())
     }
 
@@ -328,6 +334,8 @@ impl OrderChecker {
         })?;
         test.last = Some(number);
         test.open = true;
+        let suite = test.suite.index();
+        self.beside.test(suite, true);
         Ok(())
     }
 
@@ -355,6 +363,8 @@ impl OrderChecker {
         let test = self.test(id)?;
         test.open = false;
         test.rerun = rerun;
+        let suite = test.suite.index();
+        self.beside.test(suite, false);
         Ok(())
     }
 
@@ -388,6 +398,6 @@ impl OrderChecker {
             ensure(*bracket == Bracket::Closed, || format!("suite {index} did not finish"))?;
         }
         self.stage = Stage::After;
-        Ok(())
+        self.beside.broken().map_or(Ok(()), |rule| Err(rule.clone()))
     }
 }

@@ -73,6 +73,7 @@ fn before() -> Vec<EventKind> {
             description: String::new(),
             environment: String::new(),
             tolerates_collapse: false,
+            parallel: 1,
         }),
         EventKind::TestPlanned(TestPlanned {
             test: TEST,

@@ -9,7 +9,7 @@ use rtf_model::{EventKind, LeftProcess};
 use rustix::event::{PollFd, PollFlags, poll};
 
 use super::closing::{self, Ended, Happened, Told};
-use super::duties::{Duties, Duty, State};
+use super::duties::{Duties, Duty, State, only_test};
 use super::hook::{self, Why};
 use super::unix::Signals;
 use super::watch::KILLS;
@@ -69,7 +69,8 @@ pub fn finish(duties: Duties, reason: String, mut signals: Signals, forked: Inst
         let hook = with_folder(duty.hook, folder);
         let network = duties.held.get(&hook.suite).and_then(|held| held.network.as_ref());
         let network = network.map(|(namespaces, _)| namespaces);
-        let why = Why { reason: &words, test: duties.tests.get(&hook.suite), network };
+        let test = only_test(&duties.tests, hook.suite);
+        let why = Why { reason: &words, test, network };
         let ran = hook::run(&hook, duty.state, &why, &mut signals);
         parked.push(Parked { name: hook.name, problem: ran.problem });
         happened.extend(ran.happened);

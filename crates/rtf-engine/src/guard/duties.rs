@@ -24,12 +24,24 @@ pub struct Duties {
     pub over: bool,
     /// The hooks of the suites that run.
     pub hooks: Vec<Duty>,
-    /// The tests that run: one of a suite at the most.
-    pub tests: HashMap<SuiteId, (TestId, String)>,
+    /// The tests that run.
+    pub tests: Tests,
     /// The streams of the fixtures' processes.
     pub fixtures: HashMap<i32, Streams>,
     /// What the suites that run have for themselves.
     pub held: HashMap<SuiteId, Held>,
+}
+
+/// The tests of each suite that run: their ids and names.
+pub type Tests = HashMap<SuiteId, Vec<(TestId, String)>>;
+
+/// The test that a suite's hooks are about: the one that runs, if it is only one.
+#[must_use]
+pub fn only_test(tests: &Tests, suite: SuiteId) -> Option<&(TestId, String)> {
+    match tests.get(&suite)?.as_slice() {
+        [one] => Some(one),
+        _ => None,
+    }
 }
 
 /// What a suite has for itself.
@@ -132,12 +144,14 @@ impl Duties {
                 }
             }
             Note::TestBegins { suite, test, name } => {
-                self.tests.insert(suite, (test, name));
+                self.tests.entry(suite).or_default().push((test, name));
                 for duty in self.hooks.iter_mut().filter(|duty| duty.hook.suite == suite) {
                     duty.state = State::Due;
                 }
             }
-            Note::TestEnds { suite } => drop(self.tests.remove(&suite)),
+            Note::TestEnds { suite, test } => {
+                self.tests.entry(suite).or_default().retain(|(running, _)| *running != test);
+            }
             Note::HookBegins(begins) => {
                 if let Some(duty) = self.duty(begins.hook) {
                     duty.runs += 1;
@@ -219,7 +233,8 @@ mod tests {
         }
         let due = duties.hooks.iter().filter(|duty| matches!(duty.state, State::Due));
         let due = due.map(|duty| duty.hook.id.0).collect();
-        let mut tests: Vec<_> = duties.tests.into_values().map(|(_, name)| name).collect();
+        let mut tests: Vec<_> =
+            duties.tests.into_values().flatten().map(|(_, name)| name).collect();
         tests.sort();
         (due, tests)
     }
@@ -240,7 +255,7 @@ mod tests {
         // A test makes its own suite's hooks due again, and no others.
         let mut notes = both();
         notes.extend(parked(0).into_iter().chain(parked(1)));
-        notes.extend([Note::TestEnds { suite: two }, test(two, "grip")]);
+        notes.extend([Note::TestEnds { suite: two, test: TestId(1) }, test(two, "grip")]);
         assert_eq!(told(notes), (vec![1], vec!["arm".to_owned(), "grip".to_owned()]));
         let mut notes = both();
         notes.push(Note::SuiteEnds { suite: one });

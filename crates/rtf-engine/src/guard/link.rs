@@ -117,10 +117,10 @@ impl Link {
         }
     }
 
-    /// The test of a suite that ran is over.
-    pub fn test_ends(&self, suite: &SuitePlan) {
+    /// A test of a suite is over.
+    pub fn test_ends(&self, suite: &SuitePlan, test: TestId) {
         if !suite.hooks.is_empty() {
-            self.tell(&Note::TestEnds { suite: suite.id });
+            self.tell(&Note::TestEnds { suite: suite.id, test });
         }
     }
 

@@ -54,10 +54,12 @@ pub enum Note {
         /// Its name.
         name: String,
     },
-    /// The test of a suite that ran is over.
+    /// A test is over.
     TestEnds {
-        /// Which suite.
+        /// Its suite.
         suite: SuiteId,
+        /// Which.
+        test: TestId,
     },
     /// A hook is about to be started.
     HookBegins(HookBegins),

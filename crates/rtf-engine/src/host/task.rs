@@ -129,23 +129,15 @@ struct Task {
     process: Process,
     inputs: Inputs,
     line: Vec<u8>,
-    /// Whether it has to say that it lives.
-    looked_at: bool,
+    /// How often it has to say that it lives.
+    looked_at: u32,
     /// Probes and stack dumps; they end with the task.
     side: JoinSet<()>,
 }
 
 impl Task {
     fn new(job: Job, shared: Arc<Shared>, process: Process, inputs: Inputs) -> Self {
-        Self {
-            job,
-            shared,
-            process,
-            inputs,
-            line: Vec::new(),
-            looked_at: false,
-            side: JoinSet::new(),
-        }
+        Self { job, shared, process, inputs, line: Vec::new(), looked_at: 0, side: JoinSet::new() }
     }
 
     /// Hooks and fixtures must be able to go on when the runner dies.
@@ -191,7 +183,7 @@ impl Task {
                 Some(order) = orders.recv() => self.obey(order).await,
                 _ = read(&mut process.channel, &mut buffers.channel), if !congested =>
                     self.heard(&buffers.channel).await,
-                () = std::future::ready(()), if self.looked_at => self.look_alive().await,
+                () = std::future::ready(()), if self.looked_at > 0 => self.look_alive().await,
                 _ = read(&mut process.stdout, &mut buffers.stdout), if !congested =>
                     self.printed(Stream::Stdout, &buffers.stdout).await,
                 _ = read(&mut process.stderr, &mut buffers.stderr), if !congested =>
@@ -256,13 +248,13 @@ impl Task {
             Order::KillTree => self.job.launch.kill(&self.process),
             Order::TakeStack(support) => self.take_stack(support).await,
             Order::WatchAlive => self.watch_alive(),
-            Order::LookAlive => self.looked_at = true,
+            Order::LookAlive => self.looked_at += 1,
         }
     }
 
     /// One that is dying says nothing: its end follows.
     async fn look_alive(&mut self) {
-        self.looked_at = false;
+        self.looked_at -= 1;
         if !tree::is_dying(self.process.pid) {
             self.tell(HostInput::Lives).await;
         }

@@ -70,10 +70,8 @@ pub(super) fn plan(
     let mut limits = Limits::default();
     let mut tests = Vec::with_capacity(suite.tests.len());
     for test in suite.tests {
-        let name = match &test.name {
-            Some(name) => name.value.clone(),
-            None => names.unique(base_name(&test.plugin.name.value)),
-        };
+        let given = test.name.as_ref().map(|name| name.value.clone());
+        let name = given.unwrap_or_else(|| names.unique(base_name(&test.plugin.name.value)));
         let limits = limits.of(test.limits);
         let tags = tags(&suite.tags, &test);
         let env = &test.env;
@@ -89,6 +87,7 @@ pub(super) fn plan(
             leaks: test.leaks,
             retries: test.retries,
             critical: test.critical,
+            exclusive: test.exclusive,
             tags,
         });
     }
@@ -106,6 +105,7 @@ pub(super) fn plan(
         given: Given::Nothing,
         requires: suite.requires,
         tolerates_collapse: suite.tolerates_collapse,
+        parallel: suite.parallel,
         fixtures,
         hooks,
         tests,
@@ -192,6 +192,7 @@ pub(super) fn plan_singles(context: &mut Context<'_>, singles: &[Single]) -> Sui
             leaks: Leaks::default(),
             retries: Retries::default(),
             critical: false,
+            exclusive: false,
             tags: Vec::new(),
         });
     }
@@ -208,6 +209,7 @@ pub(super) fn plan_singles(context: &mut Context<'_>, singles: &[Single]) -> Sui
         given: Given::Nothing,
         requires: Vec::new(),
         tolerates_collapse: false,
+        parallel: 1,
         fixtures: Vec::new(),
         hooks: Vec::new(),
         tests,

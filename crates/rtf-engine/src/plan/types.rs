@@ -73,6 +73,8 @@ pub struct SuitePlan {
     pub requires: Vec<Resource>,
     /// Whether a fixture's collapse leaves the suite green.
     pub tolerates_collapse: bool,
+    /// How many of its tests may run at the same time; 1 for one after the other.
+    pub parallel: u32,
     /// The fixtures: each after those that it depends on, else in the order of the file.
     pub fixtures: Vec<FixturePlan>,
     /// The hooks, in the order in which they are run when several are called for.
@@ -186,6 +188,8 @@ pub struct TestPlan {
     pub retries: Retries,
     /// Whether the rest of the suite is skipped when it does not pass.
     pub critical: bool,
+    /// Whether no other test of the suite runs beside it.
+    pub exclusive: bool,
     /// The tags given in the suite.
     pub tags: Vec<String>,
 }

@@ -1,5 +1,6 @@
 //! How many tests may fail before the rest of the run is skipped.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -13,9 +14,8 @@ pub struct FailLimit {
     most: Option<u32>,
     /// How many were counted by any clone.
     seen: Arc<AtomicU32>,
-    /// The test that this suite counted last: each is counted once, and its
-    /// repetitions follow one another.
-    last: Option<TestId>,
+    /// The tests that this suite has counted: each is counted once.
+    counted: BTreeSet<TestId>,
 }
 
 impl FailLimit {
@@ -31,7 +31,7 @@ impl FailLimit {
         if finished.verdict.is_green() || finished.rerun || says_nothing {
             return;
         }
-        if self.last.replace(finished.test) != Some(finished.test) {
+        if self.counted.insert(finished.test) {
             self.seen.fetch_add(1, Ordering::Relaxed);
         }
     }

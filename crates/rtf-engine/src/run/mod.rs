@@ -172,6 +172,7 @@ fn announce(suite: &SuitePlan, events: &Events) {
         description: suite.description.clone(),
         environment: suite.environment.clone(),
         tolerates_collapse: suite.tolerates_collapse,
+        parallel: suite.parallel,
     }));
     for fixture in &suite.fixtures {
         events.emit(EventKind::FixturePlanned(FixturePlanned {

@@ -188,7 +188,7 @@ impl SuiteTask<'_> {
                 let name = self.test(*test).map_or("", |plan| &plan.name);
                 guard.test_begins(self.plan, *test, name);
             }
-            EventKind::TestFinished(_) => guard.test_ends(self.plan),
+            EventKind::TestFinished(finished) => guard.test_ends(self.plan, finished.test),
             EventKind::HookFinished { hook, problem } => guard.hook_ends(*hook, problem.clone()),
             EventKind::HookStarted { hook, trigger, reason, test } => {
                 let (reason, scope) = (reason.clone(), String::new());

@@ -44,6 +44,7 @@ pub(super) fn read(
     let leaks = leaks(reader, node).unwrap_or(defaults.leaks);
     let retries = retries(reader, node, defaults.retries);
     let critical = reader.truth(node, "critical").unwrap_or(false);
+    let exclusive = reader.truth(node, "exclusive").unwrap_or(false);
     let tags = values(reader.words(node, "tags"));
     let env = env::read(reader, node);
     let plugin = plugin(reader, node)?;
@@ -58,6 +59,7 @@ pub(super) fn read(
         leaks,
         retries,
         critical,
+        exclusive,
         tags,
         env,
     })

@@ -29,6 +29,8 @@ pub struct Suite {
     pub requires: Vec<Resource>,
     /// Whether a fixture's collapse leaves the suite green.
     pub tolerates_collapse: bool,
+    /// How many of its tests may run at the same time.
+    pub parallel: u32,
     /// The fixtures, in order.
     pub fixtures: Vec<Fixture>,
     /// The hooks, in order.
@@ -87,6 +89,8 @@ pub struct Test {
     pub retries: Retries,
     /// Whether the rest of the suite is skipped when it does not pass.
     pub critical: bool,
+    /// Whether no other test of the suite runs beside it.
+    pub exclusive: bool,
     /// Its own tags.
     pub tags: Vec<String>,
     /// Environment variables beside the suite's.

@@ -30,6 +30,7 @@ pub(super) fn suite(index: u32) -> SuiteRecord {
         description: String::new(),
         environment: String::new(),
         tolerates_collapse: false,
+        parallel: 1,
     })
 }
 

@@ -1,5 +1,6 @@
 //! Streams of events: which are legal, and what is known after them.
 
+mod beside;
 mod hooks;
 mod order;
 mod record;

@@ -32,6 +32,7 @@ pub fn suite(id: u32) -> EventKind {
         description: String::new(),
         environment: String::new(),
         tolerates_collapse: false,
+        parallel: 1,
     })
 }
 

@@ -129,7 +129,9 @@ impl Joining {
         let key = (plan.name.clone(), plan.file.clone());
         let id = if let Some(id) = self.suites.get(&key).copied() {
             // What a run did not tolerate, no merge makes tolerable.
-            self.plan.suites[id.index()].tolerates_collapse &= plan.tolerates_collapse;
+            let merged = &mut self.plan.suites[id.index()];
+            merged.tolerates_collapse &= plan.tolerates_collapse;
+            merged.parallel = merged.parallel.max(plan.parallel);
             id
         } else {
             let id = SuiteId(count(self.plan.suites.len()));

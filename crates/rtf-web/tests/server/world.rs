@@ -90,6 +90,7 @@ impl Writer {
             description: String::new(),
             environment: String::new(),
             tolerates_collapse: false,
+            parallel: 1,
         }));
         for (id, name) in (0..).zip(tests) {
             self.emit(EventKind::TestPlanned(TestPlanned {

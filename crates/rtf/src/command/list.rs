@@ -49,6 +49,9 @@ fn notes(test: &TestPlan) -> String {
     if test.critical {
         notes.push("critical".to_owned());
     }
+    if test.exclusive {
+        notes.push("exclusive".to_owned());
+    }
     notes.extend(test.tags.iter().map(|tag| format!("#{}", escape::line(tag))));
     if notes.is_empty() { String::new() } else { format!("  ({})", notes.join(", ")) }
 }
@@ -72,6 +75,9 @@ struct Listed<'p> {
     tags: &'p [String],
     repetition: u32,
     critical: bool,
+    exclusive: bool,
+    /// How many tests of its suite may run at once.
+    parallel: u32,
 }
 
 fn write_json(plan: &Plan, out: &mut impl Write) -> std::io::Result<()> {
@@ -86,6 +92,8 @@ fn write_json(plan: &Plan, out: &mut impl Write) -> std::io::Result<()> {
             tags: &test.tags,
             repetition: test.repetitions,
             critical: test.critical,
+            exclusive: test.exclusive,
+            parallel: suite.parallel,
         })
         .collect();
     serde_json::to_writer_pretty(&mut *out, &List { tests })?;

@@ -124,7 +124,9 @@ fn the_list_for_programs() {
             "slow"
           ],
           "repetition": 1,
-          "critical": false
+          "critical": false,
+          "exclusive": false,
+          "parallel": 1
         }
       ]
     }

@@ -27,6 +27,7 @@ fn beginning(events: usize) -> String {
         description: String::new(),
         environment: String::new(),
         tolerates_collapse: false,
+        parallel: 1,
     };
     let on = vec![Trigger::Interrupt];
     let kinds = [

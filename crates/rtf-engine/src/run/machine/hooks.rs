@@ -53,6 +53,11 @@ impl<'p> Hooks<'p> {
         self.running.is_some()
     }
 
+    /// Whether a hook waits to be run.
+    pub fn any_called(&self) -> bool {
+        !self.queue.is_empty()
+    }
+
     pub fn owns(&self, host: HostId) -> bool {
         self.running.as_ref().is_some_and(|hook| hook.host() == host)
     }

@@ -89,12 +89,12 @@ pub enum Deadline {
     Suite,
     /// The limit of its end after a stop request.
     Shutdown,
-    /// About the running test.
-    Test(TestTimer),
+    /// About a test that runs.
+    Test(TestId, TestTimer),
     /// About the fixture at this place of the suite's plan.
     Fixture(usize, FixtureTimer),
-    /// The next attempt of a test that failed.
-    Retry,
+    /// The next attempt of this test, which failed.
+    Retry(TestId),
     /// The limit of the running hook, or of a step of its stop.
     Hook,
 }
@@ -169,8 +169,8 @@ pub enum Effect {
         /// How.
         start: Start,
     },
-    /// Hosts like these will be needed next, in this order: start them while the
-    /// test runs. They are used when a later `Spawn` asks for the same. What was
+    /// Hosts like these will be needed next, in this order: start them while
+    /// tests run. They are used when a later `Spawn` asks for the same. What was
     /// started ahead and is not in this list is not needed any more.
     SpawnAhead(Vec<Start>),
     /// Send a request or a notification.

@@ -1,25 +1,27 @@
 //! What is next in a suite.
 //!
 //! After every input, [`SuiteMachine::proceed`] looks at the fixtures, hooks and
-//! the running test and does what is due, in this order:
+//! the running tests and does what is due, in this order:
 //!
-//! 1. A test runs: it is left alone, unless the suite ends early.
+//! 1. Tests run: they are left alone. Another one is begun beside them when the
+//!    suite is `parallel` and nothing else is to be done first.
 //! 2. A hook runs, or was called for: nothing else is begun.
 //! 3. The suite ends early (stop request, broken fixture, critical failure,
 //!    limit) or has no test left: `end` hooks, tear down in reverse, skip the rest.
 //! 4. A fixture is unwell: tear down that fixture and all that depend on it.
 //! 5. A fixture is not there: set it up.
-//! 6. Ask plug-in fixtures for their `check`, then start the next test.
+//! 6. Ask plug-in fixtures for their `check`, then start the next tests.
 //!
-//! How it is ended early is in [`ending`], how a test that failed is tried again in
-//! [`retries`].
+//! Which test may start is in [`turns`], how a suite is ended early in [`ending`],
+//! how a test that failed is tried again in [`retries`].
 //!
-//! **A collapse interrupts a test in [`SuiteMachine::fixture_changed`].**
+//! **A collapse interrupts all running tests in [`SuiteMachine::fixture_changed`].**
 
 mod cursor;
 mod ending;
 mod looking;
 mod retries;
+mod turns;
 
 use std::time::Duration;
 
@@ -28,11 +30,13 @@ use rtf_model::{EventKind, Phase, StopCause, TestFinished, TestId, Trigger, Verd
 use super::fixture::Change;
 use super::fixtures::Fixtures;
 use super::hooks::Hooks;
-use super::io::{Deadline, Effect, HostId, HostInput, Input, Start};
+use super::io::{Deadline, Effect, HostId, HostInput, Input};
 use super::test::{Ended, TestRun};
-use crate::plan::{AfterCollapse, Given, SuitePlan};
+use crate::plan::{AfterCollapse, Given, SuitePlan, TestPlan};
 use crate::run::FailLimit;
 use cursor::Cursor;
+use looking::Looks;
+use turns::Turns;
 
 /// What a step of the machine may use: the time, and a list for its effects.
 #[derive(Debug)]
@@ -70,26 +74,16 @@ impl Context<'_> {
     }
 }
 
-/// How many hosts are started ahead of their need. Starting one takes longer than
-/// a short test; two keep a second core busy.
-const HOSTS_AHEAD: usize = 2;
-
 /// The state machine of one suite.
 #[derive(Debug)]
 pub struct SuiteMachine<'p> {
     plan: &'p SuitePlan,
     fixtures: Fixtures<'p>,
     hooks: Hooks<'p>,
-    running: Option<TestRun<'p>>,
-    /// The fixtures' processes that were not seen to live since the test ended.
-    unseen: Vec<HostId>,
-    cursor: Cursor,
-    /// Whether `check` was asked for the test that is next.
+    turns: Turns<'p>,
+    looks: Looks,
+    /// Whether `check` was asked for the tests that are next.
     checked: bool,
-    /// Whether the next attempt of a test that failed is not due yet.
-    waiting: bool,
-    /// Why no more repetitions of the running test follow.
-    given_up: Option<String>,
     /// Why the rest is skipped.
     ending: Option<String>,
     /// How many tests of the run have failed, and may.
@@ -114,12 +108,9 @@ impl<'p> SuiteMachine<'p> {
             fails,
             fixtures: Fixtures::new(plan),
             hooks: Hooks::new(plan),
-            running: None,
-            unseen: Vec::new(),
-            cursor: Cursor::at(0),
-            waiting: false,
+            turns: Turns::new(plan),
+            looks: Looks::default(),
             checked: false,
-            given_up: None,
             shutdown: None,
             end_called: false,
             started: false,
@@ -140,8 +131,8 @@ impl<'p> SuiteMachine<'p> {
             Input::StopTest(test, by) => self.stop_test(test, &by, &mut cx),
             Input::Skip(by) => self.skip(&by, &mut cx),
         }
-        if let Some(ended) = self.running.as_mut().and_then(|test| test.take_end(&mut cx)) {
-            self.test_ended(&ended, &mut cx);
+        while let Some((test, run, ended)) = self.turns.take_end(&mut cx) {
+            self.test_ended(test, &run, &ended, &mut cx);
         }
         self.proceed(&mut cx);
         self.hosts = hosts;
@@ -177,16 +168,15 @@ impl<'p> SuiteMachine<'p> {
                 cx.emit(EventKind::TestSkipped { test: plan.id, reason: reason.to_owned() });
             }
         }
-        self.cursor.test = self.plan.tests.len();
+        self.turns.close();
         self.end_called = true;
     }
 
     fn host(&mut self, host: HostId, input: HostInput, cx: &mut Context<'_>) {
-        if self.running.as_ref().is_some_and(|test| test.host() == host) {
-            if let Some(test) = &mut self.running {
-                test.handle(input, cx);
-            }
-            self.look_alive(cx);
+        if let Some(run) = self.turns.of_host(host) {
+            run.handle(input, cx);
+            let test = run.id();
+            self.look_alive(test, cx);
         } else if let Some(place) = self.fixtures.place_of(host) {
             if matches!(input, HostInput::Lives) {
                 self.seen_alive(host);
@@ -201,12 +191,11 @@ impl<'p> SuiteMachine<'p> {
     fn deadline(&mut self, deadline: Deadline, cx: &mut Context<'_>) {
         match deadline {
             Deadline::Suite => self.limit_reached(cx),
-            Deadline::Retry => self.waiting = false,
+            Deadline::Retry(test) => self.retry_is_due(test),
             Deadline::Shutdown => self.shutdown_took_too_long(cx),
-            Deadline::Test(timer) => {
-                if let Some(test) = &mut self.running {
-                    test.deadline(timer, cx);
-                }
+            Deadline::Test(test, timer) => {
+                let run = self.turns.of_test(test).and_then(|turn| turn.run.as_mut());
+                run.into_iter().for_each(|run| run.deadline(timer, cx));
             }
             Deadline::Fixture(place, timer) => {
                 let change = self.fixtures.get(place).deadline(timer, cx);
@@ -216,13 +205,7 @@ impl<'p> SuiteMachine<'p> {
         }
     }
 
-    fn running_test(&self) -> Option<(TestId, String)> {
-        self.running.as_ref()?;
-        let plan = self.plan.tests.get(self.cursor.test)?;
-        Some((plan.id, plan.name.clone()))
-    }
-
-    /// A fixture's set-up failed, or it collapsed: the running test is
+    /// A fixture's set-up failed, or it collapsed: all running tests are
     /// interrupted at once, and the restarts are counted.
     fn fixture_changed(&mut self, place: usize, change: Option<Change>, cx: &mut Context<'_>) {
         let Some(change) = change else { return };
@@ -232,13 +215,11 @@ impl<'p> SuiteMachine<'p> {
             Change::Collapsed(reason) => (true, reason),
             Change::SetupFailed(reason) => (false, reason),
         };
-        let test = self.running_test();
+        let test = self.turns.only_one();
         if collapsed {
             let reason = format!("fixture `{name}` collapsed: {reason}");
             self.hooks.call(Trigger::Collapse, &reason, test.clone());
-            if let Some(test) = &mut self.running {
-                test.stop(StopCause::Collapse, reason, cx);
-            }
+            self.turns.stop_all(StopCause::Collapse, &reason, cx);
         }
         let again = (collapsed || !first) && self.fixtures.take_restart(place);
         if !again && self.ending.is_none() {
@@ -249,17 +230,13 @@ impl<'p> SuiteMachine<'p> {
         }
     }
 
-    fn test_ended(&mut self, ended: &Ended, cx: &mut Context<'_>) {
-        let about = self.running_test();
-        let Some(run) = self.running.take() else { return };
-        let plan = &self.plan.tests[self.cursor.test];
+    fn test_ended(&mut self, test: TestId, run: &TestRun<'p>, ended: &Ended, cx: &mut Context<'_>) {
+        let Some(turn) = self.turns.of_test(test) else { return };
+        let (plan, cursor, given_up) = (turn.plan, turn.cursor, turn.given_up.take());
+        let goes_on = self.ending.is_none() && given_up.is_none();
         let collapsed = ended.verdict == Verdict::Collapsed;
-        let rerun = collapsed
-            && plan.after_collapse == AfterCollapse::Rerun
-            && self.ending.is_none()
-            && self.given_up.is_none();
-        let retry = self.is_retried(ended);
-        let rerun = rerun || retry;
+        let retry = goes_on && retries::is_retried(plan, cursor, ended);
+        let rerun = retry || (goes_on && collapsed && plan.after_collapse == AfterCollapse::Rerun);
         let mut finished = run.finished(ended, rerun);
         if let (true, AfterCollapse::Skip, EventKind::TestFinished(finished)) =
             (collapsed, plan.after_collapse, &mut finished)
@@ -270,19 +247,8 @@ impl<'p> SuiteMachine<'p> {
             self.fails.count(finished);
         }
         cx.emit(finished);
-        let trigger = match ended.verdict {
-            Verdict::Failed | Verdict::Error | Verdict::Crashed => Some(Trigger::Failure),
-            Verdict::TimedOut => Some(Trigger::Timeout),
-            _ => None,
-        };
-        if let Some(trigger) = trigger {
-            let reason = ended.reason.as_deref().unwrap_or_default();
-            self.hooks.call(
-                trigger,
-                &format!("`{}` is {}: {reason}", plan.name, ended.verdict),
-                about,
-            );
-        }
+        self.look_away(test);
+        self.call_hooks(plan, ended);
         if let Some(text) = &ended.critical {
             self.end_early(format!("a critical assertion of `{}` did not hold: {text}", plan.name));
         } else if plan.critical && !ended.verdict.is_green() && !rerun {
@@ -292,22 +258,34 @@ impl<'p> SuiteMachine<'p> {
             ));
         }
         self.checked = false;
-        self.cursor = self.cursor.next(rerun, plan.repetitions);
-        if retry {
-            self.retry(plan.retries.delay, cx);
+        match (cursor.next(rerun, plan.repetitions), given_up) {
+            (Some(_), Some(reason)) => {
+                cx.emit(EventKind::TestSkipped { test, reason });
+                self.turns.remove(test);
+            }
+            (Some(next), None) => self.goes_on(test, next, retry.then_some(plan.retries.delay), cx),
+            (None, _) => self.turns.remove(test),
         }
-        self.give_up_repetitions(cx);
+    }
+
+    /// Calls for the hooks after an attempt.
+    fn call_hooks(&mut self, plan: &TestPlan, ended: &Ended) {
+        let trigger = match ended.verdict {
+            Verdict::Failed | Verdict::Error | Verdict::Crashed => Trigger::Failure,
+            Verdict::TimedOut => Trigger::Timeout,
+            _ => return,
+        };
+        let reason = ended.reason.as_deref().unwrap_or_default();
+        let reason = format!("`{}` is {}: {reason}", plan.name, ended.verdict);
+        self.hooks.call(trigger, &reason, Some((plan.id, plan.name.clone())));
     }
 
     fn proceed(&mut self, cx: &mut Context<'_>) {
         if !self.started || self.over {
             return;
         }
-        if let Some(test) = &mut self.running {
-            if let Some(reason) = &self.ending {
-                test.stop(StopCause::Interrupt, reason.clone(), cx);
-            }
-            return;
+        if self.turns.any_running() {
+            return self.begin_beside(cx);
         }
         // Tests of other suites may have failed meanwhile.
         if let Some(reason) = self.fails.reached() {
@@ -316,7 +294,7 @@ impl<'p> SuiteMachine<'p> {
         if self.hooks.run_next(cx) {
             return;
         }
-        if self.ending.is_some() || self.cursor.test >= self.plan.tests.len() {
+        if self.ending.is_some() || self.turns.all_over() {
             return self.finish(cx);
         }
         if self.fixtures.any_unwell() {
@@ -327,12 +305,27 @@ impl<'p> SuiteMachine<'p> {
         }
         if self.fixtures.start_next(cx) {
             self.checked = false;
-        } else if self.fixtures.all_ready() && !self.waiting {
+        } else if self.fixtures.all_ready() {
             self.check_then_test(cx);
         }
     }
 
+    /// Begins further tests beside those that run, unless these have to end first:
+    /// for a hook, a fixture that collapsed, or the end of the suite.
+    fn begin_beside(&mut self, cx: &mut Context<'_>) {
+        if self.ending.is_some() || self.hooks.any_called() || !self.fixtures.all_ready() {
+            return;
+        }
+        match self.fails.reached() {
+            Some(reason) if self.turns.any_due() => self.end_early(reason),
+            _ => self.check_then_test(cx),
+        }
+    }
+
     fn check_then_test(&mut self, cx: &mut Context<'_>) {
+        if !self.turns.any_due() {
+            return;
+        }
         if !self.checked {
             self.checked = true;
             self.fixtures.ask_checks(cx);
@@ -340,29 +333,16 @@ impl<'p> SuiteMachine<'p> {
         if self.fixtures.any_checking() {
             return;
         }
-        let Cursor { test, repetition, attempt, .. } = self.cursor;
-        let plan = &self.plan.tests[test];
+        while self.turns.start_next(cx) {}
+        self.checked = false;
         self.hooks.test_starts();
-        self.running = Some(TestRun::start(self.plan, plan, (repetition, attempt), cx));
-        cx.out(Effect::SpawnAhead(self.hosts_ahead()));
-    }
-
-    /// How the hosts of the next tests are started.
-    fn hosts_ahead(&self) -> Vec<Start> {
-        let tests = &self.plan.tests;
-        let after = |cursor: &Cursor| {
-            let repetitions = tests.get(cursor.test).map_or(1, |plan| plan.repetitions);
-            Some(cursor.next(false, repetitions))
-        };
-        let next = std::iter::successors(after(&self.cursor), after).take(HOSTS_AHEAD);
-        let plans = next.filter_map(|cursor| tests.get(cursor.test));
-        plans.map(|plan| TestRun::host_start(self.plan, plan)).collect()
+        cx.out(Effect::SpawnAhead(self.turns.hosts_ahead()));
     }
 
     fn finish(&mut self, cx: &mut Context<'_>) {
         if !self.end_called {
             self.end_called = true;
-            let began = self.fixtures.any_started() || self.cursor.test > 0;
+            let began = self.fixtures.any_started() || self.turns.any_begun();
             if began {
                 self.hooks.call(Trigger::End, "the suite ends", None);
             }
@@ -375,12 +355,12 @@ impl<'p> SuiteMachine<'p> {
             return;
         }
         let reason = self.ending.clone().unwrap_or_default();
-        for plan in &self.plan.tests[self.cursor.test.min(self.plan.tests.len())..] {
-            cx.emit(EventKind::TestSkipped { test: plan.id, reason: reason.clone() });
+        for test in self.turns.rest() {
+            cx.clear(Deadline::Retry(test));
+            cx.emit(EventKind::TestSkipped { test, reason: reason.clone() });
         }
         self.over = true;
         cx.clear(Deadline::Suite);
-        cx.clear(Deadline::Retry);
         cx.clear(Deadline::Shutdown);
         cx.emit(EventKind::SuiteFinished { suite: self.plan.id });
         cx.out(Effect::Done);

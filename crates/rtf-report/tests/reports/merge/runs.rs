@@ -128,6 +128,7 @@ impl Run {
             description: String::new(),
             environment: String::new(),
             tolerates_collapse: number == 0,
+            parallel: 1,
         }));
         for place in 0..suite.fixtures {
             self.push(EventKind::FixturePlanned(FixturePlanned {

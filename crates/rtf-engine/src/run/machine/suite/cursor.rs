@@ -1,10 +1,8 @@
-//! Which attempt of which test is next.
+//! Which attempt of a test is next.
 
-/// The test that is next, or runs.
-#[derive(Clone, Copy, Debug)]
+/// An attempt of a test that has begun: the next one, or the one that runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Cursor {
-    /// Its place in the plan.
-    pub test: usize,
     /// From 1.
     pub repetition: u32,
     /// At this repetition, from 1.
@@ -15,19 +13,17 @@ pub(super) struct Cursor {
 
 impl Cursor {
     /// The first attempt of a test.
-    pub fn at(test: usize) -> Self {
-        Self { test, repetition: 1, attempt: 1, retries: 0 }
-    }
+    pub const FIRST: Self = Self { repetition: 1, attempt: 1, retries: 0 };
 
-    /// What comes after an attempt.
-    pub fn next(self, rerun: bool, repetitions: u32) -> Self {
-        let Self { test, repetition, attempt, .. } = self;
+    /// What comes after an attempt; `None` when the test is over.
+    pub fn next(self, rerun: bool, repetitions: u32) -> Option<Self> {
+        let Self { repetition, attempt, .. } = self;
         if rerun {
-            Self { attempt: attempt + 1, ..self }
+            Some(Self { attempt: attempt + 1, ..self })
         } else if repetition < repetitions {
-            Self { test, repetition: repetition + 1, attempt: 1, retries: 0 }
+            Some(Self { repetition: repetition + 1, ..Self::FIRST })
         } else {
-            Self::at(test + 1)
+            None
         }
     }
 }

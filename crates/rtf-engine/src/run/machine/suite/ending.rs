@@ -3,28 +3,24 @@
 
 use rtf_model::{Diagnostic, EventKind, StopCause, TestId, Trigger};
 
-use super::{Context, Cursor, SuiteMachine};
+use super::{Context, SuiteMachine};
 use crate::run::machine::io::{Deadline, Stop, StopLevel};
 
 impl SuiteMachine<'_> {
     pub(super) fn limit_reached(&mut self, cx: &mut Context<'_>) {
         let limit = self.plan.timeout.unwrap_or_default();
         let reason = format!("the suite did not end within {limit:?}");
-        self.hooks.call(Trigger::Timeout, &reason, self.running_test());
-        if let Some(test) = &mut self.running {
-            test.stop(StopCause::Timeout, reason.clone(), cx);
-        }
+        self.hooks.call(Trigger::Timeout, &reason, self.turns.only_one());
+        self.turns.stop_all(StopCause::Timeout, &reason, cx);
         self.end_early(reason);
     }
 
     pub(super) fn stop(&mut self, stop: Stop, cx: &mut Context<'_>) {
         let reason = format!("stopped by {}", stop.reason);
         if self.started && stop.level == StopLevel::TearDown {
-            self.hooks.call(Trigger::Interrupt, &reason, self.running_test());
+            self.hooks.call(Trigger::Interrupt, &reason, self.turns.only_one());
         }
-        if let Some(test) = &mut self.running {
-            test.stop(StopCause::Interrupt, reason.clone(), cx);
-        }
+        self.turns.stop_all(StopCause::Interrupt, &reason, cx);
         match stop.level {
             StopLevel::TearDown if self.started && self.shutdown.is_none() => {
                 cx.set(Deadline::Shutdown, stop.limit);
@@ -36,35 +32,24 @@ impl SuiteMachine<'_> {
         self.end_early(reason);
     }
 
-    /// Stops a test, if it runs. The suite goes on with the next one.
+    /// Stops a test, if it runs. The suite goes on with the others.
     pub(super) fn stop_test(&mut self, test: TestId, by: &str, cx: &mut Context<'_>) {
-        let about = self.running_test().filter(|(running, _)| *running == test);
-        let (Some(about), Some(run)) = (about, &mut self.running) else { return };
+        let Some(turn) = self.turns.of_test(test) else { return };
+        let Some(run) = &mut turn.run else { return };
         let reason = format!("stopped by {by}");
         run.stop(StopCause::Interrupt, reason.clone(), cx);
+        let about = (turn.plan.id, turn.plan.name.clone());
+        turn.given_up.get_or_insert_with(|| reason.clone());
         self.hooks.call(Trigger::Interrupt, &reason, Some(about));
-        self.given_up.get_or_insert(reason);
     }
 
-    /// Skips what is left of the repetitions of a test that a person stopped.
-    pub(super) fn give_up_repetitions(&mut self, cx: &mut Context<'_>) {
-        let Some(reason) = self.given_up.take() else { return };
-        let Cursor { test, repetition, .. } = self.cursor;
-        if let (Some(plan), 2..) = (self.plan.tests.get(test), repetition) {
-            cx.emit(EventKind::TestSkipped { test: plan.id, reason });
-            self.cursor = Cursor::at(test + 1);
-        }
-    }
-
-    /// Stops the running test, and skips the rest of the suite.
+    /// Stops the running tests, and skips the rest of the suite.
     pub(super) fn skip(&mut self, by: &str, cx: &mut Context<'_>) {
         let reason = format!("skipped by {by}");
         if self.started {
-            self.hooks.call(Trigger::Interrupt, &reason, self.running_test());
+            self.hooks.call(Trigger::Interrupt, &reason, self.turns.only_one());
         }
-        if let Some(test) = &mut self.running {
-            test.stop(StopCause::Interrupt, reason.clone(), cx);
-        }
+        self.turns.stop_all(StopCause::Interrupt, &reason, cx);
         self.end_early(reason);
     }
 
@@ -79,11 +64,9 @@ impl SuiteMachine<'_> {
         self.kill(Some(&reason), cx);
     }
 
-    /// Kills the running test and all fixtures, without tear-down.
+    /// Kills the running tests and all fixtures, without tear-down.
     fn kill(&mut self, why: Option<&str>, cx: &mut Context<'_>) {
-        if let Some(test) = &mut self.running {
-            test.kill(cx);
-        }
+        self.turns.running().for_each(|run| run.kill(cx));
         cx.clear(Deadline::Shutdown);
         self.fixtures.kill_all(why, cx);
     }

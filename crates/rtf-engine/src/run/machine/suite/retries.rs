@@ -2,31 +2,46 @@
 
 use std::time::Duration;
 
-use rtf_model::Verdict;
+use rtf_model::{TestId, Verdict};
 
-use super::{Context, SuiteMachine};
+use super::{Context, Cursor, SuiteMachine};
+use crate::plan::TestPlan;
 use crate::run::machine::io::Deadline;
 use crate::run::machine::test::Ended;
 
+/// Whether an attempt that has ended so is tried again. A collapse has a rule of
+/// its own, and after a critical assertion nothing follows.
+pub(super) fn is_retried(plan: &TestPlan, cursor: Cursor, ended: &Ended) -> bool {
+    use Verdict::{Crashed, Error, Failed, TimedOut};
+    matches!(ended.verdict, Failed | Error | Crashed | TimedOut)
+        && cursor.retries < plan.retries.count
+        && ended.critical.is_none()
+}
+
 impl SuiteMachine<'_> {
-    /// Whether the running test, which has ended so, is tried again. A collapse
-    /// has a rule of its own, and after a critical assertion nothing follows.
-    pub(super) fn is_retried(&self, ended: &Ended) -> bool {
-        use Verdict::{Crashed, Error, Failed, TimedOut};
-        let plan = &self.plan.tests[self.cursor.test];
-        matches!(ended.verdict, Failed | Error | Crashed | TimedOut)
-            && self.cursor.retries < plan.retries.count
-            && ended.critical.is_none()
-            && self.ending.is_none()
-            && self.given_up.is_none()
+    /// A test goes on with a further attempt; if it is a retry, after a time.
+    pub(super) fn goes_on(
+        &mut self,
+        test: TestId,
+        next: Cursor,
+        retry: Option<Duration>,
+        cx: &mut Context<'_>,
+    ) {
+        let Some(turn) = self.turns.of_test(test) else { return };
+        turn.cursor = next;
+        if let Some(delay) = retry {
+            turn.cursor.retries += 1;
+            turn.waits = delay > Duration::ZERO;
+            if turn.waits {
+                cx.set(Deadline::Retry(test), delay);
+            }
+        }
     }
 
-    /// The next attempt is a retry, after this time.
-    pub(super) fn retry(&mut self, delay: Duration, cx: &mut Context<'_>) {
-        self.cursor.retries += 1;
-        if delay > Duration::ZERO {
-            self.waiting = true;
-            cx.set(Deadline::Retry, delay);
+    /// A retry has waited long enough.
+    pub(super) fn retry_is_due(&mut self, test: TestId) {
+        if let Some(turn) = self.turns.of_test(test) {
+            turn.waits = false;
         }
     }
 }

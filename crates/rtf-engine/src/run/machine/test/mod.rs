@@ -10,7 +10,7 @@ use rtf_model::protocol::{
 };
 use rtf_model::{
     EventKind, ExitStatus, LeftProcess, Measurement, Message, MessageKind, Phase, Source,
-    StopCause, Stream, TestFinished, Verdict,
+    StopCause, Stream, TestFinished, TestId, Verdict,
 };
 
 use crate::host::codec::INITIALIZE;
@@ -116,7 +116,7 @@ impl<'p> TestRun<'p> {
             keep_folder: None,
         };
         cx.out(Effect::Send(host, Some(RUN_TEST), Request::RunTest(plugin)));
-        cx.set(Deadline::Test(TestTimer::Limit), plan.limits.load);
+        cx.set(Deadline::Test(plan.id, TestTimer::Limit), plan.limits.load);
         Self {
             plan,
             host,
@@ -140,6 +140,11 @@ impl<'p> TestRun<'p> {
             env: environment(suite, &plan.env, "test", &plan.name),
             folder: suite.folder.clone(),
         }
+    }
+
+    /// Its test.
+    pub fn id(&self) -> TestId {
+        self.plan.id
     }
 
     /// The process of this attempt.
@@ -206,11 +211,11 @@ impl<'p> TestRun<'p> {
             Phase::Run => limits.run,
             _ => limits.teardown,
         };
-        cx.set(Deadline::Test(TestTimer::Limit), limit);
+        cx.set(Deadline::Test(self.plan.id, TestTimer::Limit), limit);
         if phase == Phase::Run && limits.slow < limits.run {
-            cx.set(Deadline::Test(TestTimer::Slow), limits.slow);
+            cx.set(Deadline::Test(self.plan.id, TestTimer::Slow), limits.slow);
         } else {
-            cx.clear(Deadline::Test(TestTimer::Slow));
+            cx.clear(Deadline::Test(self.plan.id, TestTimer::Slow));
         }
     }
 
@@ -262,9 +267,12 @@ impl<'p> TestRun<'p> {
                 self.evidence.answer = Some(answer);
                 self.phase = Phase::Exit;
                 cx.out(Effect::CloseChannel(self.host));
-                cx.clear(Deadline::Test(TestTimer::Slow));
+                cx.clear(Deadline::Test(self.plan.id, TestTimer::Slow));
                 if self.step.is_none() {
-                    cx.set(Deadline::Test(TestTimer::Limit), self.plan.limits.teardown);
+                    cx.set(
+                        Deadline::Test(self.plan.id, TestTimer::Limit),
+                        self.plan.limits.teardown,
+                    );
                 }
             }
             Err(what) => self.broke_protocol(what, cx),
@@ -277,7 +285,7 @@ impl<'p> TestRun<'p> {
     }
 
     fn exited(&mut self, exit: ExitStatus, left: Vec<LeftProcess>, cx: &mut Context<'_>) {
-        cx.clear(Deadline::Test(TestTimer::Slow));
+        cx.clear(Deadline::Test(self.plan.id, TestTimer::Slow));
         for capture in &mut self.captures {
             if let Some(output) = capture.finish() {
                 cx.emit(EventKind::Output(output));
@@ -297,7 +305,7 @@ impl<'p> TestRun<'p> {
             (true, false) => Process::Settling,
         };
         if may_be_collapsed {
-            cx.set(Deadline::Test(TestTimer::Limit), SETTLE);
+            cx.set(Deadline::Test(self.plan.id, TestTimer::Limit), SETTLE);
         }
     }
 
@@ -318,8 +326,8 @@ impl<'p> TestRun<'p> {
         if self.process != Process::Over {
             return None;
         }
-        cx.clear(Deadline::Test(TestTimer::Limit));
-        cx.clear(Deadline::Test(TestTimer::Slow));
+        cx.clear(Deadline::Test(self.plan.id, TestTimer::Limit));
+        cx.clear(Deadline::Test(self.plan.id, TestTimer::Slow));
         let (mut verdict, mut reason, phase) = judge(&self.evidence, self.phase);
         if let (Verdict::Passed, Some(problem)) = (verdict, self.leak.take()) {
             verdict = Verdict::Error;

@@ -27,7 +27,7 @@ impl TestRun<'_> {
             return;
         }
         cx.emit(EventKind::TestStopping { test: self.plan.id, cause, reason: reason.clone() });
-        cx.clear(Deadline::Test(TestTimer::Slow));
+        cx.clear(Deadline::Test(self.plan.id, TestTimer::Slow));
         self.evidence.stopped = Some((cause, reason, self.phase));
         if self.process != Process::Alive {
             self.process = Process::Over;
@@ -43,7 +43,7 @@ impl TestRun<'_> {
     fn dump_stack(&mut self, step: Step, cx: &mut Context<'_>) {
         self.step = Some(step);
         cx.out(Effect::TakeStack(self.host, self.stack));
-        cx.set(Deadline::Test(TestTimer::Limit), STACK_LIMIT);
+        cx.set(Deadline::Test(self.plan.id, TestTimer::Limit), STACK_LIMIT);
     }
 
     fn ask(&mut self, cx: &mut Context<'_>) {
@@ -51,7 +51,7 @@ impl TestRun<'_> {
         let reason = self.evidence.stopped.as_ref().map(|(_, reason, _)| reason.clone());
         let reason = reason.unwrap_or_default();
         cx.out(Effect::Send(self.host, None, Request::Interrupt { reason }));
-        cx.set(Deadline::Test(TestTimer::Limit), self.plan.limits.grace);
+        cx.set(Deadline::Test(self.plan.id, TestTimer::Limit), self.plan.limits.grace);
     }
 
     pub(super) fn stack_taken(&mut self, text: String, cx: &mut Context<'_>) {
@@ -69,7 +69,7 @@ impl TestRun<'_> {
     fn terminate(&mut self, cx: &mut Context<'_>) {
         self.step = Some(Step::Terminated);
         cx.out(Effect::Signal(self.host, SIGTERM));
-        cx.set(Deadline::Test(TestTimer::Limit), TERM_GRACE);
+        cx.set(Deadline::Test(self.plan.id, TestTimer::Limit), TERM_GRACE);
     }
 
     /// Kills its process and everything below it, now.
@@ -79,7 +79,7 @@ impl TestRun<'_> {
         }
         self.step = Some(Step::Killed);
         cx.out(Effect::KillTree(self.host));
-        cx.set(Deadline::Test(TestTimer::Limit), KILL_AGAIN);
+        cx.set(Deadline::Test(self.plan.id, TestTimer::Limit), KILL_AGAIN);
     }
 
     /// A deadline about this test has passed.

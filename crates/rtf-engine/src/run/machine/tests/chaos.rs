@@ -6,10 +6,10 @@ use std::time::Duration;
 
 use proptest::prelude::*;
 use rtf_model::protocol::{Notification, Reply};
-use rtf_model::{ExitStatus, Message, MessageKind, Phase, TestId, Trigger, Verdict};
+use rtf_model::{EventKind, ExitStatus, Message, MessageKind, Phase, TestId, Trigger, Verdict};
 
 use super::world::{SECOND, World, hook, suite};
-use crate::plan::{AfterCollapse, Retries};
+use crate::plan::{AfterCollapse, Retries, SuitePlan};
 use crate::run::machine::{HostInput, Input, StopLevel};
 
 fn act(world: &mut World<'_>, choice: u8, which: usize) {
@@ -79,8 +79,17 @@ proptest! {
         tests in 1..5usize,
         restarts in 0..4u32,
         independent in any::<bool>(),
+        parallel in 1..4u32,
+        alone in 0..8usize,
     ) {
         let mut plan = suite(fixtures, tests);
+        plan.parallel = parallel;
+        if let Some(test) = plan.tests.get_mut(alone) {
+            test.exclusive = true;
+        }
+        if let Some(test) = plan.tests.get_mut(alone / 2) {
+            test.critical = alone % 2 == 1;
+        }
         for fixture in &mut plan.fixtures {
             fixture.restarts = restarts;
             fixture.restart_delay = SECOND;
@@ -106,7 +115,35 @@ proptest! {
         let totals = world.record.totals();
         prop_assert_eq!(totals.done() as usize, tests);
         check_overlaps(&world);
+        check_alone(&world, &plan);
         prop_assert!(world.record.hooks.iter().all(|h| h.runs.iter().all(|r| r.finished.is_some())));
+    }
+}
+
+/// Nothing runs beside an exclusive test, nothing of what is written after a
+/// critical test has begun before that was over, no test runs beside itself, and
+/// tests begin in the order in which they are written.
+fn check_alone(world: &World<'_>, plan: &SuitePlan) {
+    let mut begun: Vec<TestId> = Vec::new();
+    let mut running: Vec<TestId> = Vec::new();
+    for kind in &world.happened {
+        match kind {
+            EventKind::TestStarted { test, .. } => {
+                let of = |id: &TestId| &plan.tests[id.index()];
+                assert!(!running.contains(test), "{:#?}", world.log);
+                for other in &running {
+                    assert!(!of(test).exclusive && !of(other).exclusive, "{:#?}", world.log);
+                    assert!(!of(other).critical || other > test, "{:#?}", world.log);
+                }
+                if !begun.contains(test) {
+                    assert!(begun.last().is_none_or(|last| last < test), "{:#?}", world.log);
+                    begun.push(*test);
+                }
+                running.push(*test);
+            }
+            EventKind::TestFinished(finished) => running.retain(|test| *test != finished.test),
+            _ => {}
+        }
     }
 }
 

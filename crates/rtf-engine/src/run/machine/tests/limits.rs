@@ -15,7 +15,7 @@ fn a_test_that_hangs_is_dumped_asked_terminated_and_killed() {
     let mut world = World::new(&plan);
     world.start();
     world.phase(TEST, Phase::Run);
-    assert_eq!(world.next_deadline(), Deadline::Test(TestTimer::Slow));
+    assert_eq!(world.next_deadline(), Deadline::Test(TestId(0), TestTimer::Slow));
     world.next_deadline();
     world.input(TEST, HostInput::StackTaken("#0 pause".to_owned()));
     world.next_deadline();
@@ -51,7 +51,7 @@ fn each_phase_has_its_own_limit() {
         let mut world = World::new(&plan);
         world.start();
         phases.iter().for_each(|phase| world.phase(TEST, *phase));
-        while world.next_deadline() != Deadline::Test(TestTimer::Limit) {}
+        while world.next_deadline() != Deadline::Test(TestId(0), TestTimer::Limit) {}
         world.exit(TEST, ExitStatus::Code(0));
         world.finish();
         assert_eq!(world.record.tests[0].reason(), Some(reason));

@@ -8,6 +8,7 @@ mod flow;
 mod graph;
 mod hooks;
 mod limits;
+mod parallel;
 mod prepared;
 mod retries;
 pub(crate) mod world;

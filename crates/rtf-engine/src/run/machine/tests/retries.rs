@@ -86,7 +86,7 @@ fn a_retry_waits_and_ctrl_c_ends_the_wait() {
     world.start();
     fail(&mut world, false);
     assert!(world.hosts.is_empty());
-    assert_eq!(world.next_deadline(), Deadline::Retry);
+    assert_eq!(world.next_deadline(), Deadline::Retry(TestId(0)));
     fail(&mut world, false);
     assert!(world.hosts.is_empty());
     world.stop(StopLevel::TearDown);

@@ -34,6 +34,7 @@ pub fn suite(fixtures: usize, tests: usize) -> SuitePlan {
         given: Given::Nothing,
         requires: Vec::new(),
         tolerates_collapse: false,
+        parallel: 1,
         fixtures: (0..fixtures).map(fixture).collect(),
         hooks: Vec::new(),
         tests: (0..tests).map(test).collect(),
@@ -100,6 +101,7 @@ fn test(index: usize) -> TestPlan {
         leaks: Leaks::Report,
         retries: Retries::default(),
         critical: false,
+        exclusive: false,
         tags: Vec::new(),
     }
 }
@@ -112,6 +114,7 @@ pub struct World<'p> {
     pub hosts: BTreeMap<HostId, Source>,
     pub sent: Vec<(HostId, Option<u64>, Request)>,
     pub log: Vec<String>,
+    pub happened: Vec<EventKind>,
     pub deadlines: BTreeMap<Deadline, Duration>,
     pub done: bool,
     /// Whether it cannot be seen that fixtures live.
@@ -129,6 +132,7 @@ impl<'p> World<'p> {
             hosts: BTreeMap::new(),
             sent: Vec::new(),
             log: Vec::new(),
+            happened: Vec::new(),
             deadlines: BTreeMap::new(),
             done: false,
             unseen: false,
@@ -158,6 +162,7 @@ impl<'p> World<'p> {
             description: String::new(),
             environment: String::new(),
             tolerates_collapse: false,
+            parallel: plan.parallel,
         }));
         for fixture in &plan.fixtures {
             let (fixture, suite, name) = (fixture.id, plan.id, fixture.name.clone());
@@ -193,6 +198,7 @@ impl<'p> World<'p> {
             .check(&event)
             .unwrap_or_else(|error| panic!("{error}\n{event:?}\n{:#?}", self.log));
         self.record.apply(&event);
+        self.happened.push(event.kind.clone());
         let json = serde_json::to_value(&event.kind).unwrap();
         self.log.push(format!("{:>5.1}  {}", self.now.as_secs_f64(), line_of(&json)));
     }

@@ -1,0 +1,160 @@
+//! Whose turn it is: the tests that have begun and are not over, and which of
+//! them, or of those that have not begun, may start now.
+//!
+//! A test has one of the suite's `parallel` places from its first attempt to its
+//! last, also while its retry waits. So its repetitions never overlap, and tests
+//! begin in the order in which they are written.
+
+use rtf_model::{StopCause, TestId};
+
+use super::{Context, Cursor};
+use crate::plan::{SuitePlan, TestPlan};
+use crate::run::machine::io::{HostId, Start};
+use crate::run::machine::test::{Ended, TestRun};
+
+/// How many hosts are started ahead of their need. Starting one takes longer than
+/// a short test; two keep a second core busy.
+const HOSTS_AHEAD: usize = 2;
+
+/// A test that has begun and is not over.
+#[derive(Debug)]
+pub(super) struct Turn<'p> {
+    pub plan: &'p TestPlan,
+    /// Which attempt runs, or is next.
+    pub cursor: Cursor,
+    /// The attempt that runs; none between two of them.
+    pub run: Option<TestRun<'p>>,
+    /// Whether its next attempt is not due yet.
+    pub waits: bool,
+    /// Why no more of its repetitions follow.
+    pub given_up: Option<String>,
+}
+
+impl Turn<'_> {
+    fn is_due(&self) -> bool {
+        self.run.is_none() && !self.waits
+    }
+}
+
+/// The tests of a suite, by how far they are.
+#[derive(Debug)]
+pub(super) struct Turns<'p> {
+    suite: &'p SuitePlan,
+    /// Those that have begun and are not over, as they are written.
+    open: Vec<Turn<'p>>,
+    /// The place of the first test that has not begun.
+    next: usize,
+}
+
+impl<'p> Turns<'p> {
+    pub fn new(suite: &'p SuitePlan) -> Self {
+        Self { suite, open: Vec::new(), next: 0 }
+    }
+
+    /// Whether any test has begun.
+    pub fn any_begun(&self) -> bool {
+        self.next > 0
+    }
+
+    pub fn any_running(&self) -> bool {
+        self.open.iter().any(|turn| turn.run.is_some())
+    }
+
+    /// Whether no test is left.
+    pub fn all_over(&self) -> bool {
+        self.open.is_empty() && self.next >= self.suite.tests.len()
+    }
+
+    /// No test will begin any more.
+    pub fn close(&mut self) {
+        self.next = self.suite.tests.len();
+    }
+
+    /// The attempts that run.
+    pub fn running(&mut self) -> impl Iterator<Item = &mut TestRun<'p>> {
+        self.open.iter_mut().filter_map(|turn| turn.run.as_mut())
+    }
+
+    /// Asks all tests that run to stop.
+    pub fn stop_all(&mut self, cause: StopCause, reason: &str, cx: &mut Context<'_>) {
+        self.running().for_each(|run| run.stop(cause, reason.to_owned(), cx));
+    }
+
+    /// The test that runs, when it is only one: what happens to the suite then is about it.
+    pub fn only_one(&self) -> Option<(TestId, String)> {
+        let mut running = self.open.iter().filter(|turn| turn.run.is_some());
+        match (running.next(), running.next()) {
+            (Some(turn), None) => Some((turn.plan.id, turn.plan.name.clone())),
+            _ => None,
+        }
+    }
+
+    pub fn of_host(&mut self, host: HostId) -> Option<&mut TestRun<'p>> {
+        self.running().find(|run| run.host() == host)
+    }
+
+    pub fn of_test(&mut self, test: TestId) -> Option<&mut Turn<'p>> {
+        self.open.iter_mut().find(|turn| turn.plan.id == test)
+    }
+
+    /// An attempt that is over; its test is still open.
+    pub fn take_end(&mut self, cx: &mut Context<'_>) -> Option<(TestId, TestRun<'p>, Ended)> {
+        self.open.iter_mut().find_map(|turn| {
+            let ended = turn.run.as_mut()?.take_end(cx)?;
+            Some((turn.plan.id, turn.run.take()?, ended))
+        })
+    }
+
+    /// A test is over.
+    pub fn remove(&mut self, test: TestId) {
+        self.open.retain(|turn| turn.plan.id != test);
+    }
+
+    /// Whether a test may start now, as far as the others are concerned.
+    pub fn any_due(&self) -> bool {
+        self.open.iter().any(Turn::is_due) || self.has_room()
+    }
+
+    /// Whether the next test may begin beside those that are open.
+    fn has_room(&self) -> bool {
+        let alone = |plan: &TestPlan| plan.exclusive;
+        // What is written after a critical test makes no sense without it.
+        let bars = |turn: &Turn<'_>| turn.plan.critical || alone(turn.plan);
+        let Some(plan) = self.suite.tests.get(self.next) else { return false };
+        self.open.len() < self.suite.parallel as usize
+            && !self.open.iter().any(bars)
+            && (!alone(plan) || self.open.is_empty())
+    }
+
+    /// Starts the next attempt that may start; false when there is none.
+    pub fn start_next(&mut self, cx: &mut Context<'_>) -> bool {
+        if !self.open.iter().any(Turn::is_due) && self.has_room() {
+            let plan = &self.suite.tests[self.next];
+            let (cursor, run, waits, given_up) = (Cursor::FIRST, None, false, None);
+            self.open.push(Turn { plan, cursor, run, waits, given_up });
+            self.next += 1;
+        }
+        let Some(turn) = self.open.iter_mut().find(|turn| turn.is_due()) else { return false };
+        let number = (turn.cursor.repetition, turn.cursor.attempt);
+        turn.run = Some(TestRun::start(self.suite, turn.plan, number, cx));
+        true
+    }
+
+    /// How the hosts of the next attempts are started: further repetitions, then
+    /// tests that have not begun.
+    pub fn hosts_ahead(&self) -> Vec<Start> {
+        let begun = |turn: &Turn<'p>| (turn.plan, turn.plan.repetitions - turn.cursor.repetition);
+        let others = self.suite.tests[self.next..].iter().map(|plan| (plan, plan.repetitions));
+        let next =
+            self.open.iter().map(begun).chain(others).flat_map(|(plan, times)| {
+                std::iter::repeat_n(plan, HOSTS_AHEAD.min(times as usize))
+            });
+        next.take(HOSTS_AHEAD).map(|plan| TestRun::host_start(self.suite, plan)).collect()
+    }
+
+    /// The tests of which something is left.
+    pub fn rest(&self) -> impl Iterator<Item = TestId> {
+        let others = self.suite.tests[self.next..].iter().map(|plan| plan.id);
+        self.open.iter().map(|turn| turn.plan.id).chain(others)
+    }
+}

@@ -1,0 +1,72 @@
+//! What may run beside what in a suite.
+
+use rtf_model::{EventKind, HookId, Phase, SuiteId, TestFinished, TestId, Trigger, Verdict};
+
+use crate::order::check;
+use crate::support::{closed, hook, run_started, runner_died, stream, suite, test};
+
+fn planned(parallel: u32) -> Vec<EventKind> {
+    let mut planned = suite(0);
+    if let EventKind::SuitePlanned(plan) = &mut planned {
+        plan.parallel = parallel;
+    }
+    let suite = SuiteId(0);
+    let kinds = [run_started(), planned, hook(0, 0), test(0, 0, 1), test(1, 0, 1), test(2, 0, 1)];
+    kinds.into_iter().chain([EventKind::SuiteStarted { suite }]).collect()
+}
+
+fn start(test: u32) -> EventKind {
+    EventKind::TestStarted { test: TestId(test), repetition: 1, attempt: 1 }
+}
+
+fn finish(test: u32) -> EventKind {
+    let (verdict, phase) = (Verdict::Passed, Phase::Run);
+    let (test, reason, exit, rerun) = (TestId(test), None, None, false);
+    EventKind::TestFinished(TestFinished { test, verdict, reason, phase, exit, rerun })
+}
+
+fn park(starts: bool) -> EventKind {
+    let hook = HookId(0);
+    if !starts {
+        return EventKind::HookFinished { hook, problem: None };
+    }
+    let (trigger, reason) = (Trigger::Failure, String::new());
+    EventKind::HookStarted { hook, trigger, reason, test: None }
+}
+
+fn all(parallel: u32, body: Vec<EventKind>) -> Result<(), String> {
+    check(&stream(planned(parallel).into_iter().chain(body).chain(closed())))
+}
+
+#[test]
+fn as_many_tests_run_at_once_as_the_suite_says() {
+    let two = || vec![start(0), start(1), finish(1), start(2), finish(0), finish(2)];
+    assert_eq!(all(2, two()), Ok(()));
+    let error = all(1, two()).unwrap_err();
+    assert_eq!(error, "event 14: 2 tests of suite 0 run at once, of 1 at most");
+    let three = vec![start(0), start(1), start(2), finish(1), finish(0), finish(2)];
+    let error = all(2, three).unwrap_err();
+    assert!(error.ends_with("3 tests of suite 0 run at once, of 2 at most"), "{error}");
+}
+
+#[test]
+fn no_test_runs_beside_a_hook() {
+    let rest = || [start(1), finish(1), start(2), finish(2)];
+    let after = [start(0), finish(0), park(true), park(false)];
+    assert_eq!(all(2, after.into_iter().chain(rest()).collect()), Ok(()));
+    for beside in [
+        [start(0), park(true), park(false), finish(0)],
+        [park(true), start(0), finish(0), park(false)],
+        [park(true), start(0), park(false), finish(0)],
+    ] {
+        let error = all(2, beside.into_iter().chain(rest()).collect()).unwrap_err();
+        assert!(error.ends_with("a hook of suite 0 runs beside a test or another hook"), "{error}");
+    }
+}
+
+/// The guard's hooks run while the journal does not know the tests' ends.
+#[test]
+fn when_the_runner_died_what_ran_stays_open() {
+    let body = [start(0), start(1), park(true), park(false), runner_died()];
+    assert_eq!(check(&stream(planned(2).into_iter().chain(body))), Ok(()));
+}
