@@ -3,16 +3,19 @@
 use std::path::Path;
 
 use mlua::{Function, IntoLua, Lua, MultiValue, Table, Value};
-use rtf_host::{HostPlugin, LoadError, Role, Session, StackDumper, Step, StepEnd};
+use rtf_host::{HostPlugin, LoadError, Reaction, Role, Session, Step, StepEnd};
 use rtf_model::Location;
 use rtf_model::protocol::{Initialized, PROTOCOL_VERSION, Plugin, StackSupport};
 
 use crate::source::Style;
-use crate::{sdk, search, source, watch};
+use crate::state::State;
+use crate::{sdk, source, watch};
 
 /// The Lua host with at most one plug-in.
 pub(crate) struct LuaHost {
     session: Session,
+    /// A state that was made before there was a plug-in for it.
+    ready: Option<State>,
     loaded: Option<Loaded>,
 }
 
@@ -27,8 +30,8 @@ struct Loaded {
 }
 
 impl LuaHost {
-    pub(crate) fn new(session: Session) -> Self {
-        Self { session, loaded: None }
+    pub(crate) fn new(session: Session, ready: Option<State>) -> Self {
+        Self { session, ready, loaded: None }
     }
 }
 
@@ -38,9 +41,18 @@ impl HostPlugin for LuaHost {
         Initialized { protocol: PROTOCOL_VERSION, host, stack: StackSupport::Message }
     }
 
+    fn idle(&mut self) {
+        if self.ready.is_none() {
+            // What is wrong is told when there is a plug-in.
+            self.ready = State::new().ok();
+        }
+    }
+
     fn load(&mut self, role: Role, plugin: &Plugin) -> Result<(), LoadError> {
-        let lua = watch::new_state();
-        let call = prepare(&lua, &self.session, plugin).map_err(unexpected)?;
+        let state = self.ready.take().map_or_else(State::new, Ok);
+        let state = state.and_then(|state| state.dedicate(&self.session, plugin));
+        let (lua, call) = state.map_err(unexpected)?;
+        watch::look_at(&lua);
         let compiled = source::compile(&lua, Path::new(&plugin.file), &plugin.file)?;
         match ended(call.call((compiled.chunk,))) {
             StepEnd::Done | StepEnd::Refused => {}
@@ -75,8 +87,12 @@ impl HostPlugin for LuaHost {
         StepEnd::Done
     }
 
-    fn stack_dumper(&self) -> Option<StackDumper> {
+    fn stack_dumper(&self) -> Option<Reaction> {
         Some(Box::new(|_| watch::ask_for_stack()))
+    }
+
+    fn stopper(&self) -> Option<Reaction> {
+        Some(Box::new(watch::insist))
     }
 }
 
@@ -111,18 +127,6 @@ impl Loaded {
         let asks = matches!(step, Step::Setup | Step::Check);
         Ok(if end == StepEnd::Refused && !asks { StepEnd::Done } else { end })
     }
-}
-
-fn prepare(lua: &Lua, session: &Session, plugin: &Plugin) -> mlua::Result<Function> {
-    search::extend(lua, Path::new(&plugin.file))?;
-    for table in ["TestCase", "FixtureManager"] {
-        lua.globals().set(table, lua.create_table()?)?;
-    }
-    // What was printed before a crash must not be lost with the buffer.
-    lua.load("io.stdout:setvbuf('line')").set_name("=rtf").exec()?;
-    let call = sdk::install(lua, session, plugin)?;
-    sdk::lend_predecessor(lua, &lua.globals().get("TestCase")?)?;
-    Ok(call)
 }
 
 /// Finds the plug-in's table and looks whether there is something to do in it.

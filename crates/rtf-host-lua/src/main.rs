@@ -2,7 +2,7 @@
 //! so that C modules load, and the table `rtf` of `sdk/lua`.
 //!
 //! It speaks the protocol through `rtf-host`; what is here is Lua's part:
-//! finding modules ([`search`]), loading and calling a plug-in ([`host`]),
+//! a state with the SDK ([`state`]), finding modules ([`search`]), loading and calling a plug-in ([`host`]),
 //! what a plug-in may call ([`sdk`]), and reaching code that hangs ([`watch`]).
 //!
 //! The program starts as a C program does, without Rust's start-up code: its
@@ -15,13 +15,17 @@ mod host;
 mod sdk;
 mod search;
 mod source;
+mod state;
 mod watch;
 
 use std::ffi::{c_char, c_int};
 
 use rtf_host::{Host, Session, serve};
 
-const HOST: Host = Host { check: check::check, prepare: || {}, serve: serve_plugins };
+use crate::state::State;
+
+const HOST: Host<Option<State>> =
+    Host { check: check::check, prepare: || State::new().ok(), serve: serve_plugins };
 
 /// The entry point.
 #[unsafe(no_mangle)]
@@ -30,7 +34,7 @@ extern "C" fn main(argc: c_int, argv: *const *const c_char) -> c_int {
     unsafe { HOST.main(argc, argv) }
 }
 
-fn serve_plugins(session: &Session) -> std::io::Result<()> {
-    watch::start(session)?;
-    serve(session, host::LuaHost::new(session.clone()))
+fn serve_plugins(session: &Session, ready: Option<State>) -> std::io::Result<()> {
+    watch::start(session);
+    serve(session, host::LuaHost::new(session.clone(), ready))
 }

@@ -20,28 +20,47 @@ pub(crate) const STOP: &CStr = c"rtf.stop";
 /// No sleep is longer: more seconds than any clock can add.
 const LONGEST: Duration = Duration::from_secs(1 << 40);
 
-/// Installs the table `rtf` and returns the function that calls a function of
-/// the plug-in and tells how it ended.
-pub(crate) fn install(lua: &Lua, session: &Session, plugin: &Plugin) -> mlua::Result<Function> {
+/// What is installed in a state, before there is a plug-in or a runner.
+pub(crate) struct Installed {
+    /// Calls a function of the plug-in and tells how it ended.
+    pub(crate) call: Function,
+    /// What only the host can do, and what it knows of the plug-in.
+    host: Table,
+}
+
+/// Installs the table `rtf`.
+pub(crate) fn install(lua: &Lua) -> mlua::Result<Installed> {
     let stop = stop_value(lua)?;
     let text: Table = part(lua, include_str!("../../../sdk/lua/src/text.lua"), ())?;
     let near: Table = part(lua, include_str!("../../../sdk/lua/src/near.lua"), &text)?;
     let guard = include_str!("../../../sdk/lua/src/guard.lua");
     let guard: Table = part(lua, guard, (&text, &stop))?;
-    let host = functions(lua, session)?;
-    host.set("plugin", about(lua, plugin)?)?;
+    let host = functions(lua)?;
     let rtf = include_str!("../../../sdk/lua/src/rtf.lua");
-    let rtf: Table = part(lua, rtf, (host, near, text, &guard, stop))?;
+    let rtf: Table = part(lua, rtf, (&host, near, text, &guard, stop))?;
     lua.globals().set("rtf", &rtf)?;
     let predecessor = include_str!("../../../sdk/lua/src/predecessor.lua");
-    let predecessor: Table = part(lua, predecessor, (&rtf, plugin.name.as_str()))?;
+    let predecessor: Table = part(lua, predecessor, &rtf)?;
     for name in ["robottestingframework", "RTF"] {
         lua.globals().set(name, &predecessor)?;
     }
     // For those who write `local rtf = require("rtf")`.
     let package: Table = lua.globals().get("package")?;
     package.get::<Table>("loaded")?.set("rtf", rtf)?;
-    guard.get("call")
+    Ok(Installed { call: guard.get("call")?, host })
+}
+
+impl Installed {
+    /// Says for which plug-in the state is, and to whom it speaks.
+    pub(crate) fn dedicate(
+        &self,
+        lua: &Lua,
+        session: &Session,
+        plugin: &Plugin,
+    ) -> mlua::Result<()> {
+        lua.set_app_data(session.clone());
+        self.host.set("plugin", about(lua, plugin)?)
+    }
 }
 
 /// Lets a plug-in find the predecessor's functions in its table `TestCase`,
@@ -77,35 +96,32 @@ fn about(lua: &Lua, plugin: &Plugin) -> mlua::Result<Table> {
     Ok(about)
 }
 
-fn functions(lua: &Lua, session: &Session) -> mlua::Result<Table> {
+fn functions(lua: &Lua) -> mlua::Result<Table> {
     let host = lua.create_table()?;
     let started = Instant::now();
     host.set("seconds", lua.create_function(move |_, ()| Ok(started.elapsed().as_secs_f64()))?)?;
-    add(lua, &host, "message", session, |session, message: Reported| {
+    add(lua, &host, "message", |session, message: Reported| {
         session.message(message.0);
         Ok(())
     })?;
-    add(lua, &host, "measure", session, |session, measured: Measured| {
-        Ok(session.measure(measured.0))
-    })?;
+    add(lua, &host, "measure", |session, measured: Measured| Ok(session.measure(measured.0)))?;
     add(
         lua,
         &host,
         "attach",
-        session,
         |session, file: (LuaString, Option<LuaString>, Option<LuaString>)| {
             Ok(attach(session, &file.0, file.1.as_ref(), file.2.as_ref()))
         },
     )?;
-    add(lua, &host, "collapsed", session, |session, reason: LuaString| {
+    add(lua, &host, "collapsed", |session, reason: LuaString| {
         session.collapsed(&reason.to_string_lossy());
         Ok(())
     })?;
-    add(lua, &host, "wait", session, |session, seconds: f64| {
+    add(lua, &host, "wait", |session, seconds: f64| {
         let duration = Duration::try_from_secs_f64(seconds.max(0.0)).unwrap_or(LONGEST);
         Ok(session.wait(duration.min(LONGEST)))
     })?;
-    add(lua, &host, "interrupted", session, |session, (): ()| Ok(session.interrupted()))?;
+    add(lua, &host, "interrupted", |session, (): ()| Ok(session.interrupted()))?;
     Ok(host)
 }
 
@@ -113,15 +129,17 @@ fn add<A, R>(
     lua: &Lua,
     host: &Table,
     name: &str,
-    session: &Session,
     call: impl Fn(&Session, A) -> mlua::Result<R> + mlua::MaybeSend + 'static,
 ) -> mlua::Result<()>
 where
     A: mlua::FromLuaMulti,
     R: IntoLuaMulti,
 {
-    let session = session.clone();
-    host.set(name, lua.create_function(move |_, args| call(&session, args))?)
+    let function = lua.create_function(move |lua, args| {
+        let session = lua.app_data_ref::<Session>().map(|session| session.clone());
+        call(&session.ok_or_else(|| mlua::Error::runtime("there is no runner"))?, args)
+    })?;
+    host.set(name, function)
 }
 
 /// Returns what is wrong with the file, if anything.

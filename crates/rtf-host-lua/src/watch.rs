@@ -46,10 +46,7 @@ unsafe extern "C" {
 }
 
 /// Makes the calling thread the one that runs Lua.
-///
-/// # Errors
-/// The thread that insists on a stop cannot be started.
-pub(crate) fn start(session: &Session) -> std::io::Result<()> {
+pub(crate) fn start(session: &Session) {
     // SAFETY: returns the calling thread's own id.
     let lua_thread = unsafe { libc::pthread_self() };
     WATCH.get_or_init(|| Watch { session: session.clone(), lua_thread });
@@ -61,20 +58,13 @@ pub(crate) fn start(session: &Session) -> std::io::Result<()> {
         action.sa_flags = libc::SA_RESTART;
         libc::sigaction(SIGNAL, &raw const action, ptr::null_mut());
     }
-    let session = session.clone();
-    let thread = std::thread::Builder::new().name("rtf-watch".to_owned()).stack_size(64 * 1024);
-    thread.spawn(move || insist(&session)).map(drop)
 }
 
-/// A new Lua state, the one that is watched from now on.
-pub(crate) fn new_state() -> Lua {
-    // SAFETY: C modules are what robots' drivers come as; they are trusted as
-    // much as any plug-in.
-    let lua = unsafe { Lua::unsafe_new() };
+/// Makes a state the one that is watched from now on.
+pub(crate) fn look_at(lua: &Lua) {
     // SAFETY: only the pointer is taken, nothing is done with the state.
     let state = unsafe { lua.exec_raw::<()>((), |state| STATE.store(state, Ordering::Release)) };
     debug_assert!(state.is_ok(), "taking a pointer cannot fail");
-    lua
 }
 
 /// The state is about to be closed.
@@ -101,30 +91,23 @@ pub(crate) fn lua_release() -> String {
     ident.split_whitespace().nth(2).unwrap_or("5.4").to_owned()
 }
 
-/// Ends what the plug-in does when it was asked to stop and does not.
-fn insist(session: &Session) {
-    block_signals();
-    loop {
-        if session.wait(Duration::from_secs(3600)) {
-            std::thread::sleep(POLITE);
-            while session.interrupted() {
-                WANTS_STOP.store(true, Ordering::Release);
-                interrupt_lua();
-                std::thread::sleep(AGAIN);
-            }
-            WANTS_STOP.store(false, Ordering::Release);
+/// The plug-in was asked to stop: ends what it does when it does not. Called on
+/// the thread that reads the channel, which no signal reaches; nor does one reach
+/// the thread that this starts.
+pub(crate) fn insist(session: &Session) {
+    let session = session.clone();
+    let insist = move || {
+        std::thread::sleep(POLITE);
+        while session.interrupted() {
+            WANTS_STOP.store(true, Ordering::Release);
+            interrupt_lua();
+            std::thread::sleep(AGAIN);
         }
-    }
-}
-
-/// Keeps the plug-in's signals on the plug-in's threads.
-fn block_signals() {
-    let mut all = std::mem::MaybeUninit::<libc::sigset_t>::uninit();
-    // SAFETY: sigfillset initialises the set before it is used.
-    unsafe {
-        libc::sigfillset(all.as_mut_ptr());
-        libc::pthread_sigmask(libc::SIG_SETMASK, all.as_ptr(), ptr::null_mut());
-    }
+        WANTS_STOP.store(false, Ordering::Release);
+    };
+    let thread = std::thread::Builder::new().name("rtf-insist".to_owned()).stack_size(64 * 1024);
+    // Without the thread, the runner's force ends the plug-in.
+    drop(thread.spawn(insist));
 }
 
 fn interrupt_lua() {

@@ -18,7 +18,8 @@ use std::ffi::{c_char, c_int};
 
 use rtf_host::{Host, Session, serve};
 
-const HOST: Host = Host { check: library::check, prepare: plugin::prepare, serve: serve_plugins };
+const HOST: Host<()> =
+    Host { check: library::check, prepare: plugin::prepare, serve: serve_plugins };
 
 /// The entry point.
 #[unsafe(no_mangle)]
@@ -27,6 +28,6 @@ extern "C" fn main(argc: c_int, argv: *const *const c_char) -> c_int {
     unsafe { HOST.main(argc, argv) }
 }
 
-fn serve_plugins(session: &Session) -> std::io::Result<()> {
+fn serve_plugins(session: &Session, (): ()) -> std::io::Result<()> {
     serve(session, plugin::NativeHost::new(session.clone()))
 }

@@ -52,9 +52,9 @@ pub struct LoadError {
     pub location: Option<Location>,
 }
 
-/// Makes the host tell where the plug-in is, by [`Session::stack`]. Called on
-/// the thread that reads the channel, while the plug-in runs on another.
-pub type StackDumper = Box<dyn Fn(&Session) + Send>;
+/// What a host does at once when the runner tells it something. Called on the
+/// thread that reads the channel, while the plug-in runs on another.
+pub type Reaction = Box<dyn Fn(&Session) + Send>;
 
 /// A host. All functions are called on the thread that called [`crate::serve`].
 pub trait HostPlugin {
@@ -82,8 +82,14 @@ pub trait HostPlugin {
         StepEnd::Done
     }
 
-    /// What to do when the runner sends `dump-stack`.
-    fn stack_dumper(&self) -> Option<StackDumper> {
+    /// What to do when the runner sends `dump-stack`: tell where the plug-in is,
+    /// by [`Session::stack`].
+    fn stack_dumper(&self) -> Option<Reaction> {
+        None
+    }
+
+    /// What to do when the plug-in was asked to stop and may not notice.
+    fn stopper(&self) -> Option<Reaction> {
         None
     }
 }

@@ -14,17 +14,18 @@ const BROKEN: c_int = 2;
 
 /// What one kind of plug-ins needs of its host.
 #[derive(Clone, Copy, Debug)]
-pub struct Host {
+pub struct Host<P> {
     /// Says of a file whether it can be loaded.
     pub check: fn(&Path) -> CheckedFile,
-    /// Loads what most plug-ins need, before a server forks its first host.
+    /// Makes what most plug-ins need, before a server forks its first host.
     /// The process has one thread and must have one afterwards.
-    pub prepare: fn(),
-    /// Serves a runner to the end of the session.
-    pub serve: fn(&Session) -> std::io::Result<()>,
+    pub prepare: fn() -> P,
+    /// Serves a runner to the end of the session, with what was prepared, if it
+    /// was.
+    pub serve: fn(&Session, P) -> std::io::Result<()>,
 }
 
-impl Host {
+impl<P: Default> Host<P> {
     /// Does what the program was started for; its exit code.
     ///
     /// The program starts as a C program does, without Rust's start-up code,
@@ -61,14 +62,14 @@ impl Host {
                 format!("unexpected argument `{arg}`; only `--check FILE…` is known").into()
             );
         }
-        let session = match ForkServer::open()? {
+        let (session, prepared) = match ForkServer::open()? {
             Some(server) => {
-                (self.prepare)();
-                server.serve()?
+                let prepared = (self.prepare)();
+                (server.serve()?, prepared)
             }
-            None => Some(Session::open()?),
+            None => (Some(Session::open()?), P::default()),
         };
-        session.map_or(Ok(()), |session| Ok((self.serve)(&session)?))
+        session.map_or(Ok(()), |session| Ok((self.serve)(&session, prepared)?))
     }
 }
 

@@ -10,7 +10,7 @@ use rtf_model::protocol::Request;
 use crate::decode::{Incoming, decode};
 use crate::session::Session;
 use crate::writer::LINE_LIMIT;
-use crate::{StackDumper, unix};
+use crate::{Reaction, unix};
 
 /// Enough for decoding a line and for a host's stack dumper.
 const STACK_BYTES: usize = 256 * 1024;
@@ -26,16 +26,22 @@ pub(crate) struct Reader {
     session: Session,
     input: BufReader<Channel>,
     line: Vec<u8>,
-    dumper: Option<StackDumper>,
+    dumper: Option<Reaction>,
+    stopper: Option<Reaction>,
 }
 
 impl Reader {
-    pub(crate) fn new(session: &Session, dumper: Option<StackDumper>) -> Self {
+    pub(crate) fn new(
+        session: &Session,
+        dumper: Option<Reaction>,
+        stopper: Option<Reaction>,
+    ) -> Self {
         Self {
             session: session.clone(),
             input: BufReader::with_capacity(BUFFER_BYTES, Channel(session.channel())),
             line: Vec::with_capacity(BUFFER_BYTES),
             dumper,
+            stopper,
         }
     }
 
@@ -51,7 +57,11 @@ impl Reader {
             }
             match decode(self.line.trim_ascii_end()) {
                 Incoming::Request { request: Request::Interrupt { reason }, .. } => {
-                    self.session.request_stop(&reason);
+                    if self.session.request_stop(&reason)
+                        && let Some(insist) = &self.stopper
+                    {
+                        insist(&self.session);
+                    }
                 }
                 Incoming::Request { request: Request::DumpStack {}, .. } => {
                     if let Some(dump) = &self.dumper {

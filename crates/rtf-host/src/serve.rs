@@ -18,7 +18,7 @@ use crate::{HostPlugin, Role, Session, Step, StepEnd};
 /// # Errors
 /// The thread that reads the channel cannot be started.
 pub fn serve(session: &Session, host: impl HostPlugin) -> std::io::Result<()> {
-    let reader = Reader::new(session, host.stack_dumper());
+    let reader = Reader::new(session, host.stack_dumper(), host.stopper());
     let mut server = Server { session, host, initialized: false, loaded: None };
     let Some((reader, first)) = server.before_plugins(reader) else {
         return Ok(());

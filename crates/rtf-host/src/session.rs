@@ -185,16 +185,18 @@ impl Session {
         self.0.changed.notify_all();
     }
 
-    /// Asks the plug-in to stop. Nothing happens when there is none to stop:
-    /// the runner's request crossed the answer.
-    pub(crate) fn request_stop(&self, reason: &str) {
+    /// Asks the plug-in to stop; whether there is one. If not, the runner's
+    /// request crossed the answer.
+    pub(crate) fn request_stop(&self, reason: &str) -> bool {
         let mut state = self.state();
-        if state.busy || !state.incoming.is_empty() {
+        let is_asked = state.busy || !state.incoming.is_empty();
+        if is_asked {
             state.judge.note(Outcome::Interrupted, reason);
             state.stop_reason.get_or_insert_with(|| reason.to_owned());
             self.0.stop.store(true, Ordering::Release);
             self.0.changed.notify_all();
         }
+        is_asked
     }
 
     /// The runner is gone. A plug-in that it cannot stop any more ends here.

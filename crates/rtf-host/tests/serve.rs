@@ -6,7 +6,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::os::unix::net::UnixStream;
 use std::time::Duration;
 
-use rtf_host::{HostPlugin, LoadError, Role, Session, StackDumper, Step, StepEnd, serve};
+use rtf_host::{HostPlugin, LoadError, Reaction, Role, Session, Step, StepEnd, serve};
 use rtf_model::protocol::{Initialized, Plugin, StackSupport};
 use rtf_model::{Measurement, Message, MessageKind};
 
@@ -79,7 +79,7 @@ impl HostPlugin for Script {
         words.iter().find_map(|word| self.act(word)).unwrap_or(StepEnd::Done)
     }
 
-    fn stack_dumper(&self) -> Option<StackDumper> {
+    fn stack_dumper(&self) -> Option<Reaction> {
         Some(Box::new(|session| session.stack("here".into())))
     }
 }

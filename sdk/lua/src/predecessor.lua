@@ -1,13 +1,16 @@
 -- What plug-ins of robot-testing-framework 1.x and 2.x call: the functions of
 -- `robottestingframework`, of `RTF`, and of `TestCase` itself.
-local rtf, name = ...
+local rtf = ...
+
+-- Taken before the plug-in can replace it.
+local name = rtf.name
 
 local predecessor = {}
 
 -- The name is the suite's: what the plug-in calls itself is only told.
 function predecessor.setName(own)
   own = tostring(own)
-  if own ~= name then
+  if own ~= name() then
     rtf.report("test name: " .. own)
   end
 end

@@ -21,6 +21,7 @@ use super::spawner::SpawnRequest;
 use super::{tree, unix};
 use crate::isolate::Network;
 
+const SIGKILL: i32 = 9;
 /// How many servers there are at the most; the one that was used least recently ends.
 const SERVERS: usize = 8;
 /// Room for the variables that only one process has.
@@ -60,6 +61,8 @@ pub struct ForkServers {
 struct Kind {
     command: Vec<String>,
     env: Vec<(String, String)>,
+    /// Where relative paths in the environment start.
+    folder: PathBuf,
     network: Option<Network>,
 }
 
@@ -143,9 +146,10 @@ fn split(request: &SpawnRequest) -> Option<(Kind, Vec<u8>)> {
     if own.iter().map(|(name, value)| name.len() + value.len() + 2).sum::<usize>() > ROOM {
         return None;
     }
-    let fork = ForkRequest { folder: PathBuf::from(folder), env: own.into_iter().collect() };
+    let fork = ForkRequest { folder: folder.clone(), env: own.into_iter().collect() };
     let fork = serde_json::to_vec(&fork).ok().filter(|packet| packet.len() < PACKET_BYTES)?;
-    Some((Kind { command: command.clone(), env, network: network.clone() }, fork))
+    let (command, folder, network) = (command.clone(), folder.clone(), network.clone());
+    Some((Kind { command, env, folder, network }, fork))
 }
 
 impl Server {
@@ -155,7 +159,7 @@ impl Server {
         let mut command = Command::new(program);
         command.args(arguments).envs(kind.env.iter().map(|(name, value)| (name, value)));
         let value = format!("fd:{}{}", theirs.as_raw_fd(), " ".repeat(ROOM));
-        command.env(FORK_SERVER_VARIABLE, value).process_group(0);
+        command.env(FORK_SERVER_VARIABLE, value).process_group(0).current_dir(&kind.folder);
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
         if let Some(network) = &kind.network {
             network.namespaces().enter(&mut command);
@@ -172,7 +176,11 @@ impl Server {
         unix::send_with(self.socket.as_fd(), request, &[*channel, *stdout, *stderr])?;
         let reply = unix::receive_packet(self.socket.as_fd())?;
         match serde_json::from_slice(&reply)? {
-            ForkReply::Pid(pid) => Ok(pid),
+            ForkReply::Pid(pid) if unix::is_child(pid) => Ok(pid),
+            ForkReply::Pid(pid) => {
+                unix::signal_process(pid, SIGKILL);
+                Err(io::Error::other("its fork is not a child of the runner"))
+            }
             ForkReply::Error(error) => Err(io::Error::other(error)),
         }
     }

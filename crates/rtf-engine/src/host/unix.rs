@@ -106,6 +106,12 @@ pub fn take_status(process: BorrowedFd<'_>) -> io::Result<Option<ExitStatus>> {
     Ok(code.or_else(|| status.terminating_signal().map(ExitStatus::Signal)))
 }
 
+/// Whether a process is a child of this one, alive or not yet waited for.
+pub fn is_child(pid: i32) -> bool {
+    let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
+    Pid::from_raw(pid).is_some_and(|pid| rustix::process::waitid(WaitId::Pid(pid), options).is_ok())
+}
+
 /// Makes a child the leader of a process group of its own.
 pub fn lead_group(pid: i32) {
     // When it has done so itself already, or is gone, nothing is to be done.

@@ -38,6 +38,8 @@ enum Start {
         variable: &'static str,
         arguments: &'static [&'static str],
         sdk: Sdk,
+        /// Whether our module can be a server that forks hosts.
+        forks: bool,
     },
 }
 
@@ -101,6 +103,7 @@ pub(super) static HOSTS: [HostKind; 4] = [
                 marker: "rtf/host",
                 variable: "PYTHONPATH",
             },
+            forks: true,
         },
     },
     HostKind {
@@ -118,6 +121,7 @@ pub(super) static HOSTS: [HostKind; 4] = [
                 marker: "rtf/host.rb",
                 variable: "RUBYLIB",
             },
+            forks: false,
         },
     },
 ];
@@ -146,11 +150,11 @@ impl HostKind {
                 let file = own_program(program, scope)?;
                 Ok(HostPlan { command: vec![text(&file)?], env: Vec::new(), forks: true })
             }
-            Start::Interpreter { program, variable, arguments, sdk } => {
+            Start::Interpreter { program, variable, arguments, sdk, forks } => {
                 let file = interpreter(self.name, program, variable, scope)?;
                 let mut command = vec![text(&file)?];
                 command.extend(arguments.iter().map(|argument| (*argument).to_owned()));
-                Ok(HostPlan { command, env: sdk.env(scope)?, forks: false })
+                Ok(HostPlan { command, env: sdk.env(scope)?, forks: *forks })
             }
         }
     }

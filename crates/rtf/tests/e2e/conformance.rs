@@ -43,7 +43,12 @@ fn lua_forked() {
 
 #[test]
 fn python() {
-    check_language(&LANGUAGES[2], "auto");
+    check_language(&LANGUAGES[2], "never");
+}
+
+#[test]
+fn python_forked() {
+    check_language(&LANGUAGES[2], "always");
 }
 
 #[test]

@@ -23,6 +23,11 @@ def main(arguments: list[str]) -> int:
         return 2
     from rtf.host import serve  # noqa: PLC0415
 
+    if "RTF_FORK_SERVER" in os.environ:
+        from rtf.host import fork  # noqa: PLC0415
+
+        channel = fork.Server().serve()
+        return 0 if channel is None else serve.serve(channel)
     return serve.serve()
 
 

@@ -212,10 +212,13 @@ def _thread_ended_by(raised: threading.ExceptHookArgs) -> None:
         steps.record_exception(session, problem)
 
 
-def serve() -> int:
-    """Serve the runner and return the exit code."""
+def serve(descriptor: int | None = None) -> int:
+    """Serve the runner, over the channel that its variable names, and return the exit code."""
     try:
-        line = channel.Channel.from_environment()
+        if descriptor is None:
+            line = channel.Channel.from_environment()
+        else:
+            line = channel.Channel(descriptor)
     except (ValueError, OSError) as problem:
         sys.stderr.write(f"error: this is a host, which `rtf` starts by itself: {problem}\n")
         return 2

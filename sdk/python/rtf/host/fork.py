@@ -1,0 +1,152 @@
+"""A host that is started once and forks a host for each test.
+
+See "Forking hosts" in ``spec/protocol.md``. The server has imported what every
+host imports, and no plug-in.
+"""
+
+from __future__ import annotations
+
+import gc
+import json
+import os
+import socket
+import sys
+import threading
+
+# As `typing.TYPE_CHECKING`, without the time that its import takes.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+SERVER_VARIABLE = "RTF_FORK_SERVER"
+
+_PACKET_BYTES = 65536
+_DESCRIPTOR_BYTES = 4
+# The place of `env_start` in /proc/PID/stat, counted from the state.
+_ENV_START = 47
+
+
+class Room:
+    """The server's variable in its initial environment, which ``/proc/PID/environ`` shows."""
+
+    def __init__(self) -> None:
+        """Find it, and make sure that it can be written."""
+        with open("/proc/self/environ", "rb") as stream:
+            environment = stream.read()
+        name = f"{SERVER_VARIABLE}=".encode()
+        # Behind a zero byte, or the first one.
+        offset = (b"\0" + environment).index(b"\0" + name)
+        self._length = environment.index(b"\0", offset) - offset
+        with open("/proc/self/stat", "rb") as stream:
+            fields = stream.read().rpartition(b") ")[2].split()
+        self._start = int(fields[_ENV_START]) + offset
+        self._write(environment[offset : offset + self._length])
+
+    def write(self, variables: dict[str, str]) -> None:
+        """Show these variables there, as far as there is room for them."""
+        shown = b""
+        for name, value in variables.items():
+            entry = os.fsencode(f"{name}={value}\0")
+            if len(shown) + len(entry) <= self._length:
+                shown += entry
+        self._write(shown.ljust(self._length, b"\0"))
+
+    def _write(self, data: bytes) -> None:
+        memory = os.open("/proc/self/mem", os.O_WRONLY | os.O_CLOEXEC)
+        try:
+            os.pwrite(memory, data, self._start)
+        finally:
+            os.close(memory)
+
+
+class Server:
+    """Forks processes that become children of the runner."""
+
+    def __init__(self) -> None:
+        """Take over the socket that the runner left."""
+        place = os.environ.pop(SERVER_VARIABLE).split()[0]
+        self._socket = socket.socket(fileno=int(place.removeprefix("fd:")))
+        self._socket.set_inheritable(False)
+        self._room = Room()
+        self._told, self._tells = os.pipe()
+        # Copies share these objects' memory as long as nobody looks at them.
+        gc.collect()
+        gc.freeze()
+
+    def serve(self) -> int | None:
+        """Serve until the runner goes: `None`. In each fork, return its channel."""
+        while True:
+            packet, descriptors = self._receive()
+            if not packet:
+                return None
+            try:
+                request = json.loads(packet)
+                pid = self._fork(len(descriptors))
+            except (OSError, RuntimeError, ValueError) as problem:
+                self._answer({"error": str(problem)})
+                pid = None
+            if pid == 0:
+                return self._become_host(request, descriptors)
+            for descriptor in descriptors:
+                os.close(descriptor)
+            if pid is not None:
+                self._answer({"pid": pid})
+
+    def _fork(self, descriptors: int) -> int:
+        """Make a process that is the runner's child; 0 in that process.
+
+        The process between the two ends at once, so that the kernel gives its
+        child to the runner, which is there for such orphans. Python's and the C
+        library's own `fork` do all that they have to do.
+        """
+        if descriptors != 3:  # noqa: PLR2004 - channel, standard output, standard error
+            raise ValueError(f"{descriptors} descriptors came, expected 3")
+        if threading.active_count() != 1 or len(os.listdir("/proc/self/task")) != 1:
+            raise RuntimeError("the interpreter has started threads by itself")
+        between = os.fork()
+        if between == 0:
+            try:
+                child = os.fork()
+            except OSError:
+                os._exit(1)
+            if child == 0:
+                return 0
+            os.write(self._tells, f"{child}\n".encode())
+            os._exit(0)
+        # When it was waited for, its child has changed hands.
+        _, status = os.waitpid(between, 0)
+        if status != 0:
+            raise RuntimeError("there cannot be a further process")
+        return int(os.read(self._told, 64))
+
+    def _become_host(self, request: dict[str, Any], descriptors: list[int]) -> int:
+        self._socket.close()
+        os.close(self._told)
+        os.close(self._tells)
+        channel, output, errors = descriptors
+        os.setpgid(0, 0)
+        os.dup2(output, 1)
+        os.dup2(errors, 2)
+        os.close(output)
+        os.close(errors)
+        os.chdir(request["folder"])
+        os.environ.update(request["env"])
+        self._room.write(request["env"])
+        return channel
+
+    def _receive(self) -> tuple[bytes, list[int]]:
+        space = socket.CMSG_SPACE(3 * _DESCRIPTOR_BYTES)
+        packet, control, _, _ = self._socket.recvmsg(_PACKET_BYTES, space)
+        descriptors = []
+        for level, kind, data in control:
+            if (level, kind) == (socket.SOL_SOCKET, socket.SCM_RIGHTS):
+                ends = range(0, len(data) - len(data) % _DESCRIPTOR_BYTES, _DESCRIPTOR_BYTES)
+                numbers = [data[at : at + _DESCRIPTOR_BYTES] for at in ends]
+                descriptors += [int.from_bytes(number, sys.byteorder) for number in numbers]
+        # Python sets close-on-exec for none that it is sent.
+        for descriptor in descriptors:
+            os.set_inheritable(descriptor, False)  # noqa: FBT003 - the library's signature
+        return packet, descriptors
+
+    def _answer(self, reply: dict[str, object]) -> None:
+        self._socket.send(json.dumps(reply).encode())
