@@ -93,6 +93,7 @@ lint_python() {
   "$checkers/ruff" format --check examples fixtures tools tests benches web/tests
   "$checkers/mypy" examples/01-simulated-arm/*.py tools/*.py
   "$checkers/mypy" examples/02-supervised-simulator/*.py
+  "$checkers/mypy" examples/03-yarp/*.py
   "$checkers/mypy" examples/06-ros2/*.py
   "$checkers/mypy" fixtures
   "$checkers/mypy" tests/fixtures/*.py tests/fixtures/ros2launch/*.py \
@@ -131,7 +132,8 @@ sdk_ruby() {
 }
 
 suites_are_valid() {
-  files 'examples/*.xml' 'tests/install/*.xml' 'tests/fixtures/*/suite.xml' |
+  # The fixtures of an example are files of its middleware.
+  files 'examples/*.xml' ':!examples/*/fixtures/*' 'tests/install/*.xml' 'tests/fixtures/*/suite.xml' |
     xargs -d '\n' xmllint --noout --schema spec/suite.xsd
 }
 
@@ -156,6 +158,17 @@ example_01() {
 example_02() {
   PATH="$simulation:$PATH" python3 tools/check_example_02.py "$TARGET/release/rtf" \
     examples/02-supervised-simulator/supervised.xml
+}
+
+# YARP's programs, modules and bindings, as the lesson's README has them.
+example_03() {
+  local built=$BUILD/examples/03-yarp
+  export PATH=$built:$YARP_PREFIX/bin:$PATH LD_LIBRARY_PATH=$YARP_PREFIX/lib
+  export YARP_DATA_DIRS=$YARP_PREFIX/share/yarp PYTHONPATH=$YARP_PREFIX/lib/python3
+  export LUA_CPATH="$YARP_PREFIX/lib/lua/5.4/?.so;;" CMAKE_PREFIX_PATH=$YARP_PREFIX
+  export RTF_DIR=$ROOT/sdk/cpp/cmake/rtf RTF_PLUGIN_PATH=$built
+  tools/plugins.sh examples/03-yarp
+  python3 tools/check_example_03.py "$TARGET/release/rtf" examples/03-yarp
 }
 
 example_06() {
@@ -196,6 +209,7 @@ step 'build release' tools/build.sh
 step 'example 01 plug-ins' tools/plugins.sh examples/01-simulated-arm
 step 'example 01' example_01
 step 'example 02' example_02
+step_with 'example 03' yarp example_03
 step_with 'example 06' ros2 example_06
 step_with 'fixture ros2launch' ros2 fixture_ros2launch
 step_with 'fixture orocos' orocos fixture_orocos

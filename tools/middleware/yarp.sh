@@ -1,0 +1,95 @@
+# shellcheck shell=bash
+# YARP from the source distribution on PyPI: its server, its tools, the devices
+# that the lessons use, and bindings for Lua and for the python3 in use. It is
+# built once, in about ten minutes on two cores. Prints YARP_PREFIX=…
+
+yarp_version=3.5.0
+yarp_sha256=7a8f78e1b6d3477fcd5e73fd5839ebf6971c3c0f5d3208d3ec0ee2b0c44507b9
+ycm_version=0.15.3
+
+# Carriers and devices; YARP's defaults are many more and take twice as long.
+yarp_plugins=(
+  yarpcar_portmonitor yarpmod_fakeMotionControl yarpmod_controlboardwrapper2
+  yarpmod_controlBoard_nws_yarp yarpmod_remote_controlboard yarpmod_fakeFrameGrabber
+  yarpmod_grabberDual
+)
+
+yarp_options=(
+  -DCMAKE_BUILD_TYPE=Release
+  # Optimising costs more time in the build than the tests would gain.
+  "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG"
+  -DCMAKE_INSTALL_LIBDIR=lib
+  -DBUILD_SHARED_LIBS=ON
+  -DSKIP_ACE=ON
+  -DCMAKE_DISABLE_FIND_PACKAGE_ACE=ON
+  -DYARP_COMPILE_GUIS=OFF
+  -DYARP_COMPILE_TESTS=OFF
+  -DYARP_COMPILE_EXAMPLES=OFF
+  -DYARP_COMPILE_BINDINGS=ON
+  -DCREATE_LUA=ON
+  -DCREATE_PYTHON=ON
+  -DCMAKE_INSTALL_PYTHON3DIR:STRING=lib/python3
+  -DYARP_COMPILE_DEVICE_PLUGINS=ON
+)
+
+for plugin in "${yarp_plugins[@]}"; do
+  yarp_options+=("-DENABLE_$plugin=ON")
+done
+
+# The sources are of 2021; the compilers of today want these headers named.
+yarp_flags=
+for header in algorithm array cstdint functional iterator limits memory mutex string utility; do
+  yarp_flags+="-include $header "
+done
+yarp_options+=("-DCMAKE_CXX_FLAGS=$yarp_flags")
+
+yarp_download() {
+  local tarball=$yarp_work/yarp_middleware-$yarp_version.tar.gz
+  # The tools that pip would build a wheel with come along, to read the name of the package.
+  [ -e "$tarball" ] || quietly python3 -m pip download --disable-pip-version-check --no-deps \
+    --no-binary yarp-middleware --dest "$yarp_work" "yarp-middleware==$yarp_version" ||
+    die "pip could not download yarp-middleware $yarp_version"
+  printf '%s  %s\n' "$yarp_sha256" "$tarball" | sha256sum --check --quiet - ||
+    die "$tarball is not what was published" "delete it and try again"
+  if [ ! -e "$yarp_work/sources/complete" ]; then
+    rm -rf "$yarp_work/sources"
+    mkdir -p "$yarp_work/sources"
+    tar -xf "$tarball" -C "$yarp_work/sources" --strip-components 1
+    sed -i 's/DEFAULT ON/DEFAULT OFF/' "$yarp_work"/sources/src/{devices,carriers}/*/CMakeLists.txt
+    touch "$yarp_work/sources/complete"
+  fi
+  # YARP's CMake modules, which its users need, too.
+  quietly python3 -m pip install --disable-pip-version-check --no-deps --upgrade \
+    --target "$yarp_prefix/share/ycm" "ycm-cmake-modules==$ycm_version" ||
+    die "pip could not install ycm-cmake-modules $ycm_version"
+}
+
+# An interrupted build goes on where it was.
+yarp_build() {
+  say "building YARP $yarp_version into $yarp_prefix: ten minutes, once"
+  mkdir -p "$yarp_work" "$yarp_prefix"
+  yarp_download
+  quietly nice cmake -S "$yarp_work/sources" -B "$yarp_work/build" -G Ninja "${yarp_options[@]}" \
+    -DYCM_DIR="$yarp_prefix/share/ycm/ycm_cmake_modules/share/cmake/YCM" \
+    -DPython3_EXECUTABLE="$(python3 -c 'import sys; print(sys.executable)')" \
+    -DCMAKE_INSTALL_PREFIX="$yarp_prefix" || die "YARP could not be configured"
+  quietly nice ninja -C "$yarp_work/build" install || die "YARP could not be built"
+  rm -rf "$yarp_work"
+  touch "$yarp_prefix/complete"
+}
+
+need_packages libeigen3-dev libtinyxml-dev libedit-dev libsqlite3-dev liblua5.4-dev swig g++ cmake ninja-build
+[ -e "$(python3 -c 'import sysconfig; print(sysconfig.get_path("include"))')/Python.h" ] ||
+  need_packages python3-dev
+
+yarp_key=$(
+  {
+    printf '%s\n' "$yarp_sha256" "$ycm_version" "${yarp_options[@]}"
+    c++ --version
+    python3 -c 'import sys; print(sys.executable, sys.version)'
+  } | sha256sum | cut -c1-12
+)
+yarp_prefix=$CACHE/yarp-$yarp_version-$yarp_key
+yarp_work=$yarp_prefix.build
+[ -e "$yarp_prefix/complete" ] || yarp_build
+printf 'YARP_PREFIX=%s\n' "$yarp_prefix"
