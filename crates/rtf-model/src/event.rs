@@ -180,6 +180,14 @@ pub enum EventKind {
         /// Why.
         reason: String,
     },
+    /// The last word on a test that is repeated until a time is over: no
+    /// repetition follows.
+    TestRepeated {
+        /// The test.
+        test: TestId,
+        /// How often it was repeated.
+        repetitions: u32,
+    },
     /// A hook is being run. Ends with `hook-finished`.
     HookStarted {
         /// The hook.
@@ -364,11 +372,22 @@ pub struct TestPlanned {
     pub plugin_type: String,
     /// The plug-in's file.
     pub plugin: String,
-    /// How often it is run.
+    /// How often it is run; when `timed`, in each round.
     pub repetitions: u32,
+    /// Whether it is repeated, round by round, until a time is over.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub timed: bool,
     /// The tags given in the suite.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
+}
+
+impl TestPlanned {
+    /// Whether there is more than one repetition, or may be.
+    #[must_use]
+    pub fn is_repeated(&self) -> bool {
+        self.repetitions > 1 || self.timed
+    }
 }
 
 /// A phase of a test, in the order in which they happen.

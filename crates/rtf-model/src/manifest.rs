@@ -48,6 +48,9 @@ pub struct Manifest {
     /// How many times as often as its suite says each test was run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub repeat: Option<u32>,
+    /// For how many milliseconds the tests were repeated.
+    #[serde(rename = "for", skip_serializing_if = "Option::is_none")]
+    pub for_ms: Option<u64>,
     /// Whether a test that passed only when it was tried again counts as failed.
     #[serde(skip_serializing_if = "is_default")]
     pub flaky_fails: bool,

@@ -60,19 +60,21 @@ struct Fixture {
 #[derive(Clone, Debug)]
 struct Test {
     suite: SuiteId,
-    repetitions: u32,
+    /// How many at the most; none when it is repeated until a time is over.
+    repetitions: Option<u32>,
     open: bool,
     last: Option<(u32, u32)>,
     /// Whether the last attempt's end announced another one.
     rerun: bool,
-    skipped: bool,
+    /// Skipped, or told to be repeated no more.
+    over: bool,
 }
 
 impl Test {
     /// Whether its last word is spoken.
     fn is_decided(&self) -> bool {
-        let all_done = self.last.is_some_and(|(repetition, _)| repetition == self.repetitions);
-        self.skipped || (all_done && !self.rerun)
+        let all_done = self.last.is_some_and(|(r, _)| Some(r) == self.repetitions);
+        self.over || (all_done && !self.rerun)
     }
 }
 
@@ -139,7 +141,10 @@ impl OrderChecker {
             EventKind::SuitePlanned(plan) => self.plan_suite(plan.suite, plan.parallel),
             EventKind::FixturePlanned(plan) => self.plan_fixture(plan.fixture, plan.suite),
             EventKind::HookPlanned(plan) => self.plan_hook(plan.hook, plan.suite),
-            EventKind::TestPlanned(plan) => self.plan_test(plan.test, plan.suite, plan.repetitions),
+            EventKind::TestPlanned(plan) => {
+                let repetitions = (!plan.timed).then_some(plan.repetitions);
+                self.plan_test(plan.test, plan.suite, repetitions)
+            }
             EventKind::Warning { .. } => Ok(()),
             EventKind::SuiteWaiting { suite, .. } => self.wait(*suite),
             EventKind::SuiteStarted { suite } => self.start_suite(*suite),
@@ -173,6 +178,7 @@ impl OrderChecker {
             EventKind::Output(output) => self.inside(output.source),
             EventKind::TestFinished(finished) => self.finish_test(finished.test, finished.rerun),
             EventKind::TestSkipped { test, .. } => self.skip_test(*test),
+            EventKind::TestRepeated { test, repetitions } => self.end_test(*test, *repetitions),
             EventKind::HookStarted { hook, .. } => self.turn_hook(*hook, true),
             EventKind::HookFinished { hook, .. } => self.turn_hook(*hook, false),
             EventKind::SuiteFinished { suite } => self.finish_suite(*suite),
@@ -213,18 +219,11 @@ impl OrderChecker {
         Ok(())
     }
 
-    fn plan_test(&mut self, test: TestId, suite: SuiteId, repetitions: u32) -> Rule {
+    fn plan_test(&mut self, test: TestId, suite: SuiteId, repetitions: Option<u32>) -> Rule {
         self.planned_last(suite)?;
         ensure(test.index() == self.tests.len(), || format!("test {test} out of order"))?;
         let last = None;
-        self.tests.push(Test {
-            suite,
-            repetitions,
-            open: false,
-            last,
-            rerun: false,
-            skipped: false,
-        });
+        self.tests.push(Test { suite, repetitions, open: false, last, rerun: false, over: false });
         Ok(())
     }
 
@@ -322,14 +321,14 @@ impl OrderChecker {
     fn start_test(&mut self, id: TestId, number: (u32, u32)) -> Rule {
         let test = self.test(id)?;
         ensure(!test.open, || format!("test {id} started twice"))?;
-        ensure(!test.skipped, || format!("test {id} started although skipped"))?;
+        ensure(!test.over, || format!("test {id} started although it was skipped or is over"))?;
         let follows = match test.last {
             None => number == (1, 1),
             Some((r, a)) if test.rerun => number == (r, a + 1),
             Some((r, _)) => number == (r + 1, 1),
         };
         ensure(follows, || format!("test {id}: repetition or attempt out of order"))?;
-        ensure(number.0 <= test.repetitions, || {
+        ensure(test.repetitions.is_none_or(|most| number.0 <= most), || {
             format!("test {id}: more repetitions than planned")
         })?;
         test.last = Some(number);
@@ -371,8 +370,19 @@ impl OrderChecker {
     fn skip_test(&mut self, id: TestId) -> Rule {
         let test = self.test(id)?;
         ensure(!test.open, || format!("test {id} skipped while it runs"))?;
-        ensure(!test.skipped, || format!("test {id} skipped twice"))?;
-        test.skipped = true;
+        ensure(!test.over, || format!("test {id} skipped twice, or after its end"))?;
+        test.over = true;
+        Ok(())
+    }
+
+    fn end_test(&mut self, id: TestId, repetitions: u32) -> Rule {
+        let test = self.test(id)?;
+        let ends = test.repetitions.is_none() && !test.open && !test.rerun && !test.over;
+        ensure(ends, || format!("test {id} cannot end here"))?;
+        ensure(test.last.is_some_and(|(r, _)| r == repetitions), || {
+            format!("test {id} was not repeated {repetitions} times")
+        })?;
+        test.over = true;
         Ok(())
     }
 

@@ -82,6 +82,7 @@ fn before() -> Vec<EventKind> {
             plugin_type: "dll".into(),
             plugin: "libFloodTest.so".into(),
             repetitions: 1,
+            timed: false,
             tags: Vec::new(),
         }),
         EventKind::SuiteStarted { suite: SUITE },

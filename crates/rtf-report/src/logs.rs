@@ -41,7 +41,7 @@ pub fn attempt_log(record: &Record, id: TestId, number: (u32, u32)) -> PathBuf {
     let ambiguous = ["fixture-", "hook-"].iter().any(|word| test.plan.name.starts_with(word))
         || test.plan.name == "suite";
     let mut name = base(suite, &test.plan.name, ambiguous, &format!("t{id}"));
-    if test.plan.repetitions > 1 {
+    if test.plan.is_repeated() {
         name += &format!(".r{repetition}");
     }
     path(name, attempt)

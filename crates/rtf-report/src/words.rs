@@ -3,6 +3,8 @@
 use std::borrow::Cow;
 use std::time::Duration;
 
+use rtf_model::{AttemptRecord, TestRecord};
+
 use crate::escape;
 
 /// `1 test`, `2 tests`, `2 processes`.
@@ -26,6 +28,14 @@ pub(crate) fn time(duration: Duration) -> String {
         0..60 => format!("{:.3} s", duration.as_secs_f64()),
         60..3600 => format!("{} min {:02} s", secs / 60, secs % 60),
         _ => format!("{} h {:02} min", secs / 3600, secs % 3600 / 60),
+    }
+}
+
+/// `repetition 2 of 3`; nobody knows of how many while the time is not over.
+pub(crate) fn repetition(test: &TestRecord, attempt: &AttemptRecord) -> String {
+    match test.repetitions() {
+        Some(all) => format!("repetition {} of {all}", attempt.repetition),
+        None => format!("repetition {}", attempt.repetition),
     }
 }
 

@@ -198,6 +198,11 @@ pub struct RepeatArgs {
     #[arg(value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub repeat: Option<u32>,
 
+    /// Repeat all tests, round by round, until this time is over: `90s`, `8h`
+    #[arg(help_heading = REPEATING, long = "for", value_name = "DURATION")]
+    #[arg(value_parser = parse_duration)]
+    pub time: Option<Duration>,
+
     /// Try a test that fails so often again, whatever its suite says
     #[arg(help_heading = REPEATING, long, value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u32).range(0..=1_000_000))]

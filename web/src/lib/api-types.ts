@@ -146,6 +146,8 @@ export interface Test {
     plugin_type: string;
     plugin: string;
     repetitions: number;
+    /** It is repeated until a time is over; `repetitions` is then that of a round. */
+    timed?: boolean;
     tags?: string[];
     state: 'pending' | 'running' | 'done';
     verdict?: Verdict;

@@ -47,6 +47,7 @@ export function estimate(record: RunRecord, now: number, history: History): Esti
     let open = 0;
     for (const test of record.tests) {
         if (test.state === 'done') continue;
+        if (test.timed === true) return null;
         open += 1;
         const before = history.get(fullName(record, test));
         if (before !== undefined) known += 1;

@@ -37,6 +37,13 @@ impl<'p> Lineup<'p> {
         Some(suite)
     }
 
+    /// How many turns there are from the suite that has just begun on, when
+    /// always as many run as may.
+    pub fn turns(&self) -> u32 {
+        let left = (self.waiting.len() + 1).div_ceil(self.jobs.get());
+        u32::try_from(left).unwrap_or(u32::MAX)
+    }
+
     /// A suite has ended, and what it had is free again.
     pub fn ended(&mut self, ended: &SuitePlan) {
         self.running.retain(|suite| suite.id != ended.id);
@@ -88,6 +95,7 @@ mod tests {
         let suites = suites(["", "", "", ""]);
         let mut lineup = lineup(&suites, 2);
         assert_eq!(begin(&mut lineup), [0, 1]);
+        assert_eq!(lineup.turns(), 2);
         lineup.ended(&suites[1]);
         assert_eq!(begin(&mut lineup), [2]);
         lineup.ended(&suites[0]);

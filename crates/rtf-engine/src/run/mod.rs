@@ -16,6 +16,7 @@ pub mod suite_task;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 use futures_util::StreamExt;
 use futures_util::stream::FuturesUnordered;
@@ -57,6 +58,8 @@ pub struct RunOptions {
     pub forks: Forks,
     /// After how many tests that did not pass the rest is skipped.
     pub max_fail: Option<u32>,
+    /// For how long tests are repeated; none repeats as often as is planned.
+    pub time: Option<Duration>,
     /// How many suites run at the same time at the most.
     pub jobs: NonZeroUsize,
     /// What is asked of the run while it goes on.
@@ -92,12 +95,13 @@ pub async fn execute(
         events.emit(EventKind::Warning { diagnostic });
     }
     for suite in &plan.suites {
-        announce(suite, &events);
+        announce(suite, options.time.is_some(), &events);
     }
     let (stopped, controls) = (stops.clone(), options.controls);
     let fails = FailLimit::new(options.max_fail);
-    let asked = suite_task::Asked { stops: stopped, controls, fails };
-    let all = AllSuites { shared: &shared, events: &events, locks: &options.locks, asked };
+    let asked = suite_task::Asked { stops: stopped, controls, fails, until: None };
+    let (shared, events, locks, time) = (&shared, &events, &options.locks, options.time);
+    let all = AllSuites { shared, events, locks, asked, time };
     all.run(&plan.suites, options.jobs).await;
     shared.spawner.finish(None).await;
     let left = tree::sweep_all();
@@ -124,6 +128,8 @@ struct AllSuites<'a> {
     events: &'a Events,
     locks: &'a LockOptions,
     asked: suite_task::Asked,
+    /// For how long tests are repeated.
+    time: Option<Duration>,
 }
 
 impl AllSuites<'_> {
@@ -132,21 +138,26 @@ impl AllSuites<'_> {
         let mut running = FuturesUnordered::new();
         loop {
             while let Some(suite) = lineup.next() {
-                running.push(self.one(suite));
+                running.push(self.one(suite, lineup.turns()));
             }
             let Some(ended) = running.next().await else { return };
             lineup.ended(ended);
         }
     }
 
-    /// One suite from its locks until it has given everything back.
-    async fn one<'p>(&self, suite: &'p SuitePlan) -> &'p SuitePlan {
-        let Self { shared, events, locks, asked } = self;
+    /// One suite from its locks until it has given everything back; it is the
+    /// first of so many turns.
+    async fn one<'p>(&self, suite: &'p SuitePlan, turns: u32) -> &'p SuitePlan {
+        let Self { shared, events, locks, asked, time } = self;
         let locks = locks::wait(suite, locks, events, &mut asked.stops.clone()).await;
         let run = events.run_token();
         let prepared = Prepared::get(suite, locks, run, &shared.spawner).await;
         shared.guard.suite_begins(&prepared);
-        suite_task::run_suite(&prepared, shared, events, asked.clone()).await;
+        // Suites that come one after the other share the time.
+        let now = events.now();
+        let until = time.map(|time| now + time.saturating_sub(now) / turns);
+        let asked = suite_task::Asked { until, ..asked.clone() };
+        suite_task::run_suite(&prepared, shared, events, asked).await;
         shared.guard.suite_ends(&prepared);
         prepared.give_back(&shared.spawner).await;
         suite
@@ -164,7 +175,7 @@ fn scratch_folder() -> std::io::Result<PathBuf> {
     Ok(path)
 }
 
-fn announce(suite: &SuitePlan, events: &Events) {
+fn announce(suite: &SuitePlan, timed: bool, events: &Events) {
     events.emit(EventKind::SuitePlanned(SuitePlanned {
         suite: suite.id,
         name: suite.name.clone(),
@@ -187,7 +198,7 @@ fn announce(suite: &SuitePlan, events: &Events) {
         events.emit(EventKind::HookPlanned(HookPlanned { hook, suite, name, on }));
     }
     for test in &suite.tests {
-        events.emit(EventKind::TestPlanned(planned(suite, test)));
+        events.emit(EventKind::TestPlanned(planned(suite, test, timed)));
     }
 }
 
@@ -199,7 +210,7 @@ fn type_of(fixture: &FixturePlan) -> &str {
     }
 }
 
-fn planned(suite: &SuitePlan, test: &TestPlan) -> TestPlanned {
+fn planned(suite: &SuitePlan, test: &TestPlan, timed: bool) -> TestPlanned {
     TestPlanned {
         test: test.id,
         suite: suite.id,
@@ -207,6 +218,7 @@ fn planned(suite: &SuitePlan, test: &TestPlan) -> TestPlanned {
         plugin_type: test.plugin.plugin_type.to_string(),
         plugin: shown(&test.plugin.file),
         repetitions: test.repetitions,
+        timed,
         tags: test.tags.clone(),
     }
 }

@@ -37,6 +37,8 @@ pub struct Asked {
     pub controls: Controls,
     /// How many tests of the run have failed, and may.
     pub fails: FailLimit,
+    /// When the suite is repeated no more, as a time of the run.
+    pub until: Option<Duration>,
 }
 
 /// Runs a suite to its end.
@@ -54,7 +56,7 @@ pub async fn run_suite(
         shared,
         events,
         inputs,
-        machine: SuiteMachine::new(plan, asked.fails.clone()),
+        machine: SuiteMachine::new(plan, asked.fails.clone()).until(asked.until),
         effects: Vec::new(),
         orders: HashMap::new(),
         spares: Vec::new(),

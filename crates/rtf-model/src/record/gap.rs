@@ -56,6 +56,7 @@ pub(super) fn test(index: u32, suite: SuiteId) -> TestRecord {
         plugin_type: String::new(),
         plugin: String::new(),
         repetitions: 1,
+        timed: false,
         tags: Vec::new(),
     })
 }

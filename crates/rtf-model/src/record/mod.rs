@@ -384,6 +384,7 @@ fn source_of(kind: &EventKind) -> Option<Source> {
         | EventKind::Attached { test, .. }
         | EventKind::TestSlow { test }
         | EventKind::TestStopping { test, .. }
+        | EventKind::TestRepeated { test, .. }
         | EventKind::TestSkipped { test, .. } => Some(Source::Test(*test)),
         EventKind::TestFinished(finished) => Some(Source::Test(finished.test)),
         EventKind::Message { source, .. }

@@ -17,6 +17,8 @@ pub struct TestRecord {
     pub attempts: Vec<AttemptRecord>,
     /// Why it (or what is left of its repetitions) was not started.
     pub skipped: Option<String>,
+    /// Whether it may be repeated again: how often is not known yet.
+    open: bool,
 }
 
 /// What is known of one attempt of a test.
@@ -56,7 +58,7 @@ pub struct AttemptRecord {
 
 impl TestRecord {
     pub(super) fn new(plan: TestPlanned) -> Self {
-        Self { plan, attempts: Vec::new(), skipped: None }
+        Self { open: plan.timed, plan, attempts: Vec::new(), skipped: None }
     }
 
     /// `lean`: see [`super::Record::lean`].
@@ -67,12 +69,22 @@ impl TestRecord {
                 self.attempts.push(AttemptRecord { lean, ..attempt });
             }
             EventKind::TestSkipped { reason, .. } => self.skipped = Some(reason.clone()),
+            EventKind::TestRepeated { repetitions, .. } => {
+                self.plan.repetitions = *repetitions;
+                self.open = false;
+            }
             kind => {
                 if let Some(attempt) = self.attempts.last_mut() {
                     attempt.apply(at, kind);
                 }
             }
         }
+    }
+
+    /// How many repetitions there are; `None` while nobody knows.
+    #[must_use]
+    pub fn repetitions(&self) -> Option<u32> {
+        (!self.open).then_some(self.plan.repetitions)
     }
 
     /// Whether an attempt runs now.
@@ -108,7 +120,7 @@ impl TestRecord {
         }
         let last = self.attempts.last()?;
         let (_, finished) = last.finished.as_ref()?;
-        if finished.rerun || last.repetition < self.plan.repetitions {
+        if finished.rerun || self.open || last.repetition < self.plan.repetitions {
             return None;
         }
         Some(failed().unwrap_or(Verdict::Passed))

@@ -3,7 +3,8 @@
 use crate::support::*;
 use proptest::prelude::*;
 use rtf_model::{
-    Diagnostic, Event, EventKind, OrderChecker, Source, SuiteId, SuitePrepared, Trigger, Verdict,
+    Diagnostic, Event, EventKind, OrderChecker, Source, SuiteId, SuitePrepared, TestId, Trigger,
+    Verdict,
 };
 
 pub fn check(events: &[Event]) -> Result<(), String> {
@@ -85,6 +86,35 @@ fn what_is_left_of_the_repetitions_may_be_skipped() {
 }
 
 #[test]
+fn a_timed_test_is_repeated_until_it_is_told_to_be_over() {
+    let timed = |body: Vec<EventKind>| {
+        let mut kinds = opened(1);
+        if let Some(EventKind::TestPlanned(plan)) = kinds.iter_mut().rev().nth(1) {
+            plan.timed = true;
+        }
+        check(&stream(kinds.into_iter().chain(body).chain(closed())))
+    };
+    let over = |repetitions| EventKind::TestRepeated { test: TestId(0), repetitions };
+    let passed = || finished(Verdict::Passed);
+    let twice = || vec![started(1, 1), passed(), started(2, 1), passed()];
+    let and = |mut body: Vec<EventKind>, more: &[EventKind]| {
+        body.extend_from_slice(more);
+        timed(body)
+    };
+    assert_eq!(and(twice(), &[over(2)]), Ok(()));
+    assert_eq!(timed(twice()), Err("event 9: test 0 has no verdict".to_owned()));
+    let wrong = and(twice(), &[over(3)]);
+    assert_eq!(wrong, Err("event 9: test 0 was not repeated 3 times".to_owned()));
+    let ends_here = |seq| Err(format!("event {seq}: test 0 cannot end here"));
+    assert_eq!(and(twice(), &[over(2), over(2)]), ends_here(10));
+    assert_eq!(timed(vec![started(1, 1), over(1)]), ends_here(6));
+    assert_eq!(timed(vec![started(1, 1), rerun(Verdict::Failed), over(1)]), ends_here(7));
+    assert_eq!(check_body(2, [started(1, 1), passed(), over(1)]), ends_here(7));
+    let again = "event 10: test 0 started although it was skipped or is over";
+    assert_eq!(and(twice(), &[over(2), started(3, 1)]), Err(again.to_owned()));
+}
+
+#[test]
 fn a_suite_does_not_finish_before_each_test_has_its_last_word() {
     let wanted = Err("event 7: test 0 has no verdict".to_owned());
     assert_eq!(check_body(3, [started(1, 1), finished(Verdict::Passed)]), wanted);
@@ -135,8 +165,8 @@ fn what_a_test_or_fixture_says_lies_between_its_start_and_its_end() {
     let late = [started(1, 1), finished(Verdict::Passed), left(Source::Test(TEST))];
     assert_eq!(wrong(&late), "event 7: test 0 is not running");
     let after = [skipped(0), started(1, 1)];
-    assert_eq!(wrong(&after), "event 6: test 0 started although skipped");
-    assert_eq!(wrong(&[skipped(0), skipped(0)]), "event 6: test 0 skipped twice");
+    assert_eq!(wrong(&after), "event 6: test 0 started although it was skipped or is over");
+    assert_eq!(wrong(&[skipped(0), skipped(0)]), "event 6: test 0 skipped twice, or after its end");
     assert_eq!(wrong(&[started(1, 1), skipped(0)]), "event 6: test 0 skipped while it runs");
 }
 

@@ -53,6 +53,7 @@ pub fn test(id: u32, suite: u32, repetitions: u32) -> EventKind {
         plugin_type: "lua".into(),
         plugin: format!("/robot/test-{id}.lua"),
         repetitions,
+        timed: false,
         tags: Vec::new(),
     })
 }

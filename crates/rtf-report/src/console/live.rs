@@ -233,8 +233,10 @@ impl Live<'_> {
         let Some(test) = self.record.tests.get(finished.test.index()) else { return };
         let Some(attempt) = test.attempts.last() else { return };
         let mut name = self.test(finished.test);
-        if test.plan.repetitions > 1 {
-            name += &format!(" ({} of {})", attempt.repetition, test.plan.repetitions);
+        match test.repetitions() {
+            None => name += &format!(" ({})", attempt.repetition),
+            Some(1) => {}
+            Some(all) => name += &format!(" ({} of {all})", attempt.repetition),
         }
         if attempt.attempt > 1 {
             name += &format!(", attempt {}", attempt.attempt);

@@ -63,7 +63,7 @@ impl Progress {
             EventKind::TestFinished(finished) if record.verdict(finished.test).is_some() => {
                 self.step();
             }
-            EventKind::TestSkipped { .. } => self.step(),
+            EventKind::TestSkipped { .. } | EventKind::TestRepeated { .. } => self.step(),
             _ => {}
         }
     }

@@ -56,6 +56,7 @@ fn is_landmark(kind: &EventKind) -> bool {
             | EventKind::Attached { .. }
             | EventKind::Output(_)
             | EventKind::TestSkipped { .. }
+            | EventKind::TestRepeated { .. }
     )
 }
 

@@ -7,6 +7,7 @@ use rtf_model::{AttemptRecord, Record, TestRecord, Verdict};
 
 use super::{text, time};
 use crate::explain::{self, Extent};
+use crate::words;
 
 /// More measurements than this would drown the page that shows them.
 const MEASUREMENTS: usize = 100;
@@ -109,7 +110,7 @@ fn description(record: &Record, test: &TestRecord, reason: &str) -> String {
 }
 
 fn title(test: &TestRecord, attempt: &AttemptRecord) -> String {
-    let mut title = format!("repetition {} of {}", attempt.repetition, test.plan.repetitions);
+    let mut title = words::repetition(test, attempt);
     title += &format!(", attempt {}", attempt.attempt);
     let Some((_, finished)) = &attempt.finished else { return title + ": it did not end" };
     title += &format!(": {} in {}", finished.verdict, finished.phase);

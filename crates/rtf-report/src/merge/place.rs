@@ -50,6 +50,7 @@ impl Ids<'_> {
             | EventKind::Measured { test, .. }
             | EventKind::TestSlow { test }
             | EventKind::TestStopping { test, .. }
+            | EventKind::TestRepeated { test, .. }
             | EventKind::TestSkipped { test, .. } => Some(self.test(test)),
             EventKind::TestFinished(finished) => Some(self.test(&mut finished.test)),
             EventKind::Attached { test, attachment } => {

@@ -85,6 +85,7 @@ pub(super) fn of(event: &Event, record: &Record) -> Vec<Line> {
             let skipped = Line::about(Word::Error, &name, &format!("skipped: {reason}"));
             std::iter::once(skipped).chain(last_word(record, *test)).collect()
         }
+        EventKind::TestRepeated { test, .. } => last_word(record, *test).into_iter().collect(),
         kind => problems::of_bench(record, kind),
     }
 }

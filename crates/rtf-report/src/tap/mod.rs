@@ -62,6 +62,7 @@ impl Reporter for TapStream {
             EventKind::SuiteStarted { .. }
                 | EventKind::TestFinished(_)
                 | EventKind::TestSkipped { .. }
+                | EventKind::TestRepeated { .. }
                 | EventKind::SuiteFinished { .. }
         );
         if decides {

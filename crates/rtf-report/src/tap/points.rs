@@ -52,7 +52,7 @@ fn explained(yaml: &mut Yaml<'_>, test: &TestRecord, verdict: Verdict) {
     if let Some(Location { file, line }) = locations.next() {
         yaml.place(file, *line);
     }
-    if test.plan.repetitions > 1 {
+    if test.plan.is_repeated() {
         yaml.number("repetition", f64::from(attempt.repetition));
     }
     let mut lines = Vec::new();

@@ -29,7 +29,7 @@ pub(super) fn show(lines: &mut Lines, test: &TestRecord, complete: bool) {
 }
 
 fn show_attempt(lines: &mut Lines, test: &TestRecord, attempt: &AttemptRecord) {
-    let mut title = format!("repetition {} of {}", attempt.repetition, test.plan.repetitions);
+    let mut title = words::repetition(test, attempt);
     if attempt.attempt > 1 {
         title += &format!(", attempt {}", attempt.attempt);
     }

@@ -87,6 +87,7 @@ fn names_that_look_alike_get_files_of_their_own() {
             plugin_type: "dll".into(),
             plugin: String::new(),
             repetitions: 2,
+            timed: false,
             tags: Vec::new(),
         }));
     }

@@ -100,6 +100,7 @@ impl Writer {
                 plugin_type: "lua".to_owned(),
                 plugin: "/robot/test.lua".to_owned(),
                 repetitions: 1,
+                timed: false,
                 tags: Vec::new(),
             }));
         }

@@ -38,6 +38,8 @@ pub fn ask(args: &InputArgs, results: &ResultsArgs) -> Result<Asked, Failure> {
     }
     let repeat = &args.repeat;
     manifest.repeat = repeat.repeat.or(manifest.repeat);
+    let for_ms = repeat.time.map(|time| u64::try_from(time.as_millis()).unwrap_or(u64::MAX));
+    manifest.for_ms = for_ms.or(manifest.for_ms);
     manifest.retries = repeat.retries.or(manifest.retries);
     if let Some(result) = repeat.flaky_result {
         manifest.flaky_fails = result == FlakyResult::Fail;

@@ -3,6 +3,7 @@
 use std::num::NonZeroU16;
 use std::process::ExitCode;
 use std::sync::Arc;
+use std::time::Duration;
 
 use rtf_engine::guard::Link;
 use rtf_engine::locks::LockOptions;
@@ -70,6 +71,7 @@ impl Job<'_> {
             controls: controls.subscribe(),
             locks: self.locks.clone(),
             jobs: self.jobs.into(),
+            time: self.planned.manifest.for_ms.map(Duration::from_millis),
         };
         let sink: Arc<dyn Sink> = Arc::new(Reports(events));
         let plan = &self.planned.plan;

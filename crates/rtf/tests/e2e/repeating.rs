@@ -97,6 +97,35 @@ fn many_repetitions_are_summed_up() {
 }
 
 #[test]
+fn a_time_is_filled_with_rounds() {
+    let folder = folder(0, "repetition='2'");
+    let began = std::time::Instant::now();
+    let finished = folder.rtf(&["run", "--for", "1s", "s.xml", "P.lua", "--report", "tap=t.tap"]);
+    assert!(began.elapsed() >= std::time::Duration::from_secs(1));
+    assert_eq!(finished.code, Some(0), "{}", finished.stdout);
+    let record = folder.journal().record;
+    let [flaky, quick, alone] = [0, 1, 2].map(|test| record.tests[test].attempts.len());
+    assert!(quick > 1 && alone > 1, "both suites had their part: {quick}, {alone}");
+    assert_eq!(flaky, 2 * quick, "a round comes to its end");
+    let rate = format!("s/P  {quick} of {quick} passed (100.0 %)");
+    assert!(finished.stdout.contains(&rate), "{}", finished.stdout);
+    // One word on each test, when it is known.
+    let tap = std::fs::read_to_string(folder.path().join("t.tap")).expect("a report");
+    assert_eq!(tap.matches("ok ").count(), 5, "{tap}");
+    let again = folder.rtf(&["show"]);
+    assert!(again.stdout.contains(&rate), "{}", again.stdout);
+}
+
+#[test]
+fn the_first_failure_ends_the_time() {
+    let folder = folder(1, "");
+    let finished = folder.rtf(&["run", "--for", "1h", "--until-fail", "s.xml"]);
+    assert_eq!(finished.code, Some(1), "{}", finished.stdout);
+    assert_eq!(folder.journal().record.tests[0].attempts.len(), 1);
+    assert!(finished.stdout.contains("s/P: 1 test has not passed"), "{}", finished.stdout);
+}
+
+#[test]
 fn enough_is_enough() {
     let folder = folder(9, "repetition='3'");
     let plug_in = "Flaky.lua";

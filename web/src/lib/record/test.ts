@@ -14,7 +14,7 @@ const NO_COUNTS = {
 };
 
 export function plannedTest(plan: TestPlanned): Test {
-    const { test, suite, name, plugin_type, plugin, repetitions, tags } = plan;
+    const { test, suite, name, plugin_type, plugin, repetitions, timed, tags } = plan;
     return {
         id: test,
         suite,
@@ -22,6 +22,7 @@ export function plannedTest(plan: TestPlanned): Test {
         plugin_type,
         plugin,
         repetitions,
+        ...(timed === true ? { timed } : {}),
         ...(tags === undefined ? {} : { tags }),
         state: 'pending',
         duration_us: 0,
@@ -56,7 +57,14 @@ export function applyToTest(test: Test, event: Event): void {
             test.duration_us += event.at - last.started;
             delete test.phase;
             test.state = 'pending';
-            if (!event.rerun && last.repetition >= test.repetitions) conclude(test, null);
+            if (!event.rerun && test.timed !== true && last.repetition >= test.repetitions)
+                conclude(test, null);
+            break;
+        case 'test-repeated':
+            // The time is over: now it is known how many repetitions there are.
+            test.repetitions = event.repetitions;
+            delete test.timed;
+            conclude(test, null);
             break;
         case 'test-skipped':
             conclude(test, event.reason);

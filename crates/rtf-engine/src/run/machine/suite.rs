@@ -13,7 +13,8 @@
 //! 6. Ask plug-in fixtures for their `check`, then start the next tests.
 //!
 //! Which test may start is in [`turns`], how a suite is ended early in [`ending`],
-//! how a test that failed is tried again in [`retries`].
+//! how a test that failed is tried again in [`retries`], how the whole is
+//! repeated in [`rounds`].
 //!
 //! **A collapse interrupts all running tests in [`SuiteMachine::fixture_changed`].**
 
@@ -21,6 +22,7 @@ mod cursor;
 mod ending;
 mod looking;
 mod retries;
+mod rounds;
 mod turns;
 
 use std::time::Duration;
@@ -164,7 +166,7 @@ impl<'p> SuiteMachine<'p> {
                 exit: None,
                 rerun: false,
             }));
-            if plan.repetitions > 1 {
+            if plan.repetitions > 1 || self.turns.rounds.are_timed() {
                 cx.emit(EventKind::TestSkipped { test: plan.id, reason: reason.to_owned() });
             }
         }
@@ -258,12 +260,15 @@ impl<'p> SuiteMachine<'p> {
             ));
         }
         self.checked = false;
-        match (cursor.next(rerun, plan.repetitions), given_up) {
-            (Some(_), Some(reason)) => {
+        let rounds = &mut self.turns.rounds;
+        let next = cursor.next(rerun, rounds.last_of(plan));
+        match (next, given_up) {
+            (next, Some(reason)) if next.is_some() || rounds.are_timed() => {
                 cx.emit(EventKind::TestSkipped { test, reason });
+                rounds.give_up(test);
                 self.turns.remove(test);
             }
-            (Some(next), None) => self.goes_on(test, next, retry.then_some(plan.retries.delay), cx),
+            (Some(next), _) => self.goes_on(test, next, retry.then_some(plan.retries.delay), cx),
             (None, _) => self.turns.remove(test),
         }
     }
@@ -293,6 +298,9 @@ impl<'p> SuiteMachine<'p> {
         }
         if self.hooks.run_next(cx) {
             return;
+        }
+        if self.ending.is_none() {
+            self.turns.begin_round(cx.now());
         }
         if self.ending.is_some() || self.turns.all_over() {
             return self.finish(cx);
@@ -354,11 +362,7 @@ impl<'p> SuiteMachine<'p> {
         if !self.fixtures.all_stopped() {
             return;
         }
-        let reason = self.ending.clone().unwrap_or_default();
-        for test in self.turns.rest() {
-            cx.clear(Deadline::Retry(test));
-            cx.emit(EventKind::TestSkipped { test, reason: reason.clone() });
-        }
+        self.last_words(cx);
         self.over = true;
         cx.clear(Deadline::Suite);
         cx.clear(Deadline::Shutdown);

@@ -156,6 +156,7 @@ impl Run {
                 plugin_type: "lua".into(),
                 plugin: "/robot/test.lua".into(),
                 repetitions: test.repetitions.len() as u32,
+                timed: false,
                 tags: Vec::new(),
             }));
         }

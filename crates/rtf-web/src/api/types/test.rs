@@ -33,6 +33,10 @@ pub struct Test {
     pub plugin: String,
     /// How often it is to be run.
     pub repetitions: u32,
+    /// Whether it is repeated until a time is over; `repetitions` is then that of a round.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[schema(required = false)]
+    pub timed: bool,
     /// The tags given in the suite.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
@@ -181,6 +185,7 @@ impl Test {
             plugin_type: plan.plugin_type.clone(),
             plugin: plan.plugin.clone(),
             repetitions: plan.repetitions,
+            timed: test.repetitions().is_none(),
             tags: plan.tags.clone(),
             state: match (verdict, running) {
                 (Some(_), _) => TestState::Done,

@@ -5,9 +5,13 @@
 //! last, also while its retry waits. So its repetitions never overlap, and tests
 //! begin in the order in which they are written.
 
+use std::time::Duration;
+
 use rtf_model::{StopCause, TestId};
 
-use super::{Context, Cursor};
+use super::Context;
+use super::cursor::Cursor;
+use super::rounds::Rounds;
 use crate::plan::{SuitePlan, TestPlan};
 use crate::run::machine::io::{HostId, Start};
 use crate::run::machine::test::{Ended, TestRun};
@@ -42,13 +46,14 @@ pub(super) struct Turns<'p> {
     suite: &'p SuitePlan,
     /// Those that have begun and are not over, as they are written.
     open: Vec<Turn<'p>>,
-    /// The place of the first test that has not begun.
+    /// The place of the first test that has not begun in this round.
     next: usize,
+    pub rounds: Rounds,
 }
 
 impl<'p> Turns<'p> {
     pub fn new(suite: &'p SuitePlan) -> Self {
-        Self { suite, open: Vec::new(), next: 0 }
+        Self { suite, open: Vec::new(), next: 0, rounds: Rounds::new() }
     }
 
     /// Whether any test has begun.
@@ -60,6 +65,26 @@ impl<'p> Turns<'p> {
         self.open.iter().any(|turn| turn.run.is_some())
     }
 
+    /// Begins another round when this one is over, if there is time for one.
+    pub fn begin_round(&mut self, now: Duration) {
+        let any_left = self.suite.tests.iter().any(|plan| self.rounds.have(plan.id));
+        if self.all_over() && any_left && self.rounds.begin(now) {
+            self.next = 0;
+            self.pass_over();
+        }
+    }
+
+    /// The next test is one that is in this round.
+    fn pass_over(&mut self) {
+        let rest = self.suite.tests.iter().skip(self.next);
+        self.next += rest.take_while(|plan| !self.rounds.have(plan.id)).count();
+    }
+
+    /// Whether a test that ended is to be run again.
+    pub fn is_rerun(&self, test: TestId) -> bool {
+        self.open.iter().any(|turn| turn.plan.id == test && turn.cursor.attempt > 1)
+    }
+
     /// Whether no test is left.
     pub fn all_over(&self) -> bool {
         self.open.is_empty() && self.next >= self.suite.tests.len()
@@ -67,6 +92,7 @@ impl<'p> Turns<'p> {
 
     /// No test will begin any more.
     pub fn close(&mut self) {
+        self.suite.tests.iter().for_each(|plan| self.rounds.give_up(plan.id));
         self.next = self.suite.tests.len();
     }
 
@@ -130,11 +156,14 @@ impl<'p> Turns<'p> {
     pub fn start_next(&mut self, cx: &mut Context<'_>) -> bool {
         if !self.open.iter().any(Turn::is_due) && self.has_room() {
             let plan = &self.suite.tests[self.next];
-            let (cursor, run, waits, given_up) = (Cursor::FIRST, None, false, None);
+            let (cursor, run) = (self.rounds.first_of(plan), None);
+            let (waits, given_up) = (false, None);
             self.open.push(Turn { plan, cursor, run, waits, given_up });
             self.next += 1;
+            self.pass_over();
         }
         let Some(turn) = self.open.iter_mut().find(|turn| turn.is_due()) else { return false };
+        self.rounds.begins(turn.plan.id, turn.cursor);
         let number = (turn.cursor.repetition, turn.cursor.attempt);
         turn.run = Some(TestRun::start(self.suite, turn.plan, number, cx));
         true
@@ -143,12 +172,16 @@ impl<'p> Turns<'p> {
     /// How the hosts of the next attempts are started: further repetitions, then
     /// tests that have not begun.
     pub fn hosts_ahead(&self) -> Vec<Start> {
-        let begun = |turn: &Turn<'p>| (turn.plan, turn.plan.repetitions - turn.cursor.repetition);
-        let others = self.suite.tests[self.next..].iter().map(|plan| (plan, plan.repetitions));
-        let next =
-            self.open.iter().map(begun).chain(others).flat_map(|(plan, times)| {
-                std::iter::repeat_n(plan, HOSTS_AHEAD.min(times as usize))
-            });
+        let rounds = &self.rounds;
+        let left = |turn: &Turn<'p>| rounds.last_of(turn.plan) - turn.cursor.repetition;
+        let begun = self.open.iter().map(|turn| (turn.plan, left(turn)));
+        // After the last one, the first may follow.
+        let again = if rounds.are_timed() { &*self.suite.tests } else { &[] };
+        let others = self.suite.tests[self.next..].iter().chain(again);
+        let others = others.filter(|plan| rounds.have(plan.id));
+        let all = begun.chain(others.map(|plan| (plan, plan.repetitions)));
+        let next = all
+            .flat_map(|(plan, times)| std::iter::repeat_n(plan, HOSTS_AHEAD.min(times as usize)));
         next.take(HOSTS_AHEAD).map(|plan| TestRun::host_start(self.suite, plan)).collect()
     }
 

@@ -11,4 +11,5 @@ mod limits;
 mod parallel;
 mod prepared;
 mod retries;
+mod rounds;
 pub(crate) mod world;

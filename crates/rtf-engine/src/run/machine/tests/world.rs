@@ -125,6 +125,15 @@ pub struct World<'p> {
 
 impl<'p> World<'p> {
     pub fn new(plan: &'p SuitePlan) -> Self {
+        Self::of(plan, false)
+    }
+
+    /// Of tests that are repeated until a time is over.
+    pub fn timed(plan: &'p SuitePlan) -> Self {
+        Self::of(plan, true)
+    }
+
+    fn of(plan: &'p SuitePlan, timed: bool) -> Self {
         let mut world = Self {
             now: Duration::ZERO,
             machine: SuiteMachine::new(plan, FailLimit::default()),
@@ -139,11 +148,11 @@ impl<'p> World<'p> {
             order: OrderChecker::default(),
             seq: 0,
         };
-        world.announce(plan);
+        world.announce(plan, timed);
         world
     }
 
-    fn announce(&mut self, plan: &SuitePlan) {
+    fn announce(&mut self, plan: &SuitePlan, timed: bool) {
         self.emit(EventKind::RunStarted(RunStarted {
             version: 1,
             run: "r".to_owned(),
@@ -186,6 +195,7 @@ impl<'p> World<'p> {
                 plugin_type: "dll".to_owned(),
                 plugin: String::new(),
                 repetitions: test.repetitions,
+                timed,
                 tags: Vec::new(),
             }));
         }
