@@ -94,6 +94,7 @@ lint_python() {
   "$checkers/mypy" examples/01-simulated-arm/*.py tools/*.py
   "$checkers/mypy" examples/02-supervised-simulator/*.py
   "$checkers/mypy" examples/03-yarp/*.py
+  "$checkers/mypy" examples/05-ros1/*.py examples/05-ros1/rover/scripts/*.py
   "$checkers/mypy" examples/06-ros2/*.py
   "$checkers/mypy" fixtures
   "$checkers/mypy" tests/fixtures/*.py tests/fixtures/ros2launch/*.py \
@@ -171,6 +172,13 @@ example_03() {
   python3 tools/check_example_03.py "$TARGET/release/rtf" examples/03-yarp
 }
 
+example_05() {
+  tools/plugins.sh examples/05-ros1
+  RTF_PLUGIN_PATH=$BUILD/examples/05-ros1 ROS_PACKAGE_PATH=$BUILD/examples/05-ros1:/usr/share \
+    python3 tools/check_example_05.py "$TARGET/release/rtf" examples/05-ros1 \
+    tests/fixtures/ros1/probes.xml
+}
+
 example_06() {
   python3 tools/check_example_06.py "$TARGET/release/rtf" examples/06-ros2/{left,right}.xml
 }
@@ -210,6 +218,7 @@ step 'example 01 plug-ins' tools/plugins.sh examples/01-simulated-arm
 step 'example 01' example_01
 step 'example 02' example_02
 step_with 'example 03' yarp example_03
+step_with 'example 05' ros1 example_05
 step_with 'example 06' ros2 example_06
 step_with 'fixture ros2launch' ros2 fixture_ros2launch
 step_with 'fixture orocos' orocos fixture_orocos

@@ -1,0 +1,231 @@
+#!/usr/bin/env python3
+"""Runs example 05 as a user does, and again while parts of ROS are killed.
+
+    check_example_05.py RTF EXAMPLE PROBES
+
+Nothing is imitated: roscore, roslaunch and nodes are real, and get a SIGKILL in
+the middle of a test. Some runs go side by side: each has a master of its own.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import tempfile
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from check_example_01 import Event, Run, expect, is_a
+
+VICTIM = "RateTest"
+RUNNER_DIED = 5
+LONG = "--set=seconds=20"
+"""How long the victim listens: time enough to disturb it."""
+
+BROKEN = """<launch>
+  <node name="wheel" pkg="rover" type="wheel.py"/>
+  <node name="rudder" pkg="rover" type="rudder.py"/>
+</launch>
+"""
+BROKEN_SUITE = """<suite name="broken">
+  <fixture param="broken.launch"> roslaunch </fixture>
+  <test> Never.py </test>
+</suite>
+"""
+NEVER = "import rtf\nclass Never(rtf.TestCase):\n    def run(self):\n        pass\n"
+
+
+def main() -> int:
+    """Runs all and tells the first thing that is not as it should be."""
+    rtf, example, probes = (Path(argument).resolve() for argument in sys.argv[1:])
+    rover = example / "rover.xml"
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ["ROS_HOME"] = folder
+        for name in ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP"):
+            os.environ.pop(name, None)
+
+        def scene(check: Check, suite: Path, options: list[str]) -> None:
+            Scene(rtf, suite, Path(folder) / f"run-{check.__name__}", options).play(check)
+
+        scenes: list[tuple[Check, Path, list[str]]] = [
+            (undisturbed, rover, []),
+            (respawned, rover, [LONG]),
+            (not_to_be_respawned, rover, [LONG, "--set=respawn="]),
+            (required, rover, [LONG]),
+            (master_killed, rover, [LONG]),
+            (roslaunch_killed, rover, [LONG]),
+            (runner_killed, rover, [LONG]),
+            (not_launched, broken(Path(folder)), []),
+            (silent, probes, [LONG]),
+        ]
+        with ThreadPoolExecutor(max_workers=2) as pool:
+            for played in [pool.submit(scene, *each) for each in scenes]:
+                played.result()
+    return 0
+
+
+class Scene:
+    """A run of rtf with ROS of its own."""
+
+    def __init__(self, rtf: Path, suite: Path, folder: Path, options: list[str]) -> None:
+        self.run = Run(str(rtf), str(suite), folder, *options)
+        self.folder = folder
+
+    def play(self, check: Check) -> None:
+        """Checks the run, and that nothing of ROS is left after it."""
+        self.title = check.__name__
+        try:
+            check(self)
+        finally:
+            self.run.stop()
+        self.expect("processes left", self.processes(), {})
+
+    def expect(self, what: str, got: object, expected: object) -> None:
+        """Ends with a message if something is not as expected."""
+        expect(f"{self.title}: {what}", got, expected)
+
+    def kill(self, word: str, number: signal.Signals = signal.SIGKILL) -> None:
+        """Sends a signal to a process of ROS while the victim runs."""
+        self.wait_for_victim()
+        (pid,) = [pid for pid, line in self.processes().items() if word in line]
+        os.kill(pid, number)
+
+    def wait_for_victim(self) -> None:
+        """Waits until the test that is disturbed runs."""
+        self.run.wait_for(
+            lambda event: (
+                is_a(event, "test-phase")
+                and self.run.name(event) == VICTIM
+                and event["phase"] == "run"
+            )
+        )
+
+    def finish(self, code: int) -> None:
+        """Waits for the end of the run."""
+        self.expect("exit code", self.run.wait(), code)
+
+    def processes(self) -> dict[int, str]:
+        """The processes that use the master of this run, with their command lines."""
+        found = {}
+        master = self.master()
+        for folder in Path("/proc").glob("[0-9]*"):
+            try:
+                if master in (folder / "environ").read_bytes().split(b"\0"):
+                    words = (folder / "cmdline").read_text(errors="replace").split("\0")
+                    found[int(folder.name)] = " ".join(words)
+            except OSError:  # it has ended, or it is not ours
+                continue
+        return found
+
+    def master(self) -> bytes:
+        """The variable that names the master of this run."""
+        (prepared,) = (each for each in self.run.events() if is_a(each, "suite-prepared"))
+        values = {each["name"]: each["value"] for each in prepared["variables"]}
+        return f"ROS_MASTER_URI={values['ROS_MASTER_URI']}".encode()
+
+    def events(self, kind: str) -> list[Event]:
+        """The events of a kind."""
+        return [event for event in self.run.events() if is_a(event, kind)]
+
+    def reasons(self) -> list[str]:
+        """Why fixtures collapsed."""
+        return [str(event["reason"]) for event in self.events("fixture-collapsed")]
+
+    def collapsed(self, reason: str) -> None:
+        """The victim is `collapsed` for this reason; the other tests pass."""
+        self.finish(1)
+        self.expect("reason", self.reasons(), [reason])
+        verdicts = self.run.verdicts()
+        self.expect(f"verdict of {VICTIM}", verdicts.pop(VICTIM), "collapsed")
+        self.expect("other verdicts", set(verdicts.values()), {"passed"})
+
+
+Check = Callable[[Scene], None]
+
+
+def broken(folder: Path) -> Path:
+    """A suite whose launch file names a node that is not there."""
+    (folder / "broken.launch").write_text(BROKEN)
+    (folder / "Never.py").write_text(NEVER)
+    suite = folder / "broken.xml"
+    suite.write_text(BROKEN_SUITE)
+    return suite
+
+
+def undisturbed(scene: Scene) -> None:
+    """Everything passes."""
+    scene.finish(0)
+    scene.expect("verdicts", list(scene.run.verdicts().values()), ["passed"] * 3)
+
+
+def respawned(scene: Scene) -> None:
+    """The wheel dies and roslaunch starts it again: it is told, and nothing collapses."""
+    scene.kill("wheel.py")
+    scene.finish(0)
+    said = " ".join(str(event["message"]["text"]) for event in scene.events("message"))
+    scene.expect("told", "node /rover/wheel was killed by SIGKILL (exit code -9)" in said, True)
+    scene.expect("told", "node /rover/wheel was started again by roslaunch" in said, True)
+    scene.expect("collapses", scene.reasons(), [])
+
+
+def not_to_be_respawned(scene: Scene) -> None:
+    """Without `--allow-respawn` the same is a collapse."""
+    scene.kill("wheel.py")
+    scene.collapsed(
+        "node /rover/wheel was killed by SIGKILL (exit code -9) "
+        "(`--allow-respawn` tolerates that of respawned nodes)"
+    )
+
+
+def required(scene: Scene) -> None:
+    """A required node dies, and roslaunch ends with exit code 0: it is a collapse."""
+    scene.kill("rover/odometer")
+    scene.collapsed("node /rover/odometer was killed by SIGKILL (exit code -9)")
+    scene.expect("starts", len(scene.events("fixture-ready")), 3)
+
+
+def master_killed(scene: Scene) -> None:
+    """The end of the master is noticed, and what stands on it is started again, too."""
+    scene.kill("rosmaster")
+    scene.collapsed("the master was killed by SIGKILL (exit code -9)")
+    scene.expect("starts", len(scene.events("fixture-ready")), 4)
+
+
+def roslaunch_killed(scene: Scene) -> None:
+    """Its nodes are sessions of their own and survive it; they are ended, too."""
+    scene.kill("bin/roslaunch")
+    scene.collapsed("roslaunch was killed by SIGKILL")
+
+
+def runner_killed(scene: Scene) -> None:
+    """The guard ends everything, the nodes included."""
+    scene.wait_for_victim()
+    tasks = Path(f"/proc/{scene.run.process.pid}/task").glob("*/children")
+    (runner,) = (int(child) for task in tasks for child in task.read_text().split())
+    scene.expect("nodes before", len(scene.processes()) > 5, True)
+    os.kill(runner, signal.SIGKILL)
+    scene.finish(RUNNER_DIED)
+
+
+def not_launched(scene: Scene) -> None:
+    """A node that cannot be started fails the set-up at once: roslaunch goes on without it."""
+    scene.finish(1)
+    (event,) = scene.events("fixture-broken")
+    reason = str(event["reason"])
+    scene.expect(f"`cannot launch node` in {reason!r}", "cannot launch node" in reason, True)
+    scene.expect("which one", "rover/rudder.py" in reason, True)
+
+
+def silent(scene: Scene) -> None:
+    """A node that hangs lives, but its topic is silent: the probe tells."""
+    scene.kill("wheel.py", signal.SIGSTOP)
+    scene.finish(1)
+    (reason,) = scene.reasons()
+    scene.expect(f"the topic in {reason!r}", reason.startswith("ROS topic /rover/speed: "), True)
+    scene.expect("verdicts", list(scene.run.verdicts().values()), ["collapsed", "passed"])
+
+
+if __name__ == "__main__":
+    sys.exit(main())
