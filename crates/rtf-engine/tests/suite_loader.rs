@@ -200,7 +200,8 @@ fn every_part_of_a_process_fixture_arrives() {
             "python3|arm_client.py|time",
             "(?i)fatal",
             "[::1]:17681",
-            &asked("ros-topic", "/joint_states", Some(99.5))
+            &asked("ros-topic", "/joint_states", Some(99.5)),
+            &asked("ros2-topic", "/joint_states", Some(0.5))
         ]
     );
     assert_eq!(process.ready[0].every, Some(Duration::from_millis(50)));
@@ -284,7 +285,7 @@ fn what_is_wrong_with_a_process_fixture() {
     assert_eq!(
         probe("<ready/>"),
         ["`<ready>` needs one of the attributes `tcp`, `http`, `log`, `file`, `command`, \
-          `ros-node`, `ros-topic`, `ros-service`"]
+          `ros-node`, `ros-topic`, `ros-service`, `ros2-topic`"]
     );
     assert_eq!(
         probe("<ready tcp='a:1' file='b'/>"),
@@ -301,6 +302,10 @@ fn what_is_wrong_with_a_process_fixture() {
     assert_eq!(
         probe("<ready ros-topic='chatter'/>"),
         ["`ros-topic` is not a name from the root: `chatter`"]
+    );
+    assert_eq!(
+        probe("<ready ros2-topic='chatter'/>"),
+        ["`ros2-topic` is not a name from the root: `chatter`"]
     );
     assert_eq!(
         probe("<alive ros-topic='/chatter' min-rate='0'/>"),

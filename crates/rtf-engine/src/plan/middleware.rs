@@ -18,7 +18,8 @@ pub(super) const ANSWER: Duration = Duration::from_secs(5);
 pub(super) const START: Duration = Duration::from_secs(2);
 /// Below the folder of what comes with rtf.
 const PROGRAM: &str = "rtf_fixtures/probe.py";
-/// The interpreter needs nothing but its own library.
+/// The interpreter needs nothing but its own library; for ROS 2 it needs what
+/// the user has installed.
 const BARE: [&str; 2] = ["-E", "-S"];
 
 /// Those that bring middleware up. Recorders use what there is.
@@ -44,7 +45,9 @@ pub(super) fn probe(
         return Err(Diagnostic::error("no-such-program", message).hint(hint).into());
     };
     let mut command = vec![hosts::text(&hosts::python(scope)?)?];
-    command.extend(BARE.map(str::to_owned));
+    if !asked.kind.starts_with("ros2-") {
+        command.extend(BARE.map(str::to_owned));
+    }
     command.extend([hosts::text(&program)?, asked.kind.to_owned(), asked.name.clone()]);
     command.extend(["--timeout".to_owned(), timeout.as_secs_f64().to_string()]);
     if let Some(rate) = asked.min_rate {

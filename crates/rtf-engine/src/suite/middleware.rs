@@ -7,7 +7,7 @@ use super::{MiddlewareQuestion, Question, Spanned, port};
 
 /// The attributes. What each of them means is known to the program that asks,
 /// `fixtures/rtf_fixtures/probe.py`.
-const KINDS: [&str; 3] = ["ros-node", "ros-topic", "ros-service"];
+const KINDS: [&str; 4] = ["ros-node", "ros-topic", "ros-service", "ros2-topic"];
 
 /// Whether an attribute asks something of a middleware.
 pub(super) fn is_question(attribute: &str) -> bool {
@@ -29,7 +29,8 @@ pub(super) fn read(
     let example = crate::config::sample(&port::expand(&name.value, |_| "1".to_owned()));
     let is_name = example.len() > 1 && example.starts_with('/') && !example.ends_with('/');
     if !is_name || example.contains(char::is_whitespace) {
-        let hint = format!("write all of it, like `/robot/{}`", kind.trim_start_matches("ros-"));
+        let hint =
+            format!("write all of it, like `/robot/{}`", kind.rsplit('-').next().unwrap_or(kind));
         reader.wrong(kind, name, "is not a name from the root", Some(&hint));
         return None;
     }

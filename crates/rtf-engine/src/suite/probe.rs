@@ -9,8 +9,18 @@ use super::value::Reader;
 use super::{Probe, Question, Span, Spanned, middleware, port};
 
 /// The attributes that say what is asked; each probe has exactly one of them.
-const QUESTIONS: [&str; 9] =
-    ["tcp", "http", "log", "log-bad", "file", "command", "ros-node", "ros-topic", "ros-service"];
+const QUESTIONS: [&str; 10] = [
+    "tcp",
+    "http",
+    "log",
+    "log-bad",
+    "file",
+    "command",
+    "ros-node",
+    "ros-topic",
+    "ros-service",
+    "ros2-topic",
+];
 
 /// Reads a probe; `None` when it cannot be asked.
 pub(super) fn read(reader: &mut Reader<'_>, node: Node<'_, '_>, shape: &Shape) -> Option<Probe> {
@@ -30,7 +40,7 @@ pub(super) fn read(reader: &mut Reader<'_>, node: Node<'_, '_>, shape: &Shape) -
     let idle: &[&str] = match name {
         "log" | "log-bad" => &["every", "timeout", "min-rate"],
         "file" => &["timeout", "min-rate"],
-        "ros-topic" => &[],
+        "ros-topic" | "ros2-topic" => &[],
         _ => &["min-rate"],
     };
     for unused in idle.iter().filter(|unused| node.has_attribute(**unused)) {

@@ -91,7 +91,7 @@ fn middleware_is_asked_by_a_program_that_comes_with_rtf() {
         "cell/s.xml",
         "<suite><fixture type='process'><command>sh</command>\
          <ready ros-topic='/n${port:n}/x' min-rate='2.5' timeout='3s'/>\
-         <alive ros-node='/talker'/></fixture><test>A.lua</test></suite>",
+         <alive ros-node='/talker'/><alive ros2-topic='/chatter'/></fixture><test>A.lua</test></suite>",
     );
     let outcome = bench.build(&["s.xml"]);
     let problem = &outcome.diagnostics[0];
@@ -128,6 +128,11 @@ fn middleware_is_asked_by_a_program_that_comes_with_rtf() {
             Duration::from_secs(7)
         )
     );
+    // What is installed for the user's Python is what speaks ROS 2.
+    let (command, subject, _) = asked(&process.alive[1]);
+    let program = program.replace(" -E -S", "");
+    assert_eq!(command, format!("{program} ros2-topic /chatter --timeout 5"));
+    assert_eq!(subject, "ros2-topic `/chatter`");
 }
 
 #[test]
