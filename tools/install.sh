@@ -76,7 +76,7 @@ put 644 sdk/python/robottestingframework.py share/rtf/python/robottestingframewo
 put_tree sdk/ruby/lib share/rtf/ruby/lib '*.rb'
 put_tree sdk/ada/src share/rtf/ada/src '*.ads' '*.adb'
 put 644 sdk/ada/robottestingframework.gpr share/rtf/ada/robottestingframework.gpr
-put_tree fixtures share/rtf/fixtures '*.py'
+put_tree fixtures share/rtf/fixtures '*.py' '*.json'
 put_tree spec share/rtf/spec '*.md' '*.xsd'
 put_tree schemas share/rtf/schemas '*.json'
 put_tree "$stage/man" share/man/man1 '*.1'

@@ -1,5 +1,6 @@
 //! The command line.
 
+mod doctor;
 mod formats;
 mod past;
 mod web;
@@ -14,6 +15,7 @@ use rtf_engine::run::Forks;
 use rtf_engine::select::Shard;
 use rtf_engine::suite::parse_duration;
 
+pub use doctor::{DoctorArgs, DoctorFormat};
 use formats::parse_setting;
 pub use formats::{Annotations, Format, Shown, parse_report};
 pub use past::{MergeArgs, ReportArgs, ShowArgs};
@@ -66,6 +68,8 @@ pub enum Command {
     Check(CheckArgs),
     /// List the tests that `run` would run
     List(ListArgs),
+    /// Tell what is missing on this machine, and how it is installed
+    Doctor(DoctorArgs),
     /// Show who has the locks of this machine, or wait for some
     Locks(LocksArgs),
     /// Show a past run, or what is there of one that was killed

@@ -41,6 +41,7 @@ fn main() -> ExitCode {
         Command::Watch(args) => command::watch::run(args),
         Command::Check(args) => command::check::run(args),
         Command::List(args) => command::list::run(args),
+        Command::Doctor(args) => command::doctor::run(args),
         Command::Locks(args) => command::locks::run(args),
         Command::Show(args) => command::show::run(args),
         Command::Report(args) => command::report::run(args),

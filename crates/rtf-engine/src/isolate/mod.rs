@@ -36,6 +36,16 @@ use crate::plan::{Given, OwnMiddleware, SuitePlan};
 use lease::{Lease, LeaseError};
 use network::Holder;
 
+/// Whether a suite could have a network of its own here; else why not.
+///
+/// # Errors
+/// What the system refuses.
+pub async fn network_is_possible(spawner: &Spawner) -> Result<(), String> {
+    let holder = Holder::start(spawner).await.map_err(|error| error.to_string())?;
+    holder.end().await;
+    Ok(())
+}
+
 /// The first argument of a process of this program that holds a namespace.
 pub const HOLD: &str = "--hold-network";
 

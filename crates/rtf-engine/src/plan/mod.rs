@@ -20,10 +20,12 @@ mod program;
 mod scope;
 mod suite;
 mod surroundings;
+mod there;
 mod types;
 mod unix;
 mod verify;
 
 pub use build::{Manner, Options, Outcome, Request, build, build_requests};
 pub use surroundings::Surroundings;
+pub use there::{HostThere, fixtures_there, hosts_there, program_there};
 pub use types::*;

@@ -5,6 +5,7 @@ pub mod check;
 mod choosing;
 pub mod completions;
 pub mod config;
+pub mod doctor;
 pub mod job;
 pub mod list;
 pub mod locks;

@@ -19,6 +19,7 @@ mod code_hosts;
 mod collapse;
 mod conformance;
 mod cpp_fixture;
+mod doctor;
 mod forks;
 mod guard;
 mod hooks;

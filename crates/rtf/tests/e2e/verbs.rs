@@ -96,6 +96,7 @@ fn help_lists_the_exit_codes() {
       watch        Run again whenever a suite, a plug-in or an `rtf.toml` changes
       check        Find every problem of suites and plug-ins, start nothing
       list         List the tests that `run` would run
+      doctor       Tell what is missing on this machine, and how it is installed
       locks        Show who has the locks of this machine, or wait for some
       show         Show a past run, or what is there of one that was killed
       report       Write a report of a past run
@@ -274,6 +275,7 @@ fn man_writes_a_page_for_each_verb() {
         "completions",
         "config-show",
         "config",
+        "doctor",
         "list",
         "locks",
         "merge",

@@ -1,0 +1,190 @@
+//! `rtf doctor`: what is missing, on a machine whose `PATH` is made here.
+
+use std::os::unix::fs::PermissionsExt;
+use std::process::Stdio;
+
+use insta::assert_snapshot;
+use serde_json::Value;
+
+use crate::support::{Finished, Folder};
+
+/// Stands for a Python whose only module beside its own is `there`.
+const PYTHON: &str = "#!/bin/sh
+case \"$*\" in
+  --version) echo 'Python 3.12.1' ;;
+  *rtf.host*--check | *' there') ;;
+  *) exit 1 ;;
+esac
+";
+
+fn machine(programs: &[(&str, &str)]) -> Folder {
+    let folder = Folder::new();
+    folder.file("bin/README", "all programs of this machine");
+    for (name, text) in programs {
+        folder.file(&format!("bin/{name}"), text);
+        let file = folder.path().join("bin").join(name);
+        std::fs::set_permissions(file, PermissionsExt::from_mode(0o755)).expect("a program");
+    }
+    folder
+}
+
+fn doctor(folder: &Folder, args: &[&str]) -> Finished {
+    let mut command = folder.command(&["doctor"]);
+    command.args(args).env("PATH", folder.path().join("bin"));
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let output = command.output().expect("rtf runs");
+    Finished::of(output)
+}
+
+#[test]
+fn a_machine_without_anything() {
+    let folder = machine(&[]);
+    let finished = doctor(&folder, &["dll", "python", "stacks", "ssh", "ros2launch"]);
+    assert_snapshot!(folder.shown(&finished), @"
+    exit code 1
+    ----- stdout
+    rtf
+      ok       dll             plug-ins in C and C++
+                               [BIN]/rtf-host-native
+      missing  python          plug-ins in Python, all fixture managers of rtf
+                               plug-ins of type `python` need `python3`, which is not there
+                               hint: Python 3.9 or later: `apt-get install python3`, or an active virtual environment; RTF_PYTHON names another one
+      missing  stacks          stack dumps of native code that hangs
+                               there is no program `gdb` or `eu-stack` on PATH
+                               hint: `apt-get install gdb`, or `apt-get install elfutils`
+      missing  ssh             fixtures on other machines
+                               there is no program `ssh` on PATH
+                               hint: `apt-get install openssh-client`, or RTF_SSH names another program
+    fixtures
+      missing  ros2launch      a launch file of ROS 2
+                               plug-ins of type `python` need `python3`, which is not there
+                               hint: `rtf doctor python` tells more
+                               there is no program `ros2` on PATH
+                               hint: ROS 2 from https://docs.ros.org, on Ubuntu 24.04 for example `apt-get install ros-jazzy-ros-base` with its repository; then `. /opt/ros/jazzy/setup.bash` before rtf
+                               the `python3` on PATH has no module `rclpy`, which --topic needs
+                               hint: it comes with ROS 2; without ROS 2 `pip install ros-rclpy ros-rmw-fastrtps-cpp ros-std-msgs`
+    ----- stderr
+    ");
+}
+
+#[test]
+fn what_a_fixture_needs_is_there() {
+    let folder = machine(&[("python3", PYTHON), ("ros2", "#!/bin/sh\n"), ("gdb", "#!/bin/sh\n")]);
+    // Only some suites need `rclpy`: that it is missing is told, and counts for nothing.
+    let finished = doctor(&folder, &["ros2launch", "python", "stacks"]);
+    assert_snapshot!(folder.shown(&finished), @"
+    exit code 0
+    ----- stdout
+    rtf
+      ok       python          plug-ins in Python, all fixture managers of rtf
+                               [FOLDER]/bin/python3 (Python 3.12.1)
+      ok       stacks          stack dumps of native code that hangs
+                               [FOLDER]/bin/gdb
+    fixtures
+      ok       ros2launch      a launch file of ROS 2
+                               [FOLDER]/bin/ros2
+                               the `python3` on PATH has no module `rclpy`, which --topic needs
+                               hint: it comes with ROS 2; without ROS 2 `pip install ros-rclpy ros-rmw-fastrtps-cpp ros-std-msgs`
+    ----- stderr
+    ");
+}
+
+#[test]
+fn a_host_that_does_not_start_is_as_good_as_none() {
+    let broken = "#!/bin/sh\necho 'No module named rtf' >&2\nexit 1\n";
+    let folder = machine(&[("python3", broken), ("deployer-corba", "#!/bin/sh\n")]);
+    let finished = doctor(&folder, &["orocos", "ros2shm"]);
+    assert_snapshot!(folder.shown(&finished), @"
+    exit code 1
+    ----- stdout
+    fixtures
+      missing  orocos          a deployer of OROCOS RTT
+                               [FOLDER]/bin/deployer-corba
+                               `[FOLDER]/bin/python3` does not start: exit status: 1: No module named rtf
+                               hint: `rtf doctor python` tells more
+                               there is no program `omniNames` on PATH, which --own-names needs
+                               hint: `apt-get install omniorb-nameserver`
+      missing  ros2shm         removes the shared memory of dead ROS 2 nodes
+                               [ROOT]/fixtures
+                               `[FOLDER]/bin/python3` does not start: exit status: 1: No module named rtf
+                               hint: `rtf doctor python` tells more
+    ----- stderr
+    ");
+}
+
+#[test]
+fn one_json_document() {
+    let folder = machine(&[("python3", PYTHON), ("roscore", "#!/bin/sh\n")]);
+    let finished = doctor(&folder, &["roscore", "orocos", "--format", "json"]);
+    assert_snapshot!(folder.shown(&finished), @r#"
+    exit code 1
+    ----- stdout
+    {
+      "rtf": "0.1.0",
+      "findings": [
+        {
+          "name": "orocos",
+          "part": "fixture",
+          "ok": false,
+          "about": "a deployer of OROCOS RTT",
+          "found": [],
+          "missing": [
+            {
+              "what": "there is no program `deployer-gnulinux` or `deployer-corba` on PATH",
+              "install": "build https://github.com/orocos-toolchain, then `. env.sh` of its folder before rtf; no distribution has packages of it"
+            },
+            {
+              "what": "there is no program `omniNames` on PATH",
+              "install": "`apt-get install omniorb-nameserver`",
+              "for": "--own-names"
+            }
+          ]
+        },
+        {
+          "name": "roscore",
+          "part": "fixture",
+          "ok": true,
+          "about": "the master of ROS 1",
+          "found": [
+            "[FOLDER]/bin/roscore"
+          ],
+          "missing": []
+        }
+      ]
+    }
+    ----- stderr
+    "#);
+}
+
+/// Without names everything is looked at, and only what every run needs counts.
+#[test]
+fn everything() {
+    let folder = machine(&[]);
+    let finished = doctor(&folder, &["--format", "json"]);
+    assert_eq!(finished.code, Some(0), "{}", finished.stderr);
+    let document: Value = serde_json::from_str(&finished.stdout).expect("JSON");
+    let findings = document["findings"].as_array().expect("findings");
+    let is_ok = |name: &str| {
+        let finding = findings.iter().find(|finding| finding["name"] == name).expect(name);
+        finding["ok"] == true
+    };
+    for name in ["dll", "lua"] {
+        assert!(is_ok(name), "{name}");
+    }
+    for name in ["python", "ruby", "stacks", "ssh", "roslaunch", "ros2launch", "orocos"] {
+        assert!(!is_ok(name), "{name}");
+    }
+    // What there is of these depends on the machine.
+    let _ = (is_ok("cgroups"), is_ok("network"));
+}
+
+#[test]
+fn an_unknown_name() {
+    let folder = machine(&[]);
+    let finished = doctor(&folder, &["rosluanch"]);
+    assert_eq!(finished.code, Some(2));
+    assert!(
+        finished.stderr.starts_with("error: nothing is known of `rosluanch`\nhint: known are ")
+    );
+    assert!(finished.stderr.contains(" roslaunch"), "{}", finished.stderr);
+}
