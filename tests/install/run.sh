@@ -29,6 +29,7 @@ set -eux
 cmake -S project -B project/build -DCMAKE_PREFIX_PATH="$PWD/prefix"
 cmake --build project/build
 prefix/bin/rtf --version
+prefix/bin/rtf doctor dll lua python ros2shm # the last one is a fixture that comes with rtf
 status=0
 RTF_PLUGIN_PATH=project/build prefix/bin/rtf run project/suite.xml >output.txt 2>&1 || status=$?
 cat output.txt
