@@ -3,13 +3,16 @@
 use std::path::Path;
 
 use mlua::{Function, IntoLua, Lua, MultiValue, Table, Value};
-use rtf_host::{HostPlugin, LoadError, Reaction, Role, Session, Step, StepEnd};
+use rtf_host::{HostPlugin, LoadError, Reaction, Role, Session, Step, StepEnd, Told};
 use rtf_model::Location;
-use rtf_model::protocol::{Initialized, PROTOCOL_VERSION, Plugin, StackSupport};
+use rtf_model::protocol::{Initialized, Notice, PROTOCOL_VERSION, Plugin, StackSupport, ToldTest};
 
 use crate::source::Style;
 use crate::state::State;
 use crate::{sdk, source, watch};
+
+/// The functions of a fixture; it has at least one of them.
+const FIXTURE: [&str; 5] = ["setup", "check", "testStarted", "testFinished", "tearDown"];
 
 /// The Lua host with at most one plug-in.
 pub(crate) struct LuaHost {
@@ -81,6 +84,24 @@ impl HostPlugin for LuaHost {
         end
     }
 
+    fn notices(&self) -> Vec<Notice> {
+        let has = |name: &str| {
+            let table = self.loaded.as_ref().map(|loaded| &loaded.table);
+            table.is_some_and(|table| matches!(table.get(name), Ok(Value::Function(_))))
+        };
+        let started = has("testStarted").then_some(Notice::TestStarted);
+        let finished = has("testFinished").then_some(Notice::TestFinished);
+        started.into_iter().chain(finished).collect()
+    }
+
+    fn tell(&mut self, told: Told<'_>) -> StepEnd {
+        let Some(loaded) = &self.loaded else { return StepEnd::Stopped };
+        let end =
+            loaded.tell(told).unwrap_or_else(|error| StepEnd::Broken(error.to_string(), None));
+        watch::flush_output();
+        end
+    }
+
     fn unload(&mut self) -> StepEnd {
         watch::forget_state();
         self.loaded = None;
@@ -129,13 +150,42 @@ impl Loaded {
     }
 }
 
+impl Loaded {
+    /// Calls `testStarted(test)` or `testFinished(test, verdict, reason)`.
+    fn tell(&self, told: Told<'_>) -> mlua::Result<StepEnd> {
+        let function: Value = self.table.get(told.name())?;
+        if function.is_nil() {
+            return Ok(StepEnd::Done);
+        }
+        let mut args = MultiValue::from_iter([function]);
+        match told {
+            Told::Starts(starts) => args.push_back(self.test(&starts.test)?),
+            Told::Ends(ends) => {
+                args.push_back(self.test(&ends.test)?);
+                args.push_back(ends.verdict.as_str().into_lua(&self.lua)?);
+                args.push_back(ends.reason.as_deref().unwrap_or_default().into_lua(&self.lua)?);
+            }
+        }
+        Ok(ended(self.call.call(args)))
+    }
+
+    fn test(&self, test: &ToldTest) -> mlua::Result<Value> {
+        let table = self.lua.create_table()?;
+        table.set("id", test.id.0)?;
+        table.set("name", test.name.as_str())?;
+        table.set("repetition", test.repetition)?;
+        table.set("attempt", test.attempt)?;
+        Ok(Value::Table(table))
+    }
+}
+
 /// Finds the plug-in's table and looks whether there is something to do in it.
 fn table(lua: &Lua, role: Role, file: &str) -> Result<Table, LoadError> {
     let failed = |message: String| LoadError { message, location: None };
     let global = |name: &str| lua.globals().get::<Value>(name).map_err(unexpected);
     let (name, other, functions) = match role {
         Role::Test => ("TestCase", "FixtureManager", &["run"][..]),
-        Role::Fixture => ("FixtureManager", "TestCase", &["setup", "check", "tearDown"][..]),
+        Role::Fixture => ("FixtureManager", "TestCase", &FIXTURE[..]),
     };
     let value = global(name)?;
     let Some(table) = value.as_table() else {

@@ -10,7 +10,7 @@ use std::ffi::{c_char, c_int, c_void};
 /// The version that a plug-in and its host must share.
 pub const RTF_ABI_MAJOR: u32 = 1;
 /// Counts the fields that were appended since the major version began.
-pub const RTF_ABI_MINOR: u32 = 0;
+pub const RTF_ABI_MINOR: u32 = 1;
 
 /// The plug-in is a test: `setup`, `run`, `tear_down`.
 pub const RTF_KIND_TEST: i32 = 1;
@@ -120,6 +120,28 @@ pub struct rtf_attachment {
     pub media_type: rtf_text,
 }
 
+/// An attempt of a test, of which a fixture is told.
+#[repr(C)]
+#[derive(Debug)]
+pub struct rtf_test {
+    /// The size of this structure in the host. A field that lies beyond it is not there.
+    pub size: usize,
+    /// The test's number in the run.
+    pub id: u32,
+    /// The repetition, from 1.
+    pub repetition: u32,
+    /// The attempt at this repetition, from 1.
+    pub attempt: u32,
+    /// Always 0; room for what may come.
+    pub reserved: u32,
+    /// The test's name in the suite.
+    pub name: rtf_text,
+    /// How it was judged: `passed`, `failed`, …; empty before it begins.
+    pub verdict: rtf_text,
+    /// Why it did not pass, else empty.
+    pub reason: rtf_text,
+}
+
 /// What the host does for a plug-in. Every function takes `context` first and
 /// may be called from any thread, until the process ends.
 #[repr(C)]
@@ -191,4 +213,12 @@ pub struct rtf_plugin_table {
     pub check: Option<unsafe extern "C" fn(self_: *mut c_void) -> i32>,
     /// Called last, whatever happened before. May be null.
     pub tear_down: Option<unsafe extern "C" fn(self_: *mut c_void) -> i32>,
+    /// Since 1.1: a test is about to begin. Only in fixtures, may be null; `test`
+    /// and its texts are there until it returns.
+    pub test_started:
+        Option<unsafe extern "C" fn(self_: *mut c_void, test: *const rtf_test) -> i32>,
+    /// Since 1.1: a test was judged. What is reported, measured and attached
+    /// meanwhile belongs to its result.
+    pub test_finished:
+        Option<unsafe extern "C" fn(self_: *mut c_void, test: *const rtf_test) -> i32>,
 }

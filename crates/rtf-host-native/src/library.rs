@@ -2,6 +2,7 @@
 #![expect(unsafe_code, reason = "loading foreign code")]
 
 use std::error::Error;
+use std::mem::offset_of;
 use std::path::Path;
 
 use libloading::os::unix::{Library, RTLD_LAZY, RTLD_LOCAL, RTLD_NOW};
@@ -109,14 +110,14 @@ impl Table {
         if found != RTF_ABI_MAJOR {
             return Err(LibraryError::Version { found });
         }
-        let wanted = size_of::<rtf_plugin_table>();
+        let wanted = offset_of!(rtf_plugin_table, test_started);
         // SAFETY: in every minor version of this major version the size follows.
         let found = unsafe { (*table).size };
         if found < wanted {
             return Err(LibraryError::Size { found, wanted });
         }
-        // SAFETY: it has at least these fields, and stays, by spec/plugin-abi.md.
-        let table = unsafe { &*table };
+        // SAFETY: it has as many bytes as it says, and stays, by spec/plugin-abi.md.
+        let table = unsafe { whole(table, found) };
         if table.create.is_none() {
             return Err(LibraryError::Incomplete("create"));
         }
@@ -156,6 +157,24 @@ pub(crate) fn preload(name: &str) {
     // SAFETY: only for libraries of the system, whose initialisers are known.
     let library = unsafe { Library::open(Some(name), RTLD_LAZY | RTLD_LOCAL) };
     std::mem::forget(library);
+}
+
+/// The table with all fields that this host knows: those that an older plug-in
+/// does not have are null.
+///
+/// # Safety
+/// `table` has `size` bytes, which stay until the process ends.
+unsafe fn whole(table: *const rtf_plugin_table, size: usize) -> &'static rtf_plugin_table {
+    if size >= size_of::<rtf_plugin_table>() {
+        // SAFETY: the caller's promise.
+        return unsafe { &*table };
+    }
+    let mut copy = std::mem::MaybeUninit::<rtf_plugin_table>::zeroed();
+    // SAFETY: the caller's promise; all fields may be zero, which makes functions null.
+    unsafe {
+        std::ptr::copy_nonoverlapping(table.cast::<u8>(), copy.as_mut_ptr().cast::<u8>(), size);
+        Box::leak(Box::new(copy.assume_init()))
+    }
 }
 
 fn word(role: Role) -> &'static str {

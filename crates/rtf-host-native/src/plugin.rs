@@ -4,10 +4,10 @@
 use std::ffi::{CString, NulError, c_char, c_int, c_void};
 use std::path::Path;
 
-use rtf_host::{HostPlugin, LoadError, Role, Session, Step, StepEnd};
-use rtf_model::protocol::{Initialized, PROTOCOL_VERSION, Plugin, StackSupport};
+use rtf_host::{HostPlugin, LoadError, Role, Session, Step, StepEnd, Told};
+use rtf_model::protocol::{Initialized, Notice, PROTOCOL_VERSION, Plugin, StackSupport, ToldTest};
 
-use crate::abi::{RTF_DONE, RTF_REFUSED, RTF_STOPPED, rtf_plugin_table};
+use crate::abi::{RTF_DONE, RTF_REFUSED, RTF_STOPPED, rtf_plugin_table, rtf_test, rtf_text};
 use crate::host_table;
 use crate::library::{self, Table};
 
@@ -67,6 +67,17 @@ impl HostPlugin for NativeHost {
         self.loaded.as_mut().map_or(StepEnd::Stopped, |loaded| loaded.step(step))
     }
 
+    fn notices(&self) -> Vec<Notice> {
+        let Some(Loaded { table, .. }) = &self.loaded else { return Vec::new() };
+        let started = table.test_started.map(|_| Notice::TestStarted);
+        let finished = table.test_finished.map(|_| Notice::TestFinished);
+        started.into_iter().chain(finished).collect()
+    }
+
+    fn tell(&mut self, told: Told<'_>) -> StepEnd {
+        self.loaded.as_mut().map_or(StepEnd::Stopped, |loaded| loaded.tell(told))
+    }
+
     fn unload(&mut self) -> StepEnd {
         if let Some(loaded) = self.loaded.take()
             && let Some(destroy) = loaded.table.destroy
@@ -94,14 +105,46 @@ impl Loaded {
             // SAFETY: `this` is what `create` made.
             function.map(|function| unsafe { function(self.this) })
         };
-        match code.unwrap_or(RTF_DONE) {
-            RTF_DONE => StepEnd::Done,
-            RTF_REFUSED => StepEnd::Refused,
-            RTF_STOPPED => StepEnd::Stopped,
-            other => {
-                StepEnd::Broken(format!("the plug-in returned {other}, which means nothing"), None)
+        end_of(code.unwrap_or(RTF_DONE))
+    }
+
+    fn tell(&mut self, told: Told<'_>) -> StepEnd {
+        let (function, test, verdict, reason) = match told {
+            Told::Starts(starts) => (self.table.test_started, &starts.test, "", ""),
+            Told::Ends(ends) => {
+                let reason = ends.reason.as_deref().unwrap_or_default();
+                (self.table.test_finished, &ends.test, ends.verdict.as_str(), reason)
             }
+        };
+        let test = test_of(test, verdict, reason);
+        // SAFETY: `this` is what `create` made; `test` lives until the call returns.
+        let code = function.map(|function| unsafe { function(self.this, &raw const test) });
+        end_of(code.unwrap_or(RTF_DONE))
+    }
+}
+
+fn end_of(code: i32) -> StepEnd {
+    match code {
+        RTF_DONE => StepEnd::Done,
+        RTF_REFUSED => StepEnd::Refused,
+        RTF_STOPPED => StepEnd::Stopped,
+        other => {
+            StepEnd::Broken(format!("the plug-in returned {other}, which means nothing"), None)
         }
+    }
+}
+
+fn test_of(test: &ToldTest, verdict: &str, reason: &str) -> rtf_test {
+    let text = |text: &str| rtf_text { data: text.as_ptr().cast(), length: text.len() };
+    rtf_test {
+        size: size_of::<rtf_test>(),
+        id: test.id.0,
+        repetition: test.repetition,
+        attempt: test.attempt,
+        reserved: 0,
+        name: text(&test.name),
+        verdict: text(verdict),
+        reason: text(reason),
     }
 }
 

@@ -6,7 +6,7 @@ mod driver;
 
 use std::os::unix::process::ExitStatusExt;
 
-use driver::{Host, build, build_text, check, display, run_test, start_test};
+use driver::{Host, build, build_text, check, display, folder, run_test, start_test};
 use serde_json::{Value, json};
 
 const SIGSEGV: i32 = 11;
@@ -123,6 +123,60 @@ fn a_fixture_collapses_from_a_thread_of_its_own() {
     let again = host.ask("set-up-fixture", json!({"file": library, "name": "motor"}));
     assert_eq!(again["outcome"], "passed");
     assert_eq!(host.ask("check-fixture", json!({}))["outcome"], "passed");
+}
+
+#[test]
+fn a_fixture_is_told_of_each_test() {
+    let library = build("sdk/cpp/tests/recorder.cpp");
+    let mut host = Host::start();
+    let ready = host.ask("set-up-fixture", json!({"file": library, "name": "recorder"}));
+    let wanted = json!(["test-started", "test-finished"]);
+    assert_eq!(ready, json!({"outcome": "passed", "notices": wanted}));
+    let test = json!({"id": 3, "name": "Move", "repetition": 2, "attempt": 1});
+    let passed = json!({"outcome": "passed"});
+    assert_eq!(host.ask("test-started", json!({"test": test})), passed);
+    let keep = folder().join("kept-by-recorder");
+    let ends = json!({"test": test, "verdict": "failed", "reason": "far", "keep_folder": keep});
+    host.send(json!({"id": 1, "method": "test-finished", "params": ends}));
+    let said: Vec<Value> = (0..4).map(|_| host.next().unwrap()).collect();
+    assert_eq!(said[0]["params"]["text"], "3 Move 2.1 failed: far");
+    assert_eq!((&said[1]["method"], &said[2]["method"]), (&json!("measured"), &json!("attached")));
+    assert_eq!(said[2]["params"]["path"], json!(keep.join("1-run.txt")));
+    assert_eq!(said[3]["result"], passed);
+    let refused = json!({"id": 3, "name": "refused", "repetition": 1, "attempt": 1});
+    let reason = json!({"outcome": "failed", "reason": "testStarted returned false"});
+    assert_eq!(host.ask("test-started", json!({"test": refused})), reason);
+}
+
+/// A plug-in of interface 1.0 has a shorter table: what lies behind it is not looked at.
+#[test]
+fn a_fixture_of_an_older_interface_is_told_nothing() {
+    let text = r#"
+        #include <stddef.h>
+        #include <stdlib.h>
+        #include <rtf/plugin.h>
+        static int here;
+        static void *create(const rtf_host *host) { (void)host; return &here; }
+        static int32_t never(void *self, const rtf_test *test)
+        { (void)self; (void)test; abort(); }
+        const rtf_plugin_table *rtf_plugin(void);
+        const rtf_plugin_table *rtf_plugin(void)
+        {
+            static const rtf_plugin_table table = {
+                .abi_major = 1, .abi_minor = 0,
+                .size = offsetof(rtf_plugin_table, test_started),
+                .kind = RTF_KIND_FIXTURE, .create = create,
+                .test_started = never, .test_finished = never,
+            };
+            return &table;
+        }
+    "#;
+    let library = build_text("older.c", text, &[]);
+    let mut host = Host::start();
+    let ready = host.ask("set-up-fixture", json!({"file": library, "name": "older"}));
+    assert_eq!(ready, json!({"outcome": "passed"}));
+    assert_eq!(host.ask("check-fixture", json!({}))["outcome"], "passed");
+    assert_eq!(host.ask("tear-down-fixture", json!({}))["outcome"], "passed");
 }
 
 #[test]

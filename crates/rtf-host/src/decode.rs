@@ -62,6 +62,8 @@ pub(crate) fn decode(line: &[u8]) -> Incoming {
         "run-test" => parse(params).map(Request::RunTest),
         "set-up-fixture" => parse(params).map(Request::SetUpFixture),
         "check-fixture" => Ok(Request::CheckFixture {}),
+        "test-started" => parse(params).map(Request::TestStarted),
+        "test-finished" => parse(params).map(Request::TestFinished),
         "tear-down-fixture" => Ok(Request::TearDownFixture {}),
         "interrupt" => parse::<Interrupt>(params).map(|p| Request::Interrupt { reason: p.reason }),
         "dump-stack" => Ok(Request::DumpStack {}),

@@ -23,7 +23,7 @@ mod verdict;
 mod writer;
 
 pub use check::{CheckedFile, check, files_to_check};
-pub use plugin::{HostPlugin, LoadError, Reaction, Role, Step, StepEnd};
+pub use plugin::{HostPlugin, LoadError, Reaction, Role, Step, StepEnd, Told};
 pub use program::Host;
 pub use serve::serve;
 pub use session::{OpenError, Session};

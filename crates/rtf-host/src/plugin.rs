@@ -1,7 +1,7 @@
 //! What a host has to be able to do.
 
 use rtf_model::Location;
-use rtf_model::protocol::{Initialize, Initialized, Plugin};
+use rtf_model::protocol::{Initialize, Initialized, Notice, Plugin, TestEnds, TestStarts};
 
 use crate::Session;
 
@@ -25,6 +25,26 @@ pub enum Step {
     Check,
     /// `tearDown`.
     TearDown,
+}
+
+/// What a fixture is told of a test.
+#[derive(Clone, Copy, Debug)]
+pub enum Told<'a> {
+    /// An attempt is about to begin: `testStarted`.
+    Starts(&'a TestStarts),
+    /// An attempt was judged: `testFinished`.
+    Ends(&'a TestEnds),
+}
+
+impl Told<'_> {
+    /// The function's name, as plug-ins spell it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Starts(_) => "testStarted",
+            Self::Ends(_) => "testFinished",
+        }
+    }
 }
 
 /// How a function of the plug-in ended. What it reported meanwhile has gone
@@ -76,6 +96,16 @@ pub trait HostPlugin {
 
     /// Calls a function of the loaded plug-in.
     fn step(&mut self, step: Step) -> StepEnd;
+
+    /// What the loaded fixture, which is set up, wants to be told of each test.
+    fn notices(&self) -> Vec<Notice> {
+        Vec::new()
+    }
+
+    /// Tells the loaded fixture of a test.
+    fn tell(&mut self, _told: Told<'_>) -> StepEnd {
+        StepEnd::Done
+    }
 
     /// Forgets the loaded plug-in after its `tearDown`.
     fn unload(&mut self) -> StepEnd {

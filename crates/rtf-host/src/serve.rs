@@ -7,7 +7,7 @@ use rtf_model::{Message, MessageKind, Outcome, Phase};
 
 use crate::decode::{INVALID_REQUEST, Incoming};
 use crate::reader::Reader;
-use crate::{HostPlugin, Role, Session, Step, StepEnd};
+use crate::{HostPlugin, Role, Session, Step, StepEnd, Told};
 
 /// Serves the runner until it has got its last answer or has closed the
 /// channel. The caller then ends the process the ordinary way, so that what
@@ -84,6 +84,7 @@ impl<H: HostPlugin> Server<'_, H> {
             return false;
         }
         let mut last = false;
+        let sets_up = matches!(request, Request::SetUpFixture(_));
         match request {
             Request::RunTest(plugin) => {
                 last = plugin.last;
@@ -91,6 +92,12 @@ impl<H: HostPlugin> Server<'_, H> {
             }
             Request::SetUpFixture(plugin) => self.set_up_fixture(&plugin),
             Request::CheckFixture {} => self.check_fixture(),
+            Request::TestStarted(starts) => self.tell(Told::Starts(&starts)),
+            Request::TestFinished(ends) => {
+                self.session.keep_in(ends.keep_folder.as_ref().map(Into::into));
+                self.tell(Told::Ends(&ends));
+                self.session.keep_in(None);
+            }
             Request::TearDownFixture {} => self.tear_down_fixture(),
             // Heard by the thread that reads the channel, and by nobody else.
             Request::Initialize(_) | Request::Interrupt { .. } | Request::DumpStack {} => {}
@@ -98,7 +105,10 @@ impl<H: HostPlugin> Server<'_, H> {
         // The answer may make the runner close the channel at once. Only a
         // fixture that is still up makes that a reason to end the hard way.
         self.session.engage(self.loaded.is_some());
-        let answer = self.session.conclude();
+        let mut answer = self.session.conclude();
+        if sets_up && answer.outcome == Outcome::Passed {
+            answer.notices = self.host.notices();
+        }
         self.answer(id, answer);
         last
     }
@@ -148,11 +158,24 @@ impl<H: HostPlugin> Server<'_, H> {
     }
 
     fn check_fixture(&mut self) {
-        if self.loaded.is_some() {
+        if self.has_fixture() {
             self.step(Step::Check, false);
-        } else {
+        }
+    }
+
+    fn tell(&mut self, told: Told<'_>) {
+        if self.has_fixture() {
+            self.session.judge(|judge| judge.failures_are_errors = false);
+            let end = self.host.tell(told);
+            self.judge_end(end, told.name());
+        }
+    }
+
+    fn has_fixture(&self) -> bool {
+        if self.loaded.is_none() {
             self.session.judge(|judge| judge.note(Outcome::Error, "no fixture is set up"));
         }
+        self.loaded.is_some()
     }
 
     /// A fixture that could not be loaded has nothing to tear down.

@@ -39,7 +39,7 @@ impl Judge {
     }
 
     pub(crate) fn note(&mut self, outcome: Outcome, reason: &str) {
-        self.first.get_or_insert_with(|| Answer { outcome, reason: Some(reason.to_owned()) });
+        self.first.get_or_insert_with(|| answer(outcome, Some(reason.to_owned())));
     }
 
     pub(crate) fn all_holds(&self) -> bool {
@@ -47,7 +47,11 @@ impl Judge {
     }
 
     pub(crate) fn answer(&mut self) -> Answer {
-        let passed = Answer { outcome: Outcome::Passed, reason: None };
-        std::mem::take(self).first.unwrap_or(passed)
+        let passed = || answer(Outcome::Passed, None);
+        std::mem::take(self).first.unwrap_or_else(passed)
     }
+}
+
+fn answer(outcome: Outcome, reason: Option<String>) -> Answer {
+    Answer { outcome, reason, notices: Vec::new() }
 }

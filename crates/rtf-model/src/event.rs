@@ -126,11 +126,17 @@ pub enum EventKind {
         source: Source,
         /// What is reported.
         message: Message,
+        /// The test with whose result it belongs, when a fixture reports it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        test: Option<TestId>,
     },
     /// A test measured a number.
     Measured {
         /// The test.
         test: TestId,
+        /// The fixture, when it is one that measured.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        fixture: Option<FixtureId>,
         /// The number, its unit and its limits.
         measurement: Measurement,
     },
@@ -138,6 +144,9 @@ pub enum EventKind {
     Attached {
         /// The test.
         test: TestId,
+        /// The fixture, when it is one that keeps the file.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        fixture: Option<FixtureId>,
         /// The file, in the run's folder.
         attachment: Attachment,
     },
@@ -405,6 +414,8 @@ pub enum Phase {
     TearDown,
     /// The host ends, after it has answered.
     Exit,
+    /// The attempt is judged, and fixtures are told.
+    Notice,
 }
 
 impl Phase {
@@ -417,6 +428,7 @@ impl Phase {
             Self::Run => "run",
             Self::TearDown => "tear-down",
             Self::Exit => "exit",
+            Self::Notice => "notice",
         }
     }
 }

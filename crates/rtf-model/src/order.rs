@@ -168,13 +168,20 @@ impl OrderChecker {
                 self.start_test(*test, (*repetition, *attempt))
             }
             EventKind::TestPhase { test, .. }
-            | EventKind::Measured { test, .. }
-            | EventKind::Attached { test, .. }
             | EventKind::TestSlow { test }
             | EventKind::TestStopping { test, .. } => self.inside_test(*test),
-            EventKind::Message { source, .. }
-            | EventKind::StackDumped { source, .. }
-            | EventKind::ProcessesLeft { source, .. } => self.inside(*source),
+            EventKind::Measured { test, fixture, .. }
+            | EventKind::Attached { test, fixture, .. } => {
+                fixture.map_or(Ok(()), |fixture| self.inside(Source::Fixture(fixture)))?;
+                self.inside_test(*test)
+            }
+            EventKind::Message { source, test, .. } => {
+                test.map_or(Ok(()), |test| self.inside_test(test))?;
+                self.inside(*source)
+            }
+            EventKind::StackDumped { source, .. } | EventKind::ProcessesLeft { source, .. } => {
+                self.inside(*source)
+            }
             EventKind::Output(output) => self.inside(output.source),
             EventKind::TestFinished(finished) => self.finish_test(finished.test, finished.rerun),
             EventKind::TestSkipped { test, .. } => self.skip_test(*test),

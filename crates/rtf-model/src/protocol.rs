@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Attachment, Measurement, Message, Outcome, Phase};
+use crate::{Attachment, Measurement, Message, Outcome, Phase, TestId, Verdict};
 
 /// The protocol version of this crate. Runner and host must agree on it.
 pub const PROTOCOL_VERSION: u32 = 1;
@@ -74,6 +74,11 @@ pub enum Request {
     SetUpFixture(Plugin),
     /// Ask the fixture whether it is still well. Answered with [`Answer`].
     CheckFixture {},
+    /// Tell the fixture that an attempt of a test is about to begin. Only for one that
+    /// asked for it in [`Answer::notices`]. Answered with [`Answer`].
+    TestStarted(TestStarts),
+    /// Tell the fixture how an attempt of a test was judged, in the same way.
+    TestFinished(TestEnds),
     /// Tear the fixture down. Answered with [`Answer`].
     TearDownFixture {},
     /// A notification: stop soon, and say so in the answer.
@@ -161,6 +166,55 @@ pub struct Plugin {
     pub keep_folder: Option<String>,
 }
 
+/// What a fixture may be told of each test.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Notice {
+    /// An attempt is about to begin: [`Request::TestStarted`].
+    TestStarted,
+    /// An attempt was judged: [`Request::TestFinished`].
+    TestFinished,
+}
+
+/// The attempt of a test that a fixture is told of.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ToldTest {
+    /// The test, as in events.
+    pub id: TestId,
+    /// Its name in the suite.
+    pub name: String,
+    /// The repetition, from 1.
+    pub repetition: u32,
+    /// The attempt at this repetition, from 1.
+    pub attempt: u32,
+}
+
+/// An attempt of a test is about to begin.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct TestStarts {
+    /// Which one.
+    pub test: ToldTest,
+}
+
+/// An attempt of a test was judged.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct TestEnds {
+    /// Which one.
+    pub test: ToldTest,
+    /// The judgement.
+    pub verdict: Verdict,
+    /// Why it did not pass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// The folder for what the fixture attaches. The host makes it when it is needed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub keep_folder: Option<String>,
+}
+
 /// The answer to a request that carries out something.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -170,6 +224,9 @@ pub struct Answer {
     /// Why it did not pass.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// After a fixture's set-up: what it wants to be told of each test.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notices: Vec<Notice>,
 }
 
 /// What a host tells without being asked.
@@ -184,9 +241,9 @@ pub enum Notification {
     },
     /// The plug-in reports something.
     Message(Message),
-    /// A test measured a number.
+    /// A test measured a number, or a fixture did for the test of which it is told.
     Measured(Measurement),
-    /// A test keeps a file.
+    /// A test keeps a file, or a fixture does for the test of which it is told.
     Attached(Attachment),
     /// A fixture is not well any more. May come at any time.
     Collapsed {

@@ -98,7 +98,7 @@ fn report(number: u64) -> EventKind {
         comparison: None,
         critical: false,
     };
-    EventKind::Message { source: Source::Test(TEST), message }
+    EventKind::Message { source: Source::Test(TEST), message, test: None }
 }
 
 fn after() -> [EventKind; 3] {

@@ -12,7 +12,7 @@ private package RobotTestingFramework.ABI is
    subtype Address is System.Address;
 
    Major : constant := 1;
-   Minor : constant := 0;
+   Minor : constant := 1;
 
    Kind_Test    : constant := 1;
    Kind_Fixture : constant := 2;
@@ -66,6 +66,17 @@ private package RobotTestingFramework.ABI is
       Media_Type : Text;
    end record with Convention => C;
 
+   type Test is record
+      Size       : Interfaces.C.size_t;
+      Id         : Interfaces.Unsigned_32;
+      Repetition : Interfaces.Unsigned_32;
+      Attempt    : Interfaces.Unsigned_32;
+      Reserved   : Interfaces.Unsigned_32;
+      Name       : Text;
+      Verdict    : Text;
+      Reason     : Text;
+   end record with Convention => C;
+
    type Take_Message is access procedure (Context : Address; Value : Message)
      with Convention => C;
    type Take_Measurement is access function
@@ -113,6 +124,9 @@ private package RobotTestingFramework.ABI is
      with Convention => C;
    type Step is access function (Self : Address) return Interfaces.Integer_32
      with Convention => C;
+   type Notice is access function
+     (Self : Address; Test : not null access constant ABI.Test) return Interfaces.Integer_32
+     with Convention => C;
 
    type Plugin_Table is record
       Major     : Interfaces.Unsigned_32 := ABI.Major;
@@ -126,6 +140,8 @@ private package RobotTestingFramework.ABI is
       Run       : Step;
       Check     : Step;
       Tear_Down : Step;
+      Started   : Notice;
+      Finished  : Notice;
    end record with Convention => C;
 
 end RobotTestingFramework.ABI;

@@ -108,6 +108,10 @@ package body RobotTestingFramework.Entry_Point is
    function Run (Self : Address) return Result with Convention => C;
    function Check (Self : Address) return Result with Convention => C;
    function Tear_Down (Self : Address) return Result with Convention => C;
+   function Started (Self : Address; Test : not null access constant ABI.Test) return Result
+     with Convention => C;
+   function Finished (Self : Address; Test : not null access constant ABI.Test) return Result
+     with Convention => C;
 
    function Create (Host_Table : ABI.Host_Access) return Address is
    begin
@@ -162,6 +166,42 @@ package body RobotTestingFramework.Entry_Point is
    begin
       return Guarded_Check;
    end Check;
+
+   --  What the fixture is told; for the time of one call.
+   Told : access constant ABI.Test;
+
+   function Told_Test return FixtureManager.Test is
+      Name : constant String := Host.To_Ada (Told.Name);
+   begin
+      return
+        (Length     => Name'Length,
+         Id         => Natural (Told.Id),
+         Repetition => Positive (Told.Repetition),
+         Attempt    => Positive (Told.Attempt),
+         Name       => Name);
+   end Told_Test;
+
+   function Do_Started return Boolean is (FixtureManager.Current.TestStarted (Told_Test));
+   function Guarded_Started is new Guarded (Do_Started);
+
+   function Do_Finished return Boolean is
+     (FixtureManager.Current.TestFinished
+        (Told_Test, Host.To_Ada (Told.Verdict), Host.To_Ada (Told.Reason)));
+   function Guarded_Finished is new Guarded (Do_Finished);
+
+   function Started (Self : Address; Test : not null access constant ABI.Test) return Result is
+      pragma Unreferenced (Self);
+   begin
+      Told := Test;
+      return Guarded_Started;
+   end Started;
+
+   function Finished (Self : Address; Test : not null access constant ABI.Test) return Result is
+      pragma Unreferenced (Self);
+   begin
+      Told := Test;
+      return Guarded_Finished;
+   end Finished;
 
    function Do_Tear_Down return Boolean is
    begin
@@ -236,6 +276,8 @@ package body RobotTestingFramework.Entry_Point is
       Table.Kind  := (if Is_Fixture then ABI.Kind_Fixture else ABI.Kind_Test);
       Table.Run   := (if Is_Fixture then null else Run'Access);
       Table.Check := (if Is_Fixture then Check'Access else null);
+      Table.Started  := (if Is_Fixture then Started'Access else null);
+      Table.Finished := (if Is_Fixture then Finished'Access else null);
       return Table'Address;
    end Plugin;
 

@@ -15,6 +15,20 @@ package body RobotTestingFramework.FixtureManager is
       return True;
    end Check;
 
+   function TestStarted (Self : in out FixtureManager; Told : Test) return Boolean is
+      pragma Unreferenced (Self, Told);
+   begin
+      return True;
+   end TestStarted;
+
+   function TestFinished
+     (Self : in out FixtureManager; Told : Test; Verdict, Reason : String) return Boolean
+   is
+      pragma Unreferenced (Self, Told, Verdict, Reason);
+   begin
+      return True;
+   end TestFinished;
+
    procedure Collapsed (Reason : String) is
       Table : constant not null ABI.Host_Access := Host.Table;
       Said  : aliased constant String           := Reason;

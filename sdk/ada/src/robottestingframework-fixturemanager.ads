@@ -8,6 +8,14 @@ package RobotTestingFramework.FixtureManager is
    --  Each plug-in has a copy of this type. A process may hold several of them.
    pragma Suppress (Duplicated_Tag_Check);
 
+   --  An attempt of a test, of which a fixture is told.
+   type Test (Length : Natural) is record
+      Id         : Natural;
+      Repetition : Positive;
+      Attempt    : Positive;
+      Name       : String (1 .. Length);
+   end record;
+
    type FixtureManager is abstract tagged private;
    type FixtureManager_Access is access all FixtureManager'Class;
 
@@ -18,6 +26,14 @@ package RobotTestingFramework.FixtureManager is
    --  Looks whether the fixture is well, before each test and while tests run.
    --  False means that it collapsed.
    function Check (Self : in out FixtureManager) return Boolean;
+
+   --  Hears that a test is about to begin. False: the fixture collapsed.
+   function TestStarted (Self : in out FixtureManager; Told : Test) return Boolean;
+
+   --  Hears how a test was judged: `passed`, `failed`, `error`, `crashed`, ... What
+   --  is reported, measured and attached here belongs to that test.
+   function TestFinished
+     (Self : in out FixtureManager; Told : Test; Verdict, Reason : String) return Boolean;
 
    --  Brings it down, also after a Setup that failed.
    procedure TearDown (Self : in out FixtureManager) is null;

@@ -14,9 +14,9 @@ A plug-in is a file with one class that derives from :class:`TestCase` or from
 is in :mod:`rtf.host`.
 """
 
-from rtf._fixture import FixtureManager
+from rtf._fixture import FixtureManager, Test
 from rtf._test import TestCase
 
-__all__ = ["FixtureManager", "TestCase", "__version__"]
+__all__ = ["FixtureManager", "Test", "TestCase", "__version__"]
 
 __version__ = "0.1.0"

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import math
-import os
-
-from rtf import _keep, _session
+from rtf import _session
+from rtf._keeper import Keeper
 from rtf._near import Comparison
-from rtf._plugin import Plugin
 from rtf._stop import AssertionEnded
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
@@ -16,7 +13,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 
-class TestCase(Plugin):
+class TestCase(Keeper):
     """A test: derive from it and write `run`, and `setup` and `tearDown` where needed.
 
     The first failure or error decides the verdict. A failure says that the
@@ -71,41 +68,6 @@ class TestCase(Plugin):
         """Assert what `check_angle_near` checks."""
         if not self.check_angle_near(got, expected, tolerance, what):
             raise AssertionEnded(str(what))
-
-    def measure(
-        self,
-        name: str,
-        value: float,
-        unit: str = "",
-        low: float | None = None,
-        high: float | None = None,
-    ) -> bool:
-        """Keep a number with the result; outside its limits it is a failure.
-
-        A value that is not a finite number lies outside any limits.
-        """
-        number = float(value)
-        limits = [None if limit is None else float(limit) for limit in (low, high)]
-        if any(limit is not None and math.isnan(limit) for limit in limits):
-            raise ValueError(f"a limit of `{name}` is not a number")
-        return _session.current().measured(name, number, unit, limits[0], limits[1])
-
-    def attach(
-        self,
-        path: str | os.PathLike[str],
-        name: str | None = None,
-        media_type: str | None = None,
-    ) -> None:
-        """Keep a file with the result. It is copied now: write it before, to its end."""
-        full = os.path.abspath(os.fspath(path))
-        if not os.path.isfile(full):
-            raise FileNotFoundError(f"there is no file `{full}` to attach")
-        name = name or os.path.basename(full)
-        session = _session.current()
-        if session.task.keep_folder:
-            full = _keep.copy(full, name, session.task.keep_folder)
-        params: dict[str, object] = {"name": name, "path": full, "media_type": media_type or ""}
-        session.notify("attached", params)
 
 
 def _tell(comparison: Comparison, what: str) -> bool:

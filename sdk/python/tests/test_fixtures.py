@@ -104,3 +104,47 @@ def test_the_end_of_the_runner_ends_a_fixture_that_is_up(tmp_path: Path) -> None
     host.channel.shutdown(1)
     assert host.end()[0] == 1
     assert ("report", "down") not in host.texts()
+
+
+RECORDER = """
+class Recorder(rtf.FixtureManager):
+    def testStarted(self, test):
+        self.report(f"{test.id} {test.name} {test.repetition}.{test.attempt}")
+        return test.name != "refused"
+    def testFinished(self, test, verdict, reason):
+        self.report(f"{test.name} {verdict}: {reason}")
+        self.measure("size", 3.5, "MB", high=4.0)
+        self.attach(__file__, "run.txt")
+"""
+
+
+def test_a_fixture_is_told_of_each_test(tmp_path: Path) -> None:
+    host = Host(tmp_path)
+    answer = host.ask("set-up-fixture", plugin(tmp_path, RECORDER))
+    wanted = ["test-started", "test-finished"]
+    assert answer["result"] == {"outcome": "passed", "notices": wanted}
+    test = {"id": 3, "name": "Move", "repetition": 2, "attempt": 1}
+    assert host.ask("test-started", {"test": test})["result"] == {"outcome": "passed"}
+    folder = str(tmp_path / "kept")
+    ends = {"test": test, "verdict": "failed", "reason": "too far", "keep_folder": folder}
+    assert host.ask("test-finished", ends)["result"] == {"outcome": "passed"}
+    assert host.texts() == [("report", "3 Move 2.1"), ("report", "Move failed: too far")]
+    assert host.of("measured")[0]["name"] == "size"
+    kept = host.of("attached")[0]
+    assert kept["path"] == f"{folder}/1-run.txt"
+    assert "class Recorder" in Path(kept["path"]).read_text()
+    refused = {"test": {**test, "name": "refused"}}
+    answer = host.ask("test-started", refused)
+    assert answer["result"] == {"outcome": "failed", "reason": "testStarted returned false"}
+
+
+def test_a_fixture_that_hears_nothing_asks_for_nothing(tmp_path: Path) -> None:
+    host = Host(tmp_path)
+    body = (
+        "class Base(rtf.FixtureManager):\n    def testFinished(self, test, verdict, reason):\n"
+        "        self.sleep(100)\nclass Simulator(Base): pass\n"
+    )
+    assert host.ask("set-up-fixture", plugin(tmp_path, FIXTURE))["result"] == {"outcome": "passed"}
+    host = Host(tmp_path)
+    inherited = {"outcome": "passed", "notices": ["test-finished"]}
+    assert host.ask("set-up-fixture", plugin(tmp_path, body))["result"] == inherited

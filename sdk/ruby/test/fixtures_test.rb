@@ -41,6 +41,33 @@ class FixturesTest < HostTest
     end
   end
 
+  RECORDER = <<~'RUBY'
+    def test_started(test) = test.name != "refused"
+    def test_finished(test, verdict, reason)
+      report("#{test.id} #{test.name} #{test.repetition}.#{test.attempt} #{verdict}: #{reason}")
+      measure("size", 3.5, "MB")
+      attach(__FILE__, name: "run.txt")
+    end
+  RUBY
+
+  def test_a_fixture_is_told_of_each_test
+    host, result = set_up(RECORDER)
+    assert_equal %w[test-started test-finished], result["notices"]
+    test = { "id" => 3, "name" => "Move", "repetition" => 2, "attempt" => 1 }
+    assert_equal({ "outcome" => "passed" }, host.ask("test-started", { test: test })["result"])
+    ends = { test: test, verdict: "failed", reason: "far", keep_folder: File.join(@folder, "k") }
+    assert_equal({ "outcome" => "passed" }, host.ask("test-finished", ends)["result"])
+    assert_equal [["report", "3 Move 2.1 failed: far"]], host.texts
+    assert_equal 3.5, host.of("measured").first["value"]
+    assert_equal "#{@folder}/k/1-run.txt", host.of("attached").first["path"]
+    refused = host.ask("test-started", { test: test.merge("name" => "refused") })["result"]
+    assert_equal "test_started returned false", refused["reason"]
+  end
+
+  def test_a_fixture_that_hears_nothing_asks_for_nothing
+    assert_nil set_up("def check = true").last["notices"]
+  end
+
   def test_what_is_not_up_cannot_be_checked
     host = self.host
     assert_equal "no fixture is set up", host.ask("check-fixture", {})["result"]["reason"]

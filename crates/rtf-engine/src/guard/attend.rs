@@ -175,7 +175,11 @@ impl Attendant<'_> {
                 if matches!(message.kind, MessageKind::Failure | MessageKind::Error) {
                     self.note(message.text.clone());
                 }
-                self.happens(EventKind::Message { source: Source::Hook(self.hook.id), message });
+                self.happens(EventKind::Message {
+                    source: Source::Hook(self.hook.id),
+                    message,
+                    test: None,
+                });
             }
             Ok(FromHost::Told(Notification::Measured(measured)))
                 if !measured.is_within_limits() =>

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, SystemTime};
 
-use rtf_model::protocol::{Notification, Request, StackSupport};
+use rtf_model::protocol::{Notification, Plugin, Request, StackSupport, TestEnds};
 use rtf_model::{ExitStatus, Source, Stream};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::sync::mpsc;
@@ -273,9 +273,11 @@ impl Task {
     }
 
     async fn send(&mut self, id: Option<u64>, mut request: Request) {
-        if let Request::RunTest(plugin) = &mut request {
+        if let Request::RunTest(Plugin { keep_folder, .. })
+        | Request::TestFinished(TestEnds { keep_folder, .. }) = &mut request
+        {
             let folder = self.shared.run_folder.join(self.keep_folder());
-            plugin.keep_folder = Some(folder.to_string_lossy().into_owned());
+            *keep_folder = Some(folder.to_string_lossy().into_owned());
         }
         if let (Ok(line), Some(channel)) = (codec::encode(id, request), &mut self.process.channel) {
             // A host that is gone or does not read is noticed by its exit or its limit.

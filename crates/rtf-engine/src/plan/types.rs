@@ -150,6 +150,8 @@ pub struct FixtureLimits {
     pub setup: Duration,
     /// For one `check`.
     pub check: Duration,
+    /// For one `testStarted` or `testFinished`.
+    pub notice: Duration,
     /// From the request to stop to the end of its process.
     pub teardown: Duration,
 }

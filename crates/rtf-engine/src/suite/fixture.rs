@@ -29,6 +29,7 @@ pub(super) fn read(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Option<Fixtur
     let depends = node.has_attribute("depends").then(|| reader.words(node, "depends"));
     let setup = reader.duration(node, "timeout");
     let check = reader.duration(node, "check-timeout");
+    let notice = reader.duration(node, "notice-timeout");
     let teardown = reader.duration(node, "teardown-timeout");
     let restarts = reader.number(node, "restarts", 0);
     let restart_delay = restart_delay(reader, node);
@@ -48,6 +49,7 @@ pub(super) fn read(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Option<Fixtur
         env,
         setup,
         check,
+        notice,
         teardown,
         restarts,
         restart_delay,

@@ -89,6 +89,7 @@ pub(super) const FIXTURE: Shape = Shape {
         "depends",
         "timeout",
         "check-timeout",
+        "notice-timeout",
         "teardown-timeout",
         "restarts",
         "restart-delay",

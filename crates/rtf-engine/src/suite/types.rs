@@ -173,6 +173,8 @@ pub struct Fixture {
     pub setup: Option<Duration>,
     /// The limit for one `check`.
     pub check: Option<Duration>,
+    /// The limit for one `testStarted` or `testFinished`.
+    pub notice: Option<Duration>,
     /// The limit for its tear-down.
     pub teardown: Option<Duration>,
     /// How often it may be started again after a collapse.

@@ -103,7 +103,12 @@ impl Host {
     }
 
     pub(crate) fn ask(&mut self, method: &str) -> Value {
-        self.send(Some(2), method, json!({}));
+        self.ask_with(method, json!({}))
+    }
+
+    /// The same, with parameters.
+    pub(crate) fn ask_with(&mut self, method: &str, params: Value) -> Value {
+        self.send(Some(2), method, params);
         self.answer()
     }
 

@@ -67,3 +67,33 @@ fn the_end_of_the_runner_ends_a_fixture_that_is_up() {
     assert_eq!(host.end().0.code(), Some(1));
     assert!(host.texts().is_empty());
 }
+
+#[test]
+fn a_fixture_is_told_of_each_test() {
+    let mut host = Host::start();
+    host.start_plugin(
+        "set-up-fixture",
+        "function FixtureManager.testStarted(test) return test.name ~= 'refused' end\n\
+         function FixtureManager.testFinished(test, verdict, reason)\n\
+           rtf.report(('%d %s %d.%d %s: %s'):format(test.id, test.name, test.repetition,\n\
+             test.attempt, verdict, reason))\n\
+           rtf.measure('size', 3.5, 'MB')\n\
+           rtf.attach('/proc/self/status', 'run.txt')\n\
+         end\n",
+    );
+    let wanted = json!(["test-started", "test-finished"]);
+    assert_eq!(host.answer(), json!({"outcome": "passed", "notices": wanted}));
+    let test = json!({"id": 3, "name": "Move", "repetition": 2, "attempt": 1});
+    let passed = json!({"outcome": "passed"});
+    assert_eq!(host.ask_with("test-started", json!({"test": test})), passed);
+    let folder = tempfile::tempdir().unwrap();
+    let keep = folder.path().join("kept");
+    let ends = json!({"test": test, "verdict": "failed", "reason": "far", "keep_folder": keep});
+    assert_eq!(host.ask_with("test-finished", ends), passed);
+    assert_eq!(host.texts(), ["report: 3 Move 2.1 failed: far"]);
+    assert_eq!(host.all("measured")[0]["value"], 3.5);
+    assert_eq!(host.all("attached")[0]["path"], json!(keep.join("1-run.txt")));
+    let refused = json!({"id": 3, "name": "refused", "repetition": 1, "attempt": 1});
+    let reason = json!({"outcome": "failed", "reason": "testStarted returned false"});
+    assert_eq!(host.ask_with("test-started", json!({"test": refused})), reason);
+}

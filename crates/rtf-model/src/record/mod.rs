@@ -387,9 +387,10 @@ fn source_of(kind: &EventKind) -> Option<Source> {
         | EventKind::TestRepeated { test, .. }
         | EventKind::TestSkipped { test, .. } => Some(Source::Test(*test)),
         EventKind::TestFinished(finished) => Some(Source::Test(finished.test)),
-        EventKind::Message { source, .. }
-        | EventKind::StackDumped { source, .. }
-        | EventKind::ProcessesLeft { source, .. } => Some(*source),
+        EventKind::Message { source, test, .. } => Some(test.map_or(*source, Source::Test)),
+        EventKind::StackDumped { source, .. } | EventKind::ProcessesLeft { source, .. } => {
+            Some(*source)
+        }
         EventKind::Output(output) => Some(output.source),
         _ => None,
     }

@@ -154,7 +154,7 @@ impl TestRecord {
         failed.and_then(|(_, finished)| finished.reason.as_deref()).or(self.skipped.as_deref())
     }
 
-    /// The time spent in all attempts that ended.
+    /// The time spent in all attempts that were judged.
     #[must_use]
     pub fn duration(&self) -> Duration {
         self.attempts.iter().filter_map(AttemptRecord::duration).sum()
@@ -238,10 +238,12 @@ impl AttemptRecord {
         self.finished.as_ref().map(|(_, finished)| finished.verdict)
     }
 
-    /// How long it took, `None` while it runs.
+    /// How long it took until it was judged, `None` while it runs.
     #[must_use]
     pub fn duration(&self) -> Option<Duration> {
-        self.finished.as_ref().map(|(at, _)| at.since(self.started))
+        let noticed = self.phases.iter().find(|(phase, _)| *phase == Phase::Notice);
+        let judged = noticed.map(|(_, at)| *at).or(self.finished.as_ref().map(|(at, _)| *at));
+        judged.map(|at| at.since(self.started))
     }
 
     /// The failures and errors that were kept.

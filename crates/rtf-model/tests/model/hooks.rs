@@ -33,7 +33,7 @@ fn printed(text: &str, omitted: u64) -> EventKind {
 fn told(kind: MessageKind, text: &str) -> EventKind {
     let text = text.to_owned();
     let message = Message { kind, text, location: None, comparison: None, critical: false };
-    EventKind::Message { source: Source::Hook(PARK), message }
+    EventKind::Message { source: Source::Hook(PARK), message, test: None }
 }
 
 #[test]

@@ -23,7 +23,7 @@ fn run(repetitions: u32, body: impl IntoIterator<Item = EventKind>) -> Record {
 fn message(kind: MessageKind) -> EventKind {
     let message =
         Message { kind, text: "x".into(), location: None, comparison: None, critical: false };
-    EventKind::Message { source: Source::Test(TEST), message }
+    EventKind::Message { source: Source::Test(TEST), message, test: None }
 }
 
 fn printed(text: &str, omitted: u64) -> EventKind {

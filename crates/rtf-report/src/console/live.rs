@@ -46,7 +46,7 @@ pub(super) fn show(page: &mut Page, options: &ConsoleOptions, event: &Event, rec
         EventKind::FixtureBroken { fixture, reason } => {
             live.trouble(page, "BROKEN", *fixture, (reason, &[]));
         }
-        EventKind::Message { source: Source::Fixture(fixture), message } => {
+        EventKind::Message { source: Source::Fixture(fixture), message, .. } => {
             live.fixture_message(page, *fixture, message);
         }
         EventKind::TestSlow { test } => live.slow(page, *test, event.at),

@@ -70,23 +70,23 @@ impl Verbose {
                 let name = name(record, Source::Test(*test));
                 page.remark((DIM, phase.as_str()), &name);
             }
-            EventKind::Message { source, message } => {
+            EventKind::Message { source, message, .. } => {
                 let mut lines = Vec::new();
                 explain::message(message, &mut |tone, line| lines.push((tone, line.to_owned())));
                 lines_of(page, &name(record, *source), &lines);
             }
-            EventKind::Measured { test, measurement } => {
+            EventKind::Measured { test, fixture, measurement } => {
                 let tone = if measurement.is_within_limits() { Tone::Plain } else { Tone::Bad };
                 let lines = [(tone, explain::measurement(measurement))];
-                lines_of(page, &name(record, Source::Test(*test)), &lines);
+                lines_of(page, &name(record, teller(*test, *fixture)), &lines);
             }
-            EventKind::Attached { test, attachment } => {
+            EventKind::Attached { test, fixture, attachment } => {
                 let text = format!(
                     "attached {}: {}",
                     escape::line(&attachment.name),
                     escape::line(&attachment.path)
                 );
-                lines_of(page, &name(record, Source::Test(*test)), &[(Tone::Plain, text)]);
+                lines_of(page, &name(record, teller(*test, *fixture)), &[(Tone::Plain, text)]);
             }
             EventKind::Output(output) => self.output(page, output, record),
             EventKind::TestFinished(finished) => {
@@ -162,4 +162,9 @@ fn print(page: &mut Page, name: &str, text: &str) {
     for line in text.lines() {
         page.detail(Tone::Dim, format!("{name} | {}", escape::block(line)).trim_end());
     }
+}
+
+/// Who keeps something with a test's result: the test, or a fixture.
+fn teller(test: TestId, fixture: Option<FixtureId>) -> Source {
+    fixture.map_or(Source::Test(test), Source::Fixture)
 }

@@ -41,19 +41,34 @@ impl Ids<'_> {
             | EventKind::FixtureStopping { fixture }
             | EventKind::FixtureStopped { fixture, .. }
             | EventKind::FixtureBroken { fixture, .. } => Some(self.fixture(fixture)),
-            EventKind::Message { source, .. }
-            | EventKind::StackDumped { source, .. }
-            | EventKind::ProcessesLeft { source, .. } => Some(self.source(source)),
+            EventKind::Message { source, test, .. } => {
+                let place = self.source(source);
+                if let Some(test) = test {
+                    self.test(test);
+                }
+                Some(place)
+            }
+            EventKind::StackDumped { source, .. } | EventKind::ProcessesLeft { source, .. } => {
+                Some(self.source(source))
+            }
             EventKind::Output(output) => Some(self.source(&mut output.source)),
             EventKind::TestStarted { test, .. }
             | EventKind::TestPhase { test, .. }
-            | EventKind::Measured { test, .. }
             | EventKind::TestSlow { test }
             | EventKind::TestStopping { test, .. }
             | EventKind::TestRepeated { test, .. }
             | EventKind::TestSkipped { test, .. } => Some(self.test(test)),
             EventKind::TestFinished(finished) => Some(self.test(&mut finished.test)),
-            EventKind::Attached { test, attachment } => {
+            EventKind::Measured { test, fixture, .. } => {
+                if let Some(fixture) = fixture {
+                    self.fixture(fixture);
+                }
+                Some(self.test(test))
+            }
+            EventKind::Attached { test, fixture, attachment } => {
+                if let Some(fixture) = fixture {
+                    self.fixture(fixture);
+                }
                 if let Some(path) = attachment_path(self.part, &attachment.path) {
                     attachment.path = path;
                 }

@@ -69,10 +69,10 @@ pub(super) fn of(event: &Event, record: &Record) -> Vec<Line> {
         EventKind::TestStarted { test, repetition: 1, attempt: 1 } => {
             vec![test_line(record, *test, "started...")]
         }
-        EventKind::Message { source, message } => {
+        EventKind::Message { source, message, .. } => {
             vec![of_message(&problems::name(record, *source), message)]
         }
-        EventKind::Measured { test, measurement } => {
+        EventKind::Measured { test, measurement, .. } => {
             vec![of_measurement(&problems::name(record, Source::Test(*test)), measurement)]
         }
         EventKind::TestFinished(finished) => {

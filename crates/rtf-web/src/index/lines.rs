@@ -47,7 +47,9 @@ impl Head {
     #[must_use]
     pub fn detail_of(&self) -> Option<Source> {
         match &*self.kind {
-            "message" | "output" | "stack-dumped" | "processes-left" => self.source,
+            // A fixture's report about a test is the test's.
+            "message" => self.test.map(Source::Test).or(self.source),
+            "output" | "stack-dumped" | "processes-left" => self.source,
             "measured" | "attached" => self.test.map(Source::Test),
             _ => None,
         }

@@ -2,7 +2,9 @@
 //! measurements and outputs; these are read without the detour over an untyped
 //! value that [`Event`]'s own way of reading takes, in a third of the time.
 
-use rtf_model::{Event, EventKind, Measurement, Message, Micros, Output, Source, Stream, TestId};
+use rtf_model::{
+    Event, EventKind, FixtureId, Measurement, Message, Micros, Output, Source, Stream, TestId,
+};
 use serde::Deserialize;
 
 /// The fields of the frequent kinds, side by side. The others are read elsewhere.
@@ -14,6 +16,7 @@ struct Frequent {
     kind: Box<str>,
     source: Option<Source>,
     test: Option<TestId>,
+    fixture: Option<FixtureId>,
     message: Option<Message>,
     measurement: Option<Measurement>,
     stream: Option<Stream>,
@@ -25,8 +28,14 @@ struct Frequent {
 impl Frequent {
     fn into_event(self) -> Option<Event> {
         let kind = match &*self.kind {
-            "message" => EventKind::Message { source: self.source?, message: self.message? },
-            "measured" => EventKind::Measured { test: self.test?, measurement: self.measurement? },
+            "message" => {
+                let (source, message) = (self.source?, self.message?);
+                EventKind::Message { source, message, test: self.test }
+            }
+            "measured" => {
+                let (test, measurement) = (self.test?, self.measurement?);
+                EventKind::Measured { test, fixture: self.fixture, measurement }
+            }
             "output" => {
                 let (source, stream, text) = (self.source?, self.stream?, self.text?);
                 EventKind::Output(Output { source, stream, omitted: self.omitted, text })

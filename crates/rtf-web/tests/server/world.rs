@@ -115,7 +115,7 @@ impl Writer {
         let source = Source::Test(TEST);
         let text = text.to_owned();
         let message = Message { kind, text, location: None, comparison: None, critical: false };
-        self.emit(EventKind::Message { source, message });
+        self.emit(EventKind::Message { source, message, test: None });
     }
 
     pub fn print(&mut self, text: &str) {
@@ -127,7 +127,7 @@ impl Writer {
         let (name, unit) = ("settling".to_owned(), "s".to_owned());
         let (value, high) = (Some(value), Some(high));
         let measurement = Measurement { name, value, unit, low: None, high, location: None };
-        self.emit(EventKind::Measured { test: TEST, measurement });
+        self.emit(EventKind::Measured { test: TEST, fixture: None, measurement });
     }
 
     /// Attaches a file that holds this.
@@ -137,7 +137,7 @@ impl Writer {
         std::fs::write(self.folder.join(&path), what).unwrap();
         let (name, media_type) = (name.to_owned(), String::new());
         let attachment = Attachment { name, path, media_type };
-        self.emit(EventKind::Attached { test: TEST, attachment });
+        self.emit(EventKind::Attached { test: TEST, fixture: None, attachment });
     }
 
     pub fn finish(&mut self, test: TestId, verdict: Verdict) {

@@ -121,6 +121,13 @@ fn a_fixture_with_a_task() {
         "s.xml",
         &format!("<suite><fixture name='arm'>{file}</fixture><test>Breaks.lua</test></suite>"),
     );
+    folder.file("Passes.lua", "function TestCase.run() end\n");
+    let told =
+        format!("<suite><fixture>{file}</fixture><test repetition='2'>Passes.lua</test></suite>");
+    folder.file("told.xml", &told);
+    assert_eq!(folder.rtf(&["run", "told.xml"]).code, Some(0));
+    let attempts = &folder.journal().record.tests[0].attempts;
+    assert_eq!(attempts[1].messages[0].text, " 0 Passes 2 1 passed: ");
     let bad =
         format!("<suite><fixture param='fails'>{file}</fixture><test>Breaks.lua</test></suite>");
     folder.file("t.xml", &bad);

@@ -186,17 +186,19 @@ fn told(events: &[Event], suite: SuiteId, record: &Record, temp: &Folder) -> Vec
     let mut told = Vec::new();
     for event in events {
         match &event.kind {
-            EventKind::Message { source, message } if *source == rtf_model::Source::Test(test) => {
+            EventKind::Message { source, message, .. }
+                if *source == rtf_model::Source::Test(test) =>
+            {
                 let mut line = serde_json::to_value(message).expect("a message");
                 line["message"] = line["kind"].take();
                 told.push(line);
             }
-            EventKind::Measured { test: of, measurement } if *of == test => {
+            EventKind::Measured { test: of, measurement, .. } if *of == test => {
                 let mut line = serde_json::to_value(measurement).expect("a measurement");
                 line["measured"] = line["name"].take();
                 told.push(line);
             }
-            EventKind::Attached { test: of, attachment } if *of == test => {
+            EventKind::Attached { test: of, attachment, .. } if *of == test => {
                 let path = temp.path().join("rtf-results/latest").join(&attachment.path);
                 let content = std::fs::read_to_string(path).expect("the attached file");
                 let (name, kind) = (&attachment.name, &attachment.media_type);

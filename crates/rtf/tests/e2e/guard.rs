@@ -104,7 +104,7 @@ fn a_plugin_hook_that_was_not_begun_is_run_by_the_guard() {
     assert_eq!(finished.code, Some(5), "{}", finished.stderr);
     assert_eq!(lines(&folder, "parked"), ["once"]);
     let said = folder.journal().events.into_iter().any(|event| {
-        matches!(event.kind, EventKind::Message { source: Source::Hook(HookId(0)), message } if message.text == "parking")
+        matches!(event.kind, EventKind::Message { source: Source::Hook(HookId(0)), message, .. } if message.text == "parking")
     });
     assert!(said, "what it reported is in the journal");
 }

@@ -46,7 +46,7 @@ fn one_that_forks_twice_and_leaves_its_session_takes_its_daemon_along() {
     assert_eq!(code, Some(0));
     let journal = folder.journal();
     let daemon = journal.events.iter().find_map(|event| match &event.kind {
-        EventKind::Message { source: Source::Fixture(_), message } => message.text.parse().ok(),
+        EventKind::Message { source: Source::Fixture(_), message, .. } => message.text.parse().ok(),
         _ => None,
     });
     let daemon: i32 = daemon.expect("its number");

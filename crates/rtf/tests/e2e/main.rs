@@ -30,6 +30,7 @@ mod killed;
 mod locks;
 mod merge;
 mod middleware;
+mod notices;
 mod predecessor;
 mod predecessor_scripts;
 mod process_fixture;

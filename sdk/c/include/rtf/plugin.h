@@ -16,7 +16,7 @@
 #define RTF_ABI_MAJOR 1
 
 // Counts the fields that were appended since the major version began.
-#define RTF_ABI_MINOR 0
+#define RTF_ABI_MINOR 1
 
 // The plug-in is a test: `setup`, `run`, `tear_down`.
 #define RTF_KIND_TEST 1
@@ -158,6 +158,26 @@ typedef struct rtf_host {
     uint32_t (*repetition)(void *context);
 } rtf_host;
 
+// An attempt of a test, of which a fixture is told.
+typedef struct rtf_test {
+    // The size of this structure in the host. A field that lies beyond it is not there.
+    size_t size;
+    // The test's number in the run.
+    uint32_t id;
+    // The repetition, from 1.
+    uint32_t repetition;
+    // The attempt at this repetition, from 1.
+    uint32_t attempt;
+    // Always 0; room for what may come.
+    uint32_t reserved;
+    // The test's name in the suite.
+    struct rtf_text name;
+    // How it was judged: `passed`, `failed`, …; empty before it begins.
+    struct rtf_text verdict;
+    // Why it did not pass, else empty.
+    struct rtf_text reason;
+} rtf_test;
+
 // What a plug-in is, and how it is called. All functions are called on the
 // process's main thread, one at a time. No exception may leave them.
 typedef struct rtf_plugin_table {
@@ -186,6 +206,12 @@ typedef struct rtf_plugin_table {
     int32_t (*check)(void *self_);
     // Called last, whatever happened before. May be null.
     int32_t (*tear_down)(void *self_);
+    // Since 1.1: a test is about to begin. Only in fixtures, may be null; `test`
+    // and its texts are there until it returns.
+    int32_t (*test_started)(void *self_, const struct rtf_test *test);
+    // Since 1.1: a test was judged. What is reported, measured and attached
+    // meanwhile belongs to its result.
+    int32_t (*test_finished)(void *self_, const struct rtf_test *test);
 } rtf_plugin_table;
 
 #if defined(_WIN32)

@@ -158,11 +158,17 @@ class Host:
             self._fixture, answer = steps.set_up_fixture(session, self._fixture)
             self._task = task
             return answer, False
-        if request.method not in {"check-fixture", "tear-down-fixture"}:
+        known = {"check-fixture", "test-started", "test-finished", "tear-down-fixture"}
+        if request.method not in known:
             raise _Refused(METHOD_NOT_FOUND, f"unknown method `{request.method}`")
-        session = self._enter(self._task or Task({"file": "", "name": ""}), request)
+        task = self._task or Task({"file": "", "name": ""})
+        task.keep_folder = str(request.params.get("keep_folder") or "")
+        session = self._enter(task, request)
         if request.method == "check-fixture":
             return steps.check_fixture(session, self._fixture), False
+        if request.method != "tear-down-fixture":
+            method = str(request.method)
+            return steps.tell_fixture(session, self._fixture, method, request.params), False
         fixture, self._fixture = self._fixture, None
         return steps.tear_down_fixture(session, fixture), False
 

@@ -6,7 +6,7 @@ import signal
 import sys
 
 from rtf import _location, _session
-from rtf._fixture import FixtureManager
+from rtf._fixture import FixtureManager, Test
 from rtf._stop import Interrupted, StepEnded
 from rtf._test import TestCase
 from rtf.host import load
@@ -51,7 +51,11 @@ def set_up_fixture(
     fixture = _load(session, FixtureManager)
     if fixture is not None:
         _step(session, lambda: fixture.setup(session.task.args), "setup")
-    return fixture, _answer(session)
+    answer = _answer(session)
+    notices = _notices(fixture) if fixture is not None else []
+    if notices and answer["outcome"] == "passed":
+        answer["notices"] = notices
+    return fixture, answer
 
 
 def check_fixture(session: Session, fixture: FixtureManager | None) -> Answer:
@@ -62,6 +66,40 @@ def check_fixture(session: Session, fixture: FixtureManager | None) -> Answer:
     else:
         _step(session, fixture.check, "check")
     return _answer(session)
+
+
+def tell_fixture(
+    session: Session, fixture: FixtureManager | None, method: str, params: dict[str, object]
+) -> Answer:
+    """Tell a fixture that a test is about to begin, or how it was judged."""
+    session.judge.failures_are_errors = False
+    test = _test_of(params)
+    if fixture is None:
+        session.judge.note("error", "no fixture is set up")
+    elif method == "test-started":
+        _step(session, lambda: fixture.testStarted(test), "testStarted")
+    else:
+        verdict, reason = str(params.get("verdict")), str(params.get("reason") or "")
+        _step(session, lambda: fixture.testFinished(test, verdict, reason), "testFinished")
+    return _answer(session)
+
+
+def _test_of(params: dict[str, object]) -> Test:
+    told = params.get("test")
+    fields = told if isinstance(told, dict) else {}
+    numbers = [int(fields.get(name, 0)) for name in ("id", "repetition", "attempt")]
+    return Test(numbers[0], str(fields.get("name", "")), numbers[1], numbers[2])
+
+
+def _notices(fixture: FixtureManager) -> list[str]:
+    """Return what a fixture wants to be told of tests: that for which it has a function."""
+    own, base = type(fixture), FixtureManager
+    notices = []
+    if own.testStarted is not base.testStarted:
+        notices.append("test-started")
+    if own.testFinished is not base.testFinished:
+        notices.append("test-finished")
+    return notices
 
 
 def tear_down_fixture(session: Session, fixture: FixtureManager | None) -> Answer:

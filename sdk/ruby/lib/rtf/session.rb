@@ -7,7 +7,10 @@ require "rtf/text"
 module RTF
   # What the runner asks to be done with a plug-in.
   class Task
-    attr_reader :file, :name, :param, :environment, :args, :repetition, :keep_folder
+    attr_reader :file, :name, :param, :environment, :args, :repetition
+
+    # Where copies of attached files go: of a test, or while a fixture is told of one.
+    attr_accessor :keep_folder
 
     # Reads the parameters of `run-test` or `set-up-fixture`.
     def initialize(params)

@@ -1,6 +1,6 @@
 # frozen_string_literal: true
 
-require "rtf/keep"
+require "rtf/keeper"
 require "rtf/near"
 require "rtf/plugin"
 
@@ -12,6 +12,8 @@ module RTF
   # robot is wrong, an error that the bench is; a problem in `setup` or in
   # `tear_down` is always an error.
   class TestCase < Plugin
+    include Keeper
+
     # Does the test.
     def run
       raise NotImplementedError, "#{self.class} has no `run`"
@@ -55,30 +57,6 @@ module RTF
     # Asserts what `check_angle_near` checks.
     def require_angle_near(got, expected, tolerance, what)
       raise AssertionEnded, what.to_s unless check_angle_near(got, expected, tolerance, what)
-    end
-
-    # Keeps a number with the result; outside its limits it is a failure. A value
-    # that is not a finite number lies outside any limits.
-    def measure(name, value, unit = "", low: nil, high: nil)
-      low, high = [low, high].map { |limit| limit && Float(limit) }
-      if [low, high].compact.any?(&:nan?)
-        raise ArgumentError, "a limit of `#{name}` is not a number"
-      end
-
-      Session.current.measured(Text.utf8(name), Float(value), Text.utf8(unit), low, high)
-    end
-
-    # Keeps a file with the result. It is copied now: write it before, to its end.
-    def attach(path, name: nil, media_type: nil)
-      full = File.expand_path(path)
-      raise Errno::ENOENT, "there is no file `#{full}` to attach" unless File.file?(full)
-
-      name = Text.utf8(name || File.basename(full))
-      session = Session.current
-      folder = session.task.keep_folder
-      full = Keep.copy(full, name, folder) unless folder.empty?
-      params = { name: name, path: Text.utf8(full), media_type: Text.utf8(media_type) }
-      session.notify("attached", params)
     end
 
     private

@@ -137,6 +137,9 @@ export class Details {
         }
         if (event.type === 'hook-started' && kind === 'hook' && event.hook === id) this.latest += 1;
         if (this.latest !== number) return false;
+        // A fixture's report about a test is shown with the test.
+        if (event.type === 'message' && event.test != null)
+            return kind === 'test' && event.test === id;
         if ('source' in event) return (event.source as Record<string, number>)[kind] === id;
         return kind === 'test' && 'test' in event && event.test === id;
     }

@@ -44,6 +44,9 @@ export function applyToTest(test: Test, event: Event): void {
         }
         case 'test-phase':
             test.phase = event.phase;
+            // It is judged; what follows is the fixtures' time.
+            if (event.phase === 'notice' && last !== undefined)
+                test.duration_us += event.at - last.started;
             break;
         case 'test-slow':
             test.slow = true;
@@ -54,7 +57,7 @@ export function applyToTest(test: Test, event: Event): void {
             last.verdict = event.verdict;
             if (event.rerun) last.rerun = true;
             if (event.reason != null) last.reason = event.reason;
-            test.duration_us += event.at - last.started;
+            if (test.phase !== 'notice') test.duration_us += event.at - last.started;
             delete test.phase;
             test.state = 'pending';
             if (!event.rerun && test.timed !== true && last.repetition >= test.repetitions)

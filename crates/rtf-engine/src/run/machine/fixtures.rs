@@ -4,6 +4,9 @@
 //! when all that depend on it are gone. Those that do not depend on each other
 //! go at the same time.
 
+use rtf_model::TestId;
+use rtf_model::protocol::{Notice, Request};
+
 use super::fixture::{FixtureRun, State};
 use super::io::HostId;
 use super::suite::Context;
@@ -135,6 +138,21 @@ impl<'p> Fixtures<'p> {
     /// Asks each plug-in whether it is well.
     pub fn ask_checks(&mut self, cx: &mut Context<'_>) {
         self.runs.iter_mut().for_each(|fixture| fixture.ask_check(cx));
+    }
+
+    /// Whether any of them asked for it.
+    pub fn any_hears(&self, notice: Notice) -> bool {
+        self.runs.iter().any(|fixture| fixture.hears(notice))
+    }
+
+    /// Tells each that asked for it of a test.
+    pub fn tell(&mut self, about: (Notice, TestId), told: &Request, cx: &mut Context<'_>) {
+        self.runs.iter_mut().for_each(|fixture| fixture.tell(about, told.clone(), cx));
+    }
+
+    /// Whether any of them has not answered what it was told of a test.
+    pub fn any_told_of(&self, test: TestId) -> bool {
+        self.runs.iter().any(|fixture| fixture.is_told_of(test))
     }
 
     pub fn any_checking(&self) -> bool {

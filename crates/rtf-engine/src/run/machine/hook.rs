@@ -89,7 +89,11 @@ impl<'p> HookRun<'p> {
                 if matches!(message.kind, MessageKind::Failure | MessageKind::Error) {
                     self.note(message.text.clone());
                 }
-                cx.emit(EventKind::Message { source: Source::Hook(self.plan.id), message });
+                cx.emit(EventKind::Message {
+                    source: Source::Hook(self.plan.id),
+                    message,
+                    test: None,
+                });
             }
             HostInput::Told(Notification::Measured(measurement)) => {
                 self.problem = self.problem.take().or_else(|| measurement.problem());

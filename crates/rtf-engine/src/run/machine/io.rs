@@ -115,6 +115,8 @@ pub enum FixtureTimer {
     Limit,
     /// The answer to `check`.
     Check,
+    /// The answer to `test-started` or `test-finished`.
+    Notice,
     /// The next `check`.
     CheckDue,
     /// The next restart.

@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     fn answered(outcome: Outcome, exit: ExitStatus) -> Evidence {
-        let answer = Answer { outcome, reason: None };
+        let answer = Answer { outcome, reason: None, notices: Vec::new() };
         Evidence { answer: Some(Ok(answer)), exit: Some(exit), ..Evidence::default() }
     }
 

@@ -10,11 +10,12 @@
 //!    limit) or has no test left: `end` hooks, tear down in reverse, skip the rest.
 //! 4. A fixture is unwell: tear down that fixture and all that depend on it.
 //! 5. A fixture is not there: set it up.
-//! 6. Ask plug-in fixtures for their `check`, then start the next tests.
+//! 6. Ask plug-in fixtures for their `check`, tell those that asked for it of the next
+//!    tests, then start these.
 //!
 //! Which test may start is in [`turns`], how a suite is ended early in [`ending`],
 //! how a test that failed is tried again in [`retries`], how the whole is
-//! repeated in [`rounds`].
+//! repeated in [`rounds`], what fixtures are told of tests in [`telling`].
 //!
 //! **A collapse interrupts all running tests in [`SuiteMachine::fixture_changed`].**
 
@@ -23,6 +24,7 @@ mod ending;
 mod looking;
 mod retries;
 mod rounds;
+mod telling;
 mod turns;
 
 use std::time::Duration;
@@ -133,9 +135,7 @@ impl<'p> SuiteMachine<'p> {
             Input::StopTest(test, by) => self.stop_test(test, &by, &mut cx),
             Input::Skip(by) => self.skip(&by, &mut cx),
         }
-        while let Some((test, run, ended)) = self.turns.take_end(&mut cx) {
-            self.test_ended(test, &run, &ended, &mut cx);
-        }
+        self.look_over(&mut cx);
         self.proceed(&mut cx);
         self.hosts = hosts;
     }
@@ -313,6 +313,7 @@ impl<'p> SuiteMachine<'p> {
         }
         if self.fixtures.start_next(cx) {
             self.checked = false;
+            self.turns.untell();
         } else if self.fixtures.all_ready() {
             self.check_then_test(cx);
         }
@@ -341,7 +342,9 @@ impl<'p> SuiteMachine<'p> {
         if self.fixtures.any_checking() {
             return;
         }
-        while self.turns.start_next(cx) {}
+        if !self.tell_then_start(cx) {
+            return;
+        }
         self.checked = false;
         self.hooks.test_starts();
         cx.out(Effect::SpawnAhead(self.turns.hosts_ahead()));

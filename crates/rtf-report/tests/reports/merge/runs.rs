@@ -246,7 +246,7 @@ impl Run {
             let (source, text) = (Source::Test(test), format!("message {number}"));
             let kind = MessageKind::Report;
             let message = Message { kind, text, location: None, comparison: None, critical: false };
-            self.push(EventKind::Message { source, message });
+            self.push(EventKind::Message { source, message, test: None });
         }
         if let Some(value) = tried.measured {
             let measurement = Measurement {
@@ -257,13 +257,13 @@ impl Run {
                 high: Some(5.0),
                 location: None,
             };
-            self.push(EventKind::Measured { test, measurement });
+            self.push(EventKind::Measured { test, fixture: None, measurement });
             let attachment = Attachment {
                 name: "plot".into(),
                 path: format!("attachments/{test}/1/plot.png"),
                 media_type: "image/png".into(),
             };
-            self.push(EventKind::Attached { test, attachment });
+            self.push(EventKind::Attached { test, fixture: None, attachment });
         }
     }
 }

@@ -7,6 +7,7 @@
 #include <exception>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <typeinfo>
 
@@ -18,6 +19,7 @@ namespace rtf {
 
 class FixtureManager;
 class TestCase;
+struct Test;
 
 namespace internal {
 
@@ -55,6 +57,34 @@ int32_t guarded(Step &&step) noexcept
     return RTF_STOPPED;
 }
 
+// Whether a fixture has a testStarted or a testFinished of its own. One that may
+// not be looked at from here is its own.
+template <class T, class = void>
+struct HearsStart : std::true_type
+{
+};
+
+template <class T>
+struct HearsStart<T, std::void_t<decltype(&T::testStarted)>>
+    : std::bool_constant<
+          !std::is_same_v<decltype(&T::testStarted), bool (FixtureManager::*)(const Test &)>>
+{
+};
+
+template <class T, class = void>
+struct HearsFinish : std::true_type
+{
+};
+
+template <class T>
+struct HearsFinish<T, std::void_t<decltype(&T::testFinished)>>
+    : std::bool_constant<
+          !std::is_same_v<decltype(&T::testFinished),
+                          bool (FixtureManager::*)(const Test &, std::string_view,
+                                                   std::string_view)>>
+{
+};
+
 template <class T>
 struct Entry
 {
@@ -65,6 +95,9 @@ struct Entry
 
     // Its functions are called through the base, where they are public.
     using Base = std::conditional_t<is_fixture, FixtureManager, TestCase>;
+
+    // Only there in a fixture's source.
+    using Told = std::conditional_t<is_fixture, Test, void>;
 
     static Base &get(void *self) { return *static_cast<T *>(self); }
 
@@ -106,6 +139,27 @@ struct Entry
         });
     }
 
+    static int32_t test_started(void *self, const rtf_test *test)
+    {
+        return guarded([&] {
+            if constexpr (is_fixture) {
+                return get(self).testStarted(Told{test->id, from_text(test->name), test->repetition, test->attempt});
+            }
+            return true;
+        });
+    }
+
+    static int32_t test_finished(void *self, const rtf_test *test)
+    {
+        return guarded([&] {
+            if constexpr (is_fixture) {
+                return get(self).testFinished(Told{test->id, from_text(test->name), test->repetition, test->attempt}, from_text(test->verdict),
+                                              from_text(test->reason));
+            }
+            return true;
+        });
+    }
+
     static int32_t tear_down(void *self)
     {
         return guarded([&] {
@@ -131,6 +185,10 @@ constexpr rtf_plugin_table table_of(const char *name)
     table.run = Own::is_fixture ? nullptr : Own::run;
     table.check = Own::is_fixture ? Own::check : nullptr;
     table.tear_down = Own::tear_down;
+    if constexpr (Own::is_fixture) {
+        table.test_started = HearsStart<T>::value ? Own::test_started : nullptr;
+        table.test_finished = HearsFinish<T>::value ? Own::test_finished : nullptr;
+    }
     return table;
 }
 

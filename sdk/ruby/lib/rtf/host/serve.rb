@@ -82,6 +82,7 @@ module RTF
         when "run-test" then run_test(request)
         when "set-up-fixture" then set_up_fixture(request)
         when "check-fixture" then Steps.check_fixture(enter(@task, request), @fixture)
+        when "test-started", "test-finished" then tell_fixture(request)
         when "tear-down-fixture" then tear_down_fixture(request)
         else raise Refused.new(METHOD_NOT_FOUND, "unknown method `#{request.method}`")
         end
@@ -106,6 +107,14 @@ module RTF
         @task = task(request)
         @fixture, answer = Steps.set_up_fixture(enter(@task, request), @fixture)
         answer
+      end
+
+      def tell_fixture(request)
+        session = enter(@task, request)
+        session.task.keep_folder = request.params["keep_folder"].to_s
+        Steps.tell_fixture(session, @fixture, request.method, request.params)
+      ensure
+        session.task.keep_folder = "" if session
       end
 
       def tear_down_fixture(request)

@@ -34,7 +34,31 @@ module RTF
         end
         fixture = load(session, FixtureManager)
         step(session, "setup") { fixture.setup(session.task.args) } if fixture
-        [fixture, answer(session)]
+        answer = answer(session)
+        notices = fixture && answer[:outcome] == "passed" ? notices(fixture) : []
+        answer[:notices] = notices if notices.any?
+        [fixture, answer]
+      end
+
+      # What a fixture wants to be told of tests: that for which it has a method.
+      def notices(fixture)
+        own = ->(name) { fixture.method(name).owner != FixtureManager }
+        [*("test-started" if own[:test_started]), *("test-finished" if own[:test_finished])]
+      end
+
+      # Tells a fixture that a test is about to begin, or how it was judged.
+      def tell_fixture(session, fixture, method, params)
+        session.judge.failures_are_errors = false
+        test = Test.new(*(params["test"] || {}).values_at("id", "name", "repetition", "attempt"))
+        if fixture.nil?
+          session.judge.note("error", "no fixture is set up")
+        elsif method == "test-started"
+          step(session, "test_started") { fixture.test_started(test) }
+        else
+          ending = [params["verdict"], params["reason"].to_s]
+          step(session, "test_finished") { fixture.test_finished(test, *ending) }
+        end
+        answer(session)
       end
 
       # Asks a fixture whether it is well.

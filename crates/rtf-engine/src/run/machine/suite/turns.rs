@@ -7,7 +7,8 @@
 
 use std::time::Duration;
 
-use rtf_model::{StopCause, TestId};
+use rtf_model::protocol::ToldTest;
+use rtf_model::{StopCause, TestId, Verdict};
 
 use super::Context;
 use super::cursor::Cursor;
@@ -30,6 +31,8 @@ pub(super) struct Turn<'p> {
     pub run: Option<TestRun<'p>>,
     /// Whether its next attempt is not due yet.
     pub waits: bool,
+    /// Whether the fixtures were told that its next attempt is about to begin.
+    pub told: bool,
     /// Why no more of its repetitions follow.
     pub given_up: Option<String>,
 }
@@ -37,6 +40,12 @@ pub(super) struct Turn<'p> {
 impl Turn<'_> {
     fn is_due(&self) -> bool {
         self.run.is_none() && !self.waits
+    }
+
+    /// The attempt that runs, or is next, as fixtures are told.
+    fn told_test(&self) -> ToldTest {
+        let Cursor { repetition, attempt, .. } = self.cursor;
+        ToldTest { id: self.plan.id, name: self.plan.name.clone(), repetition, attempt }
     }
 }
 
@@ -123,12 +132,40 @@ impl<'p> Turns<'p> {
         self.open.iter_mut().find(|turn| turn.plan.id == test)
     }
 
-    /// An attempt that is over; its test is still open.
-    pub fn take_end(&mut self, cx: &mut Context<'_>) -> Option<(TestId, TestRun<'p>, Ended)> {
+    /// Judges an attempt that is to be judged now: its verdict and the reason.
+    pub fn judge_next(
+        &mut self,
+        cx: &mut Context<'_>,
+    ) -> Option<(ToldTest, Verdict, Option<String>)> {
         self.open.iter_mut().find_map(|turn| {
-            let ended = turn.run.as_mut()?.take_end(cx)?;
+            let (verdict, reason) = turn.run.as_mut()?.judge_once(cx)?;
+            Some((turn.told_test(), verdict, reason))
+        })
+    }
+
+    /// An attempt that is judged, and of which all have `heard`; its test is still open.
+    pub fn take_end(
+        &mut self,
+        heard: impl Fn(TestId) -> bool,
+    ) -> Option<(TestId, TestRun<'p>, Ended)> {
+        let mut heard_of = self.open.iter_mut().filter(|turn| heard(turn.plan.id));
+        heard_of.find_map(|turn| {
+            let ended = turn.run.as_mut()?.take_end()?;
+            turn.told = false;
             Some((turn.plan.id, turn.run.take()?, ended))
         })
+    }
+
+    /// The next of the attempts that are due of which fixtures have to be told.
+    pub fn tell_next(&mut self) -> Option<ToldTest> {
+        let turn = self.open.iter_mut().find(|turn| turn.is_due() && !turn.told)?;
+        turn.told = true;
+        Some(turn.told_test())
+    }
+
+    /// Fixtures were set up anew: they know of no attempt that has not begun.
+    pub fn untell(&mut self) {
+        self.open.iter_mut().filter(|turn| turn.run.is_none()).for_each(|turn| turn.told = false);
     }
 
     /// A test is over.
@@ -152,17 +189,25 @@ impl<'p> Turns<'p> {
             && (!alone(plan) || self.open.is_empty())
     }
 
-    /// Starts the next attempt that may start; false when there is none.
-    pub fn start_next(&mut self, cx: &mut Context<'_>) -> bool {
-        if !self.open.iter().any(Turn::is_due) && self.has_room() {
+    /// Opens the next test, if it may begin beside those that are open.
+    pub fn open_next(&mut self) -> bool {
+        let room = self.has_room();
+        if room {
             let plan = &self.suite.tests[self.next];
             let (cursor, run) = (self.rounds.first_of(plan), None);
-            let (waits, given_up) = (false, None);
-            self.open.push(Turn { plan, cursor, run, waits, given_up });
+            let (waits, told, given_up) = (false, false, None);
+            self.open.push(Turn { plan, cursor, run, waits, told, given_up });
             self.next += 1;
             self.pass_over();
         }
-        let Some(turn) = self.open.iter_mut().find(|turn| turn.is_due()) else { return false };
+        room
+    }
+
+    /// Starts the next attempt that may start and of which all fixtures have `heard`;
+    /// false when there is none.
+    pub fn start_next(&mut self, heard: impl Fn(TestId) -> bool, cx: &mut Context<'_>) -> bool {
+        let may = |turn: &&mut Turn<'_>| turn.is_due() && turn.told && heard(turn.plan.id);
+        let Some(turn) = self.open.iter_mut().find(may) else { return false };
         self.rounds.begins(turn.plan.id, turn.cursor);
         let number = (turn.cursor.repetition, turn.cursor.attempt);
         turn.run = Some(TestRun::start(self.suite, turn.plan, number, cx));

@@ -57,6 +57,8 @@ enum Process {
     Settling,
     /// It is gone, and nothing more is waited for.
     Over,
+    /// The attempt is judged, and nothing changes that.
+    Judged,
 }
 
 /// What an attempt that is over means for the suite.
@@ -90,6 +92,7 @@ pub struct TestRun<'p> {
     leak: Option<String>,
     captures: [Capture; 2],
     critical: Option<String>,
+    ended: Option<Ended>,
 }
 
 impl<'p> TestRun<'p> {
@@ -130,6 +133,7 @@ impl<'p> TestRun<'p> {
             leak: None,
             captures: [Capture::new(source, Stream::Stdout), Capture::new(source, Stream::Stderr)],
             critical: None,
+            ended: None,
         }
     }
 
@@ -162,7 +166,7 @@ impl<'p> TestRun<'p> {
             HostInput::Exited(status, left) => self.exited(status, left, cx),
             HostInput::Told(notification) => self.told(notification, cx),
             HostInput::Attached(Ok(attachment)) => {
-                cx.emit(EventKind::Attached { test: self.plan.id, attachment });
+                cx.emit(EventKind::Attached { test: self.plan.id, fixture: None, attachment });
             }
             HostInput::Attached(Err(reason)) => self.own_error(reason, cx),
             HostInput::Answered(INITIALIZE, reply) => self.initialized(reply, cx),
@@ -196,7 +200,7 @@ impl<'p> TestRun<'p> {
     }
 
     fn enter(&mut self, phase: Phase, cx: &mut Context<'_>) {
-        if phase <= self.phase || phase == Phase::Exit || self.evidence.answer.is_some() {
+        if phase <= self.phase || phase >= Phase::Exit || self.evidence.answer.is_some() {
             let what = format!("entered {phase} after {}", self.phase);
             return self.broke_protocol(what, cx);
         }
@@ -228,14 +232,14 @@ impl<'p> TestRun<'p> {
         if message.critical && message.kind != MessageKind::Check && self.critical.is_none() {
             self.critical = Some(message.text.clone());
         }
-        cx.emit(EventKind::Message { source: Source::Test(self.plan.id), message });
+        cx.emit(EventKind::Message { source: Source::Test(self.plan.id), message, test: None });
     }
 
     fn measured(&mut self, measurement: Measurement, cx: &mut Context<'_>) {
         if let Some(problem) = measurement.problem() {
             self.note(Verdict::Failed, problem);
         }
-        cx.emit(EventKind::Measured { test: self.plan.id, measurement });
+        cx.emit(EventKind::Measured { test: self.plan.id, fixture: None, measurement });
     }
 
     fn own_error(&mut self, text: String, cx: &mut Context<'_>) {
@@ -321,8 +325,8 @@ impl<'p> TestRun<'p> {
         }
     }
 
-    /// Whether it is over. The caller then emits `test-finished` with [`finished`].
-    pub fn take_end(&mut self, cx: &mut Context<'_>) -> Option<Ended> {
+    /// Judges it once its process is gone: verdict and reason, when that is now.
+    pub fn judge_once(&mut self, cx: &mut Context<'_>) -> Option<(Verdict, Option<String>)> {
         if self.process != Process::Over {
             return None;
         }
@@ -333,8 +337,15 @@ impl<'p> TestRun<'p> {
             verdict = Verdict::Error;
             reason = Some(problem);
         }
-        let exit = self.evidence.exit;
-        Some(Ended { verdict, reason, phase, exit, critical: self.critical.take() })
+        self.process = Process::Judged;
+        let (exit, critical) = (self.evidence.exit, self.critical.take());
+        self.ended = Some(Ended { verdict, reason: reason.clone(), phase, exit, critical });
+        Some((verdict, reason))
+    }
+
+    /// Its end, once it is judged. The caller then emits `test-finished` with [`finished`].
+    pub fn take_end(&mut self) -> Option<Ended> {
+        self.ended.take()
     }
 
     /// The last event of this attempt.

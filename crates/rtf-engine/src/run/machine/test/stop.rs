@@ -19,7 +19,7 @@ const KILL_AGAIN: Duration = Duration::from_secs(5);
 impl TestRun<'_> {
     /// Asks the test to stop. The first cause is the one that counts.
     pub fn stop(&mut self, cause: StopCause, reason: String, cx: &mut Context<'_>) {
-        if self.evidence.stopped.is_some() {
+        if self.evidence.stopped.is_some() || self.process == Process::Judged {
             return;
         }
         if self.process != Process::Alive && cause != StopCause::Collapse {
@@ -87,6 +87,9 @@ impl TestRun<'_> {
         if timer == TestTimer::Slow {
             return cx.emit(EventKind::TestSlow { test: self.plan.id });
         }
+        if self.process == Process::Judged {
+            return;
+        }
         if self.process != Process::Alive {
             self.process = Process::Over;
             return;
@@ -110,7 +113,7 @@ impl TestRun<'_> {
             Phase::Setup => format!("set-up did not end within {:?}", limits.setup),
             Phase::Run => format!("run did not end within {:?}", limits.run),
             Phase::TearDown => format!("tear-down did not end within {:?}", limits.teardown),
-            Phase::Exit => {
+            Phase::Exit | Phase::Notice => {
                 format!("the process did not end within {:?} after the test", limits.teardown)
             }
         }

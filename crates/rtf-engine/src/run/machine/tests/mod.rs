@@ -8,6 +8,7 @@ mod flow;
 mod graph;
 mod hooks;
 mod limits;
+mod notices;
 mod parallel;
 mod prepared;
 mod retries;

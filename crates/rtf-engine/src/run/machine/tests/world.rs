@@ -62,7 +62,12 @@ fn fixture(index: usize) -> FixturePlan {
         depends: index.checked_sub(1).into_iter().collect(),
         body: FixtureBody::Plugin(plugin()),
         env: Vec::new(),
-        limits: FixtureLimits { setup: 10 * SECOND, check: SECOND, teardown: 3 * SECOND },
+        limits: FixtureLimits {
+            setup: 10 * SECOND,
+            check: SECOND,
+            notice: 2 * SECOND,
+            teardown: 3 * SECOND,
+        },
         restarts: 1,
         restart_delay: Duration::ZERO,
         check_every: None,
@@ -272,6 +277,14 @@ impl<'p> World<'p> {
         let id = asked.and_then(|(_, id, _)| *id).expect("a request");
         let value = serde_json::json!({ "outcome": outcome, "reason": format!("says {outcome}") });
         self.input(source, HostInput::Answered(id, Reply::Result(value)));
+    }
+
+    /// A fixture is set up, and wants to be told of each test.
+    pub fn set_up_to_hear(&mut self, fixture: u32) {
+        let source = Source::Fixture(FixtureId(fixture));
+        let notices = ["test-started", "test-finished"];
+        let value = serde_json::json!({ "outcome": "passed", "notices": notices });
+        self.input(source, HostInput::Answered(2, Reply::Result(value)));
     }
 
     pub fn phase(&mut self, source: Source, phase: Phase) {

@@ -1,0 +1,217 @@
+//! What fixtures are told of tests, and what becomes of one that does not bear it.
+
+use rtf_model::protocol::{Notification, Request};
+use rtf_model::{
+    Attachment, FixtureId, Measurement, Message, MessageKind, Source, TestId, Verdict,
+};
+
+use super::world::{World, suite};
+use crate::run::machine::{Deadline, FixtureTimer, HostInput, StopLevel};
+
+const RECORDER: Source = Source::Fixture(FixtureId(0));
+const TEST: Source = Source::Test(TestId(0));
+
+/// What the fixture was told last.
+fn told(world: &World<'_>) -> String {
+    match &world.sent.last().expect("something was sent").2 {
+        Request::TestStarted(starts) => {
+            let test = &starts.test;
+            format!("{} {}.{} starts", test.name, test.repetition, test.attempt)
+        }
+        Request::TestFinished(ends) => {
+            let reason = ends.reason.as_deref().unwrap_or("no reason");
+            format!("{} {}: {reason}", ends.test.name, ends.verdict)
+        }
+        other => format!("{other:?}"),
+    }
+}
+
+/// A suite whose fixture was told that its test begins, and whose test runs.
+fn begun<'p>(plan: &'p crate::plan::SuitePlan) -> World<'p> {
+    let mut world = World::new(plan);
+    world.start();
+    world.set_up_to_hear(0);
+    world.answer(RECORDER, "passed");
+    assert_eq!(told(&world), "test0 1.1 starts");
+    assert!(!world.story().contains("test-started"), "{}", world.story());
+    world.answer(RECORDER, "passed");
+    world
+}
+
+fn report(world: &mut World<'_>, kind: MessageKind, text: &str) {
+    let (location, comparison) = (None, None);
+    let message = Message { kind, text: text.to_owned(), location, comparison, critical: false };
+    world.input(RECORDER, HostInput::Told(Notification::Message(message)));
+}
+
+fn attach(world: &mut World<'_>) {
+    let attachment = Attachment {
+        name: "run.mcap".to_owned(),
+        path: "attachments/fixture-0/1/1-run.mcap".to_owned(),
+        media_type: String::new(),
+    };
+    world.input(RECORDER, HostInput::Attached(Ok(attachment)));
+}
+
+#[test]
+fn what_a_fixture_keeps_at_the_end_of_a_test_is_the_tests() {
+    let plan = suite(1, 1);
+    let mut world = begun(&plan);
+    report(&mut world, MessageKind::Report, "the disk is slow");
+    world.pass(0);
+    assert_eq!(told(&world), "test0 passed: no reason");
+    attach(&mut world);
+    let (value, low, high, location) = (Some(3.5), None, None, None);
+    let (name, unit) = ("size".to_owned(), "MB".to_owned());
+    let measurement = Measurement { name, value, unit, low, high, location };
+    world.input(RECORDER, HostInput::Told(Notification::Measured(measurement)));
+    report(&mut world, MessageKind::Report, "kept 3.5 MB");
+    assert!(!world.story().contains("test-finished"), "{}", world.story());
+    world.answer(RECORDER, "passed");
+    world.tear_down(0);
+    world.finish();
+    insta::assert_snapshot!(world.story(), @"
+    0.0  suite-started
+    0.0  fixture-starting attempt=1 fixture=0
+    0.0  fixture-ready fixture=0
+    0.0  test-started attempt=1 repetition=1 test=0
+    0.0  message source={fixture:0}
+    0.0  test-phase phase=setup test=0
+    0.0  test-phase phase=run test=0
+    0.0  test-phase phase=tear-down test=0
+    0.0    → close the channel
+    0.0  test-phase phase=notice test=0
+    0.0  attached attachment={media_type:,name:run.mcap,path:attachments/fixture-0/1/1-run.mcap} fixture=0 test=0
+    0.0  measured fixture=0 measurement={name:size,unit:MB,value:3.5} test=0
+    0.0  message source={fixture:0} test=0
+    0.0  test-finished exit={code:0} phase=exit test=0 verdict=passed
+    0.0  fixture-stopping fixture=0
+    0.0    → close the channel
+    0.0  fixture-stopped fixture=0
+    0.0  suite-finished
+    ");
+    let attempt = &world.record.tests[0].attempts[0];
+    let texts: Vec<_> = attempt.messages.iter().map(|message| message.text.as_str()).collect();
+    assert_eq!(texts, ["kept 3.5 MB"]);
+    assert_eq!((attempt.attachments.len(), attempt.measurements.len()), (1, 1));
+    assert!(world.record.is_green());
+}
+
+#[test]
+fn a_fixture_that_asked_for_nothing_is_told_nothing() {
+    let plan = suite(1, 1);
+    let mut world = World::new(&plan);
+    world.start();
+    for _ in ["set-up", "check"] {
+        world.answer(RECORDER, "passed");
+    }
+    world.pass(0);
+    world.tear_down(0);
+    world.finish();
+    let tells =
+        |request: &Request| matches!(request, Request::TestStarted(_) | Request::TestFinished(_));
+    assert!(!world.sent.iter().any(|(_, _, request)| tells(request)), "{:?}", world.sent);
+    assert!(!world.story().contains("notice"), "{}", world.story());
+}
+
+#[test]
+fn the_verdict_stands_when_a_fixture_hangs_while_it_is_told() {
+    let plan = suite(1, 1);
+    let mut world = begun(&plan);
+    world.pass(0);
+    assert_eq!(world.next_deadline(), Deadline::Fixture(0, FixtureTimer::Notice));
+    assert_eq!(world.record.tests[0].verdict(), Some(Verdict::Passed));
+    world.tear_down(0);
+    world.finish();
+    let why = &world.record.fixtures[0].collapses[0].1;
+    assert_eq!(why, "testFinished did not end within 2s");
+    assert!(!world.record.is_green());
+}
+
+#[test]
+fn an_error_at_the_end_of_a_test_is_the_fixtures() {
+    let plan = suite(1, 1);
+    let mut world = begun(&plan);
+    world.pass(0);
+    report(&mut world, MessageKind::Error, "the disk is full");
+    world.answer(RECORDER, "error");
+    world.tear_down(0);
+    world.finish();
+    assert!(world.record.tests[0].attempts[0].messages.is_empty());
+    let fixture = &world.record.fixtures[0];
+    assert_eq!(fixture.messages[0].text, "the disk is full");
+    assert_eq!(fixture.collapses[0].1, "testFinished failed: says error");
+}
+
+#[test]
+fn a_test_does_not_begin_before_a_fixture_has_borne_the_news() {
+    let plan = suite(1, 1);
+    let mut world = World::new(&plan);
+    world.start();
+    world.set_up_to_hear(0);
+    world.answer(RECORDER, "passed");
+    world.answer(RECORDER, "failed");
+    assert_eq!(world.record.fixtures[0].collapses[0].1, "testStarted failed: says failed");
+    world.tear_down(0);
+    world.set_up_to_hear(0);
+    world.answer(RECORDER, "passed");
+    assert_eq!(told(&world), "test0 1.1 starts");
+    world.answer(RECORDER, "passed");
+    world.pass(0);
+    world.answer(RECORDER, "passed");
+    world.tear_down(0);
+    world.finish();
+    assert_eq!(world.record.tests[0].attempts.len(), 1);
+    assert_eq!(world.record.tests[0].verdict(), Some(Verdict::Passed));
+}
+
+#[test]
+fn fixtures_are_told_of_a_test_that_another_ones_collapse_ended() {
+    let mut plan = suite(2, 1);
+    plan.fixtures[1].depends.clear();
+    let mut world = World::new(&plan);
+    let robot = Source::Fixture(FixtureId(1));
+    world.start();
+    world.set_up_to_hear(0);
+    for _ in ["set-up", "check"] {
+        world.answer(robot, "passed");
+    }
+    world.answer(RECORDER, "passed");
+    world.answer(RECORDER, "passed");
+    let reason = "it fell".to_owned();
+    world.input(robot, HostInput::Told(Notification::Collapsed { reason }));
+    world.answer(TEST, "interrupted");
+    world.exit(TEST, rtf_model::ExitStatus::Code(0));
+    assert_eq!(told(&world), "test0 collapsed: fixture `fixture1` collapsed: it fell");
+    attach(&mut world);
+    world.answer(RECORDER, "passed");
+    world.tear_down(0);
+    world.tear_down(1);
+    world.finish();
+    assert_eq!(world.record.tests[0].attempts[0].attachments.len(), 1);
+}
+
+#[test]
+fn a_run_that_is_killed_waits_for_nobody() {
+    let plan = suite(1, 2);
+    let mut world = begun(&plan);
+    world.pass(0);
+    world.stop(StopLevel::TearDown);
+    world.stop(StopLevel::Kill);
+    assert_eq!(world.record.tests[0].verdict(), Some(Verdict::Passed));
+    world.exit(RECORDER, rtf_model::ExitStatus::Signal(9));
+    world.finish();
+}
+
+#[test]
+fn what_is_kept_when_no_test_ends_is_an_error_of_the_fixture() {
+    let plan = suite(1, 1);
+    let mut world = begun(&plan);
+    attach(&mut world);
+    world.pass(0);
+    world.answer(RECORDER, "passed");
+    world.tear_down(0);
+    world.finish();
+    let said = &world.record.fixtures[0].messages[0].text;
+    assert_eq!(said, "the file `run.mcap` is not kept: there is no test that it belongs to");
+}
