@@ -89,10 +89,10 @@ class Lesson:
             expect(f"`{text}` in {reasons[0]!r}", text in reasons[0], True)
         self.nothing_left()
 
-    def start(self, suite: str, name: str) -> Run:
+    def start(self, suite: str, name: str, *options: str) -> Run:
         """Begins a run of a suite."""
         print(f"--- {name}", flush=True)
-        return Run(self.rtf, str(self.example / suite), self.folder / f"{name}.run")
+        return Run(self.rtf, str(self.example / suite), self.folder / f"{name}.run", *options)
 
     def processes(self, program: str = "") -> list[int]:
         """The processes of the runs, zombies not counted, or those of a program."""

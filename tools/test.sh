@@ -98,7 +98,7 @@ lint_python() {
   "$checkers/mypy" examples/06-ros2/*.py
   "$checkers/mypy" fixtures
   "$checkers/mypy" tests/fixtures/*.py tests/fixtures/ros2launch/*.py \
-    tests/fixtures/orocos/*.py
+    tests/fixtures/orocos/*.py tests/fixtures/yarp/*.py
   "$checkers/mypy" benches/bench.py
   "$checkers/mypy" tests/predecessor/*.py
 }
@@ -133,9 +133,9 @@ sdk_ruby() {
 }
 
 suites_are_valid() {
-  # The fixtures of an example are files of its middleware.
-  files 'examples/*.xml' ':!examples/*/fixtures/*' 'tests/install/*.xml' 'tests/fixtures/*/suite.xml' |
-    xargs -d '\n' xmllint --noout --schema spec/suite.xsd
+  # What lies deeper in an example is its middleware's.
+  files ':(glob)examples/*/*.xml' 'tests/install/*.xml' 'tests/fixtures/*/suite.xml' \
+    'tests/fixtures/yarp/suites/*.xml' | xargs -d '\n' xmllint --noout --schema spec/suite.xsd
 }
 
 # What the fixture managers make of the words of middleware.
@@ -161,13 +161,22 @@ example_02() {
     examples/02-supervised-simulator/supervised.xml
 }
 
-# YARP's programs, modules and bindings, as the lesson's README has them.
-example_03() {
-  local built=$BUILD/examples/03-yarp
-  export PATH=$built:$YARP_PREFIX/bin:$PATH LD_LIBRARY_PATH=$YARP_PREFIX/lib
+# YARP's programs and bindings, as docs/fixtures/yarpserver.md has them.
+use_yarp() {
+  export PATH=$YARP_PREFIX/bin:$PATH LD_LIBRARY_PATH=$YARP_PREFIX/lib
   export YARP_DATA_DIRS=$YARP_PREFIX/share/yarp PYTHONPATH=$YARP_PREFIX/lib/python3
   export LUA_CPATH="$YARP_PREFIX/lib/lua/5.4/?.so;;" CMAKE_PREFIX_PATH=$YARP_PREFIX
-  export RTF_DIR=$ROOT/sdk/cpp/cmake/rtf RTF_PLUGIN_PATH=$built
+}
+
+fixture_yarp() {
+  use_yarp
+  python3 tools/check_fixture_yarp.py "$TARGET/release/rtf" tests/fixtures/yarp/suites
+}
+
+example_03() {
+  use_yarp
+  export RTF_DIR=$ROOT/sdk/cpp/cmake/rtf RTF_PLUGIN_PATH=$BUILD/examples/03-yarp
+  PATH=$RTF_PLUGIN_PATH:$PATH
   tools/plugins.sh examples/03-yarp
   python3 tools/check_example_03.py "$TARGET/release/rtf" examples/03-yarp
 }
@@ -218,6 +227,7 @@ step 'example 01 plug-ins' tools/plugins.sh examples/01-simulated-arm
 step 'example 01' example_01
 step 'example 02' example_02
 step_with 'example 03' yarp example_03
+step_with 'fixture yarp' yarp fixture_yarp
 step_with 'example 05' ros1 example_05
 step_with 'example 06' ros2 example_06
 step_with 'fixture ros2launch' ros2 fixture_ros2launch

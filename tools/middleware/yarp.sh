@@ -78,7 +78,8 @@ yarp_build() {
   touch "$yarp_prefix/complete"
 }
 
-need_packages libeigen3-dev libtinyxml-dev libedit-dev libsqlite3-dev liblua5.4-dev swig g++ cmake ninja-build
+need_packages libeigen3-dev libtinyxml-dev libedit-dev libsqlite3-dev liblua5.4-dev swig g++ cmake ninja-build \
+  iproute2
 [ -e "$(python3 -c 'import sysconfig; print(sysconfig.get_path("include"))')/Python.h" ] ||
   need_packages python3-dev
 

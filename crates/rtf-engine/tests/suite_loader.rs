@@ -192,6 +192,7 @@ fn every_part_of_a_process_fixture_arrives() {
             "python3|arm_client.py|time",
             &asked("ros-node", "/robot/${param:node=driver}", None),
             &asked("ros-service", "/reset", None),
+            &asked("yarp-port", "/icubSim/head/state:o", None),
         ]
     );
     assert_eq!(
@@ -285,7 +286,7 @@ fn what_is_wrong_with_a_process_fixture() {
     assert_eq!(
         probe("<ready/>"),
         ["`<ready>` needs one of the attributes `tcp`, `http`, `log`, `file`, `command`, \
-          `ros-node`, `ros-topic`, `ros-service`, `ros2-topic`"]
+          `ros-node`, `ros-topic`, `ros-service`, `ros2-topic`, `yarp-port`"]
     );
     assert_eq!(
         probe("<ready tcp='a:1' file='b'/>"),

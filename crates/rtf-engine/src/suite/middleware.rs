@@ -7,7 +7,7 @@ use super::{MiddlewareQuestion, Question, Spanned, port};
 
 /// The attributes. What each of them means is known to the program that asks,
 /// `fixtures/rtf_fixtures/probe.py`.
-const KINDS: [&str; 4] = ["ros-node", "ros-topic", "ros-service", "ros2-topic"];
+const KINDS: [&str; 5] = ["ros-node", "ros-topic", "ros-service", "ros2-topic", "yarp-port"];
 
 /// Whether an attribute asks something of a middleware.
 pub(super) fn is_question(attribute: &str) -> bool {

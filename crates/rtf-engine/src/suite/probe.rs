@@ -9,7 +9,7 @@ use super::value::Reader;
 use super::{Probe, Question, Span, Spanned, middleware, port};
 
 /// The attributes that say what is asked; each probe has exactly one of them.
-const QUESTIONS: [&str; 10] = [
+const QUESTIONS: [&str; 11] = [
     "tcp",
     "http",
     "log",
@@ -20,6 +20,7 @@ const QUESTIONS: [&str; 10] = [
     "ros-topic",
     "ros-service",
     "ros2-topic",
+    "yarp-port",
 ];
 
 /// Reads a probe; `None` when it cannot be asked.
