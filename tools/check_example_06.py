@@ -27,8 +27,10 @@ OUTSIDE = "out"
 SETTLE = f"""
 set -e
 ip link set lo up
-echo 1 >/proc/sys/net/ipv6/conf/default/disable_ipv6
 ip link add {OUTSIDE} type veth peer name far
+# Without IPv6 addresses, which say hello by themselves.
+ip link set {OUTSIDE} addrgenmode none
+ip link set far addrgenmode none
 ip addr add 10.99.0.1/24 dev {OUTSIDE}
 ip link set {OUTSIDE} up
 ip link set far up
@@ -48,7 +50,8 @@ def main() -> int:
         os.environ.pop("ROS_DOMAIN_ID", None)
         os.environ.pop("ROS_AUTOMATIC_DISCOVERY_RANGE", None)
         script = [sys.executable, __file__, "--inside", folder, *arguments]
-        subprocess.run(["unshare", "-rn", "sh", "-c", SETTLE, "sh", *script], check=True)
+        unshare = ["unshare", "--net", *(["--map-root-user"] if os.geteuid() else [])]
+        subprocess.run([*unshare, "sh", "-c", SETTLE, "sh", *script], check=True)
         killed(Path(folder), *arguments)
         expect("nodes left", pids("joint.py"), [])
         expect("shared memory left", shared_memory() - before, set())
