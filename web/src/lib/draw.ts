@@ -131,6 +131,7 @@ function drawLane(
     context.restore();
     context.fillStyle = colours.surface;
     context.fillRect(0, y, gutter - 4, LANE);
+    if (lane.row > 0) return;
     context.fillStyle = isSuite ? colours.text : colours.muted;
     const indent = isSuite ? 14 : 26;
     const label = fit(context, oneLine(lane.name), gutter - indent - 8);

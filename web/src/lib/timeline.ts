@@ -21,6 +21,8 @@ export interface Lane {
     kind: 'suite' | 'fixture' | 'hook';
     id: number;
     name: string;
+    /** A suite whose tests overlap has several lanes, from 0. */
+    row: number;
     bars: Bar[];
     marks: Mark[];
 }
@@ -44,18 +46,19 @@ export function lanes(record: RunRecord): Lane[] {
         const fixtures = suite.fixtures.flatMap((id) => record.fixtures[id] ?? []);
         const hooks = suite.hooks.flatMap((id) => record.hooks[id] ?? []);
         return [
-            {
+            ...apart(bars[suite.id] ?? []).map((each, row): Lane => ({
                 kind: 'suite',
                 id: suite.id,
                 name: suite.name,
-                // Suites may run side by side, the tests of one do not.
-                bars: (bars[suite.id] ?? []).sort((a, b) => a.from - b.from),
+                row,
+                bars: each,
                 marks: [],
-            },
+            })),
             ...fixtures.map((fixture): Lane => ({
                 kind: 'fixture',
                 id: fixture.id,
                 name: fixture.name,
+                row: 0,
                 bars: spans(fixture).map((span) => ({
                     ...span,
                     label: `${fixture.name}: ${span.state}`,
@@ -69,6 +72,7 @@ export function lanes(record: RunRecord): Lane[] {
                     kind: 'hook',
                     id: hook.id,
                     name: hook.name,
+                    row: 0,
                     bars: hook.runs.map((run) => ({
                         from: run.started,
                         to: run.finished ?? null,
@@ -80,6 +84,22 @@ export function lanes(record: RunRecord): Lane[] {
                 })),
         ];
     });
+}
+
+/** Bars in rows in which none overlaps another one: each in the first that is free. */
+function apart(bars: Bar[]): Bar[][] {
+    const rows: { bars: Bar[]; end: number }[] = [{ bars: [], end: 0 }];
+    for (const bar of bars.sort((a, b) => a.from - b.from)) {
+        const end = bar.to ?? Infinity;
+        const free = rows.find((row) => row.end <= bar.from);
+        if (free === undefined) {
+            rows.push({ bars: [bar], end });
+        } else {
+            free.bars.push(bar);
+            free.end = end;
+        }
+    }
+    return rows.map((row) => row.bars);
 }
 
 /** A part of the run's time, in microseconds. */

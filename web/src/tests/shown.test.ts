@@ -79,6 +79,17 @@ describe('the time line', () => {
             ['fixture', 7],
         ]);
     });
+    test('tests that overlap are in rows of their own', () => {
+        const suites = lanes(recordOf(stream('parallel'))).filter(({ kind }) => kind === 'suite');
+        expect(suites.map(({ row, bars }) => [row, bars.map(({ label }) => label)])).toEqual([
+            [0, ['EncoderTest (1)', 'EncoderTest (2)', 'EncoderTest (3)']],
+            [1, ['LimitTest', 'MoveTest', 'GripTest']],
+        ]);
+        for (const { bars } of suites) {
+            const ends = bars.map(({ to }) => to ?? Infinity);
+            expect(bars.slice(1).every(({ from }, index) => from >= ends[index]!)).toBe(true);
+        }
+    });
     test('a moment leads to its test', () => {
         const suite = all[0]!;
         expect(barAt(suite, 1_770_000, 0, 0)?.target).toEqual({ what: 'test', id: 0, attempt: 2 });

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use rtf_model::{Event, EventKind, Record};
+use rtf_model::{Event, EventKind, Record, TestId};
 
 use crate::escape;
 
@@ -17,6 +17,8 @@ const TEMPLATE: &str = "{elapsed_precise} [{bar:20}] {pos} of {len} done  {wide_
 pub(super) struct Progress {
     bar: ProgressBar,
     done: u64,
+    /// The tests that run, in the order in which they began.
+    running: Vec<TestId>,
     /// Nothing is shown before the number of tests is known.
     begun: bool,
 }
@@ -32,12 +34,12 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
             bar.set_style(style.progress_chars("=> "));
         }
-        Self { bar, done: 0, begun: false }
+        Self { bar, done: 0, running: Vec::new(), begun: false }
     }
 
     /// No bar.
     pub fn hidden() -> Self {
-        Self { bar: ProgressBar::hidden(), done: 0, begun: false }
+        Self { bar: ProgressBar::hidden(), done: 0, running: Vec::new(), begun: false }
     }
 
     /// Moves on.
@@ -47,7 +49,8 @@ impl Progress {
         }
         match &event.kind {
             EventKind::TestStarted { test, .. } => {
-                self.bar.set_message(escape::line(&record.full_name(*test)).into_owned());
+                self.running.push(*test);
+                self.tests(record);
             }
             EventKind::FixtureStarting { fixture, .. } => self.fixture(record, *fixture, "set up"),
             EventKind::FixtureStopping { fixture } => self.fixture(record, *fixture, "tear down"),
@@ -60,12 +63,24 @@ impl Progress {
                 self.bar.set_length(record.tests.len() as u64);
                 self.bar.enable_steady_tick(TICK);
             }
-            EventKind::TestFinished(finished) if record.verdict(finished.test).is_some() => {
-                self.step();
+            EventKind::TestFinished(finished) => {
+                self.running.retain(|test| *test != finished.test);
+                if !self.running.is_empty() {
+                    self.tests(record);
+                }
+                if record.verdict(finished.test).is_some() {
+                    self.step();
+                }
             }
             EventKind::TestSkipped { .. } | EventKind::TestRepeated { .. } => self.step(),
             _ => {}
         }
+    }
+
+    /// Says which tests run: more than fit are cut off by the terminal's width.
+    fn tests(&self, record: &Record) {
+        let names: Vec<_> = self.running.iter().map(|test| record.full_name(*test)).collect();
+        self.bar.set_message(escape::line(&names.join(", ")).into_owned());
     }
 
     fn fixture(&self, record: &Record, id: rtf_model::FixtureId, what: &str) {

@@ -121,12 +121,14 @@ impl Verbose {
         print(page, &key.name(record), &text);
     }
 
-    /// Shows the lines of a suite that have not ended.
+    /// Shows the lines of a suite that have not ended, but for those of tests that
+    /// run beside whoever has ended: the rest of these may follow.
     fn flush_suite(&mut self, page: &mut Page, record: &Record, source: Source) {
         let suite = record.suite_of(source);
+        let goes_on = |key: &Key| matches!(key, Key::Test(..)) && key.source() != source;
         let (now, later) = std::mem::take(&mut self.partial)
             .into_iter()
-            .partition(|(key, _)| record.suite_of(key.source()) == suite);
+            .partition(|(key, _)| record.suite_of(key.source()) == suite && !goes_on(key));
         self.partial = now;
         self.flush(page, record);
         self.partial = later;

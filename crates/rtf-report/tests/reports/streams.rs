@@ -48,8 +48,17 @@ fn quiet_console() {
 
 #[test]
 fn verbose_console() {
-    for name in ["verdicts", "nasty", "killed", "hooks", "runner-died", "prepared", "side-by-side"]
-    {
+    let names = [
+        "verdicts",
+        "nasty",
+        "killed",
+        "hooks",
+        "runner-died",
+        "prepared",
+        "side-by-side",
+        "parallel",
+    ];
+    for name in names {
         insta::assert_snapshot!(format!("verbose-{name}"), plain(name, Verbosity::Verbose));
     }
 }

@@ -31,6 +31,7 @@ mod locks;
 mod merge;
 mod middleware;
 mod notices;
+mod parallel;
 mod predecessor;
 mod predecessor_scripts;
 mod process_fixture;
