@@ -30,7 +30,7 @@ fn an_unknown_attribute() {
     2 |   <test timout="3s">EncoderTest.lua</test>
       |         ^^^^^^ not known in `<test>`
       |
-      = note: `<test>` can have the attributes `name`, `type`, `param`, `repetition`, `tags`, `timeout`, `load-timeout`, `setup-timeout`, `teardown-timeout`, `slow`, `grace`, `after-collapse`, `leaks`, `retries`, `retry-delay`, `critical`, `isolation`
+      = note: `<test>` can have the attributes `name`, `type`, `param`, `repetition`, `tags`, `timeout`, `load-timeout`, `setup-timeout`, `teardown-timeout`, `slow`, `grace`, `after-collapse`, `leaks`, `retries`, `retry-delay`, `critical`, `exclusive`, `isolation`
       = help: did you mean `timeout`?
 
     1 error; nothing was started
@@ -135,7 +135,7 @@ fn five_mistakes_are_five_messages() {
     1 | <suite name="arm" tag="smoke">
       |                   ^^^ not known in `<suite>`
       |
-      = note: `<suite>` can have the attributes `name`, `timeout`, `tags`, `isolate`, `requires`, `middleware`, `tolerate-collapse`, `after-collapse`, `leaks`, `retries`, `retry-delay`, `test-timeout`, `test-load-timeout`, `test-setup-timeout`, `test-teardown-timeout`, `test-slow`, `test-grace`
+      = note: `<suite>` can have the attributes `name`, `timeout`, `tags`, `isolate`, `requires`, `parallel`, `middleware`, `tolerate-collapse`, `after-collapse`, `leaks`, `retries`, `retry-delay`, `test-timeout`, `test-load-timeout`, `test-setup-timeout`, `test-teardown-timeout`, `test-slow`, `test-grace`
       = help: did you mean `tags`?
 
     error: unknown element `<fixtures>`
@@ -172,6 +172,7 @@ fn five_mistakes_are_five_messages() {
       = note: looked for `Missing.lua` in
                 [FOLDER]
                 [PREFIX]/lib/rtf/plugins
+                [ROOT]/fixtures
       = help: other folders are searched when `RTF_PLUGIN_PATH` names them
 
     5 errors; nothing was started

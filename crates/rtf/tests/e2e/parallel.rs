@@ -208,8 +208,8 @@ fn when_the_runner_is_killed_both_are_stopped_before_the_robot_is_parked() {
     assert!(nothing_left(&folder));
     let record = folder.journal().record;
     assert_eq!(record.died(), Some("signal 9 (SIGKILL)"));
-    assert_eq!(record.totals().of(Verdict::Interrupted), 2);
-    assert_eq!(record.totals().of(Verdict::Skipped), 1);
+    assert_eq!(record.final_totals().of(Verdict::Interrupted), 2);
+    assert_eq!(record.final_totals().of(Verdict::Skipped), 1);
 }
 
 /// The crash is one test's own; the hook it calls for waits for the other one.
