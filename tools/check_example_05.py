@@ -56,6 +56,7 @@ def main() -> int:
             (required, rover, [LONG]),
             (master_killed, rover, [LONG]),
             (roslaunch_killed, rover, [LONG]),
+            (fixture_killed, rover, [LONG]),
             (runner_killed, rover, [LONG]),
             (not_launched, broken(Path(folder)), []),
             (silent, probes, [LONG]),
@@ -197,6 +198,15 @@ def roslaunch_killed(scene: Scene) -> None:
     """Its nodes are sessions of their own and survive it; they are ended, too."""
     scene.kill("bin/roslaunch")
     scene.collapsed("roslaunch was killed by SIGKILL")
+
+
+def fixture_killed(scene: Scene) -> None:
+    """The plug-in itself is killed, which would have ended the nodes: rtf does it."""
+    scene.wait_for_victim()
+    (roslaunch,) = [pid for pid, line in scene.processes().items() if "bin/roslaunch" in line]
+    stat = Path(f"/proc/{roslaunch}/stat").read_text()
+    os.kill(int(stat.rpartition(")")[2].split()[1]), signal.SIGKILL)
+    scene.collapsed("its process ended with signal 9 (SIGKILL)")
 
 
 def runner_killed(scene: Scene) -> None:
