@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
@@ -40,7 +41,7 @@ NEVER = "import rtf\nclass Never(rtf.TestCase):\n    def run(self):\n        pas
 def main() -> int:
     """Runs all and tells the first thing that is not as it should be."""
     rtf, example, probes = (Path(argument).resolve() for argument in sys.argv[1:])
-    rover = example / "rover.xml"
+    rover, slipping = example / "rover.xml", example / "slipping.xml"
     with tempfile.TemporaryDirectory() as folder:
         os.environ["ROS_HOME"] = folder
         for name in ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP"):
@@ -59,6 +60,8 @@ def main() -> int:
             (fixture_killed, rover, [LONG]),
             (runner_killed, rover, [LONG]),
             (not_launched, broken(Path(folder)), []),
+            (bag_kept, slipping, []),
+            (bag_of_collapse, slipping, [LONG]),
             (silent, probes, [LONG]),
         ]
         with ThreadPoolExecutor(max_workers=2) as pool:
@@ -226,6 +229,30 @@ def not_launched(scene: Scene) -> None:
     reason = str(event["reason"])
     scene.expect(f"`cannot launch node` in {reason!r}", "cannot launch node" in reason, True)
     scene.expect("which one", "rover/rudder.py" in reason, True)
+
+
+def bag_kept(scene: Scene) -> None:
+    """The bag of the test that failed is attached; that of the other one is not."""
+    scene.finish(1)
+    scene.expect("verdicts", list(scene.run.verdicts().values()), ["passed", "failed"])
+    (bag,) = bags(scene)
+    told = subprocess.run(["rosbag", "info", bag], capture_output=True, text=True, check=True)
+    for topic in ("/rover/command", "/rover/speed", "/rover/distance"):
+        scene.expect(f"{topic} in the bag", topic in told.stdout, True)
+
+
+def bag_of_collapse(scene: Scene) -> None:
+    """A test that collapsed has its bag, too: what led to it is in there."""
+    scene.kill("rover/odometer")
+    scene.finish(1)
+    scene.expect("verdicts", list(scene.run.verdicts().values()), ["collapsed", "failed"])
+    attached = sorted(bag.name for bag in bags(scene))
+    scene.expect("bags", attached, ["1-DistanceTest.bag", "1-RateTest.bag"])
+
+
+def bags(scene: Scene) -> list[Path]:
+    """The bags that were kept."""
+    return list((scene.run.journal.parent / "attachments").rglob("*.bag"))
 
 
 def silent(scene: Scene) -> None:

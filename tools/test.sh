@@ -135,7 +135,8 @@ sdk_ruby() {
 suites_are_valid() {
   # What lies deeper in an example is its middleware's.
   files ':(glob)examples/*/*.xml' 'tests/install/*.xml' 'tests/fixtures/*/suite.xml' \
-    'tests/fixtures/yarp/suites/*.xml' | xargs -d '\n' xmllint --noout --schema spec/suite.xsd
+    'tests/fixtures/yarp/suites/*.xml' 'tests/fixtures/ros1/*.xml' |
+    xargs -d '\n' xmllint --noout --schema spec/suite.xsd
 }
 
 # What the fixture managers make of the words of middleware.
