@@ -3,6 +3,7 @@
 // there is a new view of it when something has changed. What is taken out of the
 // record keeps its identity while it changes; components copy what they show.
 
+import { flushSync } from 'svelte';
 import * as api from '../api';
 import type { Event } from '../event';
 import { RunRecord } from '../record/record';
@@ -10,6 +11,12 @@ import { Feed, type Connection } from './feed';
 
 /** Gets what came in, as long as it wants to. */
 export type DetailListener = (events: Event[]) => void;
+
+const FRAME_MS = 16;
+/** A draw may take one part in this many of the time. */
+const SHARE = 5;
+/** Nothing waits longer than this to be drawn. */
+const LATEST_MS = 120;
 
 export class LiveRun {
     readonly name: string;
@@ -22,6 +29,8 @@ export class LiveRun {
     private readonly listeners = new Set<DetailListener>();
     private readonly watched = new Map<symbol, string[]>();
     private isDrawing = false;
+    /** When and for how long the components were last brought up to date. */
+    private drawn = { at: 0, took: 0 };
     /** The server's clock minus the browser's, in seconds. */
     private skew = 0;
 
@@ -83,10 +92,17 @@ export class LiveRun {
         this.isDrawing = true;
         const done = () => {
             this.isDrawing = false;
+            const begun = performance.now();
             this.record = this.record.view();
+            flushSync();
+            this.drawn = { at: begun, took: performance.now() - begun };
         };
-        // A page in the background gets no frames.
+        // A page in the background gets no frames. In sight, most of the time is
+        // the reader's: what is long to draw is drawn less often.
+        const { at, took } = this.drawn;
+        const wait = Math.min(at + took * SHARE - performance.now(), LATEST_MS);
         if (document.hidden) setTimeout(done, 250);
-        else requestAnimationFrame(done);
+        else if (wait <= FRAME_MS) requestAnimationFrame(done);
+        else setTimeout(() => requestAnimationFrame(done), wait - FRAME_MS);
     }
 }
