@@ -8,7 +8,9 @@
 . "$(dirname "$0")/env.sh"
 
 tools/web.sh modules
-PATH=$(tools/node.sh):$PATH
+simulation=$(tools/venv.sh demo)
+# The arm of the examples needs its own Python, before the one that Node may come with.
+PATH=$simulation:$(tools/node.sh):$PATH
 export PATH RTF=${RTF:-$TARGET/release/rtf}
 [ -x "$RTF" ] || die "$RTF is missing" "make build"
 
