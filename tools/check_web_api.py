@@ -66,9 +66,10 @@ def main() -> int:
         )
         if past.returncode != 1:
             sys.exit(f"a run with two failing tests ended with {past.returncode}")
-        with served([rtf, "serve", "--web=127.0.0.1:0"], folder) as (url, _):
+        with served([rtf, "serve", "--web=127.0.0.1:0"], folder) as (url, token):
             known = leading_somewhere(url)
-            ask(url, folder, known, [])
+            # What failed is really run again, now and then.
+            ask(url, folder, known, [f"--header=Authorization: Bearer {token}"])
             ask(url, folder, {}, [])
         with served([rtf, "run", "--web=127.0.0.1:0", "patient.lua"], folder) as (url, token):
             # Control over the run itself would end the server; a past one is refused.

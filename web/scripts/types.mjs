@@ -1,5 +1,6 @@
-// Writes the page's types from the JSON Schemas of the project, so that an
-// event which changes there does not compile here until the page knows it.
+// Writes the page's types from the JSON Schemas of the project and the API's
+// description, so that what changes there does not compile here until the page
+// knows it.
 
 import { mkdir, readFile, writeFile } from 'node:fs/promises';
 import { compile } from 'json-schema-to-typescript';
@@ -21,9 +22,48 @@ function joinReferences(node) {
     return JSON.parse(JSON.stringify({ ...rest, $ref, properties, required }));
 }
 
+/** The API leaves out what there is not to say, and never says null (spec/web.md). */
+function leaveOutNull(node) {
+    if (Array.isArray(node)) return node.map(leaveOutNull);
+    if (node === null || typeof node !== 'object') return node;
+    // Words beside a reference would make another type of it.
+    if (node.$ref !== undefined) return { $ref: node.$ref };
+    const clear = Object.fromEntries(
+        Object.entries(node).map(([name, value]) => [name, leaveOutNull(value)]),
+    );
+    if (Array.isArray(clear.type)) clear.type = clear.type.filter((each) => each !== 'null');
+    if (Array.isArray(clear.oneOf)) {
+        const others = clear.oneOf.filter((each) => each.type !== 'null');
+        if (others.length === 1) return others[0];
+        clear.oneOf = others;
+    }
+    return clear;
+}
+
+/** All schemas of the API's description, those of its own made clear of null. */
+async function api() {
+    const { components } = await read('openapi');
+    const { $defs: model } = await read('event');
+    const schemas = Object.entries(components.schemas).map(([name, schema]) => [
+        name,
+        name in model || name === 'Event' ? schema : leaveOutNull(schema),
+    ]);
+    const text = JSON.stringify(Object.fromEntries(schemas));
+    const $defs = JSON.parse(text.replaceAll('#/components/schemas/', '#/$defs/'));
+    // What nothing refers to would be left out.
+    const all = Object.keys($defs).map((name) => [name, { $ref: `#/$defs/${name}` }]);
+    return { title: 'Api', type: 'object', properties: Object.fromEntries(all), $defs };
+}
+
+async function read(name) {
+    return JSON.parse(await readFile(new URL(`${name}.json`, SCHEMAS), 'utf8'));
+}
+
 await mkdir(TARGET, { recursive: true });
-for (const name of ['event']) {
-    const schema = JSON.parse(await readFile(new URL(`${name}.json`, SCHEMAS), 'utf8'));
+for (const [name, schema] of [
+    ['event', await read('event')],
+    ['api', await api()],
+]) {
     const types = await compile(joinReferences(schema), name, { additionalProperties: false });
     await writeFile(new URL(`${name}.d.ts`, TARGET), types);
 }

@@ -48,6 +48,9 @@ test('a run is watched live', async (context) => {
         await first.rowIs('Grip', 'pending');
         await first.see('0 of 2', 'section.summary');
         await first.see('ready', 'article');
+        // What it got for itself, and how a person joins in.
+        await first.see(/^ROS_DOMAIN_ID=\d+$/, 'article');
+        await first.see(/^export .*ROS_DOMAIN_ID=/, 'article');
     });
 
     await step('what a test says comes as it says it', async () => {

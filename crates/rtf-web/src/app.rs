@@ -5,27 +5,17 @@ use std::sync::Arc;
 use axum::body::Bytes;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use rtf_model::{SuiteId, TestId};
 use serde::Serialize;
 use tokio::sync::{Semaphore, watch};
 
 use crate::access::Access;
 use crate::index::Index;
 use crate::problem::Problem;
+use crate::role::Role;
 use crate::runs::{Run, Runs};
 
 /// How many event streams there may be at the same time.
 const STREAMS: usize = 256;
-
-/// What a person may ask of the run that this process makes.
-pub trait Control: Send + Sync {
-    /// End the run as SIGINT does.
-    fn stop_run(&self);
-    /// Stop a test that runs.
-    fn stop_test(&self, test: TestId);
-    /// Skip the rest of a suite.
-    fn skip_suite(&self, suite: SuiteId);
-}
 
 /// What every answer is made from. Cheap to clone.
 #[derive(Clone)]
@@ -34,8 +24,8 @@ pub struct App {
     pub runs: Arc<Runs>,
     /// Who may do what.
     pub access: Arc<Access>,
-    /// The way to the run that this process makes.
-    pub control: Option<Arc<dyn Control>>,
+    /// What it can do beside showing runs.
+    pub role: Role,
     /// Changes when the journal of that run has grown.
     pub grown: watch::Receiver<u64>,
     /// Turns true when the server ends.

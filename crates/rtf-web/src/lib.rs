@@ -18,6 +18,7 @@ mod legacy;
 mod live;
 mod page;
 mod problem;
+mod role;
 mod runs;
 mod server;
 mod stream_file;
@@ -25,7 +26,7 @@ mod tls;
 
 pub use access::TokenError;
 pub use api::{description, model};
-pub use app::Control;
 pub use live::Live;
-pub use server::{Bound, ServeError, Served, Server, Settings};
+pub use role::{Control, NotStarted, Past, Role, Starter};
+pub use server::{Bound, Ender, ServeError, Served, Server, Settings};
 pub use tls::TlsError;

@@ -15,8 +15,9 @@ use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::compression::{CompressionLayer, CompressionLevel};
 
 use crate::access::{self, Access, Hosts, Secret, TokenError};
-use crate::app::{App, Control};
+use crate::app::App;
 use crate::live::Live;
+use crate::role::Role;
 use crate::runs::Runs;
 use crate::tls::{self, Tls, TlsError};
 use crate::{api, legacy, page};
@@ -87,8 +88,8 @@ impl ServeError {
 pub struct Served<'a> {
     /// The results folder.
     pub results: &'a Path,
-    /// The run that this process makes, and the way to it.
-    pub own: Option<(String, Arc<dyn Control>)>,
+    /// What this server can do beside showing them.
+    pub role: Role,
 }
 
 /// A server that has its address.
@@ -108,7 +109,7 @@ pub struct Bound {
 pub struct Server {
     address: SocketAddr,
     wanted: SocketAddr,
-    token: Option<String>,
+    token: String,
     fingerprint: Option<String>,
     tls: bool,
     ending: watch::Sender<bool>,
@@ -151,15 +152,15 @@ impl Bound {
     /// The system has no thread to give.
     pub fn serve(self, served: Served<'_>) -> Result<Server, ServeError> {
         let Self { listener, address, wanted, token, tls, hosts, remote } = self;
-        let shown = (served.own.is_some() || remote).then(|| token.text().to_owned());
+        let shown = token.text().to_owned();
         let access = Access::new(token, hosts, remote, tls.is_some())?;
         let (ending, ends) = watch::channel(false);
         let (grown, grows) = watch::channel(0);
-        let (own, control) = served.own.unzip();
+        let Served { results, role } = served;
         let app = App {
-            runs: Arc::new(Runs::new(served.results, own)),
+            runs: Arc::new(Runs::new(results, role.own().map(str::to_owned))),
             access: Arc::new(access),
-            control,
+            role,
             grown: grows,
             ending: ends,
             streams: App::streams(),
@@ -173,12 +174,22 @@ impl Bound {
     }
 }
 
+/// Ends a server that another thread waits for.
+#[derive(Debug)]
+pub struct Ender(watch::Sender<bool>);
+
+impl Ender {
+    /// Sends what is left to those who listen; the server ends then.
+    pub fn end(self) {
+        self.0.send_replace(true);
+    }
+}
+
 impl Server {
-    /// The address to open, with the token where one is needed.
+    /// The address to open, with the token.
     #[must_use]
     pub fn url(&self) -> String {
         let scheme = if self.tls { "https" } else { "http" };
-        let token = self.token.as_ref().map_or(String::new(), |token| format!("#token={token}"));
         let (ip, port) = (self.address.ip(), self.address.port());
         // Nobody can open the address that means all addresses.
         let host = match ip {
@@ -186,7 +197,7 @@ impl Server {
             IpAddr::V4(ip) => ip.to_string(),
             IpAddr::V6(ip) => format!("[{ip}]"),
         };
-        format!("{scheme}://{host}:{port}/{token}")
+        format!("{scheme}://{host}:{port}/#token={}", self.token)
     }
 
     /// Where it listens.
@@ -214,6 +225,12 @@ impl Server {
         Live::new(self.grown.clone())
     }
 
+    /// What ends it from another thread.
+    #[must_use]
+    pub fn ender(&self) -> Ender {
+        Ender(self.ending.clone())
+    }
+
     /// Waits until the server ends, which it does not by itself.
     ///
     /// # Errors
@@ -227,7 +244,7 @@ impl Server {
     /// # Errors
     /// Why it had ended before.
     pub fn stop(self) -> io::Result<()> {
-        self.ending.send_replace(true);
+        self.ender().end();
         self.wait()
     }
 }

@@ -46,7 +46,7 @@ fn main() -> ExitCode {
         Command::Show(args) => command::show::run(args),
         Command::Report(args) => command::report::run(args),
         Command::Merge(args) => command::merge::run(args),
-        Command::Serve(args) => command::web::run(args),
+        Command::Serve(args) => command::serve::run(args),
         Command::Config { verb: ConfigVerb::Show(args) } => command::config::show(args),
         Command::Completions { shell } => command::completions::run(*shell),
         Command::Man { folder } => command::man::run(folder),

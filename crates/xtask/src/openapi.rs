@@ -3,7 +3,7 @@
 
 use rtf_model::{
     Attachment, Diagnostic, Event, ExitStatus, LeftProcess, Measurement, Message, Phase, Stream,
-    Trigger, Verdict,
+    SuitePrepared, Trigger, Verdict,
 };
 use schemars::SchemaGenerator;
 use schemars::generate::SchemaSettings;
@@ -53,6 +53,7 @@ fn model() -> Map<String, Value> {
     generator.subschema_for::<Message>();
     generator.subschema_for::<Phase>();
     generator.subschema_for::<Stream>();
+    generator.subschema_for::<SuitePrepared>();
     generator.subschema_for::<Trigger>();
     generator.subschema_for::<Verdict>();
     generator.take_definitions(true)

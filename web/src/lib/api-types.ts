@@ -1,205 +1,43 @@
-// The objects of the web API, version 1 (spec/web.md).
+// The objects of the web API, version 1 (spec/web.md), as its description has
+// them, and what the page makes of them while it follows a run.
 
-import type {
-    Attachment,
-    Diagnostic,
-    LeftProcess,
-    Measurement,
-    Message,
-    Output,
-    Phase,
-    TestFinished,
-    Trigger,
-    Verdict,
-} from './event';
+import type * as api from '../generated/api';
 
-export interface ApiRoot {
-    api: number;
-    rtf: string;
-    mode: 'run' | 'serve';
-    current?: string;
-    control: boolean;
-    authorised: boolean;
-    token_to_read: boolean;
-    seconds: number;
-}
+export type {
+    Attached as AttachmentEntry,
+    Counts,
+    Fixture,
+    Hook,
+    Measured as MeasurementEntry,
+    Printed as OutputEntry,
+    Said as MessageEntry,
+    Server as ApiRoot,
+    Stack as StackEntry,
+    Start,
+    Started,
+    State as RunStateName,
+    RunInfo,
+    Suite,
+    Totals,
+} from '../generated/api';
 
-export interface Totals {
-    planned: number;
-    pending: number;
-    running: number;
-    done: number;
-    verdicts: Record<Verdict, number>;
-}
+/** What the lists of an attempt hold: an event's number, its time, its content. */
+export type Said = Pick<api.Said, 'seq' | 'at'>;
 
-export type RunStateName = 'running' | 'finished' | 'interrupted' | 'died' | 'incomplete';
-
-export interface RunInfo {
-    run: string;
-    started_at: string;
-    rtf: string;
-    command: string[];
-    folder: string;
-    state: RunStateName;
-    interrupted?: string;
-    died?: string;
-    green?: boolean;
-    /** The number of the next event. */
-    seq: number;
-    last_at: number;
-    suites: number;
-    bytes: number;
-    totals: Totals;
-    problems: string[];
-    damages: { line: number; problem: string }[];
-}
-
-export interface Suite {
-    id: number;
-    name: string;
-    file: string;
-    description: string;
-    environment: string;
-    tolerates_collapse?: boolean;
-    state: 'pending' | 'running' | 'finished';
-    started?: number;
-    finished?: number;
-    totals: Totals;
-    problems: string[];
-    fixtures: number[];
-    hooks: number[];
-}
-
-export type FixtureState =
-    'pending' | 'starting' | 'ready' | 'collapsed' | 'stopping' | 'stopped' | 'broken';
-
-export interface Start {
-    number: number;
-    starting: number;
-    ready?: number;
-    collapsed?: { at: number; reason: string };
-    stopping?: number;
-    stopped?: number;
-    problem?: string;
-}
-
-export interface Fixture {
-    id: number;
-    suite: number;
-    name: string;
-    plugin_type: string;
-    state: FixtureState;
-    starts: Start[];
-    broken?: string;
-    log_tail?: string[];
-    messages?: Message[];
-    left?: LeftProcess[];
-}
-
-export interface HookRun {
-    number: number;
-    started: number;
-    finished?: number;
-    trigger: Trigger;
-    reason: string;
-    test?: number;
-    problem?: string;
-    output?: string;
-    messages?: Message[];
-    stacks?: string[];
-    left?: LeftProcess[];
-}
-
-export interface Hook {
-    id: number;
-    suite: number;
-    name: string;
-    on: Trigger[];
-    runs: HookRun[];
-}
-
-export interface Counts {
-    messages: number;
-    failures: number;
-    measurements: number;
-    violations: number;
-    attachments: number;
-    output_bytes: number;
-}
-
-export interface AttemptRow {
-    number: number;
-    repetition: number;
-    attempt: number;
-    started: number;
-    finished?: number;
-    verdict?: Verdict;
-    rerun?: boolean;
+export interface AttemptRow extends api.AttemptRow {
     /** Known only of attempts that ended while the page looked. */
     reason?: string;
 }
 
-export interface Test {
-    id: number;
-    suite: number;
-    name: string;
-    plugin_type: string;
-    plugin: string;
-    repetitions: number;
-    /** It is repeated until a time is over; `repetitions` is then that of a round. */
-    timed?: boolean;
-    tags?: string[];
-    state: 'pending' | 'running' | 'done';
-    verdict?: Verdict;
-    reason?: string;
-    phase?: Phase;
-    duration_us: number;
-    slow?: boolean;
+export interface Test extends api.Test {
     attempts: AttemptRow[];
-    counts: Counts;
 }
 
-export interface Snapshot {
-    info: RunInfo;
-    suites: Suite[];
-    fixtures: Fixture[];
-    hooks: Hook[];
+export interface Snapshot extends api.Snapshot {
     tests: Test[];
-    warnings: Diagnostic[];
-    left: LeftProcess[];
 }
 
-export interface Attempt extends AttemptRow {
-    phases: { phase: Phase; at: number }[];
-    phase?: Phase;
-    exit?: NonNullable<TestFinished['exit']>;
-    slow?: boolean;
+export type Attempt = api.Attempt & {
+    /** Why it is being stopped, while it is. */
     stopping?: string;
-    counts: Counts;
-    left?: LeftProcess[];
-}
-
-/** What the lists of an attempt hold: an event's number, its time, its content. */
-export interface Said {
-    seq: number;
-    at: number;
-}
-export interface MessageEntry extends Said {
-    message: Message;
-}
-export interface MeasurementEntry extends Said {
-    measurement: Measurement;
-    within: boolean;
-}
-export interface AttachmentEntry extends Said {
-    attachment: Attachment;
-    url: string;
-}
-export interface StackEntry extends Said {
-    text: string;
-}
-export interface OutputEntry extends Said {
-    stream: Output['stream'];
-    text: string;
-    omitted?: number;
-}
+};

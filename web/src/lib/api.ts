@@ -1,6 +1,6 @@
 // Requests to the server that the page came from (spec/web.md).
 
-import type { ApiRoot, Attempt, RunInfo, Snapshot, Test } from './api-types';
+import type { ApiRoot, Attempt, RunInfo, Snapshot, Started, Test } from './api-types';
 
 const BASE = '/api/v1';
 
@@ -92,6 +92,12 @@ export const signOut = () => request('/session', { method: 'DELETE' });
 
 export const stopRun = (run: string) =>
     request(path(['runs', run, 'stop']), { method: 'POST', body: {} });
+
+/** Runs the failed tests of a past run again; the new run's name. */
+export async function rerun(run: string): Promise<string> {
+    const asked = await request(path(['runs', run, 'rerun']), { method: 'POST', body: {} });
+    return ((await asked.json()) as Started).run;
+}
 
 export const stopTest = (run: string, id: number) =>
     request(path(['runs', run, 'tests', id, 'stop']), { method: 'POST', body: {} });

@@ -14,6 +14,7 @@ export type {
     Message,
     Output,
     SuitePlanned,
+    SuitePrepared,
     TestFinished,
     TestPlanned,
     RunStarted,
@@ -34,6 +35,15 @@ export const VERDICTS = [
     'collapsed',
     'skipped',
     'interrupted',
+] as const satisfies readonly Verdict[];
+
+/** The verdicts for which a test is run again, as `rtf run --rerun failed` has them. */
+export const FAILED = [
+    'failed',
+    'error',
+    'crashed',
+    'timed-out',
+    'collapsed',
 ] as const satisfies readonly Verdict[];
 
 /** What a test looks like from outside: its verdict, or how far it is. */

@@ -9,9 +9,24 @@ class Session {
     /** Why the server cannot be asked, in words. */
     problem: string | null = $state(null);
 
-    /** Whether a run is here that this browser may control. */
+    /** Whether this browser may do what the token allows. */
     get mayControl(): boolean {
         return this.root !== null && this.root.control && this.root.authorised;
+    }
+
+    /** Whether failed tests can be run again here, by this browser. */
+    get mayRerun(): boolean {
+        return this.mayControl && this.root?.rerun === true;
+    }
+
+    /** Whether this browser may stop this run. */
+    mayStop(run: string): boolean {
+        return this.mayControl && this.root?.controlled === run;
+    }
+
+    /** Whether that holds for its tests and suites, one by one. */
+    mayStopParts(run: string): boolean {
+        return this.mayStop(run) && this.root?.mode === 'run';
     }
 
     /** Whether not even reading is allowed without the token. */

@@ -41,6 +41,23 @@ test('each test of the plan is known before it runs', () => {
     expect([planned, pending, done]).toEqual([8, 8, 0]);
 });
 
+test('what a suite got for itself is known, and the first of it stays', () => {
+    const events = stream('prepared');
+    const record = recordOf(events);
+    const prepared = record.suites[0]?.prepared;
+    expect(prepared?.ports?.map(({ name }) => name)).toEqual([
+        'gazebo-master',
+        'ros-master',
+        'sim',
+    ]);
+    expect(prepared?.network).toEqual({ pid: 4711, user_namespace: true });
+    expect(prepared).not.toHaveProperty('type');
+    const told = events.find(({ type }) => type === 'suite-prepared');
+    if (told?.type !== 'suite-prepared') throw new Error('the stream tells it');
+    record.apply({ ...told, seq: record.info.seq, join: 'another' });
+    expect(record.suites[0]?.prepared).toBe(prepared);
+});
+
 test('a fixture that collapses is a lane with its marks', () => {
     const [fixture] = recordOf(stream('collapse-restart')).fixtures;
     if (fixture === undefined) throw new Error('the stream has a fixture');

@@ -40,3 +40,9 @@ export const HOSTILE = `<suite name="&lt;b&gt; &quot;quoted&quot; 'suite' &amp;a
   <test type="python" name="&lt;script&gt;alert(1)&lt;/script&gt;" tags="&lt;i&gt;tag">Hostile</test>
   <test type="python" name="größe 🤖 \u202egnp.exe" param="through">Step</test>
 </suite>`;
+
+/** What has to be run again. */
+export const BROKEN = `<suite name="broken">
+  <test type="python" name="Works" param="through">Step</test>
+  <test type="python" name="Breaks" param="fail">Ends</test>
+</suite>`;

@@ -1,7 +1,7 @@
-//! Control over the run that this process makes. Who may do it was found out
-//! before, by [`crate::access`].
+//! Control over the run that this process makes, or those that it starts. Who may
+//! do it was found out before, by [`crate::access`].
 
-use std::sync::Arc;
+use std::path::Path;
 
 use axum::extract::State;
 use axum::http::StatusCode;
@@ -13,9 +13,11 @@ use utoipa::ToSchema;
 use super::asked::At;
 use super::parts::entry;
 use super::problems::ChangeProblems;
-use crate::app::{App, Control, JsonText};
+use crate::app::{App, JsonText};
 use crate::index::Index;
 use crate::problem::Problem;
+use crate::role::{Control, NotStarted, Past, Role, Starter};
+use crate::runs::{Run, Runs};
 
 /// The request was passed on; what comes of it is seen in the events.
 #[derive(Debug, Serialize, ToSchema)]
@@ -24,37 +26,73 @@ pub struct Accepted {
     accepted: bool,
 }
 
+/// A run was started.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Started {
+    /// Always true.
+    accepted: bool,
+    /// Its name.
+    run: String,
+}
+
 type Answer = Result<Response, Problem>;
 
+fn accepted<T: Serialize>(body: &T) -> Answer {
+    Ok((StatusCode::ACCEPTED, JsonText::of(body)?).into_response())
+}
+
+/// Something about the run that this process makes.
 async fn act(
     app: App,
     run: String,
     act: impl FnOnce(&dyn Control, &Index) -> Result<(), Problem> + Send + 'static,
 ) -> Answer {
-    let (control, runs): (Option<Arc<dyn Control>>, _) = (app.control.clone(), app.runs.clone());
+    let role = app.role.clone();
     app.with_run(run, move |run| {
-        let Some(control) = control.filter(|_| runs.is_own(run)) else {
-            return Err(Problem::conflict("this server does not make this run")
-                .hint("only `rtf run --web` controls a run, and only its own"));
+        let control = match &role {
+            Role::Makes(own, control) if *own == run.name => control,
+            Role::Makes(..) => return Err(foreign()),
+            Role::Shows(_) => {
+                return Err(Problem::conflict("only the whole run can be stopped here")
+                    .hint("`rtf run --web` stops tests and suites of its run, one by one"));
+            }
         };
         let index = run.read()?;
         if index.state().is_over() {
-            return Err(Problem::conflict("the run is over"));
+            return Err(over());
         }
-        act(&*control, &index)?;
-        let body = JsonText::of(&Accepted { accepted: true })?;
-        Ok((StatusCode::ACCEPTED, body).into_response())
+        act(&**control, &index)?;
+        accepted(&Accepted { accepted: true })
     })
     .await
+}
+
+fn foreign() -> Problem {
+    Problem::conflict("this server does not make this run")
+        .hint("a run is controlled by the `rtf run --web` that makes it, or the `rtf serve` that started it")
+}
+
+fn over() -> Problem {
+    Problem::conflict("the run is over")
 }
 
 /// Ends the run as SIGINT does.
 #[utoipa::path(post, path = "/runs/{run}/stop", tag = "control", params(("run" = String, Path)),
     responses((status = 202, body = Accepted), ChangeProblems))]
 pub async fn stop_run(State(app): State<App>, At(run): At<String>) -> Answer {
-    act(app, run, |control, _| {
-        control.stop_run();
-        Ok(())
+    let Role::Shows(starter) = app.role.clone() else {
+        let stop = |control: &dyn Control, _: &Index| {
+            control.stop_run();
+            Ok(())
+        };
+        return act(app, run, stop).await;
+    };
+    app.with_run(run, move |run| {
+        if starter.started().as_ref() != Some(&run.name) {
+            return Err(if run.read()?.state().is_over() { over() } else { foreign() });
+        }
+        starter.stop();
+        accepted(&Accepted { accepted: true })
     })
     .await
 }
@@ -87,4 +125,37 @@ pub async fn skip_suite(State(app): State<App>, At((run, suite)): At<(String, u3
         Ok(())
     })
     .await
+}
+
+/// Runs the tests of a past run that failed again, as a new run.
+#[utoipa::path(post, path = "/runs/{run}/rerun", tag = "control", params(("run" = String, Path)),
+    responses((status = 202, body = Started), ChangeProblems))]
+pub async fn rerun(State(app): State<App>, At(run): At<String>) -> Answer {
+    let (role, runs) = (app.role.clone(), app.runs.clone());
+    app.with_run(run, move |run| match role {
+        Role::Shows(starter) => start(run, &runs, &*starter),
+        Role::Makes(..) => Err(Problem::conflict("this server makes one run, and no other")
+            .hint("`rtf serve` runs failed tests again")),
+    })
+    .await
+}
+
+fn start(run: &Run, runs: &Runs, starter: &dyn Starter) -> Answer {
+    let folder = {
+        let index = run.read()?;
+        if !index.state().is_over() {
+            return Err(Problem::conflict("the run goes on"));
+        }
+        let started = index.record().run.as_ref();
+        let started = started.ok_or_else(|| Problem::conflict("its journal has no beginning"))?;
+        started.folder.clone()
+    };
+    if let Some(other) = runs.current() {
+        return Err(Problem::conflict(format!("the run `{other}` goes on")));
+    }
+    let past = Past { name: &run.name, folder: Path::new(&folder) };
+    let name = starter
+        .rerun_failed(&past)
+        .map_err(|NotStarted { reason, hint }| Problem { hint, ..Problem::conflict(reason) })?;
+    accepted(&Started { accepted: true, run: name })
 }

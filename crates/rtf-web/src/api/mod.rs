@@ -90,7 +90,8 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(events::events))
         .routes(routes!(control::stop_run))
         .routes(routes!(control::stop_test))
-        .routes(routes!(control::skip_suite));
+        .routes(routes!(control::skip_suite))
+        .routes(routes!(control::rerun));
     OpenApiRouter::with_openapi(Description::openapi()).nest(ROOT, api)
 }
 

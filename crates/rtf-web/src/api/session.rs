@@ -27,8 +27,13 @@ pub struct Server {
     /// The run that goes on.
     #[serde(skip_serializing_if = "Option::is_none")]
     current: Option<String>,
-    /// Whether there is a run here that can be controlled.
+    /// The run that can be stopped here.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    controlled: Option<String>,
+    /// Whether the token allows something here.
     control: bool,
+    /// Whether failed tests can be run again here.
+    rerun: bool,
     /// Whether this request came with the token or a session.
     authorised: bool,
     /// Whether reading needs the token.
@@ -45,12 +50,15 @@ pub async fn server(State(app): State<App>, headers: HeaderMap) -> Result<JsonTe
     blocking(move || {
         let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
         let tells = authorised || !token_to_read;
+        let makes = app.role.own().is_some();
         JsonText::of(&Server {
             api: 1,
             rtf: env!("CARGO_PKG_VERSION"),
-            mode: if app.control.is_some() { "run" } else { "serve" },
+            mode: if makes { "run" } else { "serve" },
             current: app.runs.current().filter(|_| tells),
-            control: app.control.is_some(),
+            controlled: app.role.controlled().filter(|_| tells),
+            control: true,
+            rerun: !makes,
             authorised,
             token_to_read,
             seconds: now.as_secs_f64(),

@@ -1,7 +1,7 @@
 //! Who may do what, and what nobody may.
 
 use crate::client::{ask, get};
-use crate::world::{World, Writer, settings};
+use crate::world::{STARTED, World, Writer, settings};
 use rtf_web::{Bound, ServeError};
 
 const STOP: &str = "/api/v1/runs/own/stop";
@@ -156,4 +156,53 @@ fn a_run_of_others_and_one_that_is_over_are_not_controlled() {
     assert_eq!(world.post(STOP, &[&bearer], "").status, 409);
     assert!(world.asked().is_empty());
     assert_eq!(get(world.address(), "/api/v1/runs/other").status, 200);
+}
+
+#[test]
+fn failed_tests_are_run_again_by_a_server_that_makes_no_run() {
+    const AGAIN: &str = "/api/v1/runs/own/rerun";
+    let (world, mut run) = World::showing();
+    run.plan("arm", &["first"]);
+    run.flush();
+    let bearer = format!("Authorization: Bearer {}", world.token());
+    let post = |path: &str| world.post(path, &[&bearer], "");
+    assert_eq!(world.post(AGAIN, &[], "").status, 401);
+    assert_eq!(post(AGAIN).status, 409, "it goes on");
+    assert!(world.asked().is_empty());
+    run.end();
+    let mut other = Writer::new(world.temp.path(), "other");
+    other.plan("arm", &["first"]);
+    other.flush();
+    let answer = post(AGAIN);
+    assert_eq!((answer.status, world.asked().len()), (409, 0));
+    assert_eq!(answer.json()["detail"], "the run `other` goes on");
+    other.end();
+    let answer = post("/api/v1/runs/other/rerun");
+    assert_eq!(answer.status, 409);
+    let problem = answer.json();
+    assert_eq!(
+        (&problem["detail"], &problem["hint"]),
+        (&"nothing failed".into(), &"so what".into())
+    );
+    assert_eq!(post(STOP).status, 409, "it was not started here");
+    let answer = post(AGAIN);
+    assert_eq!((answer.status, &answer.json()["run"]), (202, &STARTED.into()));
+    assert_eq!(world.asked(), ["rerun other in /robot", "rerun own in /robot"]);
+    let server = world.get("/api/v1").json();
+    assert_eq!((&server["controlled"], &server["rerun"]), (&STARTED.into(), &true.into()));
+    Writer::new(world.temp.path(), STARTED).plan("arm", &["first"]);
+    assert_eq!(post("/api/v1/runs/anew/tests/0/stop").status, 409, "the whole run or nothing");
+    assert_eq!(post("/api/v1/runs/anew/stop").status, 202);
+    assert_eq!(world.asked().last().map(String::as_str), Some("stop what was started"));
+}
+
+#[test]
+fn a_server_that_makes_a_run_starts_no_other() {
+    let (world, run) = running();
+    run.end();
+    let bearer = format!("Authorization: Bearer {}", world.token());
+    let answer = world.post("/api/v1/runs/own/rerun", &[&bearer], "");
+    assert_eq!(answer.status, 409);
+    assert_eq!(answer.json()["hint"], "`rtf serve` runs failed tests again");
+    assert!(world.asked().is_empty());
 }

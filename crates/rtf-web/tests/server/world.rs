@@ -11,7 +11,7 @@ use rtf_model::{
 use rtf_report::Reporter;
 use rtf_report::journal::Journal;
 use rtf_report::logs::Logs;
-use rtf_web::{Bound, Control, Live, Served, Server, Settings};
+use rtf_web::{Bound, Control, Live, NotStarted, Past, Role, Served, Server, Settings, Starter};
 
 use crate::client::{self, Answer};
 
@@ -32,6 +32,28 @@ impl Control for Asked {
 
     fn skip_suite(&self, suite: SuiteId) {
         self.0.lock().unwrap().push(format!("skip suite {suite}"));
+    }
+}
+
+/// Starts what is called so; anything else is refused.
+pub const STARTED: &str = "anew";
+
+impl Starter for Asked {
+    fn rerun_failed(&self, run: &Past<'_>) -> Result<String, NotStarted> {
+        self.0.lock().unwrap().push(format!("rerun {} in {}", run.name, run.folder.display()));
+        match run.name {
+            "own" => Ok(STARTED.to_owned()),
+            _ => Err(NotStarted { reason: "nothing failed".into(), hint: Some("so what".into()) }),
+        }
+    }
+
+    fn started(&self) -> Option<String> {
+        let asked = self.0.lock().unwrap();
+        asked.iter().any(|asked| asked.starts_with("rerun own")).then(|| STARTED.to_owned())
+    }
+
+    fn stop(&self) {
+        self.0.lock().unwrap().push("stop what was started".to_owned());
     }
 }
 
@@ -187,10 +209,21 @@ impl World {
         let temp = tempfile::tempdir().unwrap();
         let mut writer = Writer::new(temp.path(), "own");
         let asked = Arc::new(Asked::default());
-        let own = Some(("own".to_owned(), asked.clone() as Arc<dyn Control>));
+        let role = Role::Makes("own".to_owned(), asked.clone());
         let bound = Bound::new(settings).unwrap();
-        let server = bound.serve(Served { results: temp.path(), own }).unwrap();
+        let server = bound.serve(Served { results: temp.path(), role }).unwrap();
         writer.live = Some(server.live());
+        (Self { temp, server, asked }, writer)
+    }
+
+    /// A server that makes no run, over one that another process makes.
+    pub fn showing() -> (Self, Writer) {
+        let temp = tempfile::tempdir().unwrap();
+        let writer = Writer::new(temp.path(), "own");
+        let asked = Arc::new(Asked::default());
+        let bound = Bound::new(&settings()).unwrap();
+        let role = Role::Shows(asked.clone());
+        let server = bound.serve(Served { results: temp.path(), role }).unwrap();
         (Self { temp, server, asked }, writer)
     }
 

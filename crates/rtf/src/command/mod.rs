@@ -2,6 +2,7 @@
 
 mod again;
 pub mod check;
+mod child;
 mod choosing;
 pub mod completions;
 pub mod config;
@@ -14,7 +15,9 @@ pub mod merge;
 pub mod output;
 pub mod planning;
 pub mod report;
+mod rerun;
 pub mod run;
+pub mod serve;
 pub mod show;
 pub mod watch;
 pub mod web;

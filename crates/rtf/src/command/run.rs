@@ -8,7 +8,7 @@ use rtf_report::Reporter;
 use rtf_report::journal::Journal;
 use rtf_report::logs::Logs;
 use rtf_report::run_folder::{self, RunFolder};
-use rtf_web::{Live, Server};
+use rtf_web::{Live, Role, Server};
 
 use super::job::Job;
 use super::web::{self, Asks};
@@ -29,8 +29,8 @@ pub fn run(args: &RunArgs, guard: Link) -> Outcome {
     })?;
     let journal = Journal::create(&folder.journal()).map_err(Failure::input)?;
     let asks = Arc::new(Asks::new(args.shutdown_timeout));
-    let own = (folder.name.clone(), asks.clone());
-    let web = web.map(|bound| web::serve(bound, &args.results.results, Some(own))).transpose()?;
+    let role = Role::Makes(folder.name.clone(), asks.clone());
+    let web = web.map(|bound| web::serve(bound, &args.results.results, role)).transpose()?;
     let live = web.as_ref().map(Server::live);
     let reporters = reporters(journal, live, args, &folder)?;
     let (forks, max_fail) = (args.fork, args.input.repeat.most_fails());

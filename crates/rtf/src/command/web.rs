@@ -1,19 +1,16 @@
-//! The browser's view of a run, and of past ones: `--web`, and `rtf serve`.
+//! The browser's view of a run: `--web`, and what `rtf serve` shares with it.
 
 use std::io::Write;
 use std::net::SocketAddr;
 use std::path::Path;
-use std::process::ExitCode;
-use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_engine::run::{Control, Stop, StopLevel};
 use rtf_model::{SuiteId, TestId};
-use rtf_web::{Bound, Served, Server, Settings};
+use rtf_web::{Bound, Role, Served, Server, Settings};
 use tokio::sync::watch;
 
-use super::Outcome;
-use crate::cli::{ServeArgs, WebAccessArgs};
+use crate::cli::WebAccessArgs;
 use crate::error::Failure;
 
 /// Who stops, in the words of verdicts.
@@ -81,13 +78,8 @@ pub fn bind_loopback(port: u16) -> Result<Bound, Failure> {
 }
 
 /// Serves, and says where.
-pub fn serve(
-    bound: Bound,
-    results: &Path,
-    own: Option<(String, Arc<Asks>)>,
-) -> Result<Server, Failure> {
-    let own = own.map(|(name, asks)| (name, asks as Arc<dyn rtf_web::Control>));
-    let server = bound.serve(Served { results, own }).map_err(failed)?;
+pub fn serve(bound: Bound, results: &Path, role: Role) -> Result<Server, Failure> {
+    let server = bound.serve(Served { results, role }).map_err(failed)?;
     let mut err = anstream::stderr().lock();
     Failure::unless_reader_left(tell(&mut err, &server))?;
     Ok(server)
@@ -112,17 +104,4 @@ fn tell(err: &mut impl Write, server: &Server) -> std::io::Result<()> {
         )?;
     }
     err.flush()
-}
-
-/// `rtf serve`: until it is stopped.
-pub fn run(args: &ServeArgs) -> Outcome {
-    let results = &args.results.results;
-    if !results.is_dir() {
-        let message = format!("there is no results folder `{}`", results.display());
-        let hint = "name one with `--results DIR`, or run something first";
-        return Err(Failure::input(message).hint(hint.to_owned()));
-    }
-    let server = serve(bind(args.web, &args.access)?, results, None)?;
-    server.wait().map_err(Failure::own)?;
-    Ok(ExitCode::SUCCESS)
 }

@@ -25,7 +25,7 @@ use rtf_report::junit::JunitFile;
 use rtf_report::logs::Logs;
 use rtf_report::predecessor::{Console, ConsoleOptions, ResultFile};
 use rtf_report::{Reporter, run_folder};
-use rtf_web::Server;
+use rtf_web::{Role, Server};
 
 use crate::command::Outcome;
 use crate::command::job::Job;
@@ -128,8 +128,8 @@ fn perform(args: &Args, results: &Results, guard: Link) -> Outcome {
         Box::new(Logs::new(&folder.path)),
     ];
     let asks = Arc::new(Asks::new(SHUTDOWN));
-    let own = (folder.name.clone(), asks.clone());
-    let web = web.map(|bound| web::serve(bound, &results.folder, Some(own))).transpose()?;
+    let role = Role::Makes(folder.name.clone(), asks.clone());
+    let web = web.map(|bound| web::serve(bound, &results.folder, role)).transpose()?;
     reporters.extend(web.as_ref().map(|web| Box::new(web.live()) as Box<dyn Reporter>));
     reporters.extend(result_file(args, &folder.journal())?);
     reporters.push(Box::new(console(args)));

@@ -39,6 +39,7 @@ mod profiles;
 mod remote;
 mod repeating;
 mod reports;
+mod rerun;
 mod side_by_side;
 mod signals;
 mod testrunner;

@@ -6,7 +6,7 @@ use std::net::{SocketAddr, TcpListener};
 use rtf_model::{EventKind, Phase, SuiteId, TestId, Verdict};
 use serde_json::{Value, json};
 
-use crate::support::{Folder, Running, nothing_left, wait_until};
+use crate::support::{Finished, Folder, Running, nothing_left, wait_until};
 use crate::web_client::{Answer, Stream, ask, get};
 
 const PATIENT: &str =
@@ -15,16 +15,16 @@ const QUICK: &str = "function TestCase.run() rtf.check(true, 'fine') end\n";
 const PARK: &str = "<hook name='park' on='interrupt'><command>true</command></hook>";
 
 /// A run that is in a browser, and the browser's way to it.
-struct Web {
+pub struct Web {
     running: Running,
-    address: SocketAddr,
+    pub address: SocketAddr,
     token: String,
     /// What was said before the address.
     before: Vec<String>,
 }
 
 impl Web {
-    fn start(folder: &Folder, args: &[&str]) -> Self {
+    pub fn start(folder: &Folder, args: &[&str]) -> Self {
         Self::of(folder.start(args))
     }
 
@@ -46,8 +46,18 @@ impl Web {
     }
 
     fn post(&self, path: &str) -> Answer {
+        self.post_to("current", path)
+    }
+
+    pub fn post_to(&self, run: &str, path: &str) -> Answer {
         let bearer = format!("Authorization: Bearer {}", self.token);
-        ask(self.address, &format!("POST /api/v1/runs/current{path}"), &[&bearer], "")
+        ask(self.address, &format!("POST /api/v1/runs/{run}{path}"), &[&bearer], "")
+    }
+
+    /// Ends the server with a signal.
+    pub fn end(self, signal: &str) -> Finished {
+        self.running.signal(signal);
+        self.running.finish()
     }
 
     fn events(&self, query: &str) -> Stream {
@@ -68,7 +78,7 @@ fn folder() -> Folder {
 }
 
 /// Reads on until the first test runs.
-fn until_test_runs(events: &mut Stream, test: u32) {
+pub fn until_test_runs(events: &mut Stream, test: u32) {
     let runs = json!({"type": "test-phase", "phase": "run", "test": test});
     let is = |data: &Value| runs.as_object().expect("fields").iter().all(|(k, v)| data[k] == *v);
     while !is(&events.next_event().data) {}
@@ -214,11 +224,11 @@ fn serve_follows_a_run_that_goes_on_and_tells_of_one_that_was_killed() {
     let running = folder.start(&["run", "first.xml"]);
     running.wait_for(|kind| matches!(kind, EventKind::TestPhase { phase: Phase::Run, .. }));
     let web = Web::start(&folder, &["serve", "--web", "127.0.0.1:0"]);
-    assert_eq!(web.token, "", "there is nothing to control");
     let mut events = web.events("?from=0&details=none");
     until_test_runs(&mut events, 0);
     let server = get(web.address, "/api/v1").json();
-    assert_eq!((&server["mode"], &server["control"]), (&json!("serve"), &json!(false)));
+    assert_eq!((&server["mode"], &server["control"]), (&json!("serve"), &json!(true)));
+    assert_eq!(server["controlled"], Value::Null, "it is not its run");
     assert!(server["current"].is_string(), "{server}");
     let path = "/api/v1/runs/current/tests/0/attempts/1/messages";
     let said =
@@ -235,6 +245,5 @@ fn serve_follows_a_run_that_goes_on_and_tells_of_one_that_was_killed() {
     assert_eq!((&run["state"], &run["green"]), (&json!("died"), &json!(false)));
     assert_eq!(run["totals"]["verdicts"]["interrupted"], 1, "{run}");
     assert_eq!(get(web.address, "/api/v1/runs/current").status, 404);
-    web.running.signal("TERM");
-    web.running.finish();
+    assert_eq!(web.end("TERM").code, Some(143));
 }

@@ -12,7 +12,9 @@ export function applyToHook(hook: Hook, event: Event): void {
     if (event.type === 'hook-started') {
         const { trigger, reason, test, at } = event;
         const about = test == null ? {} : { test };
-        hook.runs.push({ number: hook.runs.length + 1, started: at, trigger, reason, ...about });
+        // What it prints is left to whoever looks at it.
+        const run = { number: hook.runs.length + 1, started: at, trigger, reason, output: '' };
+        hook.runs.push({ ...run, ...about });
     } else if (event.type === 'hook-finished') {
         const run = hook.runs.at(-1);
         if (run === undefined) return;

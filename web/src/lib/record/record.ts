@@ -13,7 +13,7 @@ import type {
     Test,
     Totals,
 } from '../api-types';
-import { VERDICTS, type Event, type Verdict } from '../event';
+import { VERDICTS, type Event, type SuitePrepared, type Verdict } from '../event';
 import { applyToFixture, fixtureProblems, plannedFixture } from './fixture';
 import { applyToHook, hookProblems, plannedHook } from './hook';
 import { applyToTest, plannedTest, testState } from './test';
@@ -120,6 +120,11 @@ export class RunRecord {
                     started: event.at,
                 });
                 break;
+            case 'suite-prepared': {
+                const suite = data.suites[event.suite];
+                if (suite !== undefined) suite.prepared ??= preparedOf(event);
+                break;
+            }
             case 'suite-finished':
                 Object.assign(data.suites[event.suite] ?? {}, {
                     state: 'finished',
@@ -194,6 +199,18 @@ function plannedSuite(plan: Extract<Event, { type: 'suite-planned' }>): Suite {
         problems: [],
         fixtures: [],
         hooks: [],
+    };
+}
+
+/** What a suite got for itself, without what is the event's own. */
+function preparedOf(event: Extract<Event, { type: 'suite-prepared' }>): SuitePrepared {
+    const { suite, network, ports, variables, join } = event;
+    return {
+        suite,
+        join,
+        ...(network == null ? {} : { network }),
+        ...(ports === undefined ? {} : { ports }),
+        ...(variables === undefined ? {} : { variables }),
     };
 }
 

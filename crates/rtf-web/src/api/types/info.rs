@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use rtf_model::{Record, Verdict};
 use serde::Serialize;
 use utoipa::ToSchema;
+use utoipa::openapi::schema::{Object, ObjectBuilder, Type};
 
 use crate::index::{Index, State};
 use crate::problem::Problem;
@@ -70,7 +71,18 @@ pub struct Totals {
     /// Those that have their last word.
     pub done: u32,
     /// These by their verdicts.
+    #[schema(schema_with = by_verdict)]
     pub verdicts: BTreeMap<&'static str, u32>,
+}
+
+/// A number for each verdict.
+fn by_verdict() -> Object {
+    let number = || ObjectBuilder::new().schema_type(Type::Integer).minimum(Some(0));
+    let verdicts = Verdict::ALL.iter().map(|verdict| verdict.as_str());
+    let all = verdicts.fold(ObjectBuilder::new(), |all, verdict| {
+        all.property(verdict, number()).required(verdict)
+    });
+    all.build()
 }
 
 impl From<&rtf_model::Totals> for Totals {

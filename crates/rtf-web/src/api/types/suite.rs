@@ -1,6 +1,6 @@
 //! Suites, and the snapshot of a whole run.
 
-use rtf_model::{Diagnostic, LeftProcess, Record, SuiteRecord};
+use rtf_model::{Diagnostic, LeftProcess, Record, SuitePrepared, SuiteRecord};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -73,6 +73,10 @@ pub struct Suite {
     pub fixtures: Vec<u32>,
     /// Its hooks.
     pub hooks: Vec<u32>,
+    /// What it got for itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<model::SuitePrepared>)]
+    pub prepared: Option<SuitePrepared>,
 }
 
 /// All suites of a run.
@@ -108,6 +112,7 @@ impl Suite {
             problems: record.suite_problems(plan.suite),
             fixtures: suite.fixtures.iter().map(|id| id.0).collect(),
             hooks: suite.hooks.iter().map(|id| id.0).collect(),
+            prepared: suite.prepared.clone(),
         }
     }
 }

@@ -8,7 +8,6 @@ mod debounce;
 mod files;
 mod round;
 mod rounds;
-mod unix;
 
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -25,7 +24,7 @@ use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use self::debounce::Debounce;
 use self::files::Watched;
 use self::rounds::{Order, Rounds};
-use super::{Outcome, planning};
+use super::{Outcome, child, planning};
 use crate::cli::RunArgs;
 use crate::error::Failure;
 
@@ -161,8 +160,8 @@ impl<'a> Watch<'a> {
     }
 
     fn signal(&self, number: i32) {
-        if let Some(child) = &self.child {
-            unix::signal(child, number);
+        if let Some(pid) = self.child.as_ref().and_then(|child| child::pid(child.id()?)) {
+            child::signal(pid, number);
         }
     }
 

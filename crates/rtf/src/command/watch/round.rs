@@ -5,14 +5,15 @@ use std::io;
 use std::os::unix::process::ExitStatusExt;
 use std::process::ExitStatus;
 
-use tokio::process::Child;
+use tokio::process::{Child, Command};
 
-use super::unix;
+use crate::command::child;
 use crate::exit;
 
 /// Starts one, with the options of this process.
 pub fn start() -> io::Result<Child> {
-    unix::start(&std::env::current_exe()?, &as_run(std::env::args_os().skip(1).collect()))
+    let round = child::again(as_run(std::env::args_os().skip(1).collect()))?;
+    Command::from(round).spawn()
 }
 
 /// What was typed, with the verb `run`.

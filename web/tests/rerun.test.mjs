@@ -1,0 +1,78 @@
+// Who has the token runs the failed tests of a past run again, and watches it.
+
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { Guarded, launch } from './support/browser.mjs';
+import { Bench, step, within } from './support/rtf.mjs';
+import { BROKEN } from './support/suites.mjs';
+
+const AGAIN = 'Run failed tests again';
+
+let browser;
+let bench;
+
+before(async () => {
+    browser = await launch();
+    bench = await Bench.make();
+});
+after(async () => {
+    await browser.close();
+    await bench.close();
+});
+
+/** Presses the button, says yes, and waits for the new run. */
+async function again(guarded) {
+    const { page } = guarded;
+    const before = page.url();
+    await guarded.button(AGAIN).click();
+    await guarded.see('Run 1 test again?', 'dialog');
+    await guarded.button('Yes, run failed tests again').click();
+    await page.waitForFunction((from) => location.href !== from, before);
+}
+
+test('failed tests are run again from the page', async () => {
+    await bench.runToEnd(BROKEN);
+    const [past] = await bench.names();
+    const serve = await bench.serve();
+    const guarded = await Guarded.open(browser, serve.url);
+    const { page } = guarded;
+
+    await step('without the token there is no button', async () => {
+        const reader = await Guarded.open(browser, `${serve.origin}/#/runs/${past}`);
+        await reader.rowIs('Breaks', 'failed');
+        await reader.button('Control …').waitFor();
+        assert.equal(await reader.button(AGAIN).count(), 0);
+        await reader.close();
+    });
+
+    await step('the page goes to the new run, which can be stopped', async () => {
+        await page.getByRole('link', { name: past }).click();
+        // Mended in a way: now it waits for a word that nobody says.
+        await bench.write('suite.xml', BROKEN.replace('"fail">Ends', '"never">Step'));
+        await again(guarded);
+        await guarded.rowIs('Breaks', 'running');
+        assert.equal(await guarded.row('Works').count(), 0);
+        assert.equal(await guarded.button('Skip the rest').count(), 0);
+        await guarded.button('Stop the run').click();
+        await guarded.button('Yes, stop the run').click();
+        await guarded.rowIs('Breaks', 'interrupted');
+        // It was stopped, it did not fail.
+        assert.equal(await guarded.button(AGAIN).count(), 0);
+    });
+
+    await step('a test that was mended passes', async () => {
+        await bench.write('suite.xml', BROKEN.replace('"fail">Ends', '"through">Step'));
+        await page.evaluate((to) => (location.hash = to), `#/runs/${past}`);
+        await guarded.rowIs('Breaks', 'failed');
+        await again(guarded);
+        await guarded.rowIs('Breaks', 'passed');
+        await guarded.see('green', 'section.summary');
+        assert.equal(await guarded.button(AGAIN).count(), 0);
+    });
+
+    await step('the server ends with nothing left', async () => {
+        await guarded.close();
+        serve.child.kill('SIGTERM');
+        assert.equal(await within('the end of rtf serve', serve.ended), 143);
+    });
+});
