@@ -59,10 +59,15 @@ export class RunRecord {
         if (event.seq < info.seq) return;
         info.seq = event.seq + 1;
         info.last_at = Math.max(info.last_at, event.at);
-        if ('test' in event && event.type !== 'hook-started' && event.type !== 'test-planned') {
+        const isOfTest = event.type !== 'hook-started' && event.type !== 'test-planned';
+        if (isOfTest && 'test' in event && event.test != null) {
             const test = this.data.tests[event.test];
             if (test !== undefined) applyToTest(test, event);
-        } else if ('fixture' in event && event.type !== 'fixture-planned') {
+        } else if (
+            'fixture' in event &&
+            event.type !== 'fixture-planned' &&
+            event.fixture != null
+        ) {
             const fixture = this.data.fixtures[event.fixture];
             if (fixture !== undefined) applyToFixture(fixture, event);
         } else if ('hook' in event && event.type !== 'hook-planned') {
