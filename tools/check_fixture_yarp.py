@@ -12,6 +12,7 @@ import os
 import signal
 import subprocess
 import sys
+import tarfile
 import tempfile
 from pathlib import Path
 
@@ -31,6 +32,7 @@ def main() -> int:
         does_not_start(lesson, "broken", "Could not find device <noSuchDevice>")
         does_not_start(lesson, "missing", "cannot run no-such-module on localhost")
         side_by_side(lesson)
+        recorded(lesson)
     return 0
 
 
@@ -71,6 +73,24 @@ def side_by_side(lesson: Lesson) -> None:
     print("--- side by side", flush=True)
     done = subprocess.run([*private, "sh", "-c", script, "sh", *command], check=False, timeout=120)
     expect("exit code", done.returncode, 0)
+    lesson.nothing_left()
+
+
+def recorded(lesson: Lesson) -> None:
+    """What went through a port during a test that failed is kept with it, and only that."""
+    run = lesson.start("recorder.xml", "recorder")
+    expect("exit code", run.wait(), 1)
+    expect("verdicts", run.verdicts(), {"bad": "failed", "good": "passed"})
+    (kept,) = [event for event in run.events() if is_a(event, "attached")]
+    expect("test that it belongs to", run.name(kept), "bad")
+    with tarfile.open(run.journal.parent / kept["attachment"]["path"]) as archive:
+        names = {Path(name).name for name in archive.getnames()}
+        expect("files", {"data.log", "info.log"} <= names, True)
+        (data,) = [name for name in archive.getnames() if name.endswith("data.log")]
+        lines = (archive.extractfile(data) or sys.exit(f"no {data}")).read().decode().splitlines()
+    # A number, a time stamp, and six encoders.
+    expect("enough lines", len(lines) > 10, True)
+    expect("numbers in a line", {len(line.split()) for line in lines}, {8})
     lesson.nothing_left()
 
 
