@@ -157,6 +157,12 @@ example_01() {
     python3 tools/check_example_01.py "$TARGET/release/rtf" examples/01-simulated-arm/arm.xml
 }
 
+fixture_mcap() {
+  local library
+  library=$(tools/venv.sh mcap)
+  PATH="$library:$PATH" python3 tools/check_fixture_mcap.py "$TARGET/release/rtf"
+}
+
 example_02() {
   PATH="$simulation:$PATH" python3 tools/check_example_02.py "$TARGET/release/rtf" \
     examples/02-supervised-simulator/supervised.xml
@@ -227,6 +233,7 @@ step 'build release' tools/build.sh
 step 'example 01 plug-ins' tools/plugins.sh examples/01-simulated-arm
 step 'example 01' example_01
 step 'example 02' example_02
+step 'fixture mcap' fixture_mcap
 step_with 'example 03' yarp example_03
 step_with 'fixture yarp' yarp fixture_yarp
 step_with 'example 05' ros1 example_05

@@ -26,6 +26,9 @@ pub const OWNER_VARIABLE: &str = "RTF_OWNER";
 /// The environment variable that holds the suite's environment string.
 pub const ENVIRONMENT_VARIABLE: &str = "RTF_ENVIRONMENT";
 
+/// The environment variable that names the run's folder, in which the journal is.
+pub const RUN_FOLDER_VARIABLE: &str = "RTF_RUN_FOLDER";
+
 /// The environment variable that makes a host a server that forks hosts:
 /// `fd:N`, then blanks as room for the variables of a [`ForkRequest`].
 pub const FORK_SERVER_VARIABLE: &str = "RTF_FORK_SERVER";

@@ -14,9 +14,9 @@ private:
     bool testFinished(const rtf::Test &test, std::string_view verdict,
                       std::string_view reason) override
     {
-        report(std::to_string(test.id) + " " + test.name + " " + std::to_string(test.repetition)
-               + "." + std::to_string(test.attempt) + " " + std::string(verdict) + ": "
-               + std::string(reason));
+        report(std::to_string(test.id) + " " + test.name + " " + std::to_string(test.repetition) +
+               "." + std::to_string(test.attempt) + " " + std::string(verdict) + ": " +
+               std::string(reason));
         measure("size", 3.5, "MB");
         attach("/proc/self/status", "run.txt");
         return true;

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 use std::time::Duration;
 
-use rtf_model::protocol::ENVIRONMENT_VARIABLE;
+use rtf_model::protocol::{ENVIRONMENT_VARIABLE, RUN_FOLDER_VARIABLE};
 use rtf_model::{EventKind, Source, TestId};
 use tokio::sync::{mpsc, watch};
 use tokio::time::Instant;
@@ -271,7 +271,11 @@ impl SuiteTask<'_> {
     /// What is to be started; as a fork only if it may be one.
     fn request(&self, start: Start, may_fork: bool) -> SpawnRequest {
         let mut forks = false;
-        let mut env = vec![(ENVIRONMENT_VARIABLE.to_owned(), self.plan.environment.clone())];
+        let run_folder = self.shared.run_folder.to_string_lossy().into_owned();
+        let mut env = vec![
+            (ENVIRONMENT_VARIABLE.to_owned(), self.plan.environment.clone()),
+            (RUN_FOLDER_VARIABLE.to_owned(), run_folder),
+        ];
         env.extend(start.env);
         let (command, channel) = match start.what {
             Program::Host(plan) => {

@@ -8,10 +8,11 @@ use super::shape::{self, check};
 use super::value::Reader;
 
 /// Variables that the runner sets for its processes itself.
-const RESERVED: [&str; 6] = [
+const RESERVED: [&str; 7] = [
     protocol::CHANNEL_VARIABLE,
     protocol::SCOPE_VARIABLE,
     protocol::ENVIRONMENT_VARIABLE,
+    protocol::RUN_FOLDER_VARIABLE,
     "RTF_HOOK_TRIGGER",
     "RTF_HOOK_REASON",
     "RTF_HOOK_TEST",

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use rtf_model::{Event, EventKind, Record};
+use rtf_model::{Event, EventKind, Phase, Record};
 
 use crate::{ReportError, Reporter};
 
@@ -44,6 +44,10 @@ impl Journal {
 /// What a journal must not miss when the runner is killed right after it,
 /// even while so much is going on that the queue is never empty.
 fn is_landmark(kind: &EventKind) -> bool {
+    // A recorder reads what the test told until then.
+    if let EventKind::TestPhase { phase: Phase::Notice, .. } = kind {
+        return true;
+    }
     !matches!(
         kind,
         EventKind::SuitePlanned(_)

@@ -345,7 +345,8 @@ impl<'p> SuiteMachine<'p> {
         if !self.tell_then_start(cx) {
             return;
         }
-        self.checked = false;
+        // Those that wait for fixtures to hear of them were checked for, too.
+        self.checked = self.turns.any_told();
         self.hooks.test_starts();
         cx.out(Effect::SpawnAhead(self.turns.hosts_ahead()));
     }

@@ -78,10 +78,9 @@ struct HearsFinish : std::true_type
 
 template <class T>
 struct HearsFinish<T, std::void_t<decltype(&T::testFinished)>>
-    : std::bool_constant<
-          !std::is_same_v<decltype(&T::testFinished),
-                          bool (FixtureManager::*)(const Test &, std::string_view,
-                                                   std::string_view)>>
+    : std::bool_constant<!std::is_same_v<decltype(&T::testFinished),
+                                         bool (FixtureManager::*)(const Test &, std::string_view,
+                                                                  std::string_view)>>
 {
 };
 
@@ -143,7 +142,8 @@ struct Entry
     {
         return guarded([&] {
             if constexpr (is_fixture) {
-                return get(self).testStarted(Told{test->id, from_text(test->name), test->repetition, test->attempt});
+                return get(self).testStarted(
+                    Told{test->id, from_text(test->name), test->repetition, test->attempt});
             }
             return true;
         });
@@ -153,8 +153,9 @@ struct Entry
     {
         return guarded([&] {
             if constexpr (is_fixture) {
-                return get(self).testFinished(Told{test->id, from_text(test->name), test->repetition, test->attempt}, from_text(test->verdict),
-                                              from_text(test->reason));
+                return get(self).testFinished(
+                    Told{test->id, from_text(test->name), test->repetition, test->attempt},
+                    from_text(test->verdict), from_text(test->reason));
             }
             return true;
         });

@@ -163,6 +163,11 @@ impl<'p> Turns<'p> {
         Some(turn.told_test())
     }
 
+    /// Whether an attempt that is due waits until all have heard of it.
+    pub fn any_told(&self) -> bool {
+        self.open.iter().any(|turn| turn.is_due() && turn.told)
+    }
+
     /// Fixtures were set up anew: they know of no attempt that has not begun.
     pub fn untell(&mut self) {
         self.open.iter_mut().filter(|turn| turn.run.is_none()).for_each(|turn| turn.told = false);

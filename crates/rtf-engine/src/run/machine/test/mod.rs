@@ -1,17 +1,18 @@
 //! One attempt of a test: its phases and limits, up to its end. How it is
 //! stopped is in [`stop`].
 
+mod answers;
 mod stop;
 
 use std::time::Duration;
 
-use rtf_model::protocol::{
-    Answer, Initialized, Notification, PROTOCOL_VERSION, Plugin, Reply, Request, StackSupport,
-};
+use rtf_model::protocol::{Notification, Plugin, Reply, Request, StackSupport};
 use rtf_model::{
     EventKind, ExitStatus, LeftProcess, Measurement, Message, MessageKind, Phase, Source,
     StopCause, Stream, TestFinished, TestId, Verdict,
 };
+
+pub use answers::{parse_answer, parse_initialized};
 
 use crate::host::codec::INITIALIZE;
 use crate::plan::{Leaks, SuitePlan, TestPlan};
@@ -369,37 +370,5 @@ fn leak_of(leaks: Leaks, left: &[LeftProcess]) -> Option<String> {
         (Leaks::Fail, [first, ..]) => {
             Some(format!("it left {} processes behind, first: {}", left.len(), first.command))
         }
-    }
-}
-
-/// Reads the answer to `initialize`.
-pub fn parse_initialized(reply: Reply<serde_json::Value>) -> Result<StackSupport, String> {
-    let value = match reply {
-        Reply::Result(value) => value,
-        Reply::Error(error) => {
-            return Err(format!(
-                "it does not speak protocol {PROTOCOL_VERSION}: {}",
-                error.message
-            ));
-        }
-    };
-    let initialized: Initialized = serde_json::from_value(value)
-        .map_err(|error| format!("its answer to `initialize` is not understood: {error}"))?;
-    if initialized.protocol == PROTOCOL_VERSION {
-        Ok(initialized.stack)
-    } else {
-        Err(format!("{} speaks protocol {}", initialized.host, initialized.protocol))
-    }
-}
-
-/// Reads an answer to a request that carries out something.
-pub fn parse_answer(
-    reply: Reply<serde_json::Value>,
-) -> Result<Result<Answer, rtf_model::protocol::RpcError>, String> {
-    match reply {
-        Reply::Error(error) => Ok(Err(error)),
-        Reply::Result(value) => serde_json::from_value(value)
-            .map(Ok)
-            .map_err(|error| format!("an answer is not understood: {error}")),
     }
 }

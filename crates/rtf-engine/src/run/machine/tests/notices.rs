@@ -1,6 +1,6 @@
 //! What fixtures are told of tests, and what becomes of one that does not bear it.
 
-use rtf_model::protocol::{Notification, Request};
+use rtf_model::protocol::{Notification, Reply, Request};
 use rtf_model::{
     Attachment, FixtureId, Measurement, Message, MessageKind, Source, TestId, Verdict,
 };
@@ -214,4 +214,45 @@ fn what_is_kept_when_no_test_ends_is_an_error_of_the_fixture() {
     world.finish();
     let said = &world.record.fixtures[0].messages[0].text;
     assert_eq!(said, "the file `run.mcap` is not kept: there is no test that it belongs to");
+}
+
+#[test]
+fn tests_that_run_at_once_are_told_one_by_one() {
+    let mut plan = suite(1, 2);
+    plan.parallel = 2;
+    let mut world = World::new(&plan);
+    world.start();
+    world.set_up_to_hear(0);
+    world.answer(RECORDER, "passed");
+    let starts: Vec<u64> = requests(&world, |r| matches!(r, Request::TestStarted(_)));
+    assert_eq!(starts.len(), 2);
+    answer(&mut world, starts[0]);
+    assert!(world.story().contains("test-started attempt=1 repetition=1 test=0"));
+    assert!(!world.story().contains("repetition=1 test=1"), "{}", world.story());
+    answer(&mut world, starts[1]);
+    world.pass(1);
+    world.pass(0);
+    let ends = requests(&world, |r| matches!(r, Request::TestFinished(_)));
+    // The host is still with the end of the second test.
+    attach(&mut world);
+    answer(&mut world, ends[0]);
+    assert_eq!(world.record.tests[1].verdict(), Some(Verdict::Passed));
+    assert_eq!(world.record.tests[0].verdict(), None);
+    attach(&mut world);
+    attach(&mut world);
+    answer(&mut world, ends[1]);
+    world.tear_down(0);
+    world.finish();
+    let kept = |test: usize| world.record.tests[test].attempts[0].attachments.len();
+    assert_eq!((kept(0), kept(1)), (2, 1));
+}
+
+/// The numbers of the requests of a kind.
+fn requests(world: &World<'_>, kind: impl Fn(&Request) -> bool) -> Vec<u64> {
+    world.sent.iter().filter(|(_, _, request)| kind(request)).filter_map(|sent| sent.1).collect()
+}
+
+fn answer(world: &mut World<'_>, request: u64) {
+    let passed = serde_json::json!({ "outcome": "passed" });
+    world.input(RECORDER, HostInput::Answered(request, Reply::Result(passed)));
 }

@@ -1,0 +1,33 @@
+//! What hosts answer, of tests and of fixtures.
+
+use rtf_model::protocol::{Answer, Initialized, PROTOCOL_VERSION, Reply, RpcError, StackSupport};
+
+/// Reads the answer to `initialize`.
+pub fn parse_initialized(reply: Reply<serde_json::Value>) -> Result<StackSupport, String> {
+    let value = match reply {
+        Reply::Result(value) => value,
+        Reply::Error(error) => {
+            return Err(format!(
+                "it does not speak protocol {PROTOCOL_VERSION}: {}",
+                error.message
+            ));
+        }
+    };
+    let initialized: Initialized = serde_json::from_value(value)
+        .map_err(|error| format!("its answer to `initialize` is not understood: {error}"))?;
+    if initialized.protocol == PROTOCOL_VERSION {
+        Ok(initialized.stack)
+    } else {
+        Err(format!("{} speaks protocol {}", initialized.host, initialized.protocol))
+    }
+}
+
+/// Reads an answer to a request that carries out something.
+pub fn parse_answer(reply: Reply<serde_json::Value>) -> Result<Result<Answer, RpcError>, String> {
+    match reply {
+        Reply::Error(error) => Ok(Err(error)),
+        Reply::Result(value) => serde_json::from_value(value)
+            .map(Ok)
+            .map_err(|error| format!("an answer is not understood: {error}")),
+    }
+}

@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+"""Records tests with the fixture `mcap` and reads the files as others do.
+
+    check_fixture_mcap.py RTF
+
+The Python that runs this has the library `mcap`.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from check_example_01 import expect
+
+TEST = """
+import rtf
+
+class Ramp(rtf.TestCase):
+    def run(self):
+        for step in range(500):
+            self.measure("joint 1", step / 512, "rad")
+            self.measure("current", 0.5, "A")
+        self.report("at the end")
+        self.check(self.param != "fails", "the arm follows")
+"""
+
+SUITE = """<suite name="arm" parallel="2">
+  <fixture param="{param}"> mcap </fixture>
+  <test type="python" name="good"> Ramp </test>
+  <test type="python" name="bad" param="fails" retries="1"> Ramp </test>
+</suite>
+"""
+
+
+def main() -> int:
+    """Runs the suite with each way of keeping."""
+    rtf = str(Path(sys.argv[1]).resolve())
+    kept = {"": ["bad", "bad"], "--keep always": ["bad", "bad", "good"], "--keep never": []}
+    for param, names in kept.items():
+        with tempfile.TemporaryDirectory() as folder:
+            recorded = run(rtf, Path(folder), param)
+            expect(f"recordings with `{param}`", sorted(name for name, _ in recorded), names)
+            for _, file in recorded:
+                look_into(file)
+    with tempfile.TemporaryDirectory() as folder:
+        expect("recordings over their limit", run(rtf, Path(folder), "--limit 1k"), [])
+        left = list(Path(tempfile.gettempdir()).glob("rtf-mcap-*"))
+        expect("folders left", left, [])
+    return 0
+
+
+def run(rtf: str, folder: Path, param: str) -> list[tuple[str, Path]]:
+    """Runs the suite: the tests that have a recording, and the files."""
+    (folder / "Ramp.py").write_text(TEST)
+    (folder / "s.xml").write_text(SUITE.format(param=param))
+    ran = subprocess.run(
+        [rtf, "run", "s.xml"], cwd=folder, capture_output=True, text=True, check=False
+    )
+    expect(f"exit code\n{ran.stdout}{ran.stderr}", ran.returncode, 1)
+    results = folder / "rtf-results/latest"
+    events = [json.loads(line) for line in (results / "events.jsonl").open()]
+    collapses = [event for event in events if event["type"] == "fixture-collapsed"]
+    expect("collapses", collapses, [])
+    names = {event["test"]: event["name"] for event in events if event["type"] == "test-planned"}
+    attached = [event for event in events if event["type"] == "attached"]
+    return [(names[event["test"]], results / event["attachment"]["path"]) for event in attached]
+
+
+def look_into(file: Path) -> None:
+    """Each channel holds the whole series, in order."""
+    from mcap.reader import make_reader  # noqa: PLC0415 - this file is checked without it
+
+    series: dict[str, list[Any]] = {}
+    times: list[int] = []
+    with file.open("rb") as stream:
+        for _, channel, message in make_reader(stream).iter_messages():
+            series.setdefault(channel.topic, []).append(json.loads(message.data))
+            times.append(message.log_time)
+    values = [sample["value"] for sample in series["/joint 1"]]
+    expect("joint 1 is whole", values == [step / 512 for step in range(500)], True)
+    expect("current is whole", series["/current"] == [{"value": 0.5, "unit": "A"}] * 500, True)
+    expect("log", series["/log"][0], {"kind": "report", "text": "at the end"})
+    expect("times in order", times == sorted(times), True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
