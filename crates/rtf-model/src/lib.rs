@@ -34,6 +34,7 @@ pub use record::{
 };
 pub use report::{
     Attachment, Comparison, Location, Measurement, Message, MessageKind, format_number,
+    format_rounded,
 };
 pub use verdict::{Outcome, Verdict};
 

@@ -121,10 +121,24 @@ impl Measurement {
     /// The limits as text: `0.5 … 2`, `≥ 0.5`, `≤ 2`; empty without limits.
     #[must_use]
     pub fn limits(&self) -> String {
+        self.limits_by(format_number)
+    }
+
+    /// The value with its unit, and the limits, both as people read them: rounded,
+    /// unless the value is outside its limits.
+    #[must_use]
+    pub fn for_people(&self) -> (String, String) {
+        match self.value.filter(|_| self.is_within_limits()) {
+            Some(value) => (self.with_unit(format_rounded(value)), self.limits_by(format_rounded)),
+            None => (self.value_with_unit(), self.limits()),
+        }
+    }
+
+    fn limits_by(&self, format: fn(f64) -> String) -> String {
         match (self.low, self.high) {
-            (Some(low), Some(high)) => format!("{} … {}", format_number(low), format_number(high)),
-            (Some(low), None) => format!("≥ {}", format_number(low)),
-            (None, Some(high)) => format!("≤ {}", format_number(high)),
+            (Some(low), Some(high)) => format!("{} … {}", format(low), format(high)),
+            (Some(low), None) => format!("≥ {}", format(low)),
+            (None, Some(high)) => format!("≤ {}", format(high)),
             (None, None) => String::new(),
         }
     }
@@ -133,10 +147,13 @@ impl Measurement {
     #[must_use]
     pub fn value_with_unit(&self) -> String {
         match self.value {
-            Some(value) if self.unit.is_empty() => format_number(value),
-            Some(value) => format!("{} {}", format_number(value), self.unit),
+            Some(value) => self.with_unit(format_number(value)),
             None => "not a finite number".to_owned(),
         }
+    }
+
+    fn with_unit(&self, number: String) -> String {
+        if self.unit.is_empty() { number } else { format!("{number} {}", self.unit) }
     }
 }
 
@@ -147,6 +164,13 @@ pub fn format_number(number: f64) -> String {
         size if size != 0.0 && !(1e-5..1e15).contains(&size) => format!("{number:e}"),
         _ => number.to_string(),
     }
+}
+
+/// The same with six significant digits, which hide what binary fractions add
+/// to a decimal one. Not for a number that is compared with a limit it misses.
+#[must_use]
+pub fn format_rounded(number: f64) -> String {
+    format_number(format!("{number:.5e}").parse().unwrap_or(number))
 }
 
 /// A file that a test keeps with its result.

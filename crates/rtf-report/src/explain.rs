@@ -109,9 +109,8 @@ fn vectors(comparison: &Comparison, sink: Sink<'_>) {
 /// `measured rate = 98.2 Hz, outside ≥ 100 at rate.py:12`.
 pub(crate) fn measurement(measurement: &Measurement) -> String {
     let name = escape::line(&measurement.name);
-    let value = measurement.value_with_unit();
+    let (value, limits) = measurement.for_people();
     let mut text = format!("measured {name} = {}", escape::line(&value));
-    let limits = measurement.limits();
     match (limits.is_empty(), measurement.is_within_limits()) {
         (false, true) => text += &format!(", within {limits}"),
         (false, false) => text += &format!(", outside {limits}"),

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use crate::support::*;
 use rtf_model::{
-    AttemptRecord, EventKind, FixtureLife, FixtureState, Message, MessageKind, Output, Record,
-    Source, Stream, TestId, Verdict,
+    AttemptRecord, EventKind, FixtureLife, FixtureState, Measurement, Message, MessageKind, Output,
+    Record, Source, Stream, TestId, Verdict,
 };
 
 pub fn record(kinds: impl IntoIterator<Item = EventKind>) -> Record {
@@ -226,4 +226,24 @@ fn a_number_that_cannot_be_true_is_not_believed() {
 fn numbers_are_short() {
     let shown = [0.0, 0.5, -98.25, 1e308, 2e-7, f64::NAN].map(rtf_model::format_number);
     assert_eq!(shown, ["0", "0.5", "-98.25", "1e308", "2e-7", "NaN"]);
+}
+
+/// A value within its limits is rounded for people; one outside is shown to its last
+/// digit, lest it look as if it were inside.
+#[test]
+fn a_measurement_is_rounded_unless_it_is_outside_its_limits() {
+    let measured = |value, high| Measurement {
+        name: "error".to_owned(),
+        value: Some(value),
+        unit: "deg".to_owned(),
+        low: Some(12.999_999_999_999_998),
+        high: Some(high),
+        location: None,
+    };
+    let shown = measured(14.993_230_922_134_464, 20.0).for_people();
+    assert_eq!(shown, ("14.9932 deg".to_owned(), "13 … 20".to_owned()));
+    let shown = measured(20.000_000_1, 20.0).for_people();
+    assert_eq!(shown, ("20.0000001 deg".to_owned(), "12.999999999999998 … 20".to_owned()));
+    assert_eq!(rtf_model::format_rounded(-2.345_678_9e-7), "-2.34568e-7");
+    assert_eq!(rtf_model::format_rounded(1e308), "1e308");
 }
