@@ -4,10 +4,11 @@ PREFIX ?= /usr/local
 DESTDIR ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help build web screenshots demo test test-quick chaos bench install uninstall clean
+.PHONY: help build web screenshots demo icub test test-quick chaos bench install uninstall clean
 
 help:
 	@echo "make demo       install what is missing, build, and test a simulated robot arm"
+	@echo "make icub       the same with a humanoid, the iCub, behind YARP (builds YARP, ten minutes, once)"
 	@echo "make build      build rtf and its hosts (target/release)"
 	@echo "make web        build the page that rtf shows in a browser (make build does, too)"
 	@echo "make test       every check there is: Rust, SDKs, examples, lints, installation"
@@ -31,6 +32,10 @@ screenshots:
 
 demo:
 	@tools/demo.sh
+
+# The iCub in simulation: examples/04-icub.
+icub:
+	@tools/icub.sh
 
 test:
 	@tools/test.sh

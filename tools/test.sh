@@ -94,6 +94,7 @@ lint_python() {
   "$checkers/mypy" examples/01-simulated-arm/*.py tools/*.py
   "$checkers/mypy" examples/02-supervised-simulator/*.py
   "$checkers/mypy" examples/03-yarp/*.py
+  "$checkers/mypy" examples/04-icub/*.py
   "$checkers/mypy" examples/05-ros1/*.py examples/05-ros1/rover/scripts/*.py
   "$checkers/mypy" examples/06-ros2/*.py
   "$checkers/mypy" fixtures
@@ -195,6 +196,10 @@ example_05() {
     tests/fixtures/ros1/probes.xml
 }
 
+example_04() {
+  tools/icub.sh python3 tools/check_example_04.py "$TARGET/release/rtf" examples/04-icub/icub.xml
+}
+
 example_06() {
   python3 tools/check_example_06.py "$TARGET/release/rtf" examples/06-ros2/{left,right}.xml
 }
@@ -236,6 +241,7 @@ step 'example 02' example_02
 step 'fixture mcap' fixture_mcap
 step_with 'example 03' yarp example_03
 step_with 'fixture yarp' yarp fixture_yarp
+step_with 'example 04' yarp example_04
 step_with 'example 05' ros1 example_05
 step_with 'example 06' ros2 example_06
 step_with 'fixture ros2launch' ros2 fixture_ros2launch

@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+"""Runs example 04 as a user does: the iCub as it should be, with a broken joint, and killed.
+
+    check_example_04.py RTF SUITE
+
+YARP's programs, the iCub and the plug-ins have to be found as the lesson says.
+Nothing is imitated: the simulator gets a SIGKILL in the middle of a test.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import tempfile
+from pathlib import Path
+
+from check_example_01 import Event, Run, expect, is_a, simulators
+
+VICTIM = "MovementTest"
+STUCK = "l_elbow"
+
+
+def main() -> int:
+    """Runs all and tells the first thing that is not as it should be."""
+    rtf, suite = (str(Path(argument).resolve()) for argument in sys.argv[1:])
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ["YARP_CONFIG_HOME"] = str(Path(folder) / "home")
+        undisturbed(rtf, suite, Path(folder) / "undisturbed")
+        broken(rtf, suite, Path(folder) / "broken")
+        killed(rtf, suite, Path(folder) / "killed")
+    return 0
+
+
+def undisturbed(rtf: str, suite: str, folder: Path) -> None:
+    """Everything passes, and nothing is left running."""
+    run = Run(rtf, suite, folder)
+    expect("exit code", run.wait(), 0)
+    expect("verdicts", list(run.verdicts().values()), ["passed"] * 6)
+    expect("pictures", pictures(run), {})
+    expect("simulators left", simulators(suite), [])
+
+
+def broken(rtf: str, suite: str, folder: Path) -> None:
+    """Those tests fail that move the joint, each with a picture."""
+    os.environ["ICUB_STUCK"] = STUCK
+    run = Run(rtf, suite, folder)
+    del os.environ["ICUB_STUCK"]
+    expect("exit code", run.wait(), 1)
+    failed = [name for name, verdict in run.verdicts().items() if verdict != "passed"]
+    expect("failed", failed, [VICTIM, "LeftArmAccuracy"])
+    taken = pictures(run)
+    expect("tests with a picture", list(taken), failed)
+    for picture in taken.values():
+        expect("a PNG", (folder / "latest" / picture).read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+
+
+def killed(rtf: str, suite: str, folder: Path) -> None:
+    """The test is `collapsed` by a module that the reason names; the others pass."""
+    run = Run(rtf, suite, folder)
+    try:
+        run.wait_for(
+            lambda event: (
+                is_a(event, "test-phase") and run.name(event) == VICTIM and event["phase"] == "run"
+            )
+        )
+        (pid,) = simulators(suite)
+        os.kill(pid, signal.SIGKILL)
+    except BaseException:
+        run.stop()
+        raise
+    expect("exit code", run.wait(), 1)
+    verdicts = run.verdicts()
+    expect(f"verdict of {VICTIM}", verdicts.pop(VICTIM), "collapsed")
+    expect("other verdicts", list(verdicts.values()), ["passed"] * 5)
+    reasons = [event["reason"] for event in run.events() if is_a(event, "fixture-collapsed")]
+    expect(f"the module in {reasons[0]!r}", "simulator.py" in reasons[0], True)
+    expect("simulators left", simulators(suite), [])
+
+
+def pictures(run: Run) -> dict[str, str]:
+    """The pictures by the names of the tests that they belong to."""
+
+    def path(event: Event) -> str:
+        return str(event["attachment"]["path"])
+
+    attached = (event for event in run.events() if is_a(event, "attached"))
+    return {run.name(event): path(event) for event in attached}
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# From a fresh checkout to a tested humanoid: examples/04-icub.
+#
+#   tools/icub.sh             runs it, to be watched in a browser
+#   tools/icub.sh COMMAND …   runs a command that finds YARP, the iCub and its plug-ins
+
+. "$(dirname "$0")/env.sh"
+. tools/packages.sh
+
+tools/bootstrap.sh demo
+# MuJoCo draws with them, on the processor.
+need_packages libegl1 libgl1-mesa-dri
+python=$(tools/venv.sh icub)
+YARP_PREFIX=$(tools/middleware.sh yarp | sed 's/^YARP_PREFIX=//')
+export PATH=$python:$YARP_PREFIX/bin:$PATH LD_LIBRARY_PATH=$YARP_PREFIX/lib
+export YARP_DATA_DIRS=$YARP_PREFIX/share/yarp PYTHONPATH=$YARP_PREFIX/lib/python3
+export LUA_CPATH="$YARP_PREFIX/lib/lua/5.4/?.so;;" CMAKE_PREFIX_PATH=$YARP_PREFIX
+[ $# -gt 0 ] || tools/build.sh
+quietly tools/plugins.sh examples/04-icub
+
+export RTF_PLUGIN_PATH=$BUILD/examples/04-icub
+if [ $# -gt 0 ]; then
+  exec "$@"
+fi
+say
+say "\$ rtf run examples/04-icub/icub.xml --web"
+status=0
+"$TARGET/release/rtf" run examples/04-icub/icub.xml --web || status=$?
+say
+say "in a browser again: ${TARGET#"$ROOT"/}/release/rtf serve"
+exit "$status"
