@@ -217,7 +217,7 @@ impl Live<'_> {
             StopCause::Interrupt => "interrupt",
             StopCause::Protocol => "protocol",
         };
-        let reason = escape::line(reason);
+        let reason = words::first_line(reason);
         page.remark((LOUD, "stopping"), &format!("{} ({cause}): {reason}", self.test(id)));
     }
 
@@ -266,7 +266,7 @@ impl Live<'_> {
 
     fn skipped(&self, page: &mut Page, id: TestId, reason: &str) {
         let verdict = (style::of_verdict(Verdict::Skipped), Verdict::Skipped.as_str());
-        page.entry(verdict, "", &format!("{}: {}", self.test(id), escape::line(reason)));
+        page.entry(verdict, "", &format!("{}: {}", self.test(id), words::first_line(reason)));
     }
 }
 

@@ -43,7 +43,7 @@ fn problems(page: &mut Page, record: &Record) {
     let of_suite = |suite: &rtf_model::SuiteRecord| {
         let name = escape::line(&suite.plan.name).into_owned();
         let problems = record.fixture_problems(suite.plan.suite);
-        problems.into_iter().map(move |problem| format!("{name}: {}", escape::line(&problem)))
+        problems.into_iter().map(move |problem| format!("{name}: {}", words::first_line(&problem)))
     };
     let problems: Vec<_> = record.suites.iter().flat_map(of_suite).collect();
     if problems.is_empty() {
