@@ -20,6 +20,7 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 import icub_model
 import mujoco
 import rtf
+import yarp
 from icub_client import Part
 
 WIDTH, HEIGHT = 640, 480
@@ -29,6 +30,7 @@ class Camera(rtf.FixtureManager):
     """Looks at the robot from ahead, only when something is to be seen."""
 
     def setup(self, args: list[str]) -> None:
+        self.network = yarp.Network()
         robot = args[0] if args else "/icubSim"
         self.parts = {name: Part(self, f"{robot}/{name}") for name in icub_model.PARTS}
         self.drawn: Any = None
