@@ -58,13 +58,14 @@ def main() -> int:
             (master_killed, rover, [LONG]),
             (roslaunch_killed, rover, [LONG]),
             (fixture_killed, rover, [LONG]),
+            (frozen, rover, []),
             (runner_killed, rover, [LONG]),
             (not_launched, broken(Path(folder)), []),
             (bag_kept, slipping, []),
             (bag_of_collapse, slipping, [LONG]),
             (silent, probes, [LONG]),
         ]
-        with ThreadPoolExecutor(max_workers=2) as pool:
+        with ThreadPoolExecutor(max_workers=3) as pool:
             for played in [pool.submit(scene, *each) for each in scenes]:
                 played.result()
     return 0
@@ -201,6 +202,16 @@ def roslaunch_killed(scene: Scene) -> None:
     """Its nodes are sessions of their own and survive it; they are ended, too."""
     scene.kill("bin/roslaunch")
     scene.collapsed("roslaunch was killed by SIGKILL")
+
+
+def frozen(scene: Scene) -> None:
+    """A node that hangs has a process and is in the master's list: before a test it is asked."""
+    scene.kill("rover/odometer", signal.SIGSTOP)
+    scene.finish(1)
+    (reason,) = scene.reasons()
+    scene.expect(f"the node in {reason!r}", "node /rover/odometer: nobody answers" in reason, True)
+    verdicts = list(scene.run.verdicts().values())
+    scene.expect("verdicts", verdicts, ["passed", "failed", "passed"])
 
 
 def fixture_killed(scene: Scene) -> None:

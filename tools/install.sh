@@ -87,7 +87,7 @@ for page in README.md CHANGELOG.md LICENSE; do
   put 644 "$page" "share/doc/rtf/$page"
 done
 put_tree docs share/doc/rtf/docs '*.md'
-put_tree examples share/doc/rtf/examples '*.md' '*.xml' '*.py' '*.lua' '*.rb' '*.cpp' '*.hpp' CMakeLists.txt
+put_tree examples share/doc/rtf/examples '*.md' '*.xml' '*.py' '*.lua' '*.rb' '*.cpp' '*.hpp' '*.launch' CMakeLists.txt
 
 install -D -m 644 "$stage/manifest.txt" "$top/share/rtf/manifest.txt"
 say "installed $(wc -l <"$stage/manifest.txt") files below $top"
