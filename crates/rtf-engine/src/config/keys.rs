@@ -13,6 +13,8 @@ pub(super) enum Form {
     Duration,
     /// A number above 0.
     Scale,
+    /// A whole number, not below the first and not above the second.
+    Count(u32, u32),
     /// One of these words.
     Words(&'static [&'static str]),
     /// A name of the user's, with a value that is a text, a number or a truth.
@@ -39,6 +41,7 @@ pub(super) const KEYS: &[(&str, Form)] = &[
     ("env", Form::Named(Names::Variables)),
     ("param", Form::Named(Names::Parameters)),
     ("timeouts", Form::Table(TIMEOUTS)),
+    ("parallel", Form::Count(1, 1_000_000)),
     ("results", Form::Path),
     ("reports", Form::Reports),
     ("filter", Form::Path),

@@ -27,6 +27,7 @@ pub(crate) fn lay(
         environment(suite, view);
         variables(&mut suite.env, view);
         limits(suite, view);
+        parallel(suite, view);
     }
     let problems = Filler { params: &params, source, problems: Vec::new() }.fill(suite);
     suite.env.splice(0..0, params.variables());
@@ -51,6 +52,12 @@ fn variables(env: &mut Vec<(String, String)>, view: &View) {
             None => env.push((name.to_owned(), value.to_owned())),
         }
     }
+}
+
+/// A file can only take away: which tests bear each other, their suite alone knows.
+fn parallel(suite: &mut Suite, view: &View) {
+    let most = view.text("parallel").and_then(|text| text.parse().ok());
+    suite.parallel = suite.parallel.min(most.unwrap_or(u32::MAX));
 }
 
 fn limits(suite: &mut Suite, view: &View) {

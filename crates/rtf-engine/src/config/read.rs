@@ -154,6 +154,11 @@ impl Reader<'_> {
                 let good = number.is_some_and(|n| n > 0.0 && n <= 1000.0);
                 (good, "a number above 0, up to 1000".to_owned())
             }
+            Form::Count(least, most) => {
+                let number = text.as_ref().and_then(|text| text.parse::<u32>().ok());
+                let good = number.is_some_and(|n| (least..=most).contains(&n));
+                (good, format!("a whole number from {least} to {most}"))
+            }
             Form::Words(words) => {
                 let list: Vec<_> = words.iter().map(|word| format!("`\"{word}\"`")).collect();
                 let good = text.as_ref().is_some_and(|text| words.contains(&text.as_str()));

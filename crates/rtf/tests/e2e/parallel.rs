@@ -304,3 +304,26 @@ fn what_two_tests_print_is_told_in_whole_lines_under_their_names() {
     });
     assert_eq!(logs.count(), 0, "each test has a log of its own");
 }
+
+#[test]
+fn a_profile_lowers_how_many_tests_run_at_once_and_raises_nothing() {
+    let folder = Folder::new();
+    folder.file("T.lua", "TestCase = {}\nfunction TestCase.run() end\n");
+    folder.file("many.xml", "<suite parallel='4'><test>T.lua</test></suite>");
+    folder.file("one.xml", "<suite><test>T.lua</test></suite>");
+    folder.file("rtf.toml", "parallel = 3\n[profile.real]\nparallel = 1\n");
+    let parallel = |more: &[&str]| {
+        let args = ["list", "--format", "json", "many.xml", "one.xml"];
+        let listed = run_list(&folder, &[&args[..], more].concat());
+        let tests = listed["tests"].as_array().cloned().unwrap_or_default();
+        tests.iter().map(|test| test["parallel"].as_u64()).collect::<Vec<_>>()
+    };
+    assert_eq!(parallel(&[]), [Some(3), Some(1)]);
+    assert_eq!(parallel(&["--profile", "real"]), [Some(1), Some(1)]);
+}
+
+fn run_list(folder: &Folder, args: &[&str]) -> serde_json::Value {
+    let listed = folder.rtf(args);
+    assert_eq!(listed.code, Some(0), "{}", listed.stderr);
+    serde_json::from_str(&listed.stdout).expect("a list")
+}

@@ -189,7 +189,7 @@ fn every_mistake_is_told_at_its_place() {
     2 | enviroment = "--robot icub"
       | ^^^^^^^^^^
       |
-      = note: the keys are `environment`, `env`, `param`, `timeouts`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `profile`, `default-profile`
+      = note: the keys are `environment`, `env`, `param`, `timeouts`, `parallel`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `profile`, `default-profile`
       = help: did you mean `environment`?
 
     error: `reports` has to be `"FORMAT=PATH"`, where FORMAT is one of `junit`, `text`, `tap`, `code-quality`, `github`
@@ -289,7 +289,7 @@ fn what_is_no_toml_is_told() {
     2 | x =
       | ^
       |
-      = note: the keys are `environment`, `env`, `param`, `timeouts`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `profile`, `default-profile`
+      = note: the keys are `environment`, `env`, `param`, `timeouts`, `parallel`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `profile`, `default-profile`
 
     error: not TOML: string values must be quoted, expected literal string
      --> rtf.toml:2:4
@@ -321,7 +321,7 @@ fn what_is_no_toml_is_told() {
     2 | x =
       | ^
       |
-      = note: the keys are `environment`, `env`, `param`, `timeouts`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `profile`, `default-profile`
+      = note: the keys are `environment`, `env`, `param`, `timeouts`, `parallel`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `profile`, `default-profile`
 
     3 errors; nothing was started
     "#);
