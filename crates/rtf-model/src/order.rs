@@ -172,12 +172,10 @@ impl OrderChecker {
             | EventKind::TestStopping { test, .. } => self.inside_test(*test),
             EventKind::Measured { test, fixture, .. }
             | EventKind::Attached { test, fixture, .. } => {
-                fixture.map_or(Ok(()), |fixture| self.inside(Source::Fixture(fixture)))?;
-                self.inside_test(*test)
+                self.inside_both(fixture.map(Source::Fixture), Source::Test(*test))
             }
             EventKind::Message { source, test, .. } => {
-                test.map_or(Ok(()), |test| self.inside_test(test))?;
-                self.inside(*source)
+                self.inside_both(test.map(Source::Test), *source)
             }
             EventKind::StackDumped { source, .. } | EventKind::ProcessesLeft { source, .. } => {
                 self.inside(*source)
@@ -348,6 +346,12 @@ impl OrderChecker {
     fn inside_test(&mut self, id: TestId) -> Rule {
         let open = self.test(id)?.open;
         ensure(open, || format!("test {id} is not running"))
+    }
+
+    /// What a fixture tells of a test comes while both run.
+    fn inside_both(&mut self, first: Option<Source>, second: Source) -> Rule {
+        first.map_or(Ok(()), |first| self.inside(first))?;
+        self.inside(second)
     }
 
     fn inside(&mut self, source: Source) -> Rule {
