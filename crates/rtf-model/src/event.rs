@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Attachment, Diagnostic, FixtureId, HookId, Manifest, Measurement, Message, Micros, SuiteId,
-    SuitePrepared, TestId, Verdict,
+    SuitePrepared, TestId, Usage, Verdict,
 };
 
 /// One fact about a run.
@@ -172,6 +172,14 @@ pub enum EventKind {
         source: Source,
         /// The stacks of its threads, as the tool or interpreter prints them.
         text: String,
+    },
+    /// What a process and all that it started uses, at the end of a test that
+    /// is repeated.
+    Used {
+        /// Whose process it is.
+        source: Source,
+        /// What it uses.
+        usage: Usage,
     },
     /// Processes that should have ended and did not; they were killed.
     ProcessesLeft {

@@ -17,6 +17,8 @@ mod prepared;
 pub mod protocol;
 mod record;
 mod report;
+mod trend;
+mod usage;
 mod verdict;
 
 pub use diagnostic::{Diagnostic, Label, Severity};
@@ -36,6 +38,7 @@ pub use report::{
     Attachment, Comparison, Location, Measurement, Message, MessageKind, format_number,
     format_rounded,
 };
+pub use usage::{Growth, Resource, Usage, UsageSeries};
 pub use verdict::{Outcome, Verdict};
 
 /// The version of the event stream that this crate reads and writes. It grows

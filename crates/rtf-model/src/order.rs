@@ -1,9 +1,11 @@
 //! The grammar of an event stream: which event may follow which.
 
 mod beside;
+mod state;
 
 use crate::{Event, EventKind, FixtureId, HookId, Source, SuiteId, TestId};
 use beside::Beside;
+use state::{Bracket, Fixture, FixtureStage, Stage, Test};
 
 /// An event that may not come where it came.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,62 +23,6 @@ impl std::fmt::Display for OrderError {
 }
 
 impl std::error::Error for OrderError {}
-
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Stage {
-    #[default]
-    Before,
-    Planning,
-    Running,
-    After,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Bracket {
-    Planned,
-    /// Started, and nothing of the suite has happened yet.
-    Fresh,
-    Open,
-    Closed,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum FixtureStage {
-    Stopped,
-    Starting,
-    Ready,
-    Collapsed,
-    Stopping,
-}
-
-#[derive(Clone, Debug)]
-struct Fixture {
-    suite: SuiteId,
-    stage: FixtureStage,
-    attempt: u32,
-    broken: bool,
-}
-
-#[derive(Clone, Debug)]
-struct Test {
-    suite: SuiteId,
-    /// How many at the most; none when it is repeated until a time is over.
-    repetitions: Option<u32>,
-    open: bool,
-    last: Option<(u32, u32)>,
-    /// Whether the last attempt's end announced another one.
-    rerun: bool,
-    /// Skipped, or told to be repeated no more.
-    over: bool,
-}
-
-impl Test {
-    /// Whether its last word is spoken.
-    fn is_decided(&self) -> bool {
-        let all_done = self.last.is_some_and(|(r, _)| Some(r) == self.repetitions);
-        self.over || (all_done && !self.rerun)
-    }
-}
 
 /// Checks a stream event by event. [`OrderChecker::finish`] then tells whether
 /// everything that began also ended.
@@ -149,21 +95,12 @@ impl OrderChecker {
             EventKind::SuiteWaiting { suite, .. } => self.wait(*suite),
             EventKind::SuiteStarted { suite } => self.start_suite(*suite),
             EventKind::SuitePrepared(prepared) => self.prepare(prepared.suite),
-            EventKind::FixtureStarting { fixture, attempt } => self.start(*fixture, *attempt),
-            EventKind::FixtureReady { fixture } => {
-                self.advance(*fixture, &[FixtureStage::Starting], FixtureStage::Ready)
-            }
-            EventKind::FixtureCollapsed { fixture, .. } => {
-                self.advance(*fixture, &[FixtureStage::Ready], FixtureStage::Collapsed)
-            }
-            EventKind::FixtureStopping { fixture } => {
-                use FixtureStage::{Collapsed, Ready, Starting, Stopping};
-                self.advance(*fixture, &[Starting, Ready, Collapsed], Stopping)
-            }
-            EventKind::FixtureStopped { fixture, .. } => {
-                self.advance(*fixture, &[FixtureStage::Stopping], FixtureStage::Stopped)
-            }
-            EventKind::FixtureBroken { fixture, .. } => self.break_fixture(*fixture),
+            EventKind::FixtureStarting { .. }
+            | EventKind::FixtureReady { .. }
+            | EventKind::FixtureCollapsed { .. }
+            | EventKind::FixtureStopping { .. }
+            | EventKind::FixtureStopped { .. }
+            | EventKind::FixtureBroken { .. } => self.check_fixture(kind),
             EventKind::TestStarted { test, repetition, attempt } => {
                 self.start_test(*test, (*repetition, *attempt))
             }
@@ -177,9 +114,9 @@ impl OrderChecker {
             EventKind::Message { source, test, .. } => {
                 self.inside_both(test.map(Source::Test), *source)
             }
-            EventKind::StackDumped { source, .. } | EventKind::ProcessesLeft { source, .. } => {
-                self.inside(*source)
-            }
+            EventKind::StackDumped { source, .. }
+            | EventKind::Used { source, .. }
+            | EventKind::ProcessesLeft { source, .. } => self.inside(*source),
             EventKind::Output(output) => self.inside(output.source),
             EventKind::TestFinished(finished) => self.finish_test(finished.test, finished.rerun),
             EventKind::TestSkipped { test, .. } => self.skip_test(*test),
@@ -192,6 +129,25 @@ impl OrderChecker {
                 Ok(())
             }
             EventKind::RunFinished { .. } => self.finish_run(),
+        }
+    }
+
+    fn check_fixture(&mut self, kind: &EventKind) -> Rule {
+        use FixtureStage::{Collapsed, Ready, Starting, Stopped, Stopping};
+        match kind {
+            EventKind::FixtureStarting { fixture, attempt } => self.start(*fixture, *attempt),
+            EventKind::FixtureReady { fixture } => self.advance(*fixture, &[Starting], Ready),
+            EventKind::FixtureCollapsed { fixture, .. } => {
+                self.advance(*fixture, &[Ready], Collapsed)
+            }
+            EventKind::FixtureStopping { fixture } => {
+                self.advance(*fixture, &[Starting, Ready, Collapsed], Stopping)
+            }
+            EventKind::FixtureStopped { fixture, .. } => {
+                self.advance(*fixture, &[Stopping], Stopped)
+            }
+            EventKind::FixtureBroken { fixture, .. } => self.break_fixture(*fixture),
+            _ => Ok(()),
         }
     }
 

@@ -20,6 +20,7 @@ mod fanout;
 mod finding;
 pub mod github;
 pub mod gitlab;
+mod growth;
 pub mod journal;
 pub mod junit;
 pub mod logs;

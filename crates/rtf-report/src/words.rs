@@ -31,6 +31,24 @@ pub(crate) fn time(duration: Duration) -> String {
     }
 }
 
+/// `512 B`, `1.02 MiB`.
+pub(crate) fn bytes(number: f64) -> String {
+    let units = ["B", "KiB", "MiB", "GiB", "TiB"];
+    let power = if number >= 1.0 { (number.log2() / 10.0) as usize } else { 0 };
+    let unit = units.get(power).copied().unwrap_or("PiB");
+    format!("{} {unit}", significant(number / 1024_f64.powi(power as i32)))
+}
+
+/// A number with three digits, or all that stand before the point.
+pub(crate) fn significant(number: f64) -> String {
+    let before = if number >= 1.0 { number.log10() as usize + 1 } else { 1 };
+    let text = format!("{number:.*}", 3_usize.saturating_sub(before));
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
 /// `repetition 2 of 3`; nobody knows of how many while the time is not over.
 pub(crate) fn repetition(test: &TestRecord, attempt: &AttemptRecord) -> String {
     match test.repetitions() {
@@ -70,6 +88,14 @@ pub(crate) fn tail(text: &str, limit: usize) -> (impl Iterator<Item = &str>, usi
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn amounts_have_three_digits() {
+        let shown = [0.0, 7.0, 1023.0, 1024.0 * 1.5, 1024.0 * 1024.0 * 48.96].map(bytes);
+        assert_eq!(shown, ["0 B", "7 B", "1023 B", "1.5 KiB", "49 MiB"]);
+        let shown = [1.0, 0.1428, 38.96, 123_456.7].map(significant);
+        assert_eq!(shown, ["1", "0.14", "39", "123457"]);
+    }
 
     #[test]
     fn plurals_are_right() {

@@ -24,5 +24,6 @@ pub mod stack;
 pub mod task;
 pub mod tree;
 mod unix;
+mod usage;
 
 pub use unix::prepare_process;

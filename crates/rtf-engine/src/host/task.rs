@@ -21,7 +21,7 @@ use super::cgroup::Cgroups;
 use super::codec::{self, FromHost, LINE_LIMIT};
 use super::launch::Launch;
 use super::spawner::{End, Process, Spawner};
-use super::{remote, stack, tree, unix};
+use super::{remote, stack, tree, unix, usage};
 use crate::guard::{Kept, Link, gate};
 use crate::plan::ProcessPlan;
 use crate::run::Sink;
@@ -86,6 +86,8 @@ pub struct Job {
     pub launch: Launch,
     /// Whether it gets a control group, where there are any.
     pub grouped: bool,
+    /// Whether it also says what it uses whenever it has to say that it lives.
+    pub measured: bool,
     /// Its probes, when it is a process fixture.
     pub process: Option<Arc<ProcessPlan>>,
 }
@@ -256,6 +258,10 @@ impl Task {
     async fn look_alive(&mut self) {
         self.looked_at -= 1;
         if !tree::is_dying(self.process.pid) {
+            if self.job.measured {
+                let usage = usage::of(self.process.pid, &self.job.launch.scope);
+                self.tell(HostInput::Uses(usage)).await;
+            }
             self.tell(HostInput::Lives).await;
         }
     }

@@ -207,6 +207,16 @@ fn is_fork_server(pid: i32) -> bool {
     variable_of(pid, FORK_SERVER_VARIABLE).is_some()
 }
 
+/// A process, everything below it, and the orphans of its scope that came to
+/// this one, with what is below them.
+#[must_use]
+pub fn members(root: i32, scope: &str) -> Vec<i32> {
+    let belongs = |pid: &i32| scope_of(*pid).is_some_and(|found| found == scope.as_bytes());
+    let orphans = children_of(OWN).into_iter().filter(|pid| !is_own_child(*pid)).filter(belongs);
+    let roots = std::iter::once(root).chain(orphans);
+    roots.flat_map(|root| std::iter::once(root).chain(descendants(root))).collect()
+}
+
 /// Everything below a process, parents before children.
 fn descendants(root: i32) -> Vec<i32> {
     let mut found = children_of(format!("/proc/{root}/task"));

@@ -62,6 +62,7 @@ pub async fn run_suite(
         spares: Vec::new(),
         called: None,
         scopes: 0,
+        repeats: asked.until.is_some() || plan.tests.iter().any(|test| test.repetitions > 1),
         deadlines: BTreeMap::new(),
         over: false,
     };
@@ -84,6 +85,8 @@ struct SuiteTask<'a> {
     spares: Vec<Launch>,
     /// What called for the hook that is started next.
     called: Option<HookBegins>,
+    /// Whether tests are repeated: then what the fixtures use is measured.
+    repeats: bool,
     /// How many scopes were given out.
     scopes: u64,
     deadlines: BTreeMap<Deadline, Duration>,
@@ -231,7 +234,9 @@ impl SuiteTask<'_> {
             self.shared.guard.hook_begins(HookBegins { scope: launch.scope.clone(), ..called });
         }
         let grouped = self.is_grouped(source);
-        let job = Job { host, source, launch, grouped, process };
+        let remote = process.as_ref().is_some_and(|process| process.remote.is_some());
+        let measured = self.repeats && matches!(source, Source::Fixture(_)) && !remote;
+        let job = Job { host, source, launch, grouped, measured, process };
         tokio::spawn(task::run(job, self.shared.clone(), queue, self.inputs.clone()));
     }
 

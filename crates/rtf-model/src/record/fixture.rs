@@ -1,6 +1,8 @@
 //! What is known of one fixture.
 
-use crate::{EventKind, FixturePlanned, LeftProcess, Message, MessageKind, Micros};
+use crate::{
+    EventKind, FixturePlanned, Growth, LeftProcess, Message, MessageKind, Micros, UsageSeries,
+};
 
 /// Where a fixture is in its life.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -37,6 +39,8 @@ pub struct FixtureLife {
     pub stopped: Option<Micros>,
     /// What went wrong in its set-up or tear-down.
     pub problem: Option<String>,
+    /// What it used at the ends of tests that were repeated.
+    pub usage: UsageSeries,
 }
 
 /// What is known of one fixture.
@@ -134,6 +138,7 @@ impl FixtureRecord {
                 life.collapsed = Some((at, reason.clone()));
             }
             EventKind::FixtureStopping { .. } => life.stopping = Some(at),
+            EventKind::Used { usage, .. } => life.usage.add(*usage),
             EventKind::FixtureStopped { problem, .. } => {
                 life.stopped = Some(at);
                 life.problem.clone_from(problem);
@@ -146,6 +151,13 @@ impl FixtureRecord {
         if matches!(message.kind, MessageKind::Failure | MessageKind::Error) {
             self.messages.push(message.clone());
         }
+    }
+
+    /// What it used more and more of, in the life in which it was measured most.
+    #[must_use]
+    pub fn growth(&self) -> Vec<Growth> {
+        let longest = self.lives.iter().max_by_key(|life| life.usage.seen());
+        longest.map(|life| life.usage.growth()).unwrap_or_default()
     }
 
     /// What speaks against the suite being green, in words.

@@ -388,9 +388,9 @@ fn source_of(kind: &EventKind) -> Option<Source> {
         | EventKind::TestSkipped { test, .. } => Some(Source::Test(*test)),
         EventKind::TestFinished(finished) => Some(Source::Test(finished.test)),
         EventKind::Message { source, test, .. } => Some(test.map_or(*source, Source::Test)),
-        EventKind::StackDumped { source, .. } | EventKind::ProcessesLeft { source, .. } => {
-            Some(*source)
-        }
+        EventKind::StackDumped { source, .. }
+        | EventKind::Used { source, .. }
+        | EventKind::ProcessesLeft { source, .. } => Some(*source),
         EventKind::Output(output) => Some(output.source),
         _ => None,
     }

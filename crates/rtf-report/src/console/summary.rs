@@ -10,7 +10,7 @@ use super::page::Page;
 use super::style::{self, BAD, BOLD, GOOD, LOUD};
 use super::{ConsoleOptions, hooks};
 use crate::repeated::Repeated;
-use crate::{escape, explain, logs, words};
+use crate::{escape, explain, growth, logs, words};
 
 /// How many names of skipped tests are listed for one reason.
 const NAMES: usize = 5;
@@ -28,6 +28,7 @@ pub(super) fn show(page: &mut Page, options: &ConsoleOptions, record: &Record) {
     failed(page, options, record);
     flaky(page, record);
     repeated(page, record);
+    growing(page, record);
     skipped(page, record);
     killed(page, record);
     page.line("");
@@ -167,6 +168,23 @@ fn repeated(page: &mut Page, record: &Record) {
         page.fact("time", &repeated.spread());
         if repeated.times.len() >= HISTOGRAM {
             page.fact("", &format!("|{}|", repeated.histogram()));
+        }
+    }
+}
+
+/// What fixtures use more and more of.
+fn growing(page: &mut Page, record: &Record) {
+    let fixtures = record.fixtures.iter().map(|fixture| (fixture, growth::lines(fixture)));
+    let growing: Vec<_> = fixtures.filter(|(_, lines)| !lines.is_empty()).collect();
+    if growing.is_empty() {
+        return;
+    }
+    page.line("");
+    page.line(&style::paint(BOLD, "fixtures that grow while tests are repeated:"));
+    for (fixture, lines) in growing {
+        let name = escape::line(&record.fixture_name(fixture.plan.fixture)).into_owned();
+        for line in lines {
+            page.line(&format!("  {}  {line}", style::paint(LOUD, &name)));
         }
     }
 }

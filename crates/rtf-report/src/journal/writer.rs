@@ -59,6 +59,7 @@ fn is_landmark(kind: &EventKind) -> bool {
             | EventKind::Measured { .. }
             | EventKind::Attached { .. }
             | EventKind::Output(_)
+            | EventKind::Used { .. }
             | EventKind::TestSkipped { .. }
             | EventKind::TestRepeated { .. }
     )

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use quick_junit::{Report, TestCase, TestSuite};
 use rtf_model::{Event, LeftProcess, Record, SuiteRecord};
 
-use crate::{ReportError, Reporter, escape, explain, output_file, words};
+use crate::{ReportError, Reporter, escape, explain, growth, output_file, words};
 
 const WHAT: &str = "the JUnit report";
 
@@ -111,6 +111,9 @@ fn properties(junit: &mut TestSuite, record: &Record, suite: &SuiteRecord) {
     add("file", &suite.plan.file);
     add("description", &suite.plan.description);
     add("environment", &suite.plan.environment);
+    for fixture in suite.fixtures.iter().filter_map(|id| record.fixture(*id)) {
+        growth::properties(fixture).iter().for_each(|(name, value)| add(name, value));
+    }
 }
 
 /// Text that XML can hold and that means no harm: control characters are

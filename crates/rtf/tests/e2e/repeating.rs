@@ -125,6 +125,76 @@ fn the_first_failure_ends_the_time() {
     assert!(finished.stdout.contains("s/P: 1 test has not passed"), "{}", finished.stdout);
 }
 
+/// Answers each connection; with `leak`, it keeps the connection, a MiB, and a process.
+const SERVER: &str = r#"
+import socket, subprocess, sys
+kept = []
+server = socket.socket(socket.AF_UNIX)
+server.bind("server.sock")
+server.listen()
+print("up", flush=True)
+while True:
+    client, _ = server.accept()
+    client.recv(1)
+    if "leak" in sys.argv:
+        kept.append((client.dup(), bytearray(b"x" * (1 << 20)), subprocess.Popen(["sleep", "1000"])))
+    client.sendall(b"!")
+    client.close()
+"#;
+
+const CLIENT: &str = r#"
+import socket
+import rtf
+
+class Client(rtf.TestCase):
+    def run(self):
+        with socket.socket(socket.AF_UNIX) as server:
+            server.connect("server.sock")
+            server.sendall(b"?")
+            self.check(server.recv(1) == b"!", "an answer")
+"#;
+
+fn served(argument: &str) -> Folder {
+    let folder = Folder::new();
+    folder.file("server.py", SERVER).file("Client.py", CLIENT);
+    let command = format!("<command>python3 server.py {argument}</command><ready log='^up$'/>");
+    let fixture = format!("<fixture name='server' type='process'>{command}</fixture>");
+    folder
+        .file("s.xml", &format!("<suite>{fixture}<test repetition='20'>Client.py</test></suite>"));
+    folder
+}
+
+#[test]
+fn a_fixture_that_leaks_is_shown() {
+    let folder = served("leak");
+    let finished = folder.rtf(&["run", "s.xml", "--report", "junit=j.xml"]);
+    assert_eq!(finished.code, Some(0), "{}", finished.stdout);
+    let lines: Vec<_> = finished.stdout.lines().filter(|line| line.contains(" a test: ")).collect();
+    let [memory, descriptors, processes] = lines[..] else { panic!("{}", finished.stdout) };
+    // Each `sleep` has a little memory, and three descriptors, too.
+    assert!(memory.contains("server  memory grows by 1."), "{memory}");
+    assert!(descriptors.contains("open file descriptors grow by 4 a test"), "{descriptors}");
+    assert!(
+        processes.contains("processes grow by 1 a test: from 6 to 21 in 15 tests"),
+        "{processes}"
+    );
+    let record = folder.journal().record;
+    assert_eq!(record.fixtures[0].lives[0].usage.seen(), 20);
+    let junit = std::fs::read_to_string(folder.path().join("j.xml")).expect("a report");
+    assert!(junit.contains(r#"name="growth.server.processes" value="1""#), "{junit}");
+    let text = folder.rtf(&["report", "--format", "text"]);
+    assert!(text.stdout.contains("processes grow by 1 a test"), "{}", text.stdout);
+}
+
+#[test]
+fn a_fixture_that_does_not_leak_is_not_shown() {
+    let folder = served("");
+    let finished = folder.rtf(&["run", "s.xml", "--repeat", "3"]);
+    assert_eq!(finished.code, Some(0), "{}", finished.stdout);
+    assert_eq!(folder.journal().record.fixtures[0].lives[0].usage.seen(), 60);
+    assert!(!finished.stdout.contains("grow"), "{}", finished.stdout);
+}
+
 #[test]
 fn enough_is_enough() {
     let folder = folder(9, "repetition='3'");

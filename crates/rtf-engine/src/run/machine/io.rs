@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_model::protocol::{Notification, OWNER_VARIABLE, Reply, Request, StackSupport};
-use rtf_model::{Attachment, EventKind, ExitStatus, LeftProcess, Source, Stream, TestId};
+use rtf_model::{Attachment, EventKind, ExitStatus, LeftProcess, Source, Stream, TestId, Usage};
 
 use crate::plan::{AttachedPlan, HostPlan, ProcessPlan, SuitePlan};
 
@@ -52,6 +52,8 @@ pub enum HostInput {
     ProbeWaits(String),
     /// A probe of a process fixture does not hold any more.
     ProbeFailed(String),
+    /// What it and all that it started uses at the end of a test.
+    Uses(Usage),
     /// It lives, and has told nothing that was not delivered.
     Lives,
     /// The stacks of its threads, or why there are none.

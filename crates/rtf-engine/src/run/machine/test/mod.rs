@@ -183,6 +183,7 @@ impl<'p> TestRun<'p> {
             HostInput::ProbesHold
             | HostInput::ProbeWaits(_)
             | HostInput::ProbeFailed(_)
+            | HostInput::Uses(_)
             | HostInput::Lives => {}
         }
     }
