@@ -9,7 +9,9 @@ use clap::{ArgMatches, ValueEnum};
 use rtf_engine::config::{self, Asked, Files, Run, RunValue};
 use rtf_engine::suite::parse_duration;
 
-use crate::cli::{Annotations, Command, InputArgs, ProfileArgs, RunArgs, forks, parse_report};
+use crate::cli::{
+    Annotations, Command, FlakyResult, InputArgs, ProfileArgs, RunArgs, forks, parse_report,
+};
 use crate::command::planning;
 use crate::error::Failure;
 
@@ -122,6 +124,22 @@ impl Settled<'_> {
         }
         if let Some(limit) = open("shutdown-timeout", "shutdown_timeout") {
             args.shutdown_timeout = parse_duration(limit).unwrap_or(args.shutdown_timeout);
+        }
+        if let Some(jobs) = open("jobs", "jobs") {
+            args.jobs = jobs.parse().unwrap_or(args.jobs);
+        }
+        if let Some(limit) = open("lock-timeout", "lock_timeout") {
+            args.lock_timeout = parse_duration(limit).ok();
+        }
+        let repeat = &mut args.input.repeat;
+        if let Some(retries) = open("retries", "retries") {
+            repeat.retries = retries.parse().ok();
+        }
+        if let Some(result) = open("flaky-result", "flaky_result") {
+            repeat.flaky_result = FlakyResult::from_str(result, false).ok();
+        }
+        if let Some(most) = open("max-fail", "max_fail").filter(|_| !repeat.until_fail) {
+            repeat.max_fail = most.parse().ok();
         }
         if let Some(value) = run.get("reports") {
             let texts = value.entry.values.iter();

@@ -48,11 +48,27 @@ pub(super) const KEYS: &[(&str, Form)] = &[
     ("annotations", Form::Words(&["auto", "github", "gitlab", "none"])),
     ("fork", Form::Words(&["auto", "always", "never"])),
     ("shutdown-timeout", Form::Duration),
+    ("jobs", Form::Count(1, u16::MAX as u32)),
+    ("lock-timeout", Form::Duration),
+    ("retries", Form::Count(0, 1_000_000)),
+    ("flaky-result", Form::Words(&["pass", "fail"])),
+    ("max-fail", Form::Count(1, u32::MAX)),
 ];
 
 /// The keys that concern a run as a whole.
-pub(super) const OF_RUN: &[&str] =
-    &["results", "reports", "filter", "annotations", "fork", "shutdown-timeout"];
+pub(super) const OF_RUN: &[&str] = &[
+    "results",
+    "reports",
+    "filter",
+    "annotations",
+    "fork",
+    "shutdown-timeout",
+    "jobs",
+    "lock-timeout",
+    "retries",
+    "flaky-result",
+    "max-fail",
+];
 
 const TIMEOUTS: &[(&str, Form)] = &[
     ("load", Form::Duration),

@@ -161,6 +161,8 @@ fn built_in(key: &str) -> Option<String> {
         "results" => return Some("rtf-results".to_owned()),
         "fork" | "annotations" => return Some("auto".to_owned()),
         "shutdown-timeout" => return Some("60s".to_owned()),
+        "jobs" => return Some("1".to_owned()),
+        "flaky-result" => return Some("pass".to_owned()),
         _ => return None,
     };
     Some(format!("{}s", limit.as_secs()))

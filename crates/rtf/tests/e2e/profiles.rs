@@ -147,6 +147,43 @@ fn what_concerns_the_run() {
 }
 
 #[test]
+fn how_suites_run_and_repeat_may_be_said_once_for_all() {
+    let folder = Folder::new();
+    let toml =
+        "jobs = 2\nretries = 1\nmax-fail = 1\nlock-timeout = \"3s\"\nflaky-result = \"fail\"\n";
+    folder.file("rtf.toml", toml);
+    folder.file("F.lua", "TestCase = {}\nfunction TestCase.run() rtf.fail('no') end\n");
+    folder.file("s.xml", "<suite><test>F.lua</test><test name='G'>F.lua</test></suite>");
+    let finished = folder.rtf(&["run", "s.xml"]);
+    assert!(finished.stdout.contains("s/G: 1 test has not passed"), "{}", finished.stdout);
+    let record = folder.journal().record;
+    let manifest = &record.run.as_ref().expect("a beginning").manifest;
+    assert_eq!((manifest.jobs, manifest.retries, manifest.flaky_fails), (Some(2), Some(1), true));
+    assert_eq!(record.tests[0].attempts.len(), 2);
+    // The command line goes over it.
+    folder.rtf(&["run", "s.xml", "--retries", "0", "--max-fail", "9", "--jobs", "1"]);
+    let attempts: Vec<_> =
+        folder.journal().record.tests.iter().map(|test| test.attempts.len()).collect();
+    assert_eq!(attempts, [1, 1]);
+    let shown = folder.rtf(&["config", "show", "s.xml"]).stdout;
+    let line = |key: &str| {
+        let line =
+            shown.lines().find(|line| line.starts_with(&format!("{key} ="))).expect("a line");
+        line.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    assert_eq!(line("jobs"), "jobs = \"2\" # rtf.toml:1");
+    assert_eq!(line("lock-timeout"), "lock-timeout = \"3s\" # rtf.toml:4");
+    folder.file("rtf.toml", "jobs = 0\nmax-fail = 1.5\n");
+    let wrong = folder.rtf(&["run", "s.xml"]);
+    assert_eq!(wrong.code, Some(2));
+    for told in
+        ["`jobs` has to be a whole number from 1 to 65535", "`max-fail` has to be a whole number"]
+    {
+        assert!(wrong.stderr.contains(told), "{}", wrong.stderr);
+    }
+}
+
+#[test]
 fn every_mistake_is_told_at_its_place() {
     let folder = folder();
     folder.file(
@@ -189,7 +226,7 @@ fn every_mistake_is_told_at_its_place() {
     2 | enviroment = "--robot icub"
       | ^^^^^^^^^^
       |
-      = note: the keys are `environment`, `env`, `param`, `timeouts`, `parallel`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `profile`, `default-profile`
+      = note: the keys are `environment`, `env`, `param`, `timeouts`, `parallel`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `jobs`, `lock-timeout`, `retries`, `flaky-result`, `max-fail`, `profile`, `default-profile`
       = help: did you mean `environment`?
 
     error: `reports` has to be `"FORMAT=PATH"`, where FORMAT is one of `junit`, `text`, `tap`, `code-quality`, `github`
@@ -289,7 +326,7 @@ fn what_is_no_toml_is_told() {
     2 | x =
       | ^
       |
-      = note: the keys are `environment`, `env`, `param`, `timeouts`, `parallel`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `profile`, `default-profile`
+      = note: the keys are `environment`, `env`, `param`, `timeouts`, `parallel`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `jobs`, `lock-timeout`, `retries`, `flaky-result`, `max-fail`, `profile`, `default-profile`
 
     error: not TOML: string values must be quoted, expected literal string
      --> rtf.toml:2:4
@@ -321,7 +358,7 @@ fn what_is_no_toml_is_told() {
     2 | x =
       | ^
       |
-      = note: the keys are `environment`, `env`, `param`, `timeouts`, `parallel`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `profile`, `default-profile`
+      = note: the keys are `environment`, `env`, `param`, `timeouts`, `parallel`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `jobs`, `lock-timeout`, `retries`, `flaky-result`, `max-fail`, `profile`, `default-profile`
 
     3 errors; nothing was started
     "#);
@@ -467,6 +504,8 @@ fn config_show_tells_where_each_value_comes_from() {
     annotations = "auto"                          # built in
     fork = "auto"                                 # built in
     shutdown-timeout = "[TIME]"                      # built in
+    jobs = "1"                                    # built in
+    flaky-result = "pass"                         # built in
     ----- stderr
     "#);
     let mut command = folder.command(&["config", "show"]);
