@@ -97,6 +97,7 @@ lint_python() {
   "$checkers/mypy" examples/04-icub/*.py
   "$checkers/mypy" examples/05-ros1/*.py examples/05-ros1/rover/scripts/*.py
   "$checkers/mypy" examples/06-ros2/*.py
+  "$checkers/mypy" examples/07-levels/*.py
   "$checkers/mypy" fixtures
   "$checkers/mypy" tests/fixtures/*.py tests/fixtures/ros2launch/*.py \
     tests/fixtures/orocos/*.py tests/fixtures/yarp/*.py
@@ -204,6 +205,11 @@ example_06() {
   python3 tools/check_example_06.py "$TARGET/release/rtf" examples/06-ros2/{left,right}.xml
 }
 
+example_07() {
+  PATH="$simulation:$PATH" python3 tools/check_example_07.py "$TARGET/release/rtf" \
+    examples/07-levels
+}
+
 # The page's own checks; its tests in a browser need a built rtf.
 in_web() {
   tools/web.sh modules
@@ -244,6 +250,7 @@ step_with 'fixture yarp' yarp fixture_yarp
 step_with 'example 04' yarp example_04
 step_with 'example 05' ros1 example_05
 step_with 'example 06' ros2 example_06
+step 'example 07' example_07
 step_with 'fixture ros2launch' ros2 fixture_ros2launch
 step_with 'fixture orocos' orocos fixture_orocos
 step 'guide' tools/check_docs.py "$TARGET/release/rtf" README.md docs/getting-started.md \
