@@ -41,7 +41,8 @@ impl LuaHost {
 impl HostPlugin for LuaHost {
     fn describe(&self) -> Initialized {
         let host = format!("lua {}", watch::lua_release());
-        Initialized { protocol: PROTOCOL_VERSION, host, stack: StackSupport::Message }
+        let stack = StackSupport::Message;
+        Initialized { protocol: PROTOCOL_VERSION, host, stack, shares: true }
     }
 
     fn idle(&mut self) {

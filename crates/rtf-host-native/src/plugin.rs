@@ -40,7 +40,8 @@ pub(crate) fn prepare() {
 impl HostPlugin for NativeHost {
     fn describe(&self) -> Initialized {
         let host = concat!("native ", env!("CARGO_PKG_VERSION")).to_owned();
-        Initialized { protocol: PROTOCOL_VERSION, host, stack: StackSupport::None }
+        let stack = StackSupport::None;
+        Initialized { protocol: PROTOCOL_VERSION, host, stack, shares: true }
     }
 
     fn idle(&mut self) {

@@ -31,6 +31,15 @@ pub(crate) enum Incoming {
     },
 }
 
+impl Incoming {
+    /// Its number.
+    pub(crate) fn id(&self) -> Option<u64> {
+        match self {
+            Self::Request { id, .. } | Self::Refused { id, .. } => *id,
+        }
+    }
+}
+
 #[derive(Deserialize)]
 struct Envelope<'a> {
     #[serde(default)]
@@ -44,6 +53,8 @@ struct Envelope<'a> {
 #[derive(Serialize, Deserialize)]
 struct Interrupt {
     reason: String,
+    #[serde(default)]
+    request: Option<u64>,
 }
 
 /// Reads a line without its end.
@@ -65,7 +76,8 @@ pub(crate) fn decode(line: &[u8]) -> Incoming {
         "test-started" => parse(params).map(Request::TestStarted),
         "test-finished" => parse(params).map(Request::TestFinished),
         "tear-down-fixture" => Ok(Request::TearDownFixture {}),
-        "interrupt" => parse::<Interrupt>(params).map(|p| Request::Interrupt { reason: p.reason }),
+        "interrupt" => parse::<Interrupt>(params)
+            .map(|p| Request::Interrupt { reason: p.reason, request: p.request }),
         "dump-stack" => Ok(Request::DumpStack {}),
         unknown => return refused(id, METHOD_NOT_FOUND, format!("unknown method `{unknown}`")),
     };
@@ -107,7 +119,7 @@ mod tests {
             Request::SetUpFixture(plugin),
             Request::CheckFixture {},
             Request::TearDownFixture {},
-            Request::Interrupt { reason: "Ctrl-C".into() },
+            Request::Interrupt { reason: "Ctrl-C".into(), request: None },
             Request::DumpStack {},
         ];
         for request in requests {

@@ -18,6 +18,7 @@ mod program;
 mod reader;
 mod serve;
 mod session;
+mod sharing;
 mod unix;
 mod verdict;
 mod writer;

@@ -56,8 +56,8 @@ impl Reader {
                 Ok(_) => {}
             }
             match decode(self.line.trim_ascii_end()) {
-                Incoming::Request { request: Request::Interrupt { reason }, .. } => {
-                    if self.session.request_stop(&reason)
+                Incoming::Request { request: Request::Interrupt { reason, request }, .. } => {
+                    if self.session.request_stop(&reason, request)
                         && let Some(insist) = &self.stopper
                     {
                         insist(&self.session);

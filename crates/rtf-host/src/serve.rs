@@ -7,6 +7,7 @@ use rtf_model::{Message, MessageKind, Outcome, Phase};
 
 use crate::decode::{INVALID_REQUEST, Incoming};
 use crate::reader::Reader;
+use crate::sharing::Sharing;
 use crate::{HostPlugin, Role, Session, Step, StepEnd, Told};
 
 /// Serves the runner until it has got its last answer or has closed the
@@ -19,7 +20,7 @@ use crate::{HostPlugin, Role, Session, Step, StepEnd, Told};
 /// The thread that reads the channel cannot be started.
 pub fn serve(session: &Session, host: impl HostPlugin) -> std::io::Result<()> {
     let reader = Reader::new(session, host.stack_dumper(), host.stopper());
-    let mut server = Server { session, host, initialized: false, loaded: None };
+    let mut server = Server { session, host, initialized: false, loaded: None, sharing: None };
     let Some((reader, first)) = server.before_plugins(reader) else {
         return Ok(());
     };
@@ -39,6 +40,8 @@ struct Server<'a, H> {
     host: H,
     initialized: bool,
     loaded: Option<Role>,
+    /// Once a test came that may leave the host to the next one.
+    sharing: Option<Sharing>,
 }
 
 impl<H: HostPlugin> Server<'_, H> {
@@ -47,7 +50,7 @@ impl<H: HostPlugin> Server<'_, H> {
     fn before_plugins(&mut self, mut reader: Reader) -> Option<(Reader, Incoming)> {
         loop {
             let incoming = reader.next()?;
-            self.session.begin();
+            self.session.begin(&incoming);
             if self.initialized && matches!(incoming, Incoming::Request { .. }) {
                 return Some((reader, incoming));
             }
@@ -83,12 +86,16 @@ impl<H: HostPlugin> Server<'_, H> {
             self.session.refuse(id, RpcError { code: INVALID_REQUEST, message });
             return false;
         }
-        let mut last = false;
+        let (mut last, mut shared) = (false, None);
         let sets_up = matches!(request, Request::SetUpFixture(_));
         match request {
             Request::RunTest(plugin) => {
                 last = plugin.last;
+                if plugin.shared.is_some() {
+                    self.begin_shared();
+                }
                 self.run_test(&plugin);
+                shared = plugin.shared;
             }
             Request::SetUpFixture(plugin) => self.set_up_fixture(&plugin),
             Request::CheckFixture {} => self.check_fixture(),
@@ -109,8 +116,22 @@ impl<H: HostPlugin> Server<'_, H> {
         if sets_up && answer.outcome == Outcome::Passed {
             answer.notices = self.host.notices();
         }
+        if let (Some(mark), false) = (shared, last) {
+            let passed = answer.outcome == Outcome::Passed;
+            answer.stays = passed && self.sharing.as_ref().is_some_and(|ours| ours.stay(&mark));
+            last = !answer.stays;
+        }
         self.answer(id, answer);
         last
+    }
+
+    /// Whatever comes from now on belongs to this test.
+    fn begin_shared(&mut self) {
+        if self.sharing.is_none() {
+            // Without it, the host ends after the test.
+            self.sharing = Sharing::begin().ok();
+        }
+        self.session.phase(Phase::Load);
     }
 
     fn initialize(&mut self, id: Option<u64>, initialize: &Initialize) {

@@ -57,6 +57,8 @@ struct State {
     engaged: bool,
     /// A request is being carried out.
     busy: bool,
+    /// The number of the one that was taken last.
+    request: Option<u64>,
     stop_reason: Option<String>,
     /// Where the copies of attached files go, and how many there are.
     keep_folder: Option<PathBuf>,
@@ -186,10 +188,14 @@ impl Session {
     }
 
     /// Asks the plug-in to stop; whether there is one. If not, the runner's
-    /// request crossed the answer.
-    pub(crate) fn request_stop(&self, reason: &str) -> bool {
+    /// request crossed the answer. With a number, only that request is meant.
+    pub(crate) fn request_stop(&self, reason: &str, request: Option<u64>) -> bool {
         let mut state = self.state();
-        let is_asked = state.busy || !state.incoming.is_empty();
+        let is_asked = match (request, state.busy) {
+            (None, busy) => busy || !state.incoming.is_empty(),
+            (Some(_), true) => state.request == request,
+            (Some(_), false) => state.incoming.front().is_some_and(|next| next.id() == request),
+        };
         if is_asked {
             state.judge.note(Outcome::Interrupted, reason);
             state.stop_reason.get_or_insert_with(|| reason.to_owned());
@@ -210,8 +216,9 @@ impl Session {
     }
 
     /// A request that was read on the main thread is about to be carried out.
-    pub(crate) fn begin(&self) {
-        self.state().busy = true;
+    pub(crate) fn begin(&self, incoming: &Incoming) {
+        let mut state = self.state();
+        (state.busy, state.request) = (true, incoming.id());
     }
 
     /// The next request, `None` at the end of the channel.
@@ -219,7 +226,7 @@ impl Session {
         let mut state = self.state();
         loop {
             if let Some(incoming) = state.incoming.pop_front() {
-                state.busy = true;
+                (state.busy, state.request) = (true, incoming.id());
                 return Some(incoming);
             }
             if state.closed {
@@ -234,7 +241,7 @@ impl Session {
         self.state().engaged = engaged;
     }
 
-    /// A test enters a phase.
+    /// A test enters a phase, or begins.
     pub(crate) fn phase(&self, phase: Phase) {
         self.notify(&Notification::Phase { phase });
     }

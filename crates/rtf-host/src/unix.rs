@@ -82,6 +82,12 @@ extern "C" fn run_body(argument: *mut libc::c_void) -> *mut libc::c_void {
     std::ptr::null_mut()
 }
 
+/// Writes what C's buffers still hold.
+pub(crate) fn flush_output() {
+    // SAFETY: null means all output streams; they are locked while written.
+    unsafe { libc::fflush(std::ptr::null_mut()) };
+}
+
 /// Ends the process at once: no destructors, no handlers, no flushing.
 pub(crate) fn end_now() -> ! {
     // SAFETY: ends the process.

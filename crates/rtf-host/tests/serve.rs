@@ -56,7 +56,8 @@ impl Script {
 
 impl HostPlugin for Script {
     fn describe(&self) -> Initialized {
-        Initialized { protocol: 1, host: "script 1".into(), stack: StackSupport::Message }
+        let stack = StackSupport::Message;
+        Initialized { protocol: 1, host: "script 1".into(), stack, shares: true }
     }
 
     fn load(&mut self, _role: Role, plugin: &Plugin) -> Result<(), LoadError> {

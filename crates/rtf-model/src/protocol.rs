@@ -88,6 +88,9 @@ pub enum Request {
     Interrupt {
         /// Why, in words.
         reason: String,
+        /// Which request is to stop; nothing happens when it is another one's turn.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        request: Option<u64>,
     },
     /// A notification: send [`Notification::Stack`] if that can be done.
     DumpStack {},
@@ -125,6 +128,9 @@ pub struct Initialized {
     /// How the runner gets a stack dump from a host that hangs.
     #[serde(default)]
     pub stack: StackSupport,
+    /// Whether it knows [`Plugin::shared`].
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub shares: bool,
 }
 
 /// How the runner gets a stack dump from a host that hangs.
@@ -164,6 +170,10 @@ pub struct Plugin {
     /// Whether this is the host's only request: it ends after the answer.
     #[serde(default)]
     pub last: bool,
+    /// For a test whose host may serve further tests: what the host then writes
+    /// to both outputs at the end of this one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shared: Option<String>,
     /// A test's folder for what it attaches. The host makes it when it is needed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep_folder: Option<String>,
@@ -230,6 +240,10 @@ pub struct Answer {
     /// After a fixture's set-up: what it wants to be told of each test.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notices: Vec<Notice>,
+    /// The host has written [`Plugin::shared`] and takes the next test. Else it
+    /// ends.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stays: bool,
 }
 
 /// What a host tells without being asked.
@@ -237,7 +251,8 @@ pub struct Answer {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "method", content = "params", rename_all = "kebab-case")]
 pub enum Notification {
-    /// A test enters `setup`, `run` or `tear-down`.
+    /// A test enters `setup`, `run` or `tear-down`; in a host that several tests
+    /// share also `load`.
     Phase {
         /// The phase that begins.
         phase: Phase,

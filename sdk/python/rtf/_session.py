@@ -103,6 +103,8 @@ class Task:
         self.repetition = repetition
         self.last = params.get("last", False) is True
         self.keep_folder = _text_of(params, "keep_folder", "")
+        # What tells the test's output from the next one's, if its host may go on.
+        self.shared = _text_of(params, "shared", "")
 
 
 def _text_of(params: dict[str, object], name: str, default: str | None = None) -> str:

@@ -120,6 +120,7 @@ def test_initialize_comes_first_and_names_the_interpreter(tmp_path: Path) -> Non
         "protocol": 1,
         "host": f"python {version}",
         "stack": "none",
+        "shares": True,
     }
 
 

@@ -175,6 +175,7 @@ impl Hook {
                     environment: suite.environment.clone(),
                     repetition: 1,
                     last: true,
+                    shared: None,
                     keep_folder: None,
                 };
                 (plugin.host.command.clone(), Some(asked))

@@ -42,7 +42,9 @@ pub async fn run(
             Some(Order::WatchAlive) => {
                 side.spawn(watch.clone().until_unwell(plan.alive.clone()));
             }
-            Some(Order::Send(..) | Order::TakeStack(_) | Order::LookAlive) => {}
+            Some(
+                Order::Send(..) | Order::TakeStack(_) | Order::LookAlive | Order::ServeNext(_),
+            ) => {}
             Some(Order::CloseChannel | Order::Signal(_) | Order::KillTree) | None => break,
         }
     }

@@ -5,22 +5,24 @@
 //! and printed is delivered before its end is told.
 
 mod keep;
+mod sharing;
+mod streams;
 
 use std::os::fd::AsFd;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, SystemTime};
 
-use rtf_model::protocol::{Notification, Plugin, Request, StackSupport, TestEnds};
+use rtf_model::protocol::{Notification, Request, StackSupport, TestEnds};
 use rtf_model::{ExitStatus, Source, Stream};
-use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::io::AsyncWriteExt;
 use tokio::sync::mpsc;
 use tokio::task::JoinSet;
 
 use super::cgroup::Cgroups;
 use super::codec::{self, FromHost, LINE_LIMIT};
 use super::launch::Launch;
-use super::spawner::{End, Process, Spawner};
+use super::spawner::{Process, Spawner};
 use super::{remote, stack, tree, unix, usage};
 use crate::guard::{Kept, Link, gate};
 use crate::plan::ProcessPlan;
@@ -36,12 +38,16 @@ const CONGESTED_WAIT: Duration = Duration::from_millis(1);
 const SIGKILL: i32 = 9;
 /// How long a fixture on another machine may take to be killed there.
 const REMOTE_KILL: Duration = Duration::from_secs(1);
-/// How much is read at once: what a pipe holds at most.
-const READ_BYTES: usize = 64 * 1024;
+
+pub use sharing::Next;
+use sharing::Sharing;
+use streams::{Buffers, read, wait};
 
 /// What the suite's task asks of a process's task.
 #[derive(Debug)]
 pub enum Order {
+    /// Let the host serve a further test, when it has done with the present one.
+    ServeNext(Next),
     /// Write a request.
     Send(Option<u64>, Request),
     /// Write no more.
@@ -131,6 +137,8 @@ struct Task {
     process: Process,
     inputs: Inputs,
     line: Vec<u8>,
+    /// What belongs to which test, when several may share the host.
+    sharing: Option<Sharing>,
     /// How often it has to say that it lives.
     looked_at: u32,
     /// Probes and stack dumps; they end with the task.
@@ -139,7 +147,16 @@ struct Task {
 
 impl Task {
     fn new(job: Job, shared: Arc<Shared>, process: Process, inputs: Inputs) -> Self {
-        Self { job, shared, process, inputs, line: Vec::new(), looked_at: 0, side: JoinSet::new() }
+        Self {
+            job,
+            shared,
+            process,
+            inputs,
+            line: Vec::new(),
+            sharing: None,
+            looked_at: 0,
+            side: JoinSet::new(),
+        }
     }
 
     /// Hooks and fixtures must be able to go on when the runner dies.
@@ -200,11 +217,13 @@ impl Task {
     /// The process has ended: kill what it left, deliver what it said.
     async fn end(&mut self, status: ExitStatus, buffers: &mut Buffers) {
         self.side.abort_all();
-        let left = self.job.launch.sweep().await;
+        let mut left = self.job.launch.sweep().await;
         let _ = tokio::time::timeout(DRAIN_LIMIT, self.drain(buffers)).await;
+        self.disown(&mut left);
         let _ = std::fs::remove_file(&self.job.launch.stack_file);
         self.shared.guard.process_ended(self.job.source, self.process.pid);
-        self.tell(HostInput::Exited(status, left)).await;
+        let end = self.end_of(status, left);
+        self.tell(end).await;
     }
 
     async fn drain(&mut self, buffers: &mut Buffers) {
@@ -229,6 +248,7 @@ impl Task {
     async fn obey(&mut self, order: Order) {
         let pid = self.process.pid;
         match order {
+            Order::ServeNext(next) => self.serve_next(next).await,
             Order::Send(id, request) => self.send(id, request).await,
             Order::CloseChannel => {
                 if let Some(channel) = &mut self.process.channel {
@@ -279,12 +299,20 @@ impl Task {
     }
 
     async fn send(&mut self, id: Option<u64>, mut request: Request) {
-        if let Request::RunTest(Plugin { keep_folder, .. })
-        | Request::TestFinished(TestEnds { keep_folder, .. }) = &mut request
-        {
+        if let Request::RunTest(plugin) = &mut request {
+            let (source, host) = (self.job.source, self.job.host);
+            self.dress(plugin, (source, host), id.unwrap_or_default());
+            if let (Some(mark), None) = (&plugin.shared, &self.sharing) {
+                self.sharing = Some(Sharing::new(id.unwrap_or_default(), mark));
+            }
+        } else if let Request::TestFinished(TestEnds { keep_folder, .. }) = &mut request {
             let folder = self.shared.run_folder.join(self.keep_folder());
             *keep_folder = Some(folder.to_string_lossy().into_owned());
         }
+        self.write(id, request).await;
+    }
+
+    async fn write(&mut self, id: Option<u64>, request: Request) {
         if let (Ok(line), Some(channel)) = (codec::encode(id, request), &mut self.process.channel) {
             // A host that is gone or does not read is noticed by its exit or its limit.
             let _ = tokio::time::timeout(DRAIN_LIMIT, channel.write_all(&line)).await;
@@ -312,21 +340,24 @@ impl Task {
 
     /// Bytes came over the channel; none when it was closed.
     async fn heard(&mut self, bytes: &[u8]) {
+        if self.sharing.is_some() {
+            return self.heard_shared(bytes).await;
+        }
         if bytes.is_empty() {
             self.process.channel = None;
             if !self.line.is_empty() {
                 let line = std::mem::take(&mut self.line);
-                self.understand(&line).await;
+                self.understand(codec::decode(&line)).await;
             }
             return;
         }
         for piece in bytes.split_inclusive(|byte| *byte == b'\n') {
             match piece.strip_suffix(b"\n") {
-                Some(end) if self.line.is_empty() => self.understand(end).await,
+                Some(end) if self.line.is_empty() => self.understand(codec::decode(end)).await,
                 Some(end) => {
                     let mut line = std::mem::take(&mut self.line);
                     line.extend_from_slice(end);
-                    self.understand(&line).await;
+                    self.understand(codec::decode(&line)).await;
                 }
                 None => self.line.extend_from_slice(piece),
             }
@@ -338,8 +369,8 @@ impl Task {
         }
     }
 
-    async fn understand(&mut self, line: &[u8]) {
-        let input = match codec::decode(line) {
+    async fn understand(&mut self, heard: Result<FromHost, String>) {
+        let input = match heard {
             Ok(FromHost::Told(Notification::Attached(attachment))) => {
                 HostInput::Attached(self.keep(attachment).await)
             }
@@ -351,6 +382,9 @@ impl Task {
     }
 
     async fn printed(&mut self, stream: Stream, bytes: &[u8]) {
+        if self.sharing.is_some() {
+            return self.printed_shared(stream, bytes).await;
+        }
         if bytes.is_empty() {
             match stream {
                 Stream::Stdout => self.process.stdout = None,
@@ -364,34 +398,4 @@ impl Task {
     async fn tell(&self, input: HostInput) {
         drop(self.inputs.send((self.job.host, input)).await);
     }
-}
-
-/// What was read last from each stream.
-struct Buffers {
-    channel: Vec<u8>,
-    stdout: Vec<u8>,
-    stderr: Vec<u8>,
-}
-
-impl Buffers {
-    fn new() -> Self {
-        let empty = || Vec::with_capacity(READ_BYTES);
-        Self { channel: empty(), stdout: empty(), stderr: empty() }
-    }
-}
-
-/// Replaces the buffer by what comes next from a stream; by nothing at its end,
-/// and an error counts as the end. A stream that is closed never answers.
-async fn read<R: tokio::io::AsyncRead + Unpin>(stream: &mut Option<R>, buffer: &mut Vec<u8>) {
-    match stream {
-        Some(stream) => {
-            buffer.clear();
-            let _ = stream.read_buf(buffer).await;
-        }
-        None => std::future::pending().await,
-    }
-}
-
-async fn wait(end: &mut End) -> ExitStatus {
-    end.wait().await.unwrap_or(ExitStatus::Code(-1))
 }

@@ -88,6 +88,7 @@ pub(super) fn plan(
             retries: test.retries,
             critical: test.critical,
             exclusive: test.exclusive,
+            shared: test.shared,
             tags,
         });
     }
@@ -193,6 +194,7 @@ pub(super) fn plan_singles(context: &mut Context<'_>, singles: &[Single]) -> Sui
             retries: Retries::default(),
             critical: false,
             exclusive: false,
+            shared: false,
             tags: Vec::new(),
         });
     }

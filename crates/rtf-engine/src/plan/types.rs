@@ -192,6 +192,8 @@ pub struct TestPlan {
     pub critical: bool,
     /// Whether no other test of the suite runs beside it.
     pub exclusive: bool,
+    /// Whether it may share a host with the tests around it.
+    pub shared: bool,
     /// The tags given in the suite.
     pub tags: Vec<String>,
 }

@@ -1,7 +1,7 @@
 //! The task around a suite's state machine: it carries out the effects and
 //! brings the inputs.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -21,7 +21,7 @@ use crate::host::attached::{self, Attached};
 use crate::host::launch::Launch;
 use crate::host::remote;
 use crate::host::spawner::{SpawnRequest, Streams};
-use crate::host::task::{self, Job, Order, Shared};
+use crate::host::task::{self, Job, Next, Order, Shared};
 use crate::isolate::{Network, Prepared};
 use crate::plan::{Leaks, SuitePlan, TestPlan};
 
@@ -59,6 +59,7 @@ pub async fn run_suite(
         machine: SuiteMachine::new(plan, asked.fails.clone()).until(asked.until),
         effects: Vec::new(),
         orders: HashMap::new(),
+        leaving: HashSet::new(),
         spares: Vec::new(),
         called: None,
         scopes: 0,
@@ -81,6 +82,8 @@ struct SuiteTask<'a> {
     machine: SuiteMachine<'a>,
     effects: Vec<Effect>,
     orders: HashMap<HostId, mpsc::UnboundedSender<Order>>,
+    /// Those that will be known by another id.
+    leaving: HashSet<HostId>,
     /// Hosts that were started ahead of their need.
     spares: Vec<Launch>,
     /// What called for the hook that is started next.
@@ -149,10 +152,22 @@ impl SuiteTask<'_> {
     }
 
     fn host_input(&mut self, host: HostId, input: HostInput) {
-        if matches!(input, HostInput::Exited(..) | HostInput::SpawnFailed(_)) {
-            self.orders.remove(&host);
+        use HostInput::{Exited, Released, SpawnFailed, Unbegun};
+        match &input {
+            Exited(..) | SpawnFailed(_) | Unbegun(_) => drop(self.orders.remove(&host)),
+            Released => self.leave(host),
+            _ => {}
         }
         self.feed(Input::Host(host, input));
+    }
+
+    /// A host has another id when both was told: the test is over, and it has or
+    /// gets another test.
+    fn leave(&mut self, host: HostId) {
+        if !self.leaving.insert(host) {
+            self.leaving.remove(&host);
+            self.orders.remove(&host);
+        }
     }
 
     fn feed(&mut self, input: Input) {
@@ -173,6 +188,15 @@ impl SuiteTask<'_> {
             Effect::SetDeadline(deadline, at) => drop(self.deadlines.insert(deadline, at)),
             Effect::ClearDeadline(deadline) => drop(self.deadlines.remove(&deadline)),
             Effect::Spawn { host, source, start } => self.spawn(host, source, start),
+            Effect::Join { host, on, source, request, plugin } => {
+                let owner = format!("test {}/{}", self.plan.name, plugin.name);
+                let next = Next { host, source, owner, request, plugin };
+                if let Some(orders) = self.orders.get(&on).cloned() {
+                    let _ = orders.send(Order::ServeNext(next));
+                    self.orders.insert(host, orders);
+                }
+                self.leave(on);
+            }
             Effect::SpawnAhead(starts) => self.spawn_ahead(starts),
             Effect::Send(host, id, request) => self.order(host, Order::Send(id, request)),
             Effect::CloseChannel(host) => self.order(host, Order::CloseChannel),

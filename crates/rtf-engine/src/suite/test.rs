@@ -38,7 +38,7 @@ pub(super) fn read(
         slow: own.slow.or(given.slow),
         grace: own.grace.or(given.grace),
     };
-    isolation(reader, node);
+    let shared = isolation(reader, node);
     let repetitions = reader.number(node, "repetition", 1).unwrap_or(1);
     let after_collapse = after_collapse(reader, node).unwrap_or(defaults.after_collapse);
     let leaks = leaks(reader, node).unwrap_or(defaults.leaks);
@@ -60,6 +60,7 @@ pub(super) fn read(
         retries,
         critical,
         exclusive,
+        shared,
         tags,
         env,
     })
@@ -134,15 +135,8 @@ pub(super) fn values(words: Vec<Spanned<String>>) -> Vec<String> {
     words.into_iter().map(|word| word.value).collect()
 }
 
-/// Only the default is there yet; `shared` must not be taken for it.
-fn isolation(reader: &mut Reader<'_>, node: Node<'_, '_>) {
-    if let Some(isolation) = reader.attribute(node, "isolation")
-        && isolation.value.trim() == "shared"
-    {
-        let message = "`isolation=\"shared\"` is not supported by this version of rtf";
-        let label = reader.source.label(isolation.span, "");
-        reader.report(Diagnostic::error("not-supported", message).label(label));
-    } else {
-        reader.choice(node, "isolation", &[("process", ())]);
-    }
+/// Whether its host may have served other tests before, and may after it.
+fn isolation(reader: &mut Reader<'_>, node: Node<'_, '_>) -> bool {
+    let words = [("process", false), ("shared", true)];
+    reader.choice(node, "isolation", &words).unwrap_or(false)
 }

@@ -91,6 +91,8 @@ pub struct Test {
     pub critical: bool,
     /// Whether no other test of the suite runs beside it.
     pub exclusive: bool,
+    /// Whether it may share a host with the tests around it.
+    pub shared: bool,
     /// Its own tags.
     pub tags: Vec<String>,
     /// Environment variables beside the suite's.

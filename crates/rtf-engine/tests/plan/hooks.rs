@@ -236,12 +236,3 @@ fn leaks_are_reported_or_fail() {
       hint: did you mean `report`?
     ");
 }
-
-#[test]
-fn what_is_not_built_is_refused() {
-    let text = "<suite>\n<test isolation='shared'>A.lua</test></suite>";
-    assert_snapshot!(bench().shown(text), @r#"
-    not-supported: `isolation="shared"` is not supported by this version of rtf
-      2:18 shared
-    "#);
-}

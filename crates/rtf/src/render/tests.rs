@@ -60,18 +60,6 @@ fn shown(text: &str) -> String {
 }
 
 #[test]
-fn not_supported_yet() {
-    let suite = "<suite>\n  <test isolation=\"shared\">ArmTest.lua</test>\n</suite>";
-    assert_snapshot!(shown(suite), @r#"
-    error: `isolation="shared"` is not supported by this version of rtf
-     --> suite.xml:2:20
-      |
-    2 |   <test isolation="shared">ArmTest.lua</test>
-      |                    ^^^^^^
-    "#);
-}
-
-#[test]
 fn missing_plugin() {
     let suite = "<suite>\n  <test type=\"dll\"> SensrTest </test>\n  \
                  <test> ArmTest </test>\n  <test> SensrTest </test>\n</suite>";

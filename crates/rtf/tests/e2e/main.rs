@@ -40,6 +40,7 @@ mod remote;
 mod repeating;
 mod reports;
 mod rerun;
+mod shared;
 mod side_by_side;
 mod signals;
 mod testrunner;

@@ -11,7 +11,7 @@ from rtf.host import predecessor
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from types import ModuleType
+    from types import CodeType, ModuleType
     from typing import TypeVar
 
     _P = TypeVar("_P", bound=Plugin)
@@ -46,7 +46,7 @@ def _run_file(file: str) -> ModuleType:
     # and insists on file names that are Python's own.
     with open(file, "rb") as stream:
         source = stream.read()
-    code = compile(source, file, "exec", dont_inherit=True)
+    code = _compiled(source, file)
     stem = os.path.splitext(os.path.basename(file))[0]
     name = f"rtf_plugin_{stem}"
     while name in sys.modules:
@@ -55,9 +55,21 @@ def _run_file(file: str) -> ModuleType:
     module.__file__ = file
     predecessor.lend_module(module, source)
     sys.modules[name] = module
-    sys.path.insert(0, os.path.dirname(os.path.abspath(file)))
+    folder = os.path.dirname(os.path.abspath(file))
+    if sys.path[:1] != [folder]:
+        sys.path.insert(0, folder)
     exec(code, module.__dict__)  # noqa: S102 - running the user's file is what a host is for
     return module
+
+
+# Of the file that was loaded last: a shared host often loads it again.
+_last: list[tuple[str, bytes, CodeType]] = []
+
+
+def _compiled(source: bytes, file: str) -> CodeType:
+    if not _last or _last[0][:2] != (file, source):
+        _last[:] = [(file, source, compile(source, file, "exec", dont_inherit=True))]
+    return _last[0][2]
 
 
 def _classes(module: ModuleType, base: type[_P]) -> list[type[_P]]:

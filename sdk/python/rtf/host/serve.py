@@ -17,7 +17,7 @@ from queue import SimpleQueue
 from rtf import _session
 from rtf._session import Judge, Session, Task
 from rtf._stop import StepEnded
-from rtf.host import channel, steps
+from rtf.host import channel, sharing, steps
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
@@ -65,11 +65,16 @@ class Reader:
         self._lock = threading.Lock()
         threading.Thread(target=self._read, name="rtf channel", daemon=True).start()
 
-    def finish(self, request: Request, *, fixture_is_up: bool) -> None:
-        """Forget a request that is about to be answered: the runner may go then."""
+    def finish(self, request: Request, *, fixture_is_up: bool, last: bool = False) -> None:
+        """Forget a request that is about to be answered: the runner may go then.
+
+        With the last one, what has not begun is forgotten, too.
+        """
         request.done.set()
         with self._lock:
             self._open.remove(request)
+            if last:
+                self._open.clear()
             self.fixture_is_up = fixture_is_up
 
     def _read(self) -> None:
@@ -91,17 +96,20 @@ class Reader:
     def _take(self, message: dict[str, object]) -> None:
         if message.get("method") == "interrupt":
             params = message.get("params")
-            reason = params.get("reason") if isinstance(params, dict) else None
-            self._interrupt(str(reason or "asked to stop"))
+            params = params if isinstance(params, dict) else {}
+            self._interrupt(str(params.get("reason") or "asked to stop"), params.get("request"))
         elif message.get("id") is not None:
             request = Request(message)
             with self._lock:
                 self._open.append(request)
             self.requests.put(request)
 
-    def _interrupt(self, reason: str) -> None:
+    def _interrupt(self, reason: str, number: object) -> None:
         with self._lock:
             waiting = list(self._open)
+        if number is not None:
+            # Another one's turn: this one was answered, and the two have crossed.
+            waiting = waiting[:1] if waiting and waiting[0].number == number else []
         for request in waiting:
             request.judge.request_stop(reason)
         if waiting:
@@ -125,6 +133,7 @@ class Host:
         self._is_initialized = False
         self._fixture: FixtureManager | None = None
         self._task: Task | None = None
+        self._sharing: sharing.Sharing | None = None
         self._stack_file: TextIO | None = None
 
     def carry_out(self, request: Request, reader: Reader) -> bool:
@@ -144,14 +153,17 @@ class Host:
         if os.getpid() != self._process:
             # A forked child came back from the plug-in; its parent serves the runner.
             os._exit(0)
-        reader.finish(request, fixture_is_up=self._fixture is not None)
+        reader.finish(request, fixture_is_up=self._fixture is not None, last=last)
         self._channel.answer(request.number, result)
         return not last
 
     def _do(self, request: Request) -> tuple[steps.Answer, bool]:
         if request.method == "run-test":
             task = _task(request.params)
-            return steps.run_test(self._enter(task, request)), task.last
+            session = self._enter(task, request)
+            if not task.shared:
+                return steps.run_test(session), task.last
+            return self._run_shared(session)
         if request.method == "set-up-fixture":
             task = _task(request.params)
             session = self._enter(task, request)
@@ -172,6 +184,17 @@ class Host:
         fixture, self._fixture = self._fixture, None
         return steps.tear_down_fixture(session, fixture), False
 
+    def _run_shared(self, session: Session) -> tuple[steps.Answer, bool]:
+        task = session.task
+        if self._sharing is None and not task.last:
+            self._sharing = sharing.Sharing.begin()
+        session.notify("phase", {"phase": "load"})
+        answer = steps.run_test(session)
+        stays = answer["outcome"] == "passed" and not task.last
+        if stays and self._sharing is not None and self._sharing.stay(task.shared):
+            return {**answer, "stays": True}, False
+        return answer, True
+
     def _initialize(self, params: dict[str, object]) -> dict[str, object]:
         if params.get("protocol") != PROTOCOL_VERSION:
             raise _Refused(
@@ -188,7 +211,7 @@ class Host:
         self._is_initialized = True
         name = sys.implementation.name.replace("cpython", "python")
         host = f"{name} {'.'.join(map(str, sys.version_info[:3]))}"
-        return {"protocol": PROTOCOL_VERSION, "host": host, "stack": stack}
+        return {"protocol": PROTOCOL_VERSION, "host": host, "stack": stack, "shares": True}
 
     def _enter(self, task: Task, request: Request) -> Session:
         session = Session(task, request.judge, self._channel.notify)

@@ -3,15 +3,12 @@
 use rtf_model::{Attachment, Source};
 
 use super::Task;
+use crate::run::machine::HostId;
 
 impl Task {
     /// The folder for what this process attaches, relative to the run's.
     pub(super) fn keep_folder(&self) -> String {
-        match self.job.source {
-            Source::Test(id) => format!("attachments/{id}/{}", self.job.host.0),
-            Source::Fixture(id) => format!("attachments/fixture-{id}/{}", self.job.host.0),
-            Source::Hook(id) => format!("attachments/hook-{id}/{}", self.job.host.0),
-        }
+        keep_folder(self.job.source, self.job.host)
     }
 
     /// Names an attached file relative to the run's folder. A host that did not
@@ -35,6 +32,15 @@ impl Task {
             tokio::fs::copy(&source, own.join(&name)).await.map_err(cannot)?;
         }
         Ok(Attachment { path: format!("{folder}/{name}"), ..attachment })
+    }
+}
+
+/// The folder for what a process attaches while it has this id.
+pub(super) fn keep_folder(source: Source, host: HostId) -> String {
+    match source {
+        Source::Test(id) => format!("attachments/{id}/{}", host.0),
+        Source::Fixture(id) => format!("attachments/fixture-{id}/{}", host.0),
+        Source::Hook(id) => format!("attachments/hook-{id}/{}", host.0),
     }
 }
 

@@ -60,6 +60,7 @@ impl<'p> HookRun<'p> {
                 environment: suite.environment.clone(),
                 repetition: 1,
                 last: true,
+                shared: None,
                 keep_folder: None,
             });
             cx.out(Effect::Send(host, Some(RUN), request));

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use rtf_model::protocol::{Notification, OWNER_VARIABLE, Reply, Request, StackSupport};
+use rtf_model::protocol::{Notification, OWNER_VARIABLE, Plugin, Reply, Request, StackSupport};
 use rtf_model::{Attachment, EventKind, ExitStatus, LeftProcess, Source, Stream, TestId, Usage};
 
 use crate::plan::{AttachedPlan, HostPlan, ProcessPlan, SuitePlan};
@@ -58,6 +58,11 @@ pub enum HostInput {
     Lives,
     /// The stacks of its threads, or why there are none.
     StackTaken(String),
+    /// The test is over: everything that it printed was delivered, and nothing of
+    /// it is left. Its host lives and takes the next one. Nothing follows.
+    Released,
+    /// Its host had served tests before and ended before it began.
+    Unbegun(ExitStatus),
     /// It ended, everything that it printed was delivered, and what it left
     /// behind was killed. Nothing follows.
     Exited(ExitStatus, Vec<LeftProcess>),
@@ -172,6 +177,19 @@ pub enum Effect {
         source: Source,
         /// How.
         start: Start,
+    },
+    /// A host serves a further test, under an id of its own.
+    Join {
+        /// Its id from the beginning of that test on.
+        host: HostId,
+        /// Its id until then.
+        on: HostId,
+        /// The test.
+        source: Source,
+        /// The number of the request.
+        request: u64,
+        /// The request.
+        plugin: Plugin,
     },
     /// Hosts like these will be needed next, in this order: start them while
     /// tests run. They are used when a later `Spawn` asks for the same. What was

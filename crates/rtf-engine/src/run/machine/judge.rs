@@ -20,8 +20,10 @@ pub struct Evidence {
     pub first_problem: Option<Problem>,
     /// What the host answered to `run-test`.
     pub answer: Option<Result<Answer, RpcError>>,
-    /// How the process ended; `None` when it never started.
+    /// How the process ended; `None` when it never started, or lives.
     pub exit: Option<ExitStatus>,
+    /// Whether its host has gone on to the next test, or waits for one.
+    pub released: bool,
 }
 
 /// The judgement.
@@ -65,7 +67,7 @@ fn judge_answer(
     answer: &Answer,
     last_phase: Phase,
 ) -> (Verdict, Option<String>, Phase) {
-    let clean = evidence.exit == Some(ExitStatus::Code(0));
+    let clean = evidence.released || evidence.exit == Some(ExitStatus::Code(0));
     let problem = evidence.first_problem.clone().or_else(|| from_answer(answer, last_phase));
     match problem {
         None if clean => (Verdict::Passed, None, last_phase),
@@ -105,7 +107,7 @@ mod tests {
     use super::*;
 
     fn answered(outcome: Outcome, exit: ExitStatus) -> Evidence {
-        let answer = Answer { outcome, reason: None, notices: Vec::new() };
+        let answer = Answer { outcome, reason: None, notices: Vec::new(), stays: false };
         Evidence { answer: Some(Ok(answer)), exit: Some(exit), ..Evidence::default() }
     }
 

@@ -13,9 +13,10 @@
 //! 6. Ask plug-in fixtures for their `check`, tell those that asked for it of the next
 //!    tests, then start these.
 //!
-//! Which test may start is in [`turns`], how a suite is ended early in [`ending`],
-//! how a test that failed is tried again in [`retries`], how the whole is
-//! repeated in [`rounds`], what fixtures are told of tests in [`telling`].
+//! Which test may start is in [`turns`], how tests share a host in [`sharing`], how a
+//! suite is ended early in [`ending`], how a test that failed is tried again in
+//! [`retries`], how the whole is repeated in [`rounds`], what fixtures are told of
+//! tests in [`telling`].
 //!
 //! **A collapse interrupts all running tests in [`SuiteMachine::fixture_changed`].**
 
@@ -24,6 +25,7 @@ mod ending;
 mod looking;
 mod retries;
 mod rounds;
+mod sharing;
 mod telling;
 mod turns;
 
@@ -176,9 +178,17 @@ impl<'p> SuiteMachine<'p> {
 
     fn host(&mut self, host: HostId, input: HostInput, cx: &mut Context<'_>) {
         if let Some(run) = self.turns.of_host(host) {
-            run.handle(input, cx);
             let test = run.id();
+            match input {
+                HostInput::Unbegun(status) => self.begin_anew(test, status, cx),
+                HostInput::Exited(status, _) if run.is_released() => {
+                    run.lose_host();
+                    self.warn_of_end(status, cx);
+                }
+                input => run.handle(input, cx),
+            }
             self.look_alive(test, cx);
+            self.turns.ask_ahead(test, cx);
         } else if let Some(place) = self.fixtures.place_of(host) {
             if matches!(input, HostInput::Lives) {
                 self.seen_alive(host);
@@ -187,6 +197,8 @@ impl<'p> SuiteMachine<'p> {
             self.fixture_changed(place, change, cx);
         } else if self.hooks.owns(host) {
             self.hooks.handle(input, cx);
+        } else if let HostInput::Exited(status, _) = input {
+            self.idle_host_ended(host, status, cx);
         }
     }
 
@@ -270,6 +282,12 @@ impl<'p> SuiteMachine<'p> {
             }
             (Some(next), _) => self.goes_on(test, next, retry.then_some(plan.retries.delay), cx),
             (None, _) => self.turns.remove(test),
+        }
+        if self.turns.keep_host(plan, run, cx) {
+            self.hooks.test_starts();
+            if let Some(reason) = &self.ending {
+                self.turns.stop_all(StopCause::Interrupt, reason, cx);
+            }
         }
     }
 
@@ -363,7 +381,7 @@ impl<'p> SuiteMachine<'p> {
             }
         }
         self.fixtures.stop_all(cx);
-        if !self.fixtures.all_stopped() {
+        if !self.fixtures.all_stopped() || self.turns.is_host_kept(cx) {
             return;
         }
         self.last_words(cx);

@@ -13,6 +13,7 @@ use rtf_model::{StopCause, TestId, Verdict};
 use super::Context;
 use super::cursor::Cursor;
 use super::rounds::Rounds;
+use super::sharing::Sharing;
 use crate::plan::{SuitePlan, TestPlan};
 use crate::run::machine::io::{HostId, Start};
 use crate::run::machine::test::{Ended, TestRun};
@@ -52,17 +53,19 @@ impl Turn<'_> {
 /// The tests of a suite, by how far they are.
 #[derive(Debug)]
 pub(super) struct Turns<'p> {
-    suite: &'p SuitePlan,
+    pub(super) suite: &'p SuitePlan,
     /// Those that have begun and are not over, as they are written.
     open: Vec<Turn<'p>>,
     /// The place of the first test that has not begun in this round.
     next: usize,
     pub rounds: Rounds,
+    pub(super) sharing: Sharing<'p>,
 }
 
 impl<'p> Turns<'p> {
     pub fn new(suite: &'p SuitePlan) -> Self {
-        Self { suite, open: Vec::new(), next: 0, rounds: Rounds::new() }
+        let (rounds, sharing) = (Rounds::new(), Sharing::default());
+        Self { suite, open: Vec::new(), next: 0, rounds, sharing }
     }
 
     /// Whether any test has begun.
@@ -211,17 +214,32 @@ impl<'p> Turns<'p> {
     /// Starts the next attempt that may start and of which all fixtures have `heard`;
     /// false when there is none.
     pub fn start_next(&mut self, heard: impl Fn(TestId) -> bool, cx: &mut Context<'_>) -> bool {
-        let may = |turn: &&mut Turn<'_>| turn.is_due() && turn.told && heard(turn.plan.id);
-        let Some(turn) = self.open.iter_mut().find(may) else { return false };
-        self.rounds.begins(turn.plan.id, turn.cursor);
-        let number = (turn.cursor.repetition, turn.cursor.attempt);
-        turn.run = Some(TestRun::start(self.suite, turn.plan, number, cx));
+        let may = |turn: &Turn<'_>| turn.is_due() && turn.told && heard(turn.plan.id);
+        let Some(at) = self.open.iter().position(may) else { return false };
+        let (plan, cursor) = (self.open[at].plan, self.open[at].cursor);
+        self.rounds.begins(plan.id, cursor);
+        let place = self.place(plan, cx);
+        let last = self.follower(plan, cursor).is_none();
+        let number = (cursor.repetition, cursor.attempt);
+        self.open[at].run = Some(TestRun::start(self.suite, plan, number, (place, last), cx));
         true
+    }
+
+    /// The attempt that may start next, and whose test it is.
+    pub(super) fn due(&self) -> Option<(TestId, Cursor)> {
+        let turn = self.open.iter().find(|turn| turn.is_due());
+        let begun = turn.map(|turn| (turn.plan.id, turn.cursor));
+        let next = || self.suite.tests.get(self.next).map(|plan| (plan.id, Cursor::FIRST));
+        begun.or_else(|| self.has_room().then(next)?)
     }
 
     /// How the hosts of the next attempts are started: further repetitions, then
     /// tests that have not begun.
     pub fn hosts_ahead(&self) -> Vec<Start> {
+        if self.open.iter().any(|turn| self.follower(turn.plan, turn.cursor).is_some()) {
+            // The next test needs none.
+            return Vec::new();
+        }
         let rounds = &self.rounds;
         let left = |turn: &Turn<'p>| rounds.last_of(turn.plan) - turn.cursor.repetition;
         let begun = self.open.iter().map(|turn| (turn.plan, left(turn)));

@@ -1,9 +1,9 @@
 //! What hosts answer, of tests and of fixtures.
 
-use rtf_model::protocol::{Answer, Initialized, PROTOCOL_VERSION, Reply, RpcError, StackSupport};
+use rtf_model::protocol::{Answer, Initialized, PROTOCOL_VERSION, Reply, RpcError};
 
 /// Reads the answer to `initialize`.
-pub fn parse_initialized(reply: Reply<serde_json::Value>) -> Result<StackSupport, String> {
+pub fn parse_initialized(reply: Reply<serde_json::Value>) -> Result<Initialized, String> {
     let value = match reply {
         Reply::Result(value) => value,
         Reply::Error(error) => {
@@ -16,7 +16,7 @@ pub fn parse_initialized(reply: Reply<serde_json::Value>) -> Result<StackSupport
     let initialized: Initialized = serde_json::from_value(value)
         .map_err(|error| format!("its answer to `initialize` is not understood: {error}"))?;
     if initialized.protocol == PROTOCOL_VERSION {
-        Ok(initialized.stack)
+        Ok(initialized)
     } else {
         Err(format!("{} speaks protocol {}", initialized.host, initialized.protocol))
     }

@@ -1,12 +1,13 @@
 //! One attempt of a test: its phases and limits, up to its end. How it is
-//! stopped is in [`stop`].
+//! stopped is in [`stop`], how it gets its host in [`sharing`].
 
 mod answers;
+pub mod sharing;
 mod stop;
 
 use std::time::Duration;
 
-use rtf_model::protocol::{Notification, Plugin, Reply, Request, StackSupport};
+use rtf_model::protocol::{Notification, Reply, StackSupport};
 use rtf_model::{
     EventKind, ExitStatus, LeftProcess, Measurement, Message, MessageKind, Phase, Source,
     StopCause, Stream, TestFinished, TestId, Verdict,
@@ -23,7 +24,7 @@ use crate::run::machine::io::{
 use crate::run::machine::judge::{Evidence, Problem, judge};
 use crate::run::machine::suite::Context;
 
-/// The number of `run-test` on a host's channel.
+/// The number of the first `run-test` on a host's channel.
 const RUN_TEST: u64 = 2;
 
 /// From SIGTERM to SIGKILL.
@@ -77,11 +78,28 @@ pub struct Ended {
     pub critical: Option<String>,
 }
 
+/// Where a test runs.
+#[derive(Clone, Copy, Debug)]
+pub enum Place {
+    /// In a host of its own, at least at first.
+    New,
+    /// In the host that served this one last.
+    On(HostId),
+    /// In a host that was asked for it before.
+    Asked(HostId),
+}
+
 /// One attempt of a test.
 #[derive(Debug)]
 pub struct TestRun<'p> {
     plan: &'p TestPlan,
     host: HostId,
+    /// The number of its request.
+    request: u64,
+    /// Whether its host can serve several tests.
+    shares: bool,
+    /// Whether its host has outlived it.
+    released: bool,
     phase: Phase,
     evidence: Evidence,
     stack: StackSupport,
@@ -103,27 +121,27 @@ impl<'p> TestRun<'p> {
         suite: &SuitePlan,
         plan: &'p TestPlan,
         (repetition, attempt): (u32, u32),
+        (place, last): (Place, bool),
         cx: &mut Context<'_>,
     ) -> Self {
-        let host = cx.new_host();
         let source = Source::Test(plan.id);
         cx.emit(EventKind::TestStarted { test: plan.id, repetition, attempt });
-        cx.out(Effect::Spawn { host, source, start: Self::host_start(suite, plan) });
-        let plugin = Plugin {
-            file: plan.plugin.file.to_string_lossy().into_owned(),
-            name: plan.name.clone(),
-            param: plan.plugin.param.clone(),
-            args: plan.plugin.args.clone(),
-            environment: suite.environment.clone(),
-            repetition,
-            last: true,
-            keep_folder: None,
+        let wanted = (repetition, last);
+        let (host, request) = match place {
+            Place::New => (sharing::spawn(suite, plan, wanted, cx), RUN_TEST),
+            Place::On(on) => {
+                let host = sharing::ask(suite, plan, wanted, on, cx);
+                (host, sharing::request_of(host))
+            }
+            Place::Asked(host) => (host, sharing::request_of(host)),
         };
-        cx.out(Effect::Send(host, Some(RUN_TEST), Request::RunTest(plugin)));
         cx.set(Deadline::Test(plan.id, TestTimer::Limit), plan.limits.load);
         Self {
             plan,
             host,
+            request,
+            shares: !matches!(place, Place::New),
+            released: false,
             phase: Phase::Load,
             evidence: Evidence::default(),
             stack: StackSupport::None,
@@ -164,14 +182,18 @@ impl<'p> TestRun<'p> {
                 self.note(Verdict::Error, reason);
                 self.process = Process::Over;
             }
-            HostInput::Exited(status, left) => self.exited(status, left, cx),
+            HostInput::Exited(status, left) => self.exited(Some(status), left, cx),
+            HostInput::Released => {
+                self.released = true;
+                self.exited(None, Vec::new(), cx);
+            }
             HostInput::Told(notification) => self.told(notification, cx),
             HostInput::Attached(Ok(attachment)) => {
                 cx.emit(EventKind::Attached { test: self.plan.id, fixture: None, attachment });
             }
             HostInput::Attached(Err(reason)) => self.own_error(reason, cx),
             HostInput::Answered(INITIALIZE, reply) => self.initialized(reply, cx),
-            HostInput::Answered(RUN_TEST, reply) => self.answered(reply, cx),
+            HostInput::Answered(id, reply) if id == self.request => self.answered(reply, cx),
             HostInput::Answered(id, _) => self.broke_protocol(format!("answered request {id}"), cx),
             HostInput::Garbage(what) => self.broke_protocol(what, cx),
             HostInput::Printed(stream, bytes) => {
@@ -180,7 +202,8 @@ impl<'p> TestRun<'p> {
                 }
             }
             HostInput::StackTaken(text) => self.stack_taken(text, cx),
-            HostInput::ProbesHold
+            HostInput::Unbegun(_)
+            | HostInput::ProbesHold
             | HostInput::ProbeWaits(_)
             | HostInput::ProbeFailed(_)
             | HostInput::Uses(_)
@@ -259,7 +282,10 @@ impl<'p> TestRun<'p> {
 
     fn initialized(&mut self, reply: Reply<serde_json::Value>, cx: &mut Context<'_>) {
         match parse_initialized(reply) {
-            Ok(stack) => self.stack = stack,
+            Ok(initialized) => {
+                self.stack = initialized.stack;
+                self.shares = self.plan.shared && initialized.shares;
+            }
             Err(what) => self.broke_protocol(what, cx),
         }
     }
@@ -270,9 +296,11 @@ impl<'p> TestRun<'p> {
         }
         match parse_answer(reply) {
             Ok(answer) => {
+                if !answer.as_ref().is_ok_and(|answer| answer.stays) {
+                    cx.out(Effect::CloseChannel(self.host));
+                }
                 self.evidence.answer = Some(answer);
                 self.phase = Phase::Exit;
-                cx.out(Effect::CloseChannel(self.host));
                 cx.clear(Deadline::Test(self.plan.id, TestTimer::Slow));
                 if self.step.is_none() {
                     cx.set(
@@ -290,7 +318,7 @@ impl<'p> TestRun<'p> {
         self.stop(StopCause::Protocol, reason, cx);
     }
 
-    fn exited(&mut self, exit: ExitStatus, left: Vec<LeftProcess>, cx: &mut Context<'_>) {
+    fn exited(&mut self, exit: Option<ExitStatus>, left: Vec<LeftProcess>, cx: &mut Context<'_>) {
         cx.clear(Deadline::Test(self.plan.id, TestTimer::Slow));
         for capture in &mut self.captures {
             if let Some(output) = capture.finish() {
@@ -302,7 +330,7 @@ impl<'p> TestRun<'p> {
             let source = Source::Test(self.plan.id);
             cx.emit(EventKind::ProcessesLeft { source, processes: left });
         }
-        self.evidence.exit = Some(exit);
+        (self.evidence.exit, self.evidence.released) = (exit, self.released);
         let (verdict, ..) = judge(&self.evidence, self.phase);
         let may_be_collapsed = self.has_fixtures && self.evidence.stopped.is_none();
         self.process = match (may_be_collapsed, verdict.is_green()) {

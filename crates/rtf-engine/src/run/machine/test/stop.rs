@@ -49,8 +49,8 @@ impl TestRun<'_> {
     fn ask(&mut self, cx: &mut Context<'_>) {
         self.step = Some(Step::Asked);
         let reason = self.evidence.stopped.as_ref().map(|(_, reason, _)| reason.clone());
-        let reason = reason.unwrap_or_default();
-        cx.out(Effect::Send(self.host, None, Request::Interrupt { reason }));
+        let (reason, request) = (reason.unwrap_or_default(), Some(self.request));
+        cx.out(Effect::Send(self.host, None, Request::Interrupt { reason, request }));
         cx.set(Deadline::Test(self.plan.id, TestTimer::Limit), self.plan.limits.grace);
     }
 

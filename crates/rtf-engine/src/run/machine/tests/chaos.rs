@@ -6,14 +6,30 @@ use std::time::Duration;
 
 use proptest::prelude::*;
 use rtf_model::protocol::{Notification, Reply};
-use rtf_model::{EventKind, ExitStatus, Message, MessageKind, Phase, TestId, Trigger, Verdict};
+use rtf_model::{
+    EventKind, ExitStatus, Message, MessageKind, Phase, Source, TestId, Trigger, Verdict,
+};
 
 use super::world::{SECOND, World, hook, suite};
+use crate::host::codec::INITIALIZE;
 use crate::plan::{AfterCollapse, Retries, SuitePlan};
 use crate::run::machine::{HostInput, Input, StopLevel};
 
-fn act(world: &mut World<'_>, choice: u8, which: usize) {
+/// What becomes of a shared host that has nothing to do; false when it is not its turn.
+fn act_idle(world: &mut World<'_>, choice: u8) -> bool {
+    let is_turn = !choice.is_multiple_of(3);
+    let Some(idle) = world.idle.first().copied().filter(|_| is_turn) else { return false };
+    if choice % 3 == 1 || !world.begin_joined(idle) {
+        world.end_idle(idle, ExitStatus::Signal(11));
+    }
+    true
+}
+
+fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool) {
     let alive: Vec<_> = world.hosts.iter().map(|(host, source)| (*host, *source)).collect();
+    if act_idle(world, choice) {
+        return;
+    }
     let Some((host, source)) = alive.get(which % alive.len().max(1)).copied() else {
         if !world.deadlines.is_empty() {
             world.next_deadline();
@@ -23,15 +39,29 @@ fn act(world: &mut World<'_>, choice: u8, which: usize) {
     let answerable = |world: &World<'_>| {
         world.sent.iter().rev().find(|(to, id, _)| *to == host && id.is_some()).and_then(|s| s.1)
     };
+    if world.answered.contains(&host) && choice.is_multiple_of(2) {
+        return world.release(host);
+    }
     let told = |notification| Input::Host(host, HostInput::Told(notification));
     match choice % 16 {
         0..=4 => {
             if let Some(id) = answerable(world) {
                 let outcome = if choice > 200 { "failed" } else { "passed" };
                 let notices = ["test-started", "test-finished"];
-                let value = serde_json::json!({ "outcome": outcome, "notices": notices });
+                let stays = shared && outcome == "passed" && matches!(source, Source::Test(_));
+                let value = serde_json::json!({
+                    "outcome": outcome, "notices": notices, "stays": stays
+                });
+                if stays {
+                    world.answered.insert(host);
+                }
                 world.feed(Input::Host(host, HostInput::Answered(id, Reply::Result(value))));
             }
+        }
+        5 if shared && choice > 100 => {
+            let value = serde_json::json!({ "protocol": 1, "host": "h", "shares": true });
+            let answer = HostInput::Answered(INITIALIZE, Reply::Result(value));
+            world.feed(Input::Host(host, answer));
         }
         5 => world.feed(told(Notification::Phase { phase: Phase::Setup })),
         6 | 7 => world.feed(told(Notification::Phase { phase: Phase::Run })),
@@ -63,9 +93,10 @@ fn settle(world: &mut World<'_>) {
         if world.done {
             return;
         }
-        match world.hosts.values().next().copied() {
-            Some(source) => world.exit(source, ExitStatus::Code(0)),
-            None => drop(world.next_deadline()),
+        match (world.hosts.values().next().copied(), world.idle.first().copied()) {
+            (Some(source), _) => world.exit(source, ExitStatus::Code(0)),
+            (None, Some(idle)) => world.end_idle(idle, ExitStatus::Code(0)),
+            (None, None) => drop(world.next_deadline()),
         }
     }
 }
@@ -82,9 +113,11 @@ proptest! {
         independent in any::<bool>(),
         parallel in 1..4u32,
         alone in 0..8usize,
+        shared in any::<bool>(),
     ) {
         let mut plan = suite(fixtures, tests);
-        plan.parallel = parallel;
+        plan.parallel = if shared { 1 } else { parallel };
+        plan.tests.iter_mut().for_each(|test| test.shared = shared);
         if let Some(test) = plan.tests.get_mut(alone) {
             test.exclusive = true;
         }
@@ -109,7 +142,7 @@ proptest! {
             if world.done {
                 break;
             }
-            act(&mut world, choice, which);
+            act(&mut world, choice, which, shared);
         }
         settle(&mut world);
         world.finish();

@@ -13,4 +13,5 @@ mod parallel;
 mod prepared;
 mod retries;
 mod rounds;
+mod shared;
 pub(crate) mod world;

@@ -1,6 +1,6 @@
 //! A world for the machine: plans, hosts that do what a test says, and time.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -107,6 +107,7 @@ fn test(index: usize) -> TestPlan {
         retries: Retries::default(),
         critical: false,
         exclusive: false,
+        shared: false,
         tags: Vec::new(),
     }
 }
@@ -122,6 +123,11 @@ pub struct World<'p> {
     pub happened: Vec<EventKind>,
     pub deadlines: BTreeMap<Deadline, Duration>,
     pub done: bool,
+    /// Shared hosts that have nothing to do, and what others were asked for next.
+    pub idle: BTreeSet<HostId>,
+    /// Shared hosts that have answered, and stay.
+    pub answered: BTreeSet<HostId>,
+    pub joined: BTreeMap<HostId, (HostId, Source, u64)>,
     /// Whether it cannot be seen that fixtures live.
     pub unseen: bool,
     order: OrderChecker,
@@ -149,6 +155,9 @@ impl<'p> World<'p> {
             happened: Vec::new(),
             deadlines: BTreeMap::new(),
             done: false,
+            idle: BTreeSet::new(),
+            answered: BTreeSet::new(),
+            joined: BTreeMap::new(),
             unseen: false,
             order: OrderChecker::default(),
             seq: 0,
@@ -227,6 +236,10 @@ impl<'p> World<'p> {
                 Effect::LookAlive(host) => looked_at.push(host),
                 Effect::Emit(kind) => self.emit(kind),
                 Effect::Spawn { host, source, .. } => drop(self.hosts.insert(host, source)),
+                Effect::Join { host, on, source, request, .. } => {
+                    assert!(self.hosts.contains_key(&on) || self.idle.contains(&on));
+                    assert!(self.joined.insert(on, (host, source, request)).is_none());
+                }
                 Effect::Send(host, id, request) => self.sent.push((host, id, request)),
                 Effect::SetDeadline(deadline, at) => drop(self.deadlines.insert(deadline, at)),
                 Effect::ClearDeadline(deadline) => drop(self.deadlines.remove(&deadline)),
@@ -262,6 +275,8 @@ impl<'p> World<'p> {
         let host = self.host_of(source);
         if matches!(input, HostInput::Exited(..) | HostInput::SpawnFailed(_)) {
             self.hosts.remove(&host);
+            self.joined.remove(&host);
+            self.answered.remove(&host);
         }
         self.feed(Input::Host(host, input));
     }
