@@ -44,4 +44,10 @@ for package in "${missing[@]}"; do
   esac
 done
 
+if peers=$(tools/venv.sh bench); then
+  export RTF_BENCH_PYTHON=$peers
+else
+  say "warning: without pytest its lines cannot be measured"
+fi
+
 exec python3 -B benches/bench.py "$@"

@@ -31,6 +31,7 @@ def group(bench: Bench) -> Group:
     lines = (
         Line(f"{name}, memory of rtf check", CHECK, MEMORY, limit=memory),
         Line(f"{name}, memory of rtf run", RUN, MEMORY, limit=memory),
+        Line(f"{name}, memory of rtf run: goal", RUN, MEMORY, limit=Limit(200, required=False)),
         Line(f"{name}, rtf check", CHECK, SECONDS, limit=Limit(1, required=False)),
         Line(f"{name}, rtf run that skips them", RUN, SECONDS),
         Line(f"{name}, JUnit written", JUNIT, SECONDS, limit=Limit(2, required=False)),

@@ -1,4 +1,4 @@
-"""1000 trivial tests, each in a process of its own: C++ and Lua."""
+"""1000 trivial tests, each in a process of its own or all in one: C++ and Lua."""
 
 from __future__ import annotations
 
@@ -17,11 +17,13 @@ PREDECESSOR_CPP = "predecessor in process, C++"
 PREDECESSOR_LUA = "predecessor in process, Lua"
 CPP = "rtf, C++"
 LUA = "rtf, Lua"
+CPP_SHARED = "rtf, C++, shared"
+LUA_SHARED = "rtf, Lua, shared"
 
 
 def group(bench: Bench) -> Group:
     """The predecessor runs all tests in its own process: it is the peer of
-    shared hosts, shown for information.
+    shared hosts.
     """
     no_predecessor = "" if bench.predecessor else f"{PREDECESSOR} is not installed"
     works = (
@@ -31,14 +33,20 @@ def group(bench: Bench) -> Group:
         Work(PREDECESSOR_LUA, predecessor(bench, "lua", "Trivial.lua"), no_predecessor),
         Work(CPP, rtf(bench, "dll")),
         Work(LUA, rtf(bench, "lua")),
+        Work(CPP_SHARED, rtf(bench, "dll", "shared")),
+        Work(LUA_SHARED, rtf(bench, "lua", "shared")),
     )
     twice = Limit(2.0, of_ratio=True)
+    at_par = Limit(1.0, of_ratio=True, required=False)
+    near_bare = Limit(1.2, of_ratio=True, required=False)
+    below_ctest = Limit(0.4, of_ratio=True, required=False)
     lines = (
         Line(f"{COUNT} C++ tests, own process each", CPP, UNIT, SPAWN, twice),
-        Line(f"{COUNT} C++ tests, beside ctest", CPP, UNIT, CTEST),
-        Line(f"{COUNT} C++ tests, beside the predecessor", CPP, UNIT, PREDECESSOR_CPP),
-        Line(f"{COUNT} Lua tests, own process each", LUA, UNIT, SPAWN),
-        Line(f"{COUNT} Lua tests, beside the predecessor", LUA, UNIT, PREDECESSOR_LUA),
+        Line(f"{COUNT} C++ tests, own process each: goal", CPP, UNIT, SPAWN, at_par),
+        Line(f"{COUNT} C++ tests, beside ctest", CPP, UNIT, CTEST, below_ctest),
+        Line(f"{COUNT} C++ tests, shared", CPP_SHARED, UNIT, PREDECESSOR_CPP, at_par),
+        Line(f"{COUNT} Lua tests, own process each", LUA, UNIT, SPAWN, near_bare),
+        Line(f"{COUNT} Lua tests, shared", LUA_SHARED, UNIT, PREDECESSOR_LUA, at_par),
         Line(f"{COUNT} bare processes", SPAWN, UNIT),
     )
     return Group("own process", works, lines)
@@ -49,9 +57,10 @@ def a_test(launched: Launched) -> Samples:
     return {UNIT: [launched.seconds * 1e3 / COUNT]}
 
 
-def rtf(bench: Bench, kind: str) -> Callable[[], Samples]:
+def rtf(bench: Bench, kind: str, isolation: str = "process") -> Callable[[], Samples]:
     """Runs the tests with rtf."""
-    file = suite.write(bench, f"trivial-{kind}", suite.tests(kind, "Trivial", COUNT))
+    elements = suite.tests(kind, "Trivial", COUNT, isolation)
+    file = suite.write(bench, f"trivial-{kind}-{isolation}", elements)
     return lambda: a_test(suite.run_passing(bench, file, COUNT))
 
 

@@ -1,4 +1,4 @@
-"""Trivial Python tests, each in a process of its own.
+"""Trivial Python tests, each in a process of its own or all in one.
 
 A group of its own: the interpreter's start is dear, so there are fewer tests
 and fewer rounds.
@@ -7,29 +7,69 @@ and fewer rounds.
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 
 from measuring import suite
 from measuring.bench import Bench, Launched
-from measuring.model import Group, Line, Samples, Work
+from measuring.model import Group, Limit, Line, MeasuringError, Samples, Work
 
-COUNT = 200
+COUNT = 1000
+BARE_COUNT = 50
 UNIT = "ms a test"
 
 BARE = "python3 -c pass"
+FORKED = "pytest --forked"
+IN_PROCESS = "pytest"
 RTF = "rtf, Python"
+RTF_SHARED = "rtf, Python, shared"
 
 
 def group(bench: Bench) -> Group:
-    """The peer is the interpreter that does nothing."""
-    file = suite.write(bench, "trivial-python", suite.tests("python", "Trivial", COUNT))
+    """The peers are pytest, whose tests are functions, and the interpreter that
+    does nothing.
+    """
+    missing = "" if bench.pytest else "pytest is not installed"
+    bare = [sys.executable, "-c", "pass"]
     works = (
-        Work(BARE, lambda: a_test(bench.launch([sys.executable, "-c", "pass"], COUNT))),
-        Work(RTF, lambda: a_test(suite.run_passing(bench, file, COUNT))),
+        Work(BARE, lambda: a_test(bench.launch(bare, BARE_COUNT), BARE_COUNT)),
+        Work(FORKED, pytest(bench, "--forked"), missing),
+        Work(IN_PROCESS, pytest(bench), missing),
+        Work(RTF, rtf(bench, "process")),
+        Work(RTF_SHARED, rtf(bench, "shared")),
     )
-    lines = (Line(f"{COUNT} Python tests, own process each", RTF, UNIT, BARE),)
+    quarter = Limit(0.25, of_ratio=True, required=False)
+    lines = (
+        Line(f"{COUNT} Python tests, own process each", RTF, UNIT, FORKED, quarter),
+        Line(f"{COUNT} Python tests, own process, beside the interpreter", RTF, UNIT, BARE),
+        Line(f"{COUNT} Python tests, shared", RTF_SHARED, UNIT, IN_PROCESS, quarter),
+    )
     return Group("python", works, lines, rounds=3, warm_up=False)
 
 
-def a_test(launched: Launched) -> Samples:
+def rtf(bench: Bench, isolation: str) -> Callable[[], Samples]:
+    """Runs the tests with rtf."""
+    elements = suite.tests("python", "Trivial", COUNT, isolation)
+    file = suite.write(bench, f"trivial-python-{isolation}", elements)
+    return lambda: a_test(suite.run_passing(bench, file, COUNT))
+
+
+def pytest(bench: Bench, *options: str) -> Callable[[], Samples]:
+    """Runs as many functions with pytest, without its cache."""
+    folder = bench.folder / "pytest"
+    folder.mkdir(exist_ok=True)
+    functions = "".join(f"def test_{n:06}():\n    assert True\n\n\n" for n in range(COUNT))
+    (folder / "test_trivial.py").write_text(functions, encoding="utf-8")
+    command = [bench.pytest, "-q", "-p", "no:cacheprovider", *options, str(folder)]
+
+    def work() -> Samples:
+        launched = bench.launch(command)
+        if f"{COUNT} passed" not in launched.output:
+            raise MeasuringError(f"pytest did not pass {COUNT} tests:\n{launched.output}")
+        return a_test(launched)
+
+    return work
+
+
+def a_test(launched: Launched, count: int = COUNT) -> Samples:
     """The price of one of them."""
-    return {UNIT: [launched.seconds * 1e3 / COUNT]}
+    return {UNIT: [launched.seconds * 1e3 / count]}

@@ -48,6 +48,8 @@ class Bench:
     predecessor: str
     """Its runner; empty when it is not installed."""
     ctest: str
+    pytest: str
+    """With its plug-in for forks, from `RTF_BENCH_PYTHON`."""
 
     @staticmethod
     def open(folder: Path, results: Path, rtf: Path) -> Bench:
@@ -55,7 +57,9 @@ class Bench:
         if not rtf.exists():
             raise MeasuringError(f"{rtf} is missing: build it with `make build`")
         predecessor = shutil.which(PREDECESSOR) or ""
-        return Bench(folder, results, rtf, predecessor, shutil.which("ctest") or "")
+        ctest = shutil.which("ctest") or ""
+        pytest = shutil.which("pytest", path=os.environ.get("RTF_BENCH_PYTHON", "")) or ""
+        return Bench(folder, results, rtf, predecessor, ctest, pytest)
 
     def launch(
         self, command: Sequence[str], count: int = 1, codes: Sequence[int] = (0,)

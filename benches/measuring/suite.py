@@ -25,9 +25,10 @@ def write(bench: Bench, name: str, elements: Iterable[str]) -> Path:
     return path
 
 
-def tests(kind: str, plugin: str, count: int) -> list[str]:
+def tests(kind: str, plugin: str, count: int, isolation: str = "process") -> list[str]:
     """That many tests, all of one plug-in."""
-    return [f'<test type="{kind}" name="test-{n:06}">{plugin}</test>' for n in range(count)]
+    attributes = f'type="{kind}" isolation="{isolation}"'
+    return [f'<test {attributes} name="test-{n:06}">{plugin}</test>' for n in range(count)]
 
 
 class Run:
