@@ -326,6 +326,11 @@ pub struct RunArgs {
     #[arg(long, value_name = "DURATION", default_value = "60s", value_parser = parse_duration)]
     pub shutdown_timeout: Duration,
 
+    /// End the run, as SIGTERM does, when standard input ends: for programs that
+    /// start rtf, whose death it then notices
+    #[arg(long)]
+    pub end_with_stdin: bool,
+
     /// Show every message, measurement and output as it comes
     #[arg(short, long)]
     pub verbose: bool,

@@ -3,6 +3,7 @@
 //! The runner is its child. This module tells what the guard had to do.
 
 use std::io::{self, Write};
+use std::os::fd::{AsFd, OwnedFd};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -27,7 +28,9 @@ pub fn run(args: &RunArgs) -> Outcome {
             let _ = failure.show();
         }
     };
-    Guarded { run, close: &close, kept: true }.watch()
+    let lifeline = args.end_with_stdin.then(|| std::io::stdin().as_fd().try_clone_to_owned());
+    let lifeline = lifeline.transpose().map_err(Failure::own)?;
+    Guarded { run, close: &close, kept: true, lifeline }.watch()
 }
 
 /// What runs under a guard.
@@ -39,12 +42,14 @@ pub struct Guarded<'a, R> {
     pub close: &'a dyn Fn(&Path, &Record),
     /// Whether the journal is still there when the guard has ended.
     pub kept: bool,
+    /// The run is asked to end when this does.
+    pub lifeline: Option<OwnedFd>,
 }
 
 impl<R: FnOnce(Link) -> Outcome> Guarded<'_, R> {
     /// Runs it.
     pub fn watch(self) -> Outcome {
-        let ended = match guard::split().map_err(Failure::own)? {
+        let ended = match guard::split(self.lifeline).map_err(Failure::own)? {
             Side::Runner(link) => return (self.run)(link),
             Side::Guard(guard) => guard.watch(),
         };

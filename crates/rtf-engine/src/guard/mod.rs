@@ -25,6 +25,7 @@ mod unix;
 mod watch;
 
 use std::io;
+use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
 use std::time::Instant;
 
@@ -46,9 +47,11 @@ pub enum Side {
 /// runner gets a process group of its own, so that a terminal's Ctrl-C comes to
 /// it once, through the guard.
 ///
+/// The end of `lifeline` counts as SIGTERM; what comes over it is read and forgotten.
+///
 /// # Errors
 /// This process has more than one thread, or the system refused.
-pub fn split() -> io::Result<Side> {
+pub fn split(lifeline: Option<OwnedFd>) -> io::Result<Side> {
     let (guards, runners) = UnixStream::pair()?;
     let (pulse, felt) = UnixStream::pair()?;
     rustix::process::set_child_subreaper(Some(rustix::process::getpid()))?;
@@ -62,11 +65,11 @@ pub fn split() -> io::Result<Side> {
             unix::own_group(Some(runner));
             let signals = unix::Signals::install()?;
             drop(held);
-            let guard = Guard::new(runner, [guards, pulse], signals, forked);
+            let guard = Guard::new(runner, [guards, pulse], signals, forked).ending_with(lifeline);
             Ok(Side::Guard(Box::new(guard)))
         }
         None => {
-            drop((guards, pulse));
+            drop((guards, pulse, lifeline));
             unix::own_group(None);
             drop(held);
             unix::write_to_terminal_from_behind();

@@ -38,6 +38,8 @@ pub struct Guard {
     _pulse: UnixStream,
     /// When the runner is killed, after the last request to end.
     kill_at: Option<Instant>,
+    /// Its end is a request to end.
+    lifeline: Option<OwnedFd>,
 }
 
 /// How it ended.
@@ -67,7 +69,12 @@ impl Guard {
             received: VecDeque::new(),
             duties: Duties::default(),
         };
-        Self { runner, link, signals, forked, _pulse: pulse, kill_at: None }
+        Self { runner, link, signals, forked, _pulse: pulse, kill_at: None, lifeline: None }
+    }
+
+    /// Asks the runner to end when `lifeline` does.
+    pub(super) fn ending_with(self, lifeline: Option<OwnedFd>) -> Self {
+        Self { lifeline, ..self }
     }
 
     /// Waits for the end of the runner, and does what it cannot do any more.
@@ -78,6 +85,7 @@ impl Guard {
             for signal in self.signals.read() {
                 self.pass_on(signal);
             }
+            self.look_at_lifeline();
             self.link.listen();
             if self.kill_at.is_some_and(|at| at <= Instant::now()) {
                 tree::signal(self.runner, libc::SIGKILL);
@@ -100,10 +108,25 @@ impl Guard {
     fn wait(&self) {
         let mut fds = vec![PollFd::new(&self.signals, PollFlags::IN)];
         fds.extend(self.link.socket.as_ref().map(|link| PollFd::new(link, PollFlags::IN)));
+        fds.extend(self.lifeline.as_ref().map(|line| PollFd::new(line, PollFlags::IN)));
         let timeout = self.kill_at.map(|at| at.saturating_duration_since(Instant::now()));
         let timeout = timeout.and_then(|left| Timespec::try_from(left).ok());
         // A signal interrupts it, and then it is in the pipe.
         let _ = poll(&mut fds, timeout.as_ref());
+    }
+
+    /// What comes over it does not count, only its end.
+    fn look_at_lifeline(&mut self) {
+        let Some(line) = &self.lifeline else { return };
+        let mut polled = [PollFd::new(line, PollFlags::IN)];
+        if !matches!(poll(&mut polled, Some(&Timespec::default())), Ok(1..)) {
+            return;
+        }
+        if matches!(rustix::io::read(line, &mut [0; 4096]), Ok(0) | Err(_)) {
+            self.lifeline = None;
+            self.signals.asked += 1;
+            self.pass_on(libc::SIGTERM);
+        }
     }
 
     fn pass_on(&mut self, signal: i32) {

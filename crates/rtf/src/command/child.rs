@@ -1,5 +1,4 @@
 //! This program again, as a child that ends with it.
-#![expect(unsafe_code, reason = "what a process does between fork and exec has no safe form")]
 
 use std::ffi::OsStr;
 use std::io;
@@ -8,28 +7,21 @@ use std::process::{Command, Stdio};
 
 use rustix::process::{Pid, Signal};
 
+/// The option with which a run notices the end of its standard input.
+pub const OPTION: &str = "--end-with-stdin";
+
 /// This program in a process group of its own, which a terminal's signals do not
-/// reach. It gets SIGTERM when this process dies, however it dies; the thread
-/// that starts it has to live as long as it does.
+/// reach. With [`OPTION`] among its arguments it ends when its standard input
+/// does, which this process has to hold open: when it dies, however it dies, the
+/// run is asked to end, once. The kernel's own signal for that, of
+/// `PR_SET_PDEATHSIG`, may come several times from a parent with several threads.
 ///
 /// # Errors
 /// It is not known where this program is.
 pub fn again<S: AsRef<OsStr>>(args: impl IntoIterator<Item = S>) -> io::Result<Command> {
-    let parent = rustix::process::getpid();
     let mut command = Command::new(std::env::current_exe()?);
-    command.args(args).stdin(Stdio::null()).process_group(0);
-    // SAFETY: only makes system calls, and allocates nothing.
-    unsafe { command.pre_exec(move || end_with(parent)) };
+    command.args(args).stdin(Stdio::piped()).process_group(0);
     Ok(command)
-}
-
-fn end_with(parent: Pid) -> io::Result<()> {
-    rustix::process::set_parent_process_death_signal(Some(Signal::TERM))?;
-    // It may have died before.
-    match rustix::process::getppid() {
-        Some(now) if now == parent => Ok(()),
-        _ => Err(rustix::io::Errno::SRCH.into()),
-    }
 }
 
 /// The process of a child that was not waited for.

@@ -6,7 +6,7 @@
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek};
 use std::path::PathBuf;
-use std::process::{Child, ChildStdout, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 
 use rtf_model::{Event, EventKind};
@@ -100,7 +100,6 @@ impl rtf_web::Starter for Reruns {
             }
             current.rest();
         };
-        // The run ends with the thread that starts it: this one is there until its end.
         if let Err(error) = std::thread::Builder::new().name("rerun".into()).spawn(follow) {
             self.current.rest();
             return Err(not(format!("cannot start a thread: {error}")));
@@ -124,7 +123,7 @@ impl Current {
 
     /// Tells the run's name, or why it has none, and waits for its end.
     fn follow(&self, run: Started, tell: &mpsc::Sender<Told>) -> io::Result<()> {
-        let Started { mut child, events, mut said } = run;
+        let Started { mut child, lifeline, events, mut said } = run;
         let pid = child::pid(child.id());
         {
             let mut state = self.state();
@@ -150,6 +149,7 @@ impl Current {
         }
         // From here on its number may become another process's.
         self.state().process = None;
+        drop(lifeline);
         child.wait()?;
         if !has_name {
             let _ = tell.send(Err(why(&mut said)?));
@@ -177,17 +177,21 @@ impl State {
 /// A run that was started: its process, its events, and what it says beside them.
 struct Started {
     child: Child,
+    /// The run ends when this is closed, be it by the death of this process.
+    lifeline: Option<ChildStdin>,
     events: ChildStdout,
     said: File,
 }
 
 fn start(results: &std::path::Path, run: &str, folder: PathBuf) -> io::Result<Started> {
-    let mut command = child::again(["run", "--color", "never", "--format", "json", "--results"])?;
+    let fixed = ["run", child::OPTION, "--color", "never", "--format", "json", "--results"];
+    let mut command = child::again(fixed)?;
     command.arg(results).args(["--rerun", "failed", "--", run]).current_dir(folder);
     let said = tempfile::tempfile()?;
     let mut child = command.stdout(Stdio::piped()).stderr(said.try_clone()?).spawn()?;
     let events = child.stdout.take().ok_or(io::ErrorKind::BrokenPipe)?;
-    Ok(Started { child, events, said })
+    let lifeline = child.stdin.take();
+    Ok(Started { child, lifeline, events, said })
 }
 
 /// The run's name, from its first event: its journal is there then.

@@ -88,7 +88,8 @@ fn run(args: &Args) -> Outcome {
         perform(args, &results, guard)
     };
     let close = |journal: &Path, record: &Record| after_death(args, journal, record);
-    let outcome = Guarded { run, close: &close, kept: results.scratch.is_none() }.watch();
+    let guarded = Guarded { run, close: &close, kept: results.scratch.is_none(), lifeline: None };
+    let outcome = guarded.watch();
     // The guard is still there when the runner is not.
     if !runner.get() {
         results.clear();

@@ -124,6 +124,9 @@ fn a_server_that_is_killed_takes_its_run_with_it() {
     until_test_runs(&mut events(&web, &run), 0);
     assert_eq!(web.end("KILL").code, None);
     wait_until("the end of the run", || nothing_left(&folder).then_some(()));
+    let record = folder.journal().record;
+    assert_eq!(record.interrupted(), Some("SIGTERM"));
+    assert!(folder.path().join("parked").exists());
 }
 
 /// A run that another process makes is not stopped here, and nothing is started beside it.

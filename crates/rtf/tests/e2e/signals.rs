@@ -1,5 +1,8 @@
 //! Ctrl-C: once tears down, twice kills, and nothing is left.
 
+use std::io::Write as _;
+use std::process::Stdio;
+
 use rtf_model::{EventKind, Phase, TestId, Verdict};
 
 use crate::support::{Folder, Running, nothing_left};
@@ -33,6 +36,30 @@ fn the_first_signal_stops_the_test_and_tears_down() {
         assert!(folder.path().join("junit.xml").exists());
         assert!(nothing_left(&folder));
     }
+}
+
+/// Programs that start rtf hold its standard input: what is written there does not
+/// matter, and their death ends the run in order, once.
+#[test]
+fn the_end_of_standard_input_is_a_first_signal() {
+    let folder = Folder::new();
+    folder.file("F.py", FIXTURE).file("T.py", PATIENT);
+    folder.file(
+        "a.xml",
+        "<suite><fixture type='python'>F</fixture><test type='python'>T</test></suite>",
+    );
+    let mut command = folder.command(&["run", "--end-with-stdin", "a.xml"]);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let mut lifeline = child.stdin.take().unwrap();
+    let running = folder.watch(child);
+    lifeline.write_all(b"this changes nothing\n").unwrap();
+    running.wait_for(|kind| matches!(kind, EventKind::TestPhase { phase: Phase::Run, .. }));
+    drop(lifeline);
+    assert_eq!(running.finish().code, Some(143));
+    assert_eq!(folder.journal().record.interrupted(), Some("SIGTERM"));
+    assert!(folder.path().join("torn-down").exists());
+    assert!(nothing_left(&folder));
 }
 
 #[test]

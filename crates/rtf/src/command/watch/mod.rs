@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use notify::{Event, RecommendedWatcher, RecursiveMode, Watcher as _};
 use rtf_engine::signal::Signals;
 use rtf_report::escape;
-use tokio::process::Child;
+use tokio::process::{Child, ChildStdin};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
 use self::debounce::Debounce;
@@ -58,6 +58,8 @@ struct Watch<'a> {
     debounce: Debounce,
     state: Rounds,
     child: Option<Child>,
+    /// Its standard input, which it ends with; `wait` would close it at once.
+    lifeline: Option<ChildStdin>,
     signals: Signals,
 }
 
@@ -85,6 +87,7 @@ impl<'a> Watch<'a> {
             debounce: Debounce::default(),
             state: Rounds::default(),
             child: None,
+            lifeline: None,
             signals: Signals::install().map_err(Failure::own)?,
         })
     }
@@ -110,7 +113,7 @@ impl<'a> Watch<'a> {
                     Order::Nothing
                 }
                 Input::Ended(status) => {
-                    self.child = None;
+                    (self.child, self.lifeline) = (None, None);
                     let code = round::code_of(status.map_err(Failure::own)?);
                     let order = self.state.ended(code);
                     if order == Order::Rest {
@@ -155,7 +158,9 @@ impl<'a> Watch<'a> {
     }
 
     fn start(&mut self) -> Result<(), Failure> {
-        self.child = Some(round::start().map_err(Failure::own)?);
+        let mut child = round::start().map_err(Failure::own)?;
+        self.lifeline = child.stdin.take();
+        self.child = Some(child);
         Ok(())
     }
 

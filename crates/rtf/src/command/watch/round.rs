@@ -16,7 +16,7 @@ pub fn start() -> io::Result<Child> {
     Command::from(round).spawn()
 }
 
-/// What was typed, with the verb `run`.
+/// What was typed, with the verb `run`; it ends with this process.
 fn as_run(mut args: Vec<OsString>) -> Vec<OsString> {
     let mut at = 0;
     while let Some(arg) = args.get_mut(at) {
@@ -24,6 +24,9 @@ fn as_run(mut args: Vec<OsString>) -> Vec<OsString> {
             at += 1;
         } else if !arg.to_string_lossy().starts_with('-') {
             *arg = "run".into();
+            if !args.contains(&child::OPTION.into()) {
+                args.insert(at + 1, child::OPTION.into());
+            }
             break;
         }
         at += 1;
@@ -47,8 +50,11 @@ mod tests {
             let args = as_run(text.split(' ').map(OsString::from).collect());
             args.join(" ".as_ref()).into_string().unwrap_or_default()
         };
-        assert_eq!(of("watch a.xml"), "run a.xml");
-        assert_eq!(of("--color never watch -E all() watch"), "--color never run -E all() watch");
-        assert_eq!(of("--color=watch watch watch"), "--color=watch run watch");
+        assert_eq!(of("watch a.xml"), "run --end-with-stdin a.xml");
+        assert_eq!(
+            of("--color never watch -E all() watch"),
+            "--color never run --end-with-stdin -E all() watch"
+        );
+        assert_eq!(of("--color=watch watch watch"), "--color=watch run --end-with-stdin watch");
     }
 }
