@@ -4,6 +4,7 @@
 //! process said, printed, and how it ended. Everything that the process said
 //! and printed is delivered before its end is told.
 
+mod far;
 mod keep;
 mod sharing;
 mod streams;
@@ -23,7 +24,7 @@ use super::cgroup::Cgroups;
 use super::codec::{self, FromHost, LINE_LIMIT};
 use super::launch::Launch;
 use super::spawner::{Process, Spawner};
-use super::{remote, stack, tree, unix, usage};
+use super::{stack, tree, unix, usage};
 use crate::guard::{Kept, Link, gate};
 use crate::plan::ProcessPlan;
 use crate::run::Sink;
@@ -283,18 +284,6 @@ impl Task {
                 self.tell(HostInput::Uses(usage)).await;
             }
             self.tell(HostInput::Lives).await;
-        }
-    }
-
-    fn is_remote(&self) -> bool {
-        self.job.process.as_ref().is_some_and(|process| process.remote.is_some())
-    }
-
-    async fn signal_remote(&mut self, signal: i32) {
-        if let Some(channel) = &mut self.process.channel {
-            let line = remote::signal_line(signal);
-            // A connection that is stuck is noticed by its limit.
-            let _ = tokio::time::timeout(DRAIN_LIMIT, channel.write_all(&line)).await;
         }
     }
 

@@ -1,7 +1,9 @@
 //! The verdict over one attempt of a test, from all that was seen of it.
 
 use rtf_model::protocol::{Answer, RpcError};
-use rtf_model::{ExitStatus, Outcome, Phase, StopCause, Verdict};
+use rtf_model::{ExitStatus, LeftProcess, Outcome, Phase, StopCause, Verdict};
+
+use crate::plan::Leaks;
 
 /// A first failure or error, which decides.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -100,6 +102,17 @@ fn from_answer(answer: &Answer, phase: Phase) -> Option<Problem> {
 
 fn ended(exit: Option<ExitStatus>) -> String {
     exit.map_or_else(|| "an unknown status".to_owned(), |status| status.to_string())
+}
+
+/// What is said of a test that passed and left processes behind, if that counts.
+pub fn leak_of(leaks: Leaks, left: &[LeftProcess]) -> Option<String> {
+    match (leaks, left) {
+        (Leaks::Report, _) | (_, []) => None,
+        (Leaks::Fail, [one]) => Some(format!("it left a process behind: {}", one.command)),
+        (Leaks::Fail, [first, ..]) => {
+            Some(format!("it left {} processes behind, first: {}", left.len(), first.command))
+        }
+    }
 }
 
 #[cfg(test)]

@@ -16,12 +16,12 @@ use rtf_model::{
 pub use answers::{parse_answer, parse_initialized};
 
 use crate::host::codec::INITIALIZE;
-use crate::plan::{Leaks, SuitePlan, TestPlan};
+use crate::plan::{SuitePlan, TestPlan};
 use crate::run::machine::capture::Capture;
 use crate::run::machine::io::{
     Deadline, Effect, HostId, HostInput, Program, Start, TestTimer, environment,
 };
-use crate::run::machine::judge::{Evidence, Problem, judge};
+use crate::run::machine::judge::{Evidence, Problem, judge, leak_of};
 use crate::run::machine::suite::Context;
 
 /// The number of the first `run-test` on a host's channel.
@@ -388,16 +388,5 @@ impl<'p> TestRun<'p> {
             exit: ended.exit,
             rerun,
         })
-    }
-}
-
-/// What is said of a test that passed and left processes behind, if that counts.
-fn leak_of(leaks: Leaks, left: &[LeftProcess]) -> Option<String> {
-    match (leaks, left) {
-        (Leaks::Report, _) | (_, []) => None,
-        (Leaks::Fail, [one]) => Some(format!("it left a process behind: {}", one.command)),
-        (Leaks::Fail, [first, ..]) => {
-            Some(format!("it left {} processes behind, first: {}", left.len(), first.command))
-        }
     }
 }
