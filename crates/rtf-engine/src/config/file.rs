@@ -37,6 +37,8 @@ pub struct Files {
     pub problems: Vec<Diagnostic>,
     /// The folder from which the user sees them.
     current: PathBuf,
+    /// Whether none is looked for.
+    blind: bool,
 }
 
 impl Files {
@@ -46,9 +48,18 @@ impl Files {
         Self { current: current.to_owned(), ..Self::default() }
     }
 
+    /// No file, ever: for those who know of none.
+    #[must_use]
+    pub fn none() -> Self {
+        Self { blind: true, ..Self::default() }
+    }
+
     /// The nearest file: in `folder`, or above it up to the root of its
     /// repository (the folder with `.git`), or else of the file system.
     pub fn above(&mut self, folder: &Path) -> Option<Rc<ConfigFile>> {
+        if self.blind {
+            return None;
+        }
         for folder in folder.ancestors() {
             if let Some(known) = self.read.get(folder) {
                 if known.is_some() {

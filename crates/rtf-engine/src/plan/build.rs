@@ -53,7 +53,7 @@ pub enum Manner {
     /// robot-testing-framework 2.x's: a suite's names start in the current
     /// folder, where all processes work, and only then in the suite's; plug-ins
     /// run before suites; parameters, environment and repetitions are for the
-    /// plug-ins that were named, not for those of folders.
+    /// plug-ins that were named, not for those of folders. No `rtf.toml` holds.
     Predecessor,
 }
 

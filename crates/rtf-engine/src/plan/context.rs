@@ -10,7 +10,7 @@ use super::hosts::{self, HostKind};
 use super::plugin::{self, Finder};
 use super::scope::{Env, Scope, decisive};
 use super::verify::{Checks, Wanted};
-use super::{HostPlan, Options, PluginPlan};
+use super::{HostPlan, Manner, Options, PluginPlan};
 use crate::config::{self, Files, View};
 use crate::suite::{Plugin, Source, Span, Suite, split_param};
 
@@ -76,7 +76,10 @@ pub(super) struct Context<'a> {
 impl<'a> Context<'a> {
     /// A context without problems.
     pub fn new(options: &'a Options) -> Self {
-        let files = Files::new(&options.surroundings.current_folder);
+        let files = match options.manner {
+            Manner::Own => Files::new(&options.surroundings.current_folder),
+            Manner::Predecessor => Files::none(),
+        };
         Self { options, problems: Vec::new(), checks: Checks::default(), files, hosts: Vec::new() }
     }
 

@@ -44,6 +44,19 @@ fn shown(folder: &Folder, finished: &Finished, file: &str) -> String {
 }
 
 #[test]
+fn no_rtf_toml_holds() {
+    let folder = folder();
+    folder.file(
+        "rtf.toml",
+        "environment = \"--robot other\"\nresults = \"elsewhere\"\nno-such-key = 1\n",
+    );
+    let finished = folder.testrunner(&["-t", "Good.lua", "-v"]);
+    assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
+    assert!(finished.stdout.contains("environment: \n"), "{}", finished.stdout);
+    assert!(!folder.path().join("elsewhere").exists());
+}
+
+#[test]
 fn a_test_that_passes() {
     let folder = folder();
     let given = ["--param", "--from \"a b\"", "-e", "--robot icub"];
