@@ -228,6 +228,16 @@ fn numbers_are_short() {
     assert_eq!(shown, ["0", "0.5", "-98.25", "1e308", "2e-7", "NaN"]);
 }
 
+/// Text that is read with less care is off by the last bit.
+#[test]
+fn a_measured_value_is_the_same_after_the_journal() {
+    for value in [0.026_000_000_000_000_002, 0.1 + 0.2, 1e-308, f64::MAX] {
+        let text = serde_json::to_string(&value).unwrap();
+        let read: f64 = serde_json::from_str(&text).unwrap();
+        assert_eq!(read.to_bits(), value.to_bits(), "{text}");
+    }
+}
+
 /// A value within its limits is rounded for people; one outside is shown to its last
 /// digit, lest it look as if it were inside.
 #[test]
