@@ -99,7 +99,7 @@ impl Runner {
         runner.send(
             r#"{"jsonrpc":"2.0","id":0,"method":"initialize","params":{"protocol":1,"rtf":"x"}}"#,
         );
-        let expected = r#"{"jsonrpc":"2.0","id":0,"result":{"protocol":1,"host":"script 1","stack":"message"}}"#;
+        let expected = r#"{"jsonrpc":"2.0","id":0,"result":{"protocol":1,"host":"script 1","stack":"message","shares":true}}"#;
         assert_eq!(runner.line(), expected);
         (runner, host)
     }

@@ -34,6 +34,7 @@ fn a_plug_in_that_is_not_there() {
                 [FOLDER]/build
                 /opt/robot
                 [PREFIX]/lib/rtf/plugins
+                [ROOT]/fixtures
       = help: other folders are searched when `RTF_PLUGIN_PATH` names them
 
     1 error; nothing was started
@@ -54,6 +55,7 @@ fn a_plug_in_with_a_similar_name() {
       = note: looked for `EncodrTest.lua`, `EncodrTest` in
                 [FOLDER]
                 [PREFIX]/lib/rtf/plugins
+                [ROOT]/fixtures
       = help: did you mean `EncoderTest`?
 
     1 error; nothing was started

@@ -246,12 +246,13 @@ fn a_crash_leaves_the_other_alone_and_the_hook_waits_for_it() {
 #[test]
 fn what_a_test_leaves_behind_is_its_own_when_two_run() {
     let folder = Folder::new();
-    let leaves = |seconds: u32, other: &str| {
-        let meets = awaits(&format!("{other}.runs"));
-        format!("os.execute('setsid sleep {seconds} >/dev/null 2>&1 &')\n  {meets}")
+    let leaves = |seconds: u32, own: &str, other: &str| {
+        let sleep = format!("touch {own}.left; sleep {seconds}");
+        let (left, meets) = (awaits(&format!("{own}.left")), awaits(&format!("{other}.runs")));
+        format!("os.execute([[setsid sh -c '{sleep}' >/dev/null 2>&1 &]])\n  {left}\n  {meets}")
     };
-    test(&folder, "A", &leaves(1111, "B"));
-    test(&folder, "B", &leaves(2222, "A"));
+    test(&folder, "A", &leaves(1111, "A", "B"));
+    test(&folder, "B", &leaves(2222, "B", "A"));
     test(&folder, "C", &awaits("D.runs"));
     test(&folder, "D", &awaits("C.runs"));
     let tests: String =

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use rtf_model::{Event, EventKind, ExitStatus, Record, Source, TestId, Verdict};
+use rtf_model::{Event, EventKind, ExitStatus, Record, Source, Stream, TestId, Verdict};
 
 use crate::support::{Folder, build_cpp, nothing_left, root};
 
@@ -109,17 +109,19 @@ fn processes(record: &Record) -> Vec<Option<String>> {
     attempts.map(|attempt| attempt.messages.iter().find_map(|m| pid(&m.text))).collect()
 }
 
-/// What each test printed.
+/// What each test printed: its standard output, then its standard error, since a
+/// line of the one may come between two pieces of a line of the other.
 fn printed(events: &[Event]) -> BTreeMap<u32, String> {
-    let mut printed = BTreeMap::<u32, String>::new();
+    let mut printed = BTreeMap::<u32, [String; 2]>::new();
     for event in events {
         if let EventKind::Output(output) = &event.kind
             && let Source::Test(test) = output.source
         {
-            *printed.entry(test.0).or_default() += &output.text;
+            let is_error = usize::from(output.stream == Stream::Stderr);
+            printed.entry(test.0).or_default()[is_error] += &output.text;
         }
     }
-    printed
+    printed.into_iter().map(|(test, texts)| (test, texts.concat())).collect()
 }
 
 #[test]

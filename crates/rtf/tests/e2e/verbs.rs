@@ -172,6 +172,8 @@ fn help_of_run() {
                                          none]
           --shutdown-timeout <DURATION>  How long tear-downs and hooks may take altogether, once a
                                          signal ends the run; then what is left is killed [default: [TIME]]
+          --end-with-stdin               End the run, as SIGTERM does, when standard input ends: for
+                                         programs that start rtf, whose death it then notices
       -v, --verbose                      Show every message, measurement and output as it comes
       -j, --jobs <N>                     How many suites run at the same time, each with fixtures of its
                                          own [default: 1]
@@ -197,6 +199,8 @@ fn help_of_run() {
 
     Repeating tests:
           --repeat <N>             Run each test so many times as often as its suite says
+          --for <DURATION>         Repeat all tests, round by round, until this time is over: `[TIME]`,
+                                   `8h`
           --retries <N>            Try a test that fails so often again, whatever its suite says
           --flaky-result <RESULT>  What a test counts as that passes only when it is tried again
                                    [default: pass] [possible values: pass, fail]
