@@ -173,13 +173,17 @@ pub enum EventKind {
         /// The stacks of its threads, as the tool or interpreter prints them.
         text: String,
     },
-    /// What a process and all that it started uses, at the end of a test that
-    /// is repeated.
+    /// What a process and all that it started uses, at the end of a test in a
+    /// suite in which tests are repeated.
     Used {
-        /// Whose process it is.
+        /// A fixture, whose process it is, or the test that a shared host has
+        /// just served.
         source: Source,
         /// What it uses.
         usage: Usage,
+        /// How many tests the shared host has served, this one included.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        served: Option<u32>,
     },
     /// Processes that should have ended and did not; they were killed.
     ProcessesLeft {

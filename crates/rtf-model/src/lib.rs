@@ -31,8 +31,8 @@ pub use manifest::Manifest;
 pub use order::{OrderChecker, OrderError};
 pub use prepared::{OwnNetwork, OwnPort, OwnVariable, SuitePrepared};
 pub use record::{
-    AttemptRecord, Counts, FixtureLife, FixtureRecord, FixtureState, HookRecord, HookRun, Record,
-    RunState, SuiteRecord, TestRecord, Totals,
+    AttemptRecord, Counts, FixtureLife, FixtureRecord, FixtureState, HookRecord, HookRun,
+    HostRecord, Record, RunState, SuiteRecord, TestRecord, Totals,
 };
 pub use report::{
     Attachment, Comparison, Location, Measurement, Message, MessageKind, format_number,

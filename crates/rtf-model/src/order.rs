@@ -1,10 +1,12 @@
 //! The grammar of an event stream: which event may follow which.
 
 mod beside;
+mod served;
 mod state;
 
 use crate::{Event, EventKind, FixtureId, HookId, Source, SuiteId, TestId};
 use beside::Beside;
+use served::Served;
 use state::{Bracket, Fixture, FixtureStage, Stage, Test};
 
 /// An event that may not come where it came.
@@ -36,6 +38,7 @@ pub struct OrderChecker {
     hooks: Vec<(SuiteId, bool)>,
     tests: Vec<Test>,
     beside: Beside,
+    served: Served,
 }
 
 type Rule = Result<(), String>;
@@ -114,9 +117,10 @@ impl OrderChecker {
             EventKind::Message { source, test, .. } => {
                 self.inside_both(test.map(Source::Test), *source)
             }
-            EventKind::StackDumped { source, .. }
-            | EventKind::Used { source, .. }
-            | EventKind::ProcessesLeft { source, .. } => self.inside(*source),
+            EventKind::StackDumped { source, .. } | EventKind::ProcessesLeft { source, .. } => {
+                self.inside(*source)
+            }
+            EventKind::Used { source, served, .. } => self.used(*source, *served),
             EventKind::Output(output) => self.inside(output.source),
             EventKind::TestFinished(finished) => self.finish_test(finished.test, finished.rerun),
             EventKind::TestSkipped { test, .. } => self.skip_test(*test),
@@ -321,6 +325,18 @@ impl OrderChecker {
                 let stage = self.fixture(id)?.stage;
                 ensure(stage != FixtureStage::Stopped, || format!("fixture {id} is not running"))
             }
+        }
+    }
+
+    fn used(&mut self, source: Source, served: Option<u32>) -> Rule {
+        self.inside(source)?;
+        match (source, served) {
+            (Source::Fixture(_), None) => Ok(()),
+            (Source::Test(test), Some(served)) => {
+                let suite = self.test(test)?.suite;
+                self.served.test(suite, served)
+            }
+            _ => Err("a shared host, and nothing else, tells how many tests it has served".into()),
         }
     }
 

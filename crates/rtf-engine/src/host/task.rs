@@ -93,7 +93,8 @@ pub struct Job {
     pub launch: Launch,
     /// Whether it gets a control group, where there are any.
     pub grouped: bool,
-    /// Whether it also says what it uses whenever it has to say that it lives.
+    /// Whether it says what it uses whenever it has to say that it lives, or, shared
+    /// by tests, that one of them is over.
     pub measured: bool,
     /// Its probes, when it is a process fixture.
     pub process: Option<Arc<ProcessPlan>>,
@@ -281,7 +282,7 @@ impl Task {
         if !tree::is_dying(self.process.pid) {
             if self.job.measured {
                 let usage = usage::of(self.process.pid, &self.job.launch.scope);
-                self.tell(HostInput::Uses(usage)).await;
+                self.tell(HostInput::Uses { usage, served: None }).await;
             }
             self.tell(HostInput::Lives).await;
         }

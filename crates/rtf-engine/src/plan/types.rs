@@ -83,6 +83,14 @@ pub struct SuitePlan {
     pub tests: Vec<TestPlan>,
 }
 
+impl SuitePlan {
+    /// Whether one of its tests has further repetitions.
+    #[must_use]
+    pub fn repeats(&self) -> bool {
+        self.tests.iter().any(|test| test.repetitions > 1)
+    }
+}
+
 /// What a suite is to get for itself. Its texts still have their `${port:name}`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Isolation {

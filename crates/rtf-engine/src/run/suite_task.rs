@@ -23,7 +23,7 @@ use crate::host::remote;
 use crate::host::spawner::{SpawnRequest, Streams};
 use crate::host::task::{self, Job, Next, Order, Shared};
 use crate::isolate::{Network, Prepared};
-use crate::plan::{Leaks, SuitePlan, TestPlan};
+use crate::plan::{Leaks, ProcessPlan, SuitePlan, TestPlan};
 
 /// How many inputs may wait; then processes wait.
 const INPUTS: usize = 1024;
@@ -63,7 +63,7 @@ pub async fn run_suite(
         spares: Vec::new(),
         called: None,
         scopes: 0,
-        repeats: asked.until.is_some() || plan.tests.iter().any(|test| test.repetitions > 1),
+        repeats: asked.until.is_some() || plan.repeats(),
         deadlines: BTreeMap::new(),
         over: false,
     };
@@ -88,7 +88,7 @@ struct SuiteTask<'a> {
     spares: Vec<Launch>,
     /// What called for the hook that is started next.
     called: Option<HookBegins>,
-    /// Whether tests are repeated: then what the fixtures use is measured.
+    /// Whether tests are repeated: then what fixtures and shared hosts use is measured.
     repeats: bool,
     /// How many scopes were given out.
     scopes: u64,
@@ -258,8 +258,7 @@ impl SuiteTask<'_> {
             self.shared.guard.hook_begins(HookBegins { scope: launch.scope.clone(), ..called });
         }
         let grouped = self.is_grouped(source);
-        let remote = process.as_ref().is_some_and(|process| process.remote.is_some());
-        let measured = self.repeats && matches!(source, Source::Fixture(_)) && !remote;
+        let measured = self.is_measured(source, process.as_deref());
         let job = Job { host, source, launch, grouped, measured, process };
         tokio::spawn(task::run(job, self.shared.clone(), queue, self.inputs.clone()));
     }
@@ -276,6 +275,17 @@ impl SuiteTask<'_> {
             Source::Test(test) => self.test(test).is_some_and(|plan| plan.leaks == Leaks::Fail),
             Source::Fixture(_) | Source::Hook(_) => true,
         }
+    }
+
+    /// What may grow while tests are repeated: fixtures on this machine, and the
+    /// hosts that tests share.
+    fn is_measured(&self, source: Source, process: Option<&ProcessPlan>) -> bool {
+        let lives_on = match source {
+            Source::Fixture(_) => process.is_none_or(|process| process.remote.is_none()),
+            Source::Test(test) => self.test(test).is_some_and(|plan| plan.shared),
+            Source::Hook(_) => false,
+        };
+        self.repeats && lives_on
     }
 
     fn spawn_ahead(&mut self, starts: Vec<Start>) {

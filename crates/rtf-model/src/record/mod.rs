@@ -7,13 +7,16 @@ mod counts;
 mod fixture;
 mod gap;
 mod hook;
+mod host;
 mod left;
+mod source;
 mod suite;
 mod test;
 
 pub use counts::Counts;
 pub use fixture::{FixtureLife, FixtureRecord, FixtureState};
 pub use hook::{HookRecord, HookRun};
+pub use host::HostRecord;
 pub use suite::SuiteRecord;
 pub use test::{AttemptRecord, TestRecord};
 
@@ -153,12 +156,17 @@ impl Record {
                     self.tests.push(TestRecord::new(plan.clone()));
                 }
             }
+            EventKind::Used { source: Source::Test(test), usage, served } => {
+                if let Some(suite) = self.suite_of(Source::Test(*test)) {
+                    self.suite(suite, |s| host::uses(&mut s.hosts, *test, *served, *usage));
+                }
+            }
             kind => self.apply_to_source(at, kind),
         }
     }
 
     fn apply_to_source(&mut self, at: Micros, kind: &EventKind) {
-        match source_of(kind) {
+        match source::of(kind) {
             Some(Source::Test(id)) => {
                 if let Some(test) = self.tests.get_mut(id.index()) {
                     test.apply(at, kind, self.lean);
@@ -364,34 +372,4 @@ fn totals<'a>(tests: impl Iterator<Item = &'a TestRecord>) -> Totals {
         }
     }
     totals
-}
-
-/// Whose event it is, for the events that belong to a test, a fixture or a hook.
-fn source_of(kind: &EventKind) -> Option<Source> {
-    match kind {
-        EventKind::FixtureStarting { fixture, .. }
-        | EventKind::FixtureReady { fixture }
-        | EventKind::FixtureCollapsed { fixture, .. }
-        | EventKind::FixtureStopping { fixture }
-        | EventKind::FixtureStopped { fixture, .. }
-        | EventKind::FixtureBroken { fixture, .. } => Some(Source::Fixture(*fixture)),
-        EventKind::HookStarted { hook, .. } | EventKind::HookFinished { hook, .. } => {
-            Some(Source::Hook(*hook))
-        }
-        EventKind::TestStarted { test, .. }
-        | EventKind::TestPhase { test, .. }
-        | EventKind::Measured { test, .. }
-        | EventKind::Attached { test, .. }
-        | EventKind::TestSlow { test }
-        | EventKind::TestStopping { test, .. }
-        | EventKind::TestRepeated { test, .. }
-        | EventKind::TestSkipped { test, .. } => Some(Source::Test(*test)),
-        EventKind::TestFinished(finished) => Some(Source::Test(finished.test)),
-        EventKind::Message { source, test, .. } => Some(test.map_or(*source, Source::Test)),
-        EventKind::StackDumped { source, .. }
-        | EventKind::Used { source, .. }
-        | EventKind::ProcessesLeft { source, .. } => Some(*source),
-        EventKind::Output(output) => Some(output.source),
-        _ => None,
-    }
 }

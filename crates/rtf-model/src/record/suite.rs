@@ -1,6 +1,7 @@
 //! What is known of one suite.
 
-use crate::{FixtureId, HookId, Micros, SuitePlanned, SuitePrepared, TestId};
+use super::host::{self, HostRecord};
+use crate::{FixtureId, Growth, HookId, Micros, SuitePlanned, SuitePrepared, TestId};
 
 /// What is known of one suite.
 #[derive(Clone, Debug)]
@@ -13,6 +14,8 @@ pub struct SuiteRecord {
     pub hooks: Vec<HookId>,
     /// Its tests, in the order of the plan.
     pub tests: Vec<TestId>,
+    /// The hosts that its tests shared, the oldest first; known when tests are repeated.
+    pub hosts: Vec<HostRecord>,
     /// What it got for itself, if anything.
     pub prepared: Option<SuitePrepared>,
     /// When it started.
@@ -28,9 +31,17 @@ impl SuiteRecord {
             fixtures: Vec::new(),
             hooks: Vec::new(),
             tests: Vec::new(),
+            hosts: Vec::new(),
             prepared: None,
             started: None,
             finished: None,
         }
+    }
+
+    /// The shared hosts that used more and more, and what; of those that served the
+    /// same tests, the one that was measured most.
+    #[must_use]
+    pub fn growing_hosts(&self) -> Vec<(&HostRecord, Vec<Growth>)> {
+        host::growing(&self.hosts)
     }
 }

@@ -4,4 +4,5 @@ mod beside;
 mod hooks;
 mod order;
 mod record;
+mod shared_hosts;
 mod support;

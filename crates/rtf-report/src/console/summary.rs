@@ -9,8 +9,9 @@ use rtf_model::{Phase, Record, TestId, Verdict};
 use super::page::Page;
 use super::style::{self, BAD, BOLD, GOOD, LOUD};
 use super::{ConsoleOptions, hooks};
+use crate::growth::{self, Growing, Within};
 use crate::repeated::Repeated;
-use crate::{escape, explain, growth, logs, words};
+use crate::{escape, explain, logs, words};
 
 /// How many names of skipped tests are listed for one reason.
 const NAMES: usize = 5;
@@ -172,19 +173,28 @@ fn repeated(page: &mut Page, record: &Record) {
     }
 }
 
-/// What fixtures use more and more of.
+/// What fixtures, and hosts that tests share, use more and more of.
 fn growing(page: &mut Page, record: &Record) {
-    let fixtures = record.fixtures.iter().map(|fixture| (fixture, growth::lines(fixture)));
-    let growing: Vec<_> = fixtures.filter(|(_, lines)| !lines.is_empty()).collect();
+    let fixtures =
+        record.suites.iter().flat_map(|suite| growth::fixtures(record, suite, Within::Run));
+    grow(page, "fixtures that grow while tests are repeated:", fixtures.collect());
+    let hosts = record.suites.iter().flat_map(|suite| growth::hosts(record, suite, Within::Run));
+    grow(page, "shared hosts that grow while tests are repeated:", hosts.collect());
+}
+
+fn grow(page: &mut Page, title: &str, growing: Vec<Growing>) {
     if growing.is_empty() {
         return;
     }
     page.line("");
-    page.line(&style::paint(BOLD, "fixtures that grow while tests are repeated:"));
-    for (fixture, lines) in growing {
-        let name = escape::line(&record.fixture_name(fixture.plan.fixture)).into_owned();
-        for line in lines {
-            page.line(&format!("  {}  {line}", style::paint(LOUD, &name)));
+    page.line(&style::paint(BOLD, title));
+    for each in growing {
+        let name = style::paint(LOUD, &escape::line(&each.name));
+        if each.what.is_empty() {
+            each.lines().iter().for_each(|line| page.line(&format!("  {name}  {line}")));
+        } else {
+            page.line(&format!("  {name} {}", each.what));
+            each.lines().iter().for_each(|line| page.line(&format!("    {line}")));
         }
     }
 }

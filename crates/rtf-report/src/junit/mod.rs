@@ -16,7 +16,8 @@ use std::path::{Path, PathBuf};
 use quick_junit::{Report, TestCase, TestSuite};
 use rtf_model::{Event, LeftProcess, Record, SuiteRecord};
 
-use crate::{ReportError, Reporter, escape, explain, growth, output_file, words};
+use crate::growth::{self, Within};
+use crate::{ReportError, Reporter, escape, explain, output_file, words};
 
 const WHAT: &str = "the JUnit report";
 
@@ -111,8 +112,10 @@ fn properties(junit: &mut TestSuite, record: &Record, suite: &SuiteRecord) {
     add("file", &suite.plan.file);
     add("description", &suite.plan.description);
     add("environment", &suite.plan.environment);
-    for fixture in suite.fixtures.iter().filter_map(|id| record.fixture(*id)) {
-        growth::properties(fixture).iter().for_each(|(name, value)| add(name, value));
+    let fixtures = growth::fixtures(record, suite, Within::Suite);
+    let hosts = growth::hosts(record, suite, Within::Suite);
+    for growing in fixtures.iter().chain(&hosts) {
+        growing.properties().iter().for_each(|(name, value)| add(name, value));
     }
 }
 

@@ -28,7 +28,7 @@ pub(super) fn show(lines: &mut Lines, fixture: &FixtureRecord) {
     if let Some(reason) = &fixture.broken {
         lines.fact(4, "broken", reason);
     }
-    growth::lines(fixture).iter().for_each(|line| lines.at(4, line));
+    growth::lines(&fixture.growth()).iter().for_each(|line| lines.at(4, line));
     for message in &fixture.messages {
         explain::message(message, &mut |_, line| lines.at(4, line));
     }

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 use rtf_model::{Event, Record, SuiteRecord, Verdict};
 
+use crate::growth::{self, Within};
 use crate::{ReportError, Reporter, explain, output_file, prepared, words};
 use lines::Lines;
 
@@ -101,6 +102,10 @@ fn show_suite(
     }
     for fixture in suite.fixtures.iter().filter_map(|id| record.fixture(*id)) {
         fixtures::show(lines, fixture);
+    }
+    for host in growth::hosts(record, suite, Within::Suite) {
+        lines.fact(2, "grows", &format!("{} {}", host.name, host.what));
+        host.lines().iter().for_each(|line| lines.at(4, line));
     }
     for hook in suite.hooks.iter().filter_map(|id| record.hooks.get(id.index())) {
         hooks::show(lines, record, hook);

@@ -195,6 +195,88 @@ fn a_fixture_that_does_not_leak_is_not_shown() {
     assert!(!finished.stdout.contains("grow"), "{}", finished.stdout);
 }
 
+/// With `leak`, it keeps a MiB and a descriptor in its process.
+const SHARED: &str = r#"
+import os
+import sys
+import rtf
+
+kept = sys.__dict__.setdefault("kept", [])
+
+class Shared(rtf.TestCase):
+    def setup(self, args):
+        self.leaks = "leak" in args
+
+    def run(self):
+        if self.leaks:
+            kept.append((os.open("/dev/null", os.O_RDONLY), bytearray(b"x" * (1 << 20))))
+        if len(kept) == 12 and not os.path.exists("replaced"):
+            open("replaced", "w").close()
+            self.fail("its host ends with it")
+"#;
+
+fn shared(tests: &str) -> Folder {
+    let folder = Folder::new();
+    folder.file("Leak.py", SHARED).file("s.xml", &format!("<suite>{tests}</suite>"));
+    folder
+}
+
+#[test]
+fn a_shared_host_that_leaks_is_shown() {
+    let folder = shared(
+        "<test isolation='shared' repetition='30' param='leak'>Leak.py</test>\
+         <test isolation='shared' name='Other'>Leak.py</test>",
+    );
+    folder.file("replaced", "");
+    let finished = folder.rtf(&["run", "s.xml", "--report", "junit=j.xml"]);
+    assert_eq!(finished.code, Some(0), "{}", finished.stdout);
+    let record = folder.journal().record;
+    let [host] = &record.suites[0].hosts[..] else { panic!("{:?}", record.suites[0].hosts) };
+    // `Other` is the last one: the host ended with it.
+    assert_eq!((host.served, host.usage.seen(), host.tests.len()), (30, 30, 1));
+    let title = "shared hosts that grow while tests are repeated:\n";
+    let (_, shown) = finished.stdout.split_once(title).expect("growth is shown");
+    let mut lines = shown.lines();
+    assert_eq!(lines.next(), Some("  host of s/Leak (shared, measured after 30 tests)"));
+    let memory = lines.next().unwrap_or_default();
+    assert!(memory.starts_with("    memory grows by 1"), "{memory}");
+    let descriptors = lines.next().unwrap_or_default();
+    assert!(
+        descriptors.starts_with("    open file descriptors grow by 1 a test: from "),
+        "{shown}"
+    );
+    assert_eq!(lines.next(), Some(""), "there is one process: {shown}");
+    let junit = std::fs::read_to_string(folder.path().join("j.xml")).expect("a report");
+    let property = r#"name="growth.host of Leak.descriptors" value="1""#;
+    assert!(junit.contains(property), "{junit}");
+    let text = folder.rtf(&["report", "--format", "text"]);
+    let told = "  grows: host of Leak (shared, measured after 30 tests)\n    memory grows by 1";
+    assert!(text.stdout.contains(told), "{}", text.stdout);
+}
+
+#[test]
+fn a_shared_host_that_does_not_leak_is_not_shown() {
+    let folder = shared("<test isolation='shared' repetition='30'>Leak.py</test>");
+    folder.file("replaced", "");
+    let finished = folder.rtf(&["run", "s.xml"]);
+    assert_eq!(finished.code, Some(0), "{}", finished.stdout);
+    assert_eq!(folder.journal().record.suites[0].hosts[0].usage.seen(), 29);
+    assert!(!finished.stdout.contains("grow"), "{}", finished.stdout);
+}
+
+#[test]
+fn a_host_that_is_replaced_begins_anew() {
+    let folder = shared("<test isolation='shared' repetition='40' param='leak'>Leak.py</test>");
+    let finished = folder.rtf(&["run", "s.xml"]);
+    assert_eq!(finished.code, Some(1), "{}", finished.stdout);
+    let record = folder.journal().record;
+    let seen: Vec<_> = record.suites[0].hosts.iter().map(|host| host.usage.seen()).collect();
+    assert_eq!(seen, [11, 27], "the twelfth failed, the last one's host ended");
+    let told = "host of s/Leak (shared, measured after 27 tests)";
+    assert_eq!(finished.stdout.matches("host of").count(), 1, "{}", finished.stdout);
+    assert!(finished.stdout.contains(told), "{}", finished.stdout);
+}
+
 #[test]
 fn enough_is_enough() {
     let folder = folder(9, "repetition='3'");

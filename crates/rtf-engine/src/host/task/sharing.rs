@@ -13,6 +13,7 @@ use rtf_model::{ExitStatus, LeftProcess, Phase, Source, Stream};
 
 use super::{LINE_LIMIT, Task, keep};
 use crate::host::codec::{self, FromHost};
+use crate::host::usage;
 use crate::run::machine::{HostId, HostInput};
 
 /// A test that joins a host.
@@ -44,6 +45,8 @@ pub(super) struct Sharing {
     channel: Vec<u8>,
     read: usize,
     outputs: [Vec<u8>; 2],
+    /// How many tests the host has served, the present one included.
+    served: u32,
     /// Whose leftovers those of the present test are; unless it was the first.
     owner: Option<String>,
     /// What the host was asked for, and has not begun.
@@ -62,6 +65,7 @@ impl Sharing {
             channel: Vec::new(),
             read: 0,
             outputs: [Vec::new(), Vec::new()],
+            served: 1,
             owner: None,
             upcoming: VecDeque::new(),
         }
@@ -175,6 +179,8 @@ impl Task {
             if sharing.upcoming.is_empty() {
                 if !sharing.released {
                     sharing.released = true;
+                    let served = sharing.served;
+                    self.measure(served).await;
                     self.tell(HostInput::Released).await;
                 }
                 return;
@@ -185,6 +191,14 @@ impl Task {
             } else {
                 self.understand(line).await;
             }
+        }
+    }
+
+    /// Looks at the host, which has nothing to do now.
+    async fn measure(&self, served: u32) {
+        if self.job.measured {
+            let usage = usage::of(self.process.pid, &self.job.launch.scope);
+            self.tell(HostInput::Uses { usage, served: Some(served) }).await;
         }
     }
 
@@ -229,6 +243,7 @@ impl Task {
         let Some(next) = sharing.upcoming.pop_front() else { return };
         let was_released = std::mem::take(&mut sharing.released);
         (sharing.answered, sharing.marked) = (false, [false; 2]);
+        sharing.served += 1;
         (sharing.request, sharing.owner) = (next.request, Some(next.owner));
         sharing.mark = next.plugin.shared.unwrap_or_default().into_bytes();
         if !was_released {

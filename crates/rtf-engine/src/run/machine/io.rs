@@ -53,7 +53,12 @@ pub enum HostInput {
     /// A probe of a process fixture does not hold any more.
     ProbeFailed(String),
     /// What it and all that it started uses at the end of a test.
-    Uses(Usage),
+    Uses {
+        /// What it uses.
+        usage: Usage,
+        /// How many tests it has served, when it is one that tests share.
+        served: Option<u32>,
+    },
     /// It lives, and has told nothing that was not delivered.
     Lives,
     /// The stacks of its threads, or why there are none.

@@ -3,19 +3,22 @@
 //!
 //! A host is asked for the next test while the present one runs, so that nobody
 //! waits for anybody. Only where something has to be looked at between the two,
-//! because there are fixtures, it is asked when the present one is over.
+//! fixtures or, while tests are repeated, what the host uses, it is asked when the
+//! present one is over.
 
 use rtf_model::{Diagnostic, EventKind, ExitStatus, TestId};
 
 use super::turns::Turns;
 use super::{Context, Cursor, SuiteMachine};
-use crate::plan::TestPlan;
+use crate::plan::{SuitePlan, TestPlan};
 use crate::run::machine::io::{Effect, HostId};
 use crate::run::machine::test::{Place, TestRun, sharing};
 
 /// The host that outlives its tests.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Sharing<'p> {
+    /// Whether something is looked at between two tests.
+    one_by_one: bool,
     /// It was asked for this one already, under this id.
     asked: Option<(HostId, TestId, Cursor)>,
     /// It has begun the test that is started now.
@@ -24,6 +27,13 @@ pub(super) struct Sharing<'p> {
     idle: Option<(HostId, &'p TestPlan)>,
     /// It was killed, and its end is awaited.
     killed: Option<HostId>,
+}
+
+impl Sharing<'_> {
+    pub(super) fn new(suite: &SuitePlan) -> Self {
+        let one_by_one = !suite.fixtures.is_empty() || suite.repeats();
+        Self { one_by_one, asked: None, begun: None, idle: None, killed: None }
+    }
 }
 
 fn can_share(one: &TestPlan, two: &TestPlan) -> bool {
@@ -53,7 +63,7 @@ impl<'p> Turns<'p> {
 
     /// Asks the host of a running test for the next one, if nothing comes between.
     pub(super) fn ask_ahead(&mut self, test: TestId, cx: &mut Context<'_>) {
-        if self.sharing.asked.is_some() || !self.suite.fixtures.is_empty() {
+        if self.sharing.asked.is_some() || self.sharing.one_by_one {
             return;
         }
         let Some(turn) = self.of_test(test) else { return };

@@ -64,7 +64,7 @@ pub(super) struct Turns<'p> {
 
 impl<'p> Turns<'p> {
     pub fn new(suite: &'p SuitePlan) -> Self {
-        let (rounds, sharing) = (Rounds::new(), Sharing::default());
+        let (rounds, sharing) = (Rounds::new(), Sharing::new(suite));
         Self { suite, open: Vec::new(), next: 0, rounds, sharing }
     }
 

@@ -202,11 +202,13 @@ impl<'p> TestRun<'p> {
                 }
             }
             HostInput::StackTaken(text) => self.stack_taken(text, cx),
+            HostInput::Uses { usage, served } => {
+                cx.emit(EventKind::Used { source: Source::Test(self.plan.id), usage, served });
+            }
             HostInput::Unbegun(_)
             | HostInput::ProbesHold
             | HostInput::ProbeWaits(_)
             | HostInput::ProbeFailed(_)
-            | HostInput::Uses(_)
             | HostInput::Lives => {}
         }
     }

@@ -1,7 +1,7 @@
 //! Tests that share a host.
 
 use rtf_model::protocol::{Reply, Request};
-use rtf_model::{ExitStatus, Phase, Source, TestId, Verdict};
+use rtf_model::{ExitStatus, Phase, Source, TestId, Usage, Verdict};
 
 use super::world::{World, suite};
 use crate::host::codec::INITIALIZE;
@@ -85,6 +85,29 @@ fn a_host_is_asked_for_the_next_test_while_the_present_one_runs() {
     world.pass(2);
     world.finish();
     assert_eq!(world.record.verdict(TestId(2)), Some(Verdict::Passed));
+}
+
+#[test]
+fn what_a_host_uses_is_told_before_it_gets_the_next_repetition() {
+    let mut plan = shared(0, 1);
+    plan.tests[0].repetitions = 3;
+    let mut world = World::new(&plan);
+    world.start();
+    initialized(&mut world, 0);
+    for served in 1..=2 {
+        let host = stays(&mut world, 0);
+        assert!(world.joined.is_empty(), "it is looked at first");
+        let usage = Usage { processes: 1, memory: 4096, descriptors: 9 };
+        world.input(source(0), HostInput::Uses { usage, served: Some(served) });
+        world.release(host);
+        assert!(world.joined.contains_key(&host), "then it is asked again");
+        world.begin_joined(host);
+    }
+    world.pass(0);
+    world.finish();
+    let hosts = &world.record.suites[0].hosts;
+    assert_eq!((hosts.len(), hosts[0].served, hosts[0].usage.seen()), (1, 2, 2));
+    assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Passed));
 }
 
 #[test]

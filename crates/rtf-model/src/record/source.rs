@@ -1,0 +1,33 @@
+//! Whose event an event is.
+
+use crate::{EventKind, Source};
+
+/// Whose event it is, for the events that belong to a test, a fixture or a hook.
+pub(super) fn of(kind: &EventKind) -> Option<Source> {
+    match kind {
+        EventKind::FixtureStarting { fixture, .. }
+        | EventKind::FixtureReady { fixture }
+        | EventKind::FixtureCollapsed { fixture, .. }
+        | EventKind::FixtureStopping { fixture }
+        | EventKind::FixtureStopped { fixture, .. }
+        | EventKind::FixtureBroken { fixture, .. } => Some(Source::Fixture(*fixture)),
+        EventKind::HookStarted { hook, .. } | EventKind::HookFinished { hook, .. } => {
+            Some(Source::Hook(*hook))
+        }
+        EventKind::TestStarted { test, .. }
+        | EventKind::TestPhase { test, .. }
+        | EventKind::Measured { test, .. }
+        | EventKind::Attached { test, .. }
+        | EventKind::TestSlow { test }
+        | EventKind::TestStopping { test, .. }
+        | EventKind::TestRepeated { test, .. }
+        | EventKind::TestSkipped { test, .. } => Some(Source::Test(*test)),
+        EventKind::TestFinished(finished) => Some(Source::Test(finished.test)),
+        EventKind::Message { source, test, .. } => Some(test.map_or(*source, Source::Test)),
+        EventKind::StackDumped { source, .. }
+        | EventKind::Used { source, .. }
+        | EventKind::ProcessesLeft { source, .. } => Some(*source),
+        EventKind::Output(output) => Some(output.source),
+        _ => None,
+    }
+}

@@ -1,0 +1,68 @@
+//! What hosts that tests share use.
+
+use crate::order::check;
+use crate::record::record;
+use crate::support::*;
+use rtf_model::{EventKind, Resource, Source, TestId, Usage, Verdict};
+
+const MIB: u64 = 1024 * 1024;
+
+fn used(source: Source, served: Option<u32>, memory: u64) -> EventKind {
+    EventKind::Used { source, usage: Usage { processes: 1, memory, descriptors: 9 }, served }
+}
+
+/// Repetitions of which each has its host served so many tests.
+fn repetitions(served: impl IntoIterator<Item = u32>) -> Vec<EventKind> {
+    let mut kinds = Vec::new();
+    for (repetition, served) in (1..).zip(served) {
+        let memory = 8 * MIB + u64::from(served) * MIB;
+        let finished = finished(Verdict::Passed);
+        let used = used(Source::Test(TEST), Some(served), memory);
+        kinds.extend([started(repetition, 1), used, finished]);
+    }
+    kinds
+}
+
+fn run(served: &[u32]) -> Vec<EventKind> {
+    let count = u32::try_from(served.len()).unwrap_or(u32::MAX);
+    let body = repetitions(served.iter().copied());
+    opened(count).into_iter().chain(body).chain(closed()).collect()
+}
+
+#[test]
+fn a_host_has_served_one_test_more_or_is_another_one() {
+    assert_eq!(check(&stream(run(&[1, 2, 3, 1, 2, 1]))), Ok(()));
+    for wrong in [&[2][..], &[1, 1, 3], &[1, 2, 2], &[1, 0]] {
+        let told = check(&stream(run(wrong))).unwrap_err();
+        assert!(told.contains("a host of suite 0 serves test"), "{wrong:?}: {told}");
+    }
+}
+
+#[test]
+fn only_the_host_of_a_test_that_runs_tells_how_many_it_has_served() {
+    let body = |kind: EventKind| {
+        let test = [started(1, 1), kind, finished(Verdict::Passed)];
+        check(&stream(opened(1).into_iter().chain(test).chain(closed())))
+    };
+    let told = body(used(Source::Test(TEST), None, 0)).unwrap_err();
+    assert!(told.contains("a shared host, and nothing else"), "{told}");
+    let told = body(used(Source::Fixture(SIMULATOR), Some(1), 0)).unwrap_err();
+    assert!(told.contains("fixture 0 is not running"), "{told}");
+    let late = [started(1, 1), finished(Verdict::Passed), used(Source::Test(TEST), Some(1), 0)];
+    let told = check(&stream(opened(1).into_iter().chain(late).chain(closed()))).unwrap_err();
+    assert!(told.contains("test 0 is not running"), "{told}");
+}
+
+#[test]
+fn another_host_is_another_series() {
+    let served: Vec<u32> = (1..=30).chain(1..=12).collect();
+    let record = record(run(&served));
+    let suite = &record.suites[0];
+    let seen: Vec<_> = suite.hosts.iter().map(|host| (host.served, host.usage.seen())).collect();
+    assert_eq!(seen, [(30, 30), (12, 12)]);
+    let [(host, growth)] = &suite.growing_hosts()[..] else { panic!("{:?}", suite.hosts) };
+    assert_eq!((host.served, &host.tests[..]), (30, &[TestId(0)][..]));
+    assert_eq!((growth.len(), growth[0].resource), (1, Resource::Memory));
+    assert!((growth[0].each - MIB as f64).abs() < 1.0, "{growth:?}");
+    assert!(record.is_green(), "growth changes no verdict");
+}
