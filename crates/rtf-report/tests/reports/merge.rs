@@ -5,7 +5,7 @@ mod runs;
 use std::collections::{BTreeMap, BTreeSet};
 
 use proptest::prelude::*;
-use rtf_model::{Event, EventKind, Micros, OrderChecker, Record, TestId, Verdict};
+use rtf_model::{Event, EventKind, Micros, OrderChecker, Record, SuiteRecord, TestId, Verdict};
 use rtf_report::merge::{Header, Part, Problem, attachment_path, merge};
 
 use runs::{PARTS, Run, Suite, Test, Try, suites};
@@ -45,6 +45,12 @@ fn facts(record: &Record) -> BTreeMap<String, Vec<String>> {
     facts.collect()
 }
 
+/// How often the shared hosts of each suite were measured. Parts have hosts of their own.
+fn measured(record: &Record) -> BTreeMap<&str, u64> {
+    let seen = |suite: &SuiteRecord| suite.hosts.iter().map(|host| host.usage.seen()).sum();
+    record.suites.iter().map(|suite| (suite.plan.name.as_str(), seen(suite))).collect()
+}
+
 proptest! {
     #[test]
     fn the_parts_of_a_run_make_up_the_run(mut suites in suites()) {
@@ -63,6 +69,7 @@ proptest! {
         prop_assert_eq!(suites(&merged), suites(&whole));
         let collapses = |record: &Record| record.fixtures.iter().map(|fixture| fixture.collapses.len()).sum::<usize>();
         prop_assert_eq!(collapses(&merged), collapses(&whole));
+        prop_assert_eq!(measured(&merged), measured(&whole));
     }
 
     /// Each part may have lost its runner, at any moment, or have fixtures that broke.

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use rtf_model::{
     Attachment, Event, EventKind, FixtureId, FixturePlanned, HookId, HookPlanned, Manifest,
     Measurement, Message, MessageKind, Micros, Phase, RunStarted, Source, SuiteId, SuitePlanned,
-    TestFinished, TestId, TestPlanned, Trigger, Verdict,
+    TestFinished, TestId, TestPlanned, Trigger, Usage, Verdict,
 };
 
 /// What each attempt of a test comes to, whichever part runs it.
@@ -73,6 +73,8 @@ pub const PARTS: u32 = 3;
 pub struct Run {
     events: Vec<Event>,
     now: u64,
+    /// How many tests the shared host of the suite has served.
+    served: u32,
 }
 
 impl Run {
@@ -95,7 +97,8 @@ impl Run {
             chosen_of: if tests == all { 0 } else { all as u32 },
             ..Manifest::default()
         };
-        let mut run = Self { events: Vec::new(), now: u64::from(part.unwrap_or(0)) * 1000 };
+        let now = u64::from(part.unwrap_or(0)) * 1000;
+        let mut run = Self { events: Vec::new(), now, served: 0 };
         run.push(run_started(tests as u32, manifest));
         let mut planned = Vec::new();
         for (number, suite) in suites.iter().enumerate() {
@@ -166,6 +169,7 @@ impl Run {
 
     fn suite(&mut self, plan: &Planned<'_>) {
         self.push(EventKind::SuiteStarted { suite: plan.id });
+        self.served = 0;
         let fixtures = || (plan.fixture..plan.fixture + plan.suite.fixtures).map(FixtureId);
         fixtures().for_each(|fixture| self.up(fixture, 1));
         let (mut starts, mut broken) = (1, false);
@@ -225,6 +229,7 @@ impl Run {
                 self.push(EventKind::TestPhase { test, phase: Phase::Run });
                 self.reports(test, tried);
                 self.now += tried.takes;
+                self.used(test, tried.verdict);
                 self.push(EventKind::TestFinished(TestFinished {
                     test,
                     verdict: tried.verdict,
@@ -239,6 +244,18 @@ impl Run {
                 return;
             }
         }
+    }
+
+    /// One host serves the tests, until one does not pass.
+    fn used(&mut self, test: TestId, verdict: Verdict) {
+        if verdict != Verdict::Passed {
+            self.served = 0;
+            return;
+        }
+        self.served += 1;
+        let usage = Usage { processes: 1, memory: u64::from(self.served) << 20, descriptors: 9 };
+        let (source, served) = (Source::Test(test), Some(self.served));
+        self.push(EventKind::Used { source, usage, served });
     }
 
     fn reports(&mut self, test: TestId, tried: &Try) {
