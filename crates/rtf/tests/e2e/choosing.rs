@@ -1,5 +1,7 @@
 //! Which tests are run, and in which order.
 
+use std::collections::BTreeSet;
+
 use insta::assert_snapshot;
 
 use crate::support::{Folder, wait_until};
@@ -210,11 +212,20 @@ fn what_was_interrupted_is_run_again() {
 #[test]
 fn a_shuffled_run_tells_its_seed_and_repeats_it() {
     let folder = folder();
-    folder.rtf(&["run", "--shuffle", "arm.xml"]);
+    let shown = folder.rtf(&["run", "--shuffle", "arm.xml"]);
     let (first, seed) =
         (ran(&folder), folder.journal().record.run.expect("a run").manifest.shuffle);
-    folder.rtf(&["run", &format!("--shuffle={}", seed.expect("a seed")), "arm.xml"]);
+    let option = format!("--shuffle={}", seed.expect("a seed"));
+    assert!(shown.stdout.starts_with(&format!("     chosen  {option}\n")), "{}", shown.stdout);
+    folder.rtf(&["run", &option, "arm.xml"]);
     assert_eq!(ran(&folder), first);
+    let orders: BTreeSet<_> = (1..=9)
+        .map(|seed| {
+            folder.rtf(&["run", &format!("--shuffle={seed}"), "arm.xml"]);
+            ran(&folder)
+        })
+        .collect();
+    assert!(orders.len() > 1, "nine seeds, one order: {orders:?}");
 }
 
 #[test]

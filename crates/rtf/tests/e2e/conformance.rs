@@ -145,13 +145,9 @@ fn check(language: &Language, fork: &str, isolation: &str) {
         let path = |name: &str| plugin(name, language, built.as_deref());
         let (test, after) = (path(scenario), path("pass"));
         let (kind, shared) = (language.plugin_type, format!("isolation=\"{isolation}\""));
-        let limit = if ["hang", "interrupted-sleep"].contains(&scenario.as_str()) {
-            r#"timeout="300ms" grace="500ms""#
-        } else {
-            ""
-        };
+        let more = attributes(scenario);
         let suite = format!(
-            "<suite name=\"{scenario}\">\n  <test type=\"{kind}\" {shared} name=\"scenario\" {limit}>{}</test>\n  \
+            "<suite name=\"{scenario}\">\n  <environment>--robot sim</environment>\n  <test type=\"{kind}\" {shared} name=\"scenario\" {more}>{}</test>\n  \
              <test type=\"{kind}\" {shared} name=\"after\">{}</test>\n</suite>\n",
             test.display(),
             after.display()
@@ -170,6 +166,15 @@ fn check(language: &Language, fork: &str, isolation: &str) {
         .collect();
     assert!(problems.is_empty(), "{}: \n{}", language.name, problems.join("\n"));
     assert!(nothing_left(&temp), "processes are left");
+}
+
+/// What the suite says of a scenario's test.
+fn attributes(scenario: &str) -> &'static str {
+    match scenario {
+        "hang" | "interrupted-sleep" => r#"timeout="300ms" grace="500ms""#,
+        "context" => r#"param="--joint elbow" repetition="3""#,
+        _ => "",
+    }
 }
 
 fn check_scenario(
