@@ -50,7 +50,11 @@ def without_ros2(rtf: str, suite: str, folder: Path) -> None:
     run = Run(rtf, suite, folder)
     expect("exit code without ros2", run.wait(), 1)
     told = reason(run, "fixture-broken")
-    expect("what is missing is told", "there is no program `ros2` on PATH" in told, True)
+    expect(
+        "what is missing is told",
+        told.startswith("set-up failed: there is no program `ros2` on PATH"),
+        True,
+    )
     expect("how it is installed is told", "https://docs.ros.org" in told, True)
 
 

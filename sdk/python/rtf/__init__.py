@@ -15,8 +15,9 @@ is in :mod:`rtf.host`.
 """
 
 from rtf._fixture import FixtureManager, Test
+from rtf._stop import Error
 from rtf._test import TestCase
 
-__all__ = ["FixtureManager", "Test", "TestCase", "__version__"]
+__all__ = ["Error", "FixtureManager", "Test", "TestCase", "__version__"]
 
 __version__ = "0.1.0"

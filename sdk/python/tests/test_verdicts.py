@@ -53,6 +53,14 @@ def test_an_exception_is_told_with_its_traceback_and_place(tmp_path: Path) -> No
     assert "steps.py" not in message["text"]
 
 
+def test_an_error_that_is_raised_is_told_by_its_text_alone(tmp_path: Path) -> None:
+    ran = run(tmp_path, arm("class Absent(rtf.Error): pass\nraise Absent('no arm')"))
+    assert ran.result == {"outcome": "error", "reason": "no arm"}
+    (message,) = ran.host.of("message")
+    assert (message["kind"], message["text"]) == ("error", "no arm")
+    assert message["location"] == {"file": str(tmp_path / "plugin.py"), "line": 5}
+
+
 def test_except_exception_does_not_swallow_an_assertion(tmp_path: Path) -> None:
     body = "try:\n    self.require(False, 'ready')\nexcept Exception:\n    self.report('swallowed')"
     ran = run(tmp_path, arm(body))

@@ -7,7 +7,7 @@ import sys
 
 from rtf import _location, _session
 from rtf._fixture import FixtureManager, Test
-from rtf._stop import Interrupted, StepEnded
+from rtf._stop import Error, Interrupted, StepEnded
 from rtf._test import TestCase
 from rtf.host import load
 
@@ -153,11 +153,17 @@ def _guard(session: Session, function: Callable[[], object]) -> None:
 
 
 def record_exception(session: Session, problem: BaseException) -> None:
-    """Make an error of an exception, with its type, its text and where it came from."""
+    """Make an error of an exception, with its type, its text and where it came from.
+
+    The text of an `rtf.Error` says it all.
+    """
+    place = _location.of_exception(problem.__traceback__, session.task.file)
+    if isinstance(problem, Error):
+        session.error(str(problem), location=place)
+        return
     import traceback  # noqa: PLC0415 - slow to import, and most tests raise nothing
 
     reason = "".join(traceback.format_exception_only(type(problem), problem)).strip()
-    place = _location.of_exception(problem.__traceback__, session.task.file)
     if isinstance(problem, SyntaxError):
         reason = f"{type(problem).__name__}: {problem.msg}"
         place = _location.Location(problem.filename or session.task.file, problem.lineno or 0)
