@@ -192,6 +192,33 @@ fn what_fails_in_one_suite_counts_in_all() {
     assert_eq!(record.tests[2].skipped.as_deref(), why);
 }
 
+/// Halves of lines are flushed, so that those of three suites meet.
+#[test]
+fn the_console_prints_whole_lines_of_suites_that_run_side_by_side() {
+    let folder = Folder::new();
+    for name in ["a", "b", "c"] {
+        let text = format!(
+            "TestCase = {{}}\nfunction TestCase.run()\n  local half = ('{name}'):rep(40)\n  \
+             for _ = 1, 50 do\n    rtf.report(half)\n    io.write(half)\n    io.flush()\n    \
+             io.write(half, '\\n')\n    io.flush()\n  end\nend\n"
+        );
+        folder.file(&format!("T{name}.lua"), &text);
+        suite(&folder, name, ("", ""), &[&format!("T{name}")]);
+    }
+    let finished = folder.rtf(&["run", "-v", "-j", "3", "a.xml", "b.xml", "c.xml"]);
+    assert_eq!(finished.code, Some(0), "{}", finished.stdout);
+    for name in ["a", "b", "c"] {
+        let half = name.repeat(40);
+        let whole =
+            [format!("{name}/T{name}: report: {half}"), format!("{name}/T{name} | {half}{half}")];
+        let told: Vec<_> = finished.stdout.lines().filter(|line| line.contains(&half)).collect();
+        assert_eq!(told.len(), 100, "{}", finished.stdout);
+        for line in told {
+            assert!(whole.iter().any(|whole| line.trim_start() == whole), "{line}");
+        }
+    }
+}
+
 #[test]
 fn twenty_suites_with_fixtures_of_their_own_are_green_again_and_again() {
     let folder = Folder::new();
