@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+"""Runs every command of docs/running.md as it stands there, in a folder that has its names.
+
+    check_running.py RTF
+
+None may be refused: a test that fails (exit code 1) is one that the page needs.
+`rtf watch` is left out, since it does not end.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+PAGE = Path(__file__).resolve().parent.parent / "docs" / "running.md"
+
+BLOCK = re.compile(r"^```(sh|toml)\n(.*?)^```$", re.M | re.S)
+# What stands for a time or a run that only the reader has.
+INSTEAD = {"--for 8h": "--for 1s", "2026-11-21T10-22-13Z-4f7b": "latest"}
+
+LUA = "TestCase = {}\nfunction TestCase.run() end\n"
+ARM = """\
+<suite name="arm" requires="robot:icub">
+  <test type="lua" tags="slow"> EncoderTest </test>
+  <test type="lua"> JointLimitTest </test>
+</suite>
+"""
+HAND = """\
+<suite name="hand">
+  <test type="python" tags="slow"> GripTest </test>
+</suite>
+"""
+GRIP = """\
+import rtf
+
+
+class GripTest(rtf.TestCase):
+    def run(self) -> None:
+        self.fail("nothing is gripped")
+"""
+
+
+def main() -> None:
+    """Runs them, each after those before it."""
+    rtf = Path(sys.argv[1]).resolve()
+    blocks = BLOCK.findall(PAGE.read_text())
+    commands = [line for kind, text in blocks if kind == "sh" for line in text.splitlines()]
+    commands = [line for line in commands if not line.startswith("rtf watch ")]
+    if len(commands) < 15:
+        raise SystemExit(f"{PAGE.name} has only {len(commands)} commands: was its form changed?")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for place in (folder, folder / "suites", folder / "tests"):
+            fill(place)
+        (folder / "tests" / "hand.xml").unlink()
+        (folder / "tests" / "rtf.toml").write_text(
+            "".join(text for kind, text in blocks if kind == "toml")
+        )
+        for part in ("1/2", "2/2"):
+            options = ["--shard", part, "--shard-by", "count", "--results", f"parts/{part[0]}"]
+            call(folder, rtf, ["rtf", "run", "arm.xml", "hand.xml", *options])
+        for command in map(possible, commands):
+            if "--rerun" in command:
+                call(folder, rtf, ["rtf", "run", "hand.xml"])
+            call(folder, rtf, ["bash", "-o", "pipefail", "-c", command])
+
+
+def possible(command: str) -> str:
+    """What can be run here."""
+    for text, other in INSTEAD.items():
+        command = command.replace(text, other)
+    return command
+
+
+def fill(folder: Path) -> None:
+    """Writes the suites of which the page speaks, and their plug-ins."""
+    folder.mkdir(exist_ok=True)
+    for name in ("EncoderTest.lua", "JointLimitTest.lua"):
+        (folder / name).write_text(LUA)
+    (folder / "GripTest.py").write_text(GRIP)
+    (folder / "arm.xml").write_text(ARM)
+    (folder / "hand.xml").write_text(HAND)
+
+
+def call(folder: Path, rtf: Path, command: list[str]) -> None:
+    """Runs a command that may say that a test failed, and nothing worse."""
+    print(f"{PAGE.name}: {command[-1] if command[0] == 'bash' else ' '.join(command)}", flush=True)
+    # Nobody else has the page's robot.
+    own = {"PATH": f"{rtf.parent}:{os.environ['PATH']}", "RTF_LOCKS": str(folder / "locks")}
+    ran = subprocess.run(
+        command, cwd=folder, env=os.environ | own, capture_output=True, text=True, check=False
+    )
+    if ran.returncode not in {0, 1} or "error: " in ran.stderr:
+        raise SystemExit(f"exit code {ran.returncode}\n{ran.stdout}{ran.stderr}")
+
+
+if __name__ == "__main__":
+    main()
