@@ -2,7 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::{Growth, TestId, Usage, UsageSeries};
+use crate::{Growth, Resource, TestId, Usage, UsageSeries};
+
+/// A host itself may grow by so many bytes from one test to the next: what it made for
+/// a plug-in stays until it ends, since threads that the plug-in left may use it.
+const OWN: f64 = 4096.0;
 
 /// A host that served tests one after the other, in a suite in which tests are repeated.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -40,6 +44,10 @@ pub(super) fn growing(hosts: &[HostRecord]) -> Vec<(&HostRecord, Vec<Growth>)> {
             *known = host;
         }
     }
-    let with_growth = longest.into_values().map(|host| (host, host.usage.growth()));
+    let is_its_own = |growth: &Growth| growth.resource == Resource::Memory && growth.each < OWN;
+    let with_growth = longest.into_values().map(|host| {
+        let growth = host.usage.growth().into_iter();
+        (host, growth.filter(|growth| !is_its_own(growth)).collect::<Vec<_>>())
+    });
     with_growth.filter(|(_, growth)| !growth.is_empty()).collect()
 }

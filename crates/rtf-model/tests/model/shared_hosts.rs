@@ -12,10 +12,10 @@ fn used(source: Source, served: Option<u32>, memory: u64) -> EventKind {
 }
 
 /// Repetitions of which each has its host served so many tests.
-fn repetitions(served: impl IntoIterator<Item = u32>) -> Vec<EventKind> {
+fn repetitions(served: impl IntoIterator<Item = u32>, leak: u64) -> Vec<EventKind> {
     let mut kinds = Vec::new();
     for (repetition, served) in (1..).zip(served) {
-        let memory = 8 * MIB + u64::from(served) * MIB;
+        let memory = 8 * MIB + u64::from(served) * leak;
         let finished = finished(Verdict::Passed);
         let used = used(Source::Test(TEST), Some(served), memory);
         kinds.extend([started(repetition, 1), used, finished]);
@@ -24,8 +24,12 @@ fn repetitions(served: impl IntoIterator<Item = u32>) -> Vec<EventKind> {
 }
 
 fn run(served: &[u32]) -> Vec<EventKind> {
+    run_that_leaks(served, MIB)
+}
+
+fn run_that_leaks(served: &[u32], leak: u64) -> Vec<EventKind> {
     let count = u32::try_from(served.len()).unwrap_or(u32::MAX);
-    let body = repetitions(served.iter().copied());
+    let body = repetitions(served.iter().copied(), leak);
     opened(count).into_iter().chain(body).chain(closed()).collect()
 }
 
@@ -65,4 +69,14 @@ fn another_host_is_another_series() {
     assert_eq!((growth.len(), growth[0].resource), (1, Resource::Memory));
     assert!((growth[0].each - MIB as f64).abs() < 1.0, "{growth:?}");
     assert!(record.is_green(), "growth changes no verdict");
+}
+
+#[test]
+fn what_hosts_keep_themselves_is_no_growth() {
+    let served: Vec<u32> = (1..=5000).collect();
+    let grows = |leak| {
+        let record = record(run_that_leaks(&served, leak));
+        record.suites[0].growing_hosts().len()
+    };
+    assert_eq!((grows(600), grows(6000)), (0, 1));
 }
