@@ -116,6 +116,7 @@ fn every_attribute_arrives() {
     assert_eq!(suite.timeout, Some(secs(5400)));
     assert_eq!(suite.tags, ["hardware", "slow"]);
     assert!(suite.tolerates_collapse);
+    assert!(suite.critical_stops_run);
     assert_eq!(suite.parallel, 4);
     assert_eq!(
         suite.env,

@@ -73,6 +73,8 @@ pub struct SuitePlan {
     pub requires: Vec<Resource>,
     /// Whether a fixture's collapse leaves the suite green.
     pub tolerates_collapse: bool,
+    /// Whether a critical test or assertion that fails ends the whole run, not only the suite.
+    pub critical_stops_run: bool,
     /// How many of its tests may run at the same time; 1 for one after the other.
     pub parallel: u32,
     /// The fixtures: each after those that it depends on, else in the order of the file.

@@ -1,8 +1,8 @@
-//! How many tests may fail before the rest of the run is skipped.
+//! How many tests may fail before the rest of the run is skipped, and which one suffices.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use rtf_model::{TestFinished, TestId, Verdict};
 
@@ -14,6 +14,8 @@ pub struct FailLimit {
     most: Option<u32>,
     /// How many were counted by any clone.
     seen: Arc<AtomicU32>,
+    /// What happened in some suite after which none goes on.
+    stopped: Arc<OnceLock<String>>,
     /// The tests that this suite has counted: each is counted once.
     counted: BTreeSet<TestId>,
 }
@@ -36,9 +38,17 @@ impl FailLimit {
         }
     }
 
+    /// No suite goes on after this; the first reason counts.
+    pub fn stop(&self, reason: String) {
+        let _ = self.stopped.set(reason);
+    }
+
     /// Why nothing more is run, once it is enough.
     #[must_use]
     pub fn reached(&self) -> Option<String> {
+        if let Some(reason) = self.stopped.get() {
+            return Some(reason.clone());
+        }
         let most = self.most.filter(|most| self.seen.load(Ordering::Relaxed) >= *most)?;
         let tests = if most == 1 { "1 test has".to_owned() } else { format!("{most} tests have") };
         Some(format!("{tests} not passed (--max-fail {most})"))

@@ -63,6 +63,9 @@ fn read_suite(reader: &mut Reader<'_>, root: Node<'_, '_>) -> Suite {
         isolate: isolation(reader, root),
         requires: requires::read(reader, root),
         tolerates_collapse: reader.truth(root, "tolerate-collapse").unwrap_or(false),
+        critical_stops_run: reader
+            .choice(root, "critical-stops", &[("suite", false), ("run", true)])
+            .unwrap_or(false),
         parallel: reader.number(root, "parallel", 1).unwrap_or(1),
         fixtures: Vec::new(),
         hooks: Vec::new(),

@@ -32,6 +32,7 @@ pub(super) const SUITE: Shape = Shape {
         "tags",
         "isolate",
         "requires",
+        "critical-stops",
         "parallel",
         "middleware",
         "tolerate-collapse",

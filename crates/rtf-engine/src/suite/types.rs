@@ -29,6 +29,8 @@ pub struct Suite {
     pub requires: Vec<Resource>,
     /// Whether a fixture's collapse leaves the suite green.
     pub tolerates_collapse: bool,
+    /// Whether a critical test or assertion that fails ends the whole run, not only the suite.
+    pub critical_stops_run: bool,
     /// How many of its tests may run at the same time.
     pub parallel: u32,
     /// The fixtures, in order.

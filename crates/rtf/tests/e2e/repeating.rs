@@ -328,3 +328,31 @@ fn enough_is_enough() {
     assert_eq!(first.code, Some(1));
     assert_eq!(folder.journal().record.tests[0].attempts.len(), 1, "{}", first.stdout);
 }
+
+/// A critical test or a critical assertion ends the suite, or the run if the suite says so.
+#[test]
+fn what_is_critical_ends_the_suite_or_the_run() {
+    let assertion = "function TestCase.run() rtf.require_critical(false, 'it is hot') end";
+    let fails = "function TestCase.run() rtf.fail('no') end";
+    for (plugin, attribute, why) in [
+        (assertion, "", "a critical assertion of `A` did not hold: it is hot"),
+        (fails, "critical='true'", "the critical test `A` did not pass: it is failed"),
+    ] {
+        for (stops, whole) in [("", false), ("critical-stops='run'", true)] {
+            let folder = Folder::new();
+            folder.file("A.lua", plugin).file("P.lua", "function TestCase.run() end");
+            let first = format!(
+                "<suite name='first' {stops}><test {attribute}>A.lua</test><test>P.lua</test></suite>"
+            );
+            folder.file("first.xml", &first);
+            folder.file("second.xml", "<suite name='second'><test>P.lua</test></suite>");
+            let finished = folder.rtf(&["run", "first.xml", "second.xml"]);
+            assert_eq!(finished.code, Some(1), "{}", finished.stdout);
+            let record = folder.journal().record;
+            let skipped = |test: usize| record.tests[test].skipped.clone();
+            assert_eq!(skipped(1).as_deref(), Some(why));
+            let of_run = format!("suite `first` ends the run: {why}");
+            assert_eq!(skipped(2), whole.then_some(of_run), "{}", finished.stdout);
+        }
+    }
+}

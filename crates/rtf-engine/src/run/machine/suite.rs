@@ -264,9 +264,12 @@ impl<'p> SuiteMachine<'p> {
         self.look_away(test);
         self.call_hooks(plan, ended);
         if let Some(text) = &ended.critical {
-            self.end_early(format!("a critical assertion of `{}` did not hold: {text}", plan.name));
+            self.end_critically(format!(
+                "a critical assertion of `{}` did not hold: {text}",
+                plan.name
+            ));
         } else if plan.critical && !ended.verdict.is_green() && !rerun {
-            self.end_early(format!(
+            self.end_critically(format!(
                 "the critical test `{}` did not pass: it is {}",
                 plan.name, ended.verdict
             ));

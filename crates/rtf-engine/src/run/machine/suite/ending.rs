@@ -74,4 +74,12 @@ impl SuiteMachine<'_> {
     pub(super) fn end_early(&mut self, reason: String) {
         self.ending.get_or_insert(reason);
     }
+
+    /// A critical test or assertion failed: the suite ends, and perhaps the run.
+    pub(super) fn end_critically(&mut self, reason: String) {
+        if self.plan.critical_stops_run {
+            self.fails.stop(format!("suite `{}` ends the run: {reason}", self.plan.name));
+        }
+        self.end_early(reason);
+    }
 }

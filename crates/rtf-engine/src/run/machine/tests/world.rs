@@ -34,6 +34,7 @@ pub fn suite(fixtures: usize, tests: usize) -> SuitePlan {
         given: Given::Nothing,
         requires: Vec::new(),
         tolerates_collapse: false,
+        critical_stops_run: false,
         parallel: 1,
         fixtures: (0..fixtures).map(fixture).collect(),
         hooks: Vec::new(),
