@@ -4,7 +4,7 @@ PREFIX ?= /usr/local
 DESTDIR ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help build web screenshots demo icub test test-quick chaos bench install uninstall clean
+.PHONY: help build web screenshots demo icub test test-quick chaos bench counts install uninstall clean
 
 help:
 	@echo "make demo       install what is missing, build, and test a simulated robot arm"
@@ -15,6 +15,7 @@ help:
 	@echo "make test-quick the same without what needs middleware (ROS, YARP): it says what it leaves out"
 	@echo "make chaos      kill fixtures and runners at random moments, for half an hour"
 	@echo "make bench      measure speed and memory"
+	@echo "make counts     record how many instructions the hot paths take (make test compares them)"
 	@echo "make install    install into PREFIX=$(PREFIX); DESTDIR is put before it"
 	@echo "make uninstall  remove what make install has put there"
 	@echo "make clean      remove what was built"
@@ -52,6 +53,9 @@ chaos:
 
 bench:
 	@tools/bench.sh
+
+counts: build
+	@tools/counts.py "$${CARGO_TARGET_DIR:-target}/release/rtf-counts" --record
 
 install:
 	@PREFIX='$(PREFIX)' DESTDIR='$(DESTDIR)' tools/install.sh

@@ -18,7 +18,7 @@ case $goal in
   build) packages=() ;;
   demo) packages=(cmake g++ lua-socket python3-venv) ;;
   test) packages=(cmake g++ lua-socket python3-venv libxml2-utils gdb shellcheck clang-format
-    procps perl jq ruby ruby-minitest rubocop gnat gprbuild openssh-client openssh-server
+    procps perl jq valgrind ruby ruby-minitest rubocop gnat gprbuild openssh-client openssh-server
     chromium fonts-dejavu-core) ;;
   update) packages=() ;;
   *) die "no goal \`$goal\`: build, demo, test or update" ;;

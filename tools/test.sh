@@ -241,6 +241,7 @@ step 'fixtures python' fixtures_python
 step 'rust tests' cargo test --workspace --locked --no-fail-fast
 step 'web api' web_api
 step 'build release' tools/build.sh
+step 'instruction counts' tools/counts.py "$TARGET/release/rtf-counts"
 step 'example 01 plug-ins' tools/plugins.sh examples/01-simulated-arm
 step 'example 01' example_01
 step 'example 02' example_02
