@@ -65,15 +65,15 @@ def measure_live(bench: Bench, file: Path) -> Samples:
 
 def measure_served(bench: Bench) -> Samples:
     """Opens the page of the run that was measured before."""
-    with started(bench, "serve") as (pid, url):
+    with started(bench, "serve") as (process, url):
         name = (bench.results / "latest").resolve().name
         found = look(f"{url.split('#')[0]}#/runs/{name}", "")
-        memory = peak_mb(pid)
+        memory = peak_mb(process.pid)
     return {PAINT: found["paint"], MEMORY: [memory]}
 
 
 @contextmanager
-def started(bench: Bench, verb: str, *rest: str) -> Iterator[tuple[int, str]]:
+def started(bench: Bench, verb: str, *rest: str) -> Iterator[tuple[subprocess.Popen[bytes], str]]:
     """An rtf with a page: its process and its address."""
     command = [str(bench.rtf), verb, "--results", str(bench.results), "--web=127.0.0.1:0", *rest]
     log = bench.folder / "page.log"
@@ -87,7 +87,7 @@ def started(bench: Bench, verb: str, *rest: str) -> Iterator[tuple[int, str]]:
             stderr=output,
         )
     try:
-        yield process.pid, await_address(process, log)
+        yield process, await_address(process, log)
     finally:
         process.send_signal(signal.SIGINT)
         process.wait(END_SECS)
