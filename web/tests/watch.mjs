@@ -2,12 +2,14 @@
 //
 //   node watch.mjs URL     prints `open` once tests are shown, and looks on until its input ends
 
+import { once } from 'node:events';
 import { Guarded, launch } from './support/browser.mjs';
 
 const browser = await launch();
 const guarded = await Guarded.open(browser, process.argv[2]);
 await guarded.page.getByRole('treeitem').first().waitFor();
 process.stdout.write('open\n');
-for await (const _ of process.stdin);
+process.stdin.resume();
+await once(process.stdin, 'end');
 await guarded.close();
 await browser.close();
