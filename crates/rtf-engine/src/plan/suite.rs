@@ -67,8 +67,7 @@ pub(super) fn plan(
     let mut planner = PluginPlanner::new(context, scope);
     let fixtures = fixture::plan_all(&mut planner, source, suite.fixtures);
     let hooks = hook::plan_all(&mut planner, source, suite.hooks);
-    let mut limits = Limits::default();
-    let mut tests = Vec::with_capacity(suite.tests.len());
+    let (mut limits, mut tests) = (Limits::default(), Vec::with_capacity(suite.tests.len()));
     for test in suite.tests {
         let given = test.name.as_ref().map(|name| name.value.clone());
         let name = given.unwrap_or_else(|| names.unique(base_name(&test.plugin.name.value)));
