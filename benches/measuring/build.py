@@ -20,7 +20,7 @@ MODULE = ["-fPIC", "-shared"]
 
 def build(bench: Bench) -> None:
     """Puts everything into the bench's folder, a core for each compiler."""
-    for script in ("Trivial.lua", "Trivial.py", "Ticker.py"):
+    for script in ("Trivial.lua", "Trivial.py", "Ticker.py", "Gate.py", "Steps.py"):
         shutil.copy(SOURCES / script, bench.folder)
     commands = [
         [*C, *source("launch.c"), *output(bench, "launch")],
