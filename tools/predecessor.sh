@@ -3,19 +3,22 @@
 # usr/lib in it; downloads it when it is not there.
 #
 # It is unpacked into the user's cache and never installed, so that our package
-# and this one cannot be taken for each other. The key is made of the packages'
-# versions: another version is another folder.
+# and this one cannot be taken for each other; whether it is installed, too, does
+# not matter. The key is made of the packages' versions: another version is
+# another folder.
 
 . "$(dirname "$0")/env.sh"
 
 wanted=(robottestingframework-testrunner librobottestingframework-dev)
+libraries=(librobottestingframework2 librobottestingframework-{dll,lua,ruby}2)
 
 have apt-get || die "robot-testing-framework 2.x comes from Debian or Ubuntu" \
   "this system has no apt-get"
 
-# The packages and what they need that this machine lacks.
+# Its own packages, and of others what they need and this machine lacks.
 packages() {
-  apt-get install --simulate --no-install-recommends "${wanted[@]}" 2>/dev/null |
+  apt-get install --simulate --reinstall --no-install-recommends \
+    "${wanted[@]}" "${libraries[@]}" 2>/dev/null |
     sed -n -E 's/^Inst ([^ ]+) .*\(([^ ]+) .*\[([^] ]+)\].*/\1=\2/p'
 }
 
@@ -25,8 +28,8 @@ if [ -z "$list" ]; then
   list=$(packages)
 fi
 [[ $list == *librobottestingframework-dev=* ]] ||
-  die "apt-get does not know librobottestingframework-dev, or it is installed already" \
-    "add Debian's or Ubuntu's main and universe, or remove the installed package"
+  die "apt-get does not know librobottestingframework-dev" \
+    "add Debian's main, or Ubuntu's main and universe, to its sources"
 
 key=$(printf '%s\n' "$list" | sort | sha256sum | cut -c1-12)
 folder=$CACHE/robot-testing-framework-2-$key

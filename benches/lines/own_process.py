@@ -25,7 +25,7 @@ def group(bench: Bench) -> Group:
     """The predecessor runs all tests in its own process: it is the peer of
     shared hosts.
     """
-    no_predecessor = "" if bench.predecessor else f"{PREDECESSOR} is not installed"
+    no_predecessor = "" if bench.predecessor else f"{PREDECESSOR} is missing"
     works = (
         Work(SPAWN, lambda: a_test(bench.launch(["/bin/true"], COUNT))),
         Work(CTEST, ctest(bench), "" if bench.ctest else "ctest is not installed"),

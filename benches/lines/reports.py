@@ -18,7 +18,7 @@ OLD = "predecessor"
 
 def group(bench: Bench) -> Group:
     """The predecessor keeps them in memory and writes them at the end."""
-    missing = "" if bench.predecessor else f"{PREDECESSOR} is not installed"
+    missing = "" if bench.predecessor else f"{PREDECESSOR} is missing"
     works = (Work(RTF, rtf(bench)), Work(OLD, predecessor(bench), missing))
     rate = Limit(300_000, at_least=True, required=False)
     memory = Limit(100, required=False)

@@ -13,7 +13,7 @@ from pathlib import Path
 from measuring.model import MeasuringError
 
 TOP = Path(__file__).resolve().parents[2]
-PREDECESSOR = "robottestingframework-testrunner"
+PREDECESSOR = "robot-testing-framework 2.x"
 LAST_LINES = 20
 
 
@@ -38,6 +38,31 @@ class Launched:
 
 
 @dataclass(frozen=True)
+class Predecessor:
+    """What was unpacked of robot-testing-framework 2.x."""
+
+    runner: Path
+    include: Path
+    libraries: Path
+
+    @staticmethod
+    def find() -> Predecessor | None:
+        """In the folder `RTF_BENCH_PREDECESSOR`, as Debian lays it out."""
+        folder = os.environ.get("RTF_BENCH_PREDECESSOR")
+        if not folder:
+            return None
+        system = Path(folder) / "usr"
+        library = next(system.glob("lib/**/librobottestingframework.so"))
+        runner = system / "bin" / "robottestingframework-testrunner"
+        header = next(system.glob("include/**/robottestingframework/TestCase.h"))
+        return Predecessor(runner, header.parents[1], library.parent)
+
+    def environment(self) -> Mapping[str, str]:
+        """Where its runner finds its libraries and plug-in loaders."""
+        return {"LD_LIBRARY_PATH": str(self.libraries)}
+
+
+@dataclass(frozen=True)
 class Bench:
     """A folder with everything that was built, and the programs to be measured."""
 
@@ -45,8 +70,7 @@ class Bench:
     results: Path
     """Where rtf keeps its runs."""
     rtf: Path
-    predecessor: str
-    """Its runner; empty when it is not installed."""
+    predecessor: Predecessor | None
     ctest: str
     pytest: str
     """With its plug-in for forks, from `RTF_BENCH_PYTHON`."""
@@ -56,16 +80,19 @@ class Bench:
         """A bench in an empty folder."""
         if not rtf.exists():
             raise MeasuringError(f"{rtf} is missing: build it with `make build`")
-        predecessor = shutil.which(PREDECESSOR) or ""
         ctest = shutil.which("ctest") or ""
         pytest = shutil.which("pytest", path=os.environ.get("RTF_BENCH_PYTHON", "")) or ""
-        return Bench(folder, results, rtf, predecessor, ctest, pytest)
+        return Bench(folder, results, rtf, Predecessor.find(), ctest, pytest)
 
     def launch(
-        self, command: Sequence[str], count: int = 1, codes: Sequence[int] = (0,)
+        self,
+        command: Sequence[str],
+        count: int = 1,
+        codes: Sequence[int] = (0,),
+        settings: Mapping[str, str] | None = None,
     ) -> Launched:
-        """Runs a command that many times under the stopwatch. Each has to end
-        with one of the codes.
+        """Runs a command that many times under the stopwatch, with these
+        variables, too. Each has to end with one of the codes.
         """
         times = self.folder / "times"
         log = self.folder / "log"
@@ -74,7 +101,7 @@ class Bench:
             done = subprocess.run(
                 stopwatch,
                 cwd=self.folder,
-                env=self.environment(),
+                env={**self.environment(), **(settings or {})},
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,

@@ -33,9 +33,10 @@ def build(bench: Bench) -> None:
             [*CPP, *MODULE, *INCLUDES, *source(f"{name}.cpp"), *output(bench, f"{name}.so")]
         )
     if bench.predecessor:
+        old = [f"-I{bench.predecessor.include}", f"-L{bench.predecessor.libraries}"]
         libraries = ["-lrobottestingframework-dll", "-lrobottestingframework"]
         plugin = [*source("Predecessor.cpp"), *output(bench, "Predecessor.so")]
-        commands.append([*CPP, *MODULE, *plugin, *libraries])
+        commands.append([*CPP, *MODULE, *old, *plugin, *libraries])
     with ThreadPoolExecutor() as compilers:
         list(compilers.map(compile_one, commands))
 

@@ -78,8 +78,11 @@ def run_predecessor(bench: Bench, suite: Path, count: int) -> Launched:
     """The same with the predecessor, whose exit code is 0 also when it could not
     load a single plug-in.
     """
-    result = bench.folder / PREDECESSOR_RESULT
-    launched = bench.launch([bench.predecessor, "--output", str(result), "--suite", str(suite)])
+    old = bench.predecessor
+    if old is None:
+        raise MeasuringError("the predecessor is missing")
+    command = [str(old.runner), "--output", PREDECESSOR_RESULT, "--suite", str(suite)]
+    launched = bench.launch(command, settings=old.environment())
     found = TOTAL.search(launched.output)
     if found is None or int(found[1]) != count:
         raise MeasuringError(f"the predecessor did not pass {count} tests:\n{launched.output}")
