@@ -35,6 +35,7 @@ mod parallel;
 mod predecessor;
 mod predecessor_scripts;
 mod process_fixture;
+mod profile_mistakes;
 mod profiles;
 mod remote;
 mod repeating;

@@ -1,0 +1,82 @@
+//! The phases and the end of a test's attempt.
+
+use serde::{Deserialize, Serialize};
+
+use super::ExitStatus;
+use crate::{TestId, Verdict};
+
+/// A phase of a test, in the order in which they happen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Phase {
+    /// The host starts and loads the plug-in.
+    Load,
+    /// The plug-in's `setup`.
+    Setup,
+    /// The plug-in's `run`.
+    Run,
+    /// The plug-in's `tearDown`.
+    TearDown,
+    /// The host ends, after it has answered.
+    Exit,
+    /// The attempt is judged, and fixtures are told.
+    Notice,
+}
+
+impl Phase {
+    /// The phase as people say it: `set-up`.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Load => "load",
+            Self::Setup => "set-up",
+            Self::Run => "run",
+            Self::TearDown => "tear-down",
+            Self::Exit => "exit",
+            Self::Notice => "notice",
+        }
+    }
+}
+
+impl std::fmt::Display for Phase {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+/// Why a test was asked to stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum StopCause {
+    /// A phase reached its limit.
+    Timeout,
+    /// A fixture collapsed.
+    Collapse,
+    /// The user asked for the end of the run.
+    Interrupt,
+    /// The host broke the protocol.
+    Protocol,
+}
+
+/// The end of one attempt of a test.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct TestFinished {
+    /// The test.
+    pub test: TestId,
+    /// The judgement.
+    pub verdict: Verdict,
+    /// Why it did not pass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// The phase in which it was decided.
+    pub phase: Phase,
+    /// How the host's process ended, when it was started and its test's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub exit: Option<ExitStatus>,
+    /// Whether the same repetition will be run again.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub rerun: bool,
+}
