@@ -3,22 +3,23 @@
 mod doctor;
 mod formats;
 mod past;
+mod values;
 mod web;
 
 use std::num::NonZeroU16;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use rtf_engine::run::Forks;
 use rtf_engine::select::Shard;
 use rtf_engine::suite::parse_duration;
 
 pub use doctor::{DoctorArgs, DoctorFormat};
-use formats::parse_setting;
 pub use formats::{Annotations, Format, Shown, parse_report};
 pub use past::{MergeArgs, ReportArgs, ShowArgs};
+pub use values::{forks, unset_when_empty};
+use values::{forks_parser, jobs_parser, parse_setting};
 pub use web::{ServeArgs, WebAccessArgs, WebRunArgs};
 
 /// Tests of robots: plug-ins in any language, on top of fixtures that are
@@ -197,7 +198,7 @@ const REPEATING: &str = "Repeating tests";
 /// How often each test is run.
 #[derive(Clone, Debug, Default, Args)]
 pub struct RepeatArgs {
-    /// Run each test so many times as often as its suite says
+    /// Run each test N times as often as its suite says
     #[arg(help_heading = REPEATING, long, value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub repeat: Option<u32>,
@@ -207,16 +208,16 @@ pub struct RepeatArgs {
     #[arg(value_parser = parse_duration)]
     pub time: Option<Duration>,
 
-    /// Try a test that fails so often again, whatever its suite says
+    /// Try a test that fails up to N times again, whatever its suite says
     #[arg(help_heading = REPEATING, long, value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     pub retries: Option<u32>,
 
-    /// What a test counts as that passes only when it is tried again [default: pass]
+    /// What a test that passes only when it is tried again counts as [default: pass]
     #[arg(help_heading = REPEATING, long, value_name = "RESULT")]
     pub flaky_result: Option<FlakyResult>,
 
-    /// Skip the rest as soon as so many tests have not passed
+    /// Skip the rest as soon as N tests have not passed
     #[arg(help_heading = REPEATING, long, value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u32).range(1..))]
     pub max_fail: Option<u32>,
@@ -336,7 +337,7 @@ pub struct RunArgs {
     pub verbose: bool,
 
     /// How many suites run at the same time, each with fixtures of its own
-    #[arg(short, long, value_name = "N", default_value = "1")]
+    #[arg(short, long, value_name = "N", default_value = "1", value_parser = jobs_parser())]
     pub jobs: NonZeroU16,
 
     /// How long a suite waits for the locks that it requires; for ever, unless told
@@ -347,8 +348,8 @@ pub struct RunArgs {
     #[arg(help_heading = CHOOSING, long)]
     pub dry_run: bool,
 
-    /// Fork the hosts of C, C++ and Lua tests from one that is ready: `auto` (from the second test
-    /// on), `always`, or `never`
+    /// Fork the hosts of C, C++, Lua and Python tests from one that is ready: `auto` (from the
+    /// second test on), `always`, or `never`
     #[arg(long, value_name = "WHEN", default_value = "auto", env = "RTF_FORK")]
     #[arg(value_parser = forks_parser(), hide_possible_values = true)]
     pub fork: Forks,
@@ -363,17 +364,4 @@ pub struct ResultsArgs {
     /// The folder of the runs' folders
     #[arg(long, value_name = "DIR", default_value = "rtf-results", env = "RTF_RESULTS")]
     pub results: PathBuf,
-}
-
-fn forks_parser() -> impl TypedValueParser<Value = Forks> {
-    PossibleValuesParser::new(["auto", "always", "never"]).map(|name| forks(&name))
-}
-
-/// `auto`, `always` or `never`.
-pub fn forks(word: &str) -> Forks {
-    match word {
-        "always" => Forks::Always,
-        "never" => Forks::Never,
-        _ => Forks::Auto,
-    }
 }

@@ -26,7 +26,7 @@ fn main() -> ExitCode {
     if testrunner::is_called() {
         return testrunner::main();
     }
-    let matches = Cli::command().get_matches();
+    let matches = cli::unset_when_empty(Cli::command()).get_matches();
     let mut cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     match cli.color {
         Color::Auto => {}

@@ -96,7 +96,7 @@ impl Settled<'_> {
     }
 
     fn past(&self, results: &mut PathBuf) -> Result<(), Failure> {
-        let profile = std::env::var("RTF_PROFILE").ok();
+        let profile = std::env::var("RTF_PROFILE").ok().filter(|name| !name.is_empty());
         let asked = Asked { profile, ..Asked::default() };
         let (run, files) = self.find(&[], &asked);
         if !files.problems.is_empty() {

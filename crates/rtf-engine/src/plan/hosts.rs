@@ -22,6 +22,9 @@ pub(super) struct HostKind {
     pub prefixes: &'static [&'static str],
     /// A variable of the platform with folders of such plug-ins.
     pub library_path: Option<&'static str>,
+    /// What stands before `TestCase` and `FixtureManager` where plug-ins are
+    /// classes that derive from them.
+    pub classes_in: Option<&'static str>,
     start: Start,
 }
 
@@ -79,6 +82,7 @@ pub(super) static HOSTS: [HostKind; 4] = [
         extensions: NATIVE_EXTENSIONS,
         prefixes: &["", "lib"],
         library_path: Some(LIBRARY_PATH),
+        classes_in: Some("rtf::"),
         start: Start::Own { program: "rtf-host-native" },
     },
     HostKind {
@@ -86,6 +90,7 @@ pub(super) static HOSTS: [HostKind; 4] = [
         extensions: &["lua"],
         prefixes: &[""],
         library_path: None,
+        classes_in: None,
         start: Start::Own { program: "rtf-host-lua" },
     },
     HostKind {
@@ -93,6 +98,7 @@ pub(super) static HOSTS: [HostKind; 4] = [
         extensions: &["py"],
         prefixes: &[""],
         library_path: None,
+        classes_in: Some("rtf."),
         start: Start::Interpreter {
             program: "python3",
             variable: "RTF_PYTHON",
@@ -111,6 +117,7 @@ pub(super) static HOSTS: [HostKind; 4] = [
         extensions: &["rb"],
         prefixes: &[""],
         library_path: None,
+        classes_in: Some("RTF::"),
         start: Start::Interpreter {
             program: "ruby",
             variable: "RTF_RUBY",

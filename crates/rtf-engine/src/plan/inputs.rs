@@ -126,7 +126,7 @@ fn named_plugin(found: Found, options: &Options) -> Result<Input, Box<Diagnostic
 /// A file that the user named: a suite, or a plug-in by its extension.
 fn file(found: Found) -> Result<Input, Box<Diagnostic>> {
     if !found.path.exists() {
-        return one_test(&found).ok_or_else(|| missing(&found).into());
+        return one_test(&found).ok_or_else(|| missing_test(found).into());
     }
     if has_extension(&found.path, "xml") {
         return Ok(Input::Suite(found, Vec::new()));
@@ -145,6 +145,19 @@ fn file(found: Found) -> Result<Input, Box<Diagnostic>> {
     let message = format!("`{}` is neither a suite nor a plug-in", found.name);
     let note = format!("suites end in `.xml`, plug-ins in {}", known.join(", "));
     Err(Diagnostic::error("unknown-file", message).note(note).into())
+}
+
+/// What was named has `::` in it, perhaps, and leads to no test of a suite.
+fn missing_test(found: Found) -> Diagnostic {
+    let parts = found.path.to_str().and_then(|path| path.split_once("::"));
+    let names = found.name.split_once("::");
+    let (Some((path, _)), Some((name, _))) = (parts, names) else { return missing(&found) };
+    let file = Found { path: PathBuf::from(path), name: name.to_owned() };
+    if !file.path.exists() {
+        return missing(&file);
+    }
+    let message = format!("`{name}` is no suite of which `::` could name a test");
+    Diagnostic::error("unknown-file", message).hint(format!("leave `::` away: `{name}`"))
 }
 
 fn missing(found: &Found) -> Diagnostic {

@@ -12,7 +12,7 @@ const LONGEST: Duration = Duration::from_secs(366 * 24 * 60 * 60);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DurationError {
     /// Not understood.
-    #[error("not a duration")]
+    #[error("not a duration like `250ms`, `90s`, `2min` or `1h 30m` (a bare number is seconds)")]
     Malformed,
     /// Zero or below.
     #[error("must be longer than zero")]

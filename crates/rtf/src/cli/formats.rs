@@ -83,20 +83,6 @@ pub fn parse_report(value: &str) -> Result<(Format, PathBuf), String> {
     Ok((format, PathBuf::from(path)))
 }
 
-/// Reads `tolerance=0.02`.
-///
-/// # Errors
-/// What is wrong with it.
-pub fn parse_setting(value: &str) -> Result<(String, String), String> {
-    match value.split_once('=') {
-        Some((name, value)) if rtf_engine::config::is_name(name) => {
-            Ok((name.to_owned(), value.to_owned()))
-        }
-        Some((name, _)) => Err(format!("`{name}` is not the name of a parameter")),
-        None => Err("expected `NAME=VALUE`".to_owned()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     /// An `rtf.toml` takes what the command line takes.

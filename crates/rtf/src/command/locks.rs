@@ -21,7 +21,7 @@ const EVERY: Duration = Duration::from_millis(50);
 pub fn run(args: &LocksArgs) -> Outcome {
     let folder = folder();
     if !folder.exists() {
-        return Ok(ExitCode::SUCCESS);
+        return Ok(if args.wait { ExitCode::SUCCESS } else { free() });
     }
     let locks = Locks::open(&folder).map_err(Failure::own)?;
     let begun = Instant::now();
@@ -31,11 +31,20 @@ pub fn run(args: &LocksArgs) -> Outcome {
         let over = args.timeout.is_some_and(|limit| begun.elapsed() >= limit);
         if held.is_empty() || !args.wait || over {
             Failure::unless_reader_left(show(&held))?;
+            if held.is_empty() && !args.wait {
+                return Ok(free());
+            }
             let late = args.wait && !held.is_empty();
             return Ok(ExitCode::from(if late { exit::FAILED } else { 0 }));
         }
         std::thread::sleep(EVERY);
     }
+}
+
+/// Said to people; for programs, no lock is no line.
+fn free() -> ExitCode {
+    anstream::eprintln!("nobody has a lock");
+    ExitCode::SUCCESS
 }
 
 /// The folder of this machine's locks.

@@ -79,7 +79,9 @@ pub fn draft(
         problems.extend(selected.warnings);
         if selected.plan.tests == 0 {
             let what = format!("no test is chosen, of {}", count(selected.of, "test"));
-            problems.insert(0, Diagnostic::error("no-tests", what));
+            let problem = Diagnostic::error("no-tests", what)
+                .hint("`rtf list` without these options shows all of them");
+            problems.insert(0, problem);
         } else {
             of = u32::try_from(selected.of).unwrap_or(u32::MAX);
             plan = Some(selected.plan);

@@ -210,3 +210,28 @@ fn an_interpreter_that_is_none() {
     1 error; nothing was started
     ");
 }
+
+#[test]
+fn a_plug_in_with_nothing_in_it() {
+    let folder = folder("<fixture>Arm.py</fixture>\n  <test>Encoder.rb</test>");
+    folder.file("Arm.py", "import rtf\n").file("Encoder.rb", "class Encoder; end\n");
+    assert_snapshot!(refused(&folder, &["run", "arm.xml"]), @"
+    error: `Arm.py` holds no fixture
+     --> arm.xml:2:12
+      |
+    2 |   <fixture>Arm.py</fixture>
+      |            ^^^^^^ used here
+      |
+      = help: a fixture is a class that derives from `rtf.FixtureManager`
+
+    error: `Encoder.rb` holds no test
+     --> arm.xml:3:9
+      |
+    3 |   <test>Encoder.rb</test>
+      |         ^^^^^^^^^^ used here
+      |
+      = help: a test is a class that derives from `RTF::TestCase`
+
+    2 errors; nothing was started
+    ");
+}

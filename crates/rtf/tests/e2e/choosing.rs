@@ -93,6 +93,8 @@ fn nothing_chosen_is_red() {
     ----- stdout
     ----- stderr
     error: no test is chosen, of 3 tests
+     |
+     = help: `rtf list` without these options shows all of them
 
     warning: no test has the tag `slwo`
      --> --filter:1:5

@@ -17,6 +17,7 @@ mod chaos;
 mod choosing;
 mod code_hosts;
 mod collapse;
+mod command_lines;
 mod conformance;
 mod cpp_fixture;
 mod doctor;

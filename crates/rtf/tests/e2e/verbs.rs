@@ -179,9 +179,9 @@ fn help_of_run() {
                                          own [default: 1]
           --lock-timeout <DURATION>      How long a suite waits for the locks that it requires; for
                                          ever, unless told
-          --fork <WHEN>                  Fork the hosts of C, C++ and Lua tests from one that is ready:
-                                         `auto` (from the second test on), `always`, or `never` [env:
-                                         RTF_FORK=] [default: auto]
+          --fork <WHEN>                  Fork the hosts of C, C++, Lua and Python tests from one that is
+                                         ready: `auto` (from the second test on), `always`, or `never`
+                                         [env: RTF_FORK=] [default: auto]
       -h, --help                         Print help (see more with '--help')
       -V, --version                      Print version
 
@@ -198,13 +198,13 @@ fn help_of_run() {
           --dry-run           Only list the tests that would be run
 
     Repeating tests:
-          --repeat <N>             Run each test so many times as often as its suite says
+          --repeat <N>             Run each test N times as often as its suite says
           --for <DURATION>         Repeat all tests, round by round, until this time is over: `[TIME]`,
                                    `8h`
-          --retries <N>            Try a test that fails so often again, whatever its suite says
-          --flaky-result <RESULT>  What a test counts as that passes only when it is tried again
+          --retries <N>            Try a test that fails up to N times again, whatever its suite says
+          --flaky-result <RESULT>  What a test that passes only when it is tried again counts as
                                    [default: pass] [possible values: pass, fail]
-          --max-fail <N>           Skip the rest as soon as so many tests have not passed
+          --max-fail <N>           Skip the rest as soon as N tests have not passed
           --until-fail             Skip the rest as soon as a test has not passed
 
     Web:

@@ -8,6 +8,7 @@ use rtf_model::Diagnostic;
 use super::ask::{Answer, Word};
 use super::{FileUse, Group, Places, SHOWN_PLACES, Verified};
 use crate::plan::context::Role;
+use crate::plan::hosts;
 use crate::suite::Source;
 
 /// A plug-in's text longer than this is not shown.
@@ -113,9 +114,20 @@ fn kinds(entry: &FileUse, word: &Word, verified: &mut Verified) {
                 let message = format!("the plug-in `{file}` is a {other}, not a {wanted}");
                 Diagnostic::error("wrong-kind", message).hint(role.advice())
             }
-            None => Diagnostic::error("wrong-kind", format!("`{file}` holds no {wanted}")),
+            None => nothing_in(entry, &role),
         };
         verified.problems.push(show(places, problem, "used here"));
+    }
+}
+
+fn nothing_in(entry: &FileUse, role: &Role) -> Diagnostic {
+    let wanted = role.kind();
+    let message = format!("`{}` holds no {wanted}", shown(&entry.file));
+    let problem = Diagnostic::error("wrong-kind", message);
+    let class = if matches!(role, Role::Fixture) { "FixtureManager" } else { "TestCase" };
+    match hosts::by_extension(&entry.file).and_then(|kind| kind.classes_in) {
+        Some(of) => problem.hint(format!("a {wanted} is a class that derives from `{of}{class}`")),
+        None => problem,
     }
 }
 
