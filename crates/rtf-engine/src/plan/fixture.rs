@@ -179,7 +179,8 @@ impl ProcessPlanner<'_> {
 
     /// The user's `ssh` with its options.
     fn ssh(&mut self, host: &Spanned<String>) -> Vec<String> {
-        let written = self.scope.variable(SSH_VARIABLE).unwrap_or("ssh");
+        let named = self.scope.variable(SSH_VARIABLE).filter(|named| !named.is_empty());
+        let written = named.unwrap_or("ssh");
         match shell_words::split(written) {
             Ok(words) if !words.is_empty() => self.command(Spanned::new(words, host.span)),
             _ => {

@@ -25,6 +25,16 @@ fn all_problems_of_a_file_come_at_once_with_their_places() {
     );
 }
 
+/// The guard, and what finds left processes, rely on them.
+#[test]
+fn variables_of_rtf_cannot_be_set() {
+    for name in ["RTF_CHANNEL", "RTF_OWNER", "RTF_FORK_SERVER", "RTF_FIXTURE_START", "RTF_PORT_X"] {
+        let text = format!("<suite><test>A<env name='{name}' value='1'/></test></suite>");
+        let told: Vec<_> = problems(&text).into_iter().map(|problem| problem.message).collect();
+        assert_eq!(told, [format!("`name` is a variable that rtf sets itself: `{name}`")]);
+    }
+}
+
 #[test]
 fn what_is_wrong_with_a_process_fixture() {
     let fixture = |inside: &str| {

@@ -21,6 +21,7 @@ mod command_lines;
 mod conformance;
 mod cpp_fixture;
 mod doctor;
+mod documented;
 mod forks;
 mod guard;
 mod hooks;
