@@ -1,8 +1,10 @@
 //! Makes what is generated from the code and kept in the repository, or with
 //! `--check` tells whether what is kept is what the code makes.
 //!
-//!     cargo run -p xtask -- schemas [--check]    schemas/*.json, from rtf-model
-//!     cargo run -p xtask -- header [--check]     sdk/c/include/rtf/plugin.h
+//! ```text
+//! cargo run -p xtask -- schemas [--check]    schemas/*.json, from rtf-model
+//! cargo run -p xtask -- header [--check]     sdk/c/include/rtf/plugin.h
+//! ```
 
 mod header;
 mod openapi;

@@ -3,13 +3,11 @@
 use std::sync::Arc;
 
 use insta::assert_snapshot;
-use rtf_model::{ExitStatus, FixtureId, Source, TestId, Verdict};
+use rtf_model::{ExitStatus, TestId, Verdict};
 
-use super::world::{SECOND, World, suite};
+use super::world::{FIXTURE, SECOND, TEST, World, suite};
 use crate::plan::{AttachedPlan, FixtureBody, Probe, ProbeKind, SuitePlan};
 use crate::run::machine::{Deadline, FixtureTimer, HostInput};
-
-const FIXTURE: Source = Source::Fixture(FixtureId(0));
 
 fn plan() -> SuitePlan {
     let mut plan = suite(1, 2);
@@ -24,12 +22,11 @@ fn plan() -> SuitePlan {
 #[test]
 fn it_is_waited_for_watched_and_let_go() {
     let plan = plan();
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.now = SECOND;
     world.input(FIXTURE, HostInput::ProbesHold);
     world.input(FIXTURE, HostInput::ProbeFailed("the robot is off".to_owned()));
-    world.exit(Source::Test(TestId(0)), ExitStatus::Code(0));
+    world.exit(TEST, ExitStatus::Code(0));
     world.exit(FIXTURE, ExitStatus::Code(0));
     world.next_deadline();
     world.now = 5 * SECOND;
@@ -69,8 +66,7 @@ fn it_is_waited_for_watched_and_let_go() {
 #[test]
 fn one_that_is_not_there_says_what_it_waited_for() {
     let plan = plan();
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     for reason in ["refused", "no route to the robot"] {
         world.input(FIXTURE, HostInput::ProbeWaits(reason.to_owned()));
     }

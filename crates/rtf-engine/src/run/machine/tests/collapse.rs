@@ -1,46 +1,21 @@
 //! Fixtures that collapse: in a test, in set-up, between tests, in tear-down.
 
 use insta::assert_snapshot;
-use rtf_model::protocol::Notification;
-use rtf_model::{ExitStatus, FixtureId, Phase, Source, TestId, Verdict};
+use rtf_model::{ExitStatus, FixtureId, Source, TestId, Verdict};
 
-use super::world::{World, suite};
-use crate::plan::{AfterCollapse, SuitePlan};
+use super::world::{FIXTURE, TEST, World, suite};
+use crate::plan::AfterCollapse;
 use crate::run::machine::HostInput;
 
-const FIXTURE: Source = Source::Fixture(FixtureId(0));
-const TEST: Source = Source::Test(TestId(0));
-
-fn collapse(world: &mut World<'_>, source: Source) {
-    let reason = "the motor driver is gone".to_owned();
-    world.input(source, HostInput::Told(Notification::Collapsed { reason }));
-}
-
-fn until_test_runs(plan: &SuitePlan) -> World<'_> {
-    let mut world = World::new(plan);
-    world.start();
-    ready(&mut world, plan.fixtures.len());
-    world.phase(TEST, Phase::Setup);
-    world.phase(TEST, Phase::Run);
-    world
-}
-
-fn ready(world: &mut World<'_>, fixtures: usize) {
-    for _ in ["set-up", "check"] {
-        for fixture in 0..fixtures {
-            world.answer(Source::Fixture(FixtureId(u32::try_from(fixture).unwrap())), "passed");
-        }
-    }
-}
+const GONE: &str = "the motor driver is gone";
 
 /// Defect 4 of the predecessor: a collapse during the only test was never reported.
 #[test]
 fn a_collapse_during_the_only_test_interrupts_it() {
     let plan = suite(1, 1);
-    let mut world = until_test_runs(&plan);
-    collapse(&mut world, FIXTURE);
-    world.answer(TEST, "interrupted");
-    world.exit(TEST, ExitStatus::Code(0));
+    let mut world = World::running(&plan);
+    world.collapse(FIXTURE, GONE);
+    world.end(TEST, "interrupted");
     world.tear_down(0);
     world.finish();
     assert_snapshot!(world.story(), @"
@@ -48,7 +23,6 @@ fn a_collapse_during_the_only_test_interrupts_it() {
     0.0  fixture-starting attempt=1 fixture=0
     0.0  fixture-ready fixture=0
     0.0  test-started attempt=1 repetition=1 test=0
-    0.0  test-phase phase=setup test=0
     0.0  test-phase phase=run test=0
     0.0  fixture-collapsed fixture=0 reason=the motor driver is gone
     0.0  test-stopping cause=collapse reason=fixture `fixture0` collapsed: the motor driver is gone test=0
@@ -66,12 +40,11 @@ fn a_collapse_during_the_only_test_interrupts_it() {
 #[test]
 fn after_the_restart_the_suite_goes_on() {
     let plan = suite(2, 2);
-    let mut world = until_test_runs(&plan);
+    let mut world = World::running(&plan);
     world.exit(FIXTURE, ExitStatus::Signal(9));
-    world.answer(TEST, "passed");
-    world.exit(TEST, ExitStatus::Code(0));
+    world.end(TEST, "passed");
     world.tear_down(1);
-    ready(&mut world, 2);
+    world.ready(2);
     world.pass(1);
     world.tear_down(1);
     world.tear_down(0);
@@ -83,7 +56,6 @@ fn after_the_restart_the_suite_goes_on() {
     0.0  fixture-starting attempt=1 fixture=1
     0.0  fixture-ready fixture=1
     0.0  test-started attempt=1 repetition=1 test=0
-    0.0  test-phase phase=setup test=0
     0.0  test-phase phase=run test=0
     0.0  fixture-collapsed fixture=0 reason=its process ended with signal 9 (SIGKILL)
     0.0  test-stopping cause=collapse reason=fixture `fixture0` collapsed: its process ended with signal 9 (SIGKILL) test=0
@@ -120,12 +92,11 @@ fn after_the_restart_the_suite_goes_on() {
 fn a_rerun_keeps_both_attempts_and_the_last_one_counts() {
     let mut plan = suite(1, 1);
     plan.tests[0].after_collapse = AfterCollapse::Rerun;
-    let mut world = until_test_runs(&plan);
-    collapse(&mut world, FIXTURE);
-    world.answer(TEST, "interrupted");
-    world.exit(TEST, ExitStatus::Code(0));
+    let mut world = World::running(&plan);
+    world.collapse(FIXTURE, GONE);
+    world.end(TEST, "interrupted");
     world.tear_down(0);
-    ready(&mut world, 1);
+    world.ready(1);
     world.pass(0);
     world.tear_down(0);
     world.finish();
@@ -140,10 +111,9 @@ fn a_rerun_keeps_both_attempts_and_the_last_one_counts() {
 fn when_the_restarts_are_used_up_the_rest_is_skipped_with_the_first_cause() {
     let mut plan = suite(1, 3);
     plan.fixtures[0].restarts = 0;
-    let mut world = until_test_runs(&plan);
-    collapse(&mut world, FIXTURE);
-    world.answer(TEST, "interrupted");
-    world.exit(TEST, ExitStatus::Code(0));
+    let mut world = World::running(&plan);
+    world.collapse(FIXTURE, GONE);
+    world.end(TEST, "interrupted");
     world.tear_down(0);
     world.finish();
     assert_eq!(world.record.totals().of(Verdict::Skipped), 2);
@@ -156,13 +126,12 @@ fn when_the_restarts_are_used_up_the_rest_is_skipped_with_the_first_cause() {
 #[test]
 fn a_collapse_while_another_fixture_is_set_up_tears_both_down_and_starts_again() {
     let plan = suite(2, 1);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.answer(FIXTURE, "passed");
-    collapse(&mut world, FIXTURE);
+    world.collapse(FIXTURE, GONE);
     world.tear_down(1);
     world.tear_down(0);
-    ready(&mut world, 2);
+    world.ready(2);
     world.pass(0);
     world.tear_down(1);
     world.tear_down(0);
@@ -202,12 +171,11 @@ fn a_collapse_while_another_fixture_is_set_up_tears_both_down_and_starts_again()
 #[test]
 fn a_check_that_fails_before_a_test_restarts_the_fixture_first() {
     let plan = suite(1, 1);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.answer(FIXTURE, "passed");
     world.answer(FIXTURE, "failed");
     world.tear_down(0);
-    ready(&mut world, 1);
+    world.ready(1);
     world.pass(0);
     world.tear_down(0);
     world.finish();
@@ -218,11 +186,9 @@ fn a_check_that_fails_before_a_test_restarts_the_fixture_first() {
 #[test]
 fn a_fixture_that_dies_between_tests_is_restarted() {
     let plan = suite(1, 1);
-    let mut world = World::new(&plan);
-    world.start();
-    world.answer(FIXTURE, "passed");
-    world.exit(FIXTURE, ExitStatus::Code(0));
-    ready(&mut world, 1);
+    let mut world = World::started(&plan);
+    world.end(FIXTURE, "passed");
+    world.ready(1);
     world.pass(0);
     world.tear_down(0);
     world.finish();
@@ -232,11 +198,10 @@ fn a_fixture_that_dies_between_tests_is_restarted() {
 #[test]
 fn a_collapse_during_the_last_tear_down_is_not_green() {
     let plan = suite(2, 1);
-    let mut world = World::new(&plan);
-    world.start();
-    ready(&mut world, 2);
+    let mut world = World::started(&plan);
+    world.ready(2);
     world.pass(0);
-    collapse(&mut world, FIXTURE);
+    world.collapse(FIXTURE, GONE);
     world.tear_down(1);
     world.tear_down(0);
     world.finish();
@@ -248,10 +213,9 @@ fn a_collapse_during_the_last_tear_down_is_not_green() {
 #[test]
 fn a_test_that_passes_beside_a_dying_fixture_is_collapsed() {
     let plan = suite(2, 1);
-    let mut world = until_test_runs(&plan);
+    let mut world = World::running(&plan);
     world.unseen = true;
-    world.answer(TEST, "passed");
-    world.exit(TEST, ExitStatus::Code(0));
+    world.end(TEST, "passed");
     world.input(Source::Fixture(FixtureId(1)), HostInput::Lives);
     assert!(world.record.tests[0].is_running(), "its last word is not spoken yet");
     world.exit(FIXTURE, ExitStatus::Signal(9));
@@ -263,10 +227,9 @@ fn a_test_that_passes_beside_a_dying_fixture_is_collapsed() {
 #[test]
 fn a_test_passes_at_once_when_all_fixtures_were_seen_to_live() {
     let plan = suite(2, 1);
-    let mut world = until_test_runs(&plan);
+    let mut world = World::running(&plan);
     world.unseen = true;
-    world.answer(TEST, "passed");
-    world.exit(TEST, ExitStatus::Code(0));
+    world.end(TEST, "passed");
     for fixture in 0..2 {
         world.input(Source::Fixture(FixtureId(fixture)), HostInput::Lives);
     }
@@ -277,10 +240,9 @@ fn a_test_passes_at_once_when_all_fixtures_were_seen_to_live() {
 #[test]
 fn a_fixture_that_cannot_be_seen_holds_a_test_up_for_a_moment_only() {
     let plan = suite(1, 1);
-    let mut world = until_test_runs(&plan);
+    let mut world = World::running(&plan);
     world.unseen = true;
-    world.answer(TEST, "passed");
-    world.exit(TEST, ExitStatus::Code(0));
+    world.end(TEST, "passed");
     world.next_deadline();
     assert!(world.now.as_millis() <= 200);
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Passed));
@@ -290,10 +252,9 @@ fn a_fixture_that_cannot_be_seen_holds_a_test_up_for_a_moment_only() {
 #[test]
 fn a_test_that_errs_just_before_the_collapse_is_told_is_collapsed() {
     let plan = suite(1, 1);
-    let mut world = until_test_runs(&plan);
+    let mut world = World::running(&plan);
     world.failure(TEST, "connection reset by peer", false);
-    world.answer(TEST, "failed");
-    world.exit(TEST, ExitStatus::Code(0));
+    world.end(TEST, "failed");
     assert!(world.record.tests[0].is_running(), "its last word is not spoken yet");
     world.exit(FIXTURE, ExitStatus::Signal(9));
     world.finish();
@@ -303,10 +264,9 @@ fn a_test_that_errs_just_before_the_collapse_is_told_is_collapsed() {
 #[test]
 fn a_test_that_fails_beside_a_healthy_fixture_has_failed_a_moment_later() {
     let plan = suite(1, 1);
-    let mut world = until_test_runs(&plan);
+    let mut world = World::running(&plan);
     world.failure(TEST, "the arm is stuck", false);
-    world.answer(TEST, "failed");
-    world.exit(TEST, ExitStatus::Code(0));
+    world.end(TEST, "failed");
     let before = world.now;
     world.next_deadline();
     assert!((world.now - before).as_millis() <= 200);

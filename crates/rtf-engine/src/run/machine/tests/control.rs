@@ -2,15 +2,11 @@
 //! the rest is skipped.
 
 use insta::assert_snapshot;
-use rtf_model::{ExitStatus, FixtureId, HookId, Phase, Source, TestId, Trigger, Verdict};
+use rtf_model::{ExitStatus, TestId, Trigger, Verdict};
 
-use super::world::{World, hook, suite};
+use super::world::{FIXTURE, HOOK, TEST, World, hook, suite};
 use crate::plan::SuitePlan;
 use crate::run::machine::Input;
-
-const FIXTURE: Source = Source::Fixture(FixtureId(0));
-const TEST: Source = Source::Test(TestId(0));
-const HOOK: Source = Source::Hook(HookId(0));
 
 fn plan(repetitions: u32) -> SuitePlan {
     let mut plan = suite(1, 2);
@@ -19,28 +15,18 @@ fn plan(repetitions: u32) -> SuitePlan {
     plan
 }
 
-fn until_test_runs(plan: &SuitePlan) -> World<'_> {
-    let mut world = World::new(plan);
-    world.start();
-    world.answer(FIXTURE, "passed");
-    world.answer(FIXTURE, "passed");
-    world.phase(TEST, Phase::Run);
-    world
-}
-
 fn stop(world: &mut World<'_>, test: u32) {
     world.feed(Input::StopTest(TestId(test), "a person".to_owned()));
 }
 
 fn unwind(world: &mut World<'_>) {
-    world.answer(TEST, "interrupted");
-    world.exit(TEST, ExitStatus::Code(0));
+    world.end(TEST, "interrupted");
 }
 
 #[test]
 fn a_test_is_stopped_and_the_suite_goes_on() {
     let plan = plan(3);
-    let mut world = until_test_runs(&plan);
+    let mut world = World::running(&plan);
     stop(&mut world, 0);
     stop(&mut world, 0);
     unwind(&mut world);
@@ -80,10 +66,9 @@ fn a_test_is_stopped_and_the_suite_goes_on() {
 #[test]
 fn a_test_that_does_not_run_is_not_stopped() {
     let plan = plan(1);
-    let mut world = until_test_runs(&plan);
+    let mut world = World::running(&plan);
     stop(&mut world, 1);
-    world.answer(TEST, "passed");
-    world.exit(TEST, ExitStatus::Code(0));
+    world.end(TEST, "passed");
     stop(&mut world, 0);
     world.answer(FIXTURE, "passed");
     world.pass(1);
@@ -96,13 +81,12 @@ fn a_test_that_does_not_run_is_not_stopped() {
 fn a_stopped_test_that_collapses_too_is_not_run_again() {
     let mut plan = plan(2);
     plan.tests[0].after_collapse = crate::plan::AfterCollapse::Rerun;
-    let mut world = until_test_runs(&plan);
+    let mut world = World::running(&plan);
     world.exit(FIXTURE, ExitStatus::Signal(11));
     stop(&mut world, 0);
     unwind(&mut world);
     world.exit(HOOK, ExitStatus::Code(0));
-    world.answer(FIXTURE, "passed");
-    world.answer(FIXTURE, "passed");
+    world.ready(1);
     world.pass(1);
     world.tear_down(0);
     world.finish();
@@ -113,7 +97,7 @@ fn a_stopped_test_that_collapses_too_is_not_run_again() {
 #[test]
 fn the_rest_of_a_suite_is_skipped() {
     let plan = plan(1);
-    let mut world = until_test_runs(&plan);
+    let mut world = World::running(&plan);
     world.feed(Input::Skip("a person".to_owned()));
     unwind(&mut world);
     world.exit(HOOK, ExitStatus::Code(0));

@@ -3,18 +3,14 @@
 use insta::assert_snapshot;
 use rtf_model::{ExitStatus, FixtureId, Source, TestId, Verdict};
 
-use super::world::{World, suite};
+use super::world::{FIXTURE, TEST, World, suite};
 use crate::run::machine::{HostInput, StopLevel};
 
 #[test]
 fn fixtures_are_set_up_in_order_and_torn_down_in_reverse() {
     let plan = suite(2, 1);
-    let mut world = World::new(&plan);
-    world.start();
-    world.answer(Source::Fixture(FixtureId(0)), "passed");
-    world.answer(Source::Fixture(FixtureId(1)), "passed");
-    world.answer(Source::Fixture(FixtureId(0)), "passed");
-    world.answer(Source::Fixture(FixtureId(1)), "passed");
+    let mut world = World::started(&plan);
+    world.ready(2);
     world.pass(0);
     world.tear_down(1);
     world.tear_down(0);
@@ -46,9 +42,8 @@ fn fixtures_are_set_up_in_order_and_torn_down_in_reverse() {
 #[test]
 fn when_the_second_set_up_fails_the_first_fixture_is_torn_down() {
     let plan = suite(2, 2);
-    let mut world = World::new(&plan);
-    world.start();
-    world.answer(Source::Fixture(FixtureId(0)), "passed");
+    let mut world = World::started(&plan);
+    world.answer(FIXTURE, "passed");
     world.answer(Source::Fixture(FixtureId(1)), "error");
     world.tear_down(1);
     world.tear_down(0);
@@ -77,8 +72,7 @@ fn when_the_second_set_up_fails_the_first_fixture_is_torn_down() {
 fn every_repetition_is_run() {
     let mut plan = suite(0, 1);
     plan.tests[0].repetitions = 3;
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     for _ in 0..3 {
         assert_eq!(world.record.verdict(TestId(0)), None);
         world.pass(0);
@@ -91,15 +85,12 @@ fn every_repetition_is_run() {
 #[test]
 fn a_critical_assertion_skips_the_rest_and_tears_down() {
     let plan = suite(1, 3);
-    let mut world = World::new(&plan);
-    world.start();
-    world.answer(Source::Fixture(FixtureId(0)), "passed");
-    world.answer(Source::Fixture(FixtureId(0)), "passed");
+    let mut world = World::started(&plan);
+    world.ready(1);
     let test = Source::Test(TestId(0));
     world.phase(test, rtf_model::Phase::Run);
     world.failure(test, "the emergency stop is pressed", true);
-    world.answer(test, "failed");
-    world.exit(test, ExitStatus::Code(0));
+    world.end(test, "failed");
     world.next_deadline();
     world.tear_down(0);
     world.finish();
@@ -113,10 +104,9 @@ fn a_critical_assertion_skips_the_rest_and_tears_down() {
 #[test]
 fn a_host_that_cannot_be_started_is_an_error_of_its_test_only() {
     let plan = suite(0, 2);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     let reason = "no such file".to_owned();
-    world.input(Source::Test(TestId(0)), HostInput::SpawnFailed(reason));
+    world.input(TEST, HostInput::SpawnFailed(reason));
     world.pass(1);
     world.finish();
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Error));
@@ -126,13 +116,10 @@ fn a_host_that_cannot_be_started_is_an_error_of_its_test_only() {
 #[test]
 fn a_stop_request_interrupts_the_test_and_tears_down() {
     let plan = suite(1, 2);
-    let mut world = World::new(&plan);
-    world.start();
-    world.answer(Source::Fixture(FixtureId(0)), "passed");
-    world.answer(Source::Fixture(FixtureId(0)), "passed");
+    let mut world = World::started(&plan);
+    world.ready(1);
     world.stop(StopLevel::TearDown);
-    world.answer(Source::Test(TestId(0)), "interrupted");
-    world.exit(Source::Test(TestId(0)), ExitStatus::Code(0));
+    world.end(TEST, "interrupted");
     world.tear_down(0);
     world.finish();
     assert_snapshot!(world.story(), @"
@@ -154,13 +141,12 @@ fn a_stop_request_interrupts_the_test_and_tears_down() {
 #[test]
 fn a_second_stop_request_kills_everything_without_tear_down() {
     let plan = suite(2, 1);
-    let mut world = World::new(&plan);
-    world.start();
-    world.answer(Source::Fixture(FixtureId(0)), "passed");
+    let mut world = World::started(&plan);
+    world.answer(FIXTURE, "passed");
     world.stop(StopLevel::TearDown);
     world.stop(StopLevel::Kill);
     world.exit(Source::Fixture(FixtureId(1)), ExitStatus::Signal(9));
-    world.exit(Source::Fixture(FixtureId(0)), ExitStatus::Signal(9));
+    world.exit(FIXTURE, ExitStatus::Signal(9));
     world.finish();
     assert_snapshot!(world.story(), @"
     0.0  suite-started

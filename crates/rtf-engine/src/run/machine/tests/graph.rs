@@ -15,8 +15,7 @@ fn independent_fixtures_are_set_up_and_torn_down_together() {
     let mut plan = suite(3, 1);
     plan.fixtures[1].depends.clear();
     plan.fixtures[2].depends = vec![0, 1];
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.answer(fixture(1), "passed");
     world.answer(fixture(0), "passed");
     world.answer(fixture(2), "passed");
@@ -58,8 +57,7 @@ fn a_collapse_takes_only_those_with_it_that_depend_on_it() {
     let mut plan = suite(3, 1);
     plan.fixtures[1].depends.clear();
     plan.fixtures[2].depends = vec![1];
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     (0..3).for_each(|number| world.answer(fixture(number), "passed"));
     world.exit(fixture(1), ExitStatus::Signal(9));
     world.tear_down(2);
@@ -78,8 +76,7 @@ fn each_further_restart_waits_twice_as_long() {
     let mut plan = suite(1, 1);
     plan.fixtures[0].restarts = 5;
     plan.fixtures[0].restart_delay = 3 * SECOND;
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.answer(fixture(0), "passed");
     let mut waited = Vec::new();
     for _ in 0..4 {
@@ -97,8 +94,7 @@ fn after_a_quiet_time_the_restart_delay_starts_anew_but_restarts_are_counted_on(
     let mut plan = suite(1, 1);
     plan.fixtures[0].restarts = 4;
     plan.fixtures[0].restart_delay = SECOND;
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.answer(fixture(0), "passed");
     let mut waited = Vec::new();
     // How long it is ready before each collapse.
@@ -123,8 +119,7 @@ fn a_restart_whose_set_up_takes_long_was_not_a_quiet_time() {
     plan.fixtures[0].restarts = 3;
     plan.fixtures[0].restart_delay = SECOND;
     plan.fixtures[0].limits.setup = 100 * SECOND;
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.answer(fixture(0), "passed");
     world.exit(fixture(0), ExitStatus::Code(1));
     world.next_deadline();
@@ -139,8 +134,7 @@ fn a_restart_whose_set_up_takes_long_was_not_a_quiet_time() {
 fn a_stop_while_a_restart_waits_starts_nothing() {
     let mut plan = suite(1, 1);
     plan.fixtures[0].restart_delay = SECOND;
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.answer(fixture(0), "passed");
     world.exit(fixture(0), ExitStatus::Code(1));
     world.stop(StopLevel::TearDown);

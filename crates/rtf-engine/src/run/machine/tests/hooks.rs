@@ -1,16 +1,11 @@
 //! Hooks: after what, before what, and with which outcome.
 
 use insta::assert_snapshot;
-use rtf_model::protocol::Notification;
-use rtf_model::{ExitStatus, FixtureId, HookId, Phase, Source, TestId, Trigger, Verdict};
+use rtf_model::{ExitStatus, FixtureId, Phase, Source, TestId, Trigger, Verdict};
 
-use super::world::{World, hook, suite};
+use super::world::{FIXTURE, HOOK, TEST, World, hook, suite};
 use crate::plan::SuitePlan;
-use crate::run::machine::{Deadline, HostInput, StopLevel};
-
-const FIXTURE: Source = Source::Fixture(FixtureId(0));
-const TEST: Source = Source::Test(TestId(0));
-const HOOK: Source = Source::Hook(HookId(0));
+use crate::run::machine::{Deadline, StopLevel};
 
 fn plan(tests: usize, on: &[Trigger]) -> SuitePlan {
     let mut plan = suite(1, tests);
@@ -18,26 +13,16 @@ fn plan(tests: usize, on: &[Trigger]) -> SuitePlan {
     plan
 }
 
-fn until_test_runs(plan: &SuitePlan) -> World<'_> {
-    let mut world = World::new(plan);
-    world.start();
-    world.answer(FIXTURE, "passed");
-    world.answer(FIXTURE, "passed");
-    world.phase(TEST, Phase::Run);
-    world
-}
-
 fn fail(world: &mut World<'_>) {
     world.failure(TEST, "the arm is stuck", false);
-    world.answer(TEST, "failed");
-    world.exit(TEST, ExitStatus::Code(0));
+    world.end(TEST, "failed");
     world.next_deadline();
 }
 
 #[test]
 fn after_a_failure_the_hook_runs_before_the_next_test() {
     let plan = plan(2, &[Trigger::Failure]);
-    let mut world = until_test_runs(&plan);
+    let mut world = World::running(&plan);
     fail(&mut world);
     world.exit(HOOK, ExitStatus::Code(0));
     world.answer(FIXTURE, "passed");
@@ -72,11 +57,9 @@ fn after_a_failure_the_hook_runs_before_the_next_test() {
 #[test]
 fn after_a_collapse_the_hook_runs_before_anything_is_torn_down() {
     let plan = plan(1, &[Trigger::Collapse]);
-    let mut world = until_test_runs(&plan);
-    let reason = "no heartbeat".to_owned();
-    world.input(FIXTURE, HostInput::Told(Notification::Collapsed { reason }));
-    world.answer(TEST, "interrupted");
-    world.exit(TEST, ExitStatus::Code(0));
+    let mut world = World::running(&plan);
+    world.collapse(FIXTURE, "no heartbeat");
+    world.end(TEST, "interrupted");
     world.exit(HOOK, ExitStatus::Code(0));
     world.tear_down(0);
     world.finish();
@@ -102,10 +85,9 @@ fn after_a_collapse_the_hook_runs_before_anything_is_torn_down() {
 #[test]
 fn a_hook_that_fails_is_told_and_the_run_is_not_green() {
     let plan = plan(1, &[Trigger::End]);
-    let mut world = until_test_runs(&plan);
+    let mut world = World::running(&plan);
     world.phase(TEST, Phase::TearDown);
-    world.answer(TEST, "passed");
-    world.exit(TEST, ExitStatus::Code(0));
+    world.end(TEST, "passed");
     world.exit(HOOK, ExitStatus::Code(3));
     world.tear_down(0);
     world.finish();
@@ -118,7 +100,7 @@ fn a_hook_that_fails_is_told_and_the_run_is_not_green() {
 #[test]
 fn a_hook_that_hangs_is_ended_by_force() {
     let plan = plan(1, &[Trigger::Failure]);
-    let mut world = until_test_runs(&plan);
+    let mut world = World::running(&plan);
     fail(&mut world);
     assert_eq!(world.next_deadline(), Deadline::Hook);
     assert_eq!(world.next_deadline(), Deadline::Hook);
@@ -132,7 +114,7 @@ fn a_hook_that_hangs_is_ended_by_force() {
 #[test]
 fn the_end_does_not_call_a_hook_again_that_ran_since_the_last_test() {
     let plan = plan(1, &[Trigger::Failure, Trigger::End]);
-    let mut world = until_test_runs(&plan);
+    let mut world = World::running(&plan);
     fail(&mut world);
     world.exit(HOOK, ExitStatus::Code(0));
     world.tear_down(0);
@@ -143,10 +125,9 @@ fn the_end_does_not_call_a_hook_again_that_ran_since_the_last_test() {
 #[test]
 fn the_first_signal_calls_the_hook_and_the_second_one_leaves_it_running() {
     let plan = plan(1, &[Trigger::Interrupt]);
-    let mut world = until_test_runs(&plan);
+    let mut world = World::running(&plan);
     world.stop(StopLevel::TearDown);
-    world.answer(TEST, "interrupted");
-    world.exit(TEST, ExitStatus::Code(0));
+    world.end(TEST, "interrupted");
     world.stop(StopLevel::Kill);
     world.exit(FIXTURE, ExitStatus::Signal(9));
     world.exit(HOOK, ExitStatus::Code(0));
@@ -173,8 +154,7 @@ fn the_first_signal_calls_the_hook_and_the_second_one_leaves_it_running() {
 fn a_fixture_that_breaks_calls_its_hook_before_the_others_are_torn_down() {
     let mut plan = suite(2, 1);
     plan.hooks = vec![hook(0, &[Trigger::FixtureBroken])];
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.answer(FIXTURE, "passed");
     world.answer(Source::Fixture(FixtureId(1)), "error");
     world.exit(HOOK, ExitStatus::Code(0));

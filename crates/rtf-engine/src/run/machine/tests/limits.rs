@@ -3,17 +3,13 @@
 use insta::assert_snapshot;
 use rtf_model::{ExitStatus, FixtureId, HookId, Phase, Source, TestId, Trigger, Verdict};
 
-use super::world::{SECOND, World, hook, suite};
+use super::world::{FIXTURE, HOOK, SECOND, TEST, World, hook, suite};
 use crate::run::machine::{Deadline, HostInput, StopLevel, TestTimer};
-
-const FIXTURE: Source = Source::Fixture(FixtureId(0));
-const TEST: Source = Source::Test(TestId(0));
 
 #[test]
 fn a_test_that_hangs_is_dumped_asked_terminated_and_killed() {
     let plan = suite(0, 1);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.phase(TEST, Phase::Run);
     assert_eq!(world.next_deadline(), Deadline::Test(TestId(0), TestTimer::Slow));
     world.next_deadline();
@@ -48,8 +44,7 @@ fn each_phase_has_its_own_limit() {
         (&[Phase::Setup, Phase::Run, Phase::TearDown], "tear-down did not end within 3s"),
     ] {
         let plan = suite(0, 1);
-        let mut world = World::new(&plan);
-        world.start();
+        let mut world = World::started(&plan);
         phases.iter().for_each(|phase| world.phase(TEST, *phase));
         while world.next_deadline() != Deadline::Test(TestId(0), TestTimer::Limit) {}
         world.exit(TEST, ExitStatus::Code(0));
@@ -61,8 +56,7 @@ fn each_phase_has_its_own_limit() {
 #[test]
 fn a_fixture_that_is_not_ready_in_time_is_broken_and_torn_down() {
     let plan = suite(1, 1);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.next_deadline();
     world.next_deadline();
     world.next_deadline();
@@ -85,14 +79,12 @@ fn a_fixture_that_is_not_ready_in_time_is_broken_and_torn_down() {
 #[test]
 fn a_check_that_hangs_is_a_collapse() {
     let plan = suite(1, 1);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.answer(FIXTURE, "passed");
     world.next_deadline();
     assert_eq!(world.record.fixtures[0].collapses[0].1, "check did not answer within 1s");
     world.exit(FIXTURE, ExitStatus::Code(1));
-    world.answer(FIXTURE, "passed");
-    world.answer(FIXTURE, "passed");
+    world.ready(1);
     world.pass(0);
     world.tear_down(0);
     world.finish();
@@ -102,15 +94,12 @@ fn a_check_that_hangs_is_a_collapse() {
 fn checks_are_asked_for_while_a_test_runs() {
     let mut plan = suite(1, 1);
     plan.fixtures[0].check_every = Some(SECOND);
-    let mut world = World::new(&plan);
-    world.start();
-    world.answer(FIXTURE, "passed");
-    world.answer(FIXTURE, "passed");
+    let mut world = World::started(&plan);
+    world.ready(1);
     world.phase(TEST, Phase::Run);
     world.next_deadline();
     world.answer(FIXTURE, "failed");
-    world.answer(TEST, "interrupted");
-    world.exit(TEST, ExitStatus::Code(0));
+    world.end(TEST, "interrupted");
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Collapsed));
 }
 
@@ -118,10 +107,8 @@ fn checks_are_asked_for_while_a_test_runs() {
 fn the_limit_of_the_suite_ends_it_with_tear_down() {
     let mut plan = suite(1, 2);
     plan.timeout = Some(SECOND);
-    let mut world = World::new(&plan);
-    world.start();
-    world.answer(FIXTURE, "passed");
-    world.answer(FIXTURE, "passed");
+    let mut world = World::started(&plan);
+    world.ready(1);
     world.phase(TEST, Phase::Run);
     world.next_deadline();
     world.exit(TEST, ExitStatus::Code(0));
@@ -138,17 +125,15 @@ fn a_shutdown_that_takes_too_long_goes_on_by_force_and_the_hooks_still_run() {
     plan.hooks = vec![hook(0, &[Trigger::Interrupt]), hook(1, &[Trigger::End])];
     plan.hooks[0].timeout = 15 * SECOND;
     plan.fixtures[1].limits.teardown = 100 * SECOND;
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.answer(FIXTURE, "passed");
     world.answer(Source::Fixture(FixtureId(1)), "passed");
     (0..2).for_each(|number| world.answer(Source::Fixture(FixtureId(number)), "passed"));
     world.now = SECOND;
     world.stop(StopLevel::TearDown);
-    world.answer(TEST, "interrupted");
-    world.exit(TEST, ExitStatus::Code(0));
+    world.end(TEST, "interrupted");
     world.now = 12 * SECOND;
-    world.exit(Source::Hook(HookId(0)), ExitStatus::Code(0));
+    world.exit(HOOK, ExitStatus::Code(0));
     world.exit(Source::Hook(HookId(1)), ExitStatus::Code(0));
     assert_eq!(world.next_deadline(), Deadline::Shutdown);
     (0..2).rev().for_each(|number| {
@@ -185,16 +170,14 @@ fn a_hook_that_runs_when_the_shutdown_is_over_comes_to_its_end() {
     let mut plan = suite(1, 1);
     plan.hooks = vec![hook(0, &[Trigger::Interrupt]), hook(1, &[Trigger::End])];
     plan.hooks[0].timeout = 30 * SECOND;
-    let mut world = World::new(&plan);
-    world.start();
-    world.answer(FIXTURE, "passed");
-    world.answer(FIXTURE, "passed");
+    let mut world = World::started(&plan);
+    world.ready(1);
     world.stop(StopLevel::TearDown);
     world.exit(TEST, ExitStatus::Code(0));
     assert_eq!(world.next_deadline(), Deadline::Shutdown);
     world.exit(FIXTURE, ExitStatus::Signal(9));
     world.now = 29 * SECOND;
-    world.exit(Source::Hook(HookId(0)), ExitStatus::Code(0));
+    world.exit(HOOK, ExitStatus::Code(0));
     world.exit(Source::Hook(HookId(1)), ExitStatus::Code(0));
     world.finish();
     assert_snapshot!(world.story(), @"
@@ -221,8 +204,7 @@ fn a_stubborn_test_is_killed_when_the_shutdown_is_over() {
     let mut plan = suite(0, 2);
     let limits = crate::plan::TestLimits { grace: 100 * SECOND, ..*plan.tests[0].limits };
     plan.tests[0].limits = std::sync::Arc::new(limits);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.phase(TEST, Phase::Run);
     world.next_deadline();
     world.stop(StopLevel::TearDown);

@@ -1,15 +1,12 @@
 //! What fixtures are told of tests, and what becomes of one that does not bear it.
 
 use rtf_model::protocol::{Notification, Reply, Request};
-use rtf_model::{
-    Attachment, FixtureId, Measurement, Message, MessageKind, Source, TestId, Verdict,
-};
+use rtf_model::{Attachment, FixtureId, Measurement, Message, MessageKind, Source, Verdict};
 
-use super::world::{World, suite};
+use super::world::{TEST, World, suite};
 use crate::run::machine::{Deadline, FixtureTimer, HostInput, StopLevel};
 
 const RECORDER: Source = Source::Fixture(FixtureId(0));
-const TEST: Source = Source::Test(TestId(0));
 
 /// What the fixture was told last.
 fn told(world: &World<'_>) -> String {
@@ -28,8 +25,7 @@ fn told(world: &World<'_>) -> String {
 
 /// A suite whose fixture was told that its test begins, and whose test runs.
 fn begun<'p>(plan: &'p crate::plan::SuitePlan) -> World<'p> {
-    let mut world = World::new(plan);
-    world.start();
+    let mut world = World::started(plan);
     world.set_up_to_hear(0);
     world.answer(RECORDER, "passed");
     assert_eq!(told(&world), "test0 1.1 starts");
@@ -100,8 +96,7 @@ fn what_a_fixture_keeps_at_the_end_of_a_test_is_the_tests() {
 #[test]
 fn a_fixture_that_asked_for_nothing_is_told_nothing() {
     let plan = suite(1, 1);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     for _ in ["set-up", "check"] {
         world.answer(RECORDER, "passed");
     }
@@ -146,8 +141,7 @@ fn an_error_at_the_end_of_a_test_is_the_fixtures() {
 #[test]
 fn a_test_does_not_begin_before_a_fixture_has_borne_the_news() {
     let plan = suite(1, 1);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.set_up_to_hear(0);
     world.answer(RECORDER, "passed");
     world.answer(RECORDER, "failed");
@@ -178,8 +172,7 @@ fn fixtures_are_told_of_a_test_that_another_ones_collapse_ended() {
     }
     world.answer(RECORDER, "passed");
     world.answer(RECORDER, "passed");
-    let reason = "it fell".to_owned();
-    world.input(robot, HostInput::Told(Notification::Collapsed { reason }));
+    world.collapse(robot, "it fell");
     world.answer(TEST, "interrupted");
     world.exit(TEST, rtf_model::ExitStatus::Code(0));
     assert_eq!(told(&world), "test0 collapsed: fixture `fixture1` collapsed: it fell");
@@ -220,8 +213,7 @@ fn what_is_kept_when_no_test_ends_is_an_error_of_the_fixture() {
 fn tests_that_run_at_once_are_told_one_by_one() {
     let mut plan = suite(1, 2);
     plan.parallel = 2;
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.set_up_to_hear(0);
     world.answer(RECORDER, "passed");
     let starts: Vec<u64> = requests(&world, |r| matches!(r, Request::TestStarted(_)));

@@ -2,17 +2,13 @@
 
 use insta::assert_snapshot;
 use rtf_model::protocol::Notification;
-use rtf_model::{
-    EventKind, ExitStatus, FixtureId, HookId, Phase, Source, TestId, Trigger, Verdict,
-};
+use rtf_model::{EventKind, ExitStatus, Phase, Source, TestId, Trigger, Verdict};
 
-use super::world::{SECOND, World, hook, suite};
+use super::world::{FIXTURE, HOOK, SECOND, World, hook, suite};
 use crate::plan::{AfterCollapse, Retries, SuitePlan};
 use crate::run::FailLimit;
 use crate::run::machine::{Deadline, HostInput, Input, StopLevel, SuiteMachine};
 
-const FIXTURE: Source = Source::Fixture(FixtureId(0));
-const HOOK: Source = Source::Hook(HookId(0));
 const OK: ExitStatus = ExitStatus::Code(0);
 
 fn plan(fixtures: usize, tests: usize, parallel: u32) -> SuitePlan {
@@ -26,11 +22,9 @@ fn test(id: u32) -> Source {
 }
 
 fn started(plan: &SuitePlan) -> World<'_> {
-    let mut world = World::new(plan);
-    world.start();
+    let mut world = World::started(plan);
     if !plan.fixtures.is_empty() {
-        world.answer(FIXTURE, "passed");
-        world.answer(FIXTURE, "passed");
+        world.ready(1);
     }
     world
 }
@@ -49,13 +43,11 @@ fn running(world: &World<'_>) -> Vec<u32> {
 fn fail(world: &mut World<'_>, id: u32, critical: bool) {
     world.phase(test(id), Phase::Run);
     world.failure(test(id), "too far", critical);
-    world.answer(test(id), "failed");
-    world.exit(test(id), OK);
+    world.end(test(id), "failed");
 }
 
 fn interrupted(world: &mut World<'_>, id: u32) {
-    world.answer(test(id), "interrupted");
-    world.exit(test(id), OK);
+    world.end(test(id), "interrupted");
 }
 
 fn verdicts(world: &World<'_>) -> Vec<&'static str> {
@@ -362,8 +354,7 @@ fn check_is_asked_before_a_test_begins_beside_others() {
     assert!(world.happened.iter().any(stopping), "{}", world.story());
     interrupted(&mut world, 1);
     world.tear_down(0);
-    world.answer(FIXTURE, "passed");
-    world.answer(FIXTURE, "passed");
+    world.ready(1);
     world.pass(2);
     world.tear_down(0);
     world.finish();

@@ -26,8 +26,7 @@ fn it_is_told_before_anything_begins() {
         variables: Vec::new(),
         join: "export A=1".to_owned(),
     });
-    let mut world = World::new(&plan);
-    world.start();
+    let world = World::started(&plan);
     assert_snapshot!(world.story(), @"
     0.0  suite-started
     0.0  suite-prepared join=export A=1
@@ -39,8 +38,7 @@ fn it_is_told_before_anything_begins() {
 #[test]
 fn without_it_each_test_is_an_error_and_nothing_is_started() {
     let plan = refused();
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.finish();
     assert!(world.hosts.is_empty(), "{:?}", world.hosts);
     assert_snapshot!(world.story(), @"

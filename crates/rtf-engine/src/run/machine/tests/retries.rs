@@ -5,12 +5,10 @@ use std::time::Duration;
 use insta::assert_snapshot;
 use rtf_model::{ExitStatus, Phase, Source, TestId, Verdict};
 
-use super::world::{SECOND, World, hook, suite};
+use super::world::{SECOND, TEST, World, hook, suite};
 use crate::plan::{Retries, SuitePlan};
 use crate::run::FailLimit;
 use crate::run::machine::{Deadline, StopLevel, SuiteMachine};
-
-const TEST: Source = Source::Test(TestId(0));
 
 fn plan(count: u32, delay: Duration) -> SuitePlan {
     let mut plan = suite(0, 2);
@@ -21,15 +19,13 @@ fn plan(count: u32, delay: Duration) -> SuitePlan {
 fn fail(world: &mut World<'_>, critical: bool) {
     world.phase(TEST, Phase::Run);
     world.failure(TEST, "stuck", critical);
-    world.answer(TEST, "failed");
-    world.exit(TEST, ExitStatus::Code(0));
+    world.end(TEST, "failed");
 }
 
 #[test]
 fn a_pass_at_the_second_attempt_is_flaky() {
     let plan = plan(2, Duration::ZERO);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     fail(&mut world, false);
     world.pass(0);
     world.pass(1);
@@ -64,8 +60,7 @@ fn a_pass_at_the_second_attempt_is_flaky() {
 fn each_repetition_has_its_own_retries_and_then_it_has_failed() {
     let mut plan = plan(1, Duration::ZERO);
     plan.tests[0].repetitions = 2;
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     fail(&mut world, false);
     world.pass(0);
     fail(&mut world, false);
@@ -82,8 +77,7 @@ fn each_repetition_has_its_own_retries_and_then_it_has_failed() {
 #[test]
 fn a_retry_waits_and_ctrl_c_ends_the_wait() {
     let plan = plan(5, 10 * SECOND);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     fail(&mut world, false);
     assert!(world.hosts.is_empty());
     assert_eq!(world.next_deadline(), Deadline::Retry(TestId(0)));
@@ -114,8 +108,7 @@ fn a_retry_waits_and_ctrl_c_ends_the_wait() {
 fn nothing_follows_a_critical_assertion_and_hooks_see_each_attempt() {
     let mut plan = plan(5, Duration::ZERO);
     plan.hooks = vec![hook(0, &[rtf_model::Trigger::Failure])];
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     let park = Source::Hook(rtf_model::HookId(0));
     for critical in [false, true] {
         fail(&mut world, critical);

@@ -2,12 +2,12 @@
 
 use rtf_model::{ExitStatus, FixtureId, Phase, Source, TestId, Verdict};
 
-use super::world::{SECOND, World, suite};
+use super::world::{SECOND, TEST, World, suite};
 use crate::plan::{Retries, SuitePlan};
 use crate::run::FailLimit;
 use crate::run::machine::{Input, StopLevel, SuiteMachine};
 
-const TESTS: [Source; 2] = [Source::Test(TestId(0)), Source::Test(TestId(1))];
+const TESTS: [Source; 2] = [TEST, Source::Test(TestId(1))];
 
 /// A suite that is repeated for ten seconds.
 fn timed(plan: &SuitePlan, fails: FailLimit) -> World<'_> {
@@ -20,8 +20,7 @@ fn timed(plan: &SuitePlan, fails: FailLimit) -> World<'_> {
 fn fail(world: &mut World<'_>, test: usize) {
     world.phase(TESTS[test], Phase::Run);
     world.failure(TESTS[test], "stuck", false);
-    world.answer(TESTS[test], "failed");
-    world.exit(TESTS[test], ExitStatus::Code(0));
+    world.end(TESTS[test], "failed");
 }
 
 fn repetitions(world: &World<'_>, test: usize) -> Vec<u32> {

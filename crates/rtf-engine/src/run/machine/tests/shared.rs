@@ -70,8 +70,7 @@ fn stays(world: &mut World<'_>, test: u32) -> HostId {
 #[test]
 fn a_host_is_asked_for_the_next_test_while_the_present_one_runs() {
     let plan = shared(0, 3);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     let host = world.host_of(source(0));
     assert!(world.joined.is_empty(), "not before it is known that it can");
     initialized(&mut world, 0);
@@ -91,8 +90,7 @@ fn a_host_is_asked_for_the_next_test_while_the_present_one_runs() {
 fn what_a_host_uses_is_told_before_it_gets_the_next_repetition() {
     let mut plan = shared(0, 1);
     plan.tests[0].repetitions = 3;
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     initialized(&mut world, 0);
     for served in 1..=2 {
         let host = stays(&mut world, 0);
@@ -113,8 +111,7 @@ fn what_a_host_uses_is_told_before_it_gets_the_next_repetition() {
 #[test]
 fn a_host_that_dies_before_the_next_test_begins_is_the_present_tests() {
     let plan = shared(0, 2);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     initialized(&mut world, 0);
     stays(&mut world, 0);
     world.exit(source(0), ExitStatus::Signal(11));
@@ -127,8 +124,7 @@ fn a_host_that_dies_before_the_next_test_begins_is_the_present_tests() {
 #[test]
 fn a_host_that_dies_idle_is_nobodys_and_the_next_test_gets_another() {
     let plan = shared(1, 2);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     let fixture = Source::Fixture(rtf_model::FixtureId(0));
     world.answer(fixture, "passed");
     world.answer(fixture, "passed");
@@ -149,8 +145,7 @@ fn a_host_that_dies_idle_is_nobodys_and_the_next_test_gets_another() {
 #[test]
 fn a_stop_that_crosses_the_answer_stops_the_next_test_too() {
     let plan = shared(0, 3);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     initialized(&mut world, 0);
     let host = stays(&mut world, 0);
     world.stop(StopLevel::TearDown);
@@ -165,8 +160,7 @@ fn a_stop_that_crosses_the_answer_stops_the_next_test_too() {
 #[test]
 fn a_host_without_a_test_is_ended_with_the_suite() {
     let plan = shared(1, 2);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     let fixture = Source::Fixture(rtf_model::FixtureId(0));
     world.answer(fixture, "passed");
     world.answer(fixture, "passed");

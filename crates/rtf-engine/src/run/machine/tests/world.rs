@@ -1,117 +1,28 @@
 //! A world for the machine: plans, hosts that do what a test says, and time.
 
+mod acts;
+mod plans;
+mod story;
+
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
-use std::sync::Arc;
 use std::time::Duration;
 
-use rtf_model::protocol::{Notification, Reply, Request};
+use rtf_model::protocol::Request;
 use rtf_model::{
-    Event, EventKind, ExitStatus, FixtureId, FixturePlanned, HookId, HookPlanned, Message,
-    MessageKind, Micros, OrderChecker, Phase, Record, RunStarted, Source, SuiteId, SuitePlanned,
-    TestId, TestPlanned, Trigger,
+    Event, EventKind, ExitStatus, FixturePlanned, HookPlanned, Micros, OrderChecker, Record,
+    RunStarted, Source, SuitePlanned, TestPlanned,
 };
 
-use crate::plan::*;
+pub use self::acts::{FIXTURE, HOOK, TEST};
+pub use self::plans::{hook, suite};
+use self::story::{effect_of, line_of};
+use crate::plan::SuitePlan;
 use crate::run::FailLimit;
 use crate::run::machine::{
     Deadline, Effect, HostId, HostInput, Input, Stop, StopLevel, SuiteMachine,
 };
 
 pub const SECOND: Duration = Duration::from_secs(1);
-
-pub fn suite(fixtures: usize, tests: usize) -> SuitePlan {
-    SuitePlan {
-        id: SuiteId(0),
-        name: "arm".to_owned(),
-        file: "arm.xml".to_owned(),
-        folder: PathBuf::from("."),
-        description: String::new(),
-        environment: String::new(),
-        env: Arc::default(),
-        timeout: None,
-        isolate: Isolation::default(),
-        given: Given::Nothing,
-        requires: Vec::new(),
-        tolerates_collapse: false,
-        critical_stops_run: false,
-        parallel: 1,
-        fixtures: (0..fixtures).map(fixture).collect(),
-        hooks: Vec::new(),
-        tests: (0..tests).map(test).collect(),
-    }
-}
-
-fn plugin() -> PluginPlan {
-    PluginPlan {
-        plugin_type: "dll".into(),
-        file: PathBuf::from("plugin.so"),
-        param: String::new(),
-        args: Vec::new(),
-        host: Arc::new(HostPlan {
-            command: vec!["host".to_owned()],
-            env: Vec::new(),
-            forks: false,
-        }),
-    }
-}
-
-fn fixture(index: usize) -> FixturePlan {
-    FixturePlan {
-        id: FixtureId(u32::try_from(index).unwrap()),
-        name: format!("fixture{index}"),
-        depends: index.checked_sub(1).into_iter().collect(),
-        body: FixtureBody::Plugin(plugin()),
-        env: Vec::new(),
-        limits: FixtureLimits {
-            setup: 10 * SECOND,
-            check: SECOND,
-            notice: 2 * SECOND,
-            teardown: 3 * SECOND,
-        },
-        restarts: 1,
-        restart_delay: Duration::ZERO,
-        check_every: None,
-    }
-}
-
-/// A hook that is a command.
-pub fn hook(index: usize, on: &[Trigger]) -> HookPlan {
-    HookPlan {
-        id: HookId(u32::try_from(index).unwrap()),
-        name: format!("hook{index}"),
-        on: on.to_vec(),
-        body: HookBody::Command(vec!["park".to_owned()]),
-        env: Vec::new(),
-        timeout: 4 * SECOND,
-    }
-}
-
-fn test(index: usize) -> TestPlan {
-    let limits = TestLimits {
-        load: 10 * SECOND,
-        setup: 10 * SECOND,
-        run: 5 * SECOND,
-        teardown: 3 * SECOND,
-        slow: 2 * SECOND,
-        grace: SECOND,
-    };
-    TestPlan {
-        id: TestId(u32::try_from(index).unwrap()),
-        name: format!("test{index}"),
-        plugin: plugin(),
-        env: Vec::new(),
-        repetitions: 1,
-        limits: Arc::new(limits),
-        after_collapse: AfterCollapse::Fail,
-        leaks: Leaks::Report,
-        retries: Retries::default(),
-        critical: false,
-        exclusive: false,
-        shared: false,
-        tags: Vec::new(),
-    }
-}
 
 /// The machine, what it asked for, and what it reported.
 pub struct World<'p> {
@@ -286,51 +197,6 @@ impl<'p> World<'p> {
         self.input(source, HostInput::Exited(status, Vec::new()));
     }
 
-    /// Answers the request that was sent last to a host and waits for an answer.
-    pub fn answer(&mut self, source: Source, outcome: &str) {
-        let host = self.host_of(source);
-        let asked = self.sent.iter().rev().find(|(to, id, _)| *to == host && id.is_some());
-        let id = asked.and_then(|(_, id, _)| *id).expect("a request");
-        let value = serde_json::json!({ "outcome": outcome, "reason": format!("says {outcome}") });
-        self.input(source, HostInput::Answered(id, Reply::Result(value)));
-    }
-
-    /// A fixture is set up, and wants to be told of each test.
-    pub fn set_up_to_hear(&mut self, fixture: u32) {
-        let source = Source::Fixture(FixtureId(fixture));
-        let notices = ["test-started", "test-finished"];
-        let value = serde_json::json!({ "outcome": "passed", "notices": notices });
-        self.input(source, HostInput::Answered(2, Reply::Result(value)));
-    }
-
-    pub fn phase(&mut self, source: Source, phase: Phase) {
-        self.input(source, HostInput::Told(Notification::Phase { phase }));
-    }
-
-    pub fn failure(&mut self, source: Source, text: &str, critical: bool) {
-        let kind = MessageKind::Failure;
-        let message =
-            Message { kind, text: text.to_owned(), location: None, comparison: None, critical };
-        self.input(source, HostInput::Told(Notification::Message(message)));
-    }
-
-    /// A test that goes through all its phases and ends well.
-    pub fn pass(&mut self, test: u32) {
-        let source = Source::Test(TestId(test));
-        for phase in [Phase::Setup, Phase::Run, Phase::TearDown] {
-            self.phase(source, phase);
-        }
-        self.answer(source, "passed");
-        self.exit(source, ExitStatus::Code(0));
-    }
-
-    /// A fixture that is torn down and ends well.
-    pub fn tear_down(&mut self, fixture: u32) {
-        let source = Source::Fixture(FixtureId(fixture));
-        self.answer(source, "passed");
-        self.exit(source, ExitStatus::Code(0));
-    }
-
     /// Lets time pass up to the next deadline, which then passes.
     pub fn next_deadline(&mut self) -> Deadline {
         let next = self.deadlines.iter().min_by_key(|(_, at)| **at);
@@ -352,38 +218,5 @@ impl<'p> World<'p> {
         let story =
             self.log.iter().filter(|line| !line.contains("-planned") && !line.contains("run-"));
         story.cloned().collect::<Vec<_>>().join("\n")
-    }
-}
-
-fn line_of(json: &serde_json::Value) -> String {
-    let mut line = json["type"].as_str().unwrap_or_default().to_owned();
-    // Their order in the map depends on features that others ask of serde_json.
-    let fields: BTreeMap<_, _> = json.as_object().unwrap().iter().collect();
-    for (key, value) in fields {
-        if !["type", "suite", "log_tail", "message"].contains(&key.as_str()) {
-            let text = text_of(value);
-            line += &format!(" {key}={text}");
-        }
-    }
-    line
-}
-
-fn text_of(value: &serde_json::Value) -> String {
-    sorted(value).to_string().replace('"', "")
-}
-
-fn sorted(value: &serde_json::Value) -> serde_json::Value {
-    let Some(object) = value.as_object() else { return value.clone() };
-    let fields: BTreeMap<_, _> = object.iter().map(|(key, value)| (key, sorted(value))).collect();
-    fields.into_iter().map(|(key, value)| (key.clone(), value)).collect()
-}
-
-fn effect_of(effect: &Effect) -> String {
-    match effect {
-        Effect::CloseChannel(_) => "→ close the channel".to_owned(),
-        Effect::TakeStack(..) => "→ take a stack dump".to_owned(),
-        Effect::Signal(_, signal) => format!("→ signal {signal}"),
-        Effect::KillTree(_) => "→ kill the tree".to_owned(),
-        other => format!("→ {other:?}"),
     }
 }
