@@ -117,6 +117,11 @@ web_api() {
   PATH="$checkers:$PATH" python3 tools/check_web_api.py "$TARGET/debug/rtf"
 }
 
+rust_docs() {
+  RUSTDOCFLAGS='-D warnings' \
+    cargo doc --workspace --no-deps --document-private-items --locked
+}
+
 lint_ruby() {
   (cd sdk/ruby && rubocop .)
   # Plug-ins are named by their files, and say in a line what they do.
@@ -229,6 +234,7 @@ step 'lint ruby' lint_ruby
 step 'lint suites' suites_are_valid
 step 'lint page' in_web check
 step 'lint rust' cargo clippy --workspace --all-targets --locked -- -D warnings
+step 'lint rust docs' rust_docs
 step 'generated schemas' cargo run --quiet --locked -p xtask -- schemas --check
 step 'generated c header' cargo run --quiet --locked -p xtask -- header --check
 step 'page' tools/web.sh

@@ -5,7 +5,7 @@
 //! everything that `spec/protocol.md` asks of every host alike: it answers
 //! requests in order, announces phases, applies the rule that *the first
 //! failure or error decides*, hears a request to stop while the plug-in runs,
-//! and ends with the runner. [`check`] is the other way in: `--check FILE…`.
+//! and ends with the runner. [`check()`] is the other way in: `--check FILE…`.
 //!
 //! What this crate does not know is any language: loading and calling a
 //! plug-in is the host's.

@@ -76,7 +76,7 @@ pub struct LoadError {
 /// thread that reads the channel, while the plug-in runs on another.
 pub type Reaction = Box<dyn Fn(&Session) + Send>;
 
-/// A host. All functions are called on the thread that called [`crate::serve`].
+/// A host. All functions are called on the thread that called [`crate::serve()`].
 pub trait HostPlugin {
     /// The host's name and version, and how it dumps stacks.
     fn describe(&self) -> Initialized;

@@ -4,7 +4,7 @@
 //! of which no test is left is not run, and neither are its fixtures.
 //!
 //! - [`filter`]: the filter language, as a tree that is asked.
-//! - [`parse`]: text → tree, with the place of every mistake.
+//! - [`mod@parse`]: text → tree, with the place of every mistake.
 //! - [`shard`]: a part of the tests, of several that make up the whole.
 
 pub mod filter;

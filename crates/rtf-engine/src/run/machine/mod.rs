@@ -7,7 +7,7 @@
 //! - [`suite`]: which fixture or test is next, and what a collapse, a stop
 //!   request or the suite's limit change about that.
 //! - [`fixture`]: one fixture from set-up to tear-down.
-//! - [`test`]: one attempt of a test, its phases, limits, and its stop by force.
+//! - [`mod@test`]: one attempt of a test, its phases, limits, and its stop by force.
 //! - [`fixtures`]: which of them may be set up or torn down now.
 //! - [`hook`], [`hooks`]: one run of a hook; which were called for.
 //! - [`judge`]: the verdict over one attempt.

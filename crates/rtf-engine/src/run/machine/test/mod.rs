@@ -375,7 +375,7 @@ impl<'p> TestRun<'p> {
         Some((verdict, reason))
     }
 
-    /// Its end, once it is judged. The caller then emits `test-finished` with [`finished`].
+    /// Its end, once it is judged. The caller then emits `test-finished` with [`Self::finished`].
     pub fn take_end(&mut self) -> Option<Ended> {
         self.ended.take()
     }
