@@ -15,6 +15,9 @@ from arm_client import Arm
 SWING = 0.5
 """How far the shoulder swings to each side, in radians."""
 
+FARTHEST = SWING + 0.2
+"""How far it may be from the middle at any time, in radians: it must not overshoot."""
+
 PERIOD_SECS = 0.002
 
 Sample = tuple[float, float, float, float]
@@ -31,7 +34,7 @@ class RateTest(rtf.TestCase):
         return True
 
     def run(self) -> None:
-        samples = self.sample()
+        samples = self.swing()
         elapsed = samples[-1][0] - samples[0][0]
         simulated = samples[-1][1] - samples[0][1]
         latencies = sorted(sample[3] for sample in samples)
@@ -52,7 +55,7 @@ class RateTest(rtf.TestCase):
             self.arm.move("shoulder", 0.0)
             self.arm.close()
 
-    def sample(self) -> list[Sample]:
+    def swing(self) -> list[Sample]:
         """Reads the arm at the rate of its physics, while the shoulder swings to both sides."""
         samples: list[Sample] = []
         started = time.monotonic()
@@ -61,6 +64,7 @@ class RateTest(rtf.TestCase):
             radians = self.arm.position("shoulder")
             latency = time.monotonic() - started - now
             samples.append((now, self.arm.time(), radians, latency))
+            self.sample("shoulder", radians, "rad", low=-FARTHEST, high=FARTHEST)
             if now > self.seconds / 2:
                 self.arm.move("shoulder", -SWING)
             self.sleep(PERIOD_SECS)  # ends the test if somebody stops the run

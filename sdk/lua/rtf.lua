@@ -98,6 +98,28 @@ function rtf.wait_until(condition, timeout, what) end
 ---@return boolean within
 function rtf.measure(name, value, unit, low, high) end
 
+---Takes a sample of a signal; outside its limits it is a failure.
+---@param name string
+---@param value number
+---@param unit? string
+---@param low? number
+---@param high? number
+---@param time? number Seconds since the test's set-up began; now unless told.
+---@return boolean within
+function rtf.sample(name, value, unit, low, high, time) end
+
+---Samples what `read` returns, for `seconds` at `rate` Hz. What a reading that
+---takes too long misses is left out.
+---@param name string
+---@param seconds number
+---@param rate number
+---@param read fun(): number
+---@param unit? string
+---@param low? number
+---@param high? number
+---@return boolean within Whether all were.
+function rtf.sample_for(name, seconds, rate, read, unit, low, high) end
+
 ---Keeps a copy of a file with the result. Write it to its end before; it may go
 ---afterwards.
 ---@param path string

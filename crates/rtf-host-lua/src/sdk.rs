@@ -7,7 +7,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use mlua::{Function, IntoLuaMulti, Lua, LuaString, Table, Value};
-use rtf_host::Session;
+use rtf_host::{Sample, Session};
 use rtf_model::protocol::Plugin;
 use rtf_model::{Attachment, Comparison, Location, Measurement, Message, MessageKind};
 
@@ -105,6 +105,7 @@ fn functions(lua: &Lua) -> mlua::Result<Table> {
         Ok(())
     })?;
     add(lua, &host, "measure", |session, measured: Measured| Ok(session.measure(measured.0)))?;
+    add(lua, &host, "sample", |session, sampled: Sampled| Ok(sampled.tell(session)))?;
     add(
         lua,
         &host,
@@ -204,6 +205,48 @@ impl mlua::FromLuaMulti for Measured {
             high: high.and_then(finite),
             location: location(file.as_ref(), line),
         }))
+    }
+}
+
+/// `name, value, unit, low, high, time, file, line`
+struct Sampled {
+    name: LuaString,
+    numbers: (f64, Option<f64>, Option<f64>, Option<f64>),
+    unit: LuaString,
+    place: (Option<LuaString>, Option<u32>),
+}
+
+impl mlua::FromLuaMulti for Sampled {
+    fn from_lua_multi(values: mlua::MultiValue, lua: &Lua) -> mlua::Result<Self> {
+        type Arguments = (
+            LuaString,
+            f64,
+            LuaString,
+            Option<f64>,
+            Option<f64>,
+            Option<f64>,
+            Option<LuaString>,
+            Option<u32>,
+        );
+        let (name, value, unit, low, high, time, file, line) =
+            Arguments::from_lua_multi(values, lua)?;
+        Ok(Self { name, numbers: (value, low, high, time), unit, place: (file, line) })
+    }
+}
+
+impl Sampled {
+    fn tell(&self, session: &Session) -> bool {
+        let (value, low, high, time) = self.numbers;
+        let file = self.place.0.as_ref().map(LuaString::to_string_lossy);
+        session.sample(&Sample {
+            name: &self.name.to_string_lossy(),
+            value,
+            unit: &self.unit.to_string_lossy(),
+            low: low.and_then(finite),
+            high: high.and_then(finite),
+            time,
+            place: file.as_deref().map(|file| (file, self.place.1.unwrap_or(0))),
+        })
     }
 }
 

@@ -10,7 +10,7 @@ use std::ffi::{c_char, c_int, c_void};
 /// The version that a plug-in and its host must share.
 pub const RTF_ABI_MAJOR: u32 = 1;
 /// Counts the fields that were appended since the major version began.
-pub const RTF_ABI_MINOR: u32 = 1;
+pub const RTF_ABI_MINOR: u32 = 2;
 
 /// The plug-in is a test: `setup`, `run`, `tear_down`.
 pub const RTF_KIND_TEST: i32 = 1;
@@ -106,6 +106,30 @@ pub struct rtf_measurement {
     pub line: u32,
 }
 
+/// A sample of a signal.
+#[repr(C)]
+#[derive(Debug)]
+pub struct rtf_sample {
+    /// `sizeof(rtf_sample)`.
+    pub size: usize,
+    /// The signal.
+    pub name: rtf_text,
+    /// The value.
+    pub value: f64,
+    /// Its unit, empty for a pure number.
+    pub unit: rtf_text,
+    /// The smallest accepted value, null when there is no such limit.
+    pub low: *const f64,
+    /// The largest accepted value, null when there is no such limit.
+    pub high: *const f64,
+    /// When, in seconds since the test's set-up began; null: now.
+    pub time: *const f64,
+    /// The source file, null when unknown.
+    pub file: *const c_char,
+    /// The line in it, 0 when unknown.
+    pub line: u32,
+}
+
 /// A file that is kept with the result.
 #[repr(C)]
 #[derive(Debug)]
@@ -179,6 +203,9 @@ pub struct rtf_host {
     pub environment: unsafe extern "C" fn(context: *mut c_void) -> rtf_text,
     /// The repetition, from 1.
     pub repetition: unsafe extern "C" fn(context: *mut c_void) -> u32,
+    /// Since 1.2: takes a sample of a signal. Returns 1 when it is within its
+    /// limits, else 0, which is a failure. Only for tests.
+    pub sample: unsafe extern "C" fn(context: *mut c_void, sample: *const rtf_sample) -> c_int,
 }
 
 /// What a plug-in is, and how it is called. All functions are called on the

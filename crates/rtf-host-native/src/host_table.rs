@@ -4,14 +4,14 @@
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::time::Duration;
 
-use ::rtf_host::Session;
+use ::rtf_host::{Sample, Session};
 use rtf_model::protocol::Plugin;
 use rtf_model::{Attachment, Comparison, Location, Measurement, Message, MessageKind};
 
 use crate::abi::{
     RTF_ABI_MAJOR, RTF_ABI_MINOR, RTF_MESSAGE_CHECK, RTF_MESSAGE_ERROR, RTF_MESSAGE_FAILURE,
     RTF_MESSAGE_REPORT, rtf_attachment, rtf_comparison, rtf_host, rtf_measurement, rtf_message,
-    rtf_text,
+    rtf_sample, rtf_text,
 };
 
 /// What the functions work on: one for each loaded plug-in, kept until the
@@ -41,6 +41,7 @@ pub(crate) fn for_plugin(session: &Session, plugin: &Plugin) -> &'static rtf_hos
         param,
         environment,
         repetition,
+        sample,
     }))
 }
 
@@ -77,6 +78,24 @@ unsafe extern "C" fn measure(context: *mut c_void, measurement: *const rtf_measu
             low: measurement.low.as_ref().copied().filter(|low| *low != f64::NEG_INFINITY),
             high: measurement.high.as_ref().copied().filter(|high| *high != f64::INFINITY),
             location: location(measurement.file, measurement.line),
+        });
+        c_int::from(holds)
+    }
+}
+
+unsafe extern "C" fn sample(context: *mut c_void, sample: *const rtf_sample) -> c_int {
+    // SAFETY: all pointers are as spec/plugin-abi.md says.
+    unsafe {
+        let sample = &*sample;
+        let place = location(sample.file, sample.line);
+        let holds = self::context(context).session.sample(&Sample {
+            name: &text(sample.name),
+            value: sample.value,
+            unit: &text(sample.unit),
+            low: sample.low.as_ref().copied().filter(|low| *low != f64::NEG_INFINITY),
+            high: sample.high.as_ref().copied().filter(|high| *high != f64::INFINITY),
+            time: sample.time.as_ref().copied(),
+            place: place.as_ref().map(|place| (place.file.as_str(), place.line)),
         });
         c_int::from(holds)
     }

@@ -12,6 +12,7 @@ use rtf_model::{Attachment, Measurement, Message, MessageKind, Outcome, Phase};
 use serde::Serialize;
 
 use crate::decode::Incoming;
+use crate::sampling::{Sample, Sampling};
 use crate::unix;
 use crate::verdict::Judge;
 use crate::writer::Writer;
@@ -44,6 +45,8 @@ pub struct Session(Arc<Shared>);
 struct Shared {
     channel: Arc<UnixStream>,
     writer: Writer,
+    /// Taken before the state, never after it.
+    sampling: Mutex<Sampling>,
     state: Mutex<State>,
     changed: Condvar,
     stop: AtomicBool,
@@ -90,6 +93,7 @@ impl Session {
         Self(Arc::new(Shared {
             writer: Writer::new(Arc::clone(&channel)),
             channel,
+            sampling: Mutex::default(),
             state: Mutex::default(),
             changed: Condvar::new(),
             stop: AtomicBool::new(false),
@@ -113,6 +117,18 @@ impl Session {
             self.note(|judge| judge.note_measurement(&measurement));
         }
         self.notify(&Notification::Measured(measurement));
+        holds
+    }
+
+    /// Takes a sample and tells whether it is within its limits; outside them it
+    /// counts as a failure. It is sent with others, at the latest before the next
+    /// other message, before a wait, and at the end of the request.
+    pub fn sample(&self, sample: &Sample<'_>) -> bool {
+        let mut sampling = self.sampling();
+        let problem = sampling.take(sample);
+        let holds = problem.is_none();
+        problem.into_iter().for_each(|text| self.note(|judge| judge.note_failure(&text)));
+        sampling.send_due(&self.0.writer);
         holds
     }
 
@@ -166,6 +182,7 @@ impl Session {
     /// Sleeps. True at once when the plug-in is asked to stop.
     #[must_use]
     pub fn wait(&self, duration: Duration) -> bool {
+        self.sampling().send_before(duration, &self.0.writer);
         let state = self.state();
         let waiting = |state: &mut State| state.stop_reason.is_none();
         let (state, _) = self
@@ -190,6 +207,10 @@ impl Session {
     /// Asks the plug-in to stop; whether there is one. If not, the runner's
     /// request crossed the answer. With a number, only that request is meant.
     pub(crate) fn request_stop(&self, reason: &str, request: Option<u64>) -> bool {
+        // Whoever has it just now is about to send.
+        if let Ok(mut sampling) = self.0.sampling.try_lock() {
+            sampling.send(&self.0.writer);
+        }
         let mut state = self.state();
         let is_asked = match (request, state.busy) {
             (None, busy) => busy || !state.incoming.is_empty(),
@@ -244,6 +265,9 @@ impl Session {
     /// A test enters a phase, or begins.
     pub(crate) fn phase(&self, phase: Phase) {
         self.notify(&Notification::Phase { phase });
+        if phase == Phase::Setup {
+            self.sampling().begin();
+        }
     }
 
     /// Looks at, or changes, what is known about the present request.
@@ -286,6 +310,7 @@ impl Session {
     /// Answers a request. A notification that should have been a request is
     /// carried out all the same, but nobody waits for an answer.
     pub(crate) fn answer<T: Serialize>(&self, id: Option<u64>, result: T) -> bool {
+        self.sampling().send(&self.0.writer);
         id.is_none() || self.0.writer.send(id, &Reply::Result(result))
     }
 
@@ -294,8 +319,14 @@ impl Session {
         self.0.writer.send(id, &Reply::<()>::Error(error));
     }
 
+    /// What was sampled before comes before.
     fn notify(&self, notification: &Notification) {
+        self.sampling().send(&self.0.writer);
         self.0.writer.notify(notification);
+    }
+
+    fn sampling(&self) -> MutexGuard<'_, Sampling> {
+        self.0.sampling.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn state(&self) -> MutexGuard<'_, State> {

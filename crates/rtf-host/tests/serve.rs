@@ -6,7 +6,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::os::unix::net::UnixStream;
 use std::time::Duration;
 
-use rtf_host::{HostPlugin, LoadError, Reaction, Role, Session, Step, StepEnd, serve};
+use rtf_host::{HostPlugin, LoadError, Reaction, Role, Sample, Session, Step, StepEnd, serve};
 use rtf_model::protocol::{Initialized, Plugin, StackSupport};
 use rtf_model::{Measurement, Message, MessageKind};
 
@@ -39,6 +39,14 @@ impl Script {
                 let (name, unit) = ("rate".to_owned(), "Hz".to_owned());
                 let (low, high) = (Some(1.0), Some(2.0));
                 self.session.measure(Measurement { name, value, unit, low, high, location: None });
+            }
+            "sample" => {
+                let (value, time) = rest.split_once('@').unwrap_or((rest, ""));
+                let (value, time) = (value.parse().unwrap(), time.parse().ok());
+                let (low, high) = (None, Some(2.0));
+                let place = Some(("script", 7));
+                let sample = Sample { name: "rate", value, unit: "Hz", low, high, time, place };
+                self.session.sample(&sample);
             }
             "sleep" => {
                 if self.session.wait(Duration::from_secs(1000)) {
@@ -183,11 +191,50 @@ fn the_first_failure_or_error_decides() {
             "report:;measure:x;report:",
             r#""outcome":"failed","reason":"rate: not a finite number is outside 1 … 2""#,
         ),
+        (
+            "report:;sample:1@0.5,sample:3@1.25,fail:f;report:",
+            r#""outcome":"failed","reason":"`rate` is 3 Hz at 1.25 s, its limits are ≤ 2""#,
+        ),
         ("missing", r#""outcome":"error","reason":"no such script""#),
         ("report:;report:;report:", r#""outcome":"passed""#),
     ] {
         assert_eq!(runner.run_test(script), result, "{script}");
     }
+}
+
+#[test]
+fn samples_come_in_batches_and_before_what_was_told_after_them() {
+    let (mut runner, _host) = Runner::start();
+    let many = vec!["sample:1@0.5"; 600].join(",");
+    runner.ask("run-test", &format!("report:;sample:NaN@0,{many},report:r,sample:2@9;report:"));
+    let (mut told, mut sampled, mut batches) = (Vec::new(), 0, 0);
+    loop {
+        let line = runner.line();
+        if line.contains("\"id\"") {
+            break;
+        }
+        let line: serde_json::Value = serde_json::from_str(&line).unwrap();
+        if let Some(points) = line["params"]["points"].as_array() {
+            assert!(points.len() <= 256, "{line}");
+            (sampled, batches) = (sampled + points.len(), batches + 1);
+        } else {
+            told.push(format!("{sampled} {}", line["method"].as_str().unwrap()));
+        }
+    }
+    let expected = ["0 phase", "0 message", "0 phase", "601 message", "602 phase", "602 message"];
+    assert_eq!(told, expected);
+    assert!((4..300).contains(&batches), "{batches} batches");
+}
+
+#[test]
+fn what_was_sampled_is_sent_before_a_long_wait() {
+    let (mut runner, _host) = Runner::start();
+    runner.ask("run-test", "sample:1@0.5,sleep;report:;report:");
+    let sampled = (0..2).map(|_| runner.line()).last().unwrap();
+    let expected = r#""params":{"name":"rate","unit":"Hz","high":2.0,"location":{"file":"script","line":7},"points":[[0.5,1.0]]}"#;
+    assert!(sampled.contains(expected), "{sampled}");
+    runner.send(r#"{"jsonrpc":"2.0","method":"interrupt","params":{"reason":"enough"}}"#);
+    assert!(runner.result().contains("enough"));
 }
 
 #[test]

@@ -15,7 +15,7 @@ pub use self::planned::{
 pub use self::process::{ExitStatus, LeftProcess, Output, Source, Stream};
 pub use self::test::{Phase, StopCause, TestFinished};
 use crate::{
-    Attachment, Diagnostic, FixtureId, HookId, Measurement, Message, Micros, SuiteId,
+    Attachment, Diagnostic, FixtureId, HookId, Measurement, Message, Micros, Samples, SuiteId,
     SuitePrepared, TestId, Usage,
 };
 
@@ -148,6 +148,13 @@ pub enum EventKind {
         fixture: Option<FixtureId>,
         /// The number, its unit and its limits.
         measurement: Measurement,
+    },
+    /// A test sampled a signal.
+    Sampled {
+        /// The test.
+        test: TestId,
+        /// Some samples of the signal; more may follow.
+        samples: Samples,
     },
     /// A test keeps a file with its result.
     Attached {

@@ -17,6 +17,7 @@ mod prepared;
 pub mod protocol;
 mod record;
 mod report;
+mod samples;
 mod trend;
 mod usage;
 mod verdict;
@@ -32,12 +33,13 @@ pub use order::{OrderChecker, OrderError};
 pub use prepared::{OwnNetwork, OwnPort, OwnVariable, SuitePrepared};
 pub use record::{
     AttemptRecord, Counts, FixtureLife, FixtureRecord, FixtureState, HookRecord, HookRun,
-    HostRecord, Record, RunState, SuiteRecord, TestRecord, Totals,
+    HostRecord, Record, RunState, Series, SuiteRecord, TestRecord, Totals,
 };
 pub use report::{
     Attachment, Comparison, Location, Measurement, Message, MessageKind, format_number,
     format_rounded,
 };
+pub use samples::{Curve, Samples};
 pub use usage::{Growth, Resource, Usage, UsageSeries};
 pub use verdict::{Outcome, Verdict};
 

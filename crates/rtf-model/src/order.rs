@@ -108,6 +108,7 @@ impl OrderChecker {
                 self.start_test(*test, (*repetition, *attempt))
             }
             EventKind::TestPhase { test, .. }
+            | EventKind::Sampled { test, .. }
             | EventKind::TestSlow { test }
             | EventKind::TestStopping { test, .. } => self.inside_test(*test),
             EventKind::Measured { test, fixture, .. }

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Attachment, Measurement, Message, Outcome, Phase, TestId, Verdict};
+use crate::{Attachment, Measurement, Message, Outcome, Phase, Samples, TestId, Verdict};
 
 /// The protocol version of this crate. Runner and host must agree on it.
 pub const PROTOCOL_VERSION: u32 = 1;
@@ -261,6 +261,8 @@ pub enum Notification {
     Message(Message),
     /// A test measured a number, or a fixture did for the test of which it is told.
     Measured(Measurement),
+    /// Some samples of a signal, by a test.
+    Sampled(Samples),
     /// A test keeps a file, or a fixture does for the test of which it is told.
     Attached(Attachment),
     /// A fixture is not well any more. May come at any time.

@@ -12,7 +12,7 @@ private package RobotTestingFramework.ABI is
    subtype Address is System.Address;
 
    Major : constant := 1;
-   Minor : constant := 1;
+   Minor : constant := 2;
 
    Kind_Test    : constant := 1;
    Kind_Fixture : constant := 2;
@@ -59,6 +59,18 @@ private package RobotTestingFramework.ABI is
       Line  : Interfaces.Unsigned_32;
    end record with Convention => C;
 
+   type Sample is record
+      Size  : Interfaces.C.size_t;
+      Name  : Text;
+      Value : Interfaces.C.double;
+      Unit  : Text;
+      Low   : Address;
+      High  : Address;
+      Time  : Address;
+      File  : Address;
+      Line  : Interfaces.Unsigned_32;
+   end record with Convention => C;
+
    type Attachment is record
       Size       : Interfaces.C.size_t;
       Path       : Text;
@@ -81,6 +93,9 @@ private package RobotTestingFramework.ABI is
      with Convention => C;
    type Take_Measurement is access function
      (Context : Address; Value : Measurement) return Interfaces.C.int
+     with Convention => C;
+   type Take_Sample is access function
+     (Context : Address; Value : Sample) return Interfaces.C.int
      with Convention => C;
    type Take_Attachment is access procedure (Context : Address; Value : Attachment)
      with Convention => C;
@@ -111,6 +126,7 @@ private package RobotTestingFramework.ABI is
       Param       : Tell_Text;
       Environment : Tell_Text;
       Repetition  : Tell_Number;
+      Sample      : Take_Sample;
    end record with Convention => C;
 
    type Host_Access is access constant Host_Table with Convention => C;

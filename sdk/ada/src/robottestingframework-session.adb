@@ -93,6 +93,73 @@ package body RobotTestingFramework.Session is
       end if;
    end Measure;
 
+   procedure Sample
+     (Name      : String;
+      Value     : Long_Float;
+      Unit      : String     := "";
+      Low       : Long_Float := No_Low;
+      High      : Long_Float := No_High;
+      Time      : Long_Float := Now;
+      File      : String     := Source.File;
+      Line      : Natural    := Source.Line)
+   is
+      Table        : constant not null ABI.Host_Access := Host.Table;
+      Name_Words   : aliased constant String := Name;
+      Unit_Words   : aliased constant String := Unit;
+      Lowest       : aliased constant Long_Float := Low;
+      Highest      : aliased constant Long_Float := High;
+      Taken        : aliased constant Long_Float := Time;
+      Source_Words : aliased constant String := File & ASCII.NUL;
+      Within       : Interfaces.C.int;
+      pragma Unreferenced (Within);
+   begin
+      if Table.Size < ABI.Host_Table'Size / System.Storage_Unit then
+         raise Program_Error with "this rtf is too old for samples";
+      elsif Low /= Low or else High /= High then
+         raise Constraint_Error with "a limit of `" & Name & "` is not a number";
+      elsif not Time'Valid then
+         raise Constraint_Error with "the time of a sample of `" & Name & "` is not finite";
+      end if;
+      Within := Table.Sample
+        (Table.Context,
+         (Size  => ABI.Sample'Size / System.Storage_Unit,
+          Name  => Host.To_C (Name_Words),
+          Value => Interfaces.C.double (Value),
+          Unit  => Host.To_C (Unit_Words),
+          Low   => (if Low = No_Low then System.Null_Address else Lowest'Address),
+          High  => (if High = No_High then System.Null_Address else Highest'Address),
+          Time  => (if Time = Now then System.Null_Address else Taken'Address),
+          File  => Source_Words'Address,
+          Line  => Interfaces.Unsigned_32 (Line)));
+   end Sample;
+
+   procedure Sample_For
+     (Name      : String;
+      Time      : Duration;
+      Rate      : Long_Float;
+      Unit      : String     := "";
+      Low       : Long_Float := No_Low;
+      High      : Long_Float := No_High;
+      File      : String     := Source.File;
+      Line      : Natural    := Source.Line)
+   is
+      Start : constant Duration := Process.Monotonic;
+      Tick  : Long_Float := 0.0;
+
+      function Elapsed return Duration is (Process.Monotonic - Start);
+   begin
+      if not (Rate > 0.0) then
+         raise Constraint_Error with "the rate of `" & Name & "` is not above 0 Hz";
+      end if;
+      --  Each tick has its own deadline, so that delays do not add up.
+      while Tick < Long_Float (Time) * Rate - 1.0E-9 loop
+         Sleep (Duration (Tick / Rate) - Elapsed);
+         Sample (Name, Read, Unit, Low, High, Now, File, Line);
+         Tick := Long_Float'Max (Tick + 1.0, Long_Float'Ceiling (Long_Float (Elapsed) * Rate));
+      end loop;
+      Sleep (Time - Elapsed);
+   end Sample_For;
+
    procedure Attach (Path : String; Name : String := ""; Media_Type : String := "") is
       Table      : constant not null ABI.Host_Access := Host.Table;
       Path_Words : aliased constant String := Path;

@@ -53,6 +53,36 @@ package RobotTestingFramework.Session is
       File      : String     := Source.File;
       Line      : Natural    := Source.Line);
 
+   --  The present time, where the time of a sample is asked for.
+   Now : constant Long_Float := Long_Float'First;
+
+   --  Takes a sample of a signal, in a test; outside its limits it is a failure, and
+   --  so is a value that is not a finite number. The time counts in seconds from
+   --  the beginning of the set-up.
+   procedure Sample
+     (Name      : String;
+      Value     : Long_Float;
+      Unit      : String     := "";
+      Low       : Long_Float := No_Low;
+      High      : Long_Float := No_High;
+      Time      : Long_Float := Now;
+      File      : String     := Source.File;
+      Line      : Natural    := Source.Line);
+
+   --  Samples what Read returns, so many times a second. What a reading that takes
+   --  too long misses is left out.
+   generic
+      with function Read return Long_Float;
+   procedure Sample_For
+     (Name      : String;
+      Time      : Duration;
+      Rate      : Long_Float;
+      Unit      : String     := "";
+      Low       : Long_Float := No_Low;
+      High      : Long_Float := No_High;
+      File      : String     := Source.File;
+      Line      : Natural    := Source.Line);
+
    --  Keeps a file with the result. It is copied now: write it before, to its
    --  end. Without a name it is shown under its own.
    procedure Attach (Path : String; Name : String := ""; Media_Type : String := "");

@@ -90,9 +90,9 @@ function rtf.require_angle_near(got, expected, tolerance, what)
   end
 end
 
-local function number_or_nil(value, what)
+local function number_or_nil(value, what, level)
   if value ~= nil and (not math.type(value) or value ~= value) then
-    error(("%s is not a number: %s"):format(what, tostring(value)), 3)
+    error(("%s is not a number: %s"):format(what, tostring(value)), level or 3)
   end
 end
 
@@ -105,6 +105,47 @@ function rtf.measure(name, value, unit, low, high)
   local file, line = guard.location(2)
   unit = unit == nil and "" or tostring(unit)
   return host.measure(tostring(name), value, unit, low, high, file, line)
+end
+
+-- Takes a sample for a function that the plug-in called.
+local function sample(name, value, unit, low, high, time)
+  if not math.type(value) then
+    error(("the value of `%s` is not a number: %s"):format(tostring(name), tostring(value)), 3)
+  end
+  number_or_nil(low, "the lower limit", 4)
+  number_or_nil(high, "the upper limit", 4)
+  if time ~= nil and (not math.type(time) or time - time ~= 0) then
+    error(("the time of a sample is not a finite number: %s"):format(tostring(time)), 3)
+  end
+  local file, line = guard.location(3)
+  unit = unit == nil and "" or tostring(unit)
+  return host.sample(tostring(name), value, unit, low, high, time, file, line)
+end
+
+function rtf.sample(name, value, unit, low, high, time)
+  local within = sample(name, value, unit, low, high, time)
+  return within
+end
+
+function rtf.sample_for(name, seconds, rate, read, unit, low, high)
+  if not math.type(seconds) or not math.type(rate) or not (rate > 0) then
+    error(("sample_for takes seconds and a rate in Hz, not %s and %s"):format(tostring(seconds),
+      tostring(rate)), 2)
+  end
+  local start, all_within, tick = host.seconds(), true, 0
+  while tick < seconds * rate - 1e-9 do
+    if host.wait(start + tick / rate - host.seconds()) then
+      unwind()
+    end
+    local within = sample(name, read(), unit, low, high)
+    all_within = within and all_within
+    -- A reading that takes too long leaves out what it missed.
+    tick = math.max(tick + 1, math.ceil((host.seconds() - start) * rate))
+  end
+  if host.wait(start + seconds - host.seconds()) then
+    unwind()
+  end
+  return all_within
 end
 
 function rtf.attach(path, name, media_type)

@@ -60,7 +60,9 @@ class Plugin:
 
     def sleep(self, seconds: float) -> None:
         """Sleep, but wake at once when the runner asks to stop; then this step ends."""
-        judge = _session.current().judge
+        session = _session.current()
+        session.sampling.send_before(seconds)
+        judge = session.judge
         if judge.wait_for_stop(seconds):
             raise Interrupted(judge.stop_reason())
 

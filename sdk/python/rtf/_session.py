@@ -7,16 +7,16 @@ to it from any thread. Without a host there is none, and they raise.
 from __future__ import annotations
 
 import math
+import os
 import threading
 
 from rtf import _location, _text
+from rtf._sampling import Sampling
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Callable
-
-    Notify = Callable[[str, dict[str, object]], None]
+    from rtf._sampling import Notify, Signal
 
 
 class Judge:
@@ -121,7 +121,13 @@ class Session:
         """Serve `task`; `notify` tells the runner."""
         self.task = task
         self.judge = judge
-        self.notify = notify
+        self.sampling = Sampling(notify)
+        self._notify = notify
+
+    def notify(self, method: str, params: dict[str, object]) -> None:
+        """Tell the runner something, after what was sampled before."""
+        self.sampling.send()
+        self._notify(method, params)
 
     def message(self, kind: str, text: str, **more: object) -> None:
         """Send a message of the plug-in with the place it was written at."""
@@ -146,11 +152,24 @@ class Session:
         place = _location.caller()
         if place is not None:
             params["location"] = place.as_json()
-        good = math.isfinite(value)
-        good = good and (low is None or value >= low) and (high is None or value <= high)
+        good = _holds(value, low, high)
         if not good:
             self.judge.note_failure(_text.violation(name, value, unit, (low, high)))
         self.notify("measured", params)
+        return good
+
+    def sampled(self, signal: Signal, value: float, at: float | None) -> bool:
+        """Keep a sample; one outside its limits is a problem like a failed check."""
+        at = self.sampling.take(signal, value, at)
+        name, unit, low, high = signal
+        good = _holds(value, low, high)
+        if not good:
+            decides = self.judge.first() is None
+            what = f"{name} at {_text.number(at)} s"
+            self.judge.note_failure(_text.violation(what, value, unit, (low, high)))
+            if decides:
+                # It must not get lost.
+                self.sampling.send()
         return good
 
     def error(self, reason: str, text: str | None = None, **more: object) -> None:
@@ -159,7 +178,26 @@ class Session:
         self.message("error", text or reason, **more)
 
 
+def _holds(value: float, low: float | None, high: float | None) -> bool:
+    within = (low is None or value >= low) and (high is None or value <= high)
+    return within and math.isfinite(value)
+
+
 _current: Session | None = None
+
+
+def _before_fork() -> None:
+    """Leave a child that the plug-in forks no samples, which it would send again."""
+    if _current is not None:
+        _current.sampling.send()
+
+
+def _after_fork_in_child() -> None:
+    if _current is not None:
+        _current.sampling.renew_lock()
+
+
+os.register_at_fork(before=_before_fork, after_in_child=_after_fork_in_child)
 
 
 def enter(session: Session | None) -> None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from time import monotonic
+
 from rtf import _session
 from rtf._keeper import Keeper
 from rtf._near import Comparison
@@ -10,7 +13,7 @@ from rtf._stop import AssertionEnded
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, Callable
 
 
 class TestCase(Keeper):
@@ -32,6 +35,50 @@ class TestCase(Keeper):
 
     def tearDown(self) -> None:
         """Put back what the test changed. Called whatever happened before."""
+
+    def sample(  # noqa: PLR0913, PLR0917 - what `measure` takes, and the time
+        self,
+        name: str,
+        value: float,
+        unit: str = "",
+        low: float | None = None,
+        high: float | None = None,
+        time: float | None = None,
+    ) -> bool:
+        """Take a sample of a signal; outside its limits it is a failure, and the test goes on.
+
+        `time` counts in seconds from the beginning of the set-up; now unless told.
+        """
+        signal = (name, unit, _limit(name, low), _limit(name, high))
+        if time is not None and not math.isfinite(time):
+            raise ValueError(f"the time of a sample of `{name}` is not finite")
+        at = None if time is None else float(time)
+        return _session.current().sampled(signal, float(value), at)
+
+    def sample_for(  # noqa: PLR0913, PLR0917 - as in all languages
+        self,
+        name: str,
+        seconds: float,
+        rate: float,
+        read: Callable[[], float],
+        unit: str = "",
+        low: float | None = None,
+        high: float | None = None,
+    ) -> bool:
+        """Sample what `read()` returns at `rate` Hz; whether all are within the limits.
+
+        What a reading that takes too long misses is left out.
+        """
+        if not rate > 0:
+            raise ValueError(f"the rate of `{name}` is not above 0 Hz")
+        start, tick, good = monotonic(), 0, True
+        while tick < seconds * rate - 1e-9:
+            self.sleep(max(0.0, start + tick / rate - monotonic()))
+            good = self.sample(name, read(), unit, low, high) and good
+            # Each tick has its own deadline, so that delays do not add up.
+            tick = max(tick + 1, math.ceil((monotonic() - start) * rate))
+        self.sleep(max(0.0, start + seconds - monotonic()))
+        return good
 
     def check(self, condition: object, text: object) -> bool:
         """Check that `condition` holds, and go on either way."""
@@ -68,6 +115,14 @@ class TestCase(Keeper):
         """Assert what `check_angle_near` checks."""
         if not self.check_angle_near(got, expected, tolerance, what):
             raise AssertionEnded(str(what))
+
+
+def _limit(name: str, limit: float | None) -> float | None:
+    if limit is None:
+        return None
+    if math.isnan(limit):
+        raise ValueError(f"a limit of `{name}` is not a number")
+    return float(limit)
 
 
 def _tell(comparison: Comparison, what: str) -> bool:

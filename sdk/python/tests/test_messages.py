@@ -165,3 +165,55 @@ def test_angles_differ_by_less_than_half_a_turn() -> None:
 
     far = Comparison(math.pi * 3, 0.0, math.pi * 1.01, angle=True)
     assert far.problem() is None
+
+
+def test_samples_come_in_batches_and_before_what_was_told_after_them(tmp_path: Path) -> None:
+    ran = run(tmp_path, arm(
+        "for step in range(600): self.sample('speed', step, 'm/s', low=0, time=step / 100)\n"
+        "self.report('r')\n"
+        "self.sample('speed', -1, 'm/s', low=0, time=7)\n"
+        "self.sample('speed', float('nan'), time=8)"
+    ))  # fmt: skip
+    assert ran.result == {
+        "outcome": "failed", "reason": "speed at 7 s: -1 m/s is outside ≥ 0",
+    }  # fmt: skip
+    batches = ran.host.of("sampled")
+    assert all(len(batch["points"]) <= 256 for batch in batches)
+    points = [point for batch in batches for point in batch["points"]]
+    assert points == [*([step / 100, step] for step in range(600)), [7, -1], [8, None]]
+    line = {"file": str(tmp_path / "plugin.py"), "line": 4}
+    assert batches[0] == {
+        "name": "speed", "unit": "m/s", "low": 0, "location": line, "points": batches[0]["points"],
+    }  # fmt: skip
+    told = [message["method"] for message in ran.host.seen if "method" in message]
+    assert told[:2] == ["phase", "phase"]
+    assert told[2:-3] == ["sampled"] * (len(batches) - 2) + ["message"]
+
+
+def test_what_was_sampled_is_sent_before_a_wait_and_a_fork(tmp_path: Path) -> None:
+    ran = run(tmp_path, "import os\n" + arm(
+        "self.sample('speed', 1)\n"
+        "if os.fork() == 0: os._exit(0)\n"
+        "self.sample('speed', 2)\n"
+        "self.sleep(0.2)\n"
+        "os._exit(3)"
+    ))  # fmt: skip
+    assert [batch["points"][0][1] for batch in ran.host.of("sampled")] == [1, 2]
+
+
+def test_sampling_at_a_rate_keeps_its_deadlines(tmp_path: Path) -> None:
+    ran = run(tmp_path, "import time\n" + arm(
+        "start, due = time.monotonic(), []\n"
+        "def read():\n"
+        "    due.append((time.monotonic() - start) * 100)\n"
+        "    if len(due) == 3: time.sleep(0.035)\n"
+        "    return len(due)\n"
+        "good = self.sample_for('speed', 0.2, 100, read, high=1000)\n"
+        "self.check(good and time.monotonic() - start >= 0.2, 'took its time')\n"
+        "self.check(all(at >= tick for tick, at in enumerate(due)), f'none is early: {due}')\n"
+        "self.check(due[3] >= 5 and len(due) <= 18, f'what was missed is left out: {due}')"
+    ))  # fmt: skip
+    assert ran.result == {"outcome": "passed"}, ran.texts
+    points = [point for batch in ran.host.of("sampled") for point in batch["points"]]
+    assert [value for _, value in points] == list(range(1, len(points) + 1))
+    assert all(a[0] < b[0] for a, b in zip(points, points[1:]))

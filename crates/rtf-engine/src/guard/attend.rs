@@ -186,6 +186,9 @@ impl Attendant<'_> {
             {
                 self.note(format!("`{}` is out of its limits", measured.name));
             }
+            Ok(FromHost::Told(Notification::Sampled(samples))) => {
+                samples.problem().into_iter().for_each(|problem| self.note(problem));
+            }
             Ok(FromHost::Answered(RUN, Reply::Result(value))) => {
                 match serde_json::from_value::<Answer>(value) {
                     Ok(answer) => self.answer = Some(answer),

@@ -11,7 +11,9 @@ pub struct Counts {
     pub failures: u64,
     /// Measurements.
     pub measurements: u64,
-    /// Measurements outside their limits.
+    /// Samples of signals.
+    pub samples: u64,
+    /// Measurements and samples outside their limits.
     pub violations: u64,
     /// Attached files.
     pub attachments: u64,
@@ -31,6 +33,10 @@ impl Counts {
                 self.measurements += 1;
                 self.violations += u64::from(!measurement.is_within_limits());
             }
+            EventKind::Sampled { samples, .. } => {
+                self.samples += samples.points.len() as u64;
+                self.violations += samples.outside().count() as u64;
+            }
             EventKind::Attached { .. } => self.attachments += 1,
             EventKind::Output(output) => self.output_bytes += output.text.len() as u64,
             _ => {}
@@ -43,6 +49,7 @@ impl std::ops::AddAssign for Counts {
         self.messages += other.messages;
         self.failures += other.failures;
         self.measurements += other.measurements;
+        self.samples += other.samples;
         self.violations += other.violations;
         self.attachments += other.attachments;
         self.output_bytes += other.output_bytes;
@@ -55,6 +62,7 @@ pub(super) fn is_detail(kind: &EventKind) -> bool {
         kind,
         EventKind::Message { .. }
             | EventKind::Measured { .. }
+            | EventKind::Sampled { .. }
             | EventKind::Attached { .. }
             | EventKind::Output(_)
             | EventKind::StackDumped { .. }

@@ -9,6 +9,7 @@ mod gap;
 mod hook;
 mod host;
 mod left;
+mod series;
 mod source;
 mod suite;
 mod test;
@@ -17,6 +18,7 @@ pub use counts::Counts;
 pub use fixture::{FixtureLife, FixtureRecord, FixtureState};
 pub use hook::{HookRecord, HookRun};
 pub use host::HostRecord;
+pub use series::Series;
 pub use suite::SuiteRecord;
 pub use test::{AttemptRecord, TestRecord};
 

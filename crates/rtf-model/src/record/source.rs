@@ -17,6 +17,7 @@ pub(super) fn of(kind: &EventKind) -> Option<Source> {
         EventKind::TestStarted { test, .. }
         | EventKind::TestPhase { test, .. }
         | EventKind::Measured { test, .. }
+        | EventKind::Sampled { test, .. }
         | EventKind::Attached { test, .. }
         | EventKind::TestSlow { test }
         | EventKind::TestStopping { test, .. }

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use super::counts::{Counts, is_detail};
+use super::series::Series;
 use crate::{
     Attachment, EventKind, LeftProcess, Measurement, Message, MessageKind, Micros, Phase,
     TestFinished, TestPlanned, Verdict,
@@ -42,6 +43,8 @@ pub struct AttemptRecord {
     pub counts: Counts,
     /// What it measured.
     pub measurements: Vec<Measurement>,
+    /// The signals that it sampled.
+    pub series: Vec<Series>,
     /// What it attached.
     pub attachments: Vec<Attachment>,
     /// What it printed; dropped when it passed, the journal has it.
@@ -176,6 +179,7 @@ impl AttemptRecord {
             messages_omitted: 0,
             counts: Counts::default(),
             measurements: Vec::new(),
+            series: Vec::new(),
             attachments: Vec::new(),
             output: String::new(),
             stacks: Vec::new(),
@@ -193,6 +197,9 @@ impl AttemptRecord {
             EventKind::TestPhase { phase, .. } => self.phases.push((*phase, at)),
             EventKind::Message { message, .. } => self.keep(message),
             EventKind::Measured { measurement, .. } => self.measurements.push(measurement.clone()),
+            EventKind::Sampled { samples, .. } => {
+                Series::extend_one_of(&mut self.series, samples);
+            }
             EventKind::Attached { attachment, .. } => self.attachments.push(attachment.clone()),
             EventKind::Output(output) => {
                 if output.omitted > 0 {

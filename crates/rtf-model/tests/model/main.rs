@@ -4,5 +4,6 @@ mod beside;
 mod hooks;
 mod order;
 mod record;
+mod samples;
 mod shared_hosts;
 mod support;

@@ -3,8 +3,8 @@
 use crate::support::*;
 use proptest::prelude::*;
 use rtf_model::{
-    Diagnostic, Event, EventKind, OrderChecker, Source, SuiteId, SuitePrepared, TestId, Trigger,
-    Verdict,
+    Diagnostic, Event, EventKind, OrderChecker, Samples, Source, SuiteId, SuitePrepared, TestId,
+    Trigger, Verdict,
 };
 
 pub fn check(events: &[Event]) -> Result<(), String> {
@@ -218,6 +218,22 @@ fn numbers_have_no_gaps_and_time_does_not_run_backwards() {
     assert_eq!(check(&events), Err("event 1: time runs backwards".to_owned()));
 }
 
+fn sampled() -> EventKind {
+    let name = "elbow".to_owned();
+    let (unit, low, high, location, points) = (String::new(), None, None, None, Vec::new());
+    EventKind::Sampled { test: TEST, samples: Samples { name, unit, low, high, location, points } }
+}
+
+#[test]
+fn a_test_samples_while_it_runs() {
+    let mut kinds = opened(1);
+    let early = [kinds.clone(), vec![sampled()]].concat();
+    assert_eq!(check(&stream(early)), Err("event 5: test 0 is not running".to_owned()));
+    kinds.extend([started(1, 1), sampled(), finished(Verdict::Passed)]);
+    kinds.extend(closed());
+    assert_eq!(check(&stream(kinds)), Ok(()));
+}
+
 fn any_kind() -> impl Strategy<Value = EventKind> {
     let (id, number) = (0..3_u32, 1..4_u32);
     prop_oneof![
@@ -228,6 +244,7 @@ fn any_kind() -> impl Strategy<Value = EventKind> {
         (number.clone(), number).prop_map(|(r, a)| started(r, a)),
         Just(finished(Verdict::Passed)),
         Just(rerun(Verdict::Collapsed)),
+        Just(sampled()),
         id.clone().prop_map(skipped),
         Just(EventKind::SuiteStarted { suite: SUITE }),
         Just(starting(1)),

@@ -90,6 +90,7 @@ impl Verbose {
             }
             EventKind::Output(output) => self.output(page, output, record),
             EventKind::TestFinished(finished) => {
+                sampled(page, record, finished.test);
                 self.flush_suite(page, record, Source::Test(finished.test));
             }
             EventKind::FixtureStopped { fixture, .. } => {
@@ -164,6 +165,17 @@ fn print(page: &mut Page, name: &str, text: &str) {
     for line in text.lines() {
         page.detail(Tone::Dim, format!("{name} | {}", escape::block(line)).trim_end());
     }
+}
+
+/// Shows the signals that a test has sampled, each in one line.
+fn sampled(page: &mut Page, record: &Record, test: TestId) {
+    let attempt = record.tests.get(test.index()).and_then(|test| test.attempts.last());
+    let lines = attempt.iter().flat_map(|attempt| &attempt.series).map(|series| {
+        let tone = if series.outside == 0 { Tone::Plain } else { Tone::Bad };
+        (tone, explain::series(series))
+    });
+    let lines: Vec<_> = lines.collect();
+    lines_of(page, &name(record, Source::Test(test)), &lines);
 }
 
 /// Who keeps something with a test's result: the test, or a fixture.

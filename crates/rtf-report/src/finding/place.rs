@@ -53,9 +53,12 @@ impl<'a> Roots<'a> {
         let attempt = test.decisive_attempt();
         let failures = attempt.into_iter().flat_map(|attempt| attempt.failures());
         let violations = attempt.into_iter().flat_map(|attempt| attempt.violations());
+        let series = attempt.into_iter().flat_map(|attempt| &attempt.series);
+        let series = series.filter(|series| series.outside > 0);
         let mut locations = failures
             .filter_map(|failure| failure.location.as_ref())
-            .chain(violations.filter_map(|violation| violation.location.as_ref()));
+            .chain(violations.filter_map(|violation| violation.location.as_ref()))
+            .chain(series.filter_map(|series| series.location.as_ref()));
         let at = |Location { file, line }: &Location| self.place(file, *line);
         let suite = || record.suites.get(test.plan.suite.index());
         locations

@@ -57,6 +57,7 @@ fn is_landmark(kind: &EventKind) -> bool {
             | EventKind::TestPhase { .. }
             | EventKind::Message { .. }
             | EventKind::Measured { .. }
+            | EventKind::Sampled { .. }
             | EventKind::Attached { .. }
             | EventKind::Output(_)
             | EventKind::Used { .. }

@@ -9,7 +9,7 @@ use super::{text, time};
 use crate::explain::{self, Extent};
 use crate::words;
 
-/// More measurements than this would drown the page that shows them.
+/// More measurements or series than this would drown the page that shows them.
 const MEASUREMENTS: usize = 100;
 
 /// What is said of a test that did not end although the run did.
@@ -157,6 +157,11 @@ fn properties(case: &mut TestCase, test: &TestRecord) {
             value += &format!(" ({limits})");
         }
         case.add_property((name, text(&value)));
+    }
+    let series = test.deciding_attempts().flat_map(|attempt| &attempt.series);
+    for series in series.take(MEASUREMENTS) {
+        let name = text(&format!("series.{}", series.name));
+        case.add_property((name, text(&series.in_numbers())));
     }
 }
 

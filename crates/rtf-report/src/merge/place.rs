@@ -54,6 +54,7 @@ impl Ids<'_> {
             EventKind::Output(output) => Some(self.source(&mut output.source)),
             EventKind::TestStarted { test, .. }
             | EventKind::TestPhase { test, .. }
+            | EventKind::Sampled { test, .. }
             | EventKind::TestSlow { test }
             | EventKind::TestStopping { test, .. }
             | EventKind::TestRepeated { test, .. }

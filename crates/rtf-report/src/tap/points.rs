@@ -36,6 +36,8 @@ pub(super) fn test(text: &mut String, number: usize, test: &TestRecord) {
     // The others are among the details.
     let good = measurements.filter(|measurement| measurement.is_within_limits());
     yaml.lines("measurements", good.map(explain::measurement));
+    let series = test.deciding_attempts().flat_map(|attempt| &attempt.series);
+    yaml.lines("series", series.filter(|series| series.outside == 0).map(explain::series));
     yaml.end();
 }
 

@@ -84,6 +84,9 @@ fn details(lines: &mut Lines, attempt: &AttemptRecord) {
     for measurement in attempt.measurements.iter().filter(|m| m.is_within_limits()) {
         lines.at(6, &explain::measurement(measurement));
     }
+    for series in attempt.series.iter().filter(|series| series.outside == 0) {
+        lines.at(6, &explain::series(series));
+    }
     for attachment in &attempt.attachments {
         let name = escape::line(&attachment.name);
         lines.fact(6, "attached", &format!("{name}: {}", attachment.path));

@@ -51,6 +51,7 @@ fn verbose_console() {
     let names = [
         "verdicts",
         "nasty",
+        "sampled",
         "killed",
         "hooks",
         "runner-died",

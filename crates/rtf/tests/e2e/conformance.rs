@@ -246,6 +246,9 @@ fn told(events: &[Event], suite: SuiteId, record: &Record, temp: &Folder) -> Vec
                 line["measured"] = line["name"].take();
                 told.push(line);
             }
+            EventKind::Sampled { test: of, samples } if *of == test => {
+                add_samples(&mut told, samples);
+            }
             EventKind::Attached { test: of, attachment, .. } if *of == test => {
                 let path = temp.path().join("rtf-results/latest").join(&attachment.path);
                 let content = std::fs::read_to_string(path).expect("the attached file");
@@ -258,9 +261,32 @@ fn told(events: &[Event], suite: SuiteId, record: &Record, temp: &Folder) -> Vec
     told
 }
 
+/// Samples of a signal under the same limits are one fact, however many batches.
+fn add_samples(told: &mut Vec<Value>, samples: &rtf_model::Samples) {
+    let mut line = serde_json::to_value(samples).expect("samples");
+    line["sampled"] = line["name"].take();
+    let points = line["points"].take();
+    let is_same = |other: &&mut Value| {
+        ["sampled", "unit", "low", "high"].iter().all(|key| other[*key] == line[*key])
+    };
+    let line = match told.iter_mut().find(is_same) {
+        Some(line) => line,
+        None => {
+            (line["times"], line["values"]) = (json!([]), json!([]));
+            told.push(line);
+            told.last_mut().expect("the last line")
+        }
+    };
+    for point in points.as_array().expect("points") {
+        for (index, key) in ["times", "values"].into_iter().enumerate() {
+            line[key].as_array_mut().expect("a list").push(point[index].clone());
+        }
+    }
+}
+
 fn compare_told(scenario: &str, expected: &[Value], told: &[Value]) -> Vec<String> {
     let is_told = |line: &&Value| {
-        ["message", "measured", "attached"].iter().any(|key| line.get(*key).is_some())
+        ["message", "measured", "sampled", "attached"].iter().any(|key| line.get(*key).is_some())
     };
     let expected: Vec<&Value> = expected.iter().filter(is_told).collect();
     let mut problems = Vec::new();

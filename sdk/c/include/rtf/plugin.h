@@ -16,7 +16,7 @@
 #define RTF_ABI_MAJOR 1
 
 // Counts the fields that were appended since the major version began.
-#define RTF_ABI_MINOR 1
+#define RTF_ABI_MINOR 2
 
 // The plug-in is a test: `setup`, `run`, `tear_down`.
 #define RTF_KIND_TEST 1
@@ -122,6 +122,28 @@ typedef struct rtf_attachment {
     struct rtf_text media_type;
 } rtf_attachment;
 
+// A sample of a signal.
+typedef struct rtf_sample {
+    // `sizeof(rtf_sample)`.
+    size_t size;
+    // The signal.
+    struct rtf_text name;
+    // The value.
+    double value;
+    // Its unit, empty for a pure number.
+    struct rtf_text unit;
+    // The smallest accepted value, null when there is no such limit.
+    const double *low;
+    // The largest accepted value, null when there is no such limit.
+    const double *high;
+    // When, in seconds since the test's set-up began; null: now.
+    const double *time;
+    // The source file, null when unknown.
+    const char *file;
+    // The line in it, 0 when unknown.
+    uint32_t line;
+} rtf_sample;
+
 // What the host does for a plug-in. Every function takes `context` first and
 // may be called from any thread, until the process ends.
 typedef struct rtf_host {
@@ -156,6 +178,9 @@ typedef struct rtf_host {
     struct rtf_text (*environment)(void *context);
     // The repetition, from 1.
     uint32_t (*repetition)(void *context);
+    // Since 1.2: takes a sample of a signal. Returns 1 when it is within its
+    // limits, else 0, which is a failure. Only for tests.
+    int (*sample)(void *context, const struct rtf_sample *sample);
 } rtf_host;
 
 // An attempt of a test, of which a fixture is told.

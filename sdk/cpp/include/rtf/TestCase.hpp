@@ -3,8 +3,14 @@
 #ifndef RTF_TESTCASE_HPP
 #define RTF_TESTCASE_HPP
 
+#include <chrono>
+#include <optional>
+#include <string_view>
+#include <utility>
+
 #include <rtf/Declare.hpp>
 #include <rtf/Keeper.hpp>
+#include <rtf/internal/Sampling.hpp>
 
 namespace rtf {
 
@@ -13,6 +19,29 @@ class TestCase : public Keeper
 public:
     // The test. Called when setup succeeded.
     virtual void run() = 0;
+
+protected:
+    // Takes a sample of a signal. Outside its limits it is a failure; the test
+    // goes on. The time counts from the beginning of the set-up; now unless told.
+    bool sample(std::string_view name, double value, std::string_view unit = "",
+                std::optional<double> low = std::nullopt, std::optional<double> high = std::nullopt,
+                std::optional<std::chrono::duration<double>> time = std::nullopt,
+                Location here = Location::current()) const
+    {
+        return internal::sample(here, internal::Measurement{name, value, unit, low, high}, time);
+    }
+
+    // Samples what read() returns at `rate` Hz, and tells whether all are within
+    // the limits. What a reading that takes too long misses is left out.
+    template <class Read>
+    bool
+    sample_for(std::string_view name, std::chrono::duration<double> duration, double rate,
+               Read &&read, std::string_view unit = "", std::optional<double> low = std::nullopt,
+               std::optional<double> high = std::nullopt, Location here = Location::current()) const
+    {
+        const internal::Measurement signal{name, 0, unit, low, high};
+        return internal::sample_for(here, signal, duration, rate, std::forward<Read>(read));
+    }
 };
 
 } // namespace rtf

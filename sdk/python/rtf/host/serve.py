@@ -112,6 +112,10 @@ class Reader:
             waiting = waiting[:1] if waiting and waiting[0].number == number else []
         for request in waiting:
             request.judge.request_stop(reason)
+        session = _session.running()
+        if session is not None:
+            # It may hang, and be stopped by force.
+            session.sampling.send()
         if waiting:
             insist = threading.Thread(target=_insist, args=(waiting[0],), daemon=True)
             insist.start()

@@ -31,6 +31,7 @@ def run_test(session: Session) -> Answer:
     test = _load(session, TestCase)
     if test is not None:
         session.notify("phase", {"phase": "setup"})
+        session.sampling.begin()
         if _step(session, lambda: test.setup(session.task.args), "setup"):
             session.notify("phase", {"phase": "run"})
             session.judge.failures_are_errors = False
@@ -181,6 +182,7 @@ def _is_false(result: object) -> bool:
 def _answer(session: Session) -> Answer:
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
+    session.sampling.send()
     problem = session.judge.first()
     if problem is None:
         return {"outcome": "passed"}

@@ -77,7 +77,9 @@ module RTF
 
     # Sleeps, but wakes at once when the runner asks to stop; then this step ends.
     def sleep(seconds = Float::MAX)
-      judge = Session.current.judge
+      session = Session.current
+      session.sampling.send_before(seconds)
+      judge = session.judge
       raise Interrupted, judge.stop_reason if judge.wait_for_stop(seconds)
     end
 

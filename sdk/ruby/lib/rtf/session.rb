@@ -2,6 +2,7 @@
 
 require "rtf/judge"
 require "rtf/location"
+require "rtf/sampling"
 require "rtf/text"
 
 module RTF
@@ -44,7 +45,7 @@ module RTF
   # The link between one plug-in and the runner: what it tells, from any thread,
   # and what went wrong first.
   class Session
-    attr_reader :task, :judge
+    attr_reader :task, :judge, :sampling
 
     @current = nil
 
@@ -71,9 +72,12 @@ module RTF
       @task = task
       @judge = judge
       @channel = channel
+      @sampling = Sampling.new { |method, params| channel.notify(method, params) }
     end
 
+    # Tells the runner something, after what was sampled before.
     def notify(method, params)
+      @sampling.send_pending
       @channel.notify(method, params)
     end
 
@@ -105,6 +109,19 @@ module RTF
       @judge.note_failure(Text.violation(name, value, unit, low, high)) unless good
       notify("measured", params.compact)
       good
+    end
+
+    # Keeps a sample; one outside its limits is a problem like a failed check.
+    def sampled(signal, value, at)
+      at = @sampling.take(signal, value, at)
+      return true if signal.hold?(value)
+
+      decides = @judge.first.nil?
+      what = "#{signal.name} at #{Text.number(at)} s"
+      @judge.note_failure(Text.violation(what, value, signal.unit, signal.low, signal.high))
+      # It must not get lost.
+      @sampling.send_pending if decides
+      false
     end
   end
 end

@@ -19,6 +19,34 @@ module RTF
       raise NotImplementedError, "#{self.class} has no `run`"
     end
 
+    # Takes a sample of a signal; outside its limits it is a failure, and the test
+    # goes on. `time` counts in seconds from the beginning of the set-up; now unless told.
+    def sample(name, value, unit = "", time: nil, **limits)
+      signal = Sampling::Signal.of(Text.utf8(name), Text.utf8(unit), **limits)
+      time &&= Float(time)
+      raise ArgumentError, "the time of `#{name}` is not finite" unless (time || 0).finite?
+
+      Session.current.sampled(signal, Float(value), time)
+    end
+
+    # Samples what the block returns at `rate` Hz; whether all are within the
+    # limits. What a reading that takes too long misses is left out.
+    def sample_for(name, seconds, rate, unit = "", **limits)
+      raise ArgumentError, "the rate of `#{name}` is not above 0 Hz" unless rate.positive?
+
+      start = monotonic
+      tick = 0
+      good = true
+      while tick < (seconds * rate) - 1e-9
+        sleep([start + tick.fdiv(rate) - monotonic, 0].max)
+        good &= sample(name, yield, unit, **limits)
+        # Each tick has its own deadline, so that delays do not add up.
+        tick = [tick + 1, ((monotonic - start) * rate).ceil].max
+      end
+      sleep([start + seconds - monotonic, 0].max)
+      good
+    end
+
     # Checks that `condition` holds, and goes on either way.
     def check(condition, text)
       if condition

@@ -99,6 +99,9 @@ impl<'p> HookRun<'p> {
             HostInput::Told(Notification::Measured(measurement)) => {
                 self.problem = self.problem.take().or_else(|| measurement.problem());
             }
+            HostInput::Told(Notification::Sampled(samples)) => {
+                self.problem = self.problem.take().or_else(|| samples.problem());
+            }
             HostInput::Answered(RUN, reply) => match parse_answer(reply) {
                 Ok(Ok(answer)) => self.answer = Some(answer),
                 Ok(Err(error)) => self.note(format!("its host refused: {}", error.message)),

@@ -91,6 +91,8 @@ module RTF
       def interrupt(reason)
         waiting = @lock.synchronize { @open.dup }
         waiting.each { |request| request.judge.request_stop(reason.to_s) }
+        # It may hang, and be stopped by force.
+        Session.running&.sampling&.send_pending
         first = waiting.first
         Threads.start("rtf stop") { insist(first.judge) } if first
       end

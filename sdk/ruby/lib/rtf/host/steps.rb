@@ -14,6 +14,7 @@ module RTF
         test = load(session, TestCase)
         if test
           phase(session, "setup")
+          session.sampling.begin
           if step(session, "setup") { test.setup(session.task.args) }
             phase(session, "run")
             session.judge.failures_are_errors = false
@@ -124,6 +125,7 @@ module RTF
 
       def answer(session)
         [$stdout, $stderr].each(&:flush)
+        session.sampling.send_pending
         outcome, reason = session.judge.first
         outcome ? { outcome: outcome, reason: reason } : { outcome: "passed" }
       end

@@ -9,8 +9,8 @@ use std::time::Duration;
 
 use rtf_model::protocol::{Notification, Reply, StackSupport};
 use rtf_model::{
-    EventKind, ExitStatus, LeftProcess, Measurement, Message, MessageKind, Phase, Source,
-    StopCause, Stream, TestFinished, TestId, Verdict,
+    EventKind, ExitStatus, LeftProcess, Message, MessageKind, Phase, Source, StopCause, Stream,
+    TestFinished, TestId, Verdict,
 };
 
 pub use answers::{parse_answer, parse_initialized};
@@ -214,10 +214,18 @@ impl<'p> TestRun<'p> {
     }
 
     fn told(&mut self, notification: Notification, cx: &mut Context<'_>) {
+        let test = self.plan.id;
         match notification {
             Notification::Phase { phase } => self.enter(phase, cx),
             Notification::Message(message) => self.message(message, cx),
-            Notification::Measured(measurement) => self.measured(measurement, cx),
+            Notification::Measured(measurement) => {
+                let problem = measurement.problem();
+                self.kept(problem, EventKind::Measured { test, fixture: None, measurement }, cx);
+            }
+            Notification::Sampled(samples) => {
+                let problem = samples.problem();
+                self.kept(problem, EventKind::Sampled { test, samples }, cx);
+            }
             Notification::Stack { text } => self.stack_taken(text, cx),
             Notification::Attached(_) => {}
             Notification::Collapsed { .. } => {
@@ -262,16 +270,14 @@ impl<'p> TestRun<'p> {
         cx.emit(EventKind::Message { source: Source::Test(self.plan.id), message, test: None });
     }
 
-    fn measured(&mut self, measurement: Measurement, cx: &mut Context<'_>) {
-        if let Some(problem) = measurement.problem() {
-            self.note(Verdict::Failed, problem);
-        }
-        cx.emit(EventKind::Measured { test: self.plan.id, fixture: None, measurement });
+    fn kept(&mut self, problem: Option<String>, kept: EventKind, cx: &mut Context<'_>) {
+        problem.into_iter().for_each(|problem| self.note(Verdict::Failed, problem));
+        cx.emit(kept);
     }
 
     fn own_error(&mut self, text: String, cx: &mut Context<'_>) {
-        let kind = MessageKind::Error;
-        self.message(Message { kind, text, location: None, comparison: None, critical: false }, cx);
+        let (kind, location) = (MessageKind::Error, None);
+        self.message(Message { kind, text, location, comparison: None, critical: false }, cx);
     }
 
     /// Remembers the first failure or error. Only `run` can show that the

@@ -61,6 +61,9 @@ fn what_a_fixture_keeps_at_the_end_of_a_test_is_the_tests() {
     let (name, unit) = ("size".to_owned(), "MB".to_owned());
     let measurement = Measurement { name, value, unit, low, high, location };
     world.input(RECORDER, HostInput::Told(Notification::Measured(measurement)));
+    let samples = r#"{"name":"speed","points":[[0,1]]}"#;
+    let samples = serde_json::from_str(samples).unwrap();
+    world.input(RECORDER, HostInput::Told(Notification::Sampled(samples)));
     report(&mut world, MessageKind::Report, "kept 3.5 MB");
     assert!(!world.story().contains("test-finished"), "{}", world.story());
     world.answer(RECORDER, "passed");
@@ -79,6 +82,7 @@ fn what_a_fixture_keeps_at_the_end_of_a_test_is_the_tests() {
     0.0  test-phase phase=notice test=0
     0.0  attached attachment={media_type:,name:run.mcap,path:attachments/fixture-0/1/1-run.mcap} fixture=0 test=0
     0.0  measured fixture=0 measurement={name:size,unit:MB,value:3.5} test=0
+    0.0  message source={fixture:0}
     0.0  message source={fixture:0} test=0
     0.0  test-finished exit={code:0} phase=exit test=0 verdict=passed
     0.0  fixture-stopping fixture=0

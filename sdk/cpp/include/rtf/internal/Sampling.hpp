@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Samples of signals, one by one or at a rate.
+#ifndef RTF_INTERNAL_SAMPLING_HPP
+#define RTF_INTERNAL_SAMPLING_HPP
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include <rtf/internal/Keep.hpp>
+#include <rtf/internal/Wait.hpp>
+
+namespace rtf {
+namespace internal {
+
+using Seconds = std::chrono::duration<double>;
+
+inline bool sample(Location here, const Measurement &taken, std::optional<Seconds> time)
+{
+    const rtf_host &table = host();
+    if (table.size < offsetof(rtf_host, sample) + sizeof table.sample) {
+        error(here, "this rtf is too old for samples: its plug-in interface is 1." +
+                        std::to_string(table.abi_minor));
+    }
+    for (const std::optional<double> &limit : {taken.low, taken.high}) {
+        if (limit && std::isnan(*limit)) {
+            error(here, "a limit of " + std::string(taken.name) + " is not a number");
+        }
+    }
+    const double at = time ? time->count() : 0;
+    if (!std::isfinite(at)) {
+        error(here, "the time of a sample of " + std::string(taken.name) + " is not finite");
+    }
+    rtf_sample message;
+    message.size = sizeof message;
+    message.name = to_text(taken.name);
+    message.value = taken.value;
+    message.unit = to_text(taken.unit);
+    message.low = taken.low ? &*taken.low : nullptr;
+    message.high = taken.high ? &*taken.high : nullptr;
+    message.time = time ? &at : nullptr;
+    message.file = here.file;
+    message.line = here.line;
+    return table.sample(table.context, &message) != 0;
+}
+
+template <class Read>
+bool sample_for(Location here, Measurement signal, Seconds duration, double rate, Read &&read)
+{
+    using Clock = std::chrono::steady_clock;
+    if (!(rate > 0)) {
+        error(here, "the rate of " + std::string(signal.name) + " is not above 0 Hz");
+    }
+    const auto start = Clock::now();
+    const auto elapsed = [&] { return Seconds(Clock::now() - start); };
+    bool all_within = true;
+    // Each tick has its own deadline, so that delays do not add up.
+    for (double tick = 0; tick < duration.count() * rate - 1e-9;
+         tick = std::max(tick + 1, std::ceil(elapsed().count() * rate))) {
+        sleep(Seconds(tick / rate) - elapsed());
+        signal.value = static_cast<double>(read());
+        all_within = sample(here, signal, std::nullopt) && all_within;
+    }
+    sleep(duration - elapsed());
+    return all_within;
+}
+
+} // namespace internal
+} // namespace rtf
+
+#endif
