@@ -9,7 +9,7 @@ use crate::bad_plugins::folder;
 use crate::support::{Folder, root};
 
 /// Builds a library from C.
-fn build_c(folder: &Folder, name: &str, text: &str) {
+pub fn build_c(folder: &Folder, name: &str, text: &str) {
     let source = folder.path().join("plugin.c");
     std::fs::write(&source, format!("#include <rtf/plugin.h>\n{text}")).expect("a file");
     let mut compiler = Command::new("cc");

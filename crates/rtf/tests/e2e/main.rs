@@ -39,6 +39,7 @@ mod predecessor_scripts;
 mod process_fixture;
 mod profile_mistakes;
 mod profiles;
+mod python_ends;
 mod remote;
 mod repeating;
 mod reports;

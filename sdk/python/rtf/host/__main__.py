@@ -23,11 +23,13 @@ def main(arguments: list[str]) -> int:
         return 2
     from rtf.host import serve  # noqa: PLC0415
 
+    serve.prepare()
     if "RTF_FORK_SERVER" in os.environ:
         from rtf.host import fork  # noqa: PLC0415
 
-        channel = fork.Server().serve()
-        return 0 if channel is None else serve.serve(channel)
+        server = fork.Server()
+        channel = server.serve()
+        return 0 if channel is None else server.end(serve.serve(channel))
     return serve.serve()
 
 

@@ -8,11 +8,6 @@ import os
 import sys
 import threading
 
-# As `typing.TYPE_CHECKING`, without the time that its import takes.
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
 CHANNEL_VARIABLE = "RTF_CHANNEL"
 
 _READ_BYTES = 65536
@@ -29,6 +24,7 @@ class Channel:
     def __init__(self, descriptor: int) -> None:
         """Take over the descriptor, and keep it from the plug-in's children."""
         self.descriptor = descriptor
+        self._rest = b""
         os.set_inheritable(descriptor, False)  # noqa: FBT003 - the library's signature
         self._renew_lock()
         # A forked child must not wait for a lock that another thread held.
@@ -46,18 +42,16 @@ class Channel:
     def _renew_lock(self) -> None:
         self._lock = threading.Lock()
 
-    def lines(self) -> Iterator[bytes]:
-        """Yield each line until the runner has gone."""
-        rest = b""
-        while True:
-            try:
-                data = os.read(self.descriptor, _READ_BYTES)
-            except ConnectionResetError:
-                return
-            if not data:
-                return
-            *whole, rest = (rest + data).split(b"\n")
-            yield from whole
+    def receive(self) -> list[bytes] | None:
+        """Return the lines that came since the last time; `None` when the runner has gone."""
+        try:
+            data = os.read(self.descriptor, _READ_BYTES)
+        except ConnectionResetError:
+            return None
+        if not data:
+            return None
+        *whole, self._rest = (self._rest + data).split(b"\n")
+        return whole
 
     def notify(self, method: str, params: dict[str, object]) -> None:
         """Tell the runner something. A text that is too long for a line is sent in parts."""

@@ -13,6 +13,8 @@ import socket
 import sys
 import threading
 
+from rtf.host.ending import Ending
+
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -64,6 +66,7 @@ class Server:
 
     def __init__(self) -> None:
         """Take over the socket that the runner left."""
+        self._ending = Ending()
         place = os.environ.pop(SERVER_VARIABLE).split()[0]
         self._socket = socket.socket(fileno=int(place.removeprefix("fd:")))
         self._socket.set_inheritable(False)
@@ -91,6 +94,10 @@ class Server:
                 os.close(descriptor)
             if pid is not None:
                 self._answer({"pid": pid})
+
+    def end(self, code: int) -> int:
+        """End a fork; return its exit code when that is the interpreter's to do."""
+        return self._ending.end(code)
 
     def _fork(self, descriptors: int) -> int:
         """Make a process that is the runner's child; 0 in that process.
@@ -130,7 +137,9 @@ class Server:
         os.close(output)
         os.close(errors)
         os.chdir(request["folder"])
-        os.environ.update(request["env"])
+        # Not `update`: that asks what kind of thing it is given, at the price of fifty pages.
+        for name, value in request["env"].items():
+            os.environ[name] = value
         self._room.write(request["env"])
         return channel
 

@@ -12,6 +12,7 @@ import os
 import signal
 import sys
 import threading
+from _thread import start_new_thread
 from queue import SimpleQueue
 
 from rtf import _session
@@ -22,8 +23,6 @@ from rtf.host import channel, sharing, steps
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import TextIO
-
     from rtf._fixture import FixtureManager
 
 PROTOCOL_VERSION = 1
@@ -56,14 +55,29 @@ class Reader:
     """Reads the channel; requests to stop get through while a plug-in runs."""
 
     def __init__(self, line: channel.Channel) -> None:
-        """Start reading `line` in a thread that does not keep the process alive."""
-        self.requests: SimpleQueue[Request | None] = SimpleQueue()
+        """Read `line`, as long as nobody watches it in the thread that asks for requests."""
+        self._requests: SimpleQueue[Request | None] = SimpleQueue()
         # A fixture that is up: without the runner nobody would stop it.
         self.fixture_is_up = False
         self._channel = line
         self._open: list[Request] = []
         self._lock = threading.Lock()
-        threading.Thread(target=self._read, name="rtf channel", daemon=True).start()
+        self._is_watched = False
+
+    def next(self) -> Request | None:
+        """Return the next request; `None` when the runner has gone."""
+        while not self._is_watched and self._requests.empty():
+            self._receive()
+        return self._requests.get()
+
+    def watch(self) -> None:
+        """Read in a thread from now on, which does not keep the process alive.
+
+        It is none of `threading`'s: a plug-in does not find it among its own.
+        """
+        if not self._is_watched:
+            self._is_watched = True
+            start_new_thread(self._read, ())
 
     def finish(self, request: Request, *, fixture_is_up: bool, last: bool = False) -> None:
         """Forget a request that is about to be answered: the runner may go then.
@@ -78,20 +92,32 @@ class Reader:
             self.fixture_is_up = fixture_is_up
 
     def _read(self) -> None:
-        for line in self._channel.lines():
-            try:
-                message = json.loads(line)
-            except ValueError as problem:
-                self._channel.refuse(None, PARSE_ERROR, f"not a JSON text: {problem}")
-                continue
-            if isinstance(message, dict) and isinstance(message.get("method"), str):
-                self._take(message)
-            else:
-                self._channel.refuse(None, INVALID_REQUEST, "not a request")
+        while self._receive():
+            pass
+
+    def _receive(self) -> bool:
+        """Take what has come; whether there may be more."""
+        lines = self._channel.receive()
+        if lines is not None:
+            for line in lines:
+                self._take_line(line)
+            return True
         with self._lock:
             if self._open or self.fixture_is_up:
                 channel.end_without_runner()
-        self.requests.put(None)
+        self._requests.put(None)
+        return False
+
+    def _take_line(self, line: bytes) -> None:
+        try:
+            message = json.loads(line)
+        except ValueError as problem:
+            self._channel.refuse(None, PARSE_ERROR, f"not a JSON text: {problem}")
+            return
+        if isinstance(message, dict) and isinstance(message.get("method"), str):
+            self._take(message)
+        else:
+            self._channel.refuse(None, INVALID_REQUEST, "not a request")
 
     def _take(self, message: dict[str, object]) -> None:
         if message.get("method") == "interrupt":
@@ -102,7 +128,7 @@ class Reader:
             request = Request(message)
             with self._lock:
                 self._open.append(request)
-            self.requests.put(request)
+            self._requests.put(request)
 
     def _interrupt(self, reason: str, number: object) -> None:
         with self._lock:
@@ -138,7 +164,6 @@ class Host:
         self._fixture: FixtureManager | None = None
         self._task: Task | None = None
         self._sharing: sharing.Sharing | None = None
-        self._stack_file: TextIO | None = None
 
     def carry_out(self, request: Request, reader: Reader) -> bool:
         """Do what is asked and answer; whether there may be a further request."""
@@ -209,8 +234,9 @@ class Host:
         stack_file = params.get("stack_file")
         stack = "none"
         if isinstance(stack_file, str):
-            self._stack_file = open(stack_file, "a", encoding="utf-8")  # noqa: SIM115
-            faulthandler.register(signal.SIGUSR2, file=self._stack_file, all_threads=True)
+            flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_CLOEXEC
+            stacks = os.open(stack_file, flags, 0o666)
+            faulthandler.register(signal.SIGUSR2, file=stacks, all_threads=True)
             stack = "signal"
         self._is_initialized = True
         name = sys.implementation.name.replace("cpython", "python")
@@ -245,6 +271,16 @@ def _thread_ended_by(raised: threading.ExceptHookArgs) -> None:
         steps.record_exception(session, problem)
 
 
+def prepare() -> None:
+    """Set what all hosts have in common: a fork has it from its server."""
+    faulthandler.enable()
+    signal.signal(signal.SIGINT, steps.stop_by_signal)
+    threading.excepthook = _thread_ended_by
+    for stream in (sys.stdout, sys.stderr):
+        # What was printed before a crash must not be lost with the buffer.
+        stream.reconfigure(line_buffering=True)  # type: ignore[union-attr]
+
+
 def serve(descriptor: int | None = None) -> int:
     """Serve the runner, over the channel that its variable names, and return the exit code."""
     try:
@@ -255,15 +291,13 @@ def serve(descriptor: int | None = None) -> int:
     except (ValueError, OSError) as problem:
         sys.stderr.write(f"error: this is a host, which `rtf` starts by itself: {problem}\n")
         return 2
-    faulthandler.enable()
-    signal.signal(signal.SIGINT, steps.stop_by_signal)
-    threading.excepthook = _thread_ended_by
-    for stream in (sys.stdout, sys.stderr):
-        # What was printed before a crash must not be lost with the buffer.
-        stream.reconfigure(line_buffering=True)  # type: ignore[union-attr]
     reader = Reader(line)
     host = Host(line)
     while True:
-        request = reader.requests.get()
-        if request is None or not host.carry_out(request, reader):
+        request = reader.next()
+        if request is None:
+            return 0
+        if request.method != "initialize":
+            reader.watch()
+        if not host.carry_out(request, reader):
             return 0
