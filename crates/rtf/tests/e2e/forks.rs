@@ -46,6 +46,8 @@ end
 const PYTHON: &str = r#"
 import os
 import random
+import sys
+import threading
 import rtf
 
 
@@ -76,6 +78,8 @@ class Forked(rtf.TestCase):
         self.check("RTF_CHANNEL" not in os.environ, "the channel is hidden")
         self.check("RTF_FORK_SERVER" not in os.environ, "the variable is hidden")
         self.check(os.getpgid(0) == os.getpid(), "it leads its group")
+        self.check(threading.get_native_id() == os.getpid(), "its thread has a number of its own")
+        self.check("ctypes" not in sys.modules, "what the server needs is not in the way")
         self.report(f"random: {random.random()}")
         pid = server()
         self.report("a server is there" if pid else "no server is there")
@@ -141,6 +145,19 @@ fn each_environment_of_python_has_a_server_of_its_own() {
     folder.file("T.py", plugin).file("s.xml", &suite);
     let finished = folder.rtf(&["run", "--fork", "always", "s.xml"]);
     assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
+    assert!(nothing_left(&folder));
+}
+
+/// `clone3` tells nobody that there is a fork, and some libraries want to be told.
+#[test]
+fn an_interpreter_with_libraries_that_are_told_of_forks_is_forked_in_two_steps() {
+    let suite = in_python(THREE).replace("T.py", "T.py<env name='PYTHONPATH' value='site'/>");
+    let folder = Folder::new();
+    folder.file("site/sitecustomize.py", "import _hashlib\n");
+    folder.file("T.py", PYTHON).file("s.xml", &suite);
+    let finished = folder.rtf(&["run", "--fork", "always", "s.xml"]);
+    assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
+    assert_eq!(servers(&folder.journal().record), [true; 3]);
     assert!(nothing_left(&folder));
 }
 

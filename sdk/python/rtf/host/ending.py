@@ -18,11 +18,6 @@ import threading
 import weakref
 from types import GeneratorType
 
-# As `typing.TYPE_CHECKING`, without the time that its import takes.
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from types import ModuleType
-
 # Python's own modules in machine code, which do nothing at the end of a process.
 _OWN_FOLDER = "lib-dynload"
 
@@ -32,13 +27,12 @@ _STATUS_BYTES = 8192
 class Ending:
     """What a server knows of itself before it forks."""
 
-    def __init__(self) -> None:
-        """Look at what all forks have in common."""
+    def __init__(self, socket: object) -> None:
+        """Look at what all forks have in common; the socket is the server's."""
         self._modules = frozenset(sys.modules)
         self._streams = (sys.stdout, sys.stderr)
         self._code_size = _code_size()
-        self._is_plain = not any(map(_is_foreign, list(sys.modules.values())))
-        self._is_plain = self._is_plain and not _has_finalizers_of_others()
+        self._is_plain = not has_foreign_code() and not _has_finalizers({id(socket)})
 
     def end(self, code: int) -> int:
         """End the process, unless that is the interpreter's to do: then return the exit code."""
@@ -48,7 +42,8 @@ class Ending:
 
     def _take_down(self) -> bool:
         """Whether nothing is left whose end anybody could notice."""
-        if threading.active_count() > 1:
+        # What was called by `ctypes` may have left anything.
+        if threading.active_count() > 1 or "ctypes" in sys.modules:
             return False
         try:
             atexit._run_exitfuncs()
@@ -95,17 +90,16 @@ def _code_size() -> bytes:
         os.close(status)
 
 
-def _is_foreign(module: ModuleType) -> bool:
-    """Whether a module is machine code that did not come with the interpreter."""
-    file = getattr(module, "__file__", None) or ""
-    return file.endswith(".so") and _OWN_FOLDER not in file.split("/")
+def has_foreign_code() -> bool:
+    """Whether there is a module in machine code that did not come with the interpreter."""
+    files = [getattr(module, "__file__", None) or "" for module in list(sys.modules.values())]
+    return any(file.endswith(".so") and _OWN_FOLDER not in file.split("/") for file in files)
 
 
-def _has_finalizers_of_others() -> bool:
+def _has_finalizers(own: set[int]) -> bool:
     """Whether something that was made before the first fork does something at its end."""
-    own = set()
     for stream in (sys.stdin, sys.stdout, sys.stderr):
-        own |= {id(stream), id(stream.buffer), id(getattr(stream.buffer, "raw", None))}
+        own = own | {id(stream), id(stream.buffer), id(getattr(stream.buffer, "raw", None))}
     return any(
         hasattr(type(thing), "__del__") and id(thing) not in own
         for thing in gc.get_objects()

@@ -13,6 +13,7 @@ import socket
 import sys
 import threading
 
+from rtf.host.clone import Clone
 from rtf.host.ending import Ending
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
@@ -66,12 +67,13 @@ class Server:
 
     def __init__(self) -> None:
         """Take over the socket that the runner left."""
-        self._ending = Ending()
         place = os.environ.pop(SERVER_VARIABLE).split()[0]
         self._socket = socket.socket(fileno=int(place.removeprefix("fd:")))
         self._socket.set_inheritable(False)
         self._room = Room()
         self._told, self._tells = os.pipe()
+        self._clone = Clone.prepare(self._socket)
+        self._ending = Ending(self._socket)
         # Copies share these objects' memory as long as nobody looks at them.
         gc.collect()
         gc.freeze()
@@ -100,16 +102,24 @@ class Server:
         return self._ending.end(code)
 
     def _fork(self, descriptors: int) -> int:
-        """Make a process that is the runner's child; 0 in that process.
-
-        The process between the two ends at once, so that the kernel gives its
-        child to the runner, which is there for such orphans. Python's and the C
-        library's own `fork` do all that they have to do.
-        """
+        """Make a process that is the runner's child; 0 in that process."""
         if descriptors != 3:  # noqa: PLR2004 - channel, standard output, standard error
             raise ValueError(f"{descriptors} descriptors came, expected 3")
         if threading.active_count() != 1 or len(os.listdir("/proc/self/task")) != 1:
             raise RuntimeError("the interpreter has started threads by itself")
+        if self._clone is not None:
+            try:
+                return self._clone.fork()
+            except OSError:  # no such call, or not allowed
+                self._clone = None
+        return self._fork_twice()
+
+    def _fork_twice(self) -> int:
+        """Make it with Python's own `fork`.
+
+        The process between the two ends at once, so that the kernel gives its
+        child to the runner, which is there for such orphans.
+        """
         between = os.fork()
         if between == 0:
             try:
