@@ -16,7 +16,15 @@ from rtf._sampling import Sampling
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Protocol
+
     from rtf._sampling import Notify, Signal
+
+    class Announce(Protocol):
+        """Tells the runner of a phase; held back, it comes with what is told next."""
+
+        def __call__(self, phase: str, *, held: bool = False) -> None:
+            """Tell it."""
 
 
 class Judge:
@@ -117,17 +125,23 @@ def _text_of(params: dict[str, object], name: str, default: str | None = None) -
 class Session:
     """The link between one plug-in and the runner."""
 
-    def __init__(self, task: Task, judge: Judge, notify: Notify) -> None:
-        """Serve `task`; `notify` tells the runner."""
+    def __init__(self, task: Task, judge: Judge, notify: Notify, announce: Announce) -> None:
+        """Serve `task`; `notify` tells the runner something, `announce` what is done now."""
         self.task = task
         self.judge = judge
         self.sampling = Sampling(notify)
         self._notify = notify
+        self._announce = announce
 
     def notify(self, method: str, params: dict[str, object]) -> None:
         """Tell the runner something, after what was sampled before."""
         self.sampling.send()
         self._notify(method, params)
+
+    def announce(self, phase: str, *, held: bool = False) -> None:
+        """Tell the runner what is done now, after what was sampled before."""
+        self.sampling.send()
+        self._announce(phase, held=held)
 
     def message(self, kind: str, text: str, **more: object) -> None:
         """Send a message of the plug-in with the place it was written at."""

@@ -17,6 +17,11 @@ LINE_LIMIT = 16 * 1024 * 1024
 
 _REASON_LIMIT = 10_000
 
+_PHASE = b'{"jsonrpc": "2.0", "method": "phase", "params": {"phase": "%s"}}\n'
+
+# `json.dumps` would make one for each line.
+_ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
+
 
 class Channel:
     """Reads and writes lines; any thread may write."""
@@ -25,6 +30,8 @@ class Channel:
         """Take over the descriptor, and keep it from the plug-in's children."""
         self.descriptor = descriptor
         self._rest = b""
+        # Lines that go with the next one.
+        self._held = b""
         os.set_inheritable(descriptor, False)  # noqa: FBT003 - the library's signature
         self._renew_lock()
         # A forked child must not wait for a lock that another thread held.
@@ -53,6 +60,10 @@ class Channel:
         *whole, self._rest = (self._rest + data).split(b"\n")
         return whole
 
+    def announce(self, phase: str, *, held: bool = False) -> None:
+        """Tell the runner what is done now; held back when none of it is the plug-in's code."""
+        self._write(_PHASE % phase.encode(), held=held)
+
     def notify(self, method: str, params: dict[str, object]) -> None:
         """Tell the runner something. A text that is too long for a line is sent in parts."""
         data = encode({"jsonrpc": "2.0", "method": method, "params": params})
@@ -64,23 +75,32 @@ class Channel:
         for part in (text[:middle], text[middle:]):
             self.notify(method, {**params, "text": part})
 
-    def answer(self, number: object, result: dict[str, object]) -> None:
-        """Answer a request that was carried out."""
+    def answer(self, number: object, result: dict[str, object], *, held: bool = False) -> None:
+        """Answer a request that was carried out; held back when the next one begins at once."""
         data = encode({"jsonrpc": "2.0", "id": number, "result": result})
         if len(data) > LINE_LIMIT:
             # The whole reason was sent as a message before; what is left names it.
             result = {**result, "reason": str(result.get("reason"))[:_REASON_LIMIT]}
             data = encode({"jsonrpc": "2.0", "id": number, "result": result})
-        self._write(data)
+        self._write(data, held=held)
 
     def refuse(self, number: object, code: int, text: str) -> None:
         """Answer a request that cannot be carried out."""
         error = {"code": code, "message": text}
         self._write(encode({"jsonrpc": "2.0", "id": number, "error": error}))
 
-    def _write(self, data: bytes) -> None:
+    def flush(self) -> None:
+        """Send what was held back."""
+        if self._held:
+            self._write(b"")
+
+    def _write(self, data: bytes, *, held: bool = False) -> None:
         try:
             with self._lock:
+                data, self._held = self._held + data, b""
+                if held:
+                    self._held = data
+                    return
                 while data:
                     data = data[os.write(self.descriptor, data) :]
         except (BrokenPipeError, ConnectionResetError):
@@ -90,9 +110,9 @@ class Channel:
 def encode(line: dict[str, object]) -> bytes:
     """Write one line. JSON has no numbers that are not finite: they become ``null``."""
     try:
-        text = json.dumps(line, ensure_ascii=False, allow_nan=False)
+        text = _ENCODER.encode(line)
     except ValueError:
-        text = json.dumps(_finite(line), ensure_ascii=False, allow_nan=False)
+        text = _ENCODER.encode(_finite(line))
     # A file name that is not UTF-8 holds lone surrogates, which JSON cannot carry.
     return text.encode("utf-8", "replace") + b"\n"
 

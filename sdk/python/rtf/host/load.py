@@ -44,7 +44,7 @@ def load(file: str, base: type[_P]) -> _P:
 def _run_file(file: str) -> ModuleType:
     # Not by `importlib`: that leaves a `__pycache__` beside the user's files
     # and insists on file names that are Python's own.
-    with open(file, "rb") as stream:
+    with open(file, "rb", buffering=0) as stream:
         source = stream.read()
     code = _compiled(source, file)
     stem = os.path.splitext(os.path.basename(file))[0]

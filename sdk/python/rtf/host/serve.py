@@ -70,6 +70,10 @@ class Reader:
             self._receive()
         return self._requests.get()
 
+    def has_next(self) -> bool:
+        """Whether there is a further request already."""
+        return not self._requests.empty()
+
     def watch(self) -> None:
         """Read in a thread from now on, which does not keep the process alive.
 
@@ -183,7 +187,9 @@ class Host:
             # A forked child came back from the plug-in; its parent serves the runner.
             os._exit(0)
         reader.finish(request, fixture_is_up=self._fixture is not None, last=last)
-        self._channel.answer(request.number, result)
+        # The beginning of the next test tells that this one is over: both in one piece.
+        held = "stays" in result and reader.has_next()
+        self._channel.answer(request.number, result, held=held)
         return not last
 
     def _do(self, request: Request) -> tuple[steps.Answer, bool]:
@@ -217,7 +223,7 @@ class Host:
         task = session.task
         if self._sharing is None and not task.last:
             self._sharing = sharing.Sharing.begin()
-        session.notify("phase", {"phase": "load"})
+        session.announce("load")
         answer = steps.run_test(session)
         stays = answer["outcome"] == "passed" and not task.last
         if stays and self._sharing is not None and self._sharing.stay(task.shared):
@@ -244,7 +250,9 @@ class Host:
         return {"protocol": PROTOCOL_VERSION, "host": host, "stack": stack, "shares": True}
 
     def _enter(self, task: Task, request: Request) -> Session:
-        session = Session(task, request.judge, self._channel.notify)
+        if not task.shared:
+            self._channel.flush()
+        session = Session(task, request.judge, self._channel.notify, self._channel.announce)
         _session.enter(session)
         return session
 

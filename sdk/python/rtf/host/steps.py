@@ -30,16 +30,26 @@ def run_test(session: Session) -> Answer:
     """Load a test, set it up, run it and tear it down."""
     test = _load(session, TestCase)
     if test is not None:
-        session.notify("phase", {"phase": "setup"})
+        has_setup = _has_own(test, "setup")
+        session.announce("setup", held=not has_setup)
         session.sampling.begin()
-        if _step(session, lambda: test.setup(session.task.args), "setup"):
-            session.notify("phase", {"phase": "run"})
+        if has_setup:
+            _step(session, lambda: test.setup(session.task.args), "setup")
+        if session.judge.first() is None:
+            session.announce("run")
             session.judge.failures_are_errors = False
             _step(session, test.run, "run")
             session.judge.failures_are_errors = True
-        session.notify("phase", {"phase": "tear-down"})
-        _tear_down(session, test)
+        has_tear_down = _has_own(test, "tearDown")
+        session.announce("tear-down", held=not has_tear_down)
+        if has_tear_down:
+            _tear_down(session, test)
     return _answer(session)
+
+
+def _has_own(test: TestCase, step: str) -> bool:
+    """Whether there is code of the plug-in to be called: without, two lines need one write."""
+    return getattr(type(test), step) is not getattr(TestCase, step) or step in vars(test)
 
 
 def set_up_fixture(
