@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -144,3 +146,18 @@ def test_a_forked_child_that_comes_back_does_not_answer(tmp_path: Path) -> None:
     host.send("run-test", plugin(tmp_path, body), number=2)
     assert host.end()[0] == 0
     assert [message["id"] for message in host.seen if "id" in message] == [1, 2]
+
+
+def test_a_request_that_comes_after_the_last_answer_is_not_missed(tmp_path: Path) -> None:
+    """A test that fails ends its host, which may have been asked for the next one just then."""
+    for _ in range(8):
+        host = Host(tmp_path)
+        params = {**plugin(tmp_path, arm("self.fail('no')")), "last": False, "shared": "\0mark\n"}
+        host.send("run-test", params, number=2)
+        host.wait_for("message")
+        with suppress(OSError):  # it has ended already
+            host.send("run-test", params, number=3)
+        host.answer()
+        with suppress(OSError):
+            host.channel.shutdown(socket.SHUT_RDWR)
+        assert host.end()[0] == 0

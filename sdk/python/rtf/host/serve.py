@@ -37,6 +37,8 @@ VERSION_MISMATCH = -32001
 # it gets what Ctrl-C does to a Python program, so that its tear-down still runs.
 _POLITE_SECONDS = 0.5
 
+_BEGINNING_SECONDS = 5
+
 
 class Request:
     """What the runner waits for an answer to."""
@@ -63,6 +65,8 @@ class Reader:
         self._open: list[Request] = []
         self._lock = threading.Lock()
         self._is_watched = False
+        self._is_over = False
+        self._beginning = threading.Lock()
 
     def next(self) -> Request | None:
         """Return the next request; `None` when the runner has gone."""
@@ -81,21 +85,30 @@ class Reader:
         """
         if not self._is_watched:
             self._is_watched = True
+            self._beginning.acquire()
             start_new_thread(self._read, ())
+
+    def settle(self) -> None:
+        """Let the thread begin: an interpreter that ends before that crashes."""
+        # Not for ever: in a copy of this process that the plug-in made there is no thread.
+        if self._beginning.acquire(timeout=_BEGINNING_SECONDS):
+            self._beginning.release()
 
     def finish(self, request: Request, *, fixture_is_up: bool, last: bool = False) -> None:
         """Forget a request that is about to be answered: the runner may go then.
 
-        With the last one, what has not begun is forgotten, too.
+        With the last one, what has not begun is forgotten, too, and what is still to come.
         """
         request.done.set()
         with self._lock:
             self._open.remove(request)
             if last:
                 self._open.clear()
+                self._is_over = True
             self.fixture_is_up = fixture_is_up
 
     def _read(self) -> None:
+        self._beginning.release()
         while self._receive():
             pass
 
@@ -131,7 +144,8 @@ class Reader:
         elif message.get("id") is not None:
             request = Request(message)
             with self._lock:
-                self._open.append(request)
+                if not self._is_over:
+                    self._open.append(request)
             self._requests.put(request)
 
     def _interrupt(self, reason: str, number: object) -> None:
@@ -301,11 +315,14 @@ def serve(descriptor: int | None = None) -> int:
         return 2
     reader = Reader(line)
     host = Host(line)
-    while True:
-        request = reader.next()
-        if request is None:
-            return 0
-        if request.method != "initialize":
-            reader.watch()
-        if not host.carry_out(request, reader):
-            return 0
+    try:
+        while True:
+            request = reader.next()
+            if request is None:
+                return 0
+            if request.method != "initialize":
+                reader.watch()
+            if not host.carry_out(request, reader):
+                return 0
+    finally:
+        reader.settle()
