@@ -13,6 +13,8 @@ export type {
     Said as MessageEntry,
     Server as ApiRoot,
     Stack as StackEntry,
+    Signal,
+    Signals,
     Start,
     Started,
     State as RunStateName,

@@ -1,6 +1,6 @@
 // Measurements of one name as a series.
 
-import type { MeasurementEntry } from './api-types';
+import type { MeasurementEntry, Signal } from './api-types';
 import { isWithin } from './record/detail';
 
 export interface Point {
@@ -66,4 +66,15 @@ export function scaleOf(one: Series): { from: number; to: number } | null {
     const scale = { from: from - by, to: to + by };
     // Numbers near the end of their range have no room beside them.
     return Number.isFinite(scale.to - scale.from) ? scale : null;
+}
+
+/** A signal as its plot takes it: its curve. */
+export function ofSignal(signal: Signal): Series {
+    const { name, unit, low = null, high = null, last = null } = signal;
+    const { times, values, outside: violations, mean = NaN } = signal;
+    const points = times.map((time, index) => ({ at: time * 1e6, value: values[index] ?? null }));
+    // A test may give times of its own in any order; a plot goes from left to right.
+    points.sort((a, b) => a.at - b.at);
+    const [least, most] = [signal.min ?? Infinity, signal.max ?? -Infinity];
+    return { key: name, name, unit, low, high, points, last, least, most, mean, violations };
 }

@@ -4,7 +4,7 @@ import { clock, count, duration, grouped, limits, number, size } from '../lib/fo
 import { OutputRows } from '../lib/output';
 import { estimate, historyOf } from '../lib/progress';
 import { hrefOf, parseRoute, type Route } from '../lib/route';
-import { scaleOf, series } from '../lib/series';
+import { ofSignal, scaleOf, series } from '../lib/series';
 import { barAt, lanes, pan, ticks, zoom } from '../lib/timeline';
 import { rows } from '../lib/tree';
 import { recordOf, stream } from './streams';
@@ -187,4 +187,16 @@ test('a measurement near the end of numbers has no scale, and does not break', (
     const [one] = series(entries);
     expect(one?.violations).toBe(1);
     expect(scaleOf({ ...one!, most: Number.MAX_VALUE, least: -Number.MAX_VALUE })).toBeNull();
+});
+
+test('a signal is drawn from left to right, whatever times the test gave', () => {
+    const signal = { name: 'elbow', unit: 'rad', high: 1.5, count: 3, min: 0.25, max: 1.75 };
+    const curve = { times: [0, 1, 0.5], values: [0.25, 1.75, 1] };
+    const drawn = ofSignal({ ...signal, mean: 1, last: 1, outside: 1, ...curve });
+    expect(drawn.points).toEqual([
+        { at: 0, value: 0.25 },
+        { at: 500_000, value: 1 },
+        { at: 1_000_000, value: 1.75 },
+    ]);
+    expect(drawn).toMatchObject({ low: null, high: 1.5, last: 1, violations: 1 });
 });

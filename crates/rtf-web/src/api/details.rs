@@ -20,15 +20,15 @@ use crate::runs::Run;
 /// How much text a page holds, apart from its last entry.
 const PAGE_BYTES: usize = 1 << 20;
 
-type Path3 = At<(String, u32, u32)>;
-type Answer = Result<JsonText, Problem>;
+pub(super) type Path3 = At<(String, u32, u32)>;
+pub(super) type Answer = Result<JsonText, Problem>;
 
 /// Which part of the journal, and which page of it.
-struct Part {
-    source: Source,
-    number: u32,
-    kind: &'static str,
-    page: Page,
+pub(super) struct Part {
+    pub(super) source: Source,
+    pub(super) number: u32,
+    pub(super) kind: &'static str,
+    pub(super) page: Page,
 }
 
 impl Part {
@@ -59,6 +59,19 @@ impl Part {
             last = head.seq;
         }
         Ok((entries, None))
+    }
+
+    /// Goes through all entries, of all pages.
+    pub(super) fn each(&self, run: &Run, mut take: impl FnMut(Event)) -> Result<(), Problem> {
+        let mut lines = self.lines(run)?;
+        let failed = |error| Problem::unreadable(std::path::Path::new("events.jsonl"), &error);
+        while let Some(line) = lines.next().map_err(failed)? {
+            let Ok(head) = serde_json::from_slice::<Head>(line.text) else { continue };
+            if *head.kind == *self.kind && head.detail_of() == Some(self.source) {
+                serde_json::from_slice(line.text).into_iter().for_each(&mut take);
+            }
+        }
+        Ok(())
     }
 
     fn lines(&self, run: &Run) -> Result<Lines, Problem> {

@@ -9,6 +9,7 @@ mod logs;
 mod parts;
 mod problems;
 mod runs;
+mod series;
 mod session;
 mod tests;
 mod types;
@@ -79,6 +80,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(details::fixture_messages))
         .routes(routes!(details::hook_messages))
         .routes(routes!(details::measurements))
+        .routes(routes!(series::series))
         .routes(routes!(details::attachments))
         .routes(routes!(details::stacks))
         .routes(routes!(details::test_output))

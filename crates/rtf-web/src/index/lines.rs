@@ -50,7 +50,7 @@ impl Head {
             // A fixture's report about a test is the test's.
             "message" => self.test.map(Source::Test).or(self.source),
             "output" | "stack-dumped" | "processes-left" => self.source,
-            "measured" | "attached" => self.test.map(Source::Test),
+            "measured" | "sampled" | "attached" => self.test.map(Source::Test),
             _ => None,
         }
     }

@@ -3,7 +3,8 @@
 //! value that [`Event`]'s own way of reading takes, in a third of the time.
 
 use rtf_model::{
-    Event, EventKind, FixtureId, Measurement, Message, Micros, Output, Source, Stream, TestId,
+    Event, EventKind, FixtureId, Measurement, Message, Micros, Output, Samples, Source, Stream,
+    TestId,
 };
 use serde::Deserialize;
 
@@ -19,6 +20,7 @@ struct Frequent {
     fixture: Option<FixtureId>,
     message: Option<Message>,
     measurement: Option<Measurement>,
+    samples: Option<Samples>,
     stream: Option<Stream>,
     #[serde(default)]
     omitted: u64,
@@ -36,6 +38,7 @@ impl Frequent {
                 let (test, measurement) = (self.test?, self.measurement?);
                 EventKind::Measured { test, fixture: self.fixture, measurement }
             }
+            "sampled" => EventKind::Sampled { test: self.test?, samples: self.samples? },
             "output" => {
                 let (source, stream, text) = (self.source?, self.stream?, self.text?);
                 EventKind::Output(Output { source, stream, omitted: self.omitted, text })

@@ -43,6 +43,26 @@ fn a_run_is_seen_as_it_goes_on() {
 }
 
 #[test]
+fn a_signal_is_seen_in_numbers_and_as_a_curve() {
+    let (world, mut run) = World::new();
+    run.plan("arm", &["first"]);
+    run.start(TEST);
+    run.sample(0.0, &[0.25, 1.0]);
+    run.sample(1.0, &[1.75]);
+    run.flush();
+    let seen = world.get("/api/v1/runs/own/tests/0/attempts/1/series").json();
+    let expected = json!({"series": [{
+        "name": "elbow", "unit": "rad", "high": 1.5, "count": 3, "min": 0.25, "mean": 1.0,
+        "max": 1.75, "last": 1.75, "outside": 1,
+        "problem": "`elbow` is 1.75 rad at 1 s, its limits are ≤ 1.5",
+        "times": [0.0, 0.5, 1.0], "values": [0.25, 1.0, 1.75],
+    }]});
+    assert_eq!(seen, expected);
+    let none = world.get("/api/v1/runs/own/tests/0/attempts/2/series");
+    assert_eq!(none.json()["status"], 404);
+}
+
+#[test]
 fn details_come_page_by_page_and_go_on_while_the_test_runs() {
     let (world, mut run) = World::new();
     run.plan("arm", &["first"]);

@@ -6,7 +6,8 @@ use std::sync::{Arc, Mutex};
 
 use rtf_model::{
     Attachment, Event, EventKind, Measurement, Message, MessageKind, Micros, Output, Phase, Record,
-    RunStarted, Source, Stream, SuiteId, SuitePlanned, TestFinished, TestId, TestPlanned, Verdict,
+    RunStarted, Samples, Source, Stream, SuiteId, SuitePlanned, TestFinished, TestId, TestPlanned,
+    Verdict,
 };
 use rtf_report::Reporter;
 use rtf_report::journal::Journal;
@@ -150,6 +151,16 @@ impl Writer {
         let (value, high) = (Some(value), Some(high));
         let measurement = Measurement { name, value, unit, low: None, high, location: None };
         self.emit(EventKind::Measured { test: TEST, fixture: None, measurement });
+    }
+
+    /// Samples a signal: its values, 0.5 s apart from `from` on.
+    pub fn sample(&mut self, from: f64, values: &[f64]) {
+        let (name, unit) = ("elbow".to_owned(), "rad".to_owned());
+        let time = |(n, value): (usize, &f64)| (from + 0.5 * n as f64, Some(*value));
+        let points = values.iter().enumerate().map(time).collect();
+        let (low, high, location) = (None, Some(1.5), None);
+        let samples = Samples { name, unit, low, high, location, points };
+        self.emit(EventKind::Sampled { test: TEST, samples });
     }
 
     /// Attaches a file that holds this.

@@ -2,7 +2,7 @@
 // said, and keeps it up to date while the run goes on.
 
 import { get, path } from '../api';
-import type { Said } from '../api-types';
+import type { Said, Signal, Signals } from '../api-types';
 import type { Event } from '../event';
 import { addToLists, append, emptyLists, LIST_NAMES, type ListName } from '../record/detail';
 import type { LiveRun } from './run.svelte';
@@ -26,6 +26,8 @@ const PARTS = { test: 'attempts', fixture: 'starts', hook: 'runs' } as const;
 /** Pages that are loaded without being asked for: 5000 entries, 5 MB of output. */
 const FIRST_PAGES = 5;
 const PAGE = 1000;
+/** Curves that grow are loaded anew after so many milliseconds. */
+const SIGNALS_EVERY = 1000;
 
 type Page = { next?: number } & { [list in ListName]?: Said[] };
 
@@ -36,6 +38,9 @@ export class Details {
     problem: string | null = $state(null);
     /** Lists of which the server has more, and where it goes on. */
     more: Partial<Record<ListName, number>> = $state.raw({});
+    /** What a test sampled. */
+    signals: readonly Signal[] = $state.raw([]);
+    private signalsDue: ReturnType<typeof setTimeout> | null = null;
     private all = emptyLists();
     private waiting: Event[] | null = [];
     private latest: number;
@@ -63,6 +68,7 @@ export class Details {
 
     close(): void {
         this.closing.abort();
+        if (this.signalsDue !== null) clearTimeout(this.signalsDue);
         this.unwatch();
     }
 
@@ -75,14 +81,29 @@ export class Details {
 
     private async load(): Promise<void> {
         await this.attempt(async () => {
-            await Promise.all(
-                LISTS[this.subject.kind].map((list) => this.pages(list, undefined, FIRST_PAGES)),
-            );
+            const { kind } = this.subject;
+            await Promise.all([
+                ...LISTS[kind].map((list) => this.pages(list, undefined, FIRST_PAGES)),
+                ...(kind === 'test' ? [this.loadSignals()] : []),
+            ]);
             const missed = this.waiting ?? [];
             this.waiting = null;
             missed.forEach((event) => this.add(event));
         });
         this.isLoading = false;
+    }
+
+    private async loadSignals(): Promise<void> {
+        const { id, number } = this.subject;
+        const route = ['runs', this.run.name, 'tests', id, 'attempts', number, 'series'];
+        this.signals = (await get<Signals>(path(route), this.closing.signal)).series;
+    }
+
+    private renewSignals(): void {
+        this.signalsDue ??= setTimeout(() => {
+            this.signalsDue = null;
+            void this.attempt(() => this.loadSignals());
+        }, SIGNALS_EVERY);
     }
 
     private async attempt(work: () => Promise<void>): Promise<void> {
@@ -121,7 +142,8 @@ export class Details {
         let isChanged = false;
         for (const event of events) {
             if (!this.isOurs(event)) continue;
-            if (this.waiting !== null) this.waiting.push(event);
+            if (event.type === 'sampled') this.renewSignals();
+            else if (this.waiting !== null) this.waiting.push(event);
             else this.add(event);
             isChanged = true;
         }

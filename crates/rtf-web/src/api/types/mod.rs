@@ -5,6 +5,7 @@ mod fixture;
 mod hook;
 mod info;
 pub mod model;
+mod signal;
 mod suite;
 mod test;
 
@@ -15,5 +16,6 @@ pub use detail::{
 pub use fixture::{Fixture, Fixtures};
 pub use hook::{Hook, Hooks};
 pub use info::{RunInfo, RunList, Totals};
+pub use signal::{Signal, Signals};
 pub use suite::{Snapshot, Suite, Suites};
 pub use test::{Attempt, Test, TestDetail, TestPage, TestState};

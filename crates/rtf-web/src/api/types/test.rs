@@ -99,7 +99,7 @@ pub struct Counts {
     pub failures: u64,
     /// Measurements.
     pub measurements: u64,
-    /// Measurements outside their limits.
+    /// Measurements and samples outside their limits.
     pub violations: u64,
     /// Attached files.
     pub attachments: u64,
