@@ -19,7 +19,7 @@ pub use doctor::{DoctorArgs, DoctorFormat};
 pub use formats::{Annotations, Format, Shown, parse_report};
 pub use past::{MergeArgs, ReportArgs, ShowArgs};
 pub use values::{forks, unset_when_empty};
-use values::{forks_parser, jobs_parser, parse_setting};
+use values::{forks_parser, jobs_parser, parse_seed, parse_setting};
 pub use web::{ServeArgs, WebAccessArgs, WebRunArgs};
 
 /// Tests of robots: plug-ins in any language, on top of fixtures that are
@@ -180,7 +180,8 @@ pub struct SelectArgs {
     pub rerun: Vec<Rerun>,
 
     /// In a random order; the number that decides it is shown, and repeats it
-    #[arg(help_heading = CHOOSING, long, value_name = "SEED", num_args = 0..=1, require_equals = true)]
+    #[arg(help_heading = CHOOSING, long, value_name = "SEED", value_parser = parse_seed)]
+    #[arg(num_args = 0..=1, require_equals = true)]
     pub shuffle: Option<Option<u64>>,
 
     /// Only one part of the tests, of several: `2/5`

@@ -103,14 +103,19 @@ impl Files {
             return None;
         }
         let shown = path.strip_prefix(&self.current).unwrap_or(&path).display().to_string();
-        let source = match suite::open(&path, &shown) {
-            Ok(source) => Arc::new(source),
+        let (source, written) = match suite::open(&path, &shown) {
+            Ok(source) => {
+                let written = read::read(&source, &mut self.problems);
+                (source, written)
+            }
             Err(unreadable) => {
                 self.problems.push(unreadable.problem);
-                Arc::new(unreadable.source.unwrap_or_else(|| Source::new(shown, "")))
+                let nothing = Source::new(shown, "");
+                let written = read::read(&nothing, &mut self.problems);
+                (unreadable.source.unwrap_or(nothing), written)
             }
         };
-        let written = read::read(&source, &mut self.problems);
+        let source = Arc::new(source);
         let read::Written { profile, defaults, profiles } = written;
         Some(ConfigFile { source, path, profile, defaults, profiles })
     }

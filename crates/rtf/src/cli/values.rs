@@ -36,6 +36,14 @@ pub fn forks(word: &str) -> Forks {
     }
 }
 
+/// Reads what decides a random order.
+///
+/// # Errors
+/// It is no number.
+pub fn parse_seed(value: &str) -> Result<u64, String> {
+    value.parse().map_err(|_| "expected a number, as an earlier run shows it".to_owned())
+}
+
 /// Reads `tolerance=0.02`.
 ///
 /// # Errors

@@ -26,6 +26,21 @@ pub struct WebRunArgs {
     pub access: WebAccessArgs,
 }
 
+impl WebRunArgs {
+    /// An option that says how to do what is not done without `--web`.
+    pub fn without_effect(&self) -> Option<&'static str> {
+        let access = &self.access;
+        let given = [
+            ("--web-token-file", access.web_token_file.is_some()),
+            ("--web-allow-remote", access.web_allow_remote),
+            ("--web-cert", access.web_cert.is_some()),
+            ("--web-host", !access.web_hosts.is_empty()),
+        ];
+        let given = given.into_iter().find(|(_, given)| *given);
+        given.map(|(name, _)| name).filter(|_| self.web.is_none())
+    }
+}
+
 /// Which runs to show in a browser.
 #[derive(Debug, Args)]
 pub struct ServeArgs {

@@ -76,7 +76,10 @@ fn again(args: &InputArgs, results: &ResultsArgs) -> Result<(Manifest, Option<Pa
             return Err(Failure::input(what));
         }
     };
-    let record = record(results, &run)?;
+    let record = record(results, &run).map_err(|failure| match PathBuf::from(&run).is_file() {
+        true => failure.hint("with `--rerun`, FILE is a past run, or its journal".to_owned()),
+        false => failure,
+    })?;
     let Some(started) = &record.run else {
         return Err(Failure::input(format!("the journal of `{run}` has no beginning")));
     };

@@ -22,7 +22,8 @@ pub fn run(args: &ReportArgs) -> Outcome {
     tell_damage(&stored)?;
     match &args.output {
         Some(output) => {
-            let mut report = output::open_report(args.format, output, path.parent())?;
+            let report = output::open_report(args.format, output, path.parent());
+            let mut report = report.map_err(elsewhere)?;
             report.finish(&stored.record).map_err(Failure::own)?;
         }
         None => {
@@ -32,6 +33,10 @@ pub fn run(args: &ReportArgs) -> Outcome {
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+fn elsewhere(failure: Failure) -> Failure {
+    failure.hint("choose another path with `-o PATH`".to_owned())
 }
 
 /// The events themselves: those of a journal that can be read.
@@ -48,7 +53,7 @@ fn events(journal: &Path, output: Option<&Path>) -> Outcome {
                 })
             });
             output_file::write("the events", path, |out| out.write_all(&events))
-                .map_err(Failure::input)?;
+                .map_err(|error| elsewhere(Failure::input(error)))?;
             stored
         }
     };

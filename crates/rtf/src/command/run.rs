@@ -23,6 +23,10 @@ pub fn run(args: &RunArgs, guard: Link) -> Outcome {
         return list::show(&planned, ListFormat::Text);
     }
     output::check_reports(&args.reports)?;
+    if let Some(option) = args.web.without_effect() {
+        let what = format!("`{option}` has no effect without `--web`");
+        return Err(Failure::input(what).hint("give `--web`, too".to_owned()));
+    }
     let web = args.web.web.map(|address| web::bind(address, &args.web.access)).transpose()?;
     let folder = run_folder::create(&args.results.results).map_err(|error| {
         Failure::input(error).hint("choose another folder with `--results DIR`".to_owned())

@@ -46,6 +46,49 @@ fn numbers_and_durations() {
     assert_snapshot!(told("--shutdown-timeout", "0"), @"error: invalid value '0' for '--shutdown-timeout <DURATION>': must be longer than zero");
 }
 
+#[test]
+fn options_that_need_others() {
+    assert_snapshot!(refused(&folder(), &["run", "arm.xml", "--web-allow-remote"]), @"
+    error: `--web-allow-remote` has no effect without `--web`
+    hint: give `--web`, too
+    ");
+    assert_snapshot!(refused(&folder(), &["run", "arm.xml", "--rerun", "failed"]), @"
+    error: `arm.xml` is not a journal: line 1: this is not an event: expected value at line 1 column 1
+    hint: with `--rerun`, FILE is a past run, or its journal
+    ");
+    assert_snapshot!(first(&["run", "arm.xml", "--shuffle=x"]), @"error: invalid value 'x' for '--shuffle[=<SEED>]': expected a number, as an earlier run shows it");
+}
+
+#[test]
+fn a_report_that_cannot_be_written() {
+    let folder = folder();
+    assert_eq!(folder.rtf(&["run", "arm.xml"]).code, Some(0));
+    for format in ["junit", "json"] {
+        let finished = folder.rtf(&["report", "--format", format, "-o", "arm.xml/report"]);
+        assert_eq!(finished.code, Some(2));
+        let hint = "hint: choose another path with `-o PATH`\n";
+        assert!(finished.stderr.ends_with(hint), "{}", finished.stderr);
+    }
+}
+
+/// What cannot be read has one problem, not one for each byte that follows.
+#[test]
+fn a_configuration_that_is_not_utf8() {
+    let folder = folder();
+    std::fs::write(folder.path().join("rtf.toml"), b"jobs = 2\n\xff").expect("a file");
+    assert_snapshot!(refused(&folder, &["run", "arm.xml"]), @"
+    error: `rtf.toml` is not encoded in UTF-8
+     --> rtf.toml:2:1
+      |
+    2 | �
+      | ^ this byte is not UTF-8
+      |
+      = help: save the file as UTF-8
+
+    1 error; nothing was started
+    ");
+}
+
 /// `RTF_RESULTS= rtf run` is how a shell takes a variable away.
 #[test]
 fn a_variable_that_is_empty_is_not_set() {
