@@ -1,10 +1,11 @@
 //! The grammar of an event stream: which event may follow which.
 
+mod attempts;
 mod beside;
 mod served;
 mod state;
 
-use crate::{Event, EventKind, FixtureId, HookId, Source, SuiteId, TestId};
+use crate::{Event, EventKind, FixtureId, HookId, Phase, Source, SuiteId, TestId};
 use beside::Beside;
 use served::Served;
 use state::{Bracket, Fixture, FixtureStage, Stage, Test};
@@ -107,6 +108,7 @@ impl OrderChecker {
             EventKind::TestStarted { test, repetition, attempt } => {
                 self.start_test(*test, (*repetition, *attempt))
             }
+            EventKind::TestPhase { test, phase: Phase::Notice } => self.judge_test(*test),
             EventKind::TestPhase { test, .. }
             | EventKind::Sampled { test, .. }
             | EventKind::TestSlow { test }
@@ -188,8 +190,7 @@ impl OrderChecker {
     fn plan_test(&mut self, test: TestId, suite: SuiteId, repetitions: Option<u32>) -> Rule {
         self.planned_last(suite)?;
         ensure(test.index() == self.tests.len(), || format!("test {test} out of order"))?;
-        let last = None;
-        self.tests.push(Test { suite, repetitions, open: false, last, rerun: false, over: false });
+        self.tests.push(Test::new(suite, repetitions));
         Ok(())
     }
 
@@ -277,33 +278,6 @@ impl OrderChecker {
         Ok(())
     }
 
-    fn test(&mut self, test: TestId) -> Result<&mut Test, String> {
-        let suite = self.tests.get(test.index()).map(|t| t.suite);
-        let suite = suite.ok_or_else(|| format!("test {test} was not planned"))?;
-        self.suite_open(suite)?;
-        Ok(&mut self.tests[test.index()])
-    }
-
-    fn start_test(&mut self, id: TestId, number: (u32, u32)) -> Rule {
-        let test = self.test(id)?;
-        ensure(!test.open, || format!("test {id} started twice"))?;
-        ensure(!test.over, || format!("test {id} started although it was skipped or is over"))?;
-        let follows = match test.last {
-            None => number == (1, 1),
-            Some((r, a)) if test.rerun => number == (r, a + 1),
-            Some((r, _)) => number == (r + 1, 1),
-        };
-        ensure(follows, || format!("test {id}: repetition or attempt out of order"))?;
-        ensure(test.repetitions.is_none_or(|most| number.0 <= most), || {
-            format!("test {id}: more repetitions than planned")
-        })?;
-        test.last = Some(number);
-        test.open = true;
-        let suite = test.suite.index();
-        self.beside.test(suite, true);
-        Ok(())
-    }
-
     fn inside_test(&mut self, id: TestId) -> Rule {
         let open = self.test(id)?.open;
         ensure(open, || format!("test {id} is not running"))
@@ -339,35 +313,6 @@ impl OrderChecker {
             }
             _ => Err("a shared host, and nothing else, tells how many tests it has served".into()),
         }
-    }
-
-    fn finish_test(&mut self, id: TestId, rerun: bool) -> Rule {
-        self.inside_test(id)?;
-        let test = self.test(id)?;
-        test.open = false;
-        test.rerun = rerun;
-        let suite = test.suite.index();
-        self.beside.test(suite, false);
-        Ok(())
-    }
-
-    fn skip_test(&mut self, id: TestId) -> Rule {
-        let test = self.test(id)?;
-        ensure(!test.open, || format!("test {id} skipped while it runs"))?;
-        ensure(!test.over, || format!("test {id} skipped twice, or after its end"))?;
-        test.over = true;
-        Ok(())
-    }
-
-    fn end_test(&mut self, id: TestId, repetitions: u32) -> Rule {
-        let test = self.test(id)?;
-        let ends = test.repetitions.is_none() && !test.open && !test.rerun && !test.over;
-        ensure(ends, || format!("test {id} cannot end here"))?;
-        ensure(test.last.is_some_and(|(r, _)| r == repetitions), || {
-            format!("test {id} was not repeated {repetitions} times")
-        })?;
-        test.over = true;
-        Ok(())
     }
 
     fn finish_suite(&mut self, suite: SuiteId) -> Rule {

@@ -9,6 +9,7 @@
 //! - [`remote`]: process fixtures on another machine.
 //! - [`cgroup`]: control groups, where there are any.
 //! - [`codec`]: lines of the protocol.
+//! - [`dying`]: whether a process is about to end.
 //! - [`tree`]: everything below a process, and orphans.
 //! - [`stack`]: stack dumps of processes that hang.
 //! - [`unix`]: the system calls.
@@ -16,6 +17,7 @@
 pub mod attached;
 pub mod cgroup;
 pub mod codec;
+mod dying;
 pub mod fork;
 pub mod launch;
 pub mod remote;

@@ -22,6 +22,7 @@ use tokio::task::JoinSet;
 
 use super::cgroup::Cgroups;
 use super::codec::{self, FromHost, LINE_LIMIT};
+use super::dying::is_dying;
 use super::launch::Launch;
 use super::spawner::{Process, Spawner};
 use super::{stack, tree, unix, usage};
@@ -276,10 +277,11 @@ impl Task {
         }
     }
 
-    /// One that is dying says nothing: its end follows.
     async fn look_alive(&mut self) {
         self.looked_at -= 1;
-        if !tree::is_dying(self.process.pid) {
+        if is_dying(self.process.pid) {
+            self.tell(HostInput::Dies).await;
+        } else {
             if self.job.measured {
                 let usage = usage::of(self.process.pid, &self.job.launch.scope);
                 self.tell(HostInput::Uses { usage, served: None }).await;

@@ -244,33 +244,6 @@ fn children_of(tasks: impl AsRef<Path>) -> Vec<i32> {
         .collect()
 }
 
-/// Whether a process is ending, or has ended and was not waited for. It may
-/// have been killed just now: then the signal is still waiting for it.
-#[must_use]
-pub fn is_dying(pid: i32) -> bool {
-    const EXITING: u64 = 0x4;
-    let Ok(stat) = std::fs::read_to_string(format!("/proc/{pid}/stat")) else {
-        return true;
-    };
-    let Some((_, rest)) = stat.rsplit_once(") ") else { return true };
-    let mut fields = rest.split(' ');
-    let state = fields.next().unwrap_or("X");
-    // Its parent, group, session, terminal, and that one's group are between.
-    let flags = fields.nth(5).and_then(|flags| flags.parse::<u64>().ok()).unwrap_or_default();
-    matches!(state, "Z" | "X" | "x") || flags & EXITING != 0 || is_killed(pid)
-}
-
-/// Whether SIGKILL waits for it.
-fn is_killed(pid: i32) -> bool {
-    const KILL: u64 = 1 << (SIGKILL - 1);
-    let status = std::fs::read_to_string(format!("/proc/{pid}/status")).unwrap_or_default();
-    let pending = status.lines().filter_map(|line| {
-        let line = line.strip_prefix("SigPnd:").or_else(|| line.strip_prefix("ShdPnd:"))?;
-        u64::from_str_radix(line.trim(), 16).ok()
-    });
-    pending.into_iter().any(|pending| pending & KILL != 0)
-}
-
 fn is_zombie(pid: i32) -> bool {
     let Ok(stat) = std::fs::read_to_string(format!("/proc/{pid}/stat")) else {
         return false;
@@ -333,33 +306,4 @@ fn command_of(pid: i32) -> String {
     }
     let name = std::fs::read_to_string(format!("/proc/{pid}/comm")).unwrap_or_default();
     OsStr::new(name.trim()).to_string_lossy().into_owned()
-}
-
-#[cfg(test)]
-mod tests {
-    use std::process::Command;
-
-    use super::is_dying;
-
-    #[test]
-    fn a_process_is_dying_from_its_kill_on_until_it_is_reaped() {
-        let mut sleeper = Command::new("sleep").arg("1000").spawn().unwrap();
-        let pid = i32::try_from(sleeper.id()).unwrap();
-        assert!(!is_dying(pid));
-        sleeper.kill().unwrap();
-        // Never alive again, in whichever instant it is looked at.
-        (0..1000).for_each(|_| assert!(is_dying(pid)));
-        sleeper.wait().unwrap();
-        assert!(is_dying(pid));
-    }
-
-    #[test]
-    fn a_stopped_process_lives() {
-        let mut sleeper = Command::new("sleep").arg("1000").spawn().unwrap();
-        let pid = i32::try_from(sleeper.id()).unwrap();
-        super::signal(pid, 19);
-        assert!(!is_dying(pid));
-        sleeper.kill().unwrap();
-        sleeper.wait().unwrap();
-    }
 }

@@ -1,11 +1,13 @@
 //! What may run beside what in a suite: tests as far as it is `parallel`, and
-//! hooks beside nothing.
+//! hooks beside nothing but tests that are judged.
 
 /// What of a suite runs.
 #[derive(Clone, Copy, Debug)]
 struct Suite {
     parallel: u32,
     tests: u32,
+    /// Those of them that are judged, and of which fixtures are told.
+    judged: u32,
     hooks: u32,
 }
 
@@ -20,7 +22,7 @@ pub(super) struct Beside {
 
 impl Beside {
     pub fn plan(&mut self, parallel: u32) {
-        self.suites.push(Suite { parallel, tests: 0, hooks: 0 });
+        self.suites.push(Suite { parallel, tests: 0, judged: 0, hooks: 0 });
     }
 
     pub fn test(&mut self, suite: usize, starts: bool) {
@@ -33,6 +35,13 @@ impl Beside {
         self.no_hook_beside(suite);
     }
 
+    /// A test is judged, or one that was is over.
+    pub fn judged(&mut self, suite: usize, begins: bool) {
+        if let Some(running) = self.suites.get_mut(suite) {
+            running.judged = turned(running.judged, begins);
+        }
+    }
+
     pub fn hook(&mut self, suite: usize, starts: bool) {
         let Some(running) = self.suites.get_mut(suite) else { return };
         running.hooks = turned(running.hooks, starts);
@@ -40,8 +49,8 @@ impl Beside {
     }
 
     fn no_hook_beside(&mut self, suite: usize) {
-        let Suite { tests, hooks, .. } = self.suites[suite];
-        if hooks > 0 && tests + hooks > 1 {
+        let Suite { tests, judged, hooks, .. } = self.suites[suite];
+        if hooks > 0 && tests.saturating_sub(judged) + hooks > 1 {
             self.note(format!("a hook of suite {suite} runs beside a test or another hook"));
         }
     }

@@ -43,6 +43,8 @@ pub(super) struct Test {
     /// How many at the most; none when it is repeated until a time is over.
     pub repetitions: Option<u32>,
     pub open: bool,
+    /// Whether it is judged already, and open because fixtures are told.
+    pub judged: bool,
     pub last: Option<(u32, u32)>,
     /// Whether the last attempt's end announced another one.
     pub rerun: bool,
@@ -51,6 +53,11 @@ pub(super) struct Test {
 }
 
 impl Test {
+    pub fn new(suite: SuiteId, repetitions: Option<u32>) -> Self {
+        let (open, judged, rerun, over) = (false, false, false, false);
+        Self { suite, repetitions, open, judged, last: None, rerun, over }
+    }
+
     /// Whether its last word is spoken.
     pub fn is_decided(&self) -> bool {
         let all_done = self.last.is_some_and(|(r, _)| Some(r) == self.repetitions);

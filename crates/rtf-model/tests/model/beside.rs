@@ -64,6 +64,29 @@ fn no_test_runs_beside_a_hook() {
     }
 }
 
+/// The robot is parked while fixtures are told how a test ended.
+#[test]
+fn a_hook_runs_beside_a_test_that_is_judged() {
+    let judged = || EventKind::TestPhase { test: TestId(0), phase: Phase::Notice };
+    let rest = || [start(1), finish(1), start(2), finish(2)];
+    for body in [
+        vec![start(0), judged(), park(true), park(false), finish(0)],
+        vec![start(0), judged(), park(true), finish(0), park(false)],
+    ] {
+        assert_eq!(all(1, body.into_iter().chain(rest()).collect()), Ok(()));
+    }
+    for body in [
+        vec![start(0), park(true), judged(), park(false), finish(0), start(1), finish(1)],
+        vec![start(0), judged(), park(true), start(1), park(false), finish(0), finish(1)],
+        vec![start(0), start(1), judged(), park(true), park(false), finish(0), finish(1)],
+    ] {
+        let error = all(2, body.into_iter().chain([start(2), finish(2)]).collect()).unwrap_err();
+        assert!(error.ends_with("a hook of suite 0 runs beside a test or another hook"), "{error}");
+    }
+    let error = all(1, vec![start(0), judged(), judged()]).unwrap_err();
+    assert_eq!(error, "event 9: test 0 is judged twice");
+}
+
 /// The guard's hooks run while the journal does not know the tests' ends.
 #[test]
 fn when_the_runner_died_what_ran_stays_open() {

@@ -227,6 +227,12 @@ impl Running {
     }
 }
 
+/// Kills a process with SIGKILL; whether it was there.
+pub fn kill(pid: u32) -> bool {
+    let kill = Command::new("kill").args(["-KILL", &pid.to_string()]).stderr(Stdio::null());
+    kill.status().expect("kill").success()
+}
+
 /// Random numbers that a seed repeats (SplitMix64).
 pub struct Random(u64);
 

@@ -9,7 +9,8 @@ use super::io::{HostId, HostInput};
 use super::suite::Context;
 use crate::plan::SuitePlan;
 
-/// The hooks of a suite. They run one after the other, while no test runs.
+/// The hooks of a suite. They run one after the other, while no test runs that is
+/// not judged.
 #[derive(Debug)]
 pub struct Hooks<'p> {
     plan: &'p SuitePlan,
@@ -53,9 +54,9 @@ impl<'p> Hooks<'p> {
         self.running.is_some()
     }
 
-    /// Whether a hook waits to be run.
-    pub fn any_called(&self) -> bool {
-        !self.queue.is_empty()
+    /// Whether a hook runs, or waits to be run.
+    pub fn any(&self) -> bool {
+        self.running.is_some() || !self.queue.is_empty()
     }
 
     pub fn owns(&self, host: HostId) -> bool {

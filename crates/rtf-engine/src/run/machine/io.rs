@@ -61,6 +61,8 @@ pub enum HostInput {
     },
     /// It lives, and has told nothing that was not delivered.
     Lives,
+    /// It is dying; its end follows.
+    Dies,
     /// The stacks of its threads, or why there are none.
     StackTaken(String),
     /// The test is over: everything that it printed was delivered, and nothing of
@@ -133,6 +135,8 @@ pub enum FixtureTimer {
     CheckDue,
     /// The next restart.
     RestartDue,
+    /// The end of its process, which is dying.
+    Death,
 }
 
 /// How to start a process.
@@ -213,7 +217,8 @@ pub enum Effect {
     KillTree(HostId),
     /// Ask the `alive` probes of a process fixture from now on.
     WatchAlive(HostId),
-    /// Look whether the process lives; answered by [`HostInput::Lives`], or by its end.
+    /// Look whether the process lives; answered by [`HostInput::Lives`] or
+    /// [`HostInput::Dies`], or by its end.
     LookAlive(HostId),
     /// Wait for a moment, in the time of `now`.
     SetDeadline(Deadline, Duration),

@@ -5,7 +5,8 @@
 //!
 //! 1. Tests run: they are left alone. Another one is begun beside them when the
 //!    suite is `parallel` and nothing else is to be done first.
-//! 2. A hook runs, or was called for: nothing else is begun.
+//! 2. A hook runs, or was called for: nothing else is begun. Tests that are judged,
+//!    and of which fixtures are being told, do not keep it from running.
 //! 3. The suite ends early (stop request, broken fixture, critical failure,
 //!    limit) or has no test left: `end` hooks, tear down in reverse, skip the rest.
 //! 4. A fixture is unwell: tear down that fixture and all that depend on it.
@@ -14,7 +15,7 @@
 //!    tests, then start these.
 //!
 //! Which test may start is in [`turns`], how tests share a host in [`sharing`], how a
-//! suite is ended early in [`ending`], how a test that failed is tried again in
+//! suite is ended early in [`ending`], what calls for its hooks in [`parking`], how a test that failed is tried again in
 //! [`retries`], how the whole is repeated in [`rounds`], what fixtures are told of
 //! tests in [`telling`].
 //!
@@ -23,6 +24,7 @@
 mod cursor;
 mod ending;
 mod looking;
+mod parking;
 mod retries;
 mod rounds;
 mod sharing;
@@ -38,7 +40,7 @@ use super::fixtures::Fixtures;
 use super::hooks::Hooks;
 use super::io::{Deadline, Effect, HostId, HostInput, Input};
 use super::test::{Ended, TestRun};
-use crate::plan::{AfterCollapse, Given, SuitePlan, TestPlan};
+use crate::plan::{AfterCollapse, Given, SuitePlan};
 use crate::run::FailLimit;
 use cursor::Cursor;
 use looking::Looks;
@@ -190,8 +192,10 @@ impl<'p> SuiteMachine<'p> {
             self.look_alive(test, cx);
             self.turns.ask_ahead(test, cx);
         } else if let Some(place) = self.fixtures.place_of(host) {
-            if matches!(input, HostInput::Lives) {
-                self.seen_alive(host);
+            match input {
+                HostInput::Lives => self.seen_alive(host),
+                HostInput::Dies => self.seen_dying(host, cx),
+                _ => {}
             }
             let change = self.fixtures.get(place).handle(input, cx);
             self.fixture_changed(place, change, cx);
@@ -262,7 +266,6 @@ impl<'p> SuiteMachine<'p> {
         }
         cx.emit(finished);
         self.look_away(test);
-        self.call_hooks(plan, ended);
         if let Some(text) = &ended.critical {
             self.end_critically(format!(
                 "a critical assertion of `{}` did not hold: {text}",
@@ -294,24 +297,15 @@ impl<'p> SuiteMachine<'p> {
         }
     }
 
-    /// Calls for the hooks after an attempt.
-    fn call_hooks(&mut self, plan: &TestPlan, ended: &Ended) {
-        let trigger = match ended.verdict {
-            Verdict::Failed | Verdict::Error | Verdict::Crashed => Trigger::Failure,
-            Verdict::TimedOut => Trigger::Timeout,
-            _ => return,
-        };
-        let reason = ended.reason.as_deref().unwrap_or_default();
-        let reason = format!("`{}` is {}: {reason}", plan.name, ended.verdict);
-        self.hooks.call(trigger, &reason, Some((plan.id, plan.name.clone())));
-    }
-
     fn proceed(&mut self, cx: &mut Context<'_>) {
         if !self.started || self.over {
             return;
         }
-        if self.turns.any_running() {
+        if self.turns.any_unjudged() {
             return self.begin_beside(cx);
+        }
+        if self.turns.any_running() {
+            return self.park_or_begin_beside(cx);
         }
         // Tests of other suites may have failed meanwhile.
         if let Some(reason) = self.fails.reached() {
@@ -343,7 +337,7 @@ impl<'p> SuiteMachine<'p> {
     /// Begins further tests beside those that run, unless these have to end first:
     /// for a hook, a fixture that collapsed, or the end of the suite.
     fn begin_beside(&mut self, cx: &mut Context<'_>) {
-        if self.ending.is_some() || self.hooks.any_called() || !self.fixtures.all_ready() {
+        if self.ending.is_some() || self.hooks.any() || !self.fixtures.all_ready() {
             return;
         }
         match self.fails.reached() {
@@ -373,15 +367,8 @@ impl<'p> SuiteMachine<'p> {
     }
 
     fn finish(&mut self, cx: &mut Context<'_>) {
-        if !self.end_called {
-            self.end_called = true;
-            let began = self.fixtures.any_started() || self.turns.any_begun();
-            if began {
-                self.hooks.call(Trigger::End, "the suite ends", None);
-            }
-            if self.hooks.run_next(cx) {
-                return;
-            }
+        if self.run_end_hooks(cx) {
+            return;
         }
         self.fixtures.stop_all(cx);
         if !self.fixtures.all_stopped() || self.turns.is_host_kept(cx) {

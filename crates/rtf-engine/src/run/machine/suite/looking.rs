@@ -1,4 +1,5 @@
 //! A test that would pass waits until all fixtures were seen to live after its end.
+//! Of one that is dying, every test waits for the end, which is a collapse.
 
 use std::collections::BTreeMap;
 
@@ -40,7 +41,7 @@ impl Looks {
 }
 
 impl SuiteMachine<'_> {
-    /// A test may be about to pass. A fixture that died before is told later, since
+    /// A test is about to be judged. A fixture that died before is told later, since
     /// what it left is swept first: so each of them is looked at.
     pub(super) fn look_alive(&mut self, test: TestId, cx: &mut Context<'_>) {
         let run = self.turns.of_test(test).and_then(|turn| turn.run.as_ref());
@@ -56,6 +57,17 @@ impl SuiteMachine<'_> {
     pub(super) fn seen_alive(&mut self, host: HostId) {
         *self.looks.seen.entry(host).or_default() += 1;
         self.pass_seen();
+    }
+
+    /// Its end may take a while: a memory image is written, or a descendant holds
+    /// its outputs open.
+    pub(super) fn seen_dying(&mut self, host: HostId, cx: &mut Context<'_>) {
+        let waits = |needs: &[(HostId, u64)]| needs.iter().any(|(needed, _)| *needed == host);
+        let tests = self.looks.waiting.iter().filter(|(_, needs)| waits(needs));
+        for (test, _) in tests {
+            let run = self.turns.of_test(*test).and_then(|turn| turn.run.as_mut());
+            run.into_iter().for_each(|run| run.seen_dying(cx));
+        }
     }
 
     fn pass_seen(&mut self) {

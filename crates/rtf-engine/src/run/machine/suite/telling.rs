@@ -1,5 +1,6 @@
 //! Fixtures that asked for it are told that an attempt of a test is about to begin,
-//! and how it was judged. What comes after that waits until they have heard it.
+//! and how it was judged. The next attempt waits until they have heard it; hooks do
+//! not: a robot is not parked later because something is being recorded.
 
 use rtf_model::protocol::{Notice, Request, TestEnds, TestStarts};
 use rtf_model::{EventKind, Phase};
@@ -25,9 +26,11 @@ impl SuiteMachine<'_> {
         any
     }
 
-    /// Looks which running tests are over: judged, and all fixtures have heard how.
+    /// Looks which running tests are judged, which calls for hooks, and which of
+    /// them are over: all fixtures have heard how.
     pub(super) fn look_over(&mut self, cx: &mut Context<'_>) {
         while let Some((test, verdict, reason)) = self.turns.judge_next(cx) {
+            self.call_hooks(&test, verdict, reason.as_deref());
             let about = (Notice::TestFinished, test.id);
             if self.fixtures.any_hears(about.0) {
                 cx.emit(EventKind::TestPhase { test: test.id, phase: Phase::Notice });

@@ -77,6 +77,11 @@ impl<'p> Turns<'p> {
         self.open.iter().any(|turn| turn.run.is_some())
     }
 
+    /// Whether a test runs on which no verdict was spoken yet.
+    pub fn any_unjudged(&self) -> bool {
+        self.open.iter().any(|turn| turn.run.as_ref().is_some_and(|run| !run.is_judged()))
+    }
+
     /// Begins another round when this one is over, if there is time for one.
     pub fn begin_round(&mut self, now: Duration) {
         let any_left = self.suite.tests.iter().any(|plan| self.rounds.have(plan.id));

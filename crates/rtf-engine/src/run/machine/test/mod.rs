@@ -1,7 +1,9 @@
 //! One attempt of a test: its phases and limits, up to its end. How it is
-//! stopped is in [`stop`], how it gets its host in [`sharing`].
+//! stopped is in [`stop`], how it gets its host in [`sharing`], how it
+//! waits for fixtures in [`looking`].
 
 mod answers;
+mod looking;
 pub mod sharing;
 mod stop;
 
@@ -31,7 +33,8 @@ const RUN_TEST: u64 = 2;
 pub const TERM_GRACE: Duration = Duration::from_secs(1);
 /// A test that did not pass waits this long for a fixture's collapse: a connection
 /// breaks before the kernel tells of the death at its other end. One that passed
-/// waits until the fixtures were seen to live, this long at the most.
+/// waits until the fixtures were seen to live, this long at the most. Both wait for
+/// the end of a fixture that was seen to die.
 const SETTLE: Duration = Duration::from_millis(200);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -209,7 +212,8 @@ impl<'p> TestRun<'p> {
             | HostInput::ProbesHold
             | HostInput::ProbeWaits(_)
             | HostInput::ProbeFailed(_)
-            | HostInput::Lives => {}
+            | HostInput::Lives
+            | HostInput::Dies => {}
         }
     }
 
@@ -351,18 +355,6 @@ impl<'p> TestRun<'p> {
         }
     }
 
-    /// Whether it passes once all fixtures were seen to live.
-    pub fn is_looking(&self) -> bool {
-        self.process == Process::Looking
-    }
-
-    /// All fixtures live: its verdict is final.
-    pub fn seen_alive(&mut self) {
-        if self.is_looking() {
-            self.process = Process::Over;
-        }
-    }
-
     /// Judges it once its process is gone: verdict and reason, when that is now.
     pub fn judge_once(&mut self, cx: &mut Context<'_>) -> Option<(Verdict, Option<String>)> {
         if self.process != Process::Over {
@@ -379,6 +371,11 @@ impl<'p> TestRun<'p> {
         let (exit, critical) = (self.evidence.exit, self.critical.take());
         self.ended = Some(Ended { verdict, reason: reason.clone(), phase, exit, critical });
         Some((verdict, reason))
+    }
+
+    /// Whether its verdict is spoken.
+    pub fn is_judged(&self) -> bool {
+        self.process == Process::Judged
     }
 
     /// Its end, once it is judged. The caller then emits `test-finished` with [`Self::finished`].

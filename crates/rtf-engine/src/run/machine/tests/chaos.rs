@@ -25,6 +25,14 @@ fn act_idle(world: &mut World<'_>, choice: u8) -> bool {
     true
 }
 
+fn phase(step: u8) -> Phase {
+    match step {
+        5 => Phase::Setup,
+        8 => Phase::TearDown,
+        _ => Phase::Run,
+    }
+}
+
 fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool) {
     let alive: Vec<_> = world.hosts.iter().map(|(host, source)| (*host, *source)).collect();
     if act_idle(world, choice) {
@@ -36,9 +44,8 @@ fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool) {
         }
         return;
     };
-    let answerable = |world: &World<'_>| {
-        world.sent.iter().rev().find(|(to, id, _)| *to == host && id.is_some()).and_then(|s| s.1)
-    };
+    let asked = |(to, id, _): &&(_, Option<u64>, _)| *to == host && id.is_some();
+    let answerable = |world: &World<'_>| world.sent.iter().rev().find(asked)?.1;
     if world.answered.contains(&host) && choice.is_multiple_of(2) {
         return world.release(host);
     }
@@ -63,17 +70,14 @@ fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool) {
             let answer = HostInput::Answered(INITIALIZE, Reply::Result(value));
             world.feed(Input::Host(host, answer));
         }
-        5 => world.feed(told(Notification::Phase { phase: Phase::Setup })),
-        6 | 7 => world.feed(told(Notification::Phase { phase: Phase::Run })),
-        8 => world.feed(told(Notification::Phase { phase: Phase::TearDown })),
+        step @ 5..=8 => world.feed(told(Notification::Phase { phase: phase(step) })),
+        9 if choice > 128 => world.feed(Input::Host(host, HostInput::Dies)),
         9 => world.feed(told(Notification::Collapsed { reason: "gone".to_owned() })),
         10 => world.exit(source, ExitStatus::Signal(9)),
         11 | 12 => world.exit(source, ExitStatus::Code(0)),
         13 => {
-            let kind = MessageKind::Failure;
-            let text = "no".to_owned();
-            let message =
-                Message { kind, text, location: None, comparison: None, critical: choice > 240 };
+            let (kind, text, critical) = (MessageKind::Failure, "no".to_owned(), choice > 240);
+            let message = Message { kind, text, location: None, comparison: None, critical };
             world.feed(told(Notification::Message(message)));
         }
         14 => drop((!world.deadlines.is_empty()).then(|| world.next_deadline())),

@@ -3,9 +3,9 @@
 use insta::assert_snapshot;
 use rtf_model::{ExitStatus, FixtureId, Source, TestId, Verdict};
 
-use super::world::{FIXTURE, TEST, World, suite};
+use super::world::{FIXTURE, SECOND, TEST, World, suite};
 use crate::plan::AfterCollapse;
-use crate::run::machine::HostInput;
+use crate::run::machine::{Deadline, FixtureTimer, HostInput};
 
 const GONE: &str = "the motor driver is gone";
 
@@ -246,6 +246,42 @@ fn a_fixture_that_cannot_be_seen_holds_a_test_up_for_a_moment_only() {
     world.next_deadline();
     assert!(world.now.as_millis() <= 200);
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Passed));
+}
+
+/// A fixture whose memory image is written takes its time to end.
+#[test]
+fn a_test_waits_for_the_end_of_a_fixture_that_was_seen_to_die() {
+    for outcome in ["passed", "failed"] {
+        let plan = suite(2, 1);
+        let mut world = World::running(&plan);
+        world.unseen = true;
+        world.end(TEST, outcome);
+        world.input(FIXTURE, HostInput::Dies);
+        world.now += 5 * SECOND;
+        world.input(Source::Fixture(FixtureId(1)), HostInput::Lives);
+        assert!(world.record.tests[0].is_running(), "its last word is not spoken yet");
+        world.exit(FIXTURE, ExitStatus::Signal(11));
+        world.tear_down(1);
+        world.finish();
+        assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Collapsed), "{outcome}");
+        let why = &world.record.fixtures[0].collapses[0].1;
+        assert_eq!(why, "its process ended with signal 11 (SIGSEGV)");
+    }
+}
+
+#[test]
+fn a_fixture_that_dies_forever_has_collapsed_after_a_while() {
+    let plan = suite(1, 1);
+    let mut world = World::running(&plan);
+    world.unseen = true;
+    world.end(TEST, "passed");
+    world.input(FIXTURE, HostInput::Dies);
+    assert_eq!(world.next_deadline(), Deadline::Fixture(0, FixtureTimer::Death));
+    world.exit(FIXTURE, ExitStatus::Signal(9));
+    world.finish();
+    assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Collapsed));
+    let why = &world.record.fixtures[0].collapses[0].1;
+    assert_eq!(why, "its process is dying, and does not come to its end");
 }
 
 /// A test notices a broken connection before the kernel tells of the death.

@@ -1,9 +1,11 @@
 //! What fixtures are told of tests, and what becomes of one that does not bear it.
 
 use rtf_model::protocol::{Notification, Reply, Request};
-use rtf_model::{Attachment, FixtureId, Measurement, Message, MessageKind, Source, Verdict};
+use rtf_model::{
+    Attachment, FixtureId, HookId, Measurement, Message, MessageKind, Source, Trigger, Verdict,
+};
 
-use super::world::{TEST, World, suite};
+use super::world::{TEST, World, hook, suite};
 use crate::run::machine::{Deadline, FixtureTimer, HostInput, StopLevel};
 
 const RECORDER: Source = Source::Fixture(FixtureId(0));
@@ -177,8 +179,7 @@ fn fixtures_are_told_of_a_test_that_another_ones_collapse_ended() {
     world.answer(RECORDER, "passed");
     world.answer(RECORDER, "passed");
     world.collapse(robot, "it fell");
-    world.answer(TEST, "interrupted");
-    world.exit(TEST, rtf_model::ExitStatus::Code(0));
+    world.end(TEST, "interrupted");
     assert_eq!(told(&world), "test0 collapsed: fixture `fixture1` collapsed: it fell");
     attach(&mut world);
     world.answer(RECORDER, "passed");
@@ -186,6 +187,65 @@ fn fixtures_are_told_of_a_test_that_another_ones_collapse_ended() {
     world.tear_down(1);
     world.finish();
     assert_eq!(world.record.tests[0].attempts[0].attachments.len(), 1);
+}
+
+/// The recorder takes its time; the robot is parked meanwhile, and the next test
+/// waits for both.
+#[test]
+fn a_robot_is_parked_while_a_recorder_is_told_how_the_test_ended() {
+    let mut plan = suite(1, 2);
+    plan.hooks = vec![hook(0, &[Trigger::Failure])];
+    let parking = Source::Hook(HookId(0));
+    for recorder_is_first in [false, true] {
+        let mut world = begun(&plan);
+        world.phase(TEST, rtf_model::Phase::Run);
+        world.failure(TEST, "the arm is stuck", false);
+        world.end(TEST, "failed");
+        world.next_deadline();
+        assert_eq!(told(&world), "test0 failed: the arm is stuck");
+        world.host_of(parking);
+        if recorder_is_first {
+            attach(&mut world);
+            world.answer(RECORDER, "passed");
+            assert_eq!(world.record.tests[0].verdict(), Some(Verdict::Failed));
+            world.exit(parking, rtf_model::ExitStatus::Code(0));
+        } else {
+            world.exit(parking, rtf_model::ExitStatus::Code(0));
+            assert_eq!(world.record.tests[0].verdict(), None);
+            attach(&mut world);
+            world.answer(RECORDER, "passed");
+        }
+        let runs = &world.record.hooks[0].runs;
+        assert_eq!((runs.len(), runs[0].problem()), (1, None));
+        assert_eq!(runs[0].reason, "`test0` is failed: the arm is stuck");
+        assert_eq!(world.record.tests[0].attempts[0].attachments.len(), 1);
+        world.answer(RECORDER, "passed");
+        world.answer(RECORDER, "passed");
+        world.pass(1);
+        world.answer(RECORDER, "passed");
+        world.tear_down(0);
+        world.finish();
+    }
+}
+
+/// Not even one that hangs keeps the hooks waiting that end a run.
+#[test]
+fn a_run_that_is_stopped_parks_the_robot_before_a_recorder_has_heard_of_it() {
+    let mut plan = suite(1, 1);
+    plan.hooks = vec![hook(0, &[Trigger::Interrupt]), hook(1, &[Trigger::End])];
+    let mut world = begun(&plan);
+    world.stop(StopLevel::TearDown);
+    world.end(TEST, "interrupted");
+    for hook in 0..2 {
+        world.exit(Source::Hook(HookId(hook)), rtf_model::ExitStatus::Code(0));
+    }
+    assert_eq!(world.now, std::time::Duration::ZERO);
+    assert!(world.record.tests[0].is_running(), "the recorder has not answered");
+    assert_eq!(world.next_deadline(), Deadline::Fixture(0, FixtureTimer::Notice));
+    world.tear_down(0);
+    world.finish();
+    assert_eq!(world.record.tests[0].verdict(), Some(Verdict::Interrupted));
+    assert!(world.record.hooks.iter().all(|hook| hook.runs.len() == 1));
 }
 
 #[test]
