@@ -222,11 +222,21 @@ impl Task {
         self.side.abort_all();
         let mut left = self.job.launch.sweep().await;
         let _ = tokio::time::timeout(DRAIN_LIMIT, self.drain(buffers)).await;
+        self.last_line(status).await;
         self.disown(&mut left);
         let _ = std::fs::remove_file(&self.job.launch.stack_file);
         self.shared.guard.process_ended(self.job.source, self.process.pid);
         let end = self.end_of(status, left);
         self.tell(end).await;
+    }
+
+    /// A line without an end, which is no fault of one that was killed while it wrote.
+    async fn last_line(&mut self, status: ExitStatus) {
+        let shared = self.sharing.as_mut().map(Sharing::take_rest);
+        let line = shared.unwrap_or_else(|| std::mem::take(&mut self.line));
+        if !line.is_empty() && matches!(status, ExitStatus::Code(_)) {
+            self.understand(codec::decode(&line)).await;
+        }
     }
 
     async fn drain(&mut self, buffers: &mut Buffers) {
@@ -336,11 +346,8 @@ impl Task {
             return self.heard_shared(bytes).await;
         }
         if bytes.is_empty() {
+            // What it was saying is understood when it is known how it ended.
             self.process.channel = None;
-            if !self.line.is_empty() {
-                let line = std::mem::take(&mut self.line);
-                self.understand(codec::decode(&line)).await;
-            }
             return;
         }
         for piece in bytes.split_inclusive(|byte| *byte == b'\n') {

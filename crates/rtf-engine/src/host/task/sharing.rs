@@ -82,6 +82,12 @@ impl Sharing {
         Some(codec::decode(&rest[..end]))
     }
 
+    /// What the present test was saying when the channel was closed.
+    pub(super) fn take_rest(&mut self) -> Vec<u8> {
+        let rest = self.channel.split_off(self.read);
+        if self.answered { Vec::new() } else { rest }
+    }
+
     /// What one output has for the present test.
     fn take_output(&mut self, stream: usize, is_open: bool) -> Vec<u8> {
         if self.marked[stream] {
@@ -130,9 +136,6 @@ impl Task {
         sharing.channel.extend_from_slice(bytes);
         if bytes.is_empty() {
             self.process.channel = None;
-            if !sharing.channel.is_empty() && !sharing.channel.ends_with(b"\n") {
-                sharing.channel.push(b'\n');
-            }
         }
         self.advance().await;
         if let Some(sharing) = &mut self.sharing
