@@ -77,7 +77,8 @@ class LoadingTest < HostTest
   end
 
   def test_initialize_names_the_interpreter
-    expected = { "protocol" => 1, "host" => "ruby #{RUBY_VERSION}", "stack" => "message" }
+    expected = { "protocol" => 1, "host" => "ruby #{RUBY_VERSION}", "stack" => "message",
+                 "shares" => true }
     assert_equal expected, host.initialized["result"]
   end
 

@@ -8,7 +8,7 @@ require "rtf/text"
 module RTF
   # What the runner asks to be done with a plug-in.
   class Task
-    attr_reader :file, :name, :param, :environment, :args, :repetition
+    attr_reader :file, :name, :param, :environment, :args, :repetition, :shared
 
     # Where copies of attached files go: of a test, or while a fixture is told of one.
     attr_accessor :keep_folder
@@ -23,6 +23,7 @@ module RTF
       @args = params.fetch("args", [])
       @repetition = params.fetch("repetition", 0)
       @last = params["last"] == true
+      @shared = text(params, "shared", "")
       strings = @args.is_a?(Array) && @args.all?(String)
       raise TypeError, "`args` is not a list of texts" unless strings
       raise TypeError, "`repetition` is not a whole number" unless @repetition.is_a?(Integer)

@@ -18,7 +18,8 @@ module RTF
       # Runs the file and makes an object of its one class.
       def load(file, base)
         forget_previous(file)
-        $LOAD_PATH.unshift(File.dirname(File.expand_path(file)))
+        folder = File.dirname(File.expand_path(file))
+        $LOAD_PATH.unshift(folder) unless $LOAD_PATH.first == folder
         Predecessor.lend_module
         Kernel.load(file)
         found = classes(file, base)
@@ -50,9 +51,10 @@ module RTF
       end
 
       # A plug-in before this one in the same process leaves no class behind
-      # that this one would reopen.
+      # that this one would reopen, and no function that it would call.
       def forget_previous(file)
         forget_constants(@previous) if @previous
+        forget_functions(@previous) if @previous
         Plugin.derived.clear
         @previous = file
       end
@@ -63,6 +65,13 @@ module RTF
 
           place, = Object.const_source_location(name)
           Object.send(:remove_const, name) if place == file
+        end
+      end
+
+      def forget_functions(file)
+        Object.private_instance_methods(false).each do |name|
+          place, = Object.instance_method(name).source_location
+          Object.send(:remove_method, name) if place == file
         end
       end
     end

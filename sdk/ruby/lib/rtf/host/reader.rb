@@ -48,11 +48,13 @@ module RTF
       end
 
       # Forgets a request that is about to be answered: the runner may go then.
-      # It may not while a fixture is up, which nobody else would stop.
-      def finish(request, fixture_up:)
+      # It may not while a fixture is up, which nobody else would stop. With the
+      # last one, what has not begun is forgotten, too.
+      def finish(request, fixture_up:, last: false)
         request.judge.finish
         @lock.synchronize do
           @open.delete(request)
+          @open.clear if last
           @fixture_up = fixture_up
         end
       end
@@ -77,7 +79,7 @@ module RTF
 
       def dispatch(message)
         case message["method"]
-        when "interrupt" then interrupt(message.dig("params", "reason") || "asked to stop")
+        when "interrupt" then interrupt(**interruption(message["params"]))
         when "dump-stack" then @channel.notify("stack", { text: Threads.stacks(@main) })
         else
           return if message["id"].nil?
@@ -88,8 +90,15 @@ module RTF
         end
       end
 
-      def interrupt(reason)
+      def interruption(params)
+        params = {} unless params.is_a?(Hash)
+        { reason: params["reason"] || "asked to stop", number: params["request"] }
+      end
+
+      def interrupt(reason:, number:)
         waiting = @lock.synchronize { @open.dup }
+        # Another one's turn: this one was answered, and the two have crossed.
+        waiting = waiting.take(1).select { |request| request.number == number } if number
         waiting.each { |request| request.judge.request_stop(reason.to_s) }
         # It may hang, and be stopped by force.
         Session.running&.sampling&.send_pending

@@ -45,6 +45,7 @@ module RTF
         @channel = channel
         @process = Process.pid
         @initialized = false
+        @sharing = nil
       end
 
       # Carries out requests until the last one, or until the runner has gone.
@@ -63,7 +64,7 @@ module RTF
         result, last = result_of(request)
         # A forked child came back from the plug-in; its parent serves the runner.
         exit!(0) if Process.pid != @process
-        reader.finish(request, fixture_up: !@fixture.nil?)
+        reader.finish(request, fixture_up: !@fixture.nil?, last: last)
         @channel.answer(request.number, result)
         !last
       rescue Refused => refused
@@ -95,12 +96,24 @@ module RTF
                             "host protocol, this host version #{PROTOCOL_VERSION}")
         end
         @initialized = true
-        { protocol: PROTOCOL_VERSION, host: "ruby #{RUBY_VERSION}", stack: "message" }
+        { protocol: PROTOCOL_VERSION, host: "ruby #{RUBY_VERSION}", stack: "message", shares: true }
       end
 
       def run_test(request)
         task = task(request)
-        [Steps.run_test(enter(task, request)), task.last?]
+        session = enter(task, request)
+        task.shared.empty? ? [Steps.run_test(session), task.last?] : run_shared(session)
+      end
+
+      # One of several tests in this process: whether it was the last one, this host says.
+      def run_shared(session)
+        task = session.task
+        require "rtf/host/sharing"
+        @sharing ||= Sharing.begin unless task.last?
+        Steps.phase(session, "load")
+        answer = Steps.run_test(session)
+        stays = answer[:outcome] == "passed" && !task.last? && @sharing&.stay(task.shared)
+        stays ? [answer.merge(stays: true), false] : [answer, true]
       end
 
       def set_up_fixture(request)

@@ -1,0 +1,73 @@
+# frozen_string_literal: true
+
+require_relative "driver"
+
+# A host that several tests share.
+class SharingTest < HostTest
+  MARK = "\0rtf scope 2\0"
+
+  def ask(host, number, body, **more)
+    params = plugin(body, name: "plugin#{number}.rb", last: false, shared: MARK, **more)
+    host.send("run-test", params, number)
+    host.answer["result"]
+  end
+
+  def test_it_stays_after_a_test_that_passed_and_ends_after_the_last_one
+    host = self.host
+    assert_equal({ "outcome" => "passed", "stays" => true }, ask(host, 2, arm("puts \"one\"")))
+    assert_equal({ "outcome" => "passed" }, ask(host, 3, arm("puts \"two\""), last: true))
+    status, output = host.finish
+    assert_predicate status, :success?
+    # Each output has a mark, and here both outputs are one.
+    assert_equal "one\n#{MARK}#{MARK}two\n", output
+    phases = host.of("phase").map { |params| params["phase"] }
+    assert_equal %w[load setup run tear-down] * 2, phases
+  end
+
+  def test_it_ends_after_a_test_that_did_not_pass
+    host = self.host
+    assert_equal "failed", ask(host, 2, arm("fail(\"no\")"))["outcome"]
+    status, output = host.finish
+    assert_equal [true, ""], [status.success?, output]
+  end
+
+  def test_it_ends_after_a_test_that_left_a_process_wherever_that_went
+    host = self.host
+    left = "Process.wait(spawn(\"setsid sh -c 'sleep 1000 & echo $! > pid'\"))"
+    assert_equal({ "outcome" => "passed" }, ask(host, 2, arm(left)))
+    status, = Process.wait2(host.pid)
+    assert_equal host.pid, status
+  ensure
+    Process.kill(:KILL, Integer(File.read(File.join(@folder, "pid"))))
+  end
+
+  def test_a_child_that_has_ended_is_not_left
+    host = self.host
+    assert ask(host, 2, arm("spawn(\"true\"); sleep(0.2)"))["stays"]
+  end
+
+  def test_nothing_that_a_file_defined_is_there_for_the_next_one
+    host = self.host
+    one = "#{arm("report(helper)")}Left = 1\ndef helper = \"mine\"\n"
+    two = arm("report([defined?(Left), defined?(helper)].inspect)")
+    assert ask(host, 2, one)["stays"]
+    assert ask(host, 3, two)["stays"]
+    # The same file is run anew.
+    assert ask(host, 2, one)["stays"]
+    assert_equal ["mine", "[nil, nil]", "mine"], host.texts.map(&:last)
+  end
+
+  def test_an_interrupt_for_a_test_that_is_over_does_not_stop_the_next_one
+    host = self.host
+    assert ask(host, 2, arm("report(\"one\")"))["stays"]
+    waits = arm("sleep(0.3); report(\"two\")")
+    host.send("run-test", plugin(waits, name: "two.rb", last: false, shared: MARK), 3)
+    nil until host.wait_for("phase")["phase"] == "run"
+    host.send("interrupt", { reason: "late", request: 2 })
+    assert_equal({ "outcome" => "passed", "stays" => true }, host.answer["result"])
+    host.send("run-test", plugin(arm("sleep"), name: "three.rb", last: false, shared: MARK), 4)
+    nil until host.wait_for("phase")["phase"] == "run"
+    host.send("interrupt", { reason: "in time", request: 4 })
+    assert_equal "interrupted", host.answer["result"]["outcome"]
+  end
+end
