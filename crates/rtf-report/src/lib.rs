@@ -11,6 +11,7 @@
 //!
 //! This crate starts nothing and decides nothing about a run.
 
+mod cause;
 pub mod code_quality;
 pub mod console;
 pub mod escape;

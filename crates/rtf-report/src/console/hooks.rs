@@ -8,7 +8,7 @@ use super::page::Page;
 use super::style::{self, BAD, BOLD, DIM, GOOD};
 use super::{ConsoleOptions, Verbosity};
 use crate::explain::{self, Tone};
-use crate::{escape, logs, words};
+use crate::{cause, escape, logs, words};
 
 /// Tells how a run of a hook ended.
 pub(super) fn finished(page: &mut Page, options: &ConsoleOptions, record: &Record, id: HookId) {
@@ -21,7 +21,7 @@ pub(super) fn finished(page: &mut Page, options: &ConsoleOptions, record: &Recor
         return failed(page, options, record, (id, run));
     }
     if options.verbosity > Verbosity::Quiet {
-        let reason = style::paint(DIM, &words::first_line(&run.reason));
+        let reason = style::paint(DIM, &words::first_line(cause::short(record, &run.reason)));
         page.entry((GOOD, "hook"), &time, &format!("{title}: done  {reason}"));
     }
     live::leaked(page, &title, &run.left);

@@ -9,7 +9,7 @@ use super::page::Page;
 use super::style::{self, BAD, BOLD, DIM, LOUD};
 use super::{ConsoleOptions, Verbosity, hooks};
 use crate::explain::{self, Extent, Tone};
-use crate::{escape, logs, prepared, words};
+use crate::{cause, escape, logs, prepared, words};
 
 /// How much of a failed test is told at once; the reports have all of it.
 pub(super) const EXTENT: Extent = Extent { items: 10, stack_lines: 40 };
@@ -41,10 +41,10 @@ pub(super) fn show(page: &mut Page, options: &ConsoleOptions, event: &Event, rec
             live.trouble(page, "COLLAPSED", *fixture, (reason, log_tail));
         }
         EventKind::FixtureStopped { fixture, problem: Some(problem), log_tail } => {
-            live.trouble(page, "fixture", *fixture, (problem, log_tail));
+            live.stopped(page, *fixture, (problem, log_tail));
         }
         EventKind::FixtureBroken { fixture, reason } => {
-            live.trouble(page, "BROKEN", *fixture, (reason, &[]));
+            live.broken(page, *fixture, reason);
         }
         EventKind::Message { source: Source::Fixture(fixture), message, .. } => {
             live.fixture_message(page, *fixture, message);
@@ -185,8 +185,36 @@ impl Live<'_> {
     fn trouble(&self, page: &mut Page, word: &str, id: FixtureId, what: (&str, &[String])) {
         let (reason, log_tail) = what;
         page.remark((BAD, word), &self.fixture(id));
+        explain::block(Tone::Bad, reason, "", &mut |tone, line| page.detail(tone, line));
+        self.last_lines(page, id, log_tail);
+    }
+
+    /// What it is told of that breaks a fixture was told just before, if it collapsed.
+    fn broken(&self, page: &mut Page, id: FixtureId, reason: &str) {
+        let told = self.record.fixture(id).and_then(|fixture| fixture.collapses.last());
+        match told {
+            Some((_, told)) if told == reason => {
+                let text = format!("{} is not started again", self.fixture(id));
+                page.remark((BAD, "BROKEN"), &text);
+            }
+            _ => self.trouble(page, "BROKEN", id, (reason, &[])),
+        }
+    }
+
+    /// One that broke has said why; what it printed is known only now.
+    fn stopped(&self, page: &mut Page, id: FixtureId, (problem, log_tail): (&str, &[String])) {
+        let broke = self.record.fixture(id).and_then(|fixture| fixture.broken.as_deref());
+        if broke != Some(problem) {
+            return self.trouble(page, "fixture", id, (problem, log_tail));
+        }
+        if !log_tail.is_empty() {
+            page.remark((BAD, "fixture"), &self.fixture(id));
+            self.last_lines(page, id, log_tail);
+        }
+    }
+
+    fn last_lines(&self, page: &mut Page, id: FixtureId, log_tail: &[String]) {
         let sink = &mut |tone, line: &str| page.detail(tone, line);
-        explain::block(Tone::Bad, reason, "", sink);
         if !log_tail.is_empty() {
             sink(Tone::Plain, "its last lines:");
             explain::printed(log_tail.iter().map(String::as_str), sink);
@@ -266,7 +294,8 @@ impl Live<'_> {
 
     fn skipped(&self, page: &mut Page, id: TestId, reason: &str) {
         let verdict = (style::of_verdict(Verdict::Skipped), Verdict::Skipped.as_str());
-        page.entry(verdict, "", &format!("{}: {}", self.test(id), words::first_line(reason)));
+        let reason = words::first_line(cause::short(self.record, reason));
+        page.entry(verdict, "", &format!("{}: {reason}", self.test(id)));
     }
 }
 

@@ -11,7 +11,7 @@ use super::style::{self, BAD, BOLD, GOOD, LOUD};
 use super::{ConsoleOptions, hooks};
 use crate::growth::{self, Growing, Within};
 use crate::repeated::Repeated;
-use crate::{escape, explain, logs, words};
+use crate::{cause, escape, explain, logs, words};
 
 /// How many names of skipped tests are listed for one reason.
 const NAMES: usize = 5;
@@ -122,7 +122,8 @@ fn skipped(page: &mut Page, record: &Record) {
     page.line(&style::paint(BOLD, "skipped tests:"));
     for (reason, tests) in reasons {
         let count = words::count(tests.len() as u64, "test");
-        page.line(&format!("  {}: {}", style::paint(LOUD, &count), words::first_line(reason)));
+        let reason = words::first_line(cause::short(record, reason));
+        page.line(&format!("  {}: {reason}", style::paint(LOUD, &count)));
         for id in tests.iter().take(NAMES) {
             page.line(&format!("    {}", escape::line(&record.full_name(*id))));
         }

@@ -101,8 +101,8 @@ fn description(record: &Record, test: &TestRecord, reason: &str) -> String {
     for attempt in attempts {
         lines.extend([title(test, attempt), explained(attempt)]);
     }
-    let collapsed = test.attempts.iter().any(|a| a.verdict() == Some(Verdict::Collapsed));
-    if collapsed || (test.attempts.is_empty() && test.skipped.is_some()) {
+    // A test that was skipped for a broken fixture has its cause in the fixture's case.
+    if test.attempts.iter().any(|a| a.verdict() == Some(Verdict::Collapsed)) {
         lines.extend(fixture_tails(record, test));
     }
     lines.retain(|line| !line.is_empty());

@@ -22,7 +22,9 @@ pub(super) fn show(lines: &mut Lines, fixture: &FixtureRecord) {
         let label = format!("collapsed at {}", words::time(at.as_duration()));
         lines.fact(4, &label, reason);
     }
-    for (at, problem) in &fixture.problems {
+    // What broke it is told as that.
+    let broke = fixture.broken.as_ref();
+    for (at, problem) in fixture.problems.iter().filter(|(_, problem)| broke != Some(problem)) {
         lines.fact(4, &format!("problem at {}", words::time(at.as_duration())), problem);
     }
     if let Some(reason) = &fixture.broken {

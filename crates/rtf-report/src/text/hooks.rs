@@ -4,7 +4,7 @@ use rtf_model::{HookRecord, HookRun, Record, Trigger};
 
 use super::lines::Lines;
 use crate::explain::{self, Extent};
-use crate::words;
+use crate::{cause, words};
 
 /// All that is known of a hook.
 pub(super) fn show(lines: &mut Lines, record: &Record, hook: &HookRecord) {
@@ -25,7 +25,7 @@ fn show_run(lines: &mut Lines, record: &Record, (number, run): (usize, &HookRun)
         (true, Some(took)) => format!("failed after {}", words::time(took)),
     };
     lines.at(4, &format!("run {number} on {}: {how}", run.trigger));
-    lines.fact(6, "called for", &run.reason);
+    lines.fact(6, "called for", cause::short(record, &run.reason));
     if let Some(test) = run.test {
         lines.fact(6, "about", &record.full_name(test));
     }

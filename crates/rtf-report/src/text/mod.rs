@@ -111,7 +111,7 @@ fn show_suite(
         hooks::show(lines, record, hook);
     }
     for test in suite.tests.iter().filter_map(|id| record.tests.get(id.index())) {
-        tests::show(lines, test, record.is_complete());
+        tests::show(lines, record, test);
         lines.write_to(out)?;
     }
     for problem in record.suite_problems(suite.plan.suite) {

@@ -1,13 +1,13 @@
 //! What the text report tells of a test.
 
-use rtf_model::{AttemptRecord, MessageKind, TestRecord};
+use rtf_model::{AttemptRecord, MessageKind, Record, TestRecord};
 
 use super::lines::Lines;
 use crate::explain::{self, Extent};
-use crate::{escape, words};
+use crate::{cause, escape, words};
 
 /// All that is known of a test.
-pub(super) fn show(lines: &mut Lines, test: &TestRecord, complete: bool) {
+pub(super) fn show(lines: &mut Lines, record: &Record, test: &TestRecord) {
     let plan = &test.plan;
     lines.fact(2, "test", &format!("{} ({})", plan.name, plan.plugin_type));
     lines.fact(4, "plug-in", &plan.plugin);
@@ -15,8 +15,8 @@ pub(super) fn show(lines: &mut Lines, test: &TestRecord, complete: bool) {
     let verdict = test.final_verdict();
     lines.at(4, &format!("verdict: {verdict}"));
     if let Some(reason) = test.reason() {
-        lines.fact(4, "reason", reason);
-    } else if !complete && test.verdict().is_none() {
+        lines.fact(4, "reason", cause::short(record, reason));
+    } else if !record.is_complete() && test.verdict().is_none() {
         let what = if test.attempts.is_empty() { "began" } else { "did" };
         lines.at(4, &format!("reason: the run ended before the test {what}"));
     }
@@ -24,7 +24,7 @@ pub(super) fn show(lines: &mut Lines, test: &TestRecord, complete: bool) {
         show_attempt(lines, test, attempt);
     }
     if let Some(reason) = test.skipped.as_deref().filter(|_| !test.attempts.is_empty()) {
-        lines.fact(4, "the rest was skipped", reason);
+        lines.fact(4, "the rest was skipped", cause::short(record, reason));
     }
 }
 
