@@ -1,31 +1,51 @@
 //! Fixtures of many suites are killed at random moments: in set-up, while a
-//! test runs, in tear-down.
+//! test runs, in tear-down; tests have hosts in every mode.
 //!
 //! `RTF_CHAOS_SUITES` says how many suites (`make chaos` runs more), and
 //! `RTF_CHAOS_SEED` repeats a run's random numbers, which are printed.
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use rtf_model::{Record, Verdict};
 
-use crate::support::{Folder, Random, nothing_left, number};
+use crate::modes::{FORKED, Mode, PROCESS, SHARED};
+use crate::support::{Folder, Random, kill, nothing_left, number};
 
 const SUITES: u64 = 200;
-const TEST: &str = "TestCase = {}\nfunction TestCase.run() rtf.sleep(0.05) end\n";
+/// Tells which of its fixtures is gone when it has run.
+const TEST: &str = r#"
+local function is_gone(name)
+  local pid = io.open(rtf.param() .. "." .. name .. ".pid"):read("n")
+  return function()
+    local stat = io.open("/proc/" .. pid .. "/stat")
+    return not stat or stat:read("a"):match("%) ([ZX])") ~= nil
+  end
+end
 
-fn suite(name: &str, random: &mut Random) -> String {
-    let fixture = |name: &str, more: &str| {
+TestCase = {}
+function TestCase.run()
+  local fixtures = { is_gone("driver"), is_gone("simulator") }
+  rtf.sleep(0.05)
+  for _, gone in ipairs(fixtures) do
+    if gone() then rtf.report("gone") end
+  end
+end
+"#;
+
+fn suite(name: &str, mode: Mode, random: &mut Random) -> String {
+    let fixture = |fixture: &str, more: &str| {
         format!(
-            "  <fixture type='process' name='{name}' restarts='50' restart-delay='1ms' {more}>\n    \
-             <command>sh -c 'echo up; exec sleep 1000'</command>\n    <ready log='up'/>\n  </fixture>\n"
+            "  <fixture type='process' name='{fixture}' restarts='50' restart-delay='1ms' {more}>\n    \
+             <command>sh -c 'echo $$ > {name}.{fixture}.pid; echo up; exec sleep 1000'</command>\n    <ready log='up'/>\n  </fixture>\n"
         )
     };
     let independent = if random.below(2) == 0 { "depends=''" } else { "" };
     let rerun = if random.below(2) == 0 { " after-collapse='rerun'" } else { "" };
-    let tests = format!("  <test{rerun}>T.lua</test>\n").repeat(3);
+    let isolation = mode.isolation;
+    let tests =
+        format!("  <test{rerun} isolation='{isolation}' param='{name}'>T.lua</test>\n").repeat(3);
     let fixtures = fixture("driver", "") + &fixture("simulator", independent);
     format!("<suite name='{name}'>\n{fixtures}{tests}</suite>\n")
 }
@@ -45,12 +65,20 @@ fn sleepers(folder: &Path) -> Vec<u32> {
 #[test]
 fn whoever_is_killed_whenever_the_verdicts_are_true() {
     let mut random = Random::from_environment();
+    let suites = number("RTF_CHAOS_SUITES").unwrap_or(SUITES).div_ceil(4);
+    // Whether hosts are forked is said to the run, whether they are shared to a test.
+    for (modes, suites) in [([PROCESS, SHARED], 2 * suites), ([FORKED, SHARED], 2 * suites)] {
+        kill_fixtures(modes, suites, &mut random);
+    }
+}
+
+fn kill_fixtures(modes: [Mode; 2], suites: u64, random: &mut Random) {
     let folder = Folder::new();
     folder.file("T.lua", TEST);
-    let names: Vec<String> =
-        (0..number("RTF_CHAOS_SUITES").unwrap_or(SUITES)).map(|n| format!("{n}.xml")).collect();
+    let names: Vec<String> = (0..suites).map(|n| format!("{n}.xml")).collect();
     for name in &names {
-        folder.file(name, &suite(name, &mut random));
+        let mode = modes[random.below(2) as usize];
+        folder.file(name, &suite(name, mode, random));
     }
     let path = folder.path().canonicalize().expect("a path");
     let over = AtomicBool::new(false);
@@ -62,11 +90,11 @@ fn whoever_is_killed_whenever_the_verdicts_are_true() {
                 let victims = sleepers(&path);
                 if !victims.is_empty() {
                     let victim = victims[random.below(victims.len() as u64) as usize];
-                    let _ = Command::new("kill").args(["-9", &victim.to_string()]).output();
+                    kill(victim);
                 }
             }
         });
-        let mut args = vec!["run"];
+        let mut args = vec!["run", "--fork", modes[0].fork];
         args.extend(names.iter().map(String::as_str));
         let finished = folder.rtf(&args);
         over.store(true, Ordering::Relaxed);
@@ -89,6 +117,8 @@ fn check(record: &Record, suites: usize) {
             let (end, finished) = attempt.finished.as_ref().expect("an end");
             let overlaps = collapses.iter().any(|at| *at > attempt.started && at < end);
             assert!(!overlaps || finished.verdict == Verdict::Collapsed, "{finished:?}");
+            let gone = attempt.messages.iter().any(|message| message.text == "gone");
+            assert!(!gone || finished.verdict == Verdict::Collapsed, "{finished:?}");
             let expected = [Verdict::Passed, Verdict::Collapsed];
             assert!(expected.contains(&finished.verdict), "{finished:?}");
         }

@@ -2,6 +2,7 @@
 
 use rtf_model::{EventKind, TestId, Verdict};
 
+use crate::modes::MODES;
 use crate::support::{Folder, nothing_left};
 
 const TEST: &str = "import rtf\nclass T(rtf.TestCase):\n    def run(self):\n        open(self.param, 'w').close()\n        self.sleep(60 if self.param == 'go' else 0)\n";
@@ -96,4 +97,47 @@ fn a_fixture_whose_tear_down_hangs_is_ended_by_force() {
     assert_eq!(record.verdict(TestId(0)), Some(Verdict::Passed));
     assert_eq!(record.fixtures[0].problems[0].1, "it did not stop within 200ms and was killed");
     assert!(nothing_left(&folder));
+}
+
+/// Whatever its host says then: a fixture that died while it ran has collapsed.
+#[test]
+fn a_test_whose_last_act_kills_its_fixture_does_not_pass_in_any_mode() {
+    let plugin = "TestCase = {}\nfunction TestCase.run() end\n\
+        function TestCase.tearDown() os.execute('kill -KILL ' .. io.open('pid'):read('a')) end\n";
+    for mode in MODES {
+        let folder = Folder::new();
+        let test = format!("  <test isolation='{}'>T.lua</test>\n", mode.isolation);
+        let fixture = "<fixture type='process' name='arm' restarts='9' restart-delay='1ms'>\
+            <command>sh -c 'echo $$ > pid; echo up; exec sleep 1000'</command><ready log='up'/></fixture>";
+        folder.file("T.lua", plugin);
+        // Each restart waits longer than the one before.
+        for name in ["a.xml", "b.xml", "c.xml", "d.xml"] {
+            let text = format!("<suite>\n  {fixture}\n{}</suite>\n", test.repeat(5));
+            folder.file(name, &text);
+        }
+        let finished = folder.rtf(&["run", "--fork", mode.fork, "."]);
+        assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
+        assert!(nothing_left(&folder));
+        let record = folder.journal().record;
+        assert_eq!(record.totals().of(Verdict::Collapsed), 20, "{}", finished.stdout);
+    }
+}
+
+#[test]
+fn why_a_fixture_broke_is_told_once_while_the_run_goes_on_and_once_at_its_end() {
+    let folder = Folder::new();
+    let fixture = "<fixture type='process' name='sim'><command>sh -c 'echo no display; exit 3'</command>\
+                   <ready log='up'/></fixture>";
+    let park = "<hook name='park' on='fixture-broken'><command>true</command></hook>";
+    let text =
+        format!("<suite name='s'>{fixture}{park}{}</suite>\n", "<test>T.lua</test>".repeat(3));
+    folder.file("T.lua", "TestCase = {}\nfunction TestCase.run() end\n").file("s.xml", &text);
+    let finished = folder.rtf(&["run", "s.xml", "--report", "text=t.txt"]);
+    assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
+    let cause = "set-up failed: it ended with exit code 3 before it was ready";
+    for told in [&finished.stdout, &folder.read("t.txt")] {
+        assert_eq!(told.matches(cause).count(), 2, "{told}");
+        assert_eq!(told.matches("| no display").count(), 1, "{told}");
+        assert!(told.matches("fixture `sim` is broken\n").count() >= 4, "{told}");
+    }
 }

@@ -2,10 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use rtf_model::{AttemptRecord, Event, EventKind, Record, SuiteId};
+use rtf_model::{
+    AttemptRecord, Event, EventKind, ExitStatus, Record, SuiteId, TestRecord, Verdict,
+};
 use serde_json::{Value, json};
 
-use crate::support::{Folder, build_ada, build_cpp, nothing_left, root};
+use crate::modes::{FORKED, Mode, PROCESS, SHARED};
+use crate::support::{Folder, Journal, build_ada, build_cpp, nothing_left, root};
 
 struct Language {
     name: &'static str,
@@ -23,72 +26,72 @@ const LANGUAGES: [Language; 5] = [
 
 #[test]
 fn cpp() {
-    check_language(&LANGUAGES[0], "never");
+    check(&LANGUAGES[0], PROCESS);
 }
 
 #[test]
 fn cpp_forked() {
-    check_language(&LANGUAGES[0], "always");
-}
-
-#[test]
-fn lua() {
-    check_language(&LANGUAGES[1], "never");
-}
-
-#[test]
-fn lua_forked() {
-    check_language(&LANGUAGES[1], "always");
-}
-
-#[test]
-fn python() {
-    check_language(&LANGUAGES[2], "never");
-}
-
-#[test]
-fn python_forked() {
-    check_language(&LANGUAGES[2], "always");
-}
-
-#[test]
-fn ruby() {
-    check_language(&LANGUAGES[3], "auto");
+    check(&LANGUAGES[0], FORKED);
 }
 
 #[test]
 fn cpp_shared() {
-    check_shared(&LANGUAGES[0]);
+    check(&LANGUAGES[0], SHARED);
+}
+
+#[test]
+fn lua() {
+    check(&LANGUAGES[1], PROCESS);
+}
+
+#[test]
+fn lua_forked() {
+    check(&LANGUAGES[1], FORKED);
 }
 
 #[test]
 fn lua_shared() {
-    check_shared(&LANGUAGES[1]);
+    check(&LANGUAGES[1], SHARED);
+}
+
+#[test]
+fn python() {
+    check(&LANGUAGES[2], PROCESS);
+}
+
+#[test]
+fn python_forked() {
+    check(&LANGUAGES[2], FORKED);
 }
 
 #[test]
 fn python_shared() {
-    check_shared(&LANGUAGES[2]);
+    check(&LANGUAGES[2], SHARED);
+}
+
+#[test]
+fn ruby() {
+    check(&LANGUAGES[3], PROCESS);
 }
 
 #[test]
 fn ruby_shared() {
-    check_shared(&LANGUAGES[3]);
-}
-
-#[test]
-fn ada_shared() {
-    check_shared(&LANGUAGES[4]);
+    check(&LANGUAGES[3], SHARED);
 }
 
 #[test]
 fn ada() {
-    check_language(&LANGUAGES[4], "never");
+    check(&LANGUAGES[4], PROCESS);
 }
 
 #[test]
 fn ada_forked() {
-    check_language(&LANGUAGES[4], "always");
+    check(&LANGUAGES[4], FORKED);
+}
+
+#[test]
+fn ada_shared() {
+    check(&LANGUAGES[4], SHARED);
 }
 
 fn folder() -> PathBuf {
@@ -121,18 +124,10 @@ fn plugin(scenario: &str, language: &Language, built: Option<&Path>) -> PathBuf 
     }
 }
 
-/// A suite for each scenario: the scenario's test, then one that must not suffer.
-/// The hosts are forked, or not.
-fn check_language(language: &Language, fork: &str) {
-    check(language, fork, "process");
-}
-
-/// The same, when both may be served by the same host.
-fn check_shared(language: &Language) {
-    check(language, "auto", "shared");
-}
-
-fn check(language: &Language, fork: &str, isolation: &str) {
+/// A suite for each scenario: a test that passes, the scenario's test, then one that
+/// must not suffer.
+fn check(language: &Language, mode: Mode) {
+    let Mode { fork, isolation, .. } = mode;
     let temp = Folder::new();
     let scenarios: Vec<String> =
         scenarios().into_iter().filter(|name| !is_excepted(name, language.name)).collect();
@@ -143,14 +138,14 @@ fn check(language: &Language, fork: &str, isolation: &str) {
     };
     for scenario in &scenarios {
         let path = |name: &str| plugin(name, language, built.as_deref());
-        let (test, after) = (path(scenario), path("pass"));
+        let (test, pass) = (path(scenario), path("pass"));
         let (kind, shared) = (language.plugin_type, format!("isolation=\"{isolation}\""));
         let more = attributes(scenario);
         let suite = format!(
-            "<suite name=\"{scenario}\">\n  <environment>--robot sim</environment>\n  <test type=\"{kind}\" {shared} name=\"scenario\" {more}>{}</test>\n  \
-             <test type=\"{kind}\" {shared} name=\"after\">{}</test>\n</suite>\n",
+            "<suite name=\"{scenario}\">\n  <environment>--robot sim</environment>\n  <test type=\"{kind}\" {shared} name=\"before\">{1}</test>\n  <test type=\"{kind}\" {shared} name=\"scenario\" {more}>{0}</test>\n  \
+             <test type=\"{kind}\" {shared} name=\"after\">{1}</test>\n</suite>\n",
             test.display(),
-            after.display()
+            pass.display()
         );
         temp.file(&format!("{scenario}.xml"), &suite);
     }
@@ -160,8 +155,8 @@ fn check(language: &Language, fork: &str, isolation: &str) {
     let problems: Vec<String> = scenarios
         .iter()
         .flat_map(|name| {
-            let expected = expectations(name, language.name, isolation);
-            check_scenario(name, expected, &journal.events, &journal.record, &temp)
+            let expected = expectations(name, language.name, mode);
+            check_scenario(name, (mode, expected), &journal, &temp)
         })
         .collect();
     assert!(problems.is_empty(), "{}: \n{}", language.name, problems.join("\n"));
@@ -179,18 +174,19 @@ fn attributes(scenario: &str) -> &'static str {
 
 fn check_scenario(
     scenario: &str,
-    expected: Vec<Value>,
-    events: &[Event],
-    record: &Record,
+    (mode, expected): (Mode, Vec<Value>),
+    Journal { events, record }: &Journal,
     temp: &Folder,
 ) -> Vec<String> {
     let Some(suite) = record.suites.iter().find(|suite| suite.plan.name == scenario) else {
         return vec![format!("{scenario}: was not run")];
     };
-    let test = &record.tests[suite.tests[0].index()];
+    let [before_it, scenarios, after_it] = suite.tests[..] else { panic!("three tests") };
+    let test = &record.tests[scenarios.index()];
     let attempt = test.attempts.last().expect("an attempt");
     let told = told(events, suite.plan.suite, record, temp);
     let mut problems = compare_told(scenario, &expected, &told);
+    problems.extend(check_before(scenario, mode, &record.tests[before_it.index()]));
     let mut after = "passed";
     for line in &expected {
         if let Some(verdict) = line.get("after").and_then(Value::as_str) {
@@ -198,10 +194,10 @@ fn check_scenario(
         } else if let Some(problem) = check_fact(line, attempt) {
             problems.push(format!("{scenario}: {problem}"));
         } else if line.get("stdout_starts").is_some() {
-            problems.extend(check_output(line, events, suite.tests[0]));
+            problems.extend(check_output(line, events, scenarios));
         }
     }
-    let found = record.final_verdict(suite.tests[1]);
+    let found = record.final_verdict(after_it);
     if found.as_str() != after {
         problems.push(format!("{scenario}: the test after it is {found}, expected {after}"));
     }
@@ -209,12 +205,19 @@ fn check_scenario(
 }
 
 /// A test that passes in a shared host has no exit status: the host lives.
-fn expectations(scenario: &str, language: &str, isolation: &str) -> Vec<Value> {
+fn check_before(scenario: &str, mode: Mode, before: &TestRecord) -> Option<String> {
+    let (_, finished) = before.attempts.last()?.finished.as_ref()?;
+    let exit = (!mode.shares()).then_some(ExitStatus::Code(0));
+    let holds = (finished.verdict, finished.exit) == (Verdict::Passed, exit);
+    (!holds).then(|| format!("{scenario}: the test before it: {finished:?}"))
+}
+
+fn expectations(scenario: &str, language: &str, mode: Mode) -> Vec<Value> {
     let path = folder().join("scenarios").join(scenario).join("expect.jsonl");
     let text = std::fs::read_to_string(path).expect("expect.jsonl");
     let lines = text.lines().map(|line| {
         let mut line = serde_json::from_str::<Value>(line).expect("a JSON line");
-        if isolation == "shared" && line["verdict"] == "passed" {
+        if mode.shares() && line["verdict"] == "passed" {
             line.as_object_mut().map(|line| line.remove("exit"));
         }
         line
@@ -230,7 +233,7 @@ fn expectations(scenario: &str, language: &str, isolation: &str) -> Vec<Value> {
 
 /// What the scenario's test told, in order, as in `expect.jsonl`.
 fn told(events: &[Event], suite: SuiteId, record: &Record, temp: &Folder) -> Vec<Value> {
-    let test = record.suites[suite.index()].tests[0];
+    let test = record.suites[suite.index()].tests[1];
     let mut told = Vec::new();
     for event in events {
         match &event.kind {

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use rtf_model::{EventKind, HookId, Phase, Source, TestId, Verdict};
 
+use crate::modes::{MODES, Mode};
 use crate::support::{Folder, Journal, Random, Running, nothing_left, number, wait_until};
 
 /// A simulator that prints all the time, and a daemon that detaches itself twice.
@@ -230,23 +231,34 @@ fn a_runner_killed_at_any_moment_leaves_nothing_and_parks_once() {
     for run in 0..number("RTF_CHAOS_RUNS").unwrap_or(100) {
         let folder = Folder::new();
         let test =
-            "import rtf\nclass T(rtf.TestCase):\n    def run(self):\n        self.sleep(0.1)\n";
+            "import rtf\nclass T(rtf.TestCase):\n    def run(self):\n        self.sleep(0.05)\n";
         suite(&folder, &format!("{SIMULATOR}{PARK}"), test);
+        let mode = MODES[random.below(3) as usize];
+        in_mode(&folder, mode);
         if run % 4 == 0 {
             let path = folder.path().join("s.xml");
             let text = std::fs::read_to_string(path).expect("the suite");
             folder.file("s.xml", &text.replace("<suite ", "<suite isolate='network' "));
         }
-        let running = folder.start(&["run", "s.xml"]);
+        let running = folder.start(&["run", "--fork", mode.fork, "s.xml"]);
         running.runner();
         // Not to wait for something: this is the random moment.
         std::thread::sleep(Duration::from_micros(random.below(500_000)));
         let over = !running.try_kill_runner();
         let finished = running.finish();
-        let context = format!("run {run}: {}{}", finished.stdout, finished.stderr);
+        let context = format!("run {run}, {}: {}{}", mode.name, finished.stdout, finished.stderr);
         assert!(nothing_left(&folder), "{context}");
         check_any_moment(&folder, over, finished.code, &context);
     }
+}
+
+/// Three tests instead of one, so that hosts are forked or shared.
+fn in_mode(folder: &Folder, mode: Mode) {
+    let isolation = mode.isolation;
+    let text = folder
+        .read("s.xml")
+        .replace("<test type", &format!("<test repetition='3' isolation='{isolation}' type"));
+    folder.file("s.xml", &text);
 }
 
 fn check_any_moment(folder: &Folder, over: bool, code: Option<i32>, context: &str) {

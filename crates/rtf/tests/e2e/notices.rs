@@ -121,3 +121,34 @@ fn no_test_begins_with_a_recorder_that_cannot_record() {
     assert_eq!(broken, Some("testStarted failed: OSError: full"));
     assert!(record.tests[0].attempts.is_empty());
 }
+
+/// Its end of a test waits for the robot to be parked.
+const WAITS: &str = "\
+import os, rtf
+class Recorder(rtf.FixtureManager):
+    def testFinished(self, test, verdict, reason):
+        self.wait_until(lambda: os.path.exists('parked'), 60, 'the robot is parked')
+";
+
+#[test]
+fn a_robot_is_parked_while_a_recorder_has_not_answered_yet() {
+    let folder = Folder::new();
+    let fixture = "<fixture notice-timeout='60s'>Recorder.py</fixture>\
+                   <hook name='park' on='failure'><command>touch parked</command></hook>";
+    let tests =
+        "<test name='bad' param='fail'>Test.lua</test>\n<test name='good'>Test.lua</test>\n";
+    suite(&folder, fixture, WAITS, tests);
+    folder.file("trace.csv", "");
+    let finished = folder.rtf(&["run", "s.xml"]);
+    assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
+    assert!(nothing_left(&folder));
+    let journal = folder.journal();
+    let place = |wanted: &dyn Fn(&EventKind) -> bool| {
+        journal.events.iter().position(|event| wanted(&event.kind)).expect("the event")
+    };
+    let parked = place(&|kind| matches!(kind, EventKind::HookFinished { problem: None, .. }));
+    let ended = place(&|kind| matches!(kind, EventKind::TestFinished(_)));
+    assert!(parked < ended, "{}", finished.stdout);
+    assert!(journal.record.fixtures[0].collapses.is_empty(), "{}", finished.stdout);
+    assert_eq!(journal.record.tests[1].verdict(), Some(Verdict::Passed));
+}

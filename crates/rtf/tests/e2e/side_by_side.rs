@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use rtf_model::{Event, EventKind, Phase, SuiteId, TestId, Verdict};
 
+use crate::modes::MODES;
 use crate::support::{Folder, Journal, Random, Running, nothing_left, number};
 
 /// A fixture that lives, and tells in a file that it was torn down.
@@ -268,19 +269,24 @@ fn check_own(journal: &Journal, logs: &Path, names: &[String]) {
 fn a_runner_killed_at_any_moment_beside_two_suites_leaves_nothing_and_parks_each_once() {
     let mut random = Random::from_environment();
     for run in 0..number("RTF_CHAOS_RUNS").unwrap_or(100).div_ceil(4) {
-        let folder = Folder::new();
+        let (folder, mode) = (Folder::new(), MODES[random.below(3) as usize]);
         folder.file("T.lua", "TestCase = {}\nfunction TestCase.run() rtf.sleep(0.02) end\n");
         for name in ["a", "b"] {
             let network = if random.below(4) == 0 { "isolate='network'" } else { "" };
             suite(&folder, name, (&park(name), network), &["T", "T", "T"]);
+            let shared = format!("<test isolation='{}'>", mode.isolation);
+            let file = format!("{name}.xml");
+            folder.file(&file, &folder.read(&file).replace("<test>", &shared));
         }
-        let running = folder.start(&["run", "--jobs", "2", "a.xml", "b.xml"]);
+        let args = ["run", "--fork", mode.fork, "--jobs", "2", "a.xml", "b.xml"];
+        let running = folder.start(&args);
         running.runner();
         // Not to wait for something: this is the random moment.
         std::thread::sleep(Duration::from_micros(random.below(500_000)));
         let killed = running.try_kill_runner();
         let finished = running.finish();
-        let context = format!("run {run}, {killed}: {}{}", finished.stdout, finished.stderr);
+        let context =
+            format!("run {run}, {}, {killed}: {}{}", mode.name, finished.stdout, finished.stderr);
         assert!(nothing_left(&folder), "{context}");
         let path = folder.path().join("rtf-results/latest/events.jsonl");
         if std::fs::metadata(&path).is_ok_and(|file| file.len() > 0) {

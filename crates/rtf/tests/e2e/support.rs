@@ -229,7 +229,8 @@ impl Running {
 
 /// Kills a process with SIGKILL; whether it was there.
 pub fn kill(pid: u32) -> bool {
-    let kill = Command::new("kill").args(["-KILL", &pid.to_string()]).stderr(Stdio::null());
+    let mut kill = Command::new("kill");
+    kill.args(["-KILL", &pid.to_string()]).stderr(Stdio::null());
     kill.status().expect("kill").success()
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -12,7 +13,7 @@
 class Chaos : public rtf::TestCase
 {
 public:
-    bool setup(int, char**) override
+    bool setup(int, char **) override
     {
         tell("began");
         act("setup");
@@ -23,10 +24,10 @@ public:
     {
         report(std::string(param() == "wait" ? 200000 : 10, 'x'));
         if (param() == "wait") {
-            sleep(0.003);
+            sleep(std::chrono::milliseconds(3));
         }
         act("run");
-        RTF_TEST_CHECK(param() != "fail", "it was not asked to fail");
+        RTF_CHECK(param() != "fail", "it was not asked to fail");
     }
 
     void tearDown() override
@@ -36,12 +37,12 @@ public:
     }
 
 private:
-    void tell(const std::string& what) const
+    void tell(const std::string &what) const
     {
         std::ofstream(name() + "." + what, std::ios::app) << getpid() << '\n';
     }
 
-    void act(const std::string& step) const
+    void act(const std::string &step) const
     {
         if (param() == "kill " + step) {
             kill(getpid(), SIGKILL);
