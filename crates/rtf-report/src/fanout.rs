@@ -11,6 +11,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender, TryRecvError};
 use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
 
 use rtf_model::{Event, OrderChecker, Record};
 
@@ -18,6 +19,10 @@ use crate::{ReportError, Reporter};
 
 /// When this many events wait, the run should read no more from its processes.
 const CONGESTED: usize = 4096;
+
+/// What happens sooner than this after reporters have written waits until then, so
+/// that short tests are written together. It is how late a report can be by that.
+const GATHERING: Duration = Duration::from_micros(250);
 
 /// All reporters, and the thread that they live on.
 #[derive(Debug)]
@@ -98,9 +103,19 @@ impl Fanout {
     #[must_use]
     pub fn join(self) -> Finished {
         drop(self.handle);
+        self.thread.thread().unpark();
         let outcome = self.thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         debug_assert!(outcome.disorder.is_none(), "{}", outcome.disorder.unwrap_or_default());
         outcome.finished
+    }
+}
+
+/// Lets events come, unless nothing was `written` for a while. While this thread
+/// does not wait for them, those who hand them over need not wake it for each.
+fn gather(written: Instant) {
+    if let Some(rest) = GATHERING.checked_sub(written.elapsed()) {
+        // Ends early when there will be no more, see `Fanout::join`.
+        thread::park_timeout(rest);
     }
 }
 
@@ -128,25 +143,30 @@ impl State {
 
     fn run(mut self, receiver: Receiver<Event>) -> Outcome {
         loop {
-            let event = match receiver.try_recv() {
-                Ok(event) => event,
+            match receiver.try_recv() {
+                Ok(event) => self.report(&event),
                 Err(TryRecvError::Disconnected) => break,
                 Err(TryRecvError::Empty) => {
                     self.each(|reporter, record| reporter.idle(record));
+                    let written = Instant::now();
                     match receiver.recv() {
-                        Ok(event) => event,
+                        Ok(event) => self.report(&event),
                         Err(mpsc::RecvError) => break,
                     }
+                    gather(written);
                 }
-            };
-            self.waiting.fetch_sub(1, Ordering::Relaxed);
-            self.check_order(&event);
-            self.record.apply(&event);
-            self.each(|reporter, record| reporter.event(&event, record));
+            }
         }
         self.each(|reporter, record| reporter.finish(record));
         let Self { record, errors, disorder, .. } = self;
         Outcome { finished: Finished { record, errors }, disorder }
+    }
+
+    fn report(&mut self, event: &Event) {
+        self.waiting.fetch_sub(1, Ordering::Relaxed);
+        self.check_order(event);
+        self.record.apply(event);
+        self.each(|reporter, record| reporter.event(event, record));
     }
 
     fn check_order(&mut self, event: &Event) {

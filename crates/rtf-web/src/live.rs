@@ -26,7 +26,7 @@ impl Live {
 impl Reporter for Live {
     fn event(&mut self, event: &Event, record: &Record) -> Result<(), ReportError> {
         // While so much happens that the queue is never empty, the journal is
-        // flushed at the ends of tests.
+        // flushed soon after the ends of tests.
         if let EventKind::TestFinished(_) = event.kind {
             self.tell(record);
         }
