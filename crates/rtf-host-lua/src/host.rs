@@ -7,7 +7,7 @@ use rtf_host::{HostPlugin, LoadError, Reaction, Role, Session, Step, StepEnd, To
 use rtf_model::Location;
 use rtf_model::protocol::{Initialized, Notice, PROTOCOL_VERSION, Plugin, StackSupport, ToldTest};
 
-use crate::source::Style;
+use crate::source::{Files, Style};
 use crate::state::State;
 use crate::{sdk, source, watch};
 
@@ -19,6 +19,7 @@ pub(crate) struct LuaHost {
     session: Session,
     /// A state that was made before there was a plug-in for it.
     ready: Option<State>,
+    files: Files,
     loaded: Option<Loaded>,
 }
 
@@ -34,7 +35,7 @@ struct Loaded {
 
 impl LuaHost {
     pub(crate) fn new(session: Session, ready: Option<State>) -> Self {
-        Self { session, ready, loaded: None }
+        Self { session, ready, files: Files::default(), loaded: None }
     }
 }
 
@@ -57,7 +58,10 @@ impl HostPlugin for LuaHost {
         let state = state.and_then(|state| state.dedicate(&self.session, plugin));
         let (lua, call) = state.map_err(unexpected)?;
         watch::look_at(&lua);
-        let compiled = source::compile(&lua, Path::new(&plugin.file), &plugin.file)?;
+        let compiled = match plugin.last {
+            true => source::compile(&lua, Path::new(&plugin.file), &plugin.file)?,
+            false => self.files.compile(&lua, &plugin.file)?,
+        };
         match ended(call.call((compiled.chunk,))) {
             StepEnd::Done | StepEnd::Refused => {}
             StepEnd::Stopped => {

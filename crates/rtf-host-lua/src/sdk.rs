@@ -11,14 +11,21 @@ use rtf_host::{Sample, Session};
 use rtf_model::protocol::Plugin;
 use rtf_model::{Attachment, Comparison, Location, Measurement, Message, MessageKind};
 
-/// The name under which `guard.lua` knows the SDK's own code.
-const CHUNK: &str = "=rtf";
+use crate::part::Part;
 
 /// The name in Lua's registry of the value that unwinds a step.
 pub(crate) const STOP: &CStr = c"rtf.stop";
 
 /// No sleep is longer: more seconds than any clock can add.
 const LONGEST: Duration = Duration::from_secs(1 << 40);
+
+// What was printed before a crash must not be lost with the buffer.
+static LINES: Part = Part::new("io.stdout:setvbuf('line')");
+static TEXT: Part = Part::new(include_str!("../../../sdk/lua/src/text.lua"));
+static NEAR: Part = Part::new(include_str!("../../../sdk/lua/src/near.lua"));
+static GUARD: Part = Part::new(include_str!("../../../sdk/lua/src/guard.lua"));
+static RTF: Part = Part::new(include_str!("../../../sdk/lua/src/rtf.lua"));
+static PREDECESSOR: Part = Part::new(include_str!("../../../sdk/lua/src/predecessor.lua"));
 
 /// What is installed in a state, before there is a plug-in or a runner.
 pub(crate) struct Installed {
@@ -30,17 +37,15 @@ pub(crate) struct Installed {
 
 /// Installs the table `rtf`.
 pub(crate) fn install(lua: &Lua) -> mlua::Result<Installed> {
+    LINES.run::<()>(lua, ())?;
     let stop = stop_value(lua)?;
-    let text: Table = part(lua, include_str!("../../../sdk/lua/src/text.lua"), ())?;
-    let near: Table = part(lua, include_str!("../../../sdk/lua/src/near.lua"), &text)?;
-    let guard = include_str!("../../../sdk/lua/src/guard.lua");
-    let guard: Table = part(lua, guard, (&text, &stop))?;
+    let text: Table = TEXT.run(lua, ())?;
+    let near: Table = NEAR.run(lua, &text)?;
+    let guard: Table = GUARD.run(lua, (&text, &stop))?;
     let host = functions(lua)?;
-    let rtf = include_str!("../../../sdk/lua/src/rtf.lua");
-    let rtf: Table = part(lua, rtf, (&host, near, text, &guard, stop))?;
+    let rtf: Table = RTF.run(lua, (&host, near, text, &guard, stop))?;
     lua.globals().set("rtf", &rtf)?;
-    let predecessor = include_str!("../../../sdk/lua/src/predecessor.lua");
-    let predecessor: Table = part(lua, predecessor, &rtf)?;
+    let predecessor: Table = PREDECESSOR.run(lua, &rtf)?;
     for name in ["robottestingframework", "RTF"] {
         lua.globals().set(name, &predecessor)?;
     }
@@ -69,10 +74,6 @@ pub(crate) fn lend_predecessor(lua: &Lua, table: &Table) -> mlua::Result<()> {
     let meta = lua.create_table()?;
     meta.set("__index", lua.globals().get::<Table>("robottestingframework")?)?;
     table.set_metatable(Some(meta))
-}
-
-fn part(lua: &Lua, source: &str, args: impl IntoLuaMulti) -> mlua::Result<Table> {
-    lua.load(source).set_name(CHUNK).call(args)
 }
 
 /// A value of which there is only one, and which says what it is to a plug-in

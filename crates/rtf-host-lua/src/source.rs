@@ -2,8 +2,10 @@
 
 mod style;
 
+use std::collections::HashMap;
 use std::path::Path;
 
+use mlua::chunk::ChunkMode;
 use mlua::{Error, Function, Lua};
 use rtf_host::LoadError;
 use rtf_model::Location;
@@ -20,21 +22,56 @@ pub(crate) struct Compiled {
     pub(crate) style: Style,
 }
 
+/// Files that were compiled: those of tests that share a host come again.
+#[derive(Default)]
+pub(crate) struct Files(HashMap<String, Known>);
+
+struct Known {
+    source: Vec<u8>,
+    code: Vec<u8>,
+    style: Style,
+}
+
+impl Files {
+    /// Compiles a file like [`compile`], unless this one, as it is now, was before.
+    pub(crate) fn compile(&mut self, lua: &Lua, name: &str) -> Result<Compiled, LoadError> {
+        let source = read(Path::new(name), name)?;
+        if let Some(known) = self.0.get(name).filter(|known| known.source == source) {
+            let chunk = lua.load(known.code.as_slice()).set_mode(ChunkMode::Binary);
+            let chunk = chunk
+                .into_function()
+                .map_err(|error| LoadError { message: error.to_string(), location: None })?;
+            return Ok(Compiled { chunk, style: known.style });
+        }
+        let compiled = compile_source(lua, &source, name)?;
+        let (code, style) = (compiled.chunk.dump(false), compiled.style);
+        self.0.insert(name.to_owned(), Known { source, code, style });
+        Ok(compiled)
+    }
+}
+
 /// Compiles a file without running it. Its functions know it by `name`.
 pub(crate) fn compile(lua: &Lua, file: &Path, name: &str) -> Result<Compiled, LoadError> {
+    compile_source(lua, &read(file, name)?, name)
+}
+
+fn read(file: &Path, name: &str) -> Result<Vec<u8>, LoadError> {
     let source = std::fs::read(file).map_err(|error| LoadError {
         message: format!("`{name}` cannot be read: {error}"),
         location: None,
     })?;
-    let source = code(source);
-    let load = |chunk_name: &str| lua.load(source.as_slice()).set_name(chunk_name).into_function();
+    Ok(code(source))
+}
+
+fn compile_source(lua: &Lua, source: &[u8], name: &str) -> Result<Compiled, LoadError> {
+    let load = |chunk_name: &str| lua.load(source).set_name(chunk_name).into_function();
     let chunk = load(&format!("@{name}")).map_err(|error| {
         // Compiled once more under a name that is easy to take off.
         let message = load(NAMELESS).err().map_or_else(|| error.to_string(), text);
         let (line, message) = split(&message);
         LoadError { message, location: Some(Location { file: name.to_owned(), line }) }
     })?;
-    Ok(Compiled { chunk, style: Style::of(&String::from_utf8_lossy(&source)) })
+    Ok(Compiled { chunk, style: Style::of(&String::from_utf8_lossy(source)) })
 }
 
 /// Takes off what is allowed before the code: a byte order mark and a first

@@ -24,11 +24,11 @@ impl State {
         // much as any plug-in.
         #[expect(unsafe_code, reason = "plug-ins may load C modules")]
         let lua = unsafe { Lua::unsafe_new() };
+        // Nothing of all this is garbage, nor is it looked for.
+        lua.gc_stop();
         for table in ["TestCase", "FixtureManager"] {
             lua.globals().set(table, lua.create_table()?)?;
         }
-        // What was printed before a crash must not be lost with the buffer.
-        lua.load("io.stdout:setvbuf('line')").set_name("=rtf").exec()?;
         let sdk = sdk::install(&lua)?;
         sdk::lend_predecessor(&lua, &lua.globals().get("TestCase")?)?;
         Ok(Self { lua, sdk, process: std::process::id() })
@@ -46,6 +46,7 @@ impl State {
         }
         search::extend(&lua, Path::new(&plugin.file))?;
         sdk.dedicate(&lua, session, plugin)?;
+        lua.gc_restart();
         Ok((lua, sdk.call))
     }
 }
