@@ -151,11 +151,23 @@ pub(crate) fn check(file: &Path) -> CheckedFile {
     }
 }
 
-/// Loads a library that plug-ins are likely to need, if it is there. Its own
-/// functions are looked up as they are called, which saves the most time.
-pub(crate) fn preload(name: &str) {
+/// When the functions that a library calls are looked up.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Lookup {
+    /// As they are called, which is the least work for one process.
+    Lazy,
+    /// At once: forks of this process need not look for them any more.
+    Now,
+}
+
+/// Loads a library that plug-ins are likely to need, if it is there.
+pub(crate) fn preload(name: &str, lookup: Lookup) {
+    let lookup = match lookup {
+        Lookup::Lazy => RTLD_LAZY,
+        Lookup::Now => RTLD_NOW,
+    };
     // SAFETY: only for libraries of the system, whose initialisers are known.
-    let library = unsafe { Library::open(Some(name), RTLD_LAZY | RTLD_LOCAL) };
+    let library = unsafe { Library::open(Some(name), lookup | RTLD_LOCAL) };
     std::mem::forget(library);
 }
 

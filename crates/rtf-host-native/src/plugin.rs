@@ -9,7 +9,7 @@ use rtf_model::protocol::{Initialized, Notice, PROTOCOL_VERSION, Plugin, StackSu
 
 use crate::abi::{RTF_DONE, RTF_REFUSED, RTF_STOPPED, rtf_plugin_table, rtf_test, rtf_text};
 use crate::host_table;
-use crate::library::{self, Table};
+use crate::library::{self, Lookup, Table};
 
 /// The native host with at most one plug-in.
 #[derive(Debug)]
@@ -33,8 +33,11 @@ impl NativeHost {
 
 /// Nearly every plug-in is in C++, and loading its library takes longer
 /// than all the rest. A plug-in that does without does not see it.
+const LIKELY: &str = "libstdc++.so.6";
+
+/// What is done once for all forks.
 pub(crate) fn prepare() {
-    library::preload("libstdc++.so.6");
+    library::preload(LIKELY, Lookup::Now);
 }
 
 impl HostPlugin for NativeHost {
@@ -45,7 +48,8 @@ impl HostPlugin for NativeHost {
     }
 
     fn idle(&mut self) {
-        prepare();
+        // A fork has it already.
+        library::preload(LIKELY, Lookup::Lazy);
     }
 
     fn load(&mut self, role: Role, plugin: &Plugin) -> Result<(), LoadError> {

@@ -48,6 +48,7 @@ impl ForkServer {
     /// was forked it returns the session with the runner.
     pub(crate) fn serve(self) -> Result<Option<Session>, ForkError> {
         let mut packet = vec![0; PACKET_BYTES];
+        unix::rehearse();
         loop {
             let (length, descriptors) = unix::receive(&self.socket, &mut packet)?;
             if length == 0 {

@@ -15,7 +15,7 @@ use crate::{Reaction, unix};
 /// Enough for decoding a line and for a host's stack dumper.
 const STACK_BYTES: usize = 256 * 1024;
 /// Enough for the requests of most tests; longer lines grow it.
-const BUFFER_BYTES: usize = 4 * 1024;
+const BUFFER_BYTES: usize = 1024;
 
 /// The channel's receiving side.
 ///

@@ -7,7 +7,7 @@ use std::mem::MaybeUninit;
 use std::os::fd::{BorrowedFd, FromRawFd, OwnedFd, RawFd};
 use std::os::unix::ffi::OsStringExt;
 
-use rtf_model::protocol::ForkRequest;
+use rtf_model::protocol::{FORK_SERVER_VARIABLE, ForkRequest};
 use rustix::net::{
     RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, ReturnFlags, SendFlags, recvmsg,
 };
@@ -136,6 +136,17 @@ impl MainThread {
 
     pub(crate) fn fork(&self) -> io::Result<Forked> {
         Err(io::Error::from(io::ErrorKind::Unsupported))
+    }
+}
+
+/// Sets a variable, as every fork does first: the dynamic linker looks up what the C
+/// library calls for it, and no fork has to.
+pub(crate) fn rehearse() {
+    let name = FORK_SERVER_VARIABLE;
+    // SAFETY: the process has one thread.
+    unsafe {
+        std::env::set_var(name, "");
+        std::env::remove_var(name);
     }
 }
 
