@@ -27,6 +27,8 @@ use crate::plan::{Leaks, ProcessPlan, SuitePlan, TestPlan};
 
 /// How many inputs may wait; then processes wait.
 const INPUTS: usize = 1024;
+/// How many more are taken before anything else is looked at.
+const AT_ONCE: usize = 16;
 
 /// What may come from outside while a suite runs.
 #[derive(Clone, Debug)]
@@ -120,7 +122,20 @@ impl SuiteTask<'_> {
                 }
                 input = controls.next(self.plan) => self.feed(input),
                 () = self.sleep_until(next) => self.deadlines_passed(),
-                Some((host, input)) = queue.recv() => self.host_input(host, input),
+                Some((host, input)) = queue.recv() => {
+                    self.host_input(host, input);
+                    self.take_more(&mut queue);
+                }
+            }
+        }
+    }
+
+    /// Takes what came with the last input: mostly several come at once.
+    fn take_more(&mut self, queue: &mut mpsc::Receiver<(HostId, HostInput)>) {
+        for _ in 0..AT_ONCE {
+            match queue.try_recv() {
+                Ok((host, input)) if !self.over => self.host_input(host, input),
+                _ => return,
             }
         }
     }

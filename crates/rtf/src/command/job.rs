@@ -74,12 +74,14 @@ impl Job<'_> {
             time: self.planned.manifest.for_ms.map(Duration::from_millis),
         };
         let sink: Arc<dyn Sink> = Arc::new(Reports(events));
-        let plan = &self.planned.plan;
+        let plan = self.planned.plan.clone();
         runtime.block_on(async {
+            // A task of its own is woken without a system call, other than this future.
+            let run = async move { execute(&plan, options, sink, stopped).await };
             tokio::select! {
                 biased;
                 signal = signal::forward(stops, &guard, *shutdown_timeout) => signal.map(Some),
-                done = execute(plan, options, sink, stopped) => done.map(|()| None),
+                done = tokio::spawn(run) => done.map_err(std::io::Error::other)?.map(|()| None),
             }
         })
     }

@@ -3,6 +3,7 @@
 
 use std::io::Write;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_engine::plan::{self, Options, Plan, Request, Surroundings};
@@ -19,7 +20,7 @@ use crate::render;
 /// A plan, and what the user should look at nevertheless.
 pub struct Planned {
     /// What will be done.
-    pub plan: Plan,
+    pub plan: Arc<Plan>,
     /// What was asked for.
     pub manifest: Manifest,
     /// The folder to which the inputs are relative.
@@ -37,6 +38,7 @@ pub fn plan(args: &InputArgs, results: &ResultsArgs) -> Result<Planned, Failure>
     let Some(mut plan) = plan else { return Err(refused(&problems, &sources)?) };
     repeat(&mut plan, &manifest);
     manifest.chosen_of = if of == plan.tests { 0 } else { of };
+    let plan = Arc::new(plan);
     Ok(Planned { plan, manifest, folder, warnings: problems, sources })
 }
 
@@ -106,6 +108,7 @@ pub fn plan_requests(requests: &[Request], options: &Options) -> Result<Planned,
     let (warnings, sources) = (outcome.diagnostics, outcome.sources);
     let Some(plan) = outcome.plan else { return Err(refused(&warnings, &sources)?) };
     let folder = options.surroundings.current_folder.clone();
+    let plan = Arc::new(plan);
     Ok(Planned { plan, manifest: Manifest::default(), folder, warnings, sources })
 }
 
