@@ -25,6 +25,7 @@ class Ramp(rtf.TestCase):
         for step in range(500):
             self.measure("joint 1", step / 512, "rad")
             self.measure("current", 0.5, "A")
+            self.sample("wrist", step / 256, "rad", time=step / 100)
         self.report("at the end")
         self.check(self.param != "fails", "the arm follows")
 """
@@ -77,13 +78,20 @@ def look_into(file: Path) -> None:
 
     series: dict[str, list[Any]] = {}
     times: list[int] = []
+    taken: list[int] = []
     with file.open("rb") as stream:
         for _, channel, message in make_reader(stream).iter_messages():
             series.setdefault(channel.topic, []).append(json.loads(message.data))
             times.append(message.log_time)
+            if channel.topic == "/wrist":
+                taken.append(message.log_time)
     values = [sample["value"] for sample in series["/joint 1"]]
     expect("joint 1 is whole", values == [step / 512 for step in range(500)], True)
     expect("current is whole", series["/current"] == [{"value": 0.5, "unit": "A"}] * 500, True)
+    wrist = [{"value": step / 256, "unit": "rad"} for step in range(500)]
+    expect("wrist is whole", series["/wrist"] == wrist, True)
+    steps = [(at - taken[0]) // 10**6 for at in taken]
+    expect("wrist has its own times", steps, [10 * step for step in range(500)])
     expect("log", series["/log"][0], {"kind": "report", "text": "at the end"})
     expect("times in order", times == sorted(times), True)
 
