@@ -9,13 +9,12 @@ runner gets a SIGKILL while the arm moves: its guard has to park the arm.
 
 from __future__ import annotations
 
-import os
-import signal
 import sys
 import tempfile
 from pathlib import Path
 
-from check_example_01 import Event, Run, expect, is_a
+from processes import children, kill, running
+from run import Event, Run, expect, is_a
 
 RUNNER_DIED = 5
 
@@ -33,8 +32,7 @@ def undisturbed(rtf: str, suite: str, folder: Path) -> None:
     """The arm dies once, the test runs again, and the arm ends up parked."""
     run = Run(rtf, suite, folder)
     expect("exit code", run.wait(), 0)
-    attempts = [event["verdict"] for event in run.events() if is_a(event, "test-finished")]
-    expect("attempts", attempts, ["collapsed", "passed", "passed"])
+    expect("attempts", run.attempts(), ["collapsed", "passed", "passed"])
     expect("hooks", triggers(run), ["collapse", "end"])
     expect("parked", "parked: " in hook_output(run), True)
     expect("arms left", arms(), [])
@@ -46,8 +44,7 @@ def runner_killed(rtf: str, suite: str, folder: Path) -> None:
     try:
         run.wait_for(is_rerun)
         run.wait_for(lambda event: is_a(event, "test-phase") and runs_again(run))
-        (runner,) = children(run.process.pid)
-        os.kill(runner, signal.SIGKILL)
+        kill(children(run.process.pid))
     except BaseException:
         run.stop()
         raise
@@ -73,31 +70,17 @@ def runs_again(run: Run) -> bool:
 
 def triggers(run: Run) -> list[str]:
     """What called for a hook, in order."""
-    return [event["trigger"] for event in run.events() if is_a(event, "hook-started")]
+    return [event["trigger"] for event in run.events("hook-started")]
 
 
 def hook_output(run: Run) -> str:
     """What the hook printed."""
-    outputs = (event for event in run.events() if is_a(event, "output"))
-    return "".join(event["text"] for event in outputs if "hook" in event["source"])
-
-
-def children(pid: int) -> list[int]:
-    """The processes that a process has started."""
-    tasks = Path(f"/proc/{pid}/task").glob("*/children")
-    return [int(child) for task in tasks for child in task.read_text().split()]
+    return "".join(event["text"] for event in run.events("output") if "hook" in event["source"])
 
 
 def arms() -> list[int]:
     """The simulators of this lesson that run."""
-    found = []
-    for folder in Path("/proc").glob("[0-9]*"):
-        try:
-            if b"loose_arm.py" in (folder / "cmdline").read_bytes().split(b"\0"):
-                found.append(int(folder.name))
-        except OSError:  # it has ended
-            continue
-    return found
+    return running("loose_arm.py")
 
 
 if __name__ == "__main__":

@@ -5,22 +5,23 @@
 
 FOLDER is that of the example. YARP's programs, the robot's modules and the plug-ins
 have to be found as the lesson says. Nothing is imitated: a module gets a SIGKILL, a
-connection is cut by YARP's own tool, and the fixture itself is killed.
+connection is cut by YARP's own tool, and the fixture itself is killed. No packet may
+leave the machine.
 """
 
 from __future__ import annotations
 
 import os
 import shlex
-import signal
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Callable
 from pathlib import Path
 
-from check_example_01 import Run, expect, is_a
+import network
+from processes import kill, parent, select
+from run import Run, expect, expect_in
 
 VICTIM = "StreamTest"
 CONNECTION = "/sensor/values:o -> /smoother/values:i"
@@ -29,7 +30,8 @@ CONNECTION = "/sensor/values:o -> /smoother/values:i"
 def main() -> int:
     """Runs all and tells the first thing that is not as it should be."""
     rtf, example = (Path(argument).resolve() for argument in sys.argv[1:])
-    with tempfile.TemporaryDirectory() as name:
+    network.move_in()
+    with tempfile.TemporaryDirectory() as name, network.quiet("lesson 3"):
         lesson = Lesson(str(rtf), example, Path(name))
         lesson.undisturbed("first_generation.xml", 2)
         lesson.undisturbed("yarp.xml", 3)
@@ -63,30 +65,19 @@ class Lesson:
     ) -> None:
         """The running test is `collapsed`, the reason names what was lost, the rest passes."""
         run = self.start("yarp.xml", what)
-        try:
-            run.wait_for(
-                lambda event: (
-                    is_a(event, "test-phase")
-                    and run.name(event) == VICTIM
-                    and event["phase"] == "run"
-                )
-            )
+
+        def do() -> None:
             expect("interfaces", interfaces(run), ["lo"])
             disturb(self, run)
-            disturbed = time.monotonic()
-            run.wait_for(lambda event: is_a(event, "fixture-collapsed"))
-            noticed = time.monotonic() - disturbed
-        except BaseException:
-            run.stop()
-            raise
+
+        noticed = run.collapses(do, VICTIM)
         expect("exit code", run.wait(), 1)
         expect("seconds until the collapse was seen, below 3", noticed < 3, True)
         verdicts = run.verdicts()
         expect(f"verdict of {VICTIM}", verdicts.pop(VICTIM), "collapsed")
         expect("other verdicts", list(verdicts.values()), ["passed", "passed"])
-        reasons = [event["reason"] for event in run.events() if is_a(event, "fixture-collapsed")]
         for text in expected:
-            expect(f"`{text}` in {reasons[0]!r}", text in reasons[0], True)
+            expect_in(text, run.reasons()[0])
         self.nothing_left()
 
     def start(self, suite: str, name: str, *options: str) -> Run:
@@ -96,18 +87,12 @@ class Lesson:
 
     def processes(self, program: str = "") -> list[int]:
         """The processes of the runs, zombies not counted, or those of a program."""
-        mark = f"YARP_CONFIG_HOME={self.home}".encode()
-        found = []
-        for folder in Path("/proc").glob("[0-9]*"):
-            try:
-                words = (folder / "cmdline").read_bytes().split(b"\0")
-                is_ours = mark in (folder / "environ").read_bytes().split(b"\0")
-            except OSError:  # it has ended, or it is not ours
-                continue
-            is_wanted = not program or Path(os.fsdecode(words[0])).name == program
-            if is_ours and is_wanted and int(folder.name) != os.getpid():
-                found.append(int(folder.name))
-        return found
+        mark = f"YARP_CONFIG_HOME={self.home}"
+        return select(
+            lambda _, words, variables: (
+                mark in variables and (not program or Path(words[0]).name == program)
+            )
+        )
 
     def nothing_left(self) -> None:
         """No process, and no address of a name server that is not there."""
@@ -125,7 +110,7 @@ def cut_connection(lesson: Lesson, run: Run) -> None:
     """Somebody disconnects two ports that belong together."""
     del lesson
     source, target = CONNECTION.split(" -> ")
-    (join,) = [event["join"] for event in run.events() if is_a(event, "suite-prepared")]
+    (join,) = [event["join"] for event in run.events("suite-prepared")]
     words = [word for word in shlex.split(join) if word != "${SHELL:-sh}"]
     subprocess.run([*words, "yarp", "disconnect", source, target], check=True, timeout=30)
 
@@ -140,19 +125,12 @@ def kill_fixture(lesson: Lesson, run: Run) -> None:
     """The plug-in that runs YARP's manager dies."""
     del run
     (manager,) = lesson.processes("yarpmanager-console")
-    status = Path(f"/proc/{manager}/stat").read_text()
-    kill([int(status.rpartition(")")[2].split()[1])])
-
-
-def kill(pids: list[int]) -> None:
-    """Kills the only one."""
-    (pid,) = pids
-    os.kill(pid, signal.SIGKILL)
+    kill([parent(manager)])
 
 
 def interfaces(run: Run) -> list[str]:
     """The network interfaces that the suite's processes see."""
-    (network,) = [event["network"] for event in run.events() if is_a(event, "suite-prepared")]
+    (network,) = [event["network"] for event in run.events("suite-prepared")]
     lines = Path(f"/proc/{network['pid']}/net/dev").read_text().splitlines()[2:]
     return [line.split(":")[0].strip() for line in lines]
 

@@ -10,12 +10,13 @@ Nothing is imitated: the simulator gets a SIGKILL in the middle of a test.
 from __future__ import annotations
 
 import os
-import signal
 import sys
 import tempfile
 from pathlib import Path
 
-from check_example_01 import Event, Run, expect, is_a, simulators
+from check_example_01 import simulators
+from processes import kill
+from run import Event, Run, expect, expect_in
 
 VICTIM = "MovementTest"
 STUCK = "l_elbow"
@@ -58,23 +59,12 @@ def broken(rtf: str, suite: str, folder: Path) -> None:
 def killed(rtf: str, suite: str, folder: Path) -> None:
     """The test is `collapsed` by a module that the reason names; the others pass."""
     run = Run(rtf, suite, folder)
-    try:
-        run.wait_for(
-            lambda event: (
-                is_a(event, "test-phase") and run.name(event) == VICTIM and event["phase"] == "run"
-            )
-        )
-        (pid,) = simulators(suite)
-        os.kill(pid, signal.SIGKILL)
-    except BaseException:
-        run.stop()
-        raise
+    run.disturb(lambda: kill(simulators(suite)), VICTIM)
     expect("exit code", run.wait(), 1)
     verdicts = run.verdicts()
     expect(f"verdict of {VICTIM}", verdicts.pop(VICTIM), "collapsed")
     expect("other verdicts", list(verdicts.values()), ["passed"] * 5)
-    reasons = [event["reason"] for event in run.events() if is_a(event, "fixture-collapsed")]
-    expect(f"the module in {reasons[0]!r}", "simulator.py" in reasons[0], True)
+    expect_in("simulator.py", run.reasons()[0])
     expect("simulators left", simulators(suite), [])
 
 
@@ -84,8 +74,7 @@ def pictures(run: Run) -> dict[str, str]:
     def path(event: Event) -> str:
         return str(event["attachment"]["path"])
 
-    attached = (event for event in run.events() if is_a(event, "attached"))
-    return {run.name(event): path(event) for event in attached}
+    return {run.name(event): path(event) for event in run.events("attached")}
 
 
 if __name__ == "__main__":

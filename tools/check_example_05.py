@@ -4,7 +4,8 @@
     check_example_05.py RTF EXAMPLE PROBES
 
 Nothing is imitated: roscore, roslaunch and nodes are real, and get a SIGKILL in
-the middle of a test. Some runs go side by side: each has a master of its own.
+the middle of a test. Some runs go side by side: each has a master of its own. No
+packet may leave the machine.
 """
 
 from __future__ import annotations
@@ -18,7 +19,9 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from check_example_01 import Event, Run, expect, is_a
+import network
+from processes import children, commands, kill, parent, select
+from run import Event, Run, expect
 
 VICTIM = "RateTest"
 RUNNER_DIED = 5
@@ -42,7 +45,8 @@ def main() -> int:
     """Runs all and tells the first thing that is not as it should be."""
     rtf, example, probes = (Path(argument).resolve() for argument in sys.argv[1:])
     rover, slipping = example / "rover.xml", example / "slipping.xml"
-    with tempfile.TemporaryDirectory() as folder:
+    network.move_in()
+    with tempfile.TemporaryDirectory() as folder, network.quiet("lesson 5"):
         os.environ["ROS_HOME"] = folder
         for name in ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP"):
             os.environ.pop(name, None)
@@ -85,7 +89,7 @@ class Scene:
             check(self)
         finally:
             self.run.stop()
-        self.expect("processes left", self.processes(), {})
+        self.expect("processes left", commands(self.processes()), [])
 
     def expect(self, what: str, got: object, expected: object) -> None:
         """Ends with a message if something is not as expected."""
@@ -93,55 +97,35 @@ class Scene:
 
     def kill(self, word: str, number: signal.Signals = signal.SIGKILL) -> None:
         """Sends a signal to a process of ROS while the victim runs."""
-        self.wait_for_victim()
-        (pid,) = [pid for pid, line in self.processes().items() if word in line]
-        os.kill(pid, number)
+        self.disturb(lambda: kill(self.processes(word), number))
 
-    def wait_for_victim(self) -> None:
-        """Waits until the test that is disturbed runs."""
-        self.run.wait_for(
-            lambda event: (
-                is_a(event, "test-phase")
-                and self.run.name(event) == VICTIM
-                and event["phase"] == "run"
-            )
-        )
+    def disturb(self, disturbance: Callable[[], None]) -> None:
+        """Does something while the victim runs."""
+        self.run.disturb(disturbance, VICTIM)
 
     def finish(self, code: int) -> None:
         """Waits for the end of the run."""
         self.expect("exit code", self.run.wait(), code)
 
-    def processes(self) -> dict[int, str]:
-        """The processes that use the master of this run, with their command lines."""
-        found = {}
+    def processes(self, word: str = "") -> list[int]:
+        """The processes that use the master of this run, or those with a word in their lines."""
         master = self.master()
-        for folder in Path("/proc").glob("[0-9]*"):
-            try:
-                if master in (folder / "environ").read_bytes().split(b"\0"):
-                    words = (folder / "cmdline").read_text(errors="replace").split("\0")
-                    found[int(folder.name)] = " ".join(words)
-            except OSError:  # it has ended, or it is not ours
-                continue
-        return found
+        return select(lambda _, words, variables: master in variables and word in " ".join(words))
 
-    def master(self) -> bytes:
+    def master(self) -> str:
         """The variable that names the master of this run."""
-        (prepared,) = (each for each in self.run.events() if is_a(each, "suite-prepared"))
+        (prepared,) = self.events("suite-prepared")
         values = {each["name"]: each["value"] for each in prepared["variables"]}
-        return f"ROS_MASTER_URI={values['ROS_MASTER_URI']}".encode()
+        return f"ROS_MASTER_URI={values['ROS_MASTER_URI']}"
 
     def events(self, kind: str) -> list[Event]:
         """The events of a kind."""
-        return [event for event in self.run.events() if is_a(event, kind)]
-
-    def reasons(self) -> list[str]:
-        """Why fixtures collapsed."""
-        return [str(event["reason"]) for event in self.events("fixture-collapsed")]
+        return list(self.run.events(kind))
 
     def collapsed(self, reason: str) -> None:
         """The victim is `collapsed` for this reason; the other tests pass."""
         self.finish(1)
-        self.expect("reason", self.reasons(), [reason])
+        self.expect("reason", self.run.reasons(), [reason])
         verdicts = self.run.verdicts()
         self.expect(f"verdict of {VICTIM}", verdicts.pop(VICTIM), "collapsed")
         self.expect("other verdicts", set(verdicts.values()), {"passed"})
@@ -172,7 +156,7 @@ def respawned(scene: Scene) -> None:
     said = " ".join(str(event["message"]["text"]) for event in scene.events("message"))
     scene.expect("told", "node /rover/wheel was killed by SIGKILL (exit code -9)" in said, True)
     scene.expect("told", "node /rover/wheel was started again by roslaunch" in said, True)
-    scene.expect("collapses", scene.reasons(), [])
+    scene.expect("collapses", scene.run.reasons(), [])
 
 
 def not_to_be_respawned(scene: Scene) -> None:
@@ -208,7 +192,7 @@ def frozen(scene: Scene) -> None:
     """A node that hangs has a process and is in the master's list: before a test it is asked."""
     scene.kill("rover/odometer", signal.SIGSTOP)
     scene.finish(1)
-    (reason,) = scene.reasons()
+    (reason,) = scene.run.reasons()
     scene.expect(f"the node in {reason!r}", "node /rover/odometer: nobody answers" in reason, True)
     verdicts = list(scene.run.verdicts().values())
     scene.expect("verdicts", verdicts, ["passed", "failed", "passed"])
@@ -216,28 +200,25 @@ def frozen(scene: Scene) -> None:
 
 def fixture_killed(scene: Scene) -> None:
     """The plug-in itself is killed, which would have ended the nodes: rtf does it."""
-    scene.wait_for_victim()
-    (roslaunch,) = [pid for pid, line in scene.processes().items() if "bin/roslaunch" in line]
-    stat = Path(f"/proc/{roslaunch}/stat").read_text()
-    os.kill(int(stat.rpartition(")")[2].split()[1]), signal.SIGKILL)
+    scene.disturb(lambda: kill([parent(*scene.processes("bin/roslaunch"))]))
     scene.collapsed("its process ended with signal 9 (SIGKILL)")
 
 
 def runner_killed(scene: Scene) -> None:
     """The guard ends everything, the nodes included."""
-    scene.wait_for_victim()
-    tasks = Path(f"/proc/{scene.run.process.pid}/task").glob("*/children")
-    (runner,) = (int(child) for task in tasks for child in task.read_text().split())
-    scene.expect("nodes before", len(scene.processes()) > 5, True)
-    os.kill(runner, signal.SIGKILL)
+
+    def kill_runner() -> None:
+        scene.expect("nodes before", len(scene.processes()) > 5, True)
+        kill(children(scene.run.process.pid))
+
+    scene.disturb(kill_runner)
     scene.finish(RUNNER_DIED)
 
 
 def not_launched(scene: Scene) -> None:
     """A node that cannot be started fails the set-up at once: roslaunch goes on without it."""
     scene.finish(1)
-    (event,) = scene.events("fixture-broken")
-    reason = str(event["reason"])
+    reason = scene.run.reason("fixture-broken")
     scene.expect(f"`cannot launch node` in {reason!r}", "cannot launch node" in reason, True)
     scene.expect("which one", "rover/rudder.py" in reason, True)
 
@@ -270,7 +251,7 @@ def silent(scene: Scene) -> None:
     """A node that hangs lives, but its topic is silent: the probe tells."""
     scene.kill("wheel.py", signal.SIGSTOP)
     scene.finish(1)
-    (reason,) = scene.reasons()
+    (reason,) = scene.run.reasons()
     scene.expect(f"the topic in {reason!r}", reason.startswith("ROS topic /rover/speed: "), True)
     scene.expect("verdicts", list(scene.run.verdicts().values()), ["collapsed", "passed"])
 

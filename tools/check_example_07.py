@@ -10,13 +10,12 @@ which the process that steps the physics gets a SIGKILL.
 
 from __future__ import annotations
 
-import os
-import signal
 import sys
 import tempfile
 from pathlib import Path
 
-from check_example_01 import Run, expect, is_a
+from processes import kill, select
+from run import Run, expect, expect_in, is_a
 
 LEVELS = ["integration", "interface", "stress", "system"]
 SOAK = 10.0
@@ -40,14 +39,14 @@ def all_levels(rtf: str, example: Path, folder: Path) -> None:
     run = Run(rtf, str(example), folder, "--jobs", "4")
     expect("exit code", run.wait(), 0)
     expect("verdicts", set(run.verdicts().values()), {"passed"})
-    planned = [event["name"] for event in run.events() if is_a(event, "suite-planned")]
+    planned = [event["name"] for event in run.events("suite-planned")]
     expect("levels", sorted(planned), LEVELS)
     kinds = [event["type"] for event in run.events()]
     turns = [kind for kind in kinds if kind in ("suite-started", "suite-finished")]
     expect("turns", turns, ["suite-started", "suite-finished"] * len(LEVELS))
-    repetitions = [e["repetition"] for e in run.events() if is_a(e, "test-started")]
+    repetitions = [event["repetition"] for event in run.events("test-started")]
     expect("repetitions", max(repetitions), 5)
-    expect("measured", any(is_a(event, "used") for event in run.events()), True)
+    expect("measured", any(run.events("used")), True)
     expect("growth", "grow" in run.output.read_text(), False)
     expect("arms left", arms(), [])
 
@@ -57,7 +56,7 @@ def in_ci(rtf: str, example: Path, folder: Path) -> None:
     report = example / "junit.xml"
     run = Run(rtf, str(example), folder, "--profile", "ci")
     expect("exit code", run.wait(), 0)
-    planned = {event["name"] for event in run.events() if is_a(event, "suite-planned")}
+    planned = {event["name"] for event in run.events("suite-planned")}
     expect("levels", planned, set(LEVELS) - {"stress"})
     expect("report", report.exists(), True)
     report.unlink()
@@ -79,33 +78,21 @@ def repeated(rtf: str, example: Path, folder: Path) -> None:
 def simulator_killed(rtf: str, example: Path, folder: Path) -> None:
     """The task begins anew on a new simulator, and the run is green."""
     run = Run(rtf, str(example / "system.xml"), folder)
-    try:
-        run.wait_for(lambda event: is_a(event, "message"))
-        (arm,) = arms()
-        os.kill(arm, signal.SIGKILL)
-    except BaseException:
-        run.stop()
-        raise
+    run.disturb(lambda: kill(arms()), once="message")
     expect("exit code", run.wait(), 0)
-    attempts = [event["verdict"] for event in run.events() if is_a(event, "test-finished")]
-    expect("attempts", attempts, ["collapsed", "passed"])
-    reasons = [event["reason"] for event in run.events() if is_a(event, "fixture-collapsed")]
-    expect(f"one collapse by SIGKILL in {reasons}", ["SIGKILL" in each for each in reasons], [True])
+    expect("attempts", run.attempts(), ["collapsed", "passed"])
+    expect_in("SIGKILL", run.reason())
     expect("arms left", arms(), [])
 
 
 def arms() -> list[int]:
     """The simulators of this lesson that run: those whose port `rtf` has chosen."""
-    found = []
-    for folder in Path("/proc").glob("[0-9]*"):
-        try:
-            words = (folder / "cmdline").read_bytes().split(b"\0")
-            scope = b"RTF_PORT_ARM=" in (folder / "environ").read_bytes()
-        except OSError:  # it has ended, or is somebody else's
-            continue
-        if b"../01-simulated-arm/simulator.py" in words and scope:
-            found.append(int(folder.name))
-    return found
+    return select(
+        lambda _, words, variables: (
+            "../01-simulated-arm/simulator.py" in words
+            and any(each.startswith("RTF_PORT_ARM=") for each in variables)
+        )
+    )
 
 
 if __name__ == "__main__":

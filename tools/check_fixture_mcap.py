@@ -15,7 +15,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from check_example_01 import expect
+from run import expect
 
 TEST = """
 import rtf

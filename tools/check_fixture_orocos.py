@@ -18,8 +18,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from check_example_01 import Run, expect, is_a
-from check_fixture_ros2launch import pids, reason
+from processes import kill, running
+from run import Run, expect, expect_in
 
 SECONDS = "--set=seconds=20"
 """How long the first test runs: time enough to disturb it."""
@@ -37,8 +37,8 @@ def main() -> int:
         build(sources, home / "bin")
         os.environ["PATH"] = f"{home / 'bin'}:{os.environ['PATH']}"
         checks(str(rtf), sources, home)
-        expect("deployers left", pids(DEPLOYER) + pids("deployer-gnulinux"), [])
-        expect("name servers left", pids("omniNames"), [])
+        expect("deployers left", running(DEPLOYER) + running("deployer-gnulinux"), [])
+        expect("name servers left", running("omniNames"), [])
         expect("folders left", list(home.glob("rtf-orocos-*")), [])
     return 0
 
@@ -77,12 +77,7 @@ def missing(rtf: str, suite: str, folder: Path) -> None:
         raise SystemExit(f"{found} is on PATH: this check needs a PATH without it")
     run = Run(rtf, suite, folder)
     expect("exit code without a deployer", run.wait(), 1)
-    told = reason(run, "fixture-broken")
-    expect(
-        "it is told",
-        told.startswith("set-up failed: there is no program `deployer-gnulinux` on PATH"),
-        True,
-    )
+    expect_in("set-up failed: there is no program `deployer-gnulinux` on PATH", broken(run))
 
 
 def undisturbed(rtf: str, suite: str, folder: Path) -> None:
@@ -94,28 +89,25 @@ def undisturbed(rtf: str, suite: str, folder: Path) -> None:
 
 def collapses(run: Run, number: signal.Signals, reasons: list[str]) -> None:
     """A signal to the deployer: the test is `collapsed`, the next one has another deployer."""
-    try:
-        run.wait_for(lambda event: is_a(event, "test-phase") and event["phase"] == "run")
-        (pid,) = pids(DEPLOYER)
-        os.kill(pid, number)
-        run.wait_for(lambda event: is_a(event, "fixture-collapsed"))
-    except BaseException:
-        run.stop()
-        raise
+    run.collapses(lambda: kill(running(DEPLOYER), number))
     expect(f"exit code after {number.name}", run.wait(), 1)
-    told = reason(run, "fixture-collapsed")
+    told = run.reason()
     expect(f"one of {reasons} in `{told}`", any(each in told for each in reasons), True)
     expect("verdicts", list(run.verdicts().values()), ["collapsed", "passed"])
-    expect("deployers left", pids(DEPLOYER), [])
+    expect("deployers left", running(DEPLOYER), [])
 
 
 def never_there(rtf: str, suite: str, folder: Path) -> None:
     """A component that the script does not load: what was answered last is told."""
     run = Run(rtf, suite, folder, "--set=second=elbow", "--set=timeout=1")
     expect("exit code", run.wait(), 1)
-    told = reason(run, "fixture-broken")
-    expect(f"NotFound in `{told}`", "CORBA exception NotFound" in told, True)
-    expect("elbow in it", "component elbow is Running" in told, True)
+    expect_in("CORBA exception NotFound", broken(run))
+    expect_in("component elbow is Running", broken(run))
+
+
+def broken(run: Run) -> str:
+    """Why the fixture could not be set up."""
+    return run.reason("fixture-broken")
 
 
 if __name__ == "__main__":

@@ -17,7 +17,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from check_example_01 import Run, expect, is_a
+from processes import kill, running, shared_memory
+from run import Run, expect, expect_in
 
 SECONDS = "--set=seconds=15"
 """How long the first test listens: time enough to disturb it."""
@@ -38,7 +39,7 @@ def main() -> int:
         collapses(rtf, suite, home / "silent", signal.SIGSTOP, "no message on /chatter for 2 s")
         launch_killed(rtf, suite, home / "launch-killed")
         dies_early(rtf, suite, home / "early")
-        expect("nodes left", pids("talker.py"), [])
+        expect("nodes left", running("talker.py"), [])
         expect("shared memory left", shared_memory() - before, set())
     return 0
 
@@ -49,13 +50,9 @@ def without_ros2(rtf: str, suite: str, folder: Path) -> None:
         raise SystemExit(f"{found} is on PATH: this check needs a PATH without it")
     run = Run(rtf, suite, folder)
     expect("exit code without ros2", run.wait(), 1)
-    told = reason(run, "fixture-broken")
-    expect(
-        "what is missing is told",
-        told.startswith("set-up failed: there is no program `ros2` on PATH"),
-        True,
-    )
-    expect("how it is installed is told", "https://docs.ros.org" in told, True)
+    told = run.reason("fixture-broken")
+    expect_in("set-up failed: there is no program `ros2` on PATH", told)
+    expect_in("https://docs.ros.org", told)
 
 
 def undisturbed(rtf: str, suite: str, folder: Path) -> None:
@@ -63,74 +60,37 @@ def undisturbed(rtf: str, suite: str, folder: Path) -> None:
     run = Run(rtf, suite, folder)
     expect("exit code", run.wait(), 0)
     expect("verdicts", set(run.verdicts().values()), {"passed"})
-    expect("nodes left", pids("talker.py"), [])
+    expect("nodes left", running("talker.py"), [])
 
 
 def collapses(rtf: str, suite: str, folder: Path, number: signal.Signals, why: str) -> None:
     """A signal to the talker: the test is `collapsed`, the next one has another talker."""
     run = Run(rtf, suite, folder, SECONDS)
-    disturb(run, "talker.py", number)
+    run.collapses(lambda: kill(running("talker.py"), number))
     expect(f"exit code after {number.name}", run.wait(), 1)
     expect("verdicts", list(run.verdicts().values()), ["collapsed", "passed"])
-    expect("reason", reason(run, "fixture-collapsed"), why)
-    expect("starts", len([each for each in run.events() if is_a(each, "fixture-ready")]), 2)
-    expect("nodes left", pids("talker.py"), [])
+    expect("reason", run.reason(), why)
+    expect("starts", len(list(run.events("fixture-ready"))), 2)
+    expect("nodes left", running("talker.py"), [])
 
 
 def launch_killed(rtf: str, suite: str, folder: Path) -> None:
     """A SIGKILL to launch itself leaves its nodes behind: they are ended, too."""
     run = Run(rtf, suite, folder, SECONDS)
-    disturb(run, "ros2", signal.SIGKILL)
+    run.collapses(lambda: kill(running("ros2")))
     expect("exit code", run.wait(), 1)
-    expect("reason", reason(run, "fixture-collapsed"), "ros2 was killed by SIGKILL")
+    expect("reason", run.reason(), "ros2 was killed by SIGKILL")
     expect("verdicts", list(run.verdicts().values()), ["collapsed", "passed"])
-    expect("nodes left", pids("talker.py"), [])
+    expect("nodes left", running("talker.py"), [])
 
 
 def dies_early(rtf: str, suite: str, folder: Path) -> None:
     """A node that dies before it is ready fails the set-up at once; its last words are shown."""
     run = Run(rtf, suite, folder, "--set=rate=fast")
     expect("exit code", run.wait(), 1)
-    told = reason(run, "fixture-broken")
-    expect(f"who died in `{told}`", "talker-1 died, exit code 1" in told, True)
-    output = run.output.read_text()
-    expect("last words are told", "could not convert string to float: 'fast'" in output, True)
-
-
-def disturb(run: Run, program: str, number: signal.Signals) -> None:
-    """Send a signal to a program while the first test runs."""
-    try:
-        run.wait_for(lambda event: is_a(event, "test-phase") and event["phase"] == "run")
-        (pid,) = pids(program)
-        os.kill(pid, number)
-        run.wait_for(lambda event: is_a(event, "fixture-collapsed"))
-    except BaseException:
-        run.stop()
-        raise
-
-
-def reason(run: Run, kind: str) -> str:
-    """The reason of the only event of this kind."""
-    (event,) = (event for event in run.events() if is_a(event, kind))
-    return str(event["reason"])
-
-
-def pids(program: str) -> list[int]:
-    """The processes whose program, or script, has this name, and which are not zombies."""
-    found = []
-    for folder in Path("/proc").glob("[0-9]*"):
-        try:
-            words = (folder / "cmdline").read_text(errors="replace").split("\0")
-            if program in {Path(word).name for word in words[:2]}:
-                found.append(int(folder.name))
-        except OSError:  # it has ended
-            continue
-    return found
-
-
-def shared_memory() -> set[str]:
-    """The files that Fast DDS has in shared memory."""
-    return {file.name for file in Path("/dev/shm").glob("*fastdds_*")}
+    expect_in("talker-1 died, exit code 1", run.reason("fixture-broken"))
+    told = "could not convert string to float: 'fast'" in run.output.read_text()
+    expect("last words are told", told, True)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,71 @@
+"""A network in which a check sees every packet that would leave the machine.
+
+The check runs in a network namespace with a second interface, to which the default
+route leads. Nobody listens behind it; what is sent there is counted by the kernel.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import socket
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from run import expect
+
+OUTSIDE = "out"
+"""The interface that leads out of the namespace."""
+INSIDE = "RTF_CHECK_INSIDE"
+
+SETTLE = f"""
+set -e
+ip link set lo up
+ip link add {OUTSIDE} type veth peer name far
+# Without IPv6 addresses, which say hello by themselves.
+ip link set {OUTSIDE} addrgenmode none
+ip link set far addrgenmode none
+ip addr add 10.99.0.1/24 dev {OUTSIDE}
+ip link set {OUTSIDE} up
+ip link set far up
+ip route add default dev {OUTSIDE}
+exec "$@"
+"""
+
+
+def move_in() -> None:
+    """Go on in such a network: this program is started again there, with its arguments."""
+    if os.environ.pop(INSIDE, "") == str(os.getpid()):
+        stray_packet_is_seen()
+        return
+    # unshare and the shell become this program without a new process.
+    os.environ[INSIDE] = str(os.getpid())
+    unshare = ["unshare", "--net", *(["--map-root-user"] if os.geteuid() else [])]
+    command = [*unshare, "sh", "-c", SETTLE, "sh", sys.executable, *sys.argv]
+    os.execvp(command[0], command)
+
+
+def packets() -> int:
+    """How many packets have left by the interface that leads out."""
+    for line in Path("/proc/net/dev").read_text().splitlines():
+        interface, _, numbers = line.partition(":")
+        if interface.strip() == OUTSIDE:
+            return int(numbers.split()[9])
+    raise SystemExit(f"there is no interface {OUTSIDE}")
+
+
+def stray_packet_is_seen() -> None:
+    """One datagram to a multicast group, as discovery sends it: else counting proves nothing."""
+    before = packets()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stray:
+        stray.sendto(b"is anybody there?", ("239.255.0.1", 7400))
+    expect("a stray packet is counted", packets() - before >= 1, True)
+
+
+@contextlib.contextmanager
+def quiet(what: str) -> Iterator[None]:
+    """A time in which no packet may leave."""
+    before = packets()
+    yield
+    expect(f"{what}: packets that left", packets() - before, 0)

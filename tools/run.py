@@ -1,0 +1,136 @@
+"""A run of rtf that a check judges by its exit code, its journal and what it printed."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+Event = dict[str, Any]
+
+RUN_SECS = 120
+"""A run takes some ten seconds; a machine that does other things gets time."""
+
+
+class Run:
+    """A run of rtf and its journal."""
+
+    def __init__(self, rtf: str, suite: str, folder: Path, *options: str) -> None:
+        folder.mkdir()
+        self.journal = folder / "latest" / "events.jsonl"
+        self.output = folder / "output"
+        with self.output.open("wb") as output:
+            self.process = subprocess.Popen(
+                [rtf, "run", "--results", str(folder), *options, suite],
+                cwd=folder,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+            )
+
+    def wait(self) -> int:
+        """The exit code; what rtf printed goes to the output."""
+        try:
+            return self.process.wait(RUN_SECS)
+        finally:
+            self.stop()
+            print(self.output.read_text(errors="replace"), flush=True)
+
+    def stop(self) -> None:
+        """Ends the run if it has not ended."""
+        if self.process.poll() is None:
+            self.process.terminate()
+            self.process.wait()
+
+    def disturb(
+        self, disturbance: Callable[[], None], test: str = "", *, once: str = "test-phase"
+    ) -> None:
+        """Waits until a test runs, or anything that is told `once`, and does something to it.
+
+        `test` is its name; without, any will do. If that goes wrong the run is ended.
+        """
+        try:
+            self.wait_for(
+                lambda event: (
+                    is_a(event, once)
+                    and (once != "test-phase" or event["phase"] == "run")
+                    and (not test or self.name(event) == test)
+                )
+            )
+            disturbance()
+        except BaseException:
+            self.stop()
+            raise
+
+    def collapses(self, disturbance: Callable[[], None], test: str = "") -> float:
+        """The same, and waits for a collapse; how many seconds that took."""
+        disturbed = 0.0
+
+        def disturb() -> None:
+            nonlocal disturbed
+            disturbance()
+            disturbed = time.monotonic()
+            self.wait_for(lambda event: is_a(event, "fixture-collapsed"))
+
+        self.disturb(disturb, test)
+        return time.monotonic() - disturbed
+
+    def wait_for(self, condition: Callable[[Event], bool]) -> None:
+        """Waits until an event of the run fulfils the condition."""
+        deadline = time.monotonic() + RUN_SECS
+        while not any(condition(event) for event in self.events()):
+            if self.process.poll() is not None or time.monotonic() > deadline:
+                self.wait()
+                raise SystemExit("the run ended, or hangs, before what was waited for")
+            time.sleep(0.02)
+
+    def events(self, kind: str = "") -> Iterator[Event]:
+        """What is in the journal, or those of a kind; its last line may still be half written."""
+        if self.journal.exists():
+            for line in self.journal.read_text().splitlines(keepends=True):
+                if line.endswith("\n"):
+                    event = json.loads(line)
+                    if not kind or is_a(event, kind):
+                        yield event
+
+    def name(self, event: Event) -> str:
+        """The name of the test that an event is about."""
+        names = {each["test"]: each["name"] for each in self.events("test-planned")}
+        return str(names[event["test"]])
+
+    def verdicts(self) -> dict[str, str]:
+        """The last verdict of each test."""
+        return {self.name(event): event["verdict"] for event in self.events("test-finished")}
+
+    def attempts(self) -> list[str]:
+        """The verdicts of all attempts, in order."""
+        return [event["verdict"] for event in self.events("test-finished")]
+
+    def reasons(self, kind: str = "fixture-collapsed") -> list[str]:
+        """Why fixtures collapsed, or whatever else has a reason."""
+        return [str(event["reason"]) for event in self.events(kind)]
+
+    def reason(self, kind: str = "fixture-collapsed") -> str:
+        """The reason of the only event of this kind."""
+        (reason,) = self.reasons(kind)
+        return reason
+
+
+def is_a(event: Event, kind: str) -> bool:
+    """Whether the event is of this kind."""
+    return bool(event["type"] == kind)
+
+
+def expect(what: str, got: object, expected: object) -> None:
+    """Ends with a message if something is not as expected."""
+    if got != expected:
+        raise SystemExit(f"{what}: got {got}, expected {expected}")
+    print(f"ok: {what}: {got}", flush=True)
+
+
+def expect_in(text: str, told: str) -> None:
+    """Ends with a message if a text does not stand in what was told."""
+    expect(f"`{text}` in {told!r}", text in told, True)
