@@ -47,8 +47,9 @@ def main() -> int:
     rover, slipping = example / "rover.xml", example / "slipping.xml"
     network.move_in()
     with tempfile.TemporaryDirectory() as folder, network.quiet("lesson 5"):
-        os.environ["ROS_HOME"] = folder
-        for name in ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP"):
+        home = Path(folder) / "home"
+        os.environ["ROS_HOME"] = str(home)
+        for name in ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP", "ROS_LOG_DIR"):
             os.environ.pop(name, None)
 
         def scene(check: Check, suite: Path, options: list[str]) -> None:
@@ -72,6 +73,7 @@ def main() -> int:
         with ThreadPoolExecutor(max_workers=3) as pool:
             for played in [pool.submit(scene, *each) for each in scenes]:
                 played.result()
+        expect("logs in ROS_HOME", list(home.rglob("*.log*")), [])
     return 0
 
 
@@ -173,6 +175,10 @@ def required(scene: Scene) -> None:
     scene.kill("rover/odometer")
     scene.collapsed("node /rover/odometer was killed by SIGKILL (exit code -9)")
     scene.expect("starts", len(scene.events("fixture-ready")), 3)
+    # What was logged before and after it is with the results.
+    logs = scene.run.journal.parent / "logs" / "rover.ros"
+    starts = {path.parent for path in logs.glob("*/rover-wheel-*.log")}
+    scene.expect("folders with the logs of nodes", len(starts), 2)
 
 
 def master_killed(scene: Scene) -> None:

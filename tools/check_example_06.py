@@ -27,10 +27,9 @@ def main() -> int:
     network.move_in()
     arguments = [str(Path(argument).resolve()) for argument in sys.argv[1:]]
     before = shared_memory()
-    for name in OWN:
+    for name in (*OWN, "ROS_LOG_DIR"):
         os.environ.pop(name, None)
     with tempfile.TemporaryDirectory() as folder:
-        os.environ["ROS_LOG_DIR"] = folder
         with network.quiet("lesson 6"):
             apart(Path(folder), *arguments)
             killed(Path(folder), *arguments)
@@ -48,6 +47,9 @@ def apart(folder: Path, rtf: str, left: str, right: str) -> None:
     expect("tests", len(verdicts), 8)
     expect("verdicts", {verdict for _, _, verdict in verdicts}, {"passed"})
     expect("suites side by side", side_by_side(run), True)
+    logs = run.journal.parent / "logs"
+    logged = [any((logs / f"{suite}.ros").glob("python*.log")) for suite in ("left", "right")]
+    expect("what nodes log is with the results", logged, [True, True])
     expect("nodes left", running("joint.py"), [])
 
 

@@ -30,8 +30,8 @@ def main() -> int:
     before = shared_memory()
     with tempfile.TemporaryDirectory() as folder:
         home = Path(folder)
-        os.environ["ROS_LOG_DIR"] = str(home / "ros")
-        os.environ.pop("ROS_DOMAIN_ID", None)
+        for name in ("ROS_DOMAIN_ID", "ROS_LOG_DIR"):
+            os.environ.pop(name, None)
         without_ros2(rtf, suite, home / "without")
         os.environ["PATH"] = f"{Path(suite).parent / 'bin'}:{os.environ['PATH']}"
         undisturbed(rtf, suite, home / "undisturbed")

@@ -1,5 +1,7 @@
 //! The environment variables that name a suite's own middleware.
 
+use std::path::Path;
+
 use rtf_model::{OwnPort, OwnVariable};
 
 use crate::plan::{FixtureBody, FixturePlan, OwnMiddleware, SuitePlan};
@@ -15,6 +17,8 @@ pub const PORTS: [&str; 2] = [ROS_MASTER, GAZEBO_MASTER];
 pub struct Own<'a> {
     /// The run.
     pub run: &'a str,
+    /// The run's folder.
+    pub folder: &'a Path,
     /// A number that no other suite has.
     pub domain: u16,
     /// The suite's ports.
@@ -37,9 +41,10 @@ impl Own<'_> {
             FixtureBody::Process(process) => process.remote.is_some(),
             FixtureBody::Plugin(_) | FixtureBody::Attached(_) => false,
         };
-        let local_domain = own_domain && !plan.fixtures.iter().any(is_remote);
+        let is_here = !plan.fixtures.iter().any(is_remote);
+        let local_domain = own_domain && is_here;
         let own_master = user("ROS_MASTER_URI").is_none() && !written("ROS_MASTER_URI");
-        let local_master = own_master && !plan.fixtures.iter().any(is_remote);
+        let local_master = own_master && is_here;
         let mut variables = Vec::new();
         for (name, value) in self.all(plan) {
             // The range belongs to the domain: another one may span machines.
@@ -53,6 +58,10 @@ impl Own<'_> {
             if of_master && !local_master {
                 continue;
             }
+            // Another machine has no such folder.
+            if name == "ROS_LOG_DIR" && !is_here {
+                continue;
+            }
             let name = name.to_owned();
             variables.push(match user(&name).filter(|_| !of_master) {
                 Some(value) => OwnVariable { name, value, kept: true },
@@ -62,7 +71,7 @@ impl Own<'_> {
         variables
     }
 
-    fn all(&self, plan: &SuitePlan) -> [(&'static str, String); 8] {
+    fn all(&self, plan: &SuitePlan) -> [(&'static str, String); 9] {
         let partition = format!("rtf-{}-{}", self.run, plan.id);
         [
             ("ROS_DOMAIN_ID", self.domain.to_string()),
@@ -70,11 +79,23 @@ impl Own<'_> {
             ("ROS_MASTER_URI", self.address(ROS_MASTER)),
             // With an address instead of this name roscpp listens everywhere.
             ("ROS_HOSTNAME", "localhost".to_owned()),
+            ("ROS_LOG_DIR", self.logs(plan)),
             ("YARP_NAMESPACE", format!("/rtf{}", self.domain)),
             ("GZ_PARTITION", partition.clone()),
             ("IGN_PARTITION", partition),
             ("GAZEBO_MASTER_URI", self.address(GAZEBO_MASTER)),
         ]
+    }
+
+    /// Where nodes write, as the suite's other logs are named: `logs/arm.ros`.
+    fn logs(&self, plan: &SuitePlan) -> String {
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+        let name = if plan.name.chars().all(is_plain) {
+            format!("{}.ros", plan.name)
+        } else {
+            format!("ros~s{}", plan.id)
+        };
+        self.folder.join("logs").join(name).to_string_lossy().into_owned()
     }
 
     fn address(&self, name: &str) -> String {

@@ -22,6 +22,7 @@ mod unix;
 
 use std::borrow::Cow;
 use std::os::fd::{AsFd, BorrowedFd};
+use std::path::Path;
 use std::sync::Arc;
 
 use rtf_model::{OwnNetwork, OwnPort, OwnVariable, SuitePrepared};
@@ -70,11 +71,12 @@ pub struct Prepared<'p> {
 
 impl<'p> Prepared<'p> {
     /// Gets what a suite needs, unless the locks that it requires are held by
-    /// somebody else. `run` is unique on this machine.
+    /// somebody else. `run` is unique on this machine; `folder` is the run's.
     pub async fn get(
         plan: &'p SuitePlan,
         locks: Result<Vec<Lock>, String>,
         run: &str,
+        folder: &Path,
         spawner: &Spawner,
     ) -> Self {
         let (plan, leases, holder) = (Cow::Borrowed(plan), Vec::new(), None);
@@ -87,7 +89,7 @@ impl<'p> Prepared<'p> {
             }
         }
         let plan = prepared.plan.clone();
-        let given = match prepared.acquire(&plan, run, spawner).await {
+        let given = match prepared.acquire(&plan, run, folder, spawner).await {
             Ok(None) => return prepared,
             Ok(Some(given)) => Given::All(given),
             Err(refused) => Given::Refused(refused.to_string()),
@@ -100,6 +102,7 @@ impl<'p> Prepared<'p> {
         &mut self,
         plan: &SuitePlan,
         run: &str,
+        folder: &Path,
         spawner: &Spawner,
     ) -> Result<Option<SuitePrepared>, RefusedError> {
         let wanted = &plan.isolate;
@@ -122,7 +125,7 @@ impl<'p> Prepared<'p> {
         let mut variables = Vec::new();
         if own {
             let domain = lease::domain(&seed)?;
-            let own = middleware::Own { run, domain: domain.number(), ports: &ports };
+            let own = middleware::Own { run, folder, domain: domain.number(), ports: &ports };
             variables = own.variables(plan, |name| std::env::var(name).ok());
             self.leases.push(domain);
         }

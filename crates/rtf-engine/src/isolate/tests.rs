@@ -1,5 +1,6 @@
 //! What is made of a plan, without taking anything.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use rtf_model::{OwnNetwork, OwnPort, OwnVariable, SuiteId, SuitePrepared};
@@ -26,7 +27,7 @@ fn variables(
     plan.isolate.middleware = middleware;
     plan.env = Arc::new(written.iter().map(|(n, v)| (n.to_string(), v.to_string())).collect());
     let ports = ports();
-    let own = Own { run: "RUN", domain: 42, ports: &ports };
+    let own = Own { run: "RUN", folder: Path::new("/run"), domain: 42, ports: &ports };
     let of_user = |name: &str| {
         user.iter().find(|(known, _)| *known == name).map(|(_, value)| (*value).to_owned())
     };
@@ -44,18 +45,20 @@ fn a_fixture_on_another_machine_is_found_by_ros_2() {
     let FixtureBody::Process(process) = &mut plan.fixtures[1].body else { panic!("a process") };
     let remote = RemotePlan { host: "pi@robot".to_owned(), ssh: vec!["ssh".to_owned()] };
     Arc::make_mut(process).remote = Some(remote);
-    let own = Own { run: "RUN", domain: 42, ports: &ports() };
+    let own = Own { run: "RUN", folder: Path::new("/run"), domain: 42, ports: &ports() };
     let names: Vec<_> = own.variables(&plan, |_| None).into_iter().map(|own| own.name).collect();
     assert_eq!(names.len(), 6);
     assert!(!names.contains(&"ROS_AUTOMATIC_DISCOVERY_RANGE".to_owned()));
     assert!(!names.contains(&"ROS_HOSTNAME".to_owned()));
+    assert!(!names.contains(&"ROS_LOG_DIR".to_owned()));
 }
 
-const ALL: [&str; 8] = [
+const ALL: [&str; 9] = [
     "ROS_DOMAIN_ID=42",
     "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST",
     "ROS_MASTER_URI=http://127.0.0.1:20002",
     "ROS_HOSTNAME=localhost",
+    "ROS_LOG_DIR=/run/logs/arm.ros",
     "YARP_NAMESPACE=/rtf42",
     "GZ_PARTITION=rtf-RUN-0",
     "IGN_PARTITION=rtf-RUN-0",
@@ -80,6 +83,7 @@ fn what_the_user_set_is_kept_unless_the_suite_wants_its_own() {
         "ROS_DOMAIN_ID=7 kept",
         "ROS_MASTER_URI=http://127.0.0.1:20002",
         "ROS_HOSTNAME=localhost",
+        "ROS_LOG_DIR=/run/logs/arm.ros",
         "YARP_NAMESPACE=/rtf42",
         "GZ_PARTITION=lab kept",
         "IGN_PARTITION=rtf-RUN-0",
@@ -109,7 +113,7 @@ fn what_the_suite_sets_itself_is_left_to_it() {
     let written = [("ROS_DOMAIN_ID", "3"), ("YARP_NAMESPACE", "/lab")];
     for middleware in [OwnMiddleware::UnlessSet, OwnMiddleware::Always] {
         let left = variables(middleware, &written, &[("ROS_DOMAIN_ID", "7")]);
-        assert_eq!(left, [ALL[2], ALL[3], ALL[5], ALL[6], ALL[7]]);
+        assert_eq!(left, [ALL[2], ALL[3], ALL[4], ALL[6], ALL[7], ALL[8]]);
     }
 }
 

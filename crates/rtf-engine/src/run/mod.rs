@@ -151,7 +151,7 @@ impl AllSuites<'_> {
         let Self { shared, events, locks, asked, time } = self;
         let locks = locks::wait(suite, locks, events, &mut asked.stops.clone()).await;
         let run = events.run_token();
-        let prepared = Prepared::get(suite, locks, run, &shared.spawner).await;
+        let prepared = Prepared::get(suite, locks, run, &shared.run_folder, &shared.spawner).await;
         shared.guard.suite_begins(&prepared);
         // Suites that come one after the other share the time.
         let now = events.now();

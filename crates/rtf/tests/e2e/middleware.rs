@@ -47,7 +47,7 @@ fn every_process_finds_its_suites_ports_and_ids() {
     assert!(!kept && (1..=101).contains(&domain.parse::<u32>().expect("a number")));
     assert!(told.contains(&format!("domain {domain} port {sim} {sim}\n")), "{told}");
     let names = "GAZEBO_MASTER_URI GZ_PARTITION IGN_PARTITION ROS_AUTOMATIC_DISCOVERY_RANGE \
-         ROS_DOMAIN_ID ROS_HOSTNAME ROS_MASTER_URI RTF_PORT_GAZEBO_MASTER RTF_PORT_ROS_MASTER RTF_PORT_SIM YARP_NAMESPACE";
+         ROS_DOMAIN_ID ROS_HOSTNAME ROS_LOG_DIR ROS_MASTER_URI RTF_PORT_GAZEBO_MASTER RTF_PORT_ROS_MASTER RTF_PORT_SIM YARP_NAMESPACE";
     assert!(told.contains(names), "{told}");
     let log = std::fs::read_to_string(folder.path().join("rtf-results/latest/logs/s.suite.log"));
     assert!(log.expect("a log").contains(&format!("join in: {}\n", own.join)));
