@@ -11,15 +11,14 @@ must pass.
 from __future__ import annotations
 
 import os
-import re
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-TOP = Path(__file__).resolve().parent.parent
+from pages import write_files
 
-FILE_BLOCK = re.compile(r"^```\w+\n((?://|--|#|<!--) (\S+\.\w+)(?: -->)?\n.*?)^```$", re.M | re.S)
+TOP = Path(__file__).resolve().parent.parent
 
 CMAKE_HEADER = """\
 cmake_minimum_required(VERSION 3.16)
@@ -38,13 +37,7 @@ def main() -> None:
 
 def check(rtf: Path, page: Path, folder: Path) -> None:
     """Builds and runs what one page shows."""
-    for text, name in FILE_BLOCK.findall(page.read_text()):
-        if (folder / name).exists():
-            raise SystemExit(f"{page}: {name} is shown twice")
-        (folder / name).write_text(text)
-    suites = sorted(folder.glob("*.xml"))
-    if not suites:
-        raise SystemExit(f"{page}: no block is a suite: was the page's form changed?")
+    suites = write_files(page, folder)
     build(folder)
     for suite in suites:
         print(f"{page}: {suite.name}", flush=True)

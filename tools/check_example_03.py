@@ -20,6 +20,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import network
+from pages import run_fixture_page
 from processes import kill, parent, select
 from run import Run, expect, expect_in
 
@@ -39,6 +40,9 @@ def main() -> int:
         lesson.disturbed("connection", cut_connection, [CONNECTION, "does not send"])
         lesson.disturbed("server", stop_server, ["yarpserver was killed by SIGKILL"])
         lesson.disturbed("fixture", kill_fixture, ["SIGKILL"])
+        for page in ("yarpserver", "yarpmanager", "yarpdatadumper"):
+            run_fixture_page(str(rtf), page, Path(name) / page, example)
+            lesson.nothing_left()
     return 0
 
 

@@ -20,6 +20,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import network
+from pages import run_fixture_page
 from processes import children, commands, kill, parent, select
 from run import Event, Run, expect
 
@@ -71,8 +72,14 @@ def main() -> int:
             (silent, probes, [LONG]),
         ]
         with ThreadPoolExecutor(max_workers=3) as pool:
+            pages = [pool.submit(run_fixture_page, str(rtf), "roscore", Path(folder) / "roscore")]
+            for page in ("roslaunch", "rosbag"):
+                place = Path(folder) / page
+                pages.append(pool.submit(run_fixture_page, str(rtf), page, place, example))
             for played in [pool.submit(scene, *each) for each in scenes]:
                 played.result()
+            for page_run in pages:
+                page_run.result()
         expect("logs in ROS_HOME", list(home.rglob("*.log*")), [])
     return 0
 

@@ -15,6 +15,7 @@ import tempfile
 from pathlib import Path
 
 import network
+from pages import run_fixture_page
 from processes import kill, running, shared_memory, variable
 from run import Event, Run, expect, expect_in, is_a
 
@@ -33,6 +34,8 @@ def main() -> int:
         with network.quiet("lesson 6"):
             apart(Path(folder), *arguments)
             killed(Path(folder), *arguments)
+            lesson = Path(arguments[1]).parent
+            run_fixture_page(arguments[0], "ros2launch", Path(folder) / "page", lesson)
         together(Path(folder), *arguments)
         expect("nodes left", running("joint.py"), [])
         expect("shared memory left", shared_memory() - before, set())

@@ -15,6 +15,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from pages import run_fixture_page
 from run import expect
 
 TEST = """
@@ -50,6 +51,7 @@ def main() -> int:
                 look_into(file)
     with tempfile.TemporaryDirectory() as folder:
         expect("recordings over their limit", run(rtf, Path(folder), "--limit 1k"), [])
+        run_fixture_page(rtf, "mcap", Path(folder) / "page")
         left = list(Path(tempfile.gettempdir()).glob("rtf-mcap-*"))
         expect("folders left", left, [])
     return 0

@@ -18,6 +18,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from pages import run_fixture_page
 from processes import kill, running
 from run import Run, expect, expect_in
 
@@ -48,6 +49,7 @@ def checks(rtf: str, sources: Path, home: Path) -> None:
     suite = str(sources / "suite.xml")
     undisturbed(rtf, str(sources / "prompt.xml"), home / "prompt")
     undisturbed(rtf, suite, home / "undisturbed")
+    run_fixture_page(rtf, "orocos", home / "page", sources)
     fatal = ["arm is in state FatalError"]
     collapses(Run(rtf, suite, home / "fatal", SECONDS), signal.SIGUSR1, fatal)
     exception = ["arm is in state Exception"]

@@ -11,10 +11,9 @@ tools/bootstrap.sh demo
 # MuJoCo draws with them, on the processor.
 need_packages libegl1 libgl1-mesa-dri
 python=$(tools/venv.sh icub)
-YARP_PREFIX=$(tools/middleware.sh yarp | sed 's/^YARP_PREFIX=//')
-export PATH=$python:$YARP_PREFIX/bin:$PATH LD_LIBRARY_PATH=$YARP_PREFIX/lib
-export YARP_DATA_DIRS=$YARP_PREFIX/share/yarp PYTHONPATH=$YARP_PREFIX/lib/python3
-export LUA_CPATH="$YARP_PREFIX/lib/lua/5.4/?.so;;" CMAKE_PREFIX_PATH=$YARP_PREFIX
+settings=$(tools/middleware.sh yarp)
+eval "$settings"
+export PATH=$python:$PATH
 [ $# -gt 0 ] || tools/build.sh
 quietly tools/plugins.sh examples/04-icub
 

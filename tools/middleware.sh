@@ -3,8 +3,11 @@
 #
 #   tools/middleware.sh NAME      one of the files in tools/middleware, without .sh
 #
-# Prints the variables that are needed to use it, one NAME=value a line; for many
-# there are none. Everything else that is said goes to stderr.
+# Prints what a shell has to export to use it, often nothing:
+#
+#   eval "$(tools/middleware.sh yarp)"
+#
+# Everything else that is said goes to stderr.
 
 . "$(dirname "$0")/env.sh"
 . tools/packages.sh
@@ -12,6 +15,11 @@
 known=$(basename --suffix=.sh tools/middleware/*.sh | paste --serial --delimiters=' ')
 name=${1:?name: one of $known}
 [ -e "tools/middleware/$name.sh" ] || die "no middleware \`$name\`" "known are: $known"
+
+# Tells a variable that is needed, quoted for a shell.
+setting() {
+  printf 'export %s=%q\n' "$1" "$2"
+}
 
 # Two at once must not install or build the same.
 mkdir -p "$CACHE"

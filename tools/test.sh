@@ -67,9 +67,7 @@ with_middleware() {
   local settings
   settings=$(tools/middleware.sh "$1")
   shift
-  while IFS= read -r setting; do
-    [ -z "$setting" ] || export "${setting?}"
-  done <<<"$settings"
+  eval "$settings"
   "$@"
 }
 
@@ -175,20 +173,11 @@ example_02() {
     examples/02-supervised-simulator/supervised.xml
 }
 
-# YARP's programs and bindings, as docs/fixtures/yarpserver.md has them.
-use_yarp() {
-  export PATH=$YARP_PREFIX/bin:$PATH LD_LIBRARY_PATH=$YARP_PREFIX/lib
-  export YARP_DATA_DIRS=$YARP_PREFIX/share/yarp PYTHONPATH=$YARP_PREFIX/lib/python3
-  export LUA_CPATH="$YARP_PREFIX/lib/lua/5.4/?.so;;" CMAKE_PREFIX_PATH=$YARP_PREFIX
-}
-
 fixture_yarp() {
-  use_yarp
   python3 tools/check_fixture_yarp.py "$TARGET/release/rtf" tests/fixtures/yarp/suites
 }
 
 example_03() {
-  use_yarp
   export RTF_DIR=$ROOT/sdk/cpp/cmake/rtf RTF_PLUGIN_PATH=$BUILD/examples/03-yarp
   PATH=$RTF_PLUGIN_PATH:$PATH
   tools/plugins.sh examples/03-yarp

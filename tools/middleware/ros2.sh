@@ -3,4 +3,4 @@
 # is no `ros2` command in them. The check of lesson 6 counts packets in a network that it makes.
 
 need_packages iproute2
-printf 'PATH=%s:%s\n' "$(tools/venv.sh ros2)" "$PATH"
+setting PATH "$(tools/venv.sh ros2):$PATH"

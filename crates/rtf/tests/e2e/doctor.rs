@@ -67,6 +67,28 @@ fn a_machine_without_anything() {
     ");
 }
 
+/// Of each fixture manager, by the table that `rtf doctor` reads.
+#[test]
+fn a_machine_without_middleware_is_told_of_each_program_and_how_it_is_installed() {
+    let table = include_str!("../../../../fixtures/needs.json");
+    let table: serde_json::Map<String, Value> = serde_json::from_str(table).expect("a table");
+    let folder = machine(&[("python3", PYTHON)]);
+    for (fixture, entry) in &table {
+        let needs = entry["needs"].as_array().expect("needs");
+        let told = doctor(&folder, &[fixture]);
+        let is_hard = needs.iter().any(|need| need.get("for").is_none());
+        assert_eq!(told.code, Some(i32::from(is_hard)), "{fixture}: {}", told.stdout);
+        for need in needs {
+            let programs = need["programs"].as_array().into_iter().flatten();
+            let names =
+                programs.chain(need.get("module")).map(|name| name.as_str().expect("a name"));
+            for missing in names.chain(need["install"].as_str()) {
+                assert!(told.stdout.contains(missing), "{fixture}, {missing}: {}", told.stdout);
+            }
+        }
+    }
+}
+
 #[test]
 fn what_a_fixture_needs_is_there() {
     let folder = machine(&[("python3", PYTHON), ("ros2", "#!/bin/sh\n"), ("gdb", "#!/bin/sh\n")]);

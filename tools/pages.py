@@ -1,0 +1,62 @@
+"""What a page of the guide shows: files, of which some are suites, and commands.
+
+A code block whose first line is a comment with a file name is that file.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+from run import Run, expect
+
+TOP = Path(__file__).resolve().parent.parent
+
+_FILE = re.compile(
+    r"^```\w+\n((?://|--|#|<!--) (\S+\.\w+)(?:: [^\n]*)?(?: -->)?\n.*?)^```$", re.M | re.S
+)
+_COMMANDS = re.compile(r"^```sh\n(.*?)^```$", re.M | re.S)
+
+
+def write_files(page: Path, folder: Path) -> list[Path]:
+    """Writes the files that a page shows, and returns those that are suites."""
+    suites = []
+    shown = set()
+    for text, name in _FILE.findall(page.read_text()):
+        if name in shown:
+            raise SystemExit(f"{page}: {name} is shown twice")
+        shown.add(name)
+        (folder / name).write_text(text)
+        if "<suite " in text:
+            suites.append(folder / name)
+    if not suites:
+        raise SystemExit(f"{page}: no block is a suite: was the page's form changed?")
+    return suites
+
+
+def run_fixture_page(rtf: str, fixture: str, folder: Path, lesson: Path | None = None) -> None:
+    """Runs the commands and suites of a fixture's page, these beside the files of a lesson.
+
+    Tests may fail, for pages show that, too; that they run, and the fixtures hold, is the page's.
+    """
+    page = TOP / "docs" / "fixtures" / f"{fixture}.md"
+    if lesson is None:
+        folder.mkdir()
+    else:
+        shutil.copytree(lesson, folder, ignore=shutil.ignore_patterns("build", "rtf-results"))
+    path = f"{Path(rtf).parent}:{os.environ['PATH']}"
+    for commands in _COMMANDS.findall(page.read_text()):
+        script = ["bash", "-e", "-o", "pipefail", "-c", commands]
+        ran = subprocess.run(script, cwd=TOP, env={**os.environ, "PATH": path}, check=False)
+        expect(f"{page.name}: exit code of `{commands.strip()}`", ran.returncode, 0)
+    for suite in write_files(page, folder):
+        run = Run(rtf, str(suite), folder / f"{suite.stem}.run")
+        code = run.wait()
+        verdicts = set(run.verdicts().values())
+        told = f"{page.name}, {suite.name}: exit code {code}, verdicts {verdicts}"
+        expect(told, code in {0, 1} and set() < verdicts <= {"passed", "failed"}, True)
+        expect(f"{page.name}: skipped tests", len(list(run.events("test-skipped"))), 0)
+        expect(f"{page.name}: collapses", run.reasons(), [])
