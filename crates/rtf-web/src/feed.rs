@@ -26,6 +26,9 @@ const BATCH: u64 = 256 * 1024;
 const LOOK: Duration = Duration::from_millis(100);
 /// How long growth is collected.
 const COLLECT: Duration = Duration::from_millis(20);
+/// The least time between two looks that find something. Each wakes the client, which may need
+/// the processors that the tests run on.
+const BETWEEN: Duration = Duration::from_millis(100);
 /// How often the client is told how far the run is, while details are left out.
 const PROGRESS: Duration = Duration::from_secs(1);
 /// How long a journal that nobody writes may still get its end from the guard.
@@ -84,6 +87,8 @@ pub struct Feed {
     grown: Option<watch::Receiver<u64>>,
     ending: Option<watch::Receiver<bool>>,
     ended: bool,
+    /// When there was something in the journal.
+    moved: Option<Instant>,
 }
 
 /// Where in the journal a client is.
@@ -137,7 +142,7 @@ impl Feed {
         let (left_out, now) = (None, Instant::now());
         let next = next.min(coming);
         let at = Place { run, details, offset, next, left_out, told: now, quiet: now, anew };
-        Ok(Some(Self { at: Some(at), grown: None, ending: None, ended: false }))
+        Ok(Some(Self { at: Some(at), grown: None, ending: None, ended: false, moved: None }))
     }
 
     /// Listens to who tells that the journal has grown, and that the server ends.
@@ -164,21 +169,27 @@ impl Feed {
     async fn look(&mut self) -> Option<Batch> {
         // The place goes to a thread that may wait, and comes back.
         let mut at = self.at.take()?;
+        let before = at.offset;
         let (at, batch) = blocking(move || {
             let batch = at.look()?;
             Ok((at, batch))
         })
         .await
         .ok()?;
+        if at.offset != before {
+            self.moved = Some(Instant::now());
+        }
         self.at = Some(at);
         Some(batch)
     }
 
     async fn wait(&mut self) {
+        let soon = Instant::now() + COLLECT;
+        let due = self.moved.map_or(soon, |moved| soon.max(moved + BETWEEN));
         let grown = async {
             let Some(grown) = &mut self.grown else { return std::future::pending().await };
             match grown.changed().await {
-                Ok(()) => tokio::time::sleep(COLLECT).await,
+                Ok(()) => tokio::time::sleep_until(due.into()).await,
                 Err(_) => std::future::pending().await,
             }
         };
@@ -191,7 +202,7 @@ impl Feed {
         tokio::select! {
             () = grown => {}
             () = ending => {}
-            () = tokio::time::sleep(LOOK) => {}
+            () = tokio::time::sleep_until(due.max(Instant::now() + LOOK).into()) => {}
         }
     }
 }

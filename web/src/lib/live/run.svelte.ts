@@ -13,21 +13,30 @@ import { Feed, type Connection } from './feed';
 export type DetailListener = (events: Event[]) => void;
 
 const FRAME_MS = 16;
+/** The least time between two draws: who looks does not see more, and the tests need the time. */
+const BETWEEN_MS = 100;
 /** A draw may take one part in this many of the time. */
 const SHARE = 5;
 /** Nothing waits longer than this to be drawn. */
 const LATEST_MS = 120;
+/** How often that is drawn which is only looked at now and then. */
+const CALM_MS = 500;
 
 export class LiveRun {
     readonly name: string;
     connection: Connection = $state.raw({ kind: 'loading' });
     /** What is known, another object after each change. */
     record: RunRecord = $state.raw(new RunRecord());
+    /** The same, but not every change: for what is long to draw. */
+    calm: RunRecord = $state.raw(new RunRecord());
+    /** Microseconds since the run started, as of `calm`. */
+    now = $state(0);
     /** Grows with each new record: what was loaded beside it is old. */
     generation = $state(0);
     private readonly feed: Feed;
     private readonly listeners = new Set<DetailListener>();
     private readonly watched = new Map<symbol, string[]>();
+    private readonly timer: ReturnType<typeof setInterval>;
     private isDrawing = false;
     /** When and for how long the components were last brought up to date. */
     private drawn = { at: 0, took: 0 };
@@ -40,6 +49,7 @@ export class LiveRun {
             loaded: (record) => {
                 this.record = record;
                 this.generation += 1;
+                this.tick();
             },
             changed: (events) => {
                 for (const listener of this.listeners) listener(events);
@@ -52,10 +62,19 @@ export class LiveRun {
             ({ seconds }) => (this.skew = seconds - Date.now() / 1000),
             () => undefined,
         );
+        this.timer = setInterval(() => {
+            if (!document.hidden && !this.calm.isOver) this.tick();
+        }, CALM_MS);
     }
 
     close(): void {
+        clearInterval(this.timer);
         this.feed.close();
+    }
+
+    private tick(): void {
+        this.calm = this.record;
+        this.now = this.clock();
     }
 
     /** Asks for the details of these sources until the answer is called. */
@@ -72,7 +91,7 @@ export class LiveRun {
     }
 
     /** Microseconds since the run started, by the server's clock. */
-    now(): number {
+    private clock(): number {
         const { info, isOver } = this.record;
         if (isOver) return info.last_at;
         const started = Date.parse(info.started_at) / 1000;
@@ -94,13 +113,15 @@ export class LiveRun {
             this.isDrawing = false;
             const begun = performance.now();
             this.record = this.record.view();
+            if (this.record.isOver) this.tick();
             flushSync();
             this.drawn = { at: begun, took: performance.now() - begun };
         };
         // A page in the background gets no frames. In sight, most of the time is
         // the reader's: what is long to draw is drawn less often.
         const { at, took } = this.drawn;
-        const wait = Math.min(at + took * SHARE - performance.now(), LATEST_MS);
+        const next = at + Math.max(took * SHARE, BETWEEN_MS);
+        const wait = Math.min(next - performance.now(), LATEST_MS);
         if (document.hidden) setTimeout(done, 250);
         else if (wait <= FRAME_MS) requestAnimationFrame(done);
         else setTimeout(() => requestAnimationFrame(done), wait - FRAME_MS);
