@@ -13,7 +13,7 @@ help:
 	@echo "make web        build the page that rtf shows in a browser (make build does, too)"
 	@echo "make test       every check there is: Rust, SDKs, examples, lints, installation"
 	@echo "make test-quick the same without what needs middleware (ROS, YARP): it says what it leaves out"
-	@echo "make chaos      kill fixtures and runners at random moments, for half an hour"
+	@echo "make chaos      kill fixtures, hosts and runners at random moments, for half an hour"
 	@echo "make bench      measure speed and memory"
 	@echo "make counts     record how many instructions the hot paths take (make test compares them)"
 	@echo "make install    install into PREFIX=$(PREFIX); DESTDIR is put before it"
