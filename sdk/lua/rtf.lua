@@ -127,7 +127,11 @@ function rtf.sample_for(name, seconds, rate, read, unit, low, high) end
 ---@param media_type? string
 function rtf.attach(path, name, media_type) end
 
----Sleeps, but wakes at once when the runner asks to stop; then the step ends.
+---Seconds since a moment that does not matter, by the clock that the suite has.
+---@return number
+function rtf.now() end
+
+---Sleeps, in a suite with a clock by that one, but wakes at once when the runner asks to stop; then the step ends.
 ---@param seconds number
 function rtf.sleep(seconds) end
 

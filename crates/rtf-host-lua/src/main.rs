@@ -11,6 +11,7 @@
 #![expect(unsafe_code, reason = "the program's entry point is C's")]
 
 mod check;
+mod clock;
 mod host;
 mod part;
 mod sdk;

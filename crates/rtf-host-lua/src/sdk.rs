@@ -4,13 +4,14 @@
 
 use std::ffi::CStr;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use mlua::{Function, IntoLuaMulti, Lua, LuaString, Table, Value};
 use rtf_host::{Sample, Session};
 use rtf_model::protocol::Plugin;
 use rtf_model::{Attachment, Comparison, Location, Measurement, Message, MessageKind};
 
+use crate::clock::Clock;
 use crate::part::Part;
 
 /// The name in Lua's registry of the value that unwinds a step.
@@ -99,8 +100,10 @@ fn about(lua: &Lua, plugin: &Plugin) -> mlua::Result<Table> {
 
 fn functions(lua: &Lua) -> mlua::Result<Table> {
     let host = lua.create_table()?;
-    let started = Instant::now();
-    host.set("seconds", lua.create_function(move |_, ()| Ok(started.elapsed().as_secs_f64()))?)?;
+    let clock = Clock::new();
+    let is_simulated = clock.is_simulated();
+    host.set("seconds", lua.create_function(move |_, ()| Ok(clock.seconds()))?)?;
+    host.set("is_simulated", lua.create_function(move |_, ()| Ok(is_simulated))?)?;
     add(lua, &host, "message", |session, message: Reported| {
         session.message(message.0);
         Ok(())

@@ -8,6 +8,7 @@
 //!
 //! This crate is plain data: no I/O, no threads, no clock.
 
+mod clock;
 mod diagnostic;
 mod event;
 mod ids;
@@ -22,6 +23,7 @@ mod trend;
 mod usage;
 mod verdict;
 
+pub use clock::parse_clock;
 pub use diagnostic::{Diagnostic, Label, Severity};
 pub use event::{
     Event, EventKind, ExitStatus, FixturePlanned, HookPlanned, LeftProcess, Output, Phase,

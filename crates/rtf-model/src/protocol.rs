@@ -29,6 +29,14 @@ pub const ENVIRONMENT_VARIABLE: &str = "RTF_ENVIRONMENT";
 /// The environment variable that names the run's folder, in which the journal is.
 pub const RUN_FOLDER_VARIABLE: &str = "RTF_RUN_FOLDER";
 
+/// The environment variable that names the file with the simulated time, for tests,
+/// which follow it. Empty or not set: they follow the wall clock.
+pub const CLOCK_VARIABLE: &str = "RTF_CLOCK";
+
+/// The environment variable that names the same file for fixtures, one of which may
+/// write it.
+pub const CLOCK_FILE_VARIABLE: &str = "RTF_CLOCK_FILE";
+
 /// The environment variable that makes a host a server that forks hosts:
 /// `fd:N`, then blanks as room for the variables of a [`ForkRequest`].
 pub const FORK_SERVER_VARIABLE: &str = "RTF_FORK_SERVER";

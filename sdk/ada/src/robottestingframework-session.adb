@@ -3,6 +3,7 @@
 with Interfaces.C;
 with RobotTestingFramework.ABI;
 with RobotTestingFramework.Asserter;
+with RobotTestingFramework.Clock;
 with RobotTestingFramework.Host;
 with RobotTestingFramework.Process;
 with System;
@@ -33,12 +34,31 @@ package body RobotTestingFramework.Session is
    function Interrupted return Boolean is
      (Host.Table.Interrupted (Host.Table.Context) /= 0);
 
-   procedure Sleep (Time : Duration) is
+   function Current_Time return Duration is (Clock.Now);
+
+   --  Sleeps by the wall clock.
+   procedure Pause (Time : Duration) is
       Seconds : constant Interfaces.C.double := Interfaces.C.double (Time);
    begin
       if Host.Table.Wait (Host.Table.Context, Seconds) /= 0 then
          raise Stop_Requested;
       end if;
+   end Pause;
+
+   procedure Sleep (Time : Duration) is
+      Watch  : Clock.Stopwatch;
+      Passed : Duration := 0.0;
+   begin
+      if not Clock.Is_Simulated then
+         Pause (Time);
+         return;
+      end if;
+      Watch := Clock.Started;
+      loop
+         Pause (Duration'Min (Poll, Time - Passed));
+         Clock.Look (Watch, Passed);
+         exit when Passed >= Time;
+      end loop;
    end Sleep;
 
    procedure Wait_Until
@@ -47,17 +67,20 @@ package body RobotTestingFramework.Session is
       File    : String  := Source.File;
       Line    : Natural := Source.Line)
    is
-      Start : constant Duration := Process.Monotonic;
-      Left  : Duration;
+      Watch  : Clock.Stopwatch := Clock.Started;
+      Passed : Duration;
+      Left   : Duration;
    begin
       while not Condition loop
-         Left := Timeout - (Process.Monotonic - Start);
+         Clock.Look (Watch, Passed);
+         Left := Timeout - Passed;
          if Left <= 0.0 then
             Asserter.Fail
               (What & ": not within " & Host.Image (Long_Float (Timeout))
-               & " s (last value: false)", File, Line);
+               & " s" & (if Clock.Is_Simulated then " of simulated time" else "")
+               & " (last value: false)", File, Line);
          end if;
-         Sleep (Duration'Min (Poll, Left));
+         Pause (Duration'Min (Poll, Left));
       end loop;
    end Wait_Until;
 
@@ -143,21 +166,21 @@ package body RobotTestingFramework.Session is
       File      : String     := Source.File;
       Line      : Natural    := Source.Line)
    is
-      Start : constant Duration := Process.Monotonic;
-      Tick  : Long_Float := 0.0;
-
-      function Elapsed return Duration is (Process.Monotonic - Start);
+      Watch  : Clock.Stopwatch := Clock.Started;
+      Passed : Duration := 0.0;
+      Tick   : Long_Float := 0.0;
    begin
       if not (Rate > 0.0) then
          raise Constraint_Error with "the rate of `" & Name & "` is not above 0 Hz";
       end if;
       --  Each tick has its own deadline, so that delays do not add up.
       while Tick < Long_Float (Time) * Rate - 1.0E-9 loop
-         Sleep (Duration (Tick / Rate) - Elapsed);
+         Sleep (Duration (Tick / Rate) - Passed);
          Sample (Name, Read, Unit, Low, High, Now, File, Line);
-         Tick := Long_Float'Max (Tick + 1.0, Long_Float'Ceiling (Long_Float (Elapsed) * Rate));
+         Clock.Look (Watch, Passed);
+         Tick := Long_Float'Max (Tick + 1.0, Long_Float'Ceiling (Long_Float (Passed) * Rate));
       end loop;
-      Sleep (Time - Elapsed);
+      Sleep (Time - Passed);
    end Sample_For;
 
    procedure Attach (Path : String; Name : String := ""; Media_Type : String := "") is

@@ -25,7 +25,11 @@ package RobotTestingFramework.Session is
    --  Whether the runner has asked to stop; a loop that runs long should look.
    function Interrupted return Boolean;
 
-   --  Sleeps, but wakes at once when the runner asks to stop; then this step ends.
+   --  The time since a moment that does not matter, by the clock that the suite has.
+   function Current_Time return Duration;
+
+   --  Sleeps, in a suite with a clock by that one, but wakes at once when the
+   --  runner asks to stop; then this step ends.
    procedure Sleep (Time : Duration);
 
    --  Waits until the condition is true, asking every 10 ms. When the time is

@@ -127,24 +127,62 @@ function rtf.sample(name, value, unit, low, high, time)
   return within
 end
 
+-- Sleeps by the wall clock.
+local function pause(seconds)
+  if host.wait(seconds) then
+    unwind()
+  end
+end
+
+-- Returns a function that tells how far the time has gone on since. What it
+-- jumps back is no time.
+local function stopwatch()
+  local before, passed = host.seconds(), 0
+  return function()
+    local shown = host.seconds()
+    if shown then
+      passed = passed + math.max(0, shown - (before or shown))
+      before = shown
+    end
+    return passed
+  end
+end
+
+local latest = 0.0
+
+function rtf.now()
+  latest = host.seconds() or latest
+  return latest
+end
+
+-- Sleeps by the clock that the suite has.
+local function sleep(seconds)
+  if not host.is_simulated() then
+    pause(seconds)
+    return
+  end
+  local watch = stopwatch()
+  local left = seconds
+  repeat
+    pause(math.min(POLL_SECONDS, left))
+    left = seconds - watch()
+  until left <= 0
+end
+
 function rtf.sample_for(name, seconds, rate, read, unit, low, high)
   if not math.type(seconds) or not math.type(rate) or not (rate > 0) then
     error(("sample_for takes seconds and a rate in Hz, not %s and %s"):format(tostring(seconds),
       tostring(rate)), 2)
   end
-  local start, all_within, tick = host.seconds(), true, 0
+  local watch, all_within, tick = stopwatch(), true, 0
   while tick < seconds * rate - 1e-9 do
-    if host.wait(start + tick / rate - host.seconds()) then
-      unwind()
-    end
+    sleep(tick / rate - watch())
     local within = sample(name, read(), unit, low, high)
     all_within = within and all_within
     -- A reading that takes too long leaves out what it missed.
-    tick = math.max(tick + 1, math.ceil((host.seconds() - start) * rate))
+    tick = math.max(tick + 1, math.ceil(watch() * rate))
   end
-  if host.wait(start + seconds - host.seconds()) then
-    unwind()
-  end
+  sleep(seconds - watch())
   return all_within
 end
 
@@ -159,30 +197,27 @@ function rtf.sleep(seconds)
   if not math.type(seconds) then
     error(("sleep takes seconds, not %s"):format(tostring(seconds)), 2)
   end
-  if host.wait(seconds) then
-    unwind()
-  end
+  sleep(seconds)
 end
 
 function rtf.wait_until(condition, timeout, what)
   if not math.type(timeout) then
     error(("wait_until takes its time in seconds, not %s"):format(tostring(timeout)), 2)
   end
-  local limit = host.seconds() + timeout
+  local watch = stopwatch()
   while true do
     local value = condition()
     if value then
       return true
     end
-    local left = limit - host.seconds()
+    local left = timeout - watch()
     if left <= 0 then
-      send("failure", ("%s: not within %s s (last value: %s)"):format(tostring(what),
-        text.number(timeout), text.value(value)))
+      local whose = host.is_simulated() and " of simulated time" or ""
+      send("failure", ("%s: not within %s s%s (last value: %s)"):format(tostring(what),
+        text.number(timeout), whose, text.value(value)))
       unwind()
     end
-    if host.wait(math.min(POLL_SECONDS, left)) then
-      unwind()
-    end
+    pause(math.min(POLL_SECONDS, left))
   end
 end
 

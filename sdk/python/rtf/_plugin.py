@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import time
-
-from rtf import _session, _text
+from rtf import _clock, _session, _text
 from rtf._stop import AssertionEnded, Interrupted
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
@@ -58,8 +56,26 @@ class Plugin:
             self.fail(text)
         _session.current().message("check", str(text))
 
+    def now(self) -> float:
+        """Seconds since a moment that does not matter, by the clock that the suite has."""
+        return _clock.now()
+
     def sleep(self, seconds: float) -> None:
-        """Sleep, but wake at once when the runner asks to stop; then this step ends."""
+        """Sleep, but wake at once when the runner asks to stop; then this step ends.
+
+        In a test of a suite with a clock these are seconds of simulated time.
+        """
+        if not _clock.is_simulated():
+            self._pause(seconds)
+            return
+        _session.current().sampling.send_before(seconds)
+        watch = _clock.Stopwatch()
+        while (left := seconds - watch.passed()) > 0:
+            self._pause(min(_POLL_SECONDS, left))
+        self._pause(0)
+
+    def _pause(self, seconds: float) -> None:
+        """Sleep by the wall clock."""
         session = _session.current()
         session.sampling.send_before(seconds)
         judge = session.judge
@@ -70,20 +86,21 @@ class Plugin:
         """Wait until `condition()` is true, asking every 10 ms for `timeout` seconds.
 
         When the time is over this is a failed assertion, which tells `what`
-        was waited for and the last value.
+        was waited for and the last value. The time is the one of `now`.
         """
-        end = time.monotonic() + timeout
+        watch = _clock.Stopwatch()
         while True:
             value = condition()
             if value:
                 return True
-            left = end - time.monotonic()
+            left = timeout - watch.passed()
             if left <= 0:
+                whose = " of simulated time" if _clock.is_simulated() else ""
                 self.fail(
-                    f"{what}: not within {_text.number(timeout)} s"
+                    f"{what}: not within {_text.number(timeout)} s{whose}"
                     f" (last value: {_text.value(value)})"
                 )
-            self.sleep(min(_POLL_SECONDS, left))
+            self._pause(min(_POLL_SECONDS, left))
 
     def interrupted(self) -> bool:
         """Whether the runner has asked to stop; a loop that runs long should look at it."""

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from time import monotonic
 
-from rtf import _session
+from rtf import _clock, _session
 from rtf._keeper import Keeper
 from rtf._near import Comparison
 from rtf._stop import AssertionEnded
@@ -71,13 +70,13 @@ class TestCase(Keeper):
         """
         if not rate > 0:
             raise ValueError(f"the rate of `{name}` is not above 0 Hz")
-        start, tick, good = monotonic(), 0, True
+        watch, tick, good = _clock.Stopwatch(), 0, True
         while tick < seconds * rate - 1e-9:
-            self.sleep(max(0.0, start + tick / rate - monotonic()))
+            self.sleep(max(0.0, tick / rate - watch.passed()))
             good = self.sample(name, read(), unit, low, high) and good
             # Each tick has its own deadline, so that delays do not add up.
-            tick = max(tick + 1, math.ceil((monotonic() - start) * rate))
-        self.sleep(max(0.0, start + seconds - monotonic()))
+            tick = max(tick + 1, math.ceil(watch.passed() * rate))
+        self.sleep(max(0.0, seconds - watch.passed()))
         return good
 
     def check(self, condition: object, text: object) -> bool:

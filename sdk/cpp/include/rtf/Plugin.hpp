@@ -41,7 +41,10 @@ protected:
         internal::report(here, text);
     }
 
-    // Sleeps; ends the step when the plug-in is asked to stop.
+    // The time since a moment that does not matter, by the clock that the suite has.
+    std::chrono::duration<double> now() const { return internal::now(); }
+
+    // Sleeps, in a suite with a clock by that one; ends the step when the plug-in is asked to stop.
     void sleep(std::chrono::duration<double> duration) const { internal::sleep(duration); }
 
     // Waits until condition() is true, asking every 10 ms. When the time is over

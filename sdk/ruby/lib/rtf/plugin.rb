@@ -1,5 +1,6 @@
 # frozen_string_literal: true
 
+require "rtf/clock"
 require "rtf/session"
 require "rtf/stop"
 require "rtf/text"
@@ -75,30 +76,41 @@ module RTF
       Session.current.message("check", text.first)
     end
 
+    # Seconds since a moment that does not matter, by the clock that the suite has.
+    def now
+      Clock.now
+    end
+
     # Sleeps, but wakes at once when the runner asks to stop; then this step ends.
+    # In a test of a suite with a clock these are seconds of simulated time.
     def sleep(seconds = Float::MAX)
-      session = Session.current
-      session.sampling.send_before(seconds)
-      judge = session.judge
-      raise Interrupted, judge.stop_reason if judge.wait_for_stop(seconds)
+      return pause(seconds) unless Clock.simulated?
+
+      Session.current.sampling.send_before(seconds)
+      watch = Clock::Stopwatch.new
+      while (left = seconds - watch.passed).positive?
+        pause([POLL_SECONDS, left].min)
+      end
+      pause(0)
     end
 
     # Waits until the block is true, asking every 10 ms for `timeout` seconds.
     #
     # When the time is over this is a failed assertion, which tells `what` was
-    # waited for and the last value.
+    # waited for and the last value. The time is the one of `now`.
     def wait_until(timeout, what)
-      deadline = monotonic + timeout
+      watch = Clock::Stopwatch.new
       loop do
         value = yield
         return true if value
 
-        left = deadline - monotonic
+        left = timeout - watch.passed
         if left <= 0
-          fail("#{what}: not within #{Text.number(timeout.to_f)} s " \
+          whose = " of simulated time" if Clock.simulated?
+          fail("#{what}: not within #{Text.number(timeout.to_f)} s#{whose} " \
                "(last value: #{Text.value(value)})")
         end
-        sleep([POLL_SECONDS, left].min)
+        pause([POLL_SECONDS, left].min)
       end
     end
 
@@ -118,8 +130,12 @@ module RTF
 
     private
 
-    def monotonic
-      Process.clock_gettime(Process::CLOCK_MONOTONIC)
+    # Sleeps by the wall clock.
+    def pause(seconds)
+      session = Session.current
+      session.sampling.send_before(seconds)
+      judge = session.judge
+      raise Interrupted, judge.stop_reason if judge.wait_for_stop(seconds)
     end
   end
 end

@@ -34,16 +34,16 @@ module RTF
     def sample_for(name, seconds, rate, unit = "", **limits)
       raise ArgumentError, "the rate of `#{name}` is not above 0 Hz" unless rate.positive?
 
-      start = monotonic
+      watch = Clock::Stopwatch.new
       tick = 0
       good = true
       while tick < (seconds * rate) - 1e-9
-        sleep([start + tick.fdiv(rate) - monotonic, 0].max)
+        sleep([tick.fdiv(rate) - watch.passed, 0].max)
         good &= sample(name, yield, unit, **limits)
         # Each tick has its own deadline, so that delays do not add up.
-        tick = [tick + 1, ((monotonic - start) * rate).ceil].max
+        tick = [tick + 1, (watch.passed * rate).ceil].max
       end
-      sleep([start + seconds - monotonic, 0].max)
+      sleep([seconds - watch.passed, 0].max)
       good
     end
 

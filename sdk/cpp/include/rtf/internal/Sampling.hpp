@@ -50,21 +50,19 @@ inline bool sample(Location here, const Measurement &taken, std::optional<Second
 template <class Read>
 bool sample_for(Location here, Measurement signal, Seconds duration, double rate, Read &&read)
 {
-    using Clock = std::chrono::steady_clock;
     if (!(rate > 0)) {
         error(here, "the rate of " + std::string(signal.name) + " is not above 0 Hz");
     }
-    const auto start = Clock::now();
-    const auto elapsed = [&] { return Seconds(Clock::now() - start); };
+    Stopwatch watch;
     bool all_within = true;
     // Each tick has its own deadline, so that delays do not add up.
     for (double tick = 0; tick < duration.count() * rate - 1e-9;
-         tick = std::max(tick + 1, std::ceil(elapsed().count() * rate))) {
-        sleep(Seconds(tick / rate) - elapsed());
+         tick = std::max(tick + 1, std::ceil(watch.passed().count() * rate))) {
+        sleep(Seconds(tick / rate) - watch.passed());
         signal.value = static_cast<double>(read());
         all_within = sample(here, signal, std::nullopt) && all_within;
     }
-    sleep(duration - elapsed());
+    sleep(duration - watch.passed());
     return all_within;
 }
 

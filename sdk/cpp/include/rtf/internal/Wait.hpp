@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include <rtf/internal/Clock.hpp>
 #include <rtf/internal/Message.hpp>
 #include <rtf/internal/Number.hpp>
 
@@ -18,35 +19,48 @@ inline bool interrupted()
     return host().interrupted(host().context) != 0;
 }
 
-inline void sleep(std::chrono::duration<double> duration)
+// How often a condition, or a simulator's clock, is looked at.
+constexpr Seconds kPoll = std::chrono::milliseconds(10);
+
+// Sleeps by the wall clock.
+inline void pause(Seconds duration)
 {
     if (host().wait(host().context, duration.count()) != 0) {
         throw Stop();
     }
 }
 
+inline void sleep(Seconds duration)
+{
+    if (clock_file() == nullptr) {
+        return pause(duration);
+    }
+    Stopwatch watch;
+    for (Seconds left = duration; left.count() > 0; left = duration - watch.passed()) {
+        pause(left < kPoll ? left : kPoll);
+    }
+    pause(Seconds(0));
+}
+
 // Asks every 10 ms. When the time is over this is a failed assertion.
 template <class Condition>
-bool wait_until(Location here, Condition &&condition, std::chrono::duration<double> timeout,
-                std::string_view what)
+bool wait_until(Location here, Condition &&condition, Seconds timeout, std::string_view what)
 {
-    using Clock = std::chrono::steady_clock;
-    using Seconds = std::chrono::duration<double>;
-    const auto start = Clock::now();
+    Stopwatch watch;
     for (;;) {
         const auto value = condition();
         if (static_cast<bool>(value)) {
             return true;
         }
-        const Seconds left = timeout - Seconds(Clock::now() - start);
+        const Seconds left = timeout - watch.passed();
         if (!(left.count() > 0)) {
             std::string text(what);
             text += ": not within " + number(timeout.count()) + " s";
+            text += clock_file() != nullptr ? " of simulated time" : "";
             const std::string last = last_value(value);
             fail(here, last.empty() ? text : text + " (last value: " + last + ")");
         }
-        const Seconds poll = std::chrono::milliseconds(10);
-        sleep(left < poll ? left : poll);
+        pause(left < kPoll ? left : kPoll);
     }
 }
 

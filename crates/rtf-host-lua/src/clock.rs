@@ -1,0 +1,42 @@
+//! The time that a plug-in follows: the simulator's, if its suite has a clock.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use rtf_model::parse_clock;
+use rtf_model::protocol::CLOCK_VARIABLE;
+
+/// A clock.
+#[derive(Debug)]
+pub(crate) enum Clock {
+    /// The wall clock, from a moment on.
+    Wall(Instant),
+    /// A file that shows a simulator's time.
+    Simulated(PathBuf),
+}
+
+impl Clock {
+    /// The one that the runner has chosen.
+    pub(crate) fn new() -> Self {
+        match std::env::var_os(CLOCK_VARIABLE) {
+            Some(file) if !file.is_empty() => Self::Simulated(file.into()),
+            _ => Self::Wall(Instant::now()),
+        }
+    }
+
+    /// Whether its time is a simulator's.
+    pub(crate) fn is_simulated(&self) -> bool {
+        matches!(self, Self::Simulated(_))
+    }
+
+    /// What it shows, in seconds; nothing while it is being written.
+    pub(crate) fn seconds(&self) -> Option<f64> {
+        match self {
+            Self::Wall(start) => Some(start.elapsed().as_secs_f64()),
+            Self::Simulated(file) => {
+                let text = std::fs::read_to_string(file).ok()?;
+                Some(parse_clock(&text)?.as_secs_f64())
+            }
+        }
+    }
+}
