@@ -250,7 +250,7 @@ step 'example 07' example_07
 step_with 'fixture ros2launch' ros2 fixture_ros2launch
 step_with 'fixture orocos' orocos fixture_orocos
 step 'guide' tools/check_docs.py "$TARGET/release/rtf" README.md docs/getting-started.md \
-  docs/writing-tests.md docs/isolation.md docs/migrating.md docs/migrating-others.md
+  docs/writing-tests.md docs/isolation.md docs/simulation-time.md docs/migrating.md docs/migrating-others.md
 step 'guide commands' tools/check_running.py "$TARGET/release/rtf"
 step 'page in a browser' tools/web-tests.sh
 step 'installed copy' tests/install/run.sh

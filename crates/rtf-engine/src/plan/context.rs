@@ -210,6 +210,18 @@ impl<'a, 'c> PluginPlanner<'a, 'c> {
         self.finish(file, param, Use { kind, role: Role::Test, own: &[], place, from_folder })
     }
 
+    /// Plans a fixture that comes with rtf, and that the suite does not name.
+    pub fn plan_shipped(
+        &mut self,
+        file: &Path,
+        kind: &'static HostKind,
+        param: String,
+        place: &Place,
+    ) -> Option<PluginPlan> {
+        let role = Role::Fixture;
+        self.finish(file, param, Use { kind, role, own: &[], place, from_folder: false })
+    }
+
     fn finish(&mut self, file: &Path, param: String, use_of: Use<'_>) -> Option<PluginPlan> {
         if let Err(problem) = hosts::text(file) {
             self.context.problems.push(use_of.place.show(*problem, ""));

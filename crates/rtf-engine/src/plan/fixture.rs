@@ -16,8 +16,8 @@ use super::{
 use crate::suite::{self, Attached, Fixture, FixtureKind, Process, Question, Source, Spanned};
 
 /// `spec/suite.md` lists these.
-const RESTARTS: u32 = 3;
-const RESTART_DELAY: Duration = Duration::from_millis(100);
+pub(super) const RESTARTS: u32 = 3;
+pub(super) const RESTART_DELAY: Duration = Duration::from_millis(100);
 const READY_EVERY: Duration = Duration::from_millis(100);
 const ALIVE_EVERY: Duration = Duration::from_secs(1);
 const ANSWER: Duration = Duration::from_secs(1);

@@ -6,6 +6,7 @@
 //! errors can fail only by the world, not by what was written.
 
 mod build;
+mod clock;
 mod context;
 pub(crate) mod defaults;
 mod depends;

@@ -14,7 +14,7 @@ use super::plugin::base_name;
 use super::scope::Scope;
 use super::{
     AfterCollapse, Given, Isolation, Leaks, Manner, OwnMiddleware, Retries, SuitePlan, TestLimits,
-    TestPlan, defaults, fixture, hook, middleware,
+    TestPlan, clock, defaults, fixture, hook, middleware,
 };
 use crate::config;
 use crate::suite::{FixtureKind, Middleware, Source, Suite, Test, WrittenLimits};
@@ -65,15 +65,14 @@ pub(super) fn plan(
     let beside = beside.as_deref();
     let scope = Scope { surroundings, folder: &folder, beside, suite: &env, own: &[] };
     let mut planner = PluginPlanner::new(context, scope);
-    let fixtures = fixture::plan_all(&mut planner, source, suite.fixtures);
+    let mut fixtures = fixture::plan_all(&mut planner, source, suite.fixtures);
+    let clock = clock::plan(&mut planner, source, suite.clock, &mut fixtures);
     let hooks = hook::plan_all(&mut planner, source, suite.hooks);
     let (mut limits, mut tests) = (Limits::default(), Vec::with_capacity(suite.tests.len()));
     for test in suite.tests {
         let given = test.name.as_ref().map(|name| name.value.clone());
         let name = given.unwrap_or_else(|| names.unique(base_name(&test.plugin.name.value)));
-        let limits = limits.of(test.limits);
-        let tags = tags(&suite.tags, &test);
-        let env = &test.env;
+        let (tags, env) = (tags(&suite.tags, &test), &test.env);
         let Some(plugin) = planner.plan(test.plugin, source, env, Role::Test) else { continue };
         tests.push(TestPlan {
             id: TestId(0),
@@ -81,7 +80,7 @@ pub(super) fn plan(
             plugin,
             env: test.env,
             repetitions: test.repetitions,
-            limits,
+            limits: limits.of(test.limits),
             after_collapse: test.after_collapse,
             leaks: test.leaks,
             retries: test.retries,
@@ -107,6 +106,7 @@ pub(super) fn plan(
         tolerates_collapse: suite.tolerates_collapse,
         critical_stops_run: suite.critical_stops_run,
         parallel: suite.parallel,
+        clock,
         fixtures,
         hooks,
         tests,
@@ -213,6 +213,7 @@ pub(super) fn plan_singles(context: &mut Context<'_>, singles: &[Single]) -> Sui
         tolerates_collapse: false,
         critical_stops_run: false,
         parallel: 1,
+        clock: None,
         fixtures: Vec::new(),
         hooks: Vec::new(),
         tests,

@@ -77,6 +77,8 @@ pub struct SuitePlan {
     pub critical_stops_run: bool,
     /// How many of its tests may run at the same time; 1 for one after the other.
     pub parallel: u32,
+    /// What its tests follow, if not the wall clock.
+    pub clock: Option<ClockPlan>,
     /// The fixtures: each after those that it depends on, else in the order of the file.
     pub fixtures: Vec<FixturePlan>,
     /// The hooks, in the order in which they are run when several are called for.
@@ -91,6 +93,13 @@ impl SuitePlan {
     pub fn repeats(&self) -> bool {
         self.tests.iter().any(|test| test.repetitions > 1)
     }
+}
+
+/// A simulated time that tests follow.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ClockPlan {
+    /// How many times a limit a test may take in wall time, from 1.
+    pub backstop: u32,
 }
 
 /// What a suite is to get for itself. Its texts still have their `${port:name}`.

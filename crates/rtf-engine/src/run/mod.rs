@@ -4,6 +4,7 @@
 //! the processes of [`crate::host`], the probes and the clock. A collapse
 //! interrupts a test in `machine/suite.rs`, `fixture_changed`.
 
+mod clock;
 mod control;
 mod events;
 mod fail_limit;

@@ -10,6 +10,7 @@ use rtf_model::{EventKind, Source, TestId};
 use tokio::sync::{mpsc, watch};
 use tokio::time::Instant;
 
+use super::clock::{Clock, Role};
 use super::control::{Controls, Unseen};
 use super::events::Events;
 use super::fail_limit::FailLimit;
@@ -67,6 +68,7 @@ pub async fn run_suite(
         scopes: 0,
         repeats: asked.until.is_some() || plan.repeats(),
         deadlines: BTreeMap::new(),
+        clock: Clock::of(plan, &shared.scratch),
         over: false,
     };
     task.run(queue, asked).await;
@@ -95,6 +97,7 @@ struct SuiteTask<'a> {
     /// How many scopes were given out.
     scopes: u64,
     deadlines: BTreeMap<Deadline, Duration>,
+    clock: Clock,
     over: bool,
 }
 
@@ -111,7 +114,7 @@ impl SuiteTask<'_> {
         }
         self.feed(Input::Start);
         while !self.over {
-            let next = self.deadlines.values().min().copied();
+            let next = self.next_due();
             tokio::select! {
                 biased;
                 Ok(()) = stops.changed() => {
@@ -121,7 +124,7 @@ impl SuiteTask<'_> {
                     }
                 }
                 input = controls.next(self.plan) => self.feed(input),
-                () = self.sleep_until(next) => self.deadlines_passed(),
+                () = self.sleep_until(next) => self.time_passed(),
                 Some((host, input)) = queue.recv() => {
                     self.host_input(host, input);
                     self.take_more(&mut queue);
@@ -149,8 +152,17 @@ impl SuiteTask<'_> {
         }
     }
 
-    fn deadlines_passed(&mut self) {
+    /// When something has to be done for the sake of time.
+    fn next_due(&mut self) -> Option<Duration> {
+        let look = self.clock.next_look(self.machine.follows_clock(), self.events.now());
+        self.deadlines.values().copied().chain(look).min()
+    }
+
+    fn time_passed(&mut self) {
         let now = self.events.now();
+        if let Some(time) = self.clock.look(now) {
+            self.feed(Input::Clock(time));
+        }
         let passed: Vec<Deadline> = self
             .deadlines
             .iter()
@@ -257,7 +269,7 @@ impl SuiteTask<'_> {
             Program::Process(plan) => process = Some(plan.clone()),
             Program::Attached(plan) => attached = Some(plan.clone()),
         }
-        let request = self.request(start, matches!(source, Source::Test(_)));
+        let request = self.request(start, source.into());
         let (orders, queue) = mpsc::unbounded_channel();
         self.orders.insert(host, orders);
         let launch = match self.spares.iter().position(|spare| spare.request == request) {
@@ -306,7 +318,7 @@ impl SuiteTask<'_> {
     fn spawn_ahead(&mut self, starts: Vec<Start>) {
         let mut before = std::mem::take(&mut self.spares);
         for start in starts {
-            let request = self.request(start, true);
+            let request = self.request(start, Role::Test);
             let spare = match before.iter().position(|spare| spare.request == request) {
                 Some(place) => before.remove(place),
                 None => {
@@ -323,7 +335,7 @@ impl SuiteTask<'_> {
     }
 
     /// What is to be started; as a fork only if it may be one.
-    fn request(&self, start: Start, may_fork: bool) -> SpawnRequest {
+    fn request(&self, start: Start, role: Role) -> SpawnRequest {
         let mut forks = false;
         let run_folder = self.shared.run_folder.to_string_lossy().into_owned();
         let mut env = vec![
@@ -331,11 +343,14 @@ impl SuiteTask<'_> {
             (RUN_FOLDER_VARIABLE.to_owned(), run_folder),
         ];
         env.extend(start.env);
+        if !matches!(&start.what, Program::Process(plan) if plan.remote.is_some()) {
+            env.extend(self.clock.variables(role));
+        }
         let (command, channel) = match start.what {
             Program::Host(plan) => {
                 // Last: the plan has put what the suite says into it already.
                 env.extend_from_slice(&plan.env);
-                forks = may_fork && plan.forks;
+                forks = plan.forks && role == Role::Test;
                 (plan.command.clone(), Some(Vec::new()))
             }
             Program::Process(plan) => match &plan.remote {

@@ -8,13 +8,15 @@ use super::shape::{self, check};
 use super::value::Reader;
 
 /// Variables that the runner sets for its processes itself.
-const RESERVED: [&str; 10] = [
+const RESERVED: [&str; 12] = [
     protocol::CHANNEL_VARIABLE,
     protocol::FORK_SERVER_VARIABLE,
     protocol::SCOPE_VARIABLE,
     protocol::OWNER_VARIABLE,
     protocol::ENVIRONMENT_VARIABLE,
     protocol::RUN_FOLDER_VARIABLE,
+    protocol::CLOCK_VARIABLE,
+    protocol::CLOCK_FILE_VARIABLE,
     "RTF_FIXTURE_START",
     "RTF_HOOK_TRIGGER",
     "RTF_HOOK_REASON",

@@ -7,6 +7,7 @@
 //!
 //! `spec/suite.md` is the text for people, `spec/suite.xsd` the schema.
 
+mod clock;
 mod command;
 mod duration;
 mod env;

@@ -7,7 +7,7 @@ use super::shape::{self, check};
 use super::test::{self, Defaults};
 use super::value::Reader;
 use super::{
-    Middleware, Retries, Source, Spanned, Suite, WrittenIsolation, env, fixture, hook, port,
+    Middleware, Retries, Source, Spanned, Suite, WrittenIsolation, clock, env, fixture, hook, port,
     requires, xml,
 };
 
@@ -67,6 +67,7 @@ fn read_suite(reader: &mut Reader<'_>, root: Node<'_, '_>) -> Suite {
             .choice(root, "critical-stops", &[("suite", false), ("run", true)])
             .unwrap_or(false),
         parallel: reader.number(root, "parallel", 1).unwrap_or(1),
+        clock: clock::read(reader, root),
         fixtures: Vec::new(),
         hooks: Vec::new(),
         tests: Vec::new(),

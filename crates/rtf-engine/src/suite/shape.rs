@@ -35,6 +35,8 @@ pub(super) const SUITE: Shape = Shape {
         "critical-stops",
         "parallel",
         "middleware",
+        "clock",
+        "clock-backstop",
         "tolerate-collapse",
         "after-collapse",
         "leaks",

@@ -33,6 +33,8 @@ pub struct Suite {
     pub critical_stops_run: bool,
     /// How many of its tests may run at the same time.
     pub parallel: u32,
+    /// Whose time its tests follow, if not the wall clock's.
+    pub clock: Option<WrittenClock>,
     /// The fixtures, in order.
     pub fixtures: Vec<Fixture>,
     /// The hooks, in order.
@@ -59,6 +61,40 @@ pub struct WrittenIsolation {
     pub middleware: Option<Middleware>,
     /// The names of its ports, sorted.
     pub ports: Vec<String>,
+}
+
+/// A simulated time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WrittenClock {
+    /// Where it comes from.
+    pub source: ClockSource,
+    /// How many times a limit a test may take in wall time.
+    pub backstop: Option<u32>,
+    /// Where the suite says so.
+    pub span: Span,
+}
+
+/// Where simulated time comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClockSource {
+    /// The ROS 1 topic `/clock`.
+    Ros,
+    /// YARP's network clock.
+    Yarp,
+    /// A file that a fixture writes.
+    File,
+}
+
+impl ClockSource {
+    /// As suites write it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Ros => "ros",
+            Self::Yarp => "yarp",
+            Self::File => "file",
+        }
+    }
 }
 
 /// Which middleware the processes of a suite talk to.

@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "that is where a test ends")]
 
 mod bench;
+mod clock;
 mod depends;
 mod hooks;
 mod inputs;

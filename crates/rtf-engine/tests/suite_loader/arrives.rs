@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use rtf_engine::suite::{
-    AfterCollapse, FixtureKind, HookKind, Leaks, MiddlewareQuestion, Probe, Question, WrittenLimits,
+    AfterCollapse, ClockSource, FixtureKind, HookKind, Leaks, MiddlewareQuestion, Probe, Question,
+    WrittenLimits,
 };
 use rtf_model::Trigger;
 
@@ -19,6 +20,8 @@ fn every_attribute_arrives() {
     assert!(suite.tolerates_collapse);
     assert!(suite.critical_stops_run);
     assert_eq!(suite.parallel, 4);
+    let clock = suite.clock.unwrap();
+    assert_eq!((clock.source, clock.backstop), (ClockSource::Ros, Some(20)));
     assert_eq!(
         suite.env,
         [("ARM_PORT", "17681"), ("EMPTY", "")].map(|(n, v)| (n.into(), v.into()))

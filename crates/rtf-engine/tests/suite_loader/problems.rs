@@ -36,6 +36,26 @@ fn variables_of_rtf_cannot_be_set() {
 }
 
 #[test]
+fn what_is_wrong_with_a_clock() {
+    let clock = |attributes: &str| {
+        let text = format!("<suite {attributes}><test>A.lua</test></suite>");
+        problems(&text).into_iter().map(|problem| problem.message).collect::<Vec<_>>()
+    };
+    assert!(clock("clock='wall'").is_empty());
+    assert!(clock("clock='file' clock-backstop='1'").is_empty());
+    assert_eq!(
+        clock("clock='rso' clock-backstop='0'"),
+        [
+            "`clock` has to be `wall` or `ros` or `yarp` or `file`: `rso`",
+            "`clock-backstop` is not a whole number from 1 to 1000000: `0`"
+        ]
+    );
+    let message = "`clock-backstop` has no meaning for the wall clock: `3`";
+    assert_eq!(clock("clock-backstop='3'"), [message]);
+    assert_eq!(clock("clock='wall' clock-backstop='3'"), [message]);
+}
+
+#[test]
 fn what_is_wrong_with_a_process_fixture() {
     let fixture = |inside: &str| {
         let text =

@@ -135,7 +135,7 @@ fn five_mistakes_are_five_messages() {
     1 | <suite name="arm" tag="smoke">
       |                   ^^^ not known in `<suite>`
       |
-      = note: `<suite>` can have the attributes `name`, `timeout`, `tags`, `isolate`, `requires`, `critical-stops`, `parallel`, `middleware`, `tolerate-collapse`, `after-collapse`, `leaks`, `retries`, `retry-delay`, `test-timeout`, `test-load-timeout`, `test-setup-timeout`, `test-teardown-timeout`, `test-slow`, `test-grace`
+      = note: `<suite>` can have the attributes `name`, `timeout`, `tags`, `isolate`, `requires`, `critical-stops`, `parallel`, `middleware`, `clock`, `clock-backstop`, `tolerate-collapse`, `after-collapse`, `leaks`, `retries`, `retry-delay`, `test-timeout`, `test-load-timeout`, `test-setup-timeout`, `test-teardown-timeout`, `test-slow`, `test-grace`
       = help: did you mean `tags`?
 
     error: unknown element `<fixtures>`

@@ -7,6 +7,7 @@ use rtf_model::{
 };
 use serde_json::{Value, json};
 
+use crate::clock::SIMULATOR;
 use crate::modes::{FORKED, Mode, PROCESS, SHARED};
 use crate::support::{Folder, Journal, build_ada, build_cpp, nothing_left, root};
 
@@ -141,14 +142,16 @@ fn check(language: &Language, mode: Mode) {
         let (test, pass) = (path(scenario), path("pass"));
         let (kind, shared) = (language.plugin_type, format!("isolation=\"{isolation}\""));
         let more = attributes(scenario);
+        let (clock, fixture) = clock(scenario);
         let suite = format!(
-            "<suite name=\"{scenario}\">\n  <environment>--robot sim</environment>\n  <test type=\"{kind}\" {shared} name=\"before\">{1}</test>\n  <test type=\"{kind}\" {shared} name=\"scenario\" {more}>{0}</test>\n  \
+            "<suite name=\"{scenario}\"{clock}>\n  {fixture}<environment>--robot sim</environment>\n  <test type=\"{kind}\" {shared} name=\"before\">{1}</test>\n  <test type=\"{kind}\" {shared} name=\"scenario\" {more}>{0}</test>\n  \
              <test type=\"{kind}\" {shared} name=\"after\">{1}</test>\n</suite>\n",
             test.display(),
             pass.display()
         );
         temp.file(&format!("{scenario}.xml"), &suite);
     }
+    temp.file("simulator.py", SIMULATOR);
     let finished = temp.rtf(&["run", "--fork", fork, "."]);
     assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
     let journal = temp.journal();
@@ -169,6 +172,17 @@ fn attributes(scenario: &str) -> &'static str {
         "hang" | "interrupted-sleep" => r#"timeout="300ms" grace="500ms""#,
         "context" => r#"param="--joint elbow" repetition="3""#,
         _ => "",
+    }
+}
+
+/// What else the suite has for a scenario: a clock that is faster than the world.
+fn clock(scenario: &str) -> (&'static str, &'static str) {
+    match scenario {
+        "simulated-time" => (
+            " clock=\"file\"",
+            "<fixture type=\"process\"><command>python3 simulator.py 50</command></fixture>\n  ",
+        ),
+        _ => ("", ""),
     }
 }
 

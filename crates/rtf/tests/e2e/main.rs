@@ -16,6 +16,7 @@ mod bad_suites;
 mod chaos;
 mod chaos_hosts;
 mod choosing;
+mod clock;
 mod code_hosts;
 mod collapse;
 mod command_lines;

@@ -22,6 +22,8 @@ pub enum Input {
     Host(HostId, HostInput),
     /// A deadline that was set has passed.
     Deadline(Deadline),
+    /// The clock that the suite follows shows this time.
+    Clock(Duration),
     /// The suite must end early.
     Stop(Stop),
     /// This test is to be stopped, if it runs: by whom.

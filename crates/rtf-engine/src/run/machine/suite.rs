@@ -135,6 +135,7 @@ impl<'p> SuiteMachine<'p> {
             Input::Start => self.start(&mut cx),
             Input::Host(host, input) => self.host(host, input, &mut cx),
             Input::Deadline(deadline) => self.deadline(deadline, &mut cx),
+            Input::Clock(time) => self.turns.clock_shows(time, &mut cx),
             Input::Stop(stop) => self.stop(stop, &mut cx),
             Input::StopTest(test, by) => self.stop_test(test, &by, &mut cx),
             Input::Skip(by) => self.skip(&by, &mut cx),

@@ -7,6 +7,12 @@ use super::{Context, SuiteMachine};
 use crate::run::machine::io::{Deadline, Stop, StopLevel};
 
 impl SuiteMachine<'_> {
+    /// Whether it waits for what the suite's clock shows.
+    #[must_use]
+    pub fn follows_clock(&self) -> bool {
+        self.turns.follow_clock()
+    }
+
     pub(super) fn limit_reached(&mut self, cx: &mut Context<'_>) {
         let limit = self.plan.timeout.unwrap_or_default();
         let reason = format!("the suite did not end within {limit:?}");

@@ -118,6 +118,16 @@ impl<'p> Turns<'p> {
         self.open.iter_mut().filter_map(|turn| turn.run.as_mut())
     }
 
+    /// Whether a test waits for the clock that the suite follows.
+    pub fn follow_clock(&self) -> bool {
+        self.open.iter().filter_map(|turn| turn.run.as_ref()).any(TestRun::follows_clock)
+    }
+
+    /// The clock that the suite follows shows a time.
+    pub fn clock_shows(&mut self, time: Duration, cx: &mut Context<'_>) {
+        self.running().for_each(|run| run.clock_shows(time, cx));
+    }
+
     /// Asks all tests that run to stop.
     pub fn stop_all(&mut self, cause: StopCause, reason: &str, cx: &mut Context<'_>) {
         self.running().for_each(|run| run.stop(cause, reason.to_owned(), cx));

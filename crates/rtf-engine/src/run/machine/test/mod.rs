@@ -6,6 +6,7 @@ mod answers;
 mod looking;
 pub mod sharing;
 mod stop;
+mod stopwatch;
 
 use std::time::Duration;
 
@@ -25,6 +26,7 @@ use crate::run::machine::io::{
 };
 use crate::run::machine::judge::{Evidence, Problem, judge, leak_of};
 use crate::run::machine::suite::Context;
+use stopwatch::Stopwatch;
 
 /// The number of the first `run-test` on a host's channel.
 const RUN_TEST: u64 = 2;
@@ -108,6 +110,10 @@ pub struct TestRun<'p> {
     stack: StackSupport,
     stack_taken: bool,
     step: Option<Step>,
+    /// How many times a limit it may take in wall time, if it follows another clock.
+    backstop: Option<u32>,
+    /// The measure of its phase, if it follows another clock.
+    stopwatch: Option<Stopwatch>,
     process: Process,
     /// Whether there are fixtures that may have collapsed.
     has_fixtures: bool,
@@ -150,6 +156,8 @@ impl<'p> TestRun<'p> {
             stack: StackSupport::None,
             stack_taken: false,
             step: None,
+            backstop: suite.clock.as_ref().map(|clock| clock.backstop),
+            stopwatch: None,
             process: Process::Alive,
             has_fixtures: !suite.fixtures.is_empty(),
             leak: None,
@@ -254,12 +262,8 @@ impl<'p> TestRun<'p> {
             Phase::Run => limits.run,
             _ => limits.teardown,
         };
-        cx.set(Deadline::Test(self.plan.id, TestTimer::Limit), limit);
-        if phase == Phase::Run && limits.slow < limits.run {
-            cx.set(Deadline::Test(self.plan.id, TestTimer::Slow), limits.slow);
-        } else {
-            cx.clear(Deadline::Test(self.plan.id, TestTimer::Slow));
-        }
+        let slow = Some(limits.slow).filter(|slow| phase == Phase::Run && *slow < limit);
+        self.measure(limit, slow, cx);
     }
 
     fn message(&mut self, message: Message, cx: &mut Context<'_>) {
@@ -313,6 +317,7 @@ impl<'p> TestRun<'p> {
                 }
                 self.evidence.answer = Some(answer);
                 self.phase = Phase::Exit;
+                self.stopwatch = None;
                 cx.clear(Deadline::Test(self.plan.id, TestTimer::Slow));
                 if self.step.is_none() {
                     cx.set(
@@ -331,6 +336,7 @@ impl<'p> TestRun<'p> {
     }
 
     fn exited(&mut self, exit: Option<ExitStatus>, left: Vec<LeftProcess>, cx: &mut Context<'_>) {
+        self.stopwatch = None;
         cx.clear(Deadline::Test(self.plan.id, TestTimer::Slow));
         for capture in &mut self.captures {
             if let Some(output) = capture.finish() {

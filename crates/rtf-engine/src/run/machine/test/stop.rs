@@ -28,6 +28,7 @@ impl TestRun<'_> {
         }
         cx.emit(EventKind::TestStopping { test: self.plan.id, cause, reason: reason.clone() });
         cx.clear(Deadline::Test(self.plan.id, TestTimer::Slow));
+        self.stopwatch = None;
         self.evidence.stopped = Some((cause, reason, self.phase));
         if self.process != Process::Alive {
             self.process = Process::Over;
@@ -96,7 +97,7 @@ impl TestRun<'_> {
         }
         match self.step {
             None => {
-                let reason = self.limit_reached();
+                let reason = self.limit_reached(cx.now());
                 self.stop(StopCause::Timeout, reason, cx);
             }
             Some(Step::DumpThenAsk) => self.ask(cx),
@@ -106,7 +107,10 @@ impl TestRun<'_> {
         }
     }
 
-    fn limit_reached(&self) -> String {
+    fn limit_reached(&self, now: Duration) -> String {
+        if let Some(stopwatch) = &self.stopwatch {
+            return format!("{} did not end {}", self.measured_step(), stopwatch.at_backstop(now));
+        }
         let limits = &self.plan.limits;
         match self.phase {
             Phase::Load => format!("the plug-in was not loaded within {:?}", limits.load),

@@ -2,6 +2,7 @@
 
 mod attached;
 mod chaos;
+mod clock;
 mod collapse;
 mod control;
 mod flow;

@@ -25,6 +25,7 @@ pub fn suite(fixtures: usize, tests: usize) -> SuitePlan {
         tolerates_collapse: false,
         critical_stops_run: false,
         parallel: 1,
+        clock: None,
         fixtures: (0..fixtures).map(fixture).collect(),
         hooks: Vec::new(),
         tests: (0..tests).map(test).collect(),
