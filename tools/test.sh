@@ -99,6 +99,7 @@ lint_python() {
   "$checkers/mypy" fixtures
   "$checkers/mypy" tests/fixtures/*.py tests/fixtures/ros2launch/*.py \
     tests/fixtures/orocos/*.py tests/fixtures/yarp/*.py
+  "$checkers/mypy" tests/fixtures/clock/*.py
   "$checkers/mypy" benches/bench.py
   "$checkers/mypy" tests/predecessor/*.py
 }
@@ -140,7 +141,7 @@ sdk_ruby() {
 suites_are_valid() {
   # What lies deeper in an example is its middleware's.
   files ':(glob)examples/*/*.xml' 'tests/install/*.xml' 'tests/fixtures/*/suite.xml' \
-    'tests/fixtures/yarp/suites/*.xml' 'tests/fixtures/ros1/*.xml' |
+    'tests/fixtures/yarp/suites/*.xml' 'tests/fixtures/ros1/*.xml' 'tests/fixtures/clock/*.xml' |
     xargs -d '\n' xmllint --noout --schema spec/suite.xsd
 }
 
@@ -171,6 +172,14 @@ fixture_mcap() {
 example_02() {
   PATH="$simulation:$PATH" python3 tools/check_example_02.py "$TARGET/release/rtf" \
     examples/02-supervised-simulator/supervised.xml
+}
+
+clock_ros1() {
+  python3 tools/check_clock.py "$TARGET/release/rtf" tests/fixtures/clock/ros.xml
+}
+
+clock_yarp() {
+  python3 tools/check_clock.py "$TARGET/release/rtf" tests/fixtures/clock/yarp.xml
 }
 
 fixture_yarp() {
@@ -243,8 +252,10 @@ step 'example 02' example_02
 step 'fixture mcap' fixture_mcap
 step_with 'example 03' yarp example_03
 step_with 'fixture yarp' yarp fixture_yarp
+step_with 'clock yarp' yarp clock_yarp
 step_with 'example 04' yarp example_04
 step_with 'example 05' ros1 example_05
+step_with 'clock ros1' ros1 clock_ros1
 step_with 'example 06' ros2 example_06
 step 'example 07' example_07
 step_with 'fixture ros2launch' ros2 fixture_ros2launch
