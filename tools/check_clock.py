@@ -14,7 +14,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from check_example_01 import Run, expect, is_a
+from run import Run, expect, is_a
 
 SLOW = ("--set=speed=0.2", "--set=seconds=0.2")
 
