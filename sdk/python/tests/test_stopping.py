@@ -78,7 +78,12 @@ def test_the_stack_of_a_hang_that_holds_the_interpreter_lock_is_dumped(tmp_path:
     host = Host(tmp_path, stack_file)
     assert host.initialized["result"]["stack"] == "signal"
     # No line of Python runs any more: only a signal handler written in C can help.
-    body = "import ctypes\n" + arm("self.report('hanging')\nctypes.PyDLL(None).sleep(1000)")
+    # A mutex that is locked twice is waited for also after a signal.
+    lock = "libc.pthread_mutex_lock(mutex)"
+    body = (
+        "import ctypes\nlibc = ctypes.PyDLL(None)\nmutex = ctypes.create_string_buffer(64)\n"
+        + arm(f"{lock}\nself.report('hanging')\n{lock}")
+    )
     host.send("run-test", plugin(tmp_path, body), number=2)
     host.wait_for("message")
     end = time.monotonic() + 30
