@@ -178,6 +178,10 @@ clock_ros1() {
   python3 tools/check_clock.py "$TARGET/release/rtf" tests/fixtures/clock/ros.xml
 }
 
+clock_ros2() {
+  python3 tools/check_clock.py "$TARGET/release/rtf" tests/fixtures/clock/ros2.xml
+}
+
 clock_yarp() {
   python3 tools/check_clock.py "$TARGET/release/rtf" tests/fixtures/clock/yarp.xml
 }
@@ -258,6 +262,7 @@ step_with 'example 05' ros1 example_05
 step_with 'clock ros1' ros1 clock_ros1
 step_with 'example 06' ros2 example_06
 step 'example 07' example_07
+step_with 'clock ros2' ros2 clock_ros2
 step_with 'fixture ros2launch' ros2 fixture_ros2launch
 step_with 'fixture orocos' orocos fixture_orocos
 step 'guide' tools/check_docs.py "$TARGET/release/rtf" README.md docs/getting-started.md \

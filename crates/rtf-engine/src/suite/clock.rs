@@ -5,9 +5,10 @@ use roxmltree::Node;
 use super::value::Reader;
 use super::{ClockSource, WrittenClock};
 
-const SOURCES: [(&str, Option<ClockSource>); 4] = [
+const SOURCES: [(&str, Option<ClockSource>); 5] = [
     ("wall", None),
     ("ros", Some(ClockSource::Ros)),
+    ("ros2", Some(ClockSource::Ros2)),
     ("yarp", Some(ClockSource::Yarp)),
     ("file", Some(ClockSource::File)),
 ];
@@ -21,7 +22,7 @@ pub(super) fn read(reader: &mut Reader<'_>, root: Node<'_, '_>) -> Option<Writte
     let is_wall = source.is_none()
         && written.as_ref().is_none_or(|written| written.value.trim() == SOURCES[0].0);
     if is_wall && let Some(attribute) = reader.attribute(root, "clock-backstop") {
-        let hint = "`clock` is `ros`, `yarp` or `file` in a suite that needs one";
+        let hint = "`clock` is `ros`, `ros2`, `yarp` or `file` in a suite that needs one";
         reader.wrong("clock-backstop", &attribute, "has no meaning for the wall clock", Some(hint));
     }
     let span = written?.span;

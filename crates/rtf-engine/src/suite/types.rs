@@ -79,6 +79,8 @@ pub struct WrittenClock {
 pub enum ClockSource {
     /// The ROS 1 topic `/clock`.
     Ros,
+    /// The ROS 2 topic `/clock`.
+    Ros2,
     /// YARP's network clock.
     Yarp,
     /// A file that a fixture writes.
@@ -91,6 +93,7 @@ impl ClockSource {
     pub fn word(self) -> &'static str {
         match self {
             Self::Ros => "ros",
+            Self::Ros2 => "ros2",
             Self::Yarp => "yarp",
             Self::File => "file",
         }

@@ -46,7 +46,7 @@ fn what_is_wrong_with_a_clock() {
     assert_eq!(
         clock("clock='rso' clock-backstop='0'"),
         [
-            "`clock` has to be `wall` or `ros` or `yarp` or `file`: `rso`",
+            "`clock` has to be `wall` or `ros` or `ros2` or `yarp` or `file`: `rso`",
             "`clock-backstop` is not a whole number from 1 to 1000000: `0`"
         ]
     );
