@@ -65,5 +65,6 @@ async function visit(past, hash, ready, name) {
 
 async function save({ page }, name) {
     await page.evaluate(() => document.fonts.ready);
+    await page.getByText('Loading …').waitFor({ state: 'hidden' });
     await page.screenshot({ path: path.join(folder, `${name}.png`) });
 }
