@@ -1,5 +1,7 @@
 //! Networks and ports of a suite's own, with real namespaces.
 
+use std::fs::File;
+use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::process::Command;
 
@@ -161,23 +163,47 @@ class Gone(rtf.TestCase):
 ";
     folder.file("Look.lua", look).file("M.py", multicast).file("s.xml", &suite);
     folder.file("next.xml", next).file("Gone.py", gone);
-    let finished = folder.rtf(&["run", "s.xml", "next.xml"]);
+    let running = folder.start(&["run", "s.xml", "next.xml"]);
+    let network = Network::of(&running);
+    let finished = running.finish();
     assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
     let text = std::fs::read_to_string(folder.path().join("nets")).expect("a file");
     let nets: Vec<_> = text.lines().collect();
     assert_eq!(nets.len(), 7, "{nets:?}");
-    assert!(nets.iter().all(|net| *net == nets[0]), "{nets:?}");
+    assert!(nets.iter().all(|net| *net == network.name()), "{nets:?}");
     let own = std::fs::read_link("/proc/self/ns/net").expect("a namespace");
-    assert_ne!(own.to_string_lossy(), nets[0]);
-    assert!(nothing_left(&folder) && is_empty(nets[0]));
+    assert_ne!(own.to_string_lossy(), network.name());
+    assert!(nothing_left(&folder) && network.is_empty());
 }
 
-/// Whether no process is in a network namespace any more.
-pub fn is_empty(net: &str) -> bool {
-    let entries = std::fs::read_dir("/proc").expect("/proc").flatten();
-    entries
-        .filter_map(|entry| std::fs::read_link(entry.path().join("ns/net")).ok())
-        .all(|link| link.to_string_lossy() != net)
+/// The network of a suite. As long as this is there, the kernel gives its number to
+/// no other one.
+pub struct Network {
+    held: File,
+}
+
+impl Network {
+    /// That of the first suite, once it is prepared.
+    pub fn of(running: &Running) -> Self {
+        let event = running.wait_for(|kind| matches!(kind, EventKind::SuitePrepared(_)));
+        let EventKind::SuitePrepared(prepared) = event.kind else { unreachable!() };
+        let holder = prepared.network.expect("a network").pid;
+        let held = File::open(format!("/proc/{holder}/ns/net")).expect("its holder lives");
+        Self { held }
+    }
+
+    /// As links in /proc have it.
+    pub fn name(&self) -> String {
+        format!("net:[{}]", self.held.metadata().expect("a number").ino())
+    }
+
+    /// Whether no process is in it any more.
+    pub fn is_empty(&self) -> bool {
+        let entries = std::fs::read_dir("/proc").expect("/proc").flatten();
+        entries
+            .filter_map(|entry| std::fs::read_link(entry.path().join("ns/net")).ok())
+            .all(|link| link.to_string_lossy() != self.name())
+    }
 }
 
 #[test]
@@ -197,6 +223,7 @@ fn when_the_runner_is_killed_the_abort_hook_is_in_the_network_and_nothing_is_lef
     let running = folder.start_command(command);
     running.wait_for(|kind| matches!(kind, EventKind::TestPhase { phase: Phase::Run, .. }));
     assert_eq!(joined_in(&running), std::fs::read_to_string(folder.path().join("net-arm")).ok());
+    let network = Network::of(&running);
     running.kill_runner();
     let finished = running.finish();
     assert_eq!(finished.code, Some(5), "{}", finished.stderr);
@@ -209,7 +236,7 @@ fn when_the_runner_is_killed_the_abort_hook_is_in_the_network_and_nothing_is_lef
     let sim = prepared.ports.iter().find(|own| own.name == "sim").expect("a port").port;
     let parked = std::fs::read_to_string(folder.path().join("parked")).expect("a file");
     assert_eq!(parked, format!("{net}\n{sim}\narm\n"));
-    assert!(nothing_left(&folder) && is_empty(&net));
+    assert!(nothing_left(&folder) && network.is_empty());
 }
 
 /// The network that the command leads to with which a person joins in.

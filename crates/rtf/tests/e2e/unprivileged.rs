@@ -5,8 +5,8 @@ use std::process::Command;
 
 use rtf_model::{TestId, Verdict};
 
-use crate::isolation::{is_empty, prepared};
-use crate::support::{Folder, nothing_left};
+use crate::isolation::{Network, prepared};
+use crate::support::{Folder, Running, nothing_left};
 
 /// The folder and the programs for a user who may read nothing else of ours.
 fn for_nobody(folder: &Folder) -> Command {
@@ -43,11 +43,14 @@ fn nobodys_suite() -> Folder {
     folder
 }
 
-fn run(mut command: Command) -> (Option<i32>, String) {
+fn start(folder: &Folder, mut command: Command) -> Running {
     command.env("NO_COLOR", "1").env_remove("LD_LIBRARY_PATH").env_remove("RTF_RESULTS");
-    let output = command.output().expect("it runs");
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    (output.status.code(), text + &String::from_utf8_lossy(&output.stderr))
+    folder.start_command(command)
+}
+
+fn end(running: Running) -> (Option<i32>, String) {
+    let finished = running.finish();
+    (finished.code, finished.stdout + &finished.stderr)
 }
 
 /// Where the kernel allows it to everybody, it needs no root; where it does
@@ -68,10 +71,13 @@ fn without_root_a_user_namespace_does() {
     };
     let allowed = allowed.expect("unshare").success();
     probe.args(["run", "s.xml"]);
-    let (code, told) = run(probe);
+    let running = start(&folder, probe);
     if !allowed {
+        let (code, told) = end(running);
         return assert_refused(&folder, code, &told);
     }
+    let network = Network::of(&running);
+    let (code, told) = end(running);
     assert_eq!(code, Some(0), "{told}");
     let prepared = prepared(&folder, "rtf-results");
     assert!(prepared.network.expect("a network").user_namespace, "{prepared:?}");
@@ -79,10 +85,11 @@ fn without_root_a_user_namespace_does() {
     let looked = std::fs::read_to_string(folder.path().join("looked")).expect("a file");
     let (net, uid) = looked.trim().split_once('\n').expect("two lines");
     let own = std::fs::read_link("/proc/self/ns/net").expect("a namespace");
+    assert_eq!(net, network.name());
     assert_ne!(net, own.to_string_lossy());
     assert_ne!(uid, "0", "in the suite, one is who one was");
     assert!(told.contains("leaked"), "what a test leaves is found across namespaces: {told}");
-    assert!(nothing_left(&folder) && is_empty(net));
+    assert!(nothing_left(&folder) && network.is_empty());
 }
 
 fn assert_refused(folder: &Folder, code: Option<i32>, told: &str) {
@@ -115,7 +122,7 @@ fn where_the_system_refuses_each_test_is_an_error_that_says_why() {
     }
     command.args(["--user", "--map-root-user", "sh", "-c", inner, "sh"]);
     command.arg(program.first().copied().unwrap_or(rtf.get_program())).args(["run", "s.xml"]);
-    let (code, told) = run(command);
+    let (code, told) = end(start(&folder, command));
     assert_refused(&folder, code, &told);
     assert!(told.contains("`user.max_user_namespaces` is 0 here: `sysctl"), "{told}");
     let now = std::fs::read_to_string("/proc/sys/user/max_user_namespaces").expect("a limit");
