@@ -73,6 +73,13 @@ pub struct Comparison {
     pub worst: Option<u64>,
 }
 
+/// Whether a value is a finite number that keeps those limits that there are.
+pub(crate) fn is_within(value: Option<f64>, low: Option<f64>, high: Option<f64>) -> bool {
+    value.is_some_and(|value| {
+        low.is_none_or(|low| value >= low) && high.is_none_or(|high| value <= high)
+    })
+}
+
 /// A number that a test measured, with the limits that it must keep.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -100,9 +107,7 @@ impl Measurement {
     /// a value that is not a finite number does not.
     #[must_use]
     pub fn is_within_limits(&self) -> bool {
-        self.value.is_some_and(|value| {
-            self.low.is_none_or(|low| value >= low) && self.high.is_none_or(|high| value <= high)
-        })
+        is_within(self.value, self.low, self.high)
     }
 
     /// What is wrong with the value, in words; nothing within the limits.

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::report::is_within;
 use crate::{Location, Measurement, format_rounded};
 
 /// Some samples of one signal, in the order in which they were taken, with the
@@ -31,10 +32,7 @@ pub struct Samples {
 impl Samples {
     /// The times and values that do not keep the limits.
     pub fn outside(&self) -> impl Iterator<Item = (f64, Option<f64>)> + '_ {
-        let holds = |value: f64| {
-            self.low.is_none_or(|low| value >= low) && self.high.is_none_or(|high| value <= high)
-        };
-        self.points.iter().copied().filter(move |(_, value)| !value.is_some_and(holds))
+        self.points.iter().copied().filter(|(_, value)| !is_within(*value, self.low, self.high))
     }
 
     /// What is wrong with the first sample outside the limits, in words.
