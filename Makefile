@@ -44,12 +44,9 @@ test:
 test-quick:
 	@tools/test.sh quick
 
-# RTF_CHAOS_SEED=N repeats the random numbers of a run, which prints its seed.
 chaos:
 	@tools/bootstrap.sh test
-	@RTF_CHAOS_SUITES=3000 RTF_CHAOS_RUNS=1000 RTF_CHAOS_ROUNDS=50 cargo test --workspace --test e2e -- \
-	  --nocapture chaos guard::a_runner_killed_at_any_moment \
-	  side_by_side::twenty_suites side_by_side::a_runner_killed_at_any_moment
+	@tools/chaos.sh
 
 bench:
 	@tools/bench.sh
@@ -65,4 +62,4 @@ uninstall:
 
 clean:
 	rm -rf build web/dist web/node_modules web/src/generated
-	cargo clean
+	bash -c '. tools/env.sh && cargo clean'

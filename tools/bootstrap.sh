@@ -5,7 +5,8 @@
 #   tools/bootstrap.sh update             the lists of apt-get
 #
 # Programs and libraries come from Debian or Ubuntu; on other systems the
-# script says what is missing. Python packages go into a virtual environment
+# script says what is missing. So does Rust, when it is missing or older than
+# Cargo.toml wants; tools/env.sh then uses the system's. Python packages go into a virtual environment
 # in the user's cache, see tools/venv.sh.
 
 . "$(dirname "$0")/env.sh"
@@ -15,7 +16,7 @@ goal=${1:?goal: build, demo, test or update}
 
 # The Debian packages of each goal.
 case $goal in
-  build) packages=() ;;
+  build) packages=(gcc) ;;
   demo) packages=(cmake g++ lua-socket python3-venv) ;;
   test) packages=(cmake g++ lua-socket python3-venv libxml2-utils gdb shellcheck clang-format
     procps perl jq valgrind ruby ruby-minitest rubocop gnat gprbuild openssh-client openssh-server
@@ -28,7 +29,10 @@ esac
 # from elsewhere brings its own venv, a compiler may come from elsewhere too.
 is_there() {
   case $1 in
+    gcc) have cc ;;
     g++) have c++ ;;
+    rustfmt*) cargo fmt --version >/dev/null 2>&1 ;;
+    rust-*clippy) cargo clippy --version >/dev/null 2>&1 ;;
     gnat) have gnatmake ;;
     libxml2-utils) have xmllint ;;
     procps) have pgrep ;;
@@ -69,13 +73,49 @@ keep_sshd_stopped() {
   say "openssh-server will not start by itself; sudo systemctl unmask ssh.service ssh.socket undoes that"
 }
 
-have cargo || die "cargo is missing" \
-  "the Rust toolchain, version 1.95 or later, comes from https://rustup.rs"
+# Debian's name for a Rust that is new enough: rustc, or rustc-web, which is kept up
+# to date in a stable release. Sets `suffix`.
+find_rust() {
+  for suffix in '' -web; do
+    ! is_new_rust "$(candidate_of "rustc$suffix")" || return 0
+  done
+  return 1
+}
+
+no_rust() {
+  local there
+  there=$(rust_version_of cargo)
+  die "cargo $RUST_VERSION or later is missing${there:+, this is $there}" \
+    "this system has no package of it: install it from https://rustup.rs, then try again"
+}
+
+need_rust() {
+  ! use_rust || return 0
+  have apt-get || no_rust
+  # The lists may be older than the package, or not be there.
+  find_rust || { apt update && find_rust; } || no_rust
+  install_packages "rustc$suffix" "cargo$suffix"
+  use_rust || no_rust
+}
+
+# What checks the sources comes from where Rust does.
+need_rust_checkers() {
+  if [ "$(readlink -f "$(command -v cargo)")" = /usr/bin/cargo ] && find_rust; then
+    packages+=("rustfmt$suffix" "rust$suffix-clippy")
+  elif ! is_there rustfmt || ! is_there rust-clippy; then
+    die "cargo fmt or cargo clippy is missing" "rustup component add rustfmt clippy"
+  fi
+}
+
+suffix=
+need_rust
+[ "$goal" != test ] || need_rust_checkers
 
 find_missing
 if [ ${#missing[@]} -gt 0 ]; then
   keep_sshd_stopped
   install_packages "${missing[@]}"
   find_missing
+  use_rust # rustfmt and clippy may be new
   [ ${#missing[@]} -eq 0 ] || die "still missing after apt-get install: ${missing[*]}"
 fi

@@ -40,7 +40,7 @@ def main() -> int:
         lesson.disturbed("connection", cut_connection, [CONNECTION, "does not send"])
         lesson.disturbed("server", stop_server, ["yarpserver was killed by SIGKILL"])
         lesson.disturbed("fixture", kill_fixture, ["SIGKILL"])
-        for page in ("yarpserver", "yarpmanager", "yarpdatadumper"):
+        for page in ("yarpserver", "yarpmanager", "yarpplugin", "yarpdatadumper"):
             run_fixture_page(str(rtf), page, Path(name) / page, example)
             lesson.nothing_left()
     return 0

@@ -8,6 +8,7 @@ All programs are YARP's own. What happens when they are killed is in check_examp
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import tarfile
@@ -34,6 +35,8 @@ def main() -> int:
         does_not_start(lesson, "missing", "cannot run no-such-module on localhost")
         side_by_side(lesson)
         recorded(lesson)
+        as_in_yarp(lesson)
+        is_installed(lesson)
     return 0
 
 
@@ -80,6 +83,27 @@ def recorded(lesson: Lesson) -> None:
     expect("enough lines", len(lines) > 10, True)
     expect("numbers in a line", {len(line.split()) for line in lines}, {8})
     lesson.nothing_left()
+
+
+def as_in_yarp(lesson: Lesson) -> None:
+    """`--fixture head.xml` is where YARP's own plug-in finds it: in a context of its data."""
+    data = lesson.example.parent / "data"
+    os.environ["YARP_DATA_DIRS"] = f"{os.environ['YARP_DATA_DIRS']}:{data}"
+    run = lesson.start("predecessor.xml", "predecessor")
+    expect("exit code", run.wait(), 0)
+    expect("verdicts", list(run.verdicts().values()), ["passed"])
+    lesson.nothing_left()
+
+
+def is_installed(lesson: Lesson) -> None:
+    """What YARP lists is there; all that it does not list is named."""
+    run = lesson.start("plugins.xml", "plugins")
+    expect("exit code", run.wait(), 0)
+    absent = "--set=monitor=remote_controlboard"
+    run = lesson.start("plugins.xml", "absent", absent, "--set=carriers=tcp shmem")
+    expect("exit code", run.wait(), 1)
+    expected = "YARP does not have portmonitors: remote_controlboard, carriers: shmem"
+    expect_in(expected, run.reason("fixture-broken"))
 
 
 if __name__ == "__main__":

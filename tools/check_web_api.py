@@ -21,7 +21,8 @@ from pathlib import Path
 
 CHECKS = (
     "not_a_server_error,status_code_conformance,content_type_conformance,"
-    "response_headers_conformance,response_schema_conformance"
+    "response_headers_conformance,response_schema_conformance,"
+    "negative_data_rejection,positive_data_acceptance"
 )
 
 SUITE = """<suite name="arm">

@@ -14,14 +14,21 @@ apt() {
     -o DPkg::Lock::Timeout=300 "$@"
 }
 
-# Installs packages, or tells how it is done by hand.
+# The version of a package that apt-get would install; nothing when it knows none.
+candidate_of() {
+  local version
+  version=$(apt-cache policy "$1" 2>/dev/null | sed -n 's/^ *Candidate: *//p')
+  [ "$version" = '(none)' ] || printf '%s' "$version"
+}
+
+# Installs packages, or tells how it is done by hand. None is removed for them.
 install_packages() {
   local by_hand="sudo apt-get install $*"
   have apt-get || die "missing: $* (Debian's names)" \
     "install what this system calls them, then try again"
   say "installing: $*"
-  apt install -y --no-install-recommends "$@" ||
-    { apt update && apt install -y --no-install-recommends "$@"; } ||
+  apt install -y --no-install-recommends --no-remove "$@" ||
+    { apt update && apt install -y --no-install-recommends --no-remove "$@"; } ||
     die "missing and could not be installed: $*" "as root: $by_hand"
 }
 

@@ -138,6 +138,15 @@ sdk_ruby() {
     robot-testing-framework.gemspec
 }
 
+# The texts that have been rewritten; the others follow.
+lint_language() {
+  files README.md CHANGELOG.md 'docs/fixtures/*.md' 'examples/*/README.md' 'crates/rtf-plan/src/*.rs' \
+    docs/{doctor,event-sequence,getting-started,isolation,migrating-others,remote-fixtures}.md \
+    docs/{running,simulation-time,writing-tests}.md \
+    spec/{config,environment,exit-codes,plugin-abi,sdk,suite,testrunner}.md |
+    xargs -d '\n' tools/check_language.py
+}
+
 suites_are_valid() {
   # What lies deeper in an example is its middleware's.
   files ':(glob)examples/*/*.xml' 'tests/install/*.xml' 'tests/fixtures/*/suite.xml' \
@@ -234,6 +243,7 @@ step 'lint c++ format' lint_cpp
 step 'lint python' lint_python
 step 'lint ruby' lint_ruby
 step 'lint suites' suites_are_valid
+step 'lint language' lint_language
 step 'lint page' in_web check
 step 'lint rust' cargo clippy --workspace --all-targets --locked -- -D warnings
 step 'lint rust docs' rust_docs
@@ -270,6 +280,7 @@ step 'guide' tools/check_docs.py "$TARGET/release/rtf" README.md docs/getting-st
 step 'guide commands' tools/check_running.py "$TARGET/release/rtf"
 step 'page in a browser' tools/web-tests.sh
 step 'installed copy' tests/install/run.sh
+step 'front door' tools/front_door.sh
 step 'predecessor command line' tests/predecessor/run.sh command
 step 'predecessor compared' tests/predecessor/run.sh compare
 step 'predecessor ours' tests/predecessor/run.sh ours

@@ -52,6 +52,9 @@ public:
     // What the joint's encoder says, in radians.
     double position(const std::string &joint) { return std::stod(ask("get " + joint)); }
 
+    // The simulator's time, in seconds.
+    double time() { return std::stod(ask("time")); }
+
     // Lets the joint begin to move to `target` radians.
     void move(const std::string &joint, double target)
     {

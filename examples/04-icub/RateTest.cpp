@@ -55,6 +55,7 @@ public:
         yarp::os::Property options;
         options.fromCommand(argc, argv);
         rate_ = options.check("rate", yarp::os::Value(100.0)).asFloat64();
+        tolerance_ = options.check("tolerance", yarp::os::Value(0.2)).asFloat64();
         arrivals_.setStrict(); // none may be left out
         arrivals_.useCallback();
         return arrivals_.open("/RateTest/state:i") &&
@@ -70,8 +71,8 @@ public:
             sum += period;
         }
         std::sort(periods.begin(), periods.end());
-        measure("rate", 1000.0 * static_cast<double>(periods.size()) / sum, "Hz", 0.8 * rate_,
-                1.2 * rate_);
+        measure("rate", 1000.0 * static_cast<double>(periods.size()) / sum, "Hz",
+                (1.0 - tolerance_) * rate_, (1.0 + tolerance_) * rate_);
         measure("median period", periods[periods.size() / 2], "ms", 0.0, 2.0 * 1000.0 / rate_);
         measure("longest period", periods.back(), "ms");
     }
@@ -89,6 +90,7 @@ private:
     yarp::os::Network yarp_;
     Arrivals arrivals_{samples};
     double rate_ = 100.0;
+    double tolerance_ = 0.2; // of the rate
 };
 
 RTF_PLUGIN(RateTest)

@@ -68,6 +68,24 @@ def first_generation(prefix: Path, plugins: Path) -> None:
         expect(f"EncoderTest {how}", got, [verdict])
         texts = [event["message"]["text"] for event in events if event["type"] == "message"]
         expect(f"EncoderTest {how} is torn down", texts[-1], f"{how} is over")
+    code, got, events = run(prefix, str(plugins / "PaperTest.so"), "--param", "--well")
+    expect("a test as in the paper", (code, got), (0, ["passed"]))
+    texts = [event["message"]["text"] for event in events if event["type"] == "message"]
+    expect("it has the plug-in's name", texts[0], "PaperTest")
+    with tempfile.TemporaryDirectory() as name:
+        suite = Path(name) / "suite.xml"
+        suite.write_text(
+            f"<suite name='paper'><fixture param='simulator'>{plugins}/PaperRig.so</fixture>"
+            f"<test param='--well'>{plugins}/PaperTest.so</test></suite>"
+        )
+        code, got, events = run(prefix, str(suite))
+    expect("a fixture as in the paper", (code, got), (0, ["passed"]))
+    said = [
+        event for event in events if event["type"] == "message" and "fixture" in event["source"]
+    ]
+    expect(
+        "it reports to its suite", [event["message"]["text"] for event in said], ["simulator is up"]
+    )
     with tempfile.TemporaryDirectory() as name:
         module = f"{name}/module"
         suite = Path(name) / "suite.xml"
@@ -107,6 +125,13 @@ def get(port: int, path: str, host: str = "127.0.0.1") -> tuple[int, str]:
     return answer.status, answer.read().decode()
 
 
+def read_once(port: int, request: str) -> str:
+    """What a client gets that reads 255 bytes, and only once."""
+    with socket.create_connection(("127.0.0.1", port), 10) as connection:
+        connection.sendall(request.encode())
+        return connection.recv(255).decode()
+
+
 def web(program: Path) -> None:
     """Valid JSON whatever tests are called and say, on loopback only."""
     with subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
@@ -128,6 +153,17 @@ def web(program: Path) -> None:
         expect("valid JSON", told, expected)
         rest = json.loads(get(port, f"/events?from={news['next']}")[1])
         expect("only what is new", (news["running"], rest["events"]), (False, []))
+        for request in ("GET /status HTTP/1.0\r\n\r\n", "GET /status\n\n"):
+            line = read_once(port, request).splitlines()[-1]
+            state = {"name": "a 'suite'", "testStatus": [2]}
+            expect(f"{request!r}, read once", json.loads(line), state)
+        html = json.loads(get(port, "/update")[1])
+        expect("HTML in one JSON string", html.count("<br>"), 6)
+        expect(
+            "what a test says is text",
+            ("</script>" in html, "&#34;quoted&#34;" in html),
+            (False, True),
+        )
         expect("another site's page", get(port, "/events", "robot.example")[0], 403)
         expect("no such page", get(port, "/secret")[0], 404)
         with socket.socket() as other:
@@ -165,6 +201,12 @@ def main() -> None:
     build(HERE / "ours", work / "ours", package)
     web(work / "ours/web")
     scripts(work / "ours/scripts", work)
+    loaded = [work / "ours/loader", work / "generation1/PaperTest.so"]
+    expect(
+        "a test without a name, in a program",
+        subprocess.check_output(loaded, text=True),
+        "PaperTest\n",
+    )
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
-use rtf_engine::plan::{self, Options, Surroundings};
+use rtf_plan::plan::{self, InputPath, Options, RunnerEnvironment};
 
 const TESTS: usize = 10_000;
 
@@ -26,13 +26,13 @@ pub fn run(folder: &Path) -> Result<(), Box<dyn Error>> {
     // Nothing is started: the planner only looks whether it is there.
     std::fs::write(&host, "")?;
     std::fs::set_permissions(&host, std::fs::Permissions::from_mode(0o755))?;
-    let surroundings = Surroundings {
-        current_folder: folder.to_owned(),
+    let surroundings = RunnerEnvironment {
+        current_dir: folder.to_owned(),
         executable: folder.join("rtf"),
         variables: [("PATH".to_owned(), String::new())].into_iter().collect(),
     };
-    let options = Options { verify: None, ..Options::new(surroundings) };
-    let outcome = plan::build(&[suite], &options);
+    let requests = [InputPath::Any(suite)];
+    let outcome = plan::draft(&requests, &Options::new(surroundings)).unchecked();
     match outcome.plan {
         Some(plan) if plan.tests as usize == TESTS => Ok(()),
         _ => Err(format!("no plan of {TESTS} tests: {:?}", outcome.diagnostics.first()).into()),

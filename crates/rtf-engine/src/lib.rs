@@ -1,19 +1,15 @@
-//! Loads suites, plans runs, and runs them.
+//! Runs plans.
 //!
-//! [`suite`] turns text into what was written, [`plan`] turns that into what
-//! will be done and finds every problem before a process starts, and [`run`]
-//! does it: a state machine without I/O or clock, with one task around it.
-//! [`host`] is how processes are started, spoken to, and ended; [`isolate`] is
-//! what a suite gets for itself; [`guard`] is who does what is left to do when
-//! the runner dies.
+//! [`verify`] checks whether the plug-ins of a plan can be loaded. [`run`] runs
+//! the plan: a state machine without I/O or clock, with one task around it.
+//! [`host`] starts processes, talks to them, and ends them; [`isolate`] gives a
+//! suite its private network, ports and ids; [`guard`] takes over when the runner
+//! dies.
 
-pub mod config;
 pub mod guard;
 pub mod host;
 pub mod isolate;
 pub mod locks;
-pub mod plan;
 pub mod run;
-pub mod select;
 pub mod signal;
-pub mod suite;
+pub mod verify;

@@ -1,4 +1,4 @@
-//! Signals that end a run: the first asks, the second insists, the third kills.
+//! Signals that end a run: the first request asks, the second insists, the third kills.
 //!
 //! They come through the [`crate::guard`], whose own death counts as one.
 
@@ -7,20 +7,27 @@ use std::time::Duration;
 
 use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::watch;
+use tokio::time::Instant;
 
-use crate::guard::Link;
+use crate::guard::{BEAT, Link, Requests};
 use crate::host::tree;
 use crate::run::{Stop, StopLevel};
 
 /// The signals that end a run, by number and name.
 const ENDING: [(i32, &str); 3] = [(2, "SIGINT"), (15, "SIGTERM"), (1, "SIGHUP")];
 
-/// Turns signals, and the guard's death, into stop requests, for as long as it
-/// is polled:
+/// After the third request, the runner may take this long to write how it ended.
+const LAST_GRACE: Duration = Duration::from_secs(4);
+
+/// Turns signals, and the guard's death, into stop requests, and shows the guard
+/// that this process is alive, for as long as it is polled. By [`Requests`]:
 ///
-/// 1. stop the test, tear down, report, all within `limit`;
-/// 2. kill everything, report;
-/// 3. kill everything and return the signal's number: the process should end.
+/// 1. stop the test, hooks, tear down, report, all within `limit`;
+/// 2. kill without tear-down, hooks, report;
+/// 3. kill everything, report.
+///
+/// Returns a signal's number when the third request did not end the run: the
+/// process should end.
 ///
 /// # Errors
 /// A signal's handler cannot be installed.
@@ -30,25 +37,53 @@ pub async fn forward(
     limit: Duration,
 ) -> io::Result<i32> {
     let mut signals = Signals::install()?;
-    let died = async {
-        guard.guard_died().await;
-        "the guard died"
-    };
-    let mut died = Box::pin(died);
-    let mut alive = true;
-    for level in [StopLevel::TearDown, StopLevel::Kill] {
-        let reason = tokio::select! {
-            (_, name) = signals.next() => name,
-            reason = &mut died, if alive => {
+    let mut requests = Requests::default();
+    let mut beats = tokio::time::interval(BEAT);
+    let mut died = Box::pin(guard.guard_died());
+    let (mut alive, mut last) = (true, None);
+    loop {
+        let (number, reason) = tokio::select! {
+            biased;
+            () = until(last.map(|(at, _)| at)) => {
+                let _ = tree::kill_everything();
+                return Ok(last.map_or(0, |(_, number)| number));
+            }
+            _ = beats.tick() => {
+                guard.beat();
+                continue;
+            }
+            (number, name) = signals.next() => (number, name),
+            () = &mut died, if alive => {
                 alive = false;
-                reason
+                if requests.made() > 0 {
+                    continue;
+                }
+                (0, "the guard died")
             }
         };
-        stops.send_replace(Some(Stop { level, reason: reason.to_owned(), limit }));
+        if requests.take(std::time::Instant::now()) {
+            let level = level(requests.made());
+            stops.send_replace(Some(Stop { level, reason: reason.to_owned(), limit }));
+            if level == StopLevel::KillHooks && last.is_none() {
+                last = Some((Instant::now() + LAST_GRACE, number));
+            }
+        }
     }
-    let (number, _) = signals.next().await;
-    let _ = tree::kill_everything();
-    Ok(number)
+}
+
+fn level(requests: u32) -> StopLevel {
+    match requests {
+        0 | 1 => StopLevel::TearDown,
+        2 => StopLevel::Kill,
+        _ => StopLevel::KillHooks,
+    }
+}
+
+async fn until(moment: Option<Instant>) {
+    match moment {
+        Some(moment) => tokio::time::sleep_until(moment).await,
+        None => std::future::pending().await,
+    }
 }
 
 /// The signals that end a run, as they come to this process.

@@ -156,7 +156,7 @@ fn attach(
 ) -> Option<String> {
     let path = path.to_string_lossy();
     let full = std::path::absolute(&path).unwrap_or_else(|_| Path::new(&path).to_owned());
-    if !full.is_file() {
+    if !full.exists() {
         return Some(format!("there is no file `{}` to attach", full.display()));
     }
     let own_name = || full.file_name().map(|name| name.to_string_lossy().into_owned());

@@ -7,7 +7,7 @@ use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 
 use crate::fork::ForkServer;
-use crate::{CheckedFile, Session, check, files_to_check};
+use crate::{CheckedFile, Session, check, files_to_check, unix};
 
 /// The exit code of a host that could not do its work.
 const BROKEN: c_int = 2;
@@ -62,6 +62,7 @@ impl<P: Default> Host<P> {
                 format!("unexpected argument `{arg}`; only `--check FILE…` is known").into()
             );
         }
+        unix::buffer_output_by_lines();
         let (session, prepared) = match ForkServer::open()? {
             Some(server) => {
                 let prepared = (self.prepare)();

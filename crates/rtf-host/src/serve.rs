@@ -4,11 +4,12 @@ use rtf_model::protocol::{
     Answer, Initialize, PROTOCOL_VERSION, Plugin, Request, RpcError, VERSION_MISMATCH,
 };
 use rtf_model::{Message, MessageKind, Outcome, Phase};
+use rustix::process::Pid;
 
 use crate::decode::{INVALID_REQUEST, Incoming};
 use crate::reader::Reader;
 use crate::sharing::Sharing;
-use crate::{HostPlugin, Role, Session, Step, StepEnd, Told};
+use crate::{HostPlugin, Role, Session, Step, StepEnd, Told, unix};
 
 /// Serves the runner until it has got its last answer or has closed the
 /// channel. The caller then ends the process the ordinary way, so that what
@@ -20,7 +21,9 @@ use crate::{HostPlugin, Role, Session, Step, StepEnd, Told};
 /// The thread that reads the channel cannot be started.
 pub fn serve(session: &Session, host: impl HostPlugin) -> std::io::Result<()> {
     let reader = Reader::new(session, host.stack_dumper(), host.stopper());
-    let mut server = Server { session, host, initialized: false, loaded: None, sharing: None };
+    let process = rustix::process::getpid();
+    let mut server =
+        Server { session, host, process, initialized: false, loaded: None, sharing: None };
     let Some((reader, first)) = server.before_plugins(reader) else {
         return Ok(());
     };
@@ -38,6 +41,8 @@ pub fn serve(session: &Session, host: impl HostPlugin) -> std::io::Result<()> {
 struct Server<'a, H> {
     session: &'a Session,
     host: H,
+    /// The process that serves: a plug-in may fork.
+    process: Pid,
     initialized: bool,
     loaded: Option<Role>,
     /// Once a test came that may leave the host to the next one.
@@ -213,7 +218,9 @@ impl<H: HostPlugin> Server<'_, H> {
             return false;
         }
         self.session.engage(true);
-        match self.host.load(role, plugin) {
+        let loaded = self.host.load(role, plugin);
+        unix::end_forked_child(self.process);
+        match loaded {
             Ok(()) => {
                 self.loaded = Some(role);
                 true
@@ -240,6 +247,7 @@ impl<H: HostPlugin> Server<'_, H> {
     }
 
     fn judge_end(&self, end: StepEnd, what: &str) {
+        unix::end_forked_child(self.process);
         match end {
             StepEnd::Done => {}
             StepEnd::Refused => {

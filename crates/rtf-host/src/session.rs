@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 use std::os::unix::net::UnixStream;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -138,10 +138,11 @@ impl Session {
     /// # Errors
     /// It cannot be copied.
     pub fn attach(&self, mut attachment: Attachment) -> std::io::Result<()> {
+        let mut source = unix::open_regular(Path::new(&attachment.path))?;
         // Without such a folder the runner copies the file, as soon as it can.
         if let Some(copy) = self.place_for_copy(&attachment.name) {
             std::fs::create_dir_all(copy.parent().unwrap_or(&copy))?;
-            std::fs::copy(&attachment.path, &copy)?;
+            std::io::copy(&mut source, &mut std::fs::File::create(&copy)?)?;
             attachment.path = copy.to_string_lossy().into_owned();
         }
         self.notify(&Notification::Attached(attachment));

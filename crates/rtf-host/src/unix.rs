@@ -1,11 +1,16 @@
 //! What the host asks of the operating system.
 #![expect(unsafe_code, reason = "inherited descriptors and C functions that have no safe form")]
 
+use std::fs::File;
+use std::io;
 use std::os::fd::{BorrowedFd, FromRawFd, RawFd};
+use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 use std::os::unix::net::UnixStream;
+use std::path::Path;
 
 use rustix::io::FdFlags;
 use rustix::net::SendFlags;
+use rustix::process::Pid;
 
 /// Takes over a descriptor that the runner left open for this process, and
 /// keeps it from the programs that the plug-in starts.
@@ -82,10 +87,47 @@ extern "C" fn run_body(argument: *mut libc::c_void) -> *mut libc::c_void {
     std::ptr::null_mut()
 }
 
+unsafe extern "C" {
+    #[cfg_attr(target_os = "macos", link_name = "__stdoutp")]
+    static stdout: *mut libc::FILE;
+}
+
+/// Lets C write its standard output line by line, although it is no terminal: what a
+/// plug-in printed before its process is lost must arrive. C++'s streams go through it.
+pub(crate) fn buffer_output_by_lines() {
+    // SAFETY: nothing was written to the stream yet, and the process has one thread.
+    unsafe { libc::setvbuf(stdout, std::ptr::null_mut(), libc::_IOLBF, 0) };
+}
+
+/// Opens a regular file. Of anything else it says what it is, without waiting for whoever
+/// may be at the other end.
+pub(crate) fn open_regular(path: &Path) -> io::Result<File> {
+    let flags = libc::O_NONBLOCK | libc::O_NOCTTY;
+    let file = File::options().read(true).custom_flags(flags).open(path)?;
+    let kind = file.metadata()?.file_type();
+    let what = match () {
+        () if kind.is_file() => return Ok(file),
+        () if kind.is_dir() => "a directory",
+        () if kind.is_fifo() => "a FIFO",
+        () => "a device or a socket",
+    };
+    Err(io::Error::other(format!("it is {what}, not a file")))
+}
+
 /// Writes what C's buffers still hold.
 pub(crate) fn flush_output() {
     // SAFETY: null means all output streams; they are locked while written.
     unsafe { libc::fflush(std::ptr::null_mut()) };
+}
+
+/// Ends a child that the plug-in forked and that came back from the plug-in: its parent
+/// serves the runner. Returns in the process that was given.
+pub(crate) fn end_forked_child(host: Pid) {
+    if rustix::process::getpid() != host {
+        flush_output();
+        // SAFETY: ends the process.
+        unsafe { libc::_exit(0) };
+    }
 }
 
 /// Ends the process at once: no destructors, no handlers, no flushing.

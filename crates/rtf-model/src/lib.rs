@@ -12,6 +12,7 @@ mod clock;
 mod diagnostic;
 mod event;
 mod ids;
+mod journal;
 mod manifest;
 mod order;
 mod prepared;
@@ -30,7 +31,8 @@ pub use event::{
     RunStarted, Source, StopCause, Stream, SuitePlanned, TestFinished, TestPlanned, Trigger,
 };
 pub use ids::{FixtureId, HookId, Micros, SuiteId, TestId};
-pub use manifest::Manifest;
+pub use journal::{Checked, Damage, LineCheck, LineChecker, LineSealer, StreamChecker};
+pub use manifest::{Manifest, Revision};
 pub use order::{OrderChecker, OrderError};
 pub use prepared::{OwnNetwork, OwnPort, OwnVariable, SuitePrepared};
 pub use record::{

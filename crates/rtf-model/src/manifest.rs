@@ -57,9 +57,24 @@ pub struct Manifest {
     /// How many suites could run at the same time, when it was more than one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub jobs: Option<u32>,
+    /// The revision of the sources in the run's working folder, as Git knows it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub revision: Option<Revision>,
     /// How many tests there were of which these were chosen.
     #[serde(skip_serializing_if = "is_default")]
     pub chosen_of: u32,
+}
+
+/// A revision of sources.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default)]
+pub struct Revision {
+    /// The commit's hash, in hexadecimal digits.
+    pub commit: String,
+    /// The branch, when one was checked out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub branch: Option<String>,
 }
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {

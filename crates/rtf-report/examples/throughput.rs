@@ -18,6 +18,8 @@ use rtf_report::{Fanout, Reporter};
 
 const TEST: TestId = TestId(0);
 const SUITE: SuiteId = SuiteId(0);
+/// How much may wait: as much as the runner lets wait of a test.
+const BACKLOG: usize = 1024 * 1024;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let reports = std::env::args().nth(1).map_or(Ok(1_000_000), |count| count.parse::<u64>())?;
@@ -33,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let to_reports = fanout.handle();
     let flood = (0..reports).map(report);
     for (seq, kind) in (0..).zip(before().into_iter().chain(flood).chain(after())) {
-        while to_reports.is_congested() {
+        while to_reports.backlog(Source::Test(TEST)) > BACKLOG {
             std::thread::yield_now();
         }
         to_reports.send(Event { seq, at: Micros(seq), kind });

@@ -2,43 +2,40 @@
 
 use std::io::Write;
 
-use rtf_model::{Event, Record};
+use rtf_model::{Event, LineSealer, Record};
 
 use crate::stream::Stream;
 use crate::{ReportError, Reporter};
 
 /// Writes each event as a line of JSON, exactly as the journal has it.
-pub struct EventStream(Stream);
+pub struct EventStream {
+    stream: Stream,
+    sealer: LineSealer,
+}
 
 impl EventStream {
     /// Writes to `out`.
     #[must_use]
     pub fn new(out: Box<dyn Write + Send>) -> Self {
-        Self(Stream::new("the events", out))
+        Self { stream: Stream::new("the events", out), sealer: LineSealer::default() }
     }
-}
-
-/// Writes an event as a line.
-///
-/// # Errors
-/// `out` cannot be written.
-pub fn write(out: &mut dyn Write, event: &Event) -> std::io::Result<()> {
-    serde_json::to_writer(&mut *out, event)?;
-    out.write_all(b"\n")
 }
 
 impl Reporter for EventStream {
     fn event(&mut self, event: &Event, _record: &Record) -> Result<(), ReportError> {
-        let written = write(&mut self.0.page, event);
+        let page = &mut self.stream.page;
+        let start = page.len();
+        let written = serde_json::to_writer(&mut *page, event);
         debug_assert!(written.is_ok(), "memory takes everything");
-        self.0.flush_if_long()
+        self.sealer.seal(page, start);
+        self.stream.flush_if_long()
     }
 
     fn idle(&mut self, _record: &Record) -> Result<(), ReportError> {
-        self.0.flush()
+        self.stream.flush()
     }
 
     fn finish(&mut self, _record: &Record) -> Result<(), ReportError> {
-        self.0.flush()
+        self.stream.finish()
     }
 }

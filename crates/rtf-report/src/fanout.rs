@@ -1,24 +1,27 @@
 //! Hands each event to each reporter, on a thread of its own.
 //!
-//! The run must not wait for a disk or a terminal, and reporters must not need
-//! locks: one thread owns the record and all reporters, and a queue leads there.
-//! Handing an event over never waits, so that a fixture's collapse is dealt with
-//! even while somebody holds the terminal. Instead, [`FanoutHandle::is_congested`]
-//! tells the run to stop reading from its processes for a while: a plug-in that
-//! floods cannot fill the memory.
+//! The run must not wait for a disk, and reporters must not need locks: one thread owns
+//! the record and all reporters, and a queue leads there. Handing an event over never
+//! waits, so that a fixture's collapse is dealt with even while the disk does not answer.
+//! Instead, [`FanoutHandle::backlog`] tells the run how much of one process waits, so that
+//! it reads no more from a plug-in that floods, which cannot fill the memory. Standard
+//! output has a thread of its own: see [`crate::outlet`].
+//!
+//! A reporter that panics is given no further event; the others go on.
 
+use std::io;
+use std::mem::take;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender, TryRecvError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use rtf_model::{Event, OrderChecker, Record};
+use rtf_model::{Event, OrderChecker, Record, Source};
 
+use crate::backlog::Backlog;
 use crate::{ReportError, Reporter};
-
-/// When this many events wait, the run should read no more from its processes.
-const CONGESTED: usize = 4096;
 
 /// What happens sooner than this after reporters have written waits until then, so
 /// that short tests are written together. It is how late a report can be by that.
@@ -35,23 +38,22 @@ pub struct Fanout {
 #[derive(Clone, Debug)]
 pub struct FanoutHandle {
     sender: Sender<Event>,
-    waiting: Arc<AtomicUsize>,
+    backlog: Arc<Backlog>,
 }
 
 impl FanoutHandle {
-    /// Hands over an event; never waits. When the thread is gone (a reporter
-    /// panicked) the event is dropped: the run, its tear-down and its hooks go
-    /// on, and [`Fanout::join`] tells.
+    /// Hands over an event; never waits. When the thread is gone (it panicked) the
+    /// event is dropped: the run, its tear-down and its hooks go on, and
+    /// [`Fanout::join`] tells.
     pub fn send(&self, event: Event) {
-        self.waiting.fetch_add(1, Ordering::Relaxed);
+        self.backlog.add(&event);
         drop(self.sender.send(event));
     }
 
-    /// Whether so many events wait that the run should read no more from its
-    /// processes for a while.
+    /// About how many bytes of what a process told wait to be reported.
     #[must_use]
-    pub fn is_congested(&self) -> bool {
-        self.waiting.load(Ordering::Relaxed) > CONGESTED
+    pub fn backlog(&self, source: Source) -> usize {
+        self.backlog.of(source)
     }
 }
 
@@ -78,10 +80,10 @@ impl Fanout {
     /// The system has no thread to give.
     pub fn start(reporters: Vec<Box<dyn Reporter>>) -> std::io::Result<Self> {
         let (sender, receiver) = mpsc::channel();
-        let waiting = Arc::new(AtomicUsize::new(0));
-        let state = State::new(reporters, Arc::clone(&waiting));
+        let backlog = Arc::new(Backlog::default());
+        let state = State::new(reporters, Arc::clone(&backlog));
         let thread = thread::Builder::new().name("reports".into()).spawn(|| state.run(receiver))?;
-        Ok(Self { handle: FanoutHandle { sender, waiting }, thread })
+        Ok(Self { handle: FanoutHandle { sender, backlog }, thread })
     }
 
     /// Hands over an event, see [`FanoutHandle::send`].
@@ -98,7 +100,7 @@ impl Fanout {
     /// Waits until every event is reported and every reporter has finished.
     ///
     /// # Panics
-    /// When a reporter panicked; in debug builds also when the order of events
+    /// When the thread panicked; in debug builds also when the order of events
     /// broke a rule of [`OrderChecker`].
     #[must_use]
     pub fn join(self) -> Finished {
@@ -119,6 +121,12 @@ fn gather(written: Instant) {
     }
 }
 
+/// What is told of a reporter that panicked; the panic itself was printed.
+fn panicked() -> ReportError {
+    let source = io::Error::other("the reporter panicked");
+    ReportError::at("a report", Path::new("its place"))(source)
+}
+
 struct State {
     record: Record,
     /// A reporter that failed is replaced by `None`.
@@ -126,13 +134,20 @@ struct State {
     errors: Vec<ReportError>,
     order: OrderChecker,
     disorder: Option<String>,
-    waiting: Arc<AtomicUsize>,
+    backlog: Arc<Backlog>,
+}
+
+impl Drop for State {
+    /// Nothing waits for a thread that is gone.
+    fn drop(&mut self) {
+        self.backlog.close();
+    }
 }
 
 impl State {
-    fn new(reporters: Vec<Box<dyn Reporter>>, waiting: Arc<AtomicUsize>) -> Self {
+    fn new(reporters: Vec<Box<dyn Reporter>>, backlog: Arc<Backlog>) -> Self {
         Self {
-            waiting,
+            backlog,
             record: Record::default(),
             reporters: reporters.into_iter().map(Some).collect(),
             errors: Vec::new(),
@@ -158,12 +173,12 @@ impl State {
             }
         }
         self.each(|reporter, record| reporter.finish(record));
-        let Self { record, errors, disorder, .. } = self;
-        Outcome { finished: Finished { record, errors }, disorder }
+        let (record, errors) = (take(&mut self.record), take(&mut self.errors));
+        Outcome { finished: Finished { record, errors }, disorder: self.disorder.take() }
     }
 
     fn report(&mut self, event: &Event) {
-        self.waiting.fetch_sub(1, Ordering::Relaxed);
+        self.backlog.remove(event);
         self.check_order(event);
         self.record.apply(event);
         self.each(|reporter, record| reporter.event(event, record));
@@ -176,11 +191,15 @@ impl State {
     }
 
     fn each(&mut self, act: impl Fn(&mut dyn Reporter, &Record) -> Result<(), ReportError>) {
-        for slot in &mut self.reporters {
-            let Some(reporter) = slot else { continue };
-            if let Err(error) = act(reporter.as_mut(), &self.record) {
+        for index in 0..self.reporters.len() {
+            let Some(reporter) = &mut self.reporters[index] else { continue };
+            // A reporter that panicked is dropped and never used again.
+            let acted = catch_unwind(AssertUnwindSafe(|| act(reporter.as_mut(), &self.record)));
+            if let Err(error) = acted.unwrap_or_else(|_| Err(panicked())) {
+                self.reporters[index] = None;
+                let others = self.reporters.iter_mut().flatten();
+                others.for_each(|reporter| reporter.reporter_failed(&error));
                 self.errors.push(error);
-                *slot = None;
             }
         }
     }

@@ -9,6 +9,7 @@ pub(crate) use place::{Place, Roots};
 
 use crate::escape;
 use crate::explain::{self, Extent};
+use crate::words;
 
 /// How much of a test is told; hosts cut long texts.
 const EXTENT: Extent = Extent { items: 10, stack_lines: 30 };
@@ -56,7 +57,9 @@ pub(crate) fn all(record: &Record, roots: &Roots<'_>) -> Vec<Finding> {
 
 /// What is wrong with the run as a whole, in words.
 pub(crate) fn run_problem(record: &Record) -> Option<String> {
-    if let Some(reason) = record.interrupted() {
+    if let Some(damage) = words::damage(record) {
+        Some(damage)
+    } else if let Some(reason) = record.interrupted() {
         Some(format!("the run was interrupted: {reason}"))
     } else if let Some(reason) = record.died() {
         Some(format!("the runner died: {reason}"))

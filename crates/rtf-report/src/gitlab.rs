@@ -3,13 +3,13 @@
 //! that run side by side have none: sections cannot overlap, and in that of one
 //! suite nobody looks for lines of another.
 
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
 use jiff::Timestamp;
 use rtf_model::{Event, EventKind, Micros, Record, SuiteId};
 
-use crate::{ReportError, Reporter, escape};
+use crate::{ReportError, Reporter, escape, reader_left};
 
 /// Puts what another reporter writes to the same place into sections, one for
 /// each suite.
@@ -46,9 +46,9 @@ impl Sections {
     }
 
     fn write(&mut self, text: &str) -> Result<(), ReportError> {
-        let written = self.out.write_all(text.as_bytes()).and_then(|()| self.out.flush());
+        let written = self.out.write_all(text.as_bytes());
         match written {
-            Err(error) if error.kind() == ErrorKind::BrokenPipe => {
+            Err(error) if reader_left(&error) => {
                 self.out = Box::new(io::sink());
                 Ok(())
             }
@@ -76,6 +76,10 @@ impl Reporter for Sections {
 
     fn idle(&mut self, record: &Record) -> Result<(), ReportError> {
         self.inner.idle(record)
+    }
+
+    fn reporter_failed(&mut self, error: &ReportError) {
+        self.inner.reporter_failed(error);
     }
 
     fn finish(&mut self, record: &Record) -> Result<(), ReportError> {

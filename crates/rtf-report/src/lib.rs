@@ -11,6 +11,7 @@
 //!
 //! This crate starts nothing and decides nothing about a run.
 
+mod backlog;
 mod cause;
 pub mod code_quality;
 pub mod console;
@@ -26,9 +27,11 @@ pub mod journal;
 pub mod junit;
 pub mod logs;
 pub mod merge;
+pub mod outlet;
 pub mod output_file;
 pub mod predecessor;
 mod prepared;
+mod reader_left;
 pub mod repeated;
 mod report_file;
 mod reporter;
@@ -39,5 +42,6 @@ pub mod text;
 mod words;
 
 pub use fanout::{Fanout, FanoutHandle, Finished};
-pub use report_file::{AtTheEnd, ReportFile, Tell, WriteReport};
+pub use reader_left::reader_left;
+pub use report_file::{AtTheEnd, FailureNotice, ReportFile, Tell, WriteReport};
 pub use reporter::{ReportError, Reporter};

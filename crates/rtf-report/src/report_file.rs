@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use rtf_model::{Event, Record};
 
-use crate::{ReportError, Reporter, output_file};
+use crate::{ReportError, Reporter, output_file, reader_left};
 
 /// Writes a report of a record.
 pub type WriteReport = Box<dyn Fn(&mut dyn Write, &Record) -> io::Result<()> + Send>;
@@ -31,9 +31,25 @@ impl Reporter for AtTheEnd {
 
     fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
         match (self.0)(record) {
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+            Err(error) if reader_left(&error) => Ok(()),
             told => told.map_err(ReportError::at("annotations", Path::new("standard error"))),
         }
+    }
+}
+
+/// Prints on standard error what another reporter could not write, as soon as
+/// that happens: for runs whose standard output is data.
+#[derive(Debug)]
+pub struct FailureNotice;
+
+impl Reporter for FailureNotice {
+    fn event(&mut self, _event: &Event, _record: &Record) -> Result<(), ReportError> {
+        Ok(())
+    }
+
+    fn reporter_failed(&mut self, error: &ReportError) {
+        // The same is said at the end, and by the exit code.
+        drop(writeln!(io::stderr(), "error: {error}: {}", error.source));
     }
 }
 

@@ -10,7 +10,8 @@ pub trait Reporter: Send {
     ///
     /// # Errors
     /// What was to be written could not be written. The run goes on without
-    /// this reporter; the failure is shown at its end and in the exit code.
+    /// this reporter; the others are notified at once, and the failure is shown at
+    /// its end and in the exit code.
     fn event(&mut self, event: &Event, record: &Record) -> Result<(), ReportError>;
 
     /// Nothing more is waiting at the moment: a good time to flush.
@@ -20,6 +21,9 @@ pub trait Reporter: Send {
     fn idle(&mut self, _record: &Record) -> Result<(), ReportError> {
         Ok(())
     }
+
+    /// Another reporter could not write, and is given nothing more.
+    fn reporter_failed(&mut self, _error: &ReportError) {}
 
     /// No event will follow: the run is over, or its stream ended early.
     ///

@@ -1,9 +1,9 @@
 //! Standard output as a place for a stream of data.
 
-use std::io::{ErrorKind, Write};
+use std::io::Write;
 use std::path::Path;
 
-use crate::ReportError;
+use crate::{ReportError, reader_left};
 
 /// So much may wait before it is written, however busy the run is.
 const PAGE: usize = 16 * 1024;
@@ -32,9 +32,20 @@ impl Stream {
         if self.page.is_empty() {
             return Ok(());
         }
-        let written = self.out.write_all(&self.page).and_then(|()| self.out.flush());
+        let written = self.out.write_all(&self.page);
         self.page.clear();
-        if written.as_ref().is_err_and(|error| error.kind() == ErrorKind::BrokenPipe) {
+        self.judge(written)
+    }
+
+    /// Writes what waits, and waits until it is written.
+    pub fn finish(&mut self) -> Result<(), ReportError> {
+        self.flush()?;
+        let written = self.out.flush();
+        self.judge(written)
+    }
+
+    fn judge(&mut self, written: std::io::Result<()>) -> Result<(), ReportError> {
+        if written.as_ref().is_err_and(reader_left) {
             // Whoever read along has seen enough: the run goes on, and its exit
             // code stays about the tests.
             self.out = Box::new(std::io::sink());

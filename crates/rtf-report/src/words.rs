@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::time::Duration;
 
-use rtf_model::{AttemptRecord, TestRecord};
+use rtf_model::{AttemptRecord, Record, TestRecord};
 
 use crate::escape;
 
@@ -55,6 +55,16 @@ pub(crate) fn repetition(test: &TestRecord, attempt: &AttemptRecord) -> String {
         Some(all) => format!("repetition {} of {all}", attempt.repetition),
         None => format!("repetition {}", attempt.repetition),
     }
+}
+
+/// What is damaged in the journal of a run: the first place, and how many more.
+pub(crate) fn damage(record: &Record) -> Option<String> {
+    let (first, more) = record.damages.split_first()?;
+    let more = match more.len() {
+        0 => String::new(),
+        more => format!(", and {}", count(more as u64, "more place")),
+    };
+    Some(format!("the journal is damaged: {first}{more}"))
 }
 
 /// A word of a command, quoted for a POSIX shell where that is needed.

@@ -1,12 +1,14 @@
 //! What every answer is made from.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+use std::time::Instant;
 
 use axum::body::Bytes;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use rtf_report::console::Rerun;
 use serde::Serialize;
-use tokio::sync::{Semaphore, watch};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
 
 use crate::access::Access;
 use crate::index::Index;
@@ -26,12 +28,18 @@ pub struct App {
     pub access: Arc<Access>,
     /// What it can do beside showing runs.
     pub role: Role,
+    /// Makes what says with which command a test of a run is run again.
+    pub rerun: fn() -> Rerun,
     /// Changes when the journal of that run has grown.
     pub grown: watch::Receiver<u64>,
     /// Turns true when the server ends.
     pub ending: watch::Receiver<bool>,
+    /// When the server ends, once the run is over that it was a part of.
+    pub lingers: Arc<OnceLock<Instant>>,
     /// Places for event streams.
     pub streams: Arc<Semaphore>,
+    /// Places for files that are sent.
+    pub files: Arc<Semaphore>,
 }
 
 impl std::fmt::Debug for App {
@@ -45,6 +53,16 @@ impl App {
     #[must_use]
     pub fn streams() -> Arc<Semaphore> {
         Arc::new(Semaphore::new(STREAMS))
+    }
+
+    /// A place for a file that is sent.
+    ///
+    /// # Errors
+    /// 503: so many are sent already.
+    pub fn place_for_file(&self) -> Result<OwnedSemaphorePermit, Problem> {
+        self.files.clone().try_acquire_owned().map_err(|_| {
+            Problem::new(StatusCode::SERVICE_UNAVAILABLE, "too many files are sent at once")
+        })
     }
 
     /// Makes an answer from a run and its index, on a thread that may wait.

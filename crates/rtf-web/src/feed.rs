@@ -34,6 +34,9 @@ const PROGRESS: Duration = Duration::from_secs(1);
 /// How long a journal that nobody writes may still get its end from the guard.
 const ABANDONED: Duration = Duration::from_secs(10);
 
+/// How many digits an id has at most.
+const LONGEST_ID: usize = 9;
+
 /// Whose messages, measurements and outputs a client wants.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Details {
@@ -51,7 +54,9 @@ impl Details {
     pub fn parse(text: &str) -> Result<Self, Problem> {
         let source = |item: &str| {
             let (kind, id) = item.split_once(':')?;
-            let id = id.parse().ok()?;
+            let is_id =
+                (1..=LONGEST_ID).contains(&id.len()) && id.bytes().all(|c| c.is_ascii_digit());
+            let id = id.parse().ok().filter(|_| is_id)?;
             match kind {
                 "test" => Some(Source::Test(TestId(id))),
                 "fixture" => Some(Source::Fixture(FixtureId(id))),
@@ -220,7 +225,7 @@ impl Place {
         if let Some(reason) = self.anew.take() {
             batch.events.push(resync(self.next, reason));
         }
-        let failed = |error| Problem::unreadable(&self.run.folder, &error);
+        let failed = crate::runs::unreadable;
         let stop = end.min(self.offset.saturating_add(BATCH));
         let journal = self.run.journal()?;
         let mut lines = Lines::between(journal, self.offset, stop).map_err(failed)?;

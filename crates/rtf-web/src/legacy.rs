@@ -62,7 +62,7 @@ fn number(test: &TestRecord) -> u8 {
 /// The last lines of what was reported, as HTML in a JSON string.
 pub async fn update(State(app): State<App>) -> Result<JsonText, Problem> {
     read(app, |run, index| {
-        let failed = |error| Problem::unreadable(&run.folder, &error);
+        let failed = crate::runs::unreadable;
         let end = index.offset();
         let start = index.places().at(end.saturating_sub(END));
         let mut lines = Lines::between(run.journal()?, start, end).map_err(failed)?;

@@ -12,6 +12,8 @@
 mod access;
 mod api;
 mod app;
+mod below;
+mod connections;
 mod feed;
 mod index;
 mod legacy;
@@ -24,8 +26,9 @@ mod server;
 mod stream_file;
 mod tls;
 
-pub use access::TokenError;
+pub use access::{TokenError, WrongToken};
 pub use api::{description, model};
+pub use connections::Limits;
 pub use live::Live;
 pub use role::{Control, NotStarted, Past, Role, Starter};
 pub use server::{Bound, Ender, ServeError, Served, Server, Settings};

@@ -3,19 +3,23 @@
 use std::io;
 use std::net::{IpAddr, SocketAddr, TcpListener};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use axum::routing::get;
 use axum::{Router, middleware};
-use axum_server::Handle;
-use tokio::sync::watch;
+use axum_server::tls_rustls::RustlsAcceptor;
+use axum_server::{Handle, Server as HttpServer};
+use hyper_util::rt::TokioTimer;
+use rtf_report::console::Rerun;
+use tokio::sync::{Semaphore, watch};
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::compression::{CompressionLayer, CompressionLevel};
 
-use crate::access::{self, Access, Hosts, Secret, TokenError};
+use crate::access::{self, Access, Hosts, Log, Rules, Secret, TokenError, WrongToken};
 use crate::app::App;
+use crate::connections::{Limits, Listener, Peer};
 use crate::live::Live;
 use crate::role::Role;
 use crate::runs::Runs;
@@ -26,6 +30,8 @@ use crate::{api, legacy, page};
 const PORTS: u16 = 50;
 /// How long browsers have to take what was sent last.
 const PARTING: Duration = Duration::from_millis(500);
+/// How many requests one connection may have at the same time with HTTP/2.
+const HTTP2_STREAMS: u32 = 32;
 /// How nice this server's threads are to those that run tests.
 const NICE: i32 = 10;
 
@@ -42,6 +48,8 @@ pub struct Settings {
     pub tls: Option<(PathBuf, PathBuf)>,
     /// Other names under which this server is reached.
     pub hosts: Vec<String>,
+    /// How many connections there may be.
+    pub limits: Limits,
 }
 
 /// Why nothing is served.
@@ -78,6 +86,9 @@ impl ServeError {
             Self::Remote(_) => Some(
                 "`--web-allow-remote` allows that: reading then needs the token, and TLS is used",
             ),
+            Self::Token(TokenError::Open { .. }) => {
+                Some("`chmod 600` it: who has the token controls the run")
+            }
             Self::Listen { .. } => Some("choose another address with `--web=ADDR:PORT`"),
             _ => None,
         }
@@ -90,6 +101,10 @@ pub struct Served<'a> {
     pub results: &'a Path,
     /// What this server can do beside showing them.
     pub role: Role,
+    /// Makes what says with which command a test of a run is run again.
+    pub rerun: fn() -> Rerun,
+    /// Reports that somebody sent a wrong token.
+    pub wrong_token: Box<dyn Fn(WrongToken) + Send>,
 }
 
 /// A server that has its address.
@@ -102,6 +117,7 @@ pub struct Bound {
     tls: Option<Tls>,
     hosts: Hosts,
     remote: bool,
+    limits: Limits,
 }
 
 /// A server that runs.
@@ -114,6 +130,7 @@ pub struct Server {
     tls: bool,
     ending: watch::Sender<bool>,
     grown: watch::Sender<u64>,
+    lingers: Arc<OnceLock<Instant>>,
     thread: JoinHandle<io::Result<()>>,
 }
 
@@ -143,7 +160,8 @@ impl Bound {
         let listener = listen(wanted)?;
         let address = listener.local_addr().map_err(ServeError::Start)?;
         let hosts = Hosts::new(address, remote, &settings.hosts);
-        Ok(Self { listener, address, wanted, token, tls, hosts, remote })
+        let limits = settings.limits;
+        Ok(Self { listener, address, wanted, token, tls, hosts, remote, limits })
     }
 
     /// Serves on a thread of its own.
@@ -151,26 +169,42 @@ impl Bound {
     /// # Errors
     /// The system has no thread to give.
     pub fn serve(self, served: Served<'_>) -> Result<Server, ServeError> {
-        let Self { listener, address, wanted, token, tls, hosts, remote } = self;
+        let Self { listener, address, wanted, token, tls, hosts, remote, limits } = self;
+        let Served { results, role, rerun, wrong_token } = served;
         let shown = token.text().to_owned();
-        let access = Access::new(token, hosts, remote, tls.is_some())?;
+        let rules = Rules { remote, tls: tls.is_some() };
+        let log = Log::start(wrong_token).map_err(ServeError::Start)?;
+        let access = Access::new(token, hosts, rules, log)?;
         let (ending, ends) = watch::channel(false);
         let (grown, grows) = watch::channel(0);
-        let Served { results, role } = served;
+        let lingers = Arc::new(OnceLock::new());
         let app = App {
             runs: Arc::new(Runs::new(results, role.own().map(str::to_owned))),
             access: Arc::new(access),
             role,
+            rerun,
             grown: grows,
             ending: ends,
             streams: App::streams(),
+            lingers: lingers.clone(),
+            files: Arc::new(Semaphore::new(limits.files())),
         };
         let fingerprint = tls.as_ref().and_then(|tls| tls.fingerprint.clone());
         let (is_tls, token) = (tls.is_some(), shown);
-        let run = move || serve(listener, tls, app);
+        let run = move || serve(listener, limits, tls, app);
         let thread = std::thread::Builder::new().name("web".into()).spawn(run);
         let thread = thread.map_err(ServeError::Start)?;
-        Ok(Server { address, wanted, token, fingerprint, tls: is_tls, ending, grown, thread })
+        Ok(Server {
+            address,
+            wanted,
+            token,
+            fingerprint,
+            tls: is_tls,
+            ending,
+            grown,
+            lingers,
+            thread,
+        })
     }
 }
 
@@ -223,6 +257,12 @@ impl Server {
     #[must_use]
     pub fn live(&self) -> Live {
         Live::new(self.grown.clone())
+    }
+
+    /// Tells those who ask that the run is over, and the server goes on for this long.
+    pub fn linger(&self, time: Duration) {
+        // The first word is the last one.
+        let _ = self.lingers.set(Instant::now() + time);
     }
 
     /// What ends it from another thread.
@@ -281,8 +321,7 @@ fn router(app: App) -> Router {
         .with_state(app)
 }
 
-fn serve(listener: TcpListener, tls: Option<Tls>, app: App) -> io::Result<()> {
-    listener.set_nonblocking(true)?;
+fn serve(listener: TcpListener, limits: Limits, tls: Option<Tls>, app: App) -> io::Result<()> {
     give_way();
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
@@ -299,13 +338,15 @@ fn serve(listener: TcpListener, tls: Option<Tls>, app: App) -> io::Result<()> {
             let _ = ending.wait_for(|ending| *ending).await;
             parting.graceful_shutdown(Some(PARTING));
         });
-        let service = router(app).into_make_service();
+        let service = router(app).into_make_service_with_connect_info::<Peer>();
+        let listener = Listener::new(listener, limits)?;
+        let mut server = HttpServer::<Peer>::from_listener(listener).handle(handle);
+        let builder = server.http_builder();
+        builder.http1().timer(TokioTimer::new()).header_read_timeout(limits.head);
+        builder.http2().max_concurrent_streams(HTTP2_STREAMS);
         match tls {
-            Some(tls) => {
-                let server = axum_server::from_tcp_rustls(listener, tls.config)?;
-                server.handle(handle).serve(service).await
-            }
-            None => axum_server::from_tcp(listener)?.handle(handle).serve(service).await,
+            Some(tls) => server.acceptor(RustlsAcceptor::new(tls.config)).serve(service).await,
+            None => server.serve(service).await,
         }
     });
     runtime.shutdown_background();

@@ -12,8 +12,8 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use rtf_engine::run::Forks;
-use rtf_engine::select::Shard;
-use rtf_engine::suite::parse_duration;
+use rtf_plan::select::Shard;
+use rtf_plan::suite::parse_duration;
 
 pub use doctor::{DoctorArgs, DoctorFormat};
 pub use formats::{Annotations, Format, Shown, parse_report};

@@ -24,6 +24,9 @@ pub fn of_run(record: &Record) -> ExitCode {
     let interrupted = record.interrupted().map(|by| signal::exit_code(by).unwrap_or(FAILED));
     ExitCode::from(match interrupted {
         _ if record.hook_failed() => HOOK_FAILED,
+        // Whatever else is known of the run: it may not be all.
+        _ if record.is_damaged() => FAILED,
+        _ if record.died().is_some() => RUNNER_DIED,
         Some(code) => code,
         None if record.is_green() => PASSED,
         None => FAILED,

@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use std::os::fd::{AsFd, OwnedFd};
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use rtf_engine::guard::{self, Died, Ended, Link, Side};
 use rtf_model::{LeftProcess, Record};
@@ -30,7 +31,8 @@ pub fn run(args: &RunArgs) -> Outcome {
     };
     let lifeline = args.end_with_stdin.then(|| std::io::stdin().as_fd().try_clone_to_owned());
     let lifeline = lifeline.transpose().map_err(Failure::own)?;
-    Guarded { run, close: &close, kept: true, lifeline }.watch()
+    let patience = args.shutdown_timeout;
+    Guarded { run, close: &close, kept: true, lifeline, patience }.watch()
 }
 
 /// What runs under a guard.
@@ -44,12 +46,14 @@ pub struct Guarded<'a, R> {
     pub kept: bool,
     /// The run is asked to end when this does.
     pub lifeline: Option<OwnedFd>,
+    /// How long the runner may not answer.
+    pub patience: Duration,
 }
 
 impl<R: FnOnce(Link) -> Outcome> Guarded<'_, R> {
     /// Runs it.
     pub fn watch(self) -> Outcome {
-        let ended = match guard::split(self.lifeline).map_err(Failure::own)? {
+        let ended = match guard::split(self.lifeline, self.patience).map_err(Failure::own)? {
             Side::Runner(link) => return (self.run)(link),
             Side::Guard(guard) => guard.watch(),
         };
@@ -62,21 +66,26 @@ impl<R: FnOnce(Link) -> Outcome> Guarded<'_, R> {
             Ended::Died(died) => {
                 let told = tell(&mut anstream::stderr().lock(), &died, self.kept);
                 Failure::unless_reader_left(told)?;
-                if let Some(journal) = &died.journal {
-                    close(self.close, journal);
-                }
+                let recorded = died.journal.as_ref().map(|journal| close(self.close, journal));
                 let unsafe_robot = died.hooks.iter().any(|hook| hook.problem.is_some());
-                Ok(ExitCode::from(if unsafe_robot { exit::HOOK_FAILED } else { exit::RUNNER_DIED }))
+                let code = if unsafe_robot { exit::HOOK_FAILED } else { exit::RUNNER_DIED };
+                Ok(recorded.flatten().unwrap_or(ExitCode::from(code)))
             }
         }
     }
 }
 
-fn close(close: &dyn Fn(&Path, &Record), journal: &Path) {
+/// Writes the reports; the exit code that the journal gives, when it can be read
+/// and says how the run ended.
+fn close(close: &dyn Fn(&Path, &Record), journal: &Path) -> Option<ExitCode> {
     match journal::read(journal) {
-        Ok(stored) => close(journal, &stored.record),
+        Ok(stored) => {
+            close(journal, &stored.record);
+            stored.record.died().map(|_| exit::of_run(&stored.record))
+        }
         Err(error) => {
             let _ = Failure::own(error).show();
+            None
         }
     }
 }

@@ -16,13 +16,20 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, FromArgMatches};
 use cli::{Cli, Color, Command, ConfigVerb};
+use rtf_engine::guard::{self, gate};
 use rtf_engine::isolate;
 
 fn main() -> ExitCode {
-    // Before anything else: this process must have one thread only.
-    if std::env::args_os().nth(1).is_some_and(|first| first == isolate::HOLD) {
-        return if isolate::hold().is_ok() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+    // Before anything else: these processes must have one thread only.
+    match std::env::args_os().nth(1) {
+        Some(first) if first == isolate::HOLD => {
+            return if isolate::hold().is_ok() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+        }
+        Some(first) if first == gate::WAIT => return wait_at_gate(),
+        _ => {}
     }
+    // Without it, such a write would end the process without a word.
+    let _ = guard::survive_file_size_limit();
     if testrunner::is_called() {
         return testrunner::main();
     }
@@ -52,4 +59,13 @@ fn main() -> ExitCode {
         Command::Man { folder } => command::man::run(folder),
     };
     outcome.unwrap_or_else(|failure| failure.show())
+}
+
+/// Becomes a hook's command once it may begin.
+fn wait_at_gate() -> ExitCode {
+    let mut command = std::env::args_os().skip(2).peekable();
+    let program = command.peek().map(|program| program.to_string_lossy().into_owned());
+    let (code, error) = gate::wait(command);
+    anstream::eprintln!("`{}` cannot be executed: {error}", program.unwrap_or_default());
+    ExitCode::from(u8::try_from(code).unwrap_or(exit::BROKEN))
 }

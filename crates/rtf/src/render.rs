@@ -4,8 +4,8 @@ use std::io::{self, Write};
 use std::ops::Range;
 
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
-use rtf_engine::suite::Sources;
 use rtf_model::{Diagnostic, Label, Severity};
+use rtf_plan::suite::SourceMap;
 
 #[cfg(test)]
 mod tests;
@@ -20,7 +20,7 @@ const NEAR_LINES: u32 = 50;
 pub fn write(
     out: &mut impl Write,
     diagnostics: &[Diagnostic],
-    sources: &Sources,
+    sources: &SourceMap,
     color: bool,
 ) -> io::Result<()> {
     let renderer = if color { Renderer::styled() } else { Renderer::plain() };
@@ -30,7 +30,7 @@ pub fn write(
     Ok(())
 }
 
-fn group<'a>(diagnostic: &'a Diagnostic, sources: &'a Sources) -> Group<'a> {
+fn group<'a>(diagnostic: &'a Diagnostic, sources: &'a SourceMap) -> Group<'a> {
     let level = match diagnostic.severity {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
@@ -59,7 +59,7 @@ fn near(labels: &[Label]) -> Vec<&[Label]> {
 fn snippet<'a>(
     labels: &'a [Label],
     first: bool,
-    sources: &'a Sources,
+    sources: &'a SourceMap,
 ) -> Option<Snippet<'a, Annotation<'a>>> {
     let file = labels.first()?.file.as_str();
     let text = sources.text(file).unwrap_or_default();

@@ -1,13 +1,13 @@
 //! What `rtf.toml` says about a run, put where the command line says nothing.
 //!
-//! What it says about suites is the planner's, [`rtf_engine::config`].
+//! What it says about suites is the planner's, [`rtf_plan::config`].
 
 use std::path::{Path, PathBuf};
 
 use clap::parser::ValueSource;
 use clap::{ArgMatches, ValueEnum};
-use rtf_engine::config::{self, Asked, Files, Run, RunValue};
-use rtf_engine::suite::parse_duration;
+use rtf_plan::config::{self, ConfigFiles, ConfigRequest, RunConfig, RunValue};
+use rtf_plan::suite::parse_duration;
 
 use crate::cli::{
     Annotations, Command, FlakyResult, InputArgs, ProfileArgs, RunArgs, forks, parse_report,
@@ -44,8 +44,8 @@ pub fn settle(command: &mut Command, matches: &ArgMatches) -> Result<(), Failure
 }
 
 /// What the profile arguments ask for.
-pub fn asked(args: &ProfileArgs) -> Asked {
-    Asked { profile: args.profile.clone(), params: args.set.clone() }
+pub fn asked(args: &ProfileArgs) -> ConfigRequest {
+    ConfigRequest { profile: args.profile.clone(), params: args.set.clone() }
 }
 
 struct Settled<'a> {
@@ -62,21 +62,21 @@ impl Settled<'_> {
         )
     }
 
-    fn find(&self, inputs: &[PathBuf], asked: &Asked) -> (Run, Files) {
-        let mut files = Files::new(&self.current);
+    fn find(&self, inputs: &[PathBuf], asked: &ConfigRequest) -> (RunConfig, ConfigFiles) {
+        let mut files = ConfigFiles::new(&self.current);
         let folders: Vec<PathBuf> = match inputs {
             [] => vec![self.current.clone()],
             inputs => inputs
                 .iter()
-                .map(|path| config::folder_of_input(&absolute(&self.current, path)))
+                .map(|path| config::input_dir(&absolute(&self.current, path)))
                 .collect(),
         };
-        let run = Run::of(folders.iter().map(PathBuf::as_path), asked, &mut files);
+        let run = RunConfig::collect(folders.iter().map(PathBuf::as_path), asked, &mut files);
         (run, files)
     }
 
     /// The planner tells what is wrong with the files; only it knows all of them.
-    fn of_inputs(&self, input: &InputArgs) -> Result<Run, Failure> {
+    fn of_inputs(&self, input: &InputArgs) -> Result<RunConfig, Failure> {
         // With `--rerun` the input is a run.
         let inputs = if input.select.rerun.is_empty() { input.inputs.as_slice() } else { &[] };
         let (run, files) = self.find(inputs, &asked(&input.profile));
@@ -97,7 +97,7 @@ impl Settled<'_> {
 
     fn past(&self, results: &mut PathBuf) -> Result<(), Failure> {
         let profile = std::env::var("RTF_PROFILE").ok().filter(|name| !name.is_empty());
-        let asked = Asked { profile, ..Asked::default() };
+        let asked = ConfigRequest { profile, ..ConfigRequest::default() };
         let (run, files) = self.find(&[], &asked);
         if !files.problems.is_empty() {
             return Err(planning::refused(&files.problems, &files.sources())?);
@@ -106,7 +106,7 @@ impl Settled<'_> {
         Ok(())
     }
 
-    fn results(&self, run: &Run, results: &mut PathBuf) {
+    fn results(&self, run: &RunConfig, results: &mut PathBuf) {
         if let Some(value) = run.get("results").filter(|_| self.is_open("results")) {
             *results = self.path(value, text(value));
         }

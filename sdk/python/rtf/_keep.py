@@ -3,8 +3,22 @@
 from __future__ import annotations
 
 import os
+import stat
 
 _CHUNK_BYTES = 1 << 20
+
+
+def check(path: str) -> None:
+    """Raise an error that says why something cannot be attached: only files can."""
+    try:
+        mode = os.stat(path).st_mode
+    except FileNotFoundError:
+        raise FileNotFoundError(f"there is no file `{path}` to attach") from None
+    if stat.S_ISREG(mode):
+        return
+    kinds = {stat.S_IFDIR: "a directory", stat.S_IFIFO: "a FIFO"}
+    kind = kinds.get(stat.S_IFMT(mode), "a device or a socket")
+    raise OSError(f"`{path}` cannot be attached: it is {kind}, not a file")
 
 
 def copy(path: str, name: str, folder: str) -> str:

@@ -38,8 +38,7 @@ class Keeper(Plugin):
     ) -> None:
         """Keep a file with the result. It is copied now: write it before, to its end."""
         full = os.path.abspath(os.fspath(path))
-        if not os.path.isfile(full):
-            raise FileNotFoundError(f"there is no file `{full}` to attach")
+        _keep.check(full)
         name = name or os.path.basename(full)
         session = _session.current()
         if session.task.keep_folder:

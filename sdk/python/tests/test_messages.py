@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from pathlib import Path
 from typing import Any
 
@@ -122,6 +123,15 @@ def test_a_file_that_is_not_there_is_an_error(tmp_path: Path) -> None:
     ran = run(tmp_path, arm("self.attach('trace.csv')"))
     assert ran.result is not None
     assert ran.result["reason"].startswith("FileNotFoundError: there is no file `")
+
+
+def test_what_is_not_a_file_is_named_as_what_it_is(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    cases = [("pipe", "a FIFO"), (".", "a directory"), ("/dev/null", "a device or a socket")]
+    for path, kind in cases:
+        ran = run(tmp_path, arm(f"self.attach('{path}')"))
+        assert ran.result is not None
+        assert ran.result["reason"].endswith(f"cannot be attached: it is {kind}, not a file")
 
 
 def test_a_plugin_knows_what_the_suite_says_of_it(tmp_path: Path) -> None:

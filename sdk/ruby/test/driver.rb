@@ -74,6 +74,11 @@ class Host
     of("message").map { |message| message.values_at("kind", "text") }
   end
 
+  # Sends nothing more, as a runner that has gone.
+  def close
+    @channel.close_write
+  end
+
   # Waits for the end of the process: its status, and what it printed.
   def finish
     nil while read

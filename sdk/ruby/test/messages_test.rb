@@ -73,6 +73,15 @@ class MessagesTest < HostTest
     assert_match(/\AErrno::ENOENT: .*gone/, result["reason"])
   end
 
+  def test_what_is_not_a_file_is_named_as_what_it_is
+    File.mkfifo(File.join(@folder, "pipe"))
+    { "pipe" => "a FIFO", "." => "a directory",
+      "/dev/null" => "a device or a socket" }.each do |path, kind|
+      result, = run_body("attach(\"#{path}\")")
+      assert_match(/cannot be attached: it is #{kind}, not a file\z/, result["reason"])
+    end
+  end
+
   def test_texts_are_never_cut_and_always_utf8
     body = 'report("x" * 20_000_000); report("a\xFFb")
             report("\xE9".dup.force_encoding("ISO-8859-1"))'

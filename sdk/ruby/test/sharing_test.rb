@@ -31,6 +31,15 @@ class SharingTest < HostTest
     assert_equal [true, ""], [status.success?, output]
   end
 
+  def test_a_request_that_crosses_the_last_answer_does_not_change_the_exit_code
+    host = self.host
+    assert_equal "failed", ask(host, 2, arm("at_exit { sleep(0.5) }; fail(\"no\")"))["outcome"]
+    host.send("run-test", plugin(arm("nil"), name: "later.rb", last: false, shared: MARK), 3)
+    host.close
+    status, = host.finish
+    assert_predicate status, :success?
+  end
+
   def test_it_ends_after_a_test_that_left_a_process_wherever_that_went
     host = self.host
     left = "Process.wait(spawn(\"setsid sh -c 'sleep 1000 & echo $! > pid'\"))"

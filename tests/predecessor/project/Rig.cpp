@@ -8,6 +8,7 @@
 
 #include <robottestingframework/FixtureManager.h>
 #include <robottestingframework/TestAssert.h>
+#include <robottestingframework/TestSuite.h>
 #include <robottestingframework/dll/Plugin.h>
 
 using namespace robottestingframework;
@@ -27,6 +28,10 @@ public:
         name = argc > 1 ? argv[1] : "rig";
         how = argc > 2 ? argv[2] : "";
         log("up");
+        // As YARP's fixtures report.
+        TestSuite *const suite = dynamic_cast<TestSuite *>(getDispatcher());
+        ROBOTTESTINGFRAMEWORK_ASSERT_ERROR_IF_FALSE(suite != nullptr, "the dispatcher is no suite");
+        Asserter::report(TestMessage("reports", name + " is up", __FILE__, __LINE__), suite);
         if (how == "throw") {
             throw FixtureException(TestMessage("no power"));
         }

@@ -9,10 +9,9 @@ use rtf_model::{EventKind, LeftProcess};
 use rustix::event::{PollFd, PollFlags, poll};
 
 use super::closing::{self, Ended, Happened, Told};
-use super::duties::{Duties, Duty, State, only_test};
+use super::duties::{Duties, Duty, Held, RunFiles, State, only_test};
 use super::hook::{self, Why};
 use super::unix::Signals;
-use super::watch::KILLS;
 use crate::host::{prepare_process, tree};
 
 /// Processes that were killed are waited for this long. One that hangs in the
@@ -50,7 +49,7 @@ pub fn finish(duties: Duties, reason: String, mut signals: Signals, forked: Inst
     // No hook runs beside a test.
     let mut left = tree::kill_owned("test ");
     keep_reading(duties.fixtures.into_values().flatten().map(|(_, end)| end).collect());
-    let folder = duties.run.as_ref().and_then(|(journal, _)| journal.parent());
+    let folder = duties.run.as_ref().and_then(|run| run.journal.parent());
     let words = format!("the runner died: {reason}");
     let (mut parked, mut happened) = (Vec::new(), Vec::new());
     let ended = ended(&duties.hooks);
@@ -63,9 +62,6 @@ pub fn finish(duties: Duties, reason: String, mut signals: Signals, forked: Inst
         }
     }
     for duty in in_order(duties.hooks) {
-        if signals.asked >= KILLS {
-            break;
-        }
         let hook = with_folder(duty.hook, folder);
         let network = duties.held.get(&hook.suite).and_then(|held| held.network.as_ref());
         let network = network.map(|(namespaces, _)| namespaces);
@@ -80,12 +76,14 @@ pub fn finish(duties: Duties, reason: String, mut signals: Signals, forked: Inst
         tree::end_own(*holder);
     }
     tree::add(&mut left, tree::clear(SWEEP_LIMIT));
+    duties.held.values().for_each(Held::clear_locks);
     let end = EventKind::RunnerDied { reason: reason.clone(), left: left.clone() };
     happened.push(Happened { at: Instant::now(), kind: end });
     let (journal, problem) = match duties.run {
-        Some((journal, started)) => {
+        Some(RunFiles { journal, scratch, started }) => {
             let told = Told { ended, happened };
             let problem = closing::close(&journal, forked + started, told).err();
+            let _ = std::fs::remove_dir_all(scratch);
             (Some(journal), problem)
         }
         None => (None, None),

@@ -11,12 +11,14 @@ use super::duties::Streams;
 use super::hook::{Process, RUN};
 use super::note::{Hook, Kept};
 use super::unix::{self, Signals};
-use super::watch::KILLS;
 use crate::host::codec::{self, FromHost};
 use crate::host::tree;
+use crate::run::machine::HOOK_KILLED;
 
 /// How long a hook that was asked to stop may take.
 const TERM_GRACE: Duration = Duration::from_secs(1);
+/// After its end, its outputs are read for this long at the most.
+const DRAIN_LIMIT: Duration = Duration::from_millis(500);
 /// How much of what a hook prints to one stream is kept, in bytes.
 const KEPT: usize = 256 * 1024;
 /// How much is read at once: what a pipe holds at most.
@@ -71,15 +73,16 @@ impl Attendant<'_> {
         loop {
             match unix::ended(self.process.pid) {
                 Ok(Some(status)) => {
-                    // What it wrote before its end is there.
-                    while self.read(None, Some(Duration::ZERO)) {}
+                    // What it wrote before its end is there; what it left may write on.
+                    let end = Instant::now() + DRAIN_LIMIT;
+                    while self.read(None, Some(Duration::ZERO)) && Instant::now() < end {}
                     return status;
                 }
                 Ok(None) => {}
                 Err(_) => return ExitStatus::Code(-1),
             }
-            if signals.asked >= KILLS {
-                self.note("it was stopped by the third signal".to_owned());
+            if signals.kill() {
+                self.note(HOOK_KILLED.to_owned());
                 tree::kill_tree(self.process.pid);
             } else if self.deadline <= Instant::now() {
                 self.limit_passed();

@@ -5,7 +5,7 @@ use std::io::{self, BufRead, BufReader, Write};
 use std::path::Path;
 use std::time::Instant;
 
-use rtf_model::{Diagnostic, Event, EventKind, HookId, Micros, OrderChecker, SuiteId};
+use rtf_model::{Diagnostic, Event, EventKind, HookId, LineSealer, Micros, OrderChecker, SuiteId};
 
 /// Something that is to be written, and when it was.
 #[derive(Debug)]
@@ -76,6 +76,7 @@ struct Closing {
     /// The hooks that came to an end, once for each time.
     finished: Vec<HookId>,
     lines: Vec<u8>,
+    sealer: LineSealer,
 }
 
 impl Closing {
@@ -91,11 +92,13 @@ impl Closing {
             suites: Vec::new(),
             finished: Vec::new(),
             lines: Vec::new(),
+            sealer: LineSealer::default(),
         };
         let mut reader = BufReader::with_capacity(64 * 1024, file);
         let mut line = Vec::new();
         while reader.read_until(b'\n', &mut line)? > 0 && line.ends_with(b"\n") {
             closing.whole += line.len() as u64;
+            closing.sealer = LineSealer::after(&line);
             if let Ok(event) = serde_json::from_slice::<Event>(&line) {
                 let over = EventKind::RunFinished { interrupted: None };
                 if std::mem::discriminant(&event.kind) == std::mem::discriminant(&over) {
@@ -158,10 +161,12 @@ impl Closing {
             }
             self.order = Some(order);
         }
+        let start = self.lines.len();
         if serde_json::to_writer(&mut self.lines, &event).is_err() {
+            self.lines.truncate(start);
             return false;
         }
-        self.lines.push(b'\n');
+        self.sealer.seal(&mut self.lines, start);
         self.next += 1;
         self.last_at = at;
         true

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use rtf_model::{HookId, SuiteId, TestId};
 
 use crate::isolate::Namespaces;
+use crate::locks;
 
 use super::note::{Hook, HookBegins, Kept, Note};
 
@@ -18,8 +19,8 @@ pub type Streams = Vec<(Kept, OwnedFd)>;
 /// All that the runner has told and not taken back.
 #[derive(Debug, Default)]
 pub struct Duties {
-    /// The run's journal, and when its clock started, since the fork.
-    pub run: Option<(PathBuf, Duration)>,
+    /// The run, once it has begun.
+    pub run: Option<RunFiles>,
     /// Whether the run is over.
     pub over: bool,
     /// The hooks of the suites that run.
@@ -30,6 +31,17 @@ pub struct Duties {
     pub fixtures: HashMap<i32, Streams>,
     /// What the suites that run have for themselves.
     pub held: HashMap<SuiteId, Held>,
+}
+
+/// The files of a run.
+#[derive(Debug)]
+pub struct RunFiles {
+    /// Its journal.
+    pub journal: PathBuf,
+    /// Its folder for files that are gone when it is over.
+    pub scratch: PathBuf,
+    /// When its clock started, since the fork.
+    pub started: Duration,
 }
 
 /// The tests of each suite that run: their ids and names.
@@ -54,6 +66,14 @@ pub struct Held {
 }
 
 impl Held {
+    /// Says in its locks that they are given back in order.
+    pub fn clear_locks(&self) {
+        for lease in &self.leases {
+            // Numbers are no locks, and refuse it.
+            let _ = locks::clear(lease);
+        }
+    }
+
     fn add(&mut self, descriptors: Vec<OwnedFd>, holder: Option<i32>) {
         match holder {
             Some(holder) => {
@@ -120,8 +140,11 @@ impl Duties {
     /// were not announced yet.
     pub fn take(&mut self, note: Note, received: &mut VecDeque<OwnedFd>, now: Instant) {
         match note {
-            Note::RunBegins { journal, started } => self.run = Some((journal, started)),
+            Note::RunBegins { journal, scratch, started } => {
+                self.run = Some(RunFiles { journal, scratch, started });
+            }
             Note::RunEnds => self.over = true,
+            Note::Missed => self.miss(),
             Note::SuiteHolds { suite, descriptors, holder } => {
                 let came = descriptors.min(received.len());
                 let came = received.drain(..came).collect();
@@ -171,6 +194,13 @@ impl Duties {
                 self.fixtures.insert(pid, announced(streams, received));
             }
             Note::FixtureEnds { pid } => drop(self.fixtures.remove(&pid)),
+        }
+    }
+
+    /// What happened meanwhile is not known: parking once more is the safe side.
+    fn miss(&mut self) {
+        for duty in self.hooks.iter_mut().filter(|duty| matches!(duty.state, State::Done)) {
+            duty.state = State::Due;
         }
     }
 

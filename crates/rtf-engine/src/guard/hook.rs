@@ -17,8 +17,9 @@ use super::duties::{Begun, State, Streams};
 use super::gate;
 use super::note::{Hook, HookBegins, Kept};
 use super::unix::Signals;
-use crate::host::{codec, tree};
+use crate::host::{codec, resources, tree};
 use crate::isolate::Namespaces;
+use crate::run::machine::HOOK_NOT_RUN;
 
 /// The number of `run-test` on a hook's channel.
 pub(super) const RUN: u64 = 2;
@@ -85,6 +86,7 @@ pub fn run(hook: &Hook, state: State, why: &Why<'_>, signals: &mut Signals) -> R
     let process = match found {
         Found::Process(process) => Ok(process),
         Found::Over => Err("it ended, and how was lost with the runner".to_owned()),
+        Found::Nothing if signals.kill() => Err(HOOK_NOT_RUN.to_owned()),
         Found::Nothing => start(hook, &begins, why).map_err(|error| {
             let program = hook.command.first().map_or("", String::as_str);
             format!("`{program}` cannot be started: {error}")
@@ -166,6 +168,7 @@ fn start(hook: &Hook, begins: &HookBegins, why: &Why<'_>) -> io::Result<Process>
         streams.push((Kept::Channel, ours.into()));
         theirs = Some(host);
     }
+    resources::limit_descriptors_of(&mut command);
     let child = command.spawn();
     drop(theirs);
     let mut child = child?;

@@ -1,47 +1,43 @@
 //! The runner's end of the line to its guard.
 
-use std::io::IoSlice;
-use std::mem::MaybeUninit;
 use std::os::fd::BorrowedFd;
 use std::os::unix::net::UnixStream;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use rtf_model::{HookId, Source, SuiteId, TestId};
-use rustix::net::{SendAncillaryBuffer, SendAncillaryMessage, SendFlags, sendmsg};
+use rustix::net::SendFlags;
+use tokio::sync::Notify;
 
 use super::note::{Hook, HookBegins, Kept, Note};
+use super::queue::{DESCRIPTORS, Queue};
 use crate::isolate::Prepared;
-use crate::plan::SuitePlan;
+use rtf_plan::plan::SuitePlan;
 
-/// A guard that does not read for this long (it was stopped by a debugger, say)
-/// is told no more: the run must not wait for it.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// How often the runner shows that it is alive.
+pub const BEAT: Duration = Duration::from_secs(1);
 
-/// How many descriptors go with one line at the most.
-pub(super) const DESCRIPTORS: usize = 3;
-
-/// The way to the guard. Telling never fails: without a guard, or when it is
-/// gone, the run goes on.
+/// The way to the guard. Telling never fails and never waits: without a guard, or
+/// when it is gone or does not read, the run goes on.
 #[derive(Debug)]
 pub struct Link {
-    socket: Mutex<Option<UnixStream>>,
-    /// Closed by the guard's death. A socket of its own: waiting for this one
-    /// must not block, telling must.
+    queue: Mutex<Option<Queue>>,
+    /// Closed by the guard's death. The runner shows there that it is alive.
     pulse: Option<UnixStream>,
     forked: Instant,
     /// How many of the suites that run have hooks: without, the guard needs to
     /// know nothing of tests and fixtures.
     hooked: AtomicUsize,
+    /// Tells that the guard missed something.
+    missed: Notify,
 }
 
 impl Link {
     pub(super) fn new(socket: UnixStream, pulse: UnixStream, forked: Instant) -> Self {
         let pulse = pulse.set_nonblocking(true).is_ok().then_some(pulse);
-        let _ = socket.set_write_timeout(Some(PATIENCE));
-        Self { pulse, forked, ..Self::with(Some(socket)) }
+        Self { pulse, forked, ..Self::with(Some(Queue::new(socket))) }
     }
 
     /// A runner without a guard.
@@ -50,19 +46,40 @@ impl Link {
         Self::with(None)
     }
 
-    fn with(socket: Option<UnixStream>) -> Self {
-        let (socket, hooked) = (Mutex::new(socket), AtomicUsize::new(0));
-        Self { socket, pulse: None, forked: Instant::now(), hooked }
+    fn with(queue: Option<Queue>) -> Self {
+        let (queue, hooked) = (Mutex::new(queue), AtomicUsize::new(0));
+        Self { queue, pulse: None, forked: Instant::now(), hooked, missed: Notify::new() }
+    }
+
+    /// Shows that the runner is alive, and tells what could not be told before.
+    pub fn beat(&self) {
+        if let Some(pulse) = &self.pulse {
+            // A guard that does not read has enough of them.
+            let _ = rustix::net::send(pulse, b".", SendFlags::NOSIGNAL | SendFlags::DONTWAIT);
+        }
+        self.with_queue(Queue::flush);
+    }
+
+    /// Waits until the guard has been told everything. It is who the user waits
+    /// for: when it was stopped, the runner may wait, too.
+    pub fn finish(&self) {
+        self.with_queue(Queue::finish);
+    }
+
+    /// Waits until the guard has missed something, because it did not read for long.
+    pub async fn guard_missed(&self) {
+        self.missed.notified().await;
     }
 
     fn any_hooks(&self) -> bool {
         self.hooked.load(Ordering::Relaxed) > 0
     }
 
-    /// The run begins; `start` is zero on the clock of its events.
-    pub fn run_begins(&self, journal: &Path, start: Instant) {
+    /// The run begins; `start` is zero on the clock of its events. `scratch` is
+    /// its folder for files that are gone when it is over.
+    pub fn run_begins(&self, journal: &Path, scratch: PathBuf, start: Instant) {
         let started = start.saturating_duration_since(self.forked);
-        self.tell(&Note::RunBegins { journal: journal.to_owned(), started });
+        self.tell(&Note::RunBegins { journal: journal.to_owned(), scratch, started });
     }
 
     /// The run is over.
@@ -158,7 +175,7 @@ impl Link {
     pub async fn guard_died(&self) {
         let pulse = self.pulse.as_ref().and_then(|pulse| pulse.try_clone().ok());
         match pulse.and_then(|pulse| tokio::net::UnixStream::from_std(pulse).ok()) {
-            // Nothing is ever written there: what can be read is its end.
+            // The guard never writes there: what can be read is its end.
             Some(pulse) => drop(pulse.readable().await),
             None => std::future::pending().await,
         }
@@ -169,29 +186,21 @@ impl Link {
     }
 
     fn tell_with(&self, note: &Note, descriptors: &[BorrowedFd<'_>]) {
-        let mut slot = self.socket.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(socket) = slot.as_ref()
-            && write(socket, note, descriptors).is_err()
-        {
-            // Half a line may have been written: nothing may follow it.
+        self.with_queue(|queue| {
+            let before = queue.missed;
+            let told = queue.tell(note, descriptors);
+            if queue.missed && !before {
+                self.missed.notify_one();
+            }
+            told
+        });
+    }
+
+    fn with_queue(&self, act: impl FnOnce(&mut Queue) -> std::io::Result<()>) {
+        let mut slot = self.queue.lock().unwrap_or_else(PoisonError::into_inner);
+        if slot.as_mut().is_some_and(|queue| act(queue).is_err()) {
+            // The guard is gone, which is noticed by its pulse.
             *slot = None;
         }
     }
-}
-
-fn write(socket: &UnixStream, note: &Note, mut fds: &[BorrowedFd<'_>]) -> std::io::Result<()> {
-    let mut line = serde_json::to_vec(note)?;
-    line.push(b'\n');
-    let mut rest = line.as_slice();
-    while !rest.is_empty() {
-        let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(DESCRIPTORS))];
-        let mut beside = SendAncillaryBuffer::new(&mut space);
-        if !fds.is_empty() {
-            beside.push(SendAncillaryMessage::ScmRights(fds));
-        }
-        let written = sendmsg(socket, &[IoSlice::new(rest)], &mut beside, SendFlags::NOSIGNAL)?;
-        rest = &rest[written..];
-        fds = &[];
-    }
-    Ok(())
 }

@@ -6,6 +6,9 @@
 //! which it tells the guard what would have to be done without it: which hooks
 //! there are, which have begun, and which outputs must stay open.
 //!
+//! The runner shows every second that it is alive. One that does not for a while
+//! is killed, and then has died.
+//!
 //! When the runner has died: the running test is killed ([`after`]), the abort
 //! hooks are run ([`hook`]), everything that is left is killed, and the journal
 //! is closed ([`closing`]). When the guard has died, the runner tears down in
@@ -21,17 +24,23 @@ pub mod gate;
 mod hook;
 mod link;
 mod note;
+mod queue;
+mod requests;
 mod unix;
 mod watch;
 
 use std::io;
 use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
-use std::time::Instant;
+use std::time::{Duration, Instant};
+
+use crate::host::resources;
 
 pub use after::{Died, Parked};
-pub use link::Link;
+pub use link::{BEAT, Link};
 pub use note::{HookBegins, Kept};
+pub use requests::{Requests, WINDOW};
+pub use unix::survive_file_size_limit;
 pub use watch::{Ended, Guard};
 
 /// Which of the two processes this is.
@@ -48,10 +57,12 @@ pub enum Side {
 /// it once, through the guard.
 ///
 /// The end of `lifeline` counts as SIGTERM; what comes over it is read and forgotten.
+/// A runner that does not answer for `patience`, or [`watch::LEAST_PATIENCE`], is killed.
 ///
 /// # Errors
 /// This process has more than one thread, or the system refused.
-pub fn split(lifeline: Option<OwnedFd>) -> io::Result<Side> {
+pub fn split(lifeline: Option<OwnedFd>, patience: Duration) -> io::Result<Side> {
+    resources::raise_descriptor_limit();
     let (guards, runners) = UnixStream::pair()?;
     let (pulse, felt) = UnixStream::pair()?;
     rustix::process::set_child_subreaper(Some(rustix::process::getpid()))?;
@@ -65,7 +76,9 @@ pub fn split(lifeline: Option<OwnedFd>) -> io::Result<Side> {
             unix::own_group(Some(runner));
             let signals = unix::Signals::install()?;
             drop(held);
-            let guard = Guard::new(runner, [guards, pulse], signals, forked).ending_with(lifeline);
+            unix::stay_in_memory();
+            let guard = Guard::new(runner, [guards, pulse], signals, forked);
+            let guard = guard.ending_with(lifeline).patient_for(patience);
             Ok(Side::Guard(Box::new(guard)))
         }
         None => {

@@ -8,7 +8,7 @@ use rtf_model::protocol::{ENVIRONMENT_VARIABLE, OWNER_VARIABLE, Plugin};
 use rtf_model::{EventKind, HookId, SuiteId, TestId, Trigger};
 use serde::{Deserialize, Serialize};
 
-use crate::plan::{HookBody, HookPlan, SuitePlan};
+use rtf_plan::plan::{HookBody, HookPlan, SuitePlan};
 
 /// One thing that the guard must know, should the runner die.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -18,11 +18,16 @@ pub enum Note {
     RunBegins {
         /// Its journal, absolute.
         journal: PathBuf,
+        /// Its folder for files that are gone when the run is over.
+        scratch: PathBuf,
         /// When its clock started, since the fork.
         started: Duration,
     },
     /// The run is over: there is nothing left to be done.
     RunEnds,
+    /// The guard did not read for so long that notes were lost. Until
+    /// [`Note::RunEnds`], no other follows.
+    Missed,
     /// What a suite has for itself. The descriptors of its namespaces, or some
     /// of what keeps its numbers from other runs, come with this line.
     SuiteHolds {

@@ -5,11 +5,18 @@ use std::io;
 use std::mem::MaybeUninit;
 use std::os::fd::{AsFd, BorrowedFd, IntoRawFd, OwnedFd};
 use std::sync::atomic::{AtomicI32, Ordering};
+use std::time::Instant;
 
+use crate::host::unreadable_proc;
 use rtf_model::ExitStatus;
 use rustix::io::Errno;
 use rustix::pipe::PipeFlags;
 use rustix::process::{Pid, WaitOptions, WaitStatus};
+
+use super::requests::Requests;
+
+/// The number of requests to end the run after which nobody is waited for.
+const KILLS: u32 = 3;
 
 /// Signals that ask for the end of the run.
 pub const ASKING: [i32; 3] = [libc::SIGINT, libc::SIGTERM, libc::SIGHUP];
@@ -23,7 +30,7 @@ static NOTED: AtomicI32 = AtomicI32::new(-1);
 
 /// Makes two processes of this one: `Some` with the child's id in the parent.
 pub fn fork() -> io::Result<Option<i32>> {
-    if std::fs::read_dir("/proc/self/task")?.count() != 1 {
+    if std::fs::read_dir("/proc/self/task").map_err(unreadable_proc)?.count() != 1 {
         return Err(io::Error::other("the process has threads already"));
     }
     // SAFETY: this is the only thread, so no lock is held by another one, and
@@ -46,6 +53,13 @@ pub fn own_group(pid: Option<i32>) {
 /// then SIGTTOU would stop it, which must not happen to one that supervises a robot.
 pub fn write_to_terminal_from_behind() {
     change_mask(libc::SIG_BLOCK, &set_of(&[libc::SIGTTOU]));
+}
+
+/// Keeps the memory of this process from being swapped out, where it may: what is
+/// there, and of the rest what is used.
+pub fn stay_in_memory() {
+    // SAFETY: it changes nothing but where pages are. One that may not does without.
+    unsafe { libc::mlockall(libc::MCL_CURRENT | libc::MCL_ONFAULT) };
 }
 
 fn set_of(signals: &[i32]) -> libc::sigset_t {
@@ -89,8 +103,8 @@ impl Drop for Held {
 #[derive(Debug)]
 pub struct Signals {
     noted: OwnedFd,
-    /// How often the end of the run was asked for.
-    pub asked: u32,
+    /// The requests to end the run.
+    pub requests: Requests,
 }
 
 impl Signals {
@@ -106,17 +120,23 @@ impl Signals {
                 take(signal)?;
             }
         }
-        Ok(Self { noted, asked: 0 })
+        Ok(Self { noted, requests: Requests::default() })
     }
 
-    /// The signals that came since the last call.
+    /// The signals that came since the last call. Of those that ask for the end
+    /// of the run, only new requests.
     pub fn read(&mut self) -> Vec<i32> {
         let mut numbers = [0; 256];
         let read = rustix::io::read(&self.noted, &mut numbers[..]).unwrap_or(0);
-        let came: Vec<i32> = numbers[..read].iter().map(|number| i32::from(*number)).collect();
-        let asked = came.iter().filter(|signal| ASKING.contains(signal)).count();
-        self.asked += u32::try_from(asked).unwrap_or(u32::MAX);
-        came
+        let came = numbers[..read].iter().map(|number| i32::from(*number));
+        let now = Instant::now();
+        came.filter(|signal| !ASKING.contains(signal) || self.requests.take(now)).collect()
+    }
+
+    /// Whether nobody is waited for any more.
+    #[must_use]
+    pub fn kill(&self) -> bool {
+        self.requests.made() >= KILLS
     }
 }
 
@@ -135,17 +155,32 @@ fn is_ignored(signal: i32) -> bool {
     }
 }
 
+/// Lets a write beyond the limit of file sizes (`ulimit -f`) fail, which is
+/// reported, instead of ending the process. A handler, unlike an ignored signal,
+/// is not inherited by the programs that this process starts.
+///
+/// # Errors
+/// The system refused.
+pub fn survive_file_size_limit() -> io::Result<()> {
+    handle(libc::SIGXFSZ, ignore)
+}
+
+extern "C" fn ignore(_: libc::c_int) {}
+
 fn take(signal: i32) -> io::Result<()> {
-    let handler: extern "C" fn(libc::c_int) = note;
-    // SAFETY: all zeroes are a valid `sigaction`, and `note` does only what a
-    // handler may.
-    let taken = unsafe {
+    handle(signal, note)
+}
+
+fn handle(signal: i32, handler: extern "C" fn(libc::c_int)) -> io::Result<()> {
+    // SAFETY: all zeroes are a valid `sigaction`, and the handlers of this file
+    // do only what a handler may.
+    let handled = unsafe {
         let mut action = MaybeUninit::<libc::sigaction>::zeroed().assume_init();
         action.sa_sigaction = handler as libc::sighandler_t;
         action.sa_flags = libc::SA_RESTART | libc::SA_NOCLDSTOP;
         libc::sigaction(signal, &action, std::ptr::null_mut())
     };
-    if taken == 0 { Ok(()) } else { Err(io::Error::last_os_error()) }
+    if handled == 0 { Ok(()) } else { Err(io::Error::last_os_error()) }
 }
 
 extern "C" fn note(signal: libc::c_int) {

@@ -8,11 +8,12 @@ use tokio::sync::mpsc;
 use tokio::task::JoinSet;
 
 use super::launch::Launch;
+use super::task::liveness::asked;
 use super::task::{Inputs, Order, Shared};
 use super::tree;
-use crate::plan::AttachedPlan;
 use crate::run::machine::{HostId, HostInput};
-use crate::run::probe::{Asker, Watch};
+use crate::run::probe::{Asker, Files, Watch};
+use rtf_plan::plan::AttachedPlan;
 
 /// What is attached, and for whom.
 #[derive(Debug)]
@@ -36,19 +37,27 @@ pub async fn run(
     let asker = Asker { spawner: shared.spawner.clone(), like: launch.full_request() };
     let watch = Watch { host, inputs: inputs.clone(), asker };
     let mut side = JoinSet::new();
-    side.spawn(watch.clone().until_ready(plan.ready.clone(), None));
+    side.spawn(watch.clone().until_ready(plan.ready.clone(), Files::default()));
     loop {
         match orders.recv().await {
             Some(Order::WatchAlive) => {
                 side.spawn(watch.clone().until_unwell(plan.alive.clone()));
             }
-            Some(
-                Order::Send(..) | Order::TakeStack(_) | Order::LookAlive | Order::ServeNext(_),
-            ) => {}
+            Some(Order::LookAlive(probes)) => {
+                let (watch, alive) = (watch.clone(), asked(&plan.alive, probes));
+                side.spawn(async move {
+                    let input = match watch.all_hold(&alive).await {
+                        Ok(()) => HostInput::Lives,
+                        Err(reason) => HostInput::ProbeFailed(reason),
+                    };
+                    watch.tell(input).await;
+                });
+            }
+            Some(Order::Send(..) | Order::TakeStack(_) | Order::ServeNext(_)) => {}
             Some(Order::CloseChannel | Order::Signal(_) | Order::KillTree) | None => break,
         }
     }
     side.shutdown().await;
-    let left = tree::sweep(&launch.scope);
+    let left = tree::sweep(&launch.scope, tree::Effort::Once);
     drop(inputs.send((host, HostInput::Exited(ExitStatus::Code(0), left))).await);
 }

@@ -85,6 +85,18 @@ pub fn decode(line: &[u8]) -> Result<FromHost, String> {
     }
 }
 
+/// As [`decode`], of a line that was not written by the host but by another process that
+/// has its channel. `None` when it does not count: see "Processes that a plug-in forks" in
+/// `spec/protocol.md`.
+pub fn decode_other(line: &[u8]) -> Option<Result<FromHost, String>> {
+    let decoded = decode(line);
+    match &decoded {
+        Ok(FromHost::Answered(..)) => None,
+        Ok(FromHost::Told(Notification::Phase { .. } | Notification::Stack { .. })) => None,
+        Ok(FromHost::Told(_)) | Err(_) => Some(decoded),
+    }
+}
+
 fn not_a_message(line: &[u8], why: &str) -> String {
     let text = String::from_utf8_lossy(line);
     let shown: String = text.chars().take(SHOWN).collect();
@@ -103,6 +115,17 @@ mod tests {
         assert!(matches!(told, Ok(FromHost::Told(Notification::Phase { phase: Phase::Run }))));
         let answer = decode(br#"{"jsonrpc":"2.0","id":7,"result":{"outcome":"passed"},"x":1}"#);
         assert!(matches!(answer, Ok(FromHost::Answered(7, Reply::Result(_)))));
+    }
+
+    #[test]
+    fn another_process_reports_but_does_not_answer() {
+        let answer = br#"{"jsonrpc":"2.0","id":7,"result":{"outcome":"passed"}}"#;
+        assert!(decode_other(answer).is_none());
+        let phase = br#"{"jsonrpc":"2.0","method":"phase","params":{"phase":"run"}}"#;
+        assert!(decode_other(phase).is_none());
+        let collapse = br#"{"jsonrpc":"2.0","method":"collapsed","params":{"reason":"gone"}}"#;
+        assert!(matches!(decode_other(collapse), Some(Ok(FromHost::Told(_)))));
+        assert!(matches!(decode_other(b"garbage"), Some(Err(_))));
     }
 
     #[test]

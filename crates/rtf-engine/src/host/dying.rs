@@ -1,54 +1,156 @@
-//! Whether a process is dying: from its kill on until it was waited for.
+//! Whether a process is alive, or ending: from the moment in which the kernel was asked
+//! to kill it until it was waited for.
+//!
+//! A deadly signal is first pending, then taken by a thread, which sets its flags a
+//! moment later and ends the others. Between the two nothing is to be seen, but the
+//! thread runs all the time. So pending signals are read first, and then each thread is
+//! watched until it was seen to sleep, or to have run for much longer than that moment
+//! takes. What a process does that handles the signal itself is its own affair: it lives.
 
-use std::fmt::Write as _;
+use std::collections::{HashMap, HashSet};
+use std::fs::read_to_string;
+use std::time::Duration;
 
 /// The kernel's flags of a thread that is ending, writes the memory image of its
 /// process, or was ended by a signal.
 const EXITING: u64 = 0x4;
 const DUMPING: u64 = 0x200;
 const SIGNALLED: u64 = 0x400;
-const SIGKILL: i32 = 9;
+const SIGKILL: u64 = 1 << 8;
+/// The signals that do no harm unless they are handled: SIGCHLD, SIGCONT, SIGSTOP,
+/// SIGTSTP, SIGTTIN, SIGTTOU, SIGURG, SIGWINCH.
+const HARMLESS: u64 = 0x87f0000;
+/// A thread that has run for so many nanoseconds has long set its flags.
+const MOMENT: u64 = 50_000;
+/// How often a thread that runs is looked at where the kernel does not tell for how long
+/// it has run.
+const LOOKS: u64 = 10;
+/// How long to wait before threads are looked at again that run.
+const AGAIN: Duration = Duration::from_millis(1);
 
-/// Whether a process is ending, or has ended and was not waited for. It may have
-/// been killed just now: then the signal is still waiting for it.
-#[must_use]
-pub fn is_dying(pid: i32) -> bool {
-    let mut place = format!("/proc/{pid}");
-    if !is_thread_dying(&place) {
-        return false;
-    }
-    // A process lives on when its first thread has ended and others have not.
-    place += "/task";
-    let Ok(threads) = std::fs::read_dir(&place) else { return true };
-    let folder = place.len();
-    threads.flatten().all(|thread| {
-        place.truncate(folder);
-        let _ = write!(place, "/{}", thread.file_name().to_string_lossy());
-        is_thread_dying(&place)
-    })
+/// A process that is watched until it is certain whether it is alive.
+#[derive(Debug)]
+pub struct Sight {
+    pid: i32,
+    /// The threads of which it is certain.
+    settled: HashSet<String>,
+    /// For how long the others had run when they were first looked at.
+    running: HashMap<String, u64>,
+    looks: u64,
 }
 
-fn is_thread_dying(place: &str) -> bool {
-    let Ok(stat) = std::fs::read_to_string(format!("{place}/stat")) else { return true };
-    let Some((_, rest)) = stat.rsplit_once(") ") else { return true };
+/// What is seen of a thread.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Thread {
+    /// It has ended, alone or with its process.
+    Ended,
+    /// A signal ends it, and so its process.
+    Killed,
+    Runs,
+    Sleeps,
+}
+
+impl Sight {
+    /// Of a process that has not been looked at.
+    #[must_use]
+    pub fn of(pid: i32) -> Self {
+        Self { pid, settled: HashSet::new(), running: HashMap::new(), looks: 0 }
+    }
+
+    /// Whether it was alive when it was first looked at; `None` as long as that is not
+    /// certain.
+    pub fn look(&mut self) -> Option<bool> {
+        self.looks += 1;
+        if is_deadly(self.pid) {
+            return Some(false);
+        }
+        let Ok(threads) = std::fs::read_dir(format!("/proc/{}/task", self.pid)) else {
+            return Some(false);
+        };
+        let (mut all_ended, mut all_settled) = (true, true);
+        for thread in threads.flatten() {
+            let id = thread.file_name().to_string_lossy().into_owned();
+            match look_at(&format!("/proc/{}/task/{id}/stat", self.pid)) {
+                Thread::Ended => continue,
+                Thread::Killed => return Some(false),
+                Thread::Sleeps => drop(self.settled.insert(id)),
+                Thread::Runs => all_settled &= self.has_run(id),
+            }
+            all_ended = false;
+        }
+        if all_ended {
+            return Some(false);
+        }
+        // One that has ended meanwhile may have ended the others.
+        all_settled.then(|| self.looks == 1 || !is_deadly(self.pid))
+    }
+
+    /// Whether it was alive when it was first looked at.
+    pub async fn wait(&mut self) -> bool {
+        loop {
+            if let Some(alive) = self.look() {
+                return alive;
+            }
+            tokio::time::sleep(AGAIN).await;
+        }
+    }
+
+    /// Whether a thread is certain to have set its flags if it took a deadly signal
+    /// before it was first looked at.
+    fn has_run(&mut self, id: String) -> bool {
+        if self.settled.contains(&id) {
+            return true;
+        }
+        let time = run_time(self.pid, &id);
+        let before = *self.running.entry(id.clone()).or_insert(time.unwrap_or_default());
+        let settled = match time {
+            Some(time) => time >= before + MOMENT,
+            None => self.looks >= LOOKS,
+        };
+        if settled {
+            self.settled.insert(id);
+        }
+        settled
+    }
+}
+
+/// For how many nanoseconds a thread has run, if the kernel counts that.
+fn run_time(pid: i32, thread: &str) -> Option<u64> {
+    let text = read_to_string(format!("/proc/{pid}/task/{thread}/schedstat")).ok()?;
+    text.split(' ').next()?.parse().ok().filter(|time| *time > 0)
+}
+
+fn look_at(stat: &str) -> Thread {
+    let Ok(stat) = read_to_string(stat) else { return Thread::Ended };
+    let Some((_, rest)) = stat.rsplit_once(") ") else { return Thread::Ended };
     let mut fields = rest.split(' ');
     let state = fields.next().unwrap_or("X");
     // Its parent, group, session, terminal, and that one's group are between.
     let flags = fields.nth(5).and_then(|flags| flags.parse::<u64>().ok()).unwrap_or_default();
-    matches!(state, "Z" | "X" | "x")
-        || flags & (EXITING | DUMPING | SIGNALLED) != 0
-        || is_killed(place)
+    match state {
+        _ if flags & (DUMPING | SIGNALLED) != 0 => Thread::Killed,
+        "Z" | "X" | "x" => Thread::Ended,
+        _ if flags & EXITING != 0 => Thread::Ended,
+        "R" => Thread::Runs,
+        _ => Thread::Sleeps,
+    }
 }
 
-/// Whether SIGKILL waits for it.
-fn is_killed(place: &str) -> bool {
-    const KILL: u64 = 1 << (SIGKILL - 1);
-    let status = std::fs::read_to_string(format!("{place}/status")).unwrap_or_default();
-    let pending = status.lines().filter_map(|line| {
-        let line = line.strip_prefix("SigPnd:").or_else(|| line.strip_prefix("ShdPnd:"))?;
-        u64::from_str_radix(line.trim(), 16).ok()
-    });
-    pending.into_iter().any(|pending| pending & KILL != 0)
+/// Whether a signal waits for the process that ends it, or it is not there.
+fn is_deadly(pid: i32) -> bool {
+    let Ok(status) = read_to_string(format!("/proc/{pid}/status")) else { return true };
+    let mut pending = 0;
+    let mut spared = HARMLESS;
+    for line in status.lines() {
+        let Some((name, mask)) = line.split_once(":\t") else { continue };
+        let mask = || u64::from_str_radix(mask.trim(), 16).unwrap_or_default();
+        match name {
+            "SigPnd" | "ShdPnd" => pending |= mask(),
+            "SigBlk" | "SigIgn" | "SigCgt" => spared |= mask(),
+            _ => {}
+        }
+    }
+    pending & (!spared | SIGKILL) != 0
 }
 
 #[cfg(test)]
@@ -56,8 +158,20 @@ mod tests {
     use std::io::{BufRead as _, BufReader};
     use std::process::{Child, Command, Stdio};
 
-    use super::is_dying;
+    use super::{AGAIN, Sight};
+    use libc::{SIGABRT, SIGCHLD, SIGHUP, SIGKILL, SIGSEGV, SIGSTOP, SIGTERM, SIGUSR1};
+
     use crate::host::unix::signal_process;
+
+    fn is_alive(pid: i32) -> bool {
+        let mut sight = Sight::of(pid);
+        loop {
+            match sight.look() {
+                Some(alive) => return alive,
+                None => std::thread::sleep(AGAIN),
+            }
+        }
+    }
 
     fn pid(child: &Child) -> i32 {
         i32::try_from(child.id()).unwrap()
@@ -67,23 +181,43 @@ mod tests {
         Command::new("sleep").arg("1000").spawn().unwrap()
     }
 
+    /// Never alive again, in whichever instant it is looked at: also between taking the
+    /// signal and ending, with a memory image and without, asleep and at work.
     #[test]
-    fn a_process_is_dying_from_its_kill_on_until_it_is_reaped() {
-        let mut sleeper = sleeper();
-        let pid = pid(&sleeper);
-        assert!(!is_dying(pid));
-        sleeper.kill().unwrap();
-        // Never alive again, in whichever instant it is looked at.
-        (0..1000).for_each(|_| assert!(is_dying(pid)));
-        sleeper.wait().unwrap();
-        assert!(is_dying(pid));
+    fn a_process_is_not_alive_from_its_deadly_signal_on_until_it_is_reaped() {
+        for command in ["ulimit -c 0; exec sleep 1000", "ulimit -c 0; while :; do :; done"] {
+            for signal in [SIGKILL, SIGTERM, SIGHUP, SIGSEGV, SIGABRT, SIGUSR1].repeat(10) {
+                let mut shell = Command::new("sh").args(["-c", command]).spawn().unwrap();
+                let pid = pid(&shell);
+                assert!(is_alive(pid));
+                signal_process(pid, signal);
+                (0..20).for_each(|look| assert!(!is_alive(pid), "{command} {signal} {look}"));
+                shell.wait().unwrap();
+                assert!(!is_alive(pid));
+            }
+        }
+    }
+
+    #[test]
+    fn a_process_that_handles_or_ignores_a_signal_is_alive() {
+        let script = "trap : TERM; trap '' HUP; echo up; while :; do sleep 0.01; done";
+        let mut command = Command::new("sh");
+        let mut shell = command.args(["-c", script]).stdout(Stdio::piped()).spawn().unwrap();
+        let mut line = String::new();
+        BufReader::new(shell.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        for signal in [SIGTERM, SIGHUP, SIGCHLD].repeat(20) {
+            signal_process(pid(&shell), signal);
+            assert!(is_alive(pid(&shell)));
+        }
+        shell.kill().unwrap();
+        shell.wait().unwrap();
     }
 
     #[test]
     fn a_stopped_process_lives() {
         let mut sleeper = sleeper();
-        signal_process(pid(&sleeper), 19);
-        assert!(!is_dying(pid(&sleeper)));
+        signal_process(pid(&sleeper), SIGSTOP);
+        assert!(is_alive(pid(&sleeper)));
         sleeper.kill().unwrap();
         sleeper.wait().unwrap();
     }
@@ -104,9 +238,9 @@ mod tests {
         let mut line = String::new();
         BufReader::new(daemon.stdout.take().unwrap()).read_line(&mut line).unwrap();
         assert_eq!(line, "works\n");
-        assert!(!is_dying(pid(&daemon)));
+        assert!(is_alive(pid(&daemon)));
         daemon.kill().unwrap();
-        (0..100).for_each(|_| assert!(is_dying(pid(&daemon))));
+        (0..100).for_each(|_| assert!(!is_alive(pid(&daemon))));
         daemon.wait().unwrap();
     }
 }

@@ -18,7 +18,7 @@ use rtf_model::protocol::{
 };
 
 use super::spawner::SpawnRequest;
-use super::{tree, unix};
+use super::{resources, tree, unix};
 use crate::isolate::Network;
 
 const SIGKILL: i32 = 9;
@@ -168,7 +168,13 @@ impl Server {
         let pid_of = |child: &io::Result<Child>| i32::try_from(child.as_ref().ok()?.id()).ok();
         let process = tree::start_own_child(|| command.spawn(), pid_of);
         drop(theirs);
-        Ok(Self { kind, socket, process: process? })
+        let process = process?;
+        if let Ok(pid) = i32::try_from(process.id()) {
+            // Its forks have what it has.
+            resources::limit_descriptors(pid);
+            resources::make_expendable(pid);
+        }
+        Ok(Self { kind, socket, process })
     }
 
     fn fork(&self, request: &[u8], ends: &Ends<'_>) -> io::Result<i32> {

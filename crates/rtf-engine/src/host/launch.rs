@@ -9,6 +9,7 @@ use tokio::sync::oneshot;
 
 use super::cgroup::{Cgroup, Cgroups};
 use super::spawner::{Process, SpawnRequest, Spawner};
+use super::tree::Effort;
 use super::{codec, tree};
 
 /// A process of a scope of its own, started already or not. A host is greeted
@@ -66,13 +67,13 @@ impl Launch {
     }
 
     /// Kills what a process that has ended left. Returns what was killed.
-    pub async fn sweep(&mut self) -> Vec<LeftProcess> {
+    pub async fn sweep(&mut self, effort: Effort) -> Vec<LeftProcess> {
         let mut left = Vec::new();
         if let Some(group) = self.cgroup.take() {
             left = group.clear().await;
         }
         // They come here when they have ended, and are taken in by this.
-        tree::add(&mut left, tree::sweep(&self.scope));
+        tree::add(&mut left, tree::sweep(&self.scope, effort));
         left
     }
 
@@ -82,7 +83,7 @@ impl Launch {
         if let Ok(mut process) = Spawner::started(started).await {
             tree::kill_tree(process.pid);
             let _ = process.end.wait().await;
-            let _ = tree::sweep(&self.scope);
+            let _ = tree::sweep(&self.scope, Effort::Once);
         }
     }
 

@@ -11,6 +11,7 @@
 //! - [`codec`]: lines of the protocol.
 //! - [`dying`]: whether a process is about to end.
 //! - [`tree`]: everything below a process, and orphans.
+//! - [`resources`]: descriptors and memory.
 //! - [`stack`]: stack dumps of processes that hang.
 //! - [`unix`]: the system calls.
 
@@ -21,6 +22,7 @@ mod dying;
 pub mod fork;
 pub mod launch;
 pub mod remote;
+pub mod resources;
 pub mod spawner;
 pub mod stack;
 pub mod task;
@@ -28,4 +30,4 @@ pub mod tree;
 mod unix;
 mod usage;
 
-pub use unix::prepare_process;
+pub use unix::{prepare_process, unreadable_proc};

@@ -6,8 +6,8 @@
 
 use std::sync::LazyLock;
 
-use crate::plan::{ProcessPlan, RemotePlan};
-use crate::suite::signal_name;
+use rtf_plan::plan::{ProcessPlan, RemotePlan};
+use rtf_plan::suite::signal_name;
 
 /// What runs on the other machine, without its comments.
 static SCRIPT: LazyLock<String> = LazyLock::new(|| {
@@ -84,6 +84,7 @@ mod tests {
             // Not SIGINT, which a shell lets its background jobs ignore.
             stop_signal: 15,
             stop_grace: Duration::from_millis(1200),
+            stop_codes: Vec::new(),
             remote: None,
         }
     }

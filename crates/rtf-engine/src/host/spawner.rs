@@ -4,9 +4,10 @@
 //! descriptor must be inheritable for just that moment: both are reasons for a
 //! single place. `posix_spawn` is used (no code runs between fork and exec), so
 //! the time does not grow with the runner's memory; only a process that enters a
-//! network of its suite is forked.
+//! network of its suite is forked, and one that begins without a greeting when the
+//! runner has another limit of descriptors than the user gave.
 
-use std::io::{self, Write};
+use std::io;
 use std::os::fd::{AsFd, AsRawFd, OwnedFd};
 use std::path::PathBuf;
 use std::process::Stdio;
@@ -19,9 +20,11 @@ use tokio::process::{Child, ChildStderr, ChildStdout, Command};
 use tokio::sync::oneshot;
 
 use super::fork::{Ends, ForkServers, Forks};
+use super::resources::{self, Reserve};
 use super::{remote, tree, unix};
 use crate::guard::gate;
 use crate::isolate::Network;
+use crate::run::Role;
 
 /// Which outputs of a process are captured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,6 +55,8 @@ pub struct SpawnRequest {
     pub forks: bool,
     /// The network that it enters; the runner's own when `None`.
     pub network: Option<Network>,
+    /// What it is for; `None` for what the runner itself needs.
+    pub role: Option<Role>,
 }
 
 /// A process that was started.
@@ -143,10 +148,15 @@ impl Spawner {
         std::thread::Builder::new().name("rtf-spawner".to_owned()).spawn(move || {
             let _entered = runtime.enter();
             let mut servers = ForkServers::new(forks);
+            let mut reserve = Reserve::default();
             for job in queue {
+                reserve.fill();
                 match job {
-                    // The asker may be gone: then the process is killed by its drop.
-                    Job::Start(request, answer) => drop(answer.send(spawn(&request, &mut servers))),
+                    Job::Start(request, answer) => {
+                        let started = spawn_or_release(&request, &mut servers, &mut reserve);
+                        // The asker may be gone: then the process is killed by its drop.
+                        drop(answer.send(started));
+                    }
                     Job::Finish(within, done) => {
                         servers.end(within.as_ref());
                         let _ = done.send(());
@@ -193,23 +203,52 @@ impl Spawner {
     }
 }
 
+/// Starts a process. A hook or a fixture may have the descriptors that are kept.
+fn spawn_or_release(
+    request: &SpawnRequest,
+    servers: &mut ForkServers,
+    reserve: &mut Reserve,
+) -> io::Result<Process> {
+    match (spawn(request, servers), request.role) {
+        (Err(error), Some(role @ (Role::Hook | Role::Fixture)))
+            if resources::is_exhausted(&error) =>
+        {
+            reserve.release(role == Role::Hook);
+            spawn(request, servers)
+        }
+        (started, _) => started,
+    }
+}
+
 fn spawn(request: &SpawnRequest, servers: &mut ForkServers) -> io::Result<Process> {
     let (mut ours, mut theirs) = (None, None);
-    if let Some(greeting) = &request.channel {
+    if request.channel.is_some() {
         let (runner, host) = unix::channel_pair()?;
-        // It is short: it fits into the socket's buffer before anybody reads.
-        (&runner).write_all(greeting)?;
         runner.set_nonblocking(true)?;
         ours = Some(UnixStream::from_std(runner)?);
         theirs = Some(OwnedFd::from(host));
     }
-    if request.forks
-        && let Some(host) = &theirs
-        && let Some(process) = fork(request, host, servers)?
-    {
-        return Ok(Process { channel: ours, ..process });
+    let forked = match &theirs {
+        Some(host) if request.forks => fork(request, host, servers)?,
+        _ => None,
+    };
+    let process = match forked {
+        // It has what its server has.
+        Some(process) => process,
+        None => {
+            let process = execute(request, theirs)?;
+            resources::limit_descriptors(process.pid);
+            if matches!(request.role, Some(Role::Test | Role::Fixture)) {
+                resources::make_expendable(process.pid);
+            }
+            process
+        }
+    };
+    if let (Some(greeting), Some(ours)) = (&request.channel, &ours) {
+        // It does nothing before. The greeting is short: it fits into the socket's
+        // buffer before anybody reads. One that has ended is noticed by its exit.
+        let _ = rustix::io::write(ours, greeting);
     }
-    let process = execute(request, theirs)?;
     Ok(Process { channel: ours, ..process })
 }
 
@@ -257,6 +296,9 @@ fn execute(request: &SpawnRequest, channel: Option<OwnedFd>) -> io::Result<Proce
     }
     if let Some(network) = &request.network {
         network.namespaces().enter(command.as_std_mut());
+    }
+    if channel.is_none() {
+        resources::limit_descriptors_of(command.as_std_mut());
     }
     let mut theirs = None;
     match channel {

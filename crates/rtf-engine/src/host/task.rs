@@ -4,46 +4,55 @@
 //! process said, printed, and how it ended. Everything that the process said
 //! and printed is delivered before its end is told.
 
+mod copy;
 mod far;
+mod input;
 mod keep;
+mod lines;
+pub(super) mod liveness;
+mod outgoing;
 mod sharing;
 mod streams;
+mod throttle;
 
+use std::collections::VecDeque;
 use std::os::fd::AsFd;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
-use rtf_model::protocol::{Notification, Request, StackSupport, TestEnds};
+use rtf_model::protocol::{Request, StackSupport, TestEnds};
 use rtf_model::{ExitStatus, Source, Stream};
 use tokio::io::AsyncWriteExt;
 use tokio::sync::mpsc;
 use tokio::task::JoinSet;
 
 use super::cgroup::Cgroups;
-use super::codec::{self, FromHost, LINE_LIMIT};
-use super::dying::is_dying;
+use super::codec::{self, FromHost};
 use super::launch::Launch;
 use super::spawner::{Process, Spawner};
-use super::{stack, tree, unix, usage};
+use super::tree::Effort;
+use super::{stack, tree, unix};
 use crate::guard::{Kept, Link, gate};
-use crate::plan::ProcessPlan;
 use crate::run::Sink;
-use crate::run::machine::{HostId, HostInput};
-use crate::run::probe::{self, Asker, Watch};
+use crate::run::machine::{HostId, HostInput, Probes};
+use crate::run::probe::{self, Asker, Files, Watch};
+use rtf_plan::plan::ProcessPlan;
 
 /// After its end, a process's outputs are read for this long at the most: a
 /// descendant that could not be found may hold them open.
 const DRAIN_LIMIT: Duration = Duration::from_millis(500);
-/// How often a task that waits for slow reporters looks again.
-const CONGESTED_WAIT: Duration = Duration::from_millis(1);
 const SIGKILL: i32 = 9;
 /// How long a fixture on another machine may take to be killed there.
 const REMOTE_KILL: Duration = Duration::from_secs(1);
 
+use copy::Copy;
+use lines::Lines;
+use outgoing::Outgoing;
 pub use sharing::Next;
 use sharing::Sharing;
-use streams::{Buffers, read, wait};
+use streams::{Buffers, read, receive, wait};
+use throttle::Throttle;
 
 /// What the suite's task asks of a process's task.
 #[derive(Debug)]
@@ -62,8 +71,22 @@ pub enum Order {
     KillTree,
     /// Ask the `alive` probes from now on.
     WatchAlive,
-    /// Say whether it lives, after all that it has told so far.
-    LookAlive,
+    /// Say whether it lives and these probes hold, after all that it has told so far.
+    LookAlive(Probes),
+}
+
+impl Order {
+    /// Whether it is a step of a stop, whose deadlines are not paused.
+    #[must_use]
+    pub fn stops(&self) -> bool {
+        matches!(
+            self,
+            Self::Send(_, Request::Interrupt { .. })
+                | Self::TakeStack(_)
+                | Self::Signal(_)
+                | Self::KillTree
+        )
+    }
 }
 
 /// What all processes of a run share.
@@ -116,14 +139,14 @@ pub async fn run(
         let reason = format!("{taken} answers already, before the fixture was started");
         return drop(inputs.send((host, HostInput::SpawnFailed(reason))).await);
     }
-    let started_at = SystemTime::now();
+    let files = Files::now(job.process.as_ref().map_or(&[], |process| &process.ready));
     let groups = shared.cgroups.as_ref().filter(|_| job.grouped);
     match job.launch.start(&shared.spawner, groups).await {
         Ok(process) => {
             let mut task = Task::new(job, shared, process, inputs);
             task.tell_guard();
             task.open_gate().await;
-            task.watch_ready(started_at);
+            task.watch_ready(files);
             task.run(orders).await;
         }
         Err(error) => {
@@ -134,16 +157,29 @@ pub async fn run(
     }
 }
 
+/// Waits for the end of a copy, if there is one.
+async fn copied(copy: &mut Option<Copy>) -> std::io::Result<()> {
+    match copy {
+        Some(copy) => copy.wait().await,
+        None => std::future::pending().await,
+    }
+}
+
 struct Task {
     job: Job,
     shared: Arc<Shared>,
     process: Process,
     inputs: Inputs,
-    line: Vec<u8>,
+    lines: Lines,
+    outgoing: Outgoing,
     /// What belongs to which test, when several may share the host.
     sharing: Option<Sharing>,
-    /// How often it has to say that it lives.
-    looked_at: u32,
+    throttle: Throttle,
+    /// What it told behind a file that is being copied.
+    held: VecDeque<Result<FromHost, String>>,
+    copy: Option<Copy>,
+    /// It has to say that it lives, and which probes hold.
+    looked_at: Option<Probes>,
     /// Probes and stack dumps; they end with the task.
     side: JoinSet<()>,
 }
@@ -155,9 +191,13 @@ impl Task {
             shared,
             process,
             inputs,
-            line: Vec::new(),
+            lines: Lines::default(),
+            outgoing: Outgoing::default(),
             sharing: None,
-            looked_at: 0,
+            throttle: Throttle::default(),
+            held: VecDeque::new(),
+            copy: None,
+            looked_at: None,
             side: JoinSet::new(),
         }
     }
@@ -182,10 +222,10 @@ impl Task {
         }
     }
 
-    fn watch_ready(&mut self, started_at: SystemTime) {
+    fn watch_ready(&mut self, before: Files) {
         if let Some(plan) = &self.job.process {
             let probes = plan.ready.clone();
-            self.side.spawn(self.watch().until_ready(probes, Some(started_at)));
+            self.side.spawn(self.watch().until_ready(probes, before));
         }
     }
 
@@ -198,30 +238,45 @@ impl Task {
     async fn run(&mut self, mut orders: mpsc::UnboundedReceiver<Order>) {
         let mut buffers = Buffers::new();
         let status = loop {
-            let congested = self.shared.sink.is_congested();
+            let is_throttled = self.throttle.is_throttled;
+            let is_read = !is_throttled && self.copy.is_none();
             let process = &mut self.process;
             tokio::select! {
                 biased;
                 Some(order) = orders.recv() => self.obey(order).await,
-                _ = read(&mut process.channel, &mut buffers.channel), if !congested =>
-                    self.heard(&buffers.channel).await,
-                () = std::future::ready(()), if self.looked_at > 0 => self.look_alive().await,
-                _ = read(&mut process.stdout, &mut buffers.stdout), if !congested =>
+                () = self.outgoing.write(&process.channel), if self.outgoing.has_work() => {}
+                () = receive(&process.channel, &mut buffers.channel), if is_read => {
+                    self.heard(&buffers.channel).await;
+                    self.throttle().await;
+                }
+                () = std::future::ready(()), if self.looked_at.is_some() => self.look_alive().await,
+                _ = read(&mut process.stdout, &mut buffers.stdout) =>
                     self.printed(Stream::Stdout, &buffers.stdout).await,
-                _ = read(&mut process.stderr, &mut buffers.stderr), if !congested =>
+                _ = read(&mut process.stderr, &mut buffers.stderr) =>
                     self.printed(Stream::Stderr, &buffers.stderr).await,
                 status = wait(&mut process.end) => break status,
-                () = tokio::time::sleep(CONGESTED_WAIT), if congested => {}
+                copied = copied(&mut self.copy) => self.copy_ended(copied).await,
+                () = tokio::time::sleep(throttle::POLL), if is_throttled => self.throttle().await,
             }
         };
-        self.end(status, &mut buffers).await;
+        self.end(status, &mut buffers, &mut orders).await;
+        self.refuse(orders, status).await;
     }
 
     /// The process has ended: kill what it left, deliver what it said.
-    async fn end(&mut self, status: ExitStatus, buffers: &mut Buffers) {
+    async fn end(
+        &mut self,
+        status: ExitStatus,
+        buffers: &mut Buffers,
+        orders: &mut mpsc::UnboundedReceiver<Order>,
+    ) {
         self.side.abort_all();
-        let mut left = self.job.launch.sweep().await;
-        let _ = tokio::time::timeout(DRAIN_LIMIT, self.drain(buffers)).await;
+        // Tests are only grouped where each leak counts.
+        let is_strict = self.job.grouped && matches!(self.job.source, Source::Test(_));
+        let effort = if is_strict { Effort::Thorough } else { Effort::Once };
+        let mut left = self.job.launch.sweep(effort).await;
+        self.drain(buffers).await;
+        self.finish_copies(orders).await;
         self.last_line(status).await;
         self.disown(&mut left);
         let _ = std::fs::remove_file(&self.job.launch.stack_file);
@@ -230,50 +285,23 @@ impl Task {
         self.tell(end).await;
     }
 
-    /// A line without an end, which is no fault of one that was killed while it wrote.
-    async fn last_line(&mut self, status: ExitStatus) {
-        let shared = self.sharing.as_mut().map(Sharing::take_rest);
-        let line = shared.unwrap_or_else(|| std::mem::take(&mut self.line));
-        if !line.is_empty() && matches!(status, ExitStatus::Code(_)) {
-            self.understand(codec::decode(&line)).await;
-        }
-    }
-
-    async fn drain(&mut self, buffers: &mut Buffers) {
-        while self.is_open() {
-            let process = &mut self.process;
-            tokio::select! {
-                _ = read(&mut process.channel, &mut buffers.channel) =>
-                    self.heard(&buffers.channel).await,
-                _ = read(&mut process.stdout, &mut buffers.stdout) =>
-                    self.printed(Stream::Stdout, &buffers.stdout).await,
-                _ = read(&mut process.stderr, &mut buffers.stderr) =>
-                    self.printed(Stream::Stderr, &buffers.stderr).await,
-            }
-        }
-    }
-
-    fn is_open(&self) -> bool {
-        let Process { channel, stdout, stderr, .. } = &self.process;
-        channel.is_some() || stdout.is_some() || stderr.is_some()
-    }
-
     async fn obey(&mut self, order: Order) {
         let pid = self.process.pid;
+        if order.stops() {
+            self.throttle.is_stopping = true;
+            self.throttle().await;
+            self.give_copy_up().await;
+        }
         match order {
             Order::ServeNext(next) => self.serve_next(next).await,
             Order::Send(id, request) => self.send(id, request).await,
-            Order::CloseChannel => {
-                if let Some(channel) = &mut self.process.channel {
-                    let _ = channel.shutdown().await;
-                }
-            }
-            Order::Signal(signal) if self.is_remote() => self.signal_remote(signal).await,
+            Order::CloseChannel => self.outgoing.close(),
+            Order::Signal(signal) if self.is_remote() => self.signal_remote(signal),
             Order::Signal(signal) => {
                 unix::signal_group(pid, signal);
             }
             Order::KillTree if self.is_remote() => {
-                self.signal_remote(SIGKILL).await;
+                self.signal_remote(SIGKILL);
                 // The connection may be stuck.
                 self.side.spawn(async move {
                     tokio::time::sleep(REMOTE_KILL).await;
@@ -283,20 +311,7 @@ impl Task {
             Order::KillTree => self.job.launch.kill(&self.process),
             Order::TakeStack(support) => self.take_stack(support).await,
             Order::WatchAlive => self.watch_alive(),
-            Order::LookAlive => self.looked_at += 1,
-        }
-    }
-
-    async fn look_alive(&mut self) {
-        self.looked_at -= 1;
-        if is_dying(self.process.pid) {
-            self.tell(HostInput::Dies).await;
-        } else {
-            if self.job.measured {
-                let usage = usage::of(self.process.pid, &self.job.launch.scope);
-                self.tell(HostInput::Uses { usage, served: None }).await;
-            }
-            self.tell(HostInput::Lives).await;
+            Order::LookAlive(probes) => self.looked_at = Some(probes),
         }
     }
 
@@ -311,13 +326,13 @@ impl Task {
             let folder = self.shared.run_folder.join(self.keep_folder());
             *keep_folder = Some(folder.to_string_lossy().into_owned());
         }
-        self.write(id, request).await;
+        self.write(id, request);
     }
 
-    async fn write(&mut self, id: Option<u64>, request: Request) {
-        if let (Ok(line), Some(channel)) = (codec::encode(id, request), &mut self.process.channel) {
+    fn write(&mut self, id: Option<u64>, request: Request) {
+        if let Ok(line) = codec::encode(id, request) {
             // A host that is gone or does not read is noticed by its exit or its limit.
-            let _ = tokio::time::timeout(DRAIN_LIMIT, channel.write_all(&line)).await;
+            self.outgoing.push(&line);
         }
     }
 
@@ -337,60 +352,6 @@ impl Task {
         if let Some(plan) = &self.job.process {
             let probes = plan.alive.clone();
             self.side.spawn(self.watch().until_unwell(probes));
-        }
-    }
-
-    /// Bytes came over the channel; none when it was closed.
-    async fn heard(&mut self, bytes: &[u8]) {
-        if self.sharing.is_some() {
-            return self.heard_shared(bytes).await;
-        }
-        if bytes.is_empty() {
-            // What it was saying is understood when it is known how it ended.
-            self.process.channel = None;
-            return;
-        }
-        for piece in bytes.split_inclusive(|byte| *byte == b'\n') {
-            match piece.strip_suffix(b"\n") {
-                Some(end) if self.line.is_empty() => self.understand(codec::decode(end)).await,
-                Some(end) => {
-                    let mut line = std::mem::take(&mut self.line);
-                    line.extend_from_slice(end);
-                    self.understand(codec::decode(&line)).await;
-                }
-                None => self.line.extend_from_slice(piece),
-            }
-        }
-        if self.line.len() > LINE_LIMIT {
-            self.line = Vec::new();
-            let what = format!("it wrote a line of more than {LINE_LIMIT} bytes");
-            self.tell(HostInput::Garbage(what)).await;
-        }
-    }
-
-    async fn understand(&mut self, heard: Result<FromHost, String>) {
-        let input = match heard {
-            Ok(FromHost::Told(Notification::Attached(attachment))) => {
-                HostInput::Attached(self.keep(attachment).await)
-            }
-            Ok(FromHost::Told(notification)) => HostInput::Told(notification),
-            Ok(FromHost::Answered(id, reply)) => HostInput::Answered(id, reply),
-            Err(what) => HostInput::Garbage(what),
-        };
-        self.tell(input).await;
-    }
-
-    async fn printed(&mut self, stream: Stream, bytes: &[u8]) {
-        if self.sharing.is_some() {
-            return self.printed_shared(stream, bytes).await;
-        }
-        if bytes.is_empty() {
-            match stream {
-                Stream::Stdout => self.process.stdout = None,
-                Stream::Stderr => self.process.stderr = None,
-            }
-        } else {
-            self.tell(HostInput::Printed(stream, bytes.to_vec())).await;
         }
     }
 

@@ -5,9 +5,12 @@
 //! orphaned then comes to the runner, which is a child subreaper, and is told
 //! apart by the scope variable in its environment.
 
+mod sweep;
+
 use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::os::fd::AsRawFd;
+use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{LazyLock, Mutex, PoisonError};
@@ -17,6 +20,8 @@ use rtf_model::LeftProcess;
 use rtf_model::protocol::{FORK_SERVER_VARIABLE, OWNER_VARIABLE, SCOPE_VARIABLE};
 
 use super::unix;
+pub use sweep::Effort;
+use sweep::sweep_if;
 
 const SIGKILL: i32 = 9;
 /// How long to wait before looking again for processes that are ending.
@@ -68,8 +73,8 @@ pub fn kill_tree(root: i32) {
 
 /// Kills the orphans of a scope and all that is below them. Returns what was killed.
 #[must_use]
-pub fn sweep(scope: &str) -> Vec<LeftProcess> {
-    sweep_if(|pid| scope_of(pid).is_some_and(|found| found == scope.as_bytes()))
+pub fn sweep(scope: &str, effort: Effort) -> Vec<LeftProcess> {
+    sweep_if(effort, |pid| scope_of(pid).is_some_and(|found| found == scope.as_bytes()))
 }
 
 /// Kills every process below this one, also those that the runner waits for.
@@ -82,7 +87,7 @@ pub fn kill_everything() -> Vec<LeftProcess> {
 /// Kills every process below this one that the runner does not wait for itself.
 #[must_use]
 pub fn sweep_all() -> Vec<LeftProcess> {
-    sweep_if(|_| true)
+    sweep_if(Effort::Once, |_| true)
 }
 
 /// Kills every process below this one, again and again until there is none or
@@ -106,13 +111,15 @@ pub fn add(known: &mut Vec<LeftProcess>, more: Vec<LeftProcess>) {
     known.extend(more.into_iter().filter(|process| !pids.contains(&process.pid)));
 }
 
-/// Kills the children of this process whose owner begins so, and all that is
-/// below them. Returns what was killed. Nothing is reaped.
+/// Kills what is below this process and whose owner begins so, and all that is
+/// below that. Returns what was killed. Nothing is reaped.
 #[must_use]
 pub fn kill_owned(prefix: &str) -> Vec<LeftProcess> {
     let mut left = Vec::new();
     loop {
-        let owned = children_of(OWN).into_iter().filter(|pid| !is_zombie(*pid));
+        // A runner that hangs in the kernel still has its children.
+        let own = rustix::process::getpid().as_raw_nonzero().get();
+        let owned = descendants(own).into_iter().filter(|pid| !is_zombie(*pid));
         let owned = owned.filter(|pid| owner_of(*pid).is_some_and(|o| o.starts_with(prefix)));
         let found: Vec<_> = owned
             .flat_map(|pid| std::iter::once(pid).chain(descendants(pid)))
@@ -170,38 +177,6 @@ pub fn inheritable(channel: &std::os::unix::net::UnixStream) -> std::io::Result<
     Ok(format!("fd:{}", channel.as_raw_fd()))
 }
 
-fn sweep_if(belongs: impl Fn(i32) -> bool) -> Vec<LeftProcess> {
-    let mut left = Vec::new();
-    let mut seen = HashSet::new();
-    loop {
-        let before = seen.len();
-        let starts = STARTS.load(Ordering::SeqCst);
-        let orphans = children_of(OWN).into_iter();
-        let found: Vec<i32> = orphans
-            .filter(|pid| !is_own_child(*pid))
-            .filter(|pid| is_zombie(*pid) || belongs(*pid))
-            .flat_map(|pid| std::iter::once(pid).chain(descendants(pid)))
-            .collect();
-        // One that is just being started may look like a dead orphan.
-        let is_quiet = starts.is_multiple_of(2) && STARTS.load(Ordering::SeqCst) == starts;
-        for pid in &found {
-            if is_zombie(*pid) {
-                if is_quiet {
-                    unix::reap(*pid);
-                }
-            } else if seen.insert(*pid) {
-                if !is_fork_server(*pid) {
-                    left.push(described(*pid));
-                }
-                unix::signal_process(*pid, SIGKILL);
-            }
-        }
-        if seen.len() == before {
-            return left;
-        }
-    }
-}
-
 /// Whether a process is the runner's own and none of a test's or a fixture's.
 fn is_fork_server(pid: i32) -> bool {
     variable_of(pid, FORK_SERVER_VARIABLE).is_some()
@@ -215,6 +190,30 @@ pub fn members(root: i32, scope: &str) -> Vec<i32> {
     let orphans = children_of(OWN).into_iter().filter(|pid| !is_own_child(*pid)).filter(belongs);
     let roots = std::iter::once(root).chain(orphans);
     roots.flat_map(|root| std::iter::once(root).chain(descendants(root))).collect()
+}
+
+/// The processes of this user on this machine whose scope begins so, and all that
+/// is below them.
+#[must_use]
+pub fn of_scopes(prefix: &str) -> Vec<LeftProcess> {
+    let own = rustix::process::geteuid().as_raw();
+    let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    let pids = entries.filter_map(|entry| {
+        let pid = entry.file_name().to_str()?.parse::<i32>().ok()?;
+        (entry.metadata().ok()?.uid() == own).then_some(pid)
+    });
+    let belongs = |pid: &i32| {
+        // Most have none, and are no business of ours: they are asked once.
+        let environ = std::fs::read(format!("/proc/{pid}/environ")).unwrap_or_default();
+        variable_in(&environ, SCOPE_VARIABLE)
+            .is_some_and(|scope| scope.starts_with(prefix.as_bytes()))
+    };
+    let mut found = Vec::new();
+    for pid in pids.filter(belongs) {
+        let below = std::iter::once(pid).chain(descendants(pid));
+        add(&mut found, below.filter(|pid| !is_zombie(*pid)).map(described).collect());
+    }
+    found
 }
 
 /// Everything below a process, parents before children.
@@ -245,10 +244,31 @@ fn children_of(tasks: impl AsRef<Path>) -> Vec<i32> {
 }
 
 fn is_zombie(pid: i32) -> bool {
-    let Ok(stat) = std::fs::read_to_string(format!("/proc/{pid}/stat")) else {
-        return false;
-    };
-    stat.rsplit_once(") ").is_some_and(|(_, rest)| rest.starts_with('Z'))
+    state_of(pid) == Some('Z')
+}
+
+/// Whether a process was stopped, by a signal or a debugger.
+#[must_use]
+pub fn is_stopped(pid: i32) -> bool {
+    matches!(state_of(pid), Some('T' | 't'))
+}
+
+/// The letter for what a process does.
+fn state_of(pid: i32) -> Option<char> {
+    let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
+    stat.rsplit_once(") ")?.1.chars().next()
+}
+
+/// Whether an environment without a scope shows that a process belongs to nobody. While
+/// a process executes a program or exits, it is running and its environment looks empty,
+/// on a busy machine for longer than [`environ_of`] waits.
+fn is_settled(pid: i32) -> bool {
+    match std::fs::read(format!("/proc/{pid}/environ")) {
+        Ok(environ) if environ.is_empty() => matches!(state_of(pid), Some('S' | 'I' | 'T' | 't')),
+        Ok(_) => true,
+        // Another user's process. One that has gone was looked at too late.
+        Err(error) => error.kind() == std::io::ErrorKind::PermissionDenied,
+    }
 }
 
 /// The environment of a process. It looks empty for a moment while the process
@@ -286,7 +306,10 @@ fn scope_of(pid: i32) -> Option<Vec<u8>> {
 
 /// The value of a variable in the environment of a process, as it was started.
 fn variable_of(pid: i32, name: &str) -> Option<Vec<u8>> {
-    let environ = environ_of(pid)?;
+    variable_in(&environ_of(pid)?, name)
+}
+
+fn variable_in(environ: &[u8], name: &str) -> Option<Vec<u8>> {
     let prefix = format!("{name}=");
     let found =
         environ.split(|byte| *byte == 0).find_map(|entry| entry.strip_prefix(prefix.as_bytes()));

@@ -3,8 +3,10 @@
 
 use std::io;
 use std::mem::MaybeUninit;
-use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
+use std::os::fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd};
 use std::os::unix::net::UnixStream;
+use std::os::unix::process::CommandExt;
+use std::process::Command;
 use std::time::Duration;
 
 use rtf_model::ExitStatus;
@@ -24,8 +26,10 @@ const ANSWER_LIMIT: Duration = Duration::from_secs(5);
 /// plug-ins, and orphans of plug-ins come back to it.
 ///
 /// # Errors
-/// The kernel refused to make it a child subreaper.
+/// The kernel refused to make it a child subreaper, or `/proc` does not show this
+/// process.
 pub fn prepare_process() -> io::Result<()> {
+    check_proc(std::fs::read_link("/proc/self"), std::process::id())?;
     for fd in inherited_descriptors() {
         // SAFETY: the number was just listed as open, and nothing closes
         // descriptors this early in the process.
@@ -34,6 +38,25 @@ pub fn prepare_process() -> io::Result<()> {
     }
     rustix::process::set_child_subreaper(Some(rustix::process::getpid()))?;
     Ok(())
+}
+
+/// Whether `/proc` shows the processes that this one sees. Otherwise the state of a
+/// fixture would be another process's.
+fn check_proc(shown: io::Result<std::path::PathBuf>, own: u32) -> io::Result<()> {
+    let shown = shown.map_err(unreadable_proc)?;
+    if shown.to_str() == Some(own.to_string().as_str()) {
+        return Ok(());
+    }
+    Err(io::Error::other(
+        "`/proc` shows the processes of another PID namespace: mount the one of this namespace, \
+         for example with `unshare --pid --fork --mount-proc`",
+    ))
+}
+
+/// What the kernel tells of processes is needed from the first moment on.
+pub fn unreadable_proc(error: io::Error) -> io::Error {
+    let text = format!("rtf needs `/proc`, which cannot be read: {error}");
+    io::Error::new(error.kind(), text)
 }
 
 fn inherited_descriptors() -> Vec<i32> {
@@ -50,9 +73,70 @@ fn is_open(fd: i32) -> bool {
     fcntl_getfd(fd).is_ok()
 }
 
-/// A connected pair of stream sockets, both close-on-exec.
+/// A connected pair of stream sockets, both close-on-exec. The first one, ours, is told
+/// which process wrote what it receives.
 pub fn channel_pair() -> io::Result<(UnixStream, UnixStream)> {
-    UnixStream::pair()
+    let (ours, theirs) = UnixStream::pair()?;
+    #[cfg(target_os = "linux")]
+    rustix::net::sockopt::set_socket_passcred(&ours, true)?;
+    Ok((ours, theirs))
+}
+
+/// The process that wrote to a channel. Zero when the kernel does not say: one that is
+/// not visible from here, and every process on systems other than Linux.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Sender(pub i32);
+
+/// Receives what one process wrote to a channel: how much, and which process. The kernel
+/// does not join what different processes wrote. Nothing was written at the end.
+#[cfg(target_os = "linux")]
+pub fn receive_from(channel: BorrowedFd<'_>, bytes: &mut [u8]) -> io::Result<(usize, Sender)> {
+    /// Room for credentials alone: descriptors that come with them are closed.
+    #[repr(C)]
+    struct Control {
+        header: libc::cmsghdr,
+        credentials: libc::ucred,
+    }
+    let mut part = libc::iovec { iov_base: bytes.as_mut_ptr().cast(), iov_len: bytes.len() };
+    let mut control = MaybeUninit::<Control>::uninit();
+    // SAFETY: all fields may be zero.
+    let mut message: libc::msghdr = unsafe { std::mem::zeroed() };
+    (message.msg_iov, message.msg_iovlen) = (&raw mut part, 1);
+    message.msg_control = control.as_mut_ptr().cast();
+    message.msg_controllen = size_of::<Control>();
+    let length = loop {
+        let flags = libc::MSG_CMSG_CLOEXEC;
+        // SAFETY: `message` names `bytes` and `control`, which are valid for writing.
+        let length = unsafe { libc::recvmsg(channel.as_raw_fd(), &raw mut message, flags) };
+        match usize::try_from(length) {
+            Ok(length) => break length,
+            Err(_) => {
+                let error = io::Error::last_os_error();
+                if error.kind() != io::ErrorKind::Interrupted {
+                    return Err(error);
+                }
+            }
+        }
+    };
+    // SAFETY: the kernel wrote `msg_controllen` bytes; a header of this kind is followed
+    // by credentials.
+    let sender = unsafe {
+        let header = libc::CMSG_FIRSTHDR(&raw const message);
+        let is_told = !header.is_null()
+            && (*header).cmsg_level == libc::SOL_SOCKET
+            && (*header).cmsg_type == libc::SCM_CREDENTIALS;
+        let credentials = || libc::CMSG_DATA(header).cast::<libc::ucred>().read_unaligned();
+        Sender(if is_told { credentials().pid } else { 0 })
+    };
+    Ok((length, sender))
+}
+
+/// Receives what was written to a channel; who wrote it is not known.
+#[cfg(not(target_os = "linux"))]
+pub fn receive_from(channel: BorrowedFd<'_>, bytes: &mut [u8]) -> io::Result<(usize, Sender)> {
+    let (length, _) =
+        retry_on_intr(|| rustix::net::recv(channel, &mut *bytes, RecvFlags::empty()))?;
+    Ok((length, Sender(0)))
 }
 
 /// A connected pair of sockets that keep packets apart, both close-on-exec.
@@ -123,6 +207,16 @@ pub fn let_inherit(fd: impl AsFd) -> io::Result<()> {
     Ok(fcntl_setfd(fd, FdFlags::empty())?)
 }
 
+/// Has something done in the process of a command before it executes its program:
+/// nothing but system calls.
+pub fn before_exec(
+    command: &mut Command,
+    act: impl FnMut() -> io::Result<()> + Send + Sync + 'static,
+) {
+    // SAFETY: between fork and exec, only system calls are made.
+    unsafe { command.pre_exec(act) };
+}
+
 /// Sends a signal to a process group; whether there was one.
 pub fn signal_group(pid: i32, signal: i32) -> bool {
     with(pid, signal, rustix::process::kill_process_group)
@@ -162,5 +256,21 @@ pub fn exit_status(status: std::process::ExitStatus) -> ExitStatus {
         (Some(code), _) => ExitStatus::Code(code),
         (None, Some(signal)) => ExitStatus::Signal(signal),
         (None, None) => ExitStatus::Code(-1),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_proc_that_shows_other_processes_is_refused_and_one_that_is_not_there_is_named() {
+        let of = |pid: &str| Ok(std::path::PathBuf::from(pid));
+        assert!(check_proc(of("7"), 7).is_ok());
+        let error = check_proc(of("4711"), 7).unwrap_err().to_string();
+        assert!(error.contains("another PID namespace"), "{error}");
+        let missing = Err(io::ErrorKind::NotFound.into());
+        let error = check_proc(missing, 7).unwrap_err().to_string();
+        assert!(error.starts_with("rtf needs `/proc`, which cannot be read"), "{error}");
     }
 }

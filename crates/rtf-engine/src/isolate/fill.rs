@@ -5,20 +5,20 @@ use std::sync::Arc;
 
 use rtf_model::{OwnPort, SuitePrepared};
 
-use crate::plan::{
-    FixtureBody, Given, HookBody, PluginPlan, Probe, ProbeKind, ProcessPlan, SuitePlan,
+use rtf_plan::plan::{
+    FixtureBody, HookBody, PluginPlan, Preparation, Probe, ProbeKind, ProcessPlan, SuitePlan,
 };
-use crate::suite::port;
+use rtf_plan::suite::port_reference;
 
 /// Fills it in.
-pub fn fill(plan: &mut SuitePlan, given: Given) {
-    if let Given::All(prepared) = &given {
+pub fn fill(plan: &mut SuitePlan, given: Preparation) {
+    if let Preparation::Done(prepared) = &given {
         // Where there is no port, a text may still have one that is escaped.
         Filler(&prepared.ports).suite(plan);
         let env = prefixed(prepared, &plan.env);
         plan.env = Arc::new(env);
     }
-    plan.given = given;
+    plan.preparation = given;
 }
 
 /// The suite's environment behind what it was given: what it sets itself counts.
@@ -34,12 +34,12 @@ struct Filler<'a>(&'a [OwnPort]);
 
 impl Filler<'_> {
     fn text(&self, text: &mut String) {
-        if port::mentions(text) {
+        if port_reference::mentions(text) {
             let number = |name: &str| {
                 let own = self.0.iter().find(|own| own.name == name);
                 own.map_or_else(|| format!("${{port:{name}}}"), |own| own.port.to_string())
             };
-            *text = port::expand(text, number);
+            *text = port_reference::expand(text, number);
         }
     }
 
@@ -83,7 +83,7 @@ impl Filler<'_> {
         self.text(&mut plugin.param);
         self.texts(&mut plugin.args);
         // What the suite sets of `PATH` and the like is in the host's, too.
-        if plugin.host.env.iter().any(|(_, value)| port::mentions(value)) {
+        if plugin.host.env.iter().any(|(_, value)| port_reference::mentions(value)) {
             self.env(&mut Arc::make_mut(&mut plugin.host).env);
         }
     }
@@ -111,7 +111,7 @@ impl Filler<'_> {
                 self.text(subject);
             }
             ProbeKind::File(path) => {
-                if let Some(text) = path.to_str().filter(|text| port::mentions(text)) {
+                if let Some(text) = path.to_str().filter(|text| port_reference::mentions(text)) {
                     let mut text = text.to_owned();
                     self.text(&mut text);
                     *path = text.into();

@@ -13,6 +13,7 @@ use std::os::fd::{AsFd, BorrowedFd};
 use std::os::linux::net::SocketAddrExt;
 use std::os::unix::net::{SocketAddr as UnixAddr, UnixDatagram};
 
+use rustix::io::Errno;
 use rustix::net::{AddressFamily, SocketFlags, SocketType, bind, socket_with};
 
 /// Below the ports that the kernel hands out by itself, above those that
@@ -75,18 +76,18 @@ pub fn port(seed: &str) -> Result<Lease, LeaseError> {
 
 /// A domain of ROS 2.
 pub fn domain(seed: &str) -> Result<Lease, LeaseError> {
-    first("domain", DOMAINS, seed, |_| true)
+    first("domain", DOMAINS, seed, |_| Ok(true))
 }
 
 fn first(
     kind: &'static str,
     range: RangeInclusive<u16>,
     seed: &str,
-    fits: impl Fn(u16) -> bool,
+    fits: impl Fn(u16) -> io::Result<bool>,
 ) -> Result<Lease, LeaseError> {
     for number in from(range.clone(), seed) {
         if let Some(lease) = Lease::take(kind, number)?
-            && fits(number)
+            && fits(number)?
         {
             return Ok(lease);
         }
@@ -107,18 +108,27 @@ fn from(range: RangeInclusive<u16>, seed: &str) -> impl Iterator<Item = u16> {
 }
 
 /// Whether nobody listens there, or did a moment ago.
-fn is_free(port: u16) -> bool {
+fn is_free(port: u16) -> io::Result<bool> {
     let any = [
         (AddressFamily::INET, SocketAddr::from((Ipv4Addr::UNSPECIFIED, port))),
         (AddressFamily::INET6, SocketAddr::from((Ipv6Addr::UNSPECIFIED, port))),
     ];
-    any.into_iter().all(|(family, address)| {
-        match socket_with(family, SocketType::STREAM, SocketFlags::CLOEXEC, None) {
-            Ok(socket) => bind(&socket, &address).is_ok(),
+    for (family, address) in any {
+        let bound = socket_with(family, SocketType::STREAM, SocketFlags::CLOEXEC, None)
+            .and_then(|socket| bind(&socket, &address));
+        match bound {
+            Ok(()) => {}
+            Err(Errno::ADDRINUSE) => return Ok(false),
+            // Nothing is known of the port when there are no descriptors left.
+            Err(error @ (Errno::MFILE | Errno::NFILE | Errno::NOMEM | Errno::NOBUFS)) => {
+                return Err(error.into());
+            }
             // There may be no IPv6.
-            Err(_) => family == AddressFamily::INET6,
+            Err(_) if family == AddressFamily::INET6 => {}
+            Err(error) => return Err(error.into()),
         }
-    })
+    }
+    Ok(true)
 }
 
 #[cfg(test)]
@@ -148,7 +158,7 @@ mod tests {
         for address in ["127.0.0.1:0", "0.0.0.0:0"] {
             let listener = TcpListener::bind(address).unwrap();
             let port = listener.local_addr().unwrap().port();
-            assert!(!is_free(port), "{address}");
+            assert!(!is_free(port).unwrap(), "{address}");
         }
     }
 
@@ -163,7 +173,15 @@ mod tests {
 
     #[test]
     fn when_all_are_taken_it_says_so() {
-        let error = first("port", 20_000..=20_003, "seed", |_| false).unwrap_err();
+        let error = first("port", 20_000..=20_003, "seed", |_| Ok(false)).unwrap_err();
         assert_eq!(error.to_string(), "every port from 20000 to 20003 is in use");
+    }
+
+    /// Nothing is known of any port then.
+    #[test]
+    fn ports_that_cannot_be_tried_are_not_called_taken() {
+        let full = |_| Err(Errno::MFILE.into());
+        let error = first("port", 20_000..=20_003, "seed", full).unwrap_err();
+        assert!(error.to_string().starts_with("Too many open files"), "{error}");
     }
 }

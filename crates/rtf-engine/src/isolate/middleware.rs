@@ -4,7 +4,7 @@ use std::path::Path;
 
 use rtf_model::{OwnPort, OwnVariable};
 
-use crate::plan::{FixtureBody, FixturePlan, OwnMiddleware, SuitePlan};
+use rtf_plan::plan::{FixtureBody, FixturePlan, OwnMiddleware, SuitePlan};
 
 const ROS_MASTER: &str = "ros-master";
 const GAZEBO_MASTER: &str = "gazebo-master";

@@ -33,9 +33,9 @@ pub use network::{Network, connect};
 
 use crate::host::spawner::Spawner;
 use crate::locks::Lock;
-use crate::plan::{Given, OwnMiddleware, SuitePlan};
 use lease::{Lease, LeaseError};
 use network::Holder;
+use rtf_plan::plan::{OwnMiddleware, Preparation, SuitePlan};
 
 /// Whether a suite could have a network of its own here; else why not.
 ///
@@ -84,15 +84,15 @@ impl<'p> Prepared<'p> {
         match locks {
             Ok(locks) => prepared.locks = locks,
             Err(held) => {
-                fill::fill(prepared.plan.to_mut(), Given::Refused(held));
+                fill::fill(prepared.plan.to_mut(), Preparation::Refused(held));
                 return prepared;
             }
         }
         let plan = prepared.plan.clone();
         let given = match prepared.acquire(&plan, run, folder, spawner).await {
             Ok(None) => return prepared,
-            Ok(Some(given)) => Given::All(given),
-            Err(refused) => Given::Refused(refused.to_string()),
+            Ok(Some(given)) => Preparation::Done(given),
+            Err(refused) => Preparation::Refused(refused.to_string()),
         };
         fill::fill(prepared.plan.to_mut(), given);
         prepared

@@ -7,10 +7,10 @@ use rtf_model::{OwnNetwork, OwnPort, OwnVariable, SuiteId, SuitePrepared};
 
 use super::middleware::Own;
 use super::{fill, join};
-use crate::plan::{
-    FixtureBody, Given, OwnMiddleware, Probe, ProbeKind, ProcessPlan, RemotePlan, SuitePlan,
-};
 use crate::run::machine::tests::world::{SECOND, suite};
+use rtf_plan::plan::{
+    FixtureBody, OwnMiddleware, Preparation, Probe, ProbeKind, ProcessPlan, RemotePlan, SuitePlan,
+};
 
 fn ports() -> Vec<OwnPort> {
     [("gazebo-master", 20_001), ("ros-master", 20_002), ("sim", 20_003)]
@@ -149,6 +149,7 @@ fn plan_of(text: &str) -> SuitePlan {
         alive: vec![probe(ProbeKind::Tcp(text.to_owned()))],
         stop_signal: 15,
         stop_grace: SECOND,
+        stop_codes: Vec::new(),
         remote: None,
     }));
     plan.fixtures[1].env = env.clone();
@@ -163,7 +164,7 @@ fn plan_of(text: &str) -> SuitePlan {
 #[test]
 fn ports_are_filled_in_everywhere() {
     let mut plan = plan_of("${port:sim}, $${port:sim}, ${HOME}");
-    fill::fill(&mut plan, Given::All(prepared()));
+    fill::fill(&mut plan, Preparation::Done(prepared()));
     let filled = plan_of("20003, ${port:sim}, ${HOME}");
     assert_eq!(format!("{:?}", plan.fixtures), format!("{:?}", filled.fixtures));
     assert_eq!(format!("{:?}", plan.tests), format!("{:?}", filled.tests));
@@ -184,9 +185,9 @@ fn ports_are_filled_in_everywhere() {
 #[test]
 fn a_suite_that_is_refused_keeps_its_texts() {
     let mut plan = plan_of("${port:sim}");
-    fill::fill(&mut plan, Given::Refused("no".to_owned()));
+    fill::fill(&mut plan, Preparation::Refused("no".to_owned()));
     assert_eq!(plan.tests[0].plugin.param, "${port:sim}");
-    assert_eq!(plan.given, Given::Refused("no".to_owned()));
+    assert_eq!(plan.preparation, Preparation::Refused("no".to_owned()));
 }
 
 #[test]

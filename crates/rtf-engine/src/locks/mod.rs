@@ -4,8 +4,11 @@
 //! A lock is a lock of the kernel on a file, so that it is never given twice,
 //! and ends with the last process that has it: the runner, or after its death
 //! the guard, which parks the robot first. What stands in the file says for
-//! people who has it. Files are never removed: who waits has them open.
+//! people who has it; who gives it back empties the file. So whoever gets a lock
+//! whose file is not empty knows that runner and guard were killed, and stops what
+//! they left. Files are never removed: who waits has them open.
 
+mod orphans;
 mod unix;
 mod wait;
 
@@ -19,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 pub use wait::{LockOptions, wait};
 
-use crate::plan::Resource;
+use rtf_plan::plan::RequiredResource;
 
 /// The variable that names another folder of locks.
 pub const FOLDER_VARIABLE: &str = "RTF_LOCKS";
@@ -44,11 +47,13 @@ pub struct Owner {
     pub run: String,
     /// The suite.
     pub suite: String,
+    /// What the scopes of its processes begin with.
+    pub scope: String,
 }
 
 impl std::fmt::Display for Owner {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { user, host, pid, since, run, suite } = self;
+        let Self { user, host, pid, since, run, suite, scope: _ } = self;
         if self.run.is_empty() {
             return f.write_str("somebody");
         }
@@ -67,6 +72,8 @@ pub struct Locks {
 #[derive(Debug)]
 pub struct Lock {
     file: File,
+    /// Who had it before and never gave it back: runner and guard were killed.
+    abandoned: Option<Owner>,
 }
 
 /// A lock that somebody has.
@@ -99,15 +106,21 @@ impl Locks {
     ///
     /// # Errors
     /// A file cannot be opened, locked or written.
-    pub fn take(&self, resource: &Resource, owner: &Owner) -> io::Result<Result<Lock, Vec<Held>>> {
+    pub fn take(
+        &self,
+        resource: &RequiredResource,
+        owner: &Owner,
+    ) -> io::Result<Result<Lock, Vec<Held>>> {
         let mut held = Vec::new();
         for slot in 1..=resource.slots {
             let mut file = open(&self.folder.join(format!("{}.{slot}", resource.name)))?;
             if unix::lock(&file)? {
+                let abandoned = Some(read(&mut file)).filter(|before| !before.scope.is_empty());
                 let text = serde_json::to_string(owner)?;
                 file.set_len(0)?;
+                file.rewind()?;
                 file.write_all(text.as_bytes())?;
-                return Ok(Ok(Lock { file }));
+                return Ok(Ok(Lock { file, abandoned }));
             }
             held.push(Held { name: resource.name.clone(), slot, owner: read(&mut file) });
         }
@@ -139,6 +152,7 @@ impl Locks {
 impl Lock {
     /// Gives it back, also if the guard has its descriptor.
     pub fn release(self) {
+        let _ = clear(&self.file);
         // Who cannot unlock lets it end with the descriptors.
         let _ = unix::unlock(&self.file);
     }
@@ -148,6 +162,15 @@ impl AsFd for Lock {
     fn as_fd(&self) -> BorrowedFd<'_> {
         self.file.as_fd()
     }
+}
+
+/// Says that the one who has a lock gives it back in order. (The guard does so for
+/// a runner that died.)
+///
+/// # Errors
+/// It is not a lock.
+pub fn clear(lock: impl AsFd) -> io::Result<()> {
+    Ok(rustix::fs::ftruncate(lock, 0)?)
 }
 
 /// Opens a lock's file, or makes it for everybody. A link is not followed. (A
@@ -188,11 +211,34 @@ mod tests {
     use super::*;
 
     #[test]
+    fn who_gets_a_lock_knows_whether_it_was_given_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let locks = Locks::open(folder.path()).unwrap();
+        let robot = RequiredResource { name: "robot".to_owned(), slots: 1 };
+        let owner = |run: &str| Owner {
+            run: run.to_owned(),
+            scope: format!("{run}.0."),
+            ..Owner::default()
+        };
+        let take = |run: &str| locks.take(&robot, &owner(run)).unwrap().unwrap();
+        let one = take("one");
+        assert_eq!(one.abandoned, None);
+        one.release();
+        let two = take("two");
+        assert_eq!(two.abandoned, None);
+        // As when it is killed.
+        drop(two);
+        let three = take("three");
+        assert_eq!(three.abandoned, Some(owner("two")));
+        assert_eq!(locks.held().unwrap()[0].owner, owner("three"));
+    }
+
+    #[test]
     fn there_are_as_many_as_the_suite_says() {
         let folder = tempfile::tempdir().unwrap();
         let locks = Locks::open(&folder.path().join("locks")).unwrap();
         let owner = Owner { user: "ada".to_owned(), run: "r".to_owned(), ..Owner::default() };
-        let arm = Resource { name: "arm:left".to_owned(), slots: 2 };
+        let arm = RequiredResource { name: "arm:left".to_owned(), slots: 2 };
         let [one, two] = [(); 2].map(|()| locks.take(&arm, &owner).unwrap().unwrap());
         let held = locks.take(&arm, &Owner::default()).unwrap().unwrap_err();
         assert_eq!(held, locks.held().unwrap());

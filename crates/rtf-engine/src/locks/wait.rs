@@ -7,9 +7,9 @@ use rtf_model::EventKind;
 use tokio::sync::watch;
 use tokio::time::Instant;
 
-use super::{Held, Lock, Locks, Owner};
-use crate::plan::{Resource, SuitePlan};
-use crate::run::{Events, Stop};
+use super::{Held, Lock, Locks, Owner, orphans};
+use crate::run::{Control, Controls, Events, Stop};
+use rtf_plan::plan::{RequiredResource, SuitePlan};
 
 /// How often a lock that somebody has is tried.
 const EVERY: Duration = Duration::from_millis(20);
@@ -26,8 +26,8 @@ pub struct LockOptions {
 }
 
 /// Waits for the locks of a suite. Everybody takes them in the order of their
-/// names, so that no two wait for each other. A request to stop ends the wait:
-/// then nothing is begun, and nothing is locked.
+/// names, so that no two wait for each other. A request to stop, or to skip the
+/// suite, ends the wait: then nothing is begun, and nothing is locked.
 ///
 /// # Errors
 /// A sentence: what is held by whom when the limit is reached, or what the
@@ -36,7 +36,7 @@ pub async fn wait(
     suite: &SuitePlan,
     options: &LockOptions,
     events: &Events,
-    stops: &mut watch::Receiver<Option<Stop>>,
+    (stops, controls): (&mut watch::Receiver<Option<Stop>>, &mut Controls),
 ) -> Result<Vec<Lock>, String> {
     if suite.requires.is_empty() {
         return Ok(Vec::new());
@@ -49,7 +49,7 @@ pub async fn wait(
     for resource in &suite.requires {
         let mut told = Vec::new();
         loop {
-            if stops.borrow().is_some() {
+            if stops.borrow().is_some() || is_skipped(suite, controls) {
                 taken.into_iter().for_each(Lock::release);
                 return Ok(Vec::new());
             }
@@ -71,13 +71,22 @@ pub async fn wait(
             tokio::select! {
                 () = tokio::time::sleep(EVERY) => {}
                 Ok(()) = stops.changed() => {}
+                Ok(()) = controls.changed() => {}
             }
         }
+    }
+    for owner in taken.iter().filter_map(|lock: &Lock| lock.abandoned.as_ref()) {
+        orphans::stop(owner, events).await;
     }
     Ok(taken)
 }
 
-fn given_up(resource: &Resource, held: &[Held], waited: Duration) -> String {
+fn is_skipped(suite: &SuitePlan, controls: &Controls) -> bool {
+    let skips = |control: &Control| matches!(control, Control::SkipSuite { suite: of, .. } if *of == suite.id);
+    controls.borrow().iter().any(skips)
+}
+
+fn given_up(resource: &RequiredResource, held: &[Held], waited: Duration) -> String {
     let secs = waited.as_secs_f64();
     format!("`{}` is held by {}; given up after {secs:.1} s", resource.name, shown_all(held))
 }
@@ -96,5 +105,45 @@ fn owner(suite: &SuitePlan, run: &str) -> Owner {
         since: jiff::Zoned::now().strftime("%Y-%m-%dT%H:%M:%S%:z").to_string(),
         run: run.to_owned(),
         suite: suite.name.clone(),
+        scope: format!("{run}.{}.", suite.id),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use rtf_model::Event;
+
+    use super::*;
+    use crate::run::Sink;
+    use crate::run::machine::tests::world::suite;
+
+    #[derive(Debug)]
+    struct Nothing;
+
+    impl Sink for Nothing {
+        fn emit(&self, _: Event) {}
+    }
+
+    /// Whoever waits for a robot for hours does not want to stop the whole run.
+    #[tokio::test]
+    async fn a_suite_that_is_skipped_waits_no_longer() {
+        let temp = tempfile::tempdir().unwrap();
+        let folder = temp.path().join("locks");
+        let arm = RequiredResource { name: "arm".to_owned(), slots: 1 };
+        let taken = Locks::open(&folder).unwrap().take(&arm, &Owner::default()).unwrap().unwrap();
+        let plan = SuitePlan { requires: vec![arm], ..suite(0, 1) };
+        let options = LockOptions { folder, limit: None };
+        let events = Events::new("r".to_owned(), Arc::new(Nothing));
+        let (_stop, mut stops) = watch::channel(None);
+        let (control, mut controls) = watch::channel(Vec::new());
+        let waiting = wait(&plan, &options, &events, (&mut stops, &mut controls));
+        let skip = Control::SkipSuite { suite: plan.id, by: "a person".to_owned() };
+        let (locks, ()) = tokio::join!(waiting, async {
+            control.send_replace(vec![skip]);
+        });
+        assert!(locks.unwrap().is_empty());
+        taken.release();
     }
 }

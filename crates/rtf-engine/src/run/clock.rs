@@ -7,7 +7,7 @@ use std::time::Duration;
 use rtf_model::protocol::{CLOCK_FILE_VARIABLE, CLOCK_VARIABLE};
 use rtf_model::{Source, parse_clock};
 
-use crate::plan::SuitePlan;
+use rtf_plan::plan::SuitePlan;
 
 /// How often it is looked at.
 const EVERY: Duration = Duration::from_millis(10);
@@ -15,8 +15,11 @@ const EVERY: Duration = Duration::from_millis(10);
 /// What a process is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
+    /// Runs a test.
     Test,
+    /// Is a fixture.
     Fixture,
+    /// Is a hook.
     Hook,
 }
 

@@ -4,7 +4,7 @@ use rtf_model::{SuiteId, TestId};
 use tokio::sync::watch;
 
 use super::machine::Input;
-use crate::plan::SuitePlan;
+use rtf_plan::plan::SuitePlan;
 
 /// What is asked.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -3,16 +3,17 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use rtf_model::{Event, EventKind, Micros};
+use rtf_model::{Event, EventKind, Micros, Source};
 
 /// Takes the events of a run.
 pub trait Sink: Send + Sync + std::fmt::Debug {
     /// Takes an event. Must not wait.
     fn emit(&self, event: Event);
 
-    /// Whether so many events wait that processes should wait, too.
-    fn is_congested(&self) -> bool {
-        false
+    /// About how many bytes of what a process told wait to be reported.
+    fn backlog(&self, source: Source) -> usize {
+        let _ = source;
+        0
     }
 }
 

@@ -8,7 +8,7 @@
 
 use std::num::NonZeroUsize;
 
-use crate::plan::SuitePlan;
+use rtf_plan::plan::SuitePlan;
 
 /// The suites of a run that wait for their turn, and those that run.
 #[derive(Debug)]
@@ -64,14 +64,14 @@ mod tests {
     use rtf_model::SuiteId;
 
     use super::*;
-    use crate::plan::Resource;
     use crate::run::machine::tests::world::suite;
+    use rtf_plan::plan::RequiredResource;
 
     /// Suites that require these words, each a name or `name/slots`.
     fn suites<const N: usize>(requires: [&str; N]) -> Vec<SuitePlan> {
         let resource = |word: &str| {
             let (name, slots) = word.split_once('/').unwrap_or((word, "1"));
-            Resource { name: name.to_owned(), slots: slots.parse().unwrap() }
+            RequiredResource { name: name.to_owned(), slots: slots.parse().unwrap() }
         };
         (0..)
             .zip(requires)

@@ -6,6 +6,7 @@
 
 mod clock;
 mod control;
+mod deadlines;
 mod events;
 mod fail_limit;
 mod http;
@@ -26,6 +27,7 @@ use rtf_model::{
 };
 use tokio::sync::watch;
 
+pub use clock::Role;
 pub use control::{Control, Controls};
 pub use events::{Events, Sink};
 use fail_limit::FailLimit;
@@ -40,7 +42,7 @@ use crate::host::task::Shared;
 use crate::host::{prepare_process, tree};
 use crate::isolate::Prepared;
 use crate::locks::{self, LockOptions};
-use crate::plan::{FixtureBody, FixturePlan, Plan, SuitePlan, TestPlan};
+use rtf_plan::plan::{FixtureBody, FixturePlan, Plan, SuitePlan, TestPlan};
 
 /// What a run needs beside its plan.
 #[derive(Debug)]
@@ -90,7 +92,7 @@ pub async fn execute(
         cgroups: Cgroups::get(),
     });
     let events = Events::new(options.started.run.clone(), sink);
-    options.guard.run_begins(&options.journal, events.start());
+    options.guard.run_begins(&options.journal, scratch.clone(), events.start());
     events.emit(EventKind::RunStarted(options.started));
     for diagnostic in options.warnings {
         events.emit(EventKind::Warning { diagnostic });
@@ -103,7 +105,10 @@ pub async fn execute(
     let asked = suite_task::Asked { stops: stopped, controls, fails, until: None };
     let (shared, events, locks, time) = (&shared, &events, &options.locks, options.time);
     let all = AllSuites { shared, events, locks, asked, time };
-    all.run(&plan.suites, options.jobs).await;
+    tokio::select! {
+        () = all.run(&plan.suites, options.jobs) => {}
+        () = warn_when_guard_missed(&options.guard, events) => {}
+    }
     shared.spawner.finish(None).await;
     let left = tree::sweep_all();
     if !left.is_empty() {
@@ -121,6 +126,17 @@ pub async fn execute(
     options.guard.run_ends();
     let _ = std::fs::remove_dir_all(scratch);
     Ok(())
+}
+
+/// Never ends.
+async fn warn_when_guard_missed(guard: &Link, events: &Events) {
+    guard.guard_missed().await;
+    let text = "the guard does not read what the run tells it, and has missed some: \
+        should the runner die now, it may not know which hooks have to run";
+    let diagnostic = Diagnostic::warning("guard-missed", text)
+        .hint("its process may have been stopped: `kill -CONT` lets it go on");
+    events.emit(EventKind::Warning { diagnostic });
+    std::future::pending().await
 }
 
 /// What all suites of a run have in common.
@@ -150,7 +166,8 @@ impl AllSuites<'_> {
     /// first of so many turns.
     async fn one<'p>(&self, suite: &'p SuitePlan, turns: u32) -> &'p SuitePlan {
         let Self { shared, events, locks, asked, time } = self;
-        let locks = locks::wait(suite, locks, events, &mut asked.stops.clone()).await;
+        let (mut stops, mut controls) = (asked.stops.clone(), asked.controls.clone());
+        let locks = locks::wait(suite, locks, events, (&mut stops, &mut controls)).await;
         let run = events.run_token();
         let prepared = Prepared::get(suite, locks, run, &shared.run_folder, &shared.spawner).await;
         shared.guard.suite_begins(&prepared);
@@ -172,7 +189,12 @@ fn scratch_folder() -> std::io::Result<PathBuf> {
         std::process::id(),
         uuid::Uuid::now_v7().simple()
     ));
-    std::fs::create_dir(&path)?;
+    std::fs::create_dir(&path).map_err(|error| {
+        let text =
+            format!("the folder `{}` for temporary files cannot be made: {error}", path.display());
+        let advice = "`TMPDIR` names the folder for them";
+        std::io::Error::new(error.kind(), format!("{text}; {advice}"))
+    })?;
     Ok(path)
 }
 

@@ -1,8 +1,10 @@
 //! The probes of process fixtures that ask the world: TCP, HTTP, a file, a
 //! command, middleware. (What a process prints is looked at by the state machine.)
 
-use std::path::Path;
-use std::time::{Duration, SystemTime};
+use std::collections::BTreeMap;
+use std::os::unix::fs::MetadataExt as _;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use rtf_model::ExitStatus;
 use tokio::io::AsyncReadExt;
@@ -14,8 +16,8 @@ use crate::host::spawner::{SpawnRequest, Spawner, Streams};
 use crate::host::task::Inputs;
 use crate::host::tree;
 use crate::isolate::{Network, connect};
-use crate::plan::{Probe, ProbeKind, ProcessPlan};
 use crate::run::machine::{HostId, HostInput};
+use rtf_plan::plan::{Probe, ProbeKind, ProcessPlan};
 
 /// How long somebody else may take to answer.
 const TAKEN_WAIT: Duration = Duration::from_millis(200);
@@ -35,11 +37,11 @@ pub struct Watch {
 
 impl Watch {
     /// Tells when each of these probes has held once, and why one does not
-    /// whenever the reason changes. A file counts when it was written `since`.
-    pub async fn until_ready(self, probes: Vec<Probe>, since: Option<SystemTime>) {
+    /// whenever the reason changes. A file counts when it is not as it was `before`.
+    pub async fn until_ready(self, probes: Vec<Probe>, before: Files) {
         let mut told = String::new();
         for probe in &probes {
-            while let Err(reason) = ask(probe, since, &self.asker).await {
+            while let Err(reason) = ask(probe, &before, &self.asker).await {
                 if reason != told {
                     told.clone_from(&reason);
                     self.tell(HostInput::ProbeWaits(reason)).await;
@@ -50,13 +52,25 @@ impl Watch {
         self.tell(HostInput::ProbesHold).await;
     }
 
+    /// Asks each of these probes once.
+    ///
+    /// # Errors
+    /// Why one does not hold.
+    pub async fn all_hold(&self, probes: &[Probe]) -> Result<(), String> {
+        for probe in probes {
+            ask(probe, &Files::default(), &self.asker).await?;
+        }
+        Ok(())
+    }
+
     /// Tells when one of these probes does not hold any more.
     pub async fn until_unwell(self, probes: Vec<Probe>) {
         let reason = wait_until_unwell(&probes, &self.asker).await;
         self.tell(HostInput::ProbeFailed(reason)).await;
     }
 
-    async fn tell(&self, input: HostInput) {
+    /// Tells the suite's task something of the fixture.
+    pub async fn tell(&self, input: HostInput) {
         drop(self.inputs.send((self.host, input)).await);
     }
 }
@@ -105,14 +119,14 @@ async fn wait_until_unwell(probes: &[Probe], asker: &Asker) -> String {
             return std::future::pending().await;
         };
         tokio::time::sleep_until(due[next]).await;
-        if let Err(reason) = ask(asked[next], None, asker).await {
+        if let Err(reason) = ask(asked[next], &Files::default(), asker).await {
             return reason;
         }
         due[next] = tokio::time::Instant::now() + asked[next].every;
     }
 }
 
-async fn ask(probe: &Probe, since: Option<SystemTime>, asker: &Asker) -> Result<(), String> {
+async fn ask(probe: &Probe, before: &Files, asker: &Asker) -> Result<(), String> {
     let network = asker.like.network.as_ref();
     let answer = async {
         match &probe.kind {
@@ -121,7 +135,7 @@ async fn ask(probe: &Probe, since: Option<SystemTime>, asker: &Asker) -> Result<
                 Err(error) => Err(format!("no TCP connection to {address}: {error}")),
             },
             ProbeKind::Http(url) => ask_http(network, url).await,
-            ProbeKind::File(path) => ask_file(path, since),
+            ProbeKind::File(path) => before.ask(path),
             ProbeKind::Command(command) => ask_command(command, asker).await,
             ProbeKind::Middleware { command, subject } => {
                 ask_middleware(command, subject, asker).await
@@ -152,17 +166,50 @@ async fn ask_http(network: Option<&Network>, url: &str) -> Result<(), String> {
     if status.is_success() { Ok(()) } else { Err(format!("{url} answers {status}")) }
 }
 
-/// A file from before the start says nothing about this start.
-fn ask_file(path: &Path, since: Option<SystemTime>) -> Result<(), String> {
-    let shown = path.display();
-    let file = std::fs::metadata(path).map_err(|error| format!("no file {shown}: {error}"))?;
-    match (since, file.modified()) {
-        // File systems keep times in coarser steps than the clock.
-        (Some(since), Ok(time)) if time + Duration::from_millis(20) < since => {
-            Err(format!("{shown} is from before the start"))
-        }
-        _ => Ok(()),
+/// The files that probes ask for, as they were before a process was started: one that
+/// was not written since says nothing about this start. No clock is asked, which may be
+/// set meanwhile, or be another one than the file system's.
+#[derive(Clone, Debug, Default)]
+pub struct Files(BTreeMap<PathBuf, Version>);
+
+/// What changes when a file is written, or another one takes its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Version {
+    inode: u64,
+    size: u64,
+    written: (i64, i64),
+    changed: (i64, i64),
+}
+
+impl Files {
+    /// As they are now.
+    #[must_use]
+    pub fn now(probes: &[Probe]) -> Self {
+        let paths = probes.iter().filter_map(|probe| match &probe.kind {
+            ProbeKind::File(path) => Some(path),
+            _ => None,
+        });
+        Self(paths.filter_map(|path| Some((path.clone(), version(path).ok()?))).collect())
     }
+
+    fn ask(&self, path: &Path) -> Result<(), String> {
+        let shown = path.display();
+        let now = version(path).map_err(|error| format!("no file {shown}: {error}"))?;
+        if self.0.get(path) == Some(&now) {
+            return Err(format!("{shown} is from before the start"));
+        }
+        Ok(())
+    }
+}
+
+fn version(path: &Path) -> std::io::Result<Version> {
+    let file = std::fs::metadata(path)?;
+    Ok(Version {
+        inode: file.ino(),
+        size: file.size(),
+        written: (file.mtime(), file.mtime_nsec()),
+        changed: (file.ctime(), file.ctime_nsec()),
+    })
 }
 
 async fn ask_command(command: &[String], asker: &Asker) -> Result<(), String> {

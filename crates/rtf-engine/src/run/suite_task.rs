@@ -1,22 +1,21 @@
 //! The task around a suite's state machine: it carries out the effects and
 //! brings the inputs.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_model::protocol::{ENVIRONMENT_VARIABLE, RUN_FOLDER_VARIABLE};
-use rtf_model::{EventKind, Source, TestId};
+use rtf_model::{EventKind, ExitStatus, Source, TestId};
 use tokio::sync::{mpsc, watch};
 use tokio::time::Instant;
 
 use super::clock::{Clock, Role};
 use super::control::{Controls, Unseen};
+use super::deadlines::Deadlines;
 use super::events::Events;
 use super::fail_limit::FailLimit;
-use super::machine::{
-    Deadline, Effect, HostId, HostInput, Input, Program, Start, Stop, SuiteMachine,
-};
+use super::machine::{Effect, HostId, HostInput, Input, Program, Start, Stop, SuiteMachine};
 use crate::guard::{HookBegins, gate};
 use crate::host::attached::{self, Attached};
 use crate::host::launch::Launch;
@@ -24,10 +23,12 @@ use crate::host::remote;
 use crate::host::spawner::{SpawnRequest, Streams};
 use crate::host::task::{self, Job, Next, Order, Shared};
 use crate::isolate::{Network, Prepared};
-use crate::plan::{Leaks, ProcessPlan, SuitePlan, TestPlan};
+use rtf_plan::plan::{Leaks, ProcessPlan, SuitePlan, TestPlan};
 
 /// How many inputs may wait; then processes wait.
 const INPUTS: usize = 1024;
+/// The exit status of a process whose own is unknown.
+const UNKNOWN: ExitStatus = ExitStatus::Code(-1);
 /// How many more are taken before anything else is looked at.
 const AT_ONCE: usize = 16;
 
@@ -63,11 +64,12 @@ pub async fn run_suite(
         effects: Vec::new(),
         orders: HashMap::new(),
         leaving: HashSet::new(),
+        unanswered: Vec::new(),
         spares: Vec::new(),
         called: None,
         scopes: 0,
         repeats: asked.until.is_some() || plan.repeats(),
-        deadlines: BTreeMap::new(),
+        deadlines: Deadlines::default(),
         clock: Clock::of(plan, &shared.scratch),
         over: false,
     };
@@ -88,6 +90,8 @@ struct SuiteTask<'a> {
     orders: HashMap<HostId, mpsc::UnboundedSender<Order>>,
     /// Those that will be known by another id.
     leaving: HashSet<HostId>,
+    /// Inputs for orders whose process has no task any more.
+    unanswered: Vec<(HostId, HostInput)>,
     /// Hosts that were started ahead of their need.
     spares: Vec<Launch>,
     /// What called for the hook that is started next.
@@ -96,7 +100,7 @@ struct SuiteTask<'a> {
     repeats: bool,
     /// How many scopes were given out.
     scopes: u64,
-    deadlines: BTreeMap<Deadline, Duration>,
+    deadlines: Deadlines,
     clock: Clock,
     over: bool,
 }
@@ -155,7 +159,7 @@ impl SuiteTask<'_> {
     /// When something has to be done for the sake of time.
     fn next_due(&mut self) -> Option<Duration> {
         let look = self.clock.next_look(self.machine.follows_clock(), self.events.now());
-        self.deadlines.values().copied().chain(look).min()
+        self.deadlines.next(self.plan).into_iter().chain(look).min()
     }
 
     fn time_passed(&mut self) {
@@ -163,25 +167,24 @@ impl SuiteTask<'_> {
         if let Some(time) = self.clock.look(now) {
             self.feed(Input::Clock(time));
         }
-        let passed: Vec<Deadline> = self
-            .deadlines
-            .iter()
-            .filter(|(_, at)| **at <= now)
-            .map(|(deadline, _)| *deadline)
-            .collect();
-        for deadline in passed {
+        for deadline in self.deadlines.passed(now, self.plan) {
             // An earlier one of these may have moved or cleared it.
-            if self.deadlines.get(&deadline).is_some_and(|at| *at <= now) {
-                self.deadlines.remove(&deadline);
+            if self.deadlines.take(deadline, now, self.plan) {
                 self.feed(Input::Deadline(deadline));
             }
         }
     }
 
     fn host_input(&mut self, host: HostId, input: HostInput) {
-        use HostInput::{Exited, Released, SpawnFailed, Unbegun};
+        use HostInput::{Exited, Released, Resumed, SpawnFailed, Throttled, Unbegun};
+        let now = self.events.now();
         match &input {
-            Exited(..) | SpawnFailed(_) | Unbegun(_) => drop(self.orders.remove(&host)),
+            Exited(..) | SpawnFailed(_) | Unbegun(_) => {
+                self.orders.remove(&host);
+                self.deadlines.forget(host, now, self.plan);
+            }
+            Throttled(source) => self.deadlines.pause(host, *source, now),
+            Resumed => self.deadlines.resume(host, now, self.plan),
             Released => self.leave(host),
             _ => {}
         }
@@ -204,6 +207,9 @@ impl SuiteTask<'_> {
             self.carry_out(effect);
         }
         self.effects = effects;
+        while let Some((host, input)) = self.unanswered.pop() {
+            self.host_input(host, input);
+        }
     }
 
     fn carry_out(&mut self, effect: Effect) {
@@ -212,15 +218,19 @@ impl SuiteTask<'_> {
                 self.tell_guard(&kind);
                 self.events.emit(kind);
             }
-            Effect::SetDeadline(deadline, at) => drop(self.deadlines.insert(deadline, at)),
-            Effect::ClearDeadline(deadline) => drop(self.deadlines.remove(&deadline)),
+            Effect::SetDeadline(deadline, at) => self.deadlines.set(deadline, at),
+            Effect::ClearDeadline(deadline) => self.deadlines.clear(deadline),
             Effect::Spawn { host, source, start } => self.spawn(host, source, start),
             Effect::Join { host, on, source, request, plugin } => {
                 let owner = format!("test {}/{}", self.plan.name, plugin.name);
                 let next = Next { host, source, owner, request, plugin };
-                if let Some(orders) = self.orders.get(&on).cloned() {
-                    let _ = orders.send(Order::ServeNext(next));
-                    self.orders.insert(host, orders);
+                let orders = self.orders.get(&on).cloned();
+                match orders.filter(|orders| !orders.is_closed()) {
+                    Some(orders) => {
+                        let _ = orders.send(Order::ServeNext(next));
+                        self.orders.insert(host, orders);
+                    }
+                    None => self.unanswered.push((host, HostInput::Unbegun(UNKNOWN))),
                 }
                 self.leave(on);
             }
@@ -229,9 +239,9 @@ impl SuiteTask<'_> {
             Effect::CloseChannel(host) => self.order(host, Order::CloseChannel),
             Effect::TakeStack(host, support) => self.order(host, Order::TakeStack(support)),
             Effect::Signal(host, signal) => self.order(host, Order::Signal(signal)),
-            Effect::KillTree(host) => self.order(host, Order::KillTree),
+            Effect::KillTree(host) => self.kill(host),
             Effect::WatchAlive(host) => self.order(host, Order::WatchAlive),
-            Effect::LookAlive(host) => self.order(host, Order::LookAlive),
+            Effect::LookAlive(host, probes) => self.order(host, Order::LookAlive(probes)),
             Effect::Done => self.over = true,
         }
     }
@@ -255,10 +265,21 @@ impl SuiteTask<'_> {
         }
     }
 
-    fn order(&self, host: HostId, order: Order) {
+    fn order(&mut self, host: HostId, order: Order) {
+        if order.stops() {
+            self.deadlines.stop(host, self.events.now(), self.plan);
+        }
         if let Some(orders) = self.orders.get(&host) {
             // A task that has ended has told so; its input is on the way.
             let _ = orders.send(order);
+        }
+    }
+
+    /// Kills a process; one without a task has ended.
+    fn kill(&mut self, host: HostId) {
+        let orders = self.orders.get(&host);
+        if orders.is_none_or(|orders| orders.send(Order::KillTree).is_err()) {
+            self.unanswered.push((host, HostInput::Exited(UNKNOWN, Vec::new())));
         }
     }
 
@@ -362,7 +383,8 @@ impl SuiteTask<'_> {
         };
         let folder = Some(start.folder);
         let (streams, network) = (Streams::Both, self.network.clone());
-        SpawnRequest { command, env, folder, channel, streams, forks, network }
+        let role = Some(role);
+        SpawnRequest { command, env, folder, channel, streams, forks, network, role }
     }
 
     fn launch(&mut self, request: SpawnRequest) -> Launch {

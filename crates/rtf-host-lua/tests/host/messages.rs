@@ -69,6 +69,7 @@ fn wrong_use_is_an_error_at_the_line_that_does_it() {
         ("rtf.measure('x', 1, '', 0/0)", "the lower limit is not a number"),
         ("rtf.sleep('long')", "sleep takes seconds, not long"),
         ("rtf.attach('nowhere.csv')", "there is no file `"),
+        ("rtf.attach('/dev')", "`/dev` cannot be attached: it is a directory, not a file"),
     ];
     for (line, text) in cases {
         let (answer, host) = run_body(line);

@@ -8,6 +8,7 @@ use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 use rustix::io::FdFlags;
 use serde_json::{Value, json};
@@ -104,6 +105,8 @@ impl Host {
         // SAFETY: the one call between fork and exec is a system call.
         let process = unsafe { command.pre_exec(keep) }.spawn().unwrap();
         drop(command);
+        // A host that says nothing fails the test, and does not hold it.
+        ours.set_read_timeout(Some(Duration::from_secs(120))).unwrap();
         let lines = BufReader::new(ours.try_clone().unwrap()).lines();
         let mut host = Self { process, channel: ours, lines };
         host.send(json!({"id": 0, "method": "initialize", "params": {"protocol": 1, "rtf": "t"}}));

@@ -9,6 +9,12 @@ use crate::{
 /// A gap larger than this is not believed: the number itself is damaged.
 const LARGEST: usize = 1000;
 
+/// Whether entries between the number that is due and the one that came may have
+/// been lost.
+pub(crate) fn is_likely(due: u32, came: u32) -> bool {
+    came.checked_sub(due).is_some_and(|missing| missing as usize <= LARGEST)
+}
+
 /// Makes `list` as long as `index` says; false when the entry that is to come
 /// has no place in it.
 pub(super) fn fill<T>(list: &mut Vec<T>, index: usize, missing: impl Fn(u32) -> T) -> bool {

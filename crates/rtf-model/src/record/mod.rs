@@ -10,12 +10,13 @@ mod hook;
 mod host;
 mod left;
 mod series;
-mod source;
+pub(crate) mod source;
 mod suite;
 mod test;
 
 pub use counts::Counts;
 pub use fixture::{FixtureLife, FixtureRecord, FixtureState};
+pub(crate) use gap::is_likely as is_likely_gap;
 pub use hook::{HookRecord, HookRun};
 pub use host::HostRecord;
 pub use series::Series;
@@ -23,8 +24,8 @@ pub use suite::SuiteRecord;
 pub use test::{AttemptRecord, TestRecord};
 
 use crate::{
-    Diagnostic, Event, EventKind, FixtureId, HookId, Micros, RunStarted, Source, SuiteId, TestId,
-    Verdict,
+    Damage, Diagnostic, Event, EventKind, FixtureId, HookId, Micros, RunStarted, Source, SuiteId,
+    TestId, Verdict,
 };
 
 /// How far a run is.
@@ -94,6 +95,9 @@ pub struct Record {
     pub left: Vec<crate::LeftProcess>,
     /// What the user should look at.
     pub warnings: Vec<Diagnostic>,
+    /// Where the journal that this was read from is damaged, up to
+    /// [`Damage::KEPT`] places. What it says of the run cannot be trusted.
+    pub damages: Vec<Damage>,
     lean: bool,
 }
 
@@ -165,6 +169,19 @@ impl Record {
             }
             kind => self.apply_to_source(at, kind),
         }
+    }
+
+    /// The journal that this is read from is damaged.
+    pub fn add_damage(&mut self, damage: Damage) {
+        if self.damages.len() < Damage::KEPT {
+            self.damages.push(damage);
+        }
+    }
+
+    /// Whether the journal that this was read from is damaged.
+    #[must_use]
+    pub fn is_damaged(&self) -> bool {
+        !self.damages.is_empty()
     }
 
     fn apply_to_source(&mut self, at: Micros, kind: &EventKind) {
@@ -340,10 +357,12 @@ impl Record {
     }
 
     /// Whether nothing at all speaks against the robot or the bench: the run
-    /// came to its end, has tests, each of them passed, and no fixture or hook failed.
+    /// came to its end, has tests, each of them passed, no fixture or hook failed,
+    /// and what is known of it comes from a journal without damage.
     #[must_use]
     pub fn is_green(&self) -> bool {
-        self.state == RunState::Finished { interrupted: None }
+        !self.is_damaged()
+            && self.state == RunState::Finished { interrupted: None }
             && !self.tests.is_empty()
             && self.tests.iter().all(|test| test.verdict().is_some_and(Verdict::is_green))
             && !(self.flaky_fails() && self.tests.iter().any(TestRecord::is_flaky))

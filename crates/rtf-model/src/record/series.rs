@@ -75,7 +75,9 @@ impl Series {
             let Some(value) = *value else { continue };
             self.finite += 1;
             let mean = self.mean.unwrap_or(value);
-            self.mean = Some(mean + (value - mean) / self.finite as f64);
+            // Neither a sum nor a difference, which values of ±1e308 would overflow.
+            let count = self.finite as f64;
+            self.mean = Some(mean + (value / count - mean / count));
             self.min = Some(self.min.map_or(value, |min| min.min(value)));
             self.max = Some(self.max.map_or(value, |max| max.max(value)));
             self.last = Some(value);

@@ -3,7 +3,7 @@
 use crate::{EventKind, Source};
 
 /// Whose event it is, for the events that belong to a test, a fixture or a hook.
-pub(super) fn of(kind: &EventKind) -> Option<Source> {
+pub(crate) fn of(kind: &EventKind) -> Option<Source> {
     match kind {
         EventKind::FixtureStarting { fixture, .. }
         | EventKind::FixtureReady { fixture }

@@ -9,7 +9,7 @@ use super::page::Page;
 use super::style::{self, BAD, BOLD, DIM, LOUD};
 use super::{ConsoleOptions, Verbosity, hooks};
 use crate::explain::{self, Extent, Tone};
-use crate::{cause, escape, logs, prepared, words};
+use crate::{ReportError, cause, escape, logs, prepared, words};
 
 /// How much of a failed test is told at once; the reports have all of it.
 pub(super) const EXTENT: Extent = Extent { items: 10, stack_lines: 40 };
@@ -21,6 +21,9 @@ const OUTPUT_LINES: usize = 20;
 pub(super) fn show(page: &mut Page, options: &ConsoleOptions, event: &Event, record: &Record) {
     let live = Live { options, record };
     let quiet = options.verbosity == Verbosity::Quiet;
+    if record.events == 1 {
+        damage(page, record);
+    }
     match &event.kind {
         EventKind::RunStarted(run) if !quiet => chosen(page, &run.manifest),
         EventKind::Warning { .. } => live.warning(page),
@@ -69,6 +72,22 @@ pub(super) fn show(page: &mut Page, options: &ConsoleOptions, event: &Event, rec
             page.remark((LOUD, "INTERRUPTED"), &escape::line(reason));
         }
         _ => {}
+    }
+}
+
+/// What is missing from now on, and why.
+pub(super) fn reporter_failed(page: &mut Page, error: &ReportError) {
+    let what = format!("{} `{}`: {}", error.what, error.path.display(), error.source);
+    page.remark((BAD, "NOT WRITTEN"), &escape::line(&what));
+}
+
+/// Where the journal of a past run is damaged, before anything that comes from it.
+fn damage(page: &mut Page, record: &Record) {
+    if record.is_damaged() {
+        page.remark((BAD, "DAMAGED"), "the journal of this run; what follows is incomplete:");
+    }
+    for damage in &record.damages {
+        page.detail(Tone::Bad, &escape::line(&damage.to_string()));
     }
 }
 

@@ -1,7 +1,9 @@
 //! Tells people what happens while a run goes on, and at its end what came of it.
 //!
 //! The lines go to standard output: they are what `rtf run` is asked for. The
-//! progress bar goes to standard error, and only to a terminal.
+//! progress bar goes to standard error, and only to a terminal. While a run goes on,
+//! both are written by the thread of an [`Outlet`]; when it cannot write as fast as
+//! messages come, the console leaves out detail, and says how much.
 
 mod hooks;
 mod live;
@@ -12,15 +14,18 @@ mod style;
 mod summary;
 mod verbose;
 
-use std::io::{ErrorKind, Write};
+use std::io::Write;
 use std::path::Path;
 use std::time::Duration;
 
 use rtf_model::{Event, Micros, Record};
 
+pub(crate) use progress::{Bar, BarState};
+
 pub use options::{ConsoleOptions, Rerun, Verbosity, rerun_suite};
 
-use crate::{ReportError, Reporter};
+use crate::outlet::Outlet;
+use crate::{ReportError, Reporter, reader_left, words};
 use page::Page;
 use progress::Progress;
 use verbose::Verbose;
@@ -35,10 +40,15 @@ const PATIENCE: Duration = Duration::from_millis(200);
 pub struct Console {
     options: ConsoleOptions,
     out: Box<dyn Write + Send>,
+    /// Where `out` leads to, when that is a thread of its own.
+    outlet: Option<Outlet>,
+    bar: Bar,
     page: Page,
     written: Micros,
     progress: Progress,
     verbose: Verbose,
+    /// How many lines were left out, and not told of.
+    left_out: u64,
 }
 
 impl Console {
@@ -49,6 +59,15 @@ impl Console {
         Self::new(Box::new(anstream::AutoStream::auto(std::io::stdout())), options)
     }
 
+    /// Writes to an outlet of standard output, for a run that must not wait.
+    #[must_use]
+    pub fn over(outlet: &Outlet, options: ConsoleOptions) -> Self {
+        let out: Box<dyn Write + Send> = Box::new(outlet.clone());
+        let choice = anstream::AutoStream::choice(&std::io::stdout());
+        let out = Box::new(anstream::AutoStream::new(out, choice));
+        Self { outlet: Some(outlet.clone()), ..Self::new(out, options) }
+    }
+
     /// Writes to `out`, with colour codes: wrap it to be rid of them.
     #[must_use]
     pub fn new(out: Box<dyn Write + Send>, options: ConsoleOptions) -> Self {
@@ -56,10 +75,13 @@ impl Console {
         Self {
             options,
             out,
+            outlet: None,
+            bar: Bar::hidden(),
             page: Page::default(),
             written: Micros::default(),
             progress,
             verbose: Verbose::default(),
+            left_out: 0,
         }
     }
 
@@ -68,10 +90,18 @@ impl Console {
         if self.page.len() == 0 {
             return Ok(());
         }
-        let Self { out, page, progress, .. } = self;
-        let written = progress.around(|| out.write_all(page.as_bytes()).and_then(|()| out.flush()));
+        let Self { out, page, bar, outlet, .. } = self;
+        let written = bar.around(|| {
+            out.write_all(page.as_bytes())?;
+            // An outlet writes by itself; waiting for that is left for the end.
+            if outlet.is_none() { out.flush() } else { Ok(()) }
+        });
         self.page.clear();
-        if written.as_ref().is_err_and(|error| error.kind() == ErrorKind::BrokenPipe) {
+        self.judge(written)
+    }
+
+    fn judge(&mut self, written: std::io::Result<()>) -> Result<(), ReportError> {
+        if written.as_ref().is_err_and(reader_left) {
             // Whoever read along (`head`, a pager) has seen enough: the run goes
             // on, and its exit code stays about the tests.
             self.out = Box::new(std::io::sink());
@@ -79,15 +109,43 @@ impl Console {
         }
         written.map_err(ReportError::at("what happens", Path::new("standard output")))
     }
+
+    fn show_bar(&mut self, state: &BarState) {
+        match &self.outlet {
+            Some(outlet) => outlet.show(state.clone()),
+            None => self.bar.show(state),
+        }
+    }
+
+    /// Shows an event in all detail, unless too much waits to be written.
+    fn show_verbose(&mut self, event: &Event, record: &Record) {
+        if self.outlet.as_ref().is_some_and(Outlet::is_full)
+            && let Some(lines) = self.verbose.skip(event)
+        {
+            self.left_out += lines;
+            return;
+        }
+        self.tell_left_out();
+        self.verbose.show(&mut self.page, event, record);
+    }
+
+    fn tell_left_out(&mut self) {
+        let lines = std::mem::take(&mut self.left_out);
+        if lines > 0 {
+            let text = format!("{} (standard output is too slow)", words::count(lines, "line"));
+            self.page.remark((style::LOUD, "left out"), &text);
+        }
+    }
 }
 
 impl Reporter for Console {
     fn event(&mut self, event: &Event, record: &Record) -> Result<(), ReportError> {
         if self.options.verbosity == Verbosity::Verbose {
-            self.verbose.show(&mut self.page, event, record);
+            self.show_verbose(event, record);
         }
         live::show(&mut self.page, &self.options, event, record);
-        self.progress.event(event, record);
+        let bar = self.progress.event(event, record);
+        bar.iter().for_each(|state| self.show_bar(state));
         let is_late = event.at.since(self.written) > PATIENCE;
         if is_late || self.page.len() > PAGE { self.flush(event.at) } else { Ok(()) }
     }
@@ -96,10 +154,18 @@ impl Reporter for Console {
         self.flush(record.last_at)
     }
 
+    fn reporter_failed(&mut self, error: &ReportError) {
+        live::reporter_failed(&mut self.page, error);
+    }
+
     fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
-        self.progress.end();
+        let bar = self.progress.end();
+        bar.iter().for_each(|state| self.show_bar(state));
+        self.tell_left_out();
         self.verbose.flush(&mut self.page, record);
         summary::show(&mut self.page, &self.options, record);
-        self.flush(record.last_at)
+        self.flush(record.last_at)?;
+        let written = self.out.flush();
+        self.judge(written)
     }
 }

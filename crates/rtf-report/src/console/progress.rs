@@ -12,11 +12,61 @@ const TICK: Duration = Duration::from_millis(250);
 
 const TEMPLATE: &str = "{elapsed_precise} [{bar:20}] {pos} of {len} done  {wide_msg}";
 
+/// What the bar shows.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct BarState {
+    done: u64,
+    tests: u64,
+    message: String,
+    /// Taken away for good.
+    is_over: bool,
+}
+
+/// The bar itself. It may wait for the terminal.
+#[derive(Debug)]
+pub(crate) struct Bar {
+    bar: Option<ProgressBar>,
+}
+
+impl Bar {
+    /// No bar, until one is shown.
+    pub fn hidden() -> Self {
+        Self { bar: None }
+    }
+
+    /// Shows it.
+    pub fn show(&mut self, state: &BarState) {
+        if state.is_over {
+            self.bar.take().into_iter().for_each(|bar| bar.finish_and_clear());
+            return;
+        }
+        let bar = self.bar.get_or_insert_with(|| {
+            let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr());
+            if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
+                bar.set_style(style.progress_chars("=> "));
+            }
+            bar.enable_steady_tick(TICK);
+            bar
+        });
+        bar.set_length(state.tests);
+        bar.set_message(state.message.clone());
+        bar.set_position(state.done);
+    }
+
+    /// Takes the bar away while `write` writes to the same terminal.
+    pub fn around<T>(&self, write: impl FnOnce() -> T) -> T {
+        match &self.bar {
+            Some(bar) => bar.suspend(write),
+            None => write(),
+        }
+    }
+}
+
 /// How far the run is, and what it does now.
 #[derive(Debug)]
 pub(super) struct Progress {
-    bar: ProgressBar,
-    done: u64,
+    is_shown: bool,
+    state: BarState,
     /// The tests that run, in the order in which they began.
     running: Vec<TestId>,
     /// Nothing is shown before the number of tests is known.
@@ -27,26 +77,30 @@ impl Progress {
     /// A bar on standard error; none when that is no terminal, or when a
     /// machine watches (`CI` is set).
     pub fn on_terminal() -> Self {
-        if std::env::var_os("CI").is_some_and(|value| !value.is_empty()) {
-            return Self::hidden();
+        let is_watched_by_machine = std::env::var_os("CI").is_some_and(|value| !value.is_empty());
+        Self {
+            is_shown: !is_watched_by_machine && !ProgressDrawTarget::stderr().is_hidden(),
+            ..Self::hidden()
         }
-        let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr());
-        if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
-            bar.set_style(style.progress_chars("=> "));
-        }
-        Self { bar, done: 0, running: Vec::new(), begun: false }
     }
 
     /// No bar.
     pub fn hidden() -> Self {
-        Self { bar: ProgressBar::hidden(), done: 0, running: Vec::new(), begun: false }
+        let (state, running) = (BarState::default(), Vec::new());
+        Self { is_shown: false, state, running, begun: false }
     }
 
-    /// Moves on.
-    pub fn event(&mut self, event: &Event, record: &Record) {
-        if self.bar.is_hidden() {
-            return;
+    /// Moves on; what is shown now, if that is something else.
+    pub fn event(&mut self, event: &Event, record: &Record) -> Option<BarState> {
+        if !self.is_shown {
+            return None;
         }
+        let before = self.state.clone();
+        self.take(event, record);
+        Some(&self.state).filter(|state| self.begun && **state != before).cloned()
+    }
+
+    fn take(&mut self, event: &Event, record: &Record) {
         match &event.kind {
             EventKind::TestStarted { test, .. } => {
                 self.running.push(*test);
@@ -56,12 +110,11 @@ impl Progress {
             EventKind::FixtureStopping { fixture } => self.fixture(record, *fixture, "tear down"),
             EventKind::HookStarted { hook, .. } => {
                 let name = record.full_hook_name(*hook);
-                self.bar.set_message(format!("hook {}", escape::line(&name)));
+                self.state.message = format!("hook {}", escape::line(&name));
             }
             EventKind::SuiteStarted { .. } if !self.begun => {
                 self.begun = true;
-                self.bar.set_length(record.tests.len() as u64);
-                self.bar.enable_steady_tick(TICK);
+                self.state.tests = record.tests.len() as u64;
             }
             EventKind::TestFinished(finished) => {
                 self.running.retain(|test| *test != finished.test);
@@ -69,39 +122,27 @@ impl Progress {
                     self.tests(record);
                 }
                 if record.verdict(finished.test).is_some() {
-                    self.step();
+                    self.state.done += 1;
                 }
             }
-            EventKind::TestSkipped { .. } | EventKind::TestRepeated { .. } => self.step(),
+            EventKind::TestSkipped { .. } | EventKind::TestRepeated { .. } => self.state.done += 1,
             _ => {}
         }
     }
 
     /// Says which tests run: more than fit are cut off by the terminal's width.
-    fn tests(&self, record: &Record) {
+    fn tests(&mut self, record: &Record) {
         let names: Vec<_> = self.running.iter().map(|test| record.full_name(*test)).collect();
-        self.bar.set_message(escape::line(&names.join(", ")).into_owned());
+        self.state.message = escape::line(&names.join(", ")).into_owned();
     }
 
-    fn fixture(&self, record: &Record, id: rtf_model::FixtureId, what: &str) {
+    fn fixture(&mut self, record: &Record, id: rtf_model::FixtureId, what: &str) {
         let name = record.fixture_name(id);
-        self.bar.set_message(format!("{what} fixture {}", escape::line(&name)));
-    }
-
-    fn step(&mut self) {
-        self.done += 1;
-        self.bar.set_position(self.done);
-    }
-
-    /// Takes the bar away while `write` writes to the same terminal.
-    pub fn around<T>(&self, write: impl FnOnce() -> T) -> T {
-        if self.begun { self.bar.suspend(write) } else { write() }
+        self.state.message = format!("{what} fixture {}", escape::line(&name));
     }
 
     /// Takes the bar away for good.
-    pub fn end(&self) {
-        if self.begun {
-            self.bar.finish_and_clear();
-        }
+    pub fn end(&mut self) -> Option<BarState> {
+        self.begun.then(|| BarState { is_over: true, ..BarState::default() })
     }
 }

@@ -244,7 +244,9 @@ fn outcome(record: &Record) -> (Style, String) {
     if record.is_green() {
         return (GOOD, "PASSED".to_owned());
     }
-    let word = if let Some(reason) = record.died() {
+    let word = if record.is_damaged() {
+        "DAMAGED (the journal cannot be trusted)".to_owned()
+    } else if let Some(reason) = record.died() {
         format!("INCOMPLETE (the runner died: {})", escape::line(reason))
     } else if !record.is_complete() {
         "INCOMPLETE (the runner did not reach the end)".to_owned()

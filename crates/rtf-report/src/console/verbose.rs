@@ -104,6 +104,22 @@ impl Verbose {
         }
     }
 
+    /// Leaves out an event that is shown in all detail only: how many lines that are. `None`
+    /// when it is one that is always shown.
+    pub fn skip(&mut self, event: &Event) -> Option<u64> {
+        let lines = |text: &str| text.lines().count() as u64;
+        match &event.kind {
+            EventKind::Message { message, .. } => Some(lines(&message.text).max(1)),
+            EventKind::Measured { .. } | EventKind::Attached { .. } => Some(1),
+            EventKind::Output(output) => {
+                // The rest of this line is another line's.
+                self.partial.remove(&Key::of(output));
+                Some(lines(&output.text))
+            }
+            _ => None,
+        }
+    }
+
     fn output(&mut self, page: &mut Page, output: &Output, record: &Record) {
         let key = Key::of(output);
         let partial = self.partial.entry(key).or_default();

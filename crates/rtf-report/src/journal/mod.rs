@@ -2,10 +2,16 @@
 //! happens. It is the truth from which every report can be made again, also
 //! after the runner was killed.
 
+mod lines;
+mod page;
+mod presence;
 mod reader;
 mod writer;
 
-pub use reader::{Damage, JournalError, Stored, read, read_with, replay};
+pub use lines::{JournalLines, NewerVersion};
+pub use reader::{
+    JournalError, Stored, find_damage, read, read_from, read_lines, read_with, replay,
+};
 pub use writer::Journal;
 
 use std::fs::{File, TryLockError};

@@ -4,33 +4,19 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
-use rtf_model::{EVENTS_VERSION, Event, EventKind, Record};
+use rtf_model::{Damage, EVENTS_VERSION, Event, LineCheck, LineChecker, Record};
 
+use super::lines::{JournalLines, NewerVersion};
 use crate::{ReportError, Reporter};
-
-/// How many damages are kept; a file that is full of them has one story to tell.
-const DAMAGES_KEPT: usize = 100;
 
 /// What was found in a journal.
 #[derive(Debug)]
 pub struct Stored {
-    /// The fold over all events that could be read.
+    /// The fold over all events that could be read, and what is damaged.
     pub record: Record,
     /// Whether the last line is incomplete, as a killed runner leaves it. All
     /// that was written before it is there.
     pub torn: bool,
-    /// What is wrong elsewhere in the file, up to 100 places.
-    pub damages: Vec<Damage>,
-}
-
-/// A place of a journal that cannot be read, or where something is missing.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {problem}")]
-pub struct Damage {
-    /// The line, from 1.
-    pub line: u64,
-    /// What is wrong with it.
-    pub problem: String,
 }
 
 /// A journal cannot be read at all.
@@ -78,12 +64,24 @@ pub fn read(path: &Path) -> Result<Stored, JournalError> {
     read_with(path, |_, _| Ok(()))
 }
 
-/// Reads a journal and gives its events to a reporter, as during the run.
+/// Reads a journal from somewhere else than a file; `path` names it in errors.
+///
+/// # Errors
+/// As for [`read`].
+pub fn read_from(path: &Path, journal: impl BufRead) -> Result<Stored, JournalError> {
+    Reading::new(path, |_, _, _| Ok(())).from(journal)
+}
+
+/// Reads a journal and gives its events to a reporter, as during the run. The
+/// reporter is given a record that names all damage from the first event on.
 ///
 /// # Errors
 /// As for [`read`]; and the reporter's own.
 pub fn replay(path: &Path, reporter: &mut dyn Reporter) -> Result<Stored, JournalError> {
-    let stored = read_with(path, |event, record| reporter.event(event, record))?;
+    let damages = find_damage(path)?;
+    let stored = Reading::new(path, |_, event, record| reporter.event(event, record))
+        .with_damages(damages)
+        .all()?;
     reporter.finish(&stored.record)?;
     Ok(stored)
 }
@@ -95,16 +93,63 @@ pub fn replay(path: &Path, reporter: &mut dyn Reporter) -> Result<Stored, Journa
 /// As for [`read`]; and the first error of `visit`.
 pub fn read_with(
     path: &Path,
-    visit: impl FnMut(&Event, &Record) -> Result<(), ReportError>,
+    mut visit: impl FnMut(&Event, &Record) -> Result<(), ReportError>,
 ) -> Result<Stored, JournalError> {
-    let file = File::open(path).map_err(|source| unreadable(path, source))?;
-    let stored = Stored { record: Record::default(), torn: false, damages: Vec::new() };
-    let mut reading = Reading { path, visit, stored, line: 0, expected: 0, first: None };
-    reading.all(BufReader::with_capacity(64 * 1024, file))?;
-    match (reading.stored.record.events, reading.first) {
-        (0, Some(first)) => Err(JournalError::NotAJournal { path: path.to_owned(), first }),
-        _ => Ok(reading.stored),
+    Reading::new(path, |_, event, record| visit(event, record)).all()
+}
+
+/// Reads a journal and calls `visit` with each line that is an event, as it is
+/// in the file, with its check value and without its end.
+///
+/// # Errors
+/// As for [`read`]; and the first error of `visit`.
+pub fn read_lines(
+    path: &Path,
+    mut visit: impl FnMut(&[u8]) -> Result<(), ReportError>,
+) -> Result<Stored, JournalError> {
+    Reading::new(path, |line, _, _| visit(line)).all()
+}
+
+/// Finds all damage of a journal without showing any of it.
+///
+/// # Errors
+/// As for [`read`].
+pub fn find_damage(path: &Path) -> Result<Vec<Damage>, JournalError> {
+    // The check values alone tell whether there is any, in a fraction of the time.
+    let is_intact = is_intact(path).map_err(|source| unreadable(path, source))?;
+    if is_intact { Ok(Vec::new()) } else { Ok(read(path)?.record.damages) }
+}
+
+/// Whether each line has the check value that it should have.
+fn is_intact(path: &Path) -> io::Result<bool> {
+    let (mut file, mut line) = (open(path)?, Vec::new());
+    let mut checker = LineChecker::default();
+    while let Some(found) = next_line(&mut file, &mut line)? {
+        match found {
+            Line::Whole(line) if checker.check(line) == LineCheck::Intact => {}
+            // Whether a torn line is damage depends on what stands before it.
+            Line::Whole(_) | Line::Torn(_) => return Ok(false),
+        }
     }
+    Ok(true)
+}
+
+fn open(path: &Path) -> io::Result<BufReader<File>> {
+    Ok(BufReader::with_capacity(64 * 1024, File::open(path)?))
+}
+
+enum Line<'a> {
+    /// A line without its end.
+    Whole(&'a [u8]),
+    /// What stands after the last end of a line.
+    Torn(&'a [u8]),
+}
+
+fn next_line<'a>(file: &mut impl BufRead, text: &'a mut Vec<u8>) -> io::Result<Option<Line<'a>>> {
+    text.clear();
+    let read = file.read_until(b'\n', text)?;
+    let line = || text.strip_suffix(b"\n").map_or(Line::Torn(text), Line::Whole);
+    Ok((read > 0).then(line))
 }
 
 fn unreadable(path: &Path, source: io::Error) -> JournalError {
@@ -115,67 +160,64 @@ struct Reading<'a, V> {
     path: &'a Path,
     visit: V,
     stored: Stored,
-    line: u64,
-    /// The number that the next event should have.
-    expected: u64,
-    first: Option<Damage>,
+    lines: JournalLines,
+    /// Whether the record has all damage already.
+    is_damage_known: bool,
 }
 
-impl<V: FnMut(&Event, &Record) -> Result<(), ReportError>> Reading<'_, V> {
-    fn all(&mut self, mut file: impl BufRead) -> Result<(), JournalError> {
-        let mut line = Vec::new();
-        loop {
-            line.clear();
-            let read = file.read_until(b'\n', &mut line);
-            if read.map_err(|source| unreadable(self.path, source))? == 0 {
-                return Ok(());
+impl<'a, V: FnMut(&[u8], &Event, &Record) -> Result<(), ReportError>> Reading<'a, V> {
+    fn new(path: &'a Path, visit: V) -> Self {
+        let stored = Stored { record: Record::default(), torn: false };
+        Self { path, visit, stored, lines: JournalLines::default(), is_damage_known: false }
+    }
+
+    fn with_damages(mut self, damages: Vec<Damage>) -> Self {
+        self.is_damage_known = !damages.is_empty();
+        self.stored.record.damages = damages;
+        self
+    }
+
+    fn all(self) -> Result<Stored, JournalError> {
+        let file = open(self.path).map_err(|source| unreadable(self.path, source))?;
+        self.from(file)
+    }
+
+    fn from(mut self, mut journal: impl BufRead) -> Result<Stored, JournalError> {
+        let (path, mut text) = (self.path, Vec::new());
+        let failed = |source| unreadable(path, source);
+        while let Some(line) = next_line(&mut journal, &mut text).map_err(failed)? {
+            match line {
+                Line::Whole(line) => self.line(line)?,
+                // The only line of a journal whose runner was killed at once begins
+                // as an event does; anything else is another file.
+                Line::Torn(text) if self.lines.has_begun() || text.starts_with(b"{") => {
+                    self.stored.torn = true;
+                    if !self.is_damage_known {
+                        self.lines.torn(&mut self.stored.record);
+                    }
+                }
+                Line::Torn(text) => self.line(text)?,
             }
-            self.line += 1;
-            self.take(&line)?;
+        }
+        match (self.stored.record.events, self.stored.record.damages.first()) {
+            (0, Some(first)) => {
+                Err(JournalError::NotAJournal { path: self.path.to_owned(), first: first.clone() })
+            }
+            _ => Ok(self.stored),
         }
     }
 
-    fn take(&mut self, line: &[u8]) -> Result<(), JournalError> {
-        match serde_json::from_slice::<Event>(line) {
-            Ok(event) => self.event(&event),
-            // The only line of a journal whose runner was killed at once begins
-            // as an event does; anything else is another file.
-            Err(_) if !line.ends_with(b"\n") && (self.line > 1 || line.starts_with(b"{")) => {
-                self.stored.torn = true;
-                Ok(())
-            }
-            Err(error) => {
-                self.damage(format!("this is not an event: {error}"));
-                Ok(())
-            }
+    fn line(&mut self, line: &[u8]) -> Result<(), JournalError> {
+        let record = &mut self.stored.record;
+        let known = record.damages.len();
+        let parse = |line: &[u8]| serde_json::from_slice(line);
+        let event = self.lines.take(line, parse, record).map_err(|NewerVersion { found }| {
+            JournalError::Version { path: self.path.to_owned(), found }
+        })?;
+        if self.is_damage_known {
+            record.damages.truncate(known);
         }
-    }
-
-    fn event(&mut self, event: &Event) -> Result<(), JournalError> {
-        if let EventKind::RunStarted(run) = &event.kind
-            && run.version > EVENTS_VERSION
-        {
-            return Err(JournalError::Version { path: self.path.to_owned(), found: run.version });
-        }
-        if event.seq != self.expected {
-            let expected = self.expected;
-            self.damage(format!("event {} stands where event {expected} should be", event.seq));
-        }
-        if event.seq < self.expected {
-            return Ok(());
-        }
-        self.expected = event.seq.saturating_add(1);
-        self.stored.record.apply(event);
-        (self.visit)(event, &self.stored.record).map_err(JournalError::from)
-    }
-
-    fn damage(&mut self, problem: String) {
-        let damage = Damage { line: self.line, problem };
-        if self.first.is_none() {
-            self.first = Some(damage.clone());
-        }
-        if self.stored.damages.len() < DAMAGES_KEPT {
-            self.stored.damages.push(damage);
-        }
+        let Some(event) = event else { return Ok(()) };
+        (self.visit)(line, &event, record).map_err(JournalError::from)
     }
 }

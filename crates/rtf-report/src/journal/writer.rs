@@ -1,12 +1,14 @@
 //! Writes the journal.
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::fs::{File, OpenOptions};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use rtf_model::{Event, EventKind, Phase, Record};
 
+use super::page::Page;
+use super::presence::Presence;
 use crate::{ReportError, Reporter};
 
 const WHAT: &str = "the journal";
@@ -17,11 +19,16 @@ const BUFFER: usize = 64 * 1024;
 /// While the queue of events is never empty, a landmark waits no longer than this.
 const PATIENCE: Duration = Duration::from_millis(1);
 
-/// Writes each event as a line of JSON.
+/// Writes each event as a line of JSON with a check value.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
-    file: BufWriter<File>,
+    file: File,
+    /// Whole lines that are not in the file yet.
+    page: Page,
+    presence: Presence,
+    /// How many bytes the file has.
+    written: u64,
     flushed: Instant,
     /// Whether a landmark waits.
     owes: bool,
@@ -33,28 +40,52 @@ impl Journal {
     /// # Errors
     /// The file exists or cannot be written.
     pub fn create(path: &Path) -> Result<Self, ReportError> {
-        let file = File::create_new(path).map_err(ReportError::at(WHAT, path))?;
+        // Whatever else happens to the file, nothing in it is overwritten.
+        let file = OpenOptions::new().append(true).create_new(true).open(path);
+        let file = file.map_err(ReportError::at(WHAT, path))?;
         // Held until the runner ends, however it ends: see [`super::is_written`].
         // Nobody else holds it for longer than a look. Some file systems have no
         // locks; the run does not depend on them.
         drop(file.lock());
-        let file = BufWriter::with_capacity(BUFFER, file);
-        Ok(Self { path: path.to_owned(), file, flushed: Instant::now(), owes: false })
+        let presence = Presence::of(&file, path).map_err(ReportError::at(WHAT, path))?;
+        Ok(Self {
+            path: path.to_owned(),
+            file,
+            page: Page::new(),
+            presence,
+            written: 0,
+            flushed: Instant::now(),
+            owes: false,
+        })
     }
 
     fn write(&mut self, event: &Event) -> std::io::Result<()> {
-        serde_json::to_writer(&mut self.file, event)?;
-        self.file.write_all(b"\n")?;
+        self.page.add(event)?;
         let landmark = landmark(&event.kind);
         self.owes |= matches!(landmark, Landmark::Soon);
-        let is_due =
-            matches!(landmark, Landmark::Now) || (self.owes && self.flushed.elapsed() >= PATIENCE);
+        let is_due = matches!(landmark, Landmark::Now)
+            || self.page.lines().len() >= BUFFER
+            || (self.owes && self.flushed.elapsed() >= PATIENCE);
         if is_due { self.flush() } else { Ok(()) }
     }
 
     fn flush(&mut self) -> std::io::Result<()> {
         (self.flushed, self.owes) = (Instant::now(), false);
-        self.file.flush()
+        if self.page.lines().is_empty() {
+            return Ok(());
+        }
+        self.presence.check_file(&self.file, self.written)?;
+        self.file.write_all(self.page.lines())?;
+        self.written += self.page.lines().len() as u64;
+        self.page.clear();
+        Ok(())
+    }
+
+    fn close(&mut self) -> std::io::Result<()> {
+        self.flush()?;
+        self.file.sync_all()?;
+        self.presence.check_file(&self.file, self.written)?;
+        self.presence.check_path(&self.file)
     }
 }
 
@@ -99,7 +130,6 @@ impl Reporter for Journal {
     }
 
     fn finish(&mut self, _record: &Record) -> Result<(), ReportError> {
-        let written = self.flush().and_then(|()| self.file.get_ref().sync_all());
-        written.map_err(ReportError::at(WHAT, &self.path))
+        self.close().map_err(ReportError::at(WHAT, &self.path))
     }
 }

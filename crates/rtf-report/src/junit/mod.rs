@@ -67,12 +67,11 @@ fn report(record: &Record, folder: Option<&Path>) -> Report {
     let mut report = Report::new(text(name));
     report.timestamp = time::at(record, rtf_model::Micros(0));
     report.set_time(record.last_at.as_duration());
-    for suite in &record.suites {
-        report.add_test_suite(test_suite(record, suite, folder));
-    }
-    if let Some(suite) = problems::of_run(record) {
-        report.add_test_suite(suite);
-    }
+    let suites = record.suites.iter().map(|suite| test_suite(record, suite, folder));
+    let of_run = problems::of_run(record);
+    // Damage comes first: nothing that follows is certain.
+    let (first, last) = if record.is_damaged() { (of_run, None) } else { (None, of_run) };
+    report.add_test_suites(first.into_iter().chain(suites).chain(last));
     report
 }
 

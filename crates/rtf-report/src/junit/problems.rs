@@ -35,8 +35,9 @@ pub(super) fn of_run(record: &Record) -> Option<TestSuite> {
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
     status.set_message(text(&problem));
     status.set_type("run");
-    if !record.left.is_empty() {
+    if !record.left.is_empty() || record.is_damaged() {
         let mut lines = vec![text(&problem)];
+        lines.extend(record.damages.iter().map(|damage| text(&damage.to_string())));
         explain::left(&record.left, &mut |_, line| lines.push(line.to_owned()));
         status.set_description(lines.join("\n"));
     }

@@ -43,7 +43,7 @@ fn divisions(parts: &[Part]) -> Vec<Division> {
         let shard = shard.and_then(|(part, of)| Some((part.parse().ok()?, of.parse().ok()?)));
         let (part, of) = shard.unzip();
         // The merged run has one suite at a time.
-        let asked = Manifest { shard: None, jobs: None, ..(*run.manifest).clone() };
+        let asked = Manifest { shard: None, jobs: None, revision: None, ..(*run.manifest).clone() };
         let manifest = match (of, asked.chosen_of) {
             (Some(_), 0) => Manifest { chosen_of: run.tests, ..asked },
             _ => asked,

@@ -1,6 +1,6 @@
 //! What is shown while the run goes on, and the counts at its end.
 
-use std::io::{ErrorKind, Write};
+use std::io::Write;
 use std::path::Path;
 
 use anstyle::{AnsiColor, Style};
@@ -8,7 +8,8 @@ use rtf_model::{Event, EventKind, Output, Record};
 
 use super::lines::{self, Line, Word};
 use super::summary;
-use crate::{ReportError, Reporter, escape};
+use crate::outlet::Outlet;
+use crate::{ReportError, Reporter, escape, reader_left};
 
 /// Lines are written at the latest when so many bytes wait.
 const PAGE: usize = 16 * 1024;
@@ -28,6 +29,10 @@ pub struct ConsoleOptions {
 pub struct Console {
     options: ConsoleOptions,
     out: Box<dyn Write + Send>,
+    /// Where `out` leads to, when that is a thread of its own.
+    outlet: Option<Outlet>,
+    /// How many lines were left out, and not told of.
+    left_out: usize,
     page: String,
     /// Whether a plug-in printed half of a line.
     within_line: bool,
@@ -40,15 +45,44 @@ impl Console {
         Self::new(Box::new(anstream::AutoStream::auto(std::io::stdout())), options)
     }
 
+    /// Writes to an outlet of standard output, for a run that must not wait.
+    #[must_use]
+    pub fn over(outlet: &Outlet, options: ConsoleOptions) -> Self {
+        let out: Box<dyn Write + Send> = Box::new(outlet.clone());
+        let choice = anstream::AutoStream::choice(&std::io::stdout());
+        let out = Box::new(anstream::AutoStream::new(out, choice));
+        Self { outlet: Some(outlet.clone()), ..Self::new(out, options) }
+    }
+
     /// Writes to `out`, with colour codes: wrap it to be rid of them.
     #[must_use]
     pub fn new(out: Box<dyn Write + Send>, options: ConsoleOptions) -> Self {
-        Self { options, out, page: String::new(), within_line: false }
+        let (outlet, left_out, page) = (None, 0, String::new());
+        Self { options, out, outlet, left_out, page, within_line: false }
+    }
+
+    /// Whether detail is left out now, because too much waits to be written.
+    fn leaves_out(&mut self, lines: usize) -> bool {
+        let is_full = self.outlet.as_ref().is_some_and(Outlet::is_full);
+        if is_full {
+            self.left_out += lines;
+        } else {
+            self.tell_left_out();
+        }
+        is_full
+    }
+
+    fn tell_left_out(&mut self) {
+        let lines = std::mem::take(&mut self.left_out);
+        if lines > 0 {
+            self.end_line();
+            self.page += &format!("[… {lines} lines left out: standard output is too slow …]\n");
+        }
     }
 
     fn line(&mut self, line: &Line) {
         let shown = matches!(line.word, Word::Warn | Word::Fail | Word::Error);
-        if !shown && !self.options.verbose {
+        if !shown && !self.options.verbose || line.word == Word::Info && self.leaves_out(1) {
             return;
         }
         self.end_line();
@@ -69,6 +103,9 @@ impl Console {
 
     /// What the plug-ins print, as it comes.
     fn printed(&mut self, output: &Output) {
+        if self.leaves_out(output.text.lines().count()) {
+            return;
+        }
         if output.omitted > 0 {
             self.end_line();
             self.page += &format!("[… {} bytes left out …]\n", output.omitted);
@@ -87,9 +124,13 @@ impl Console {
         if self.page.is_empty() {
             return Ok(());
         }
-        let written = self.out.write_all(self.page.as_bytes()).and_then(|()| self.out.flush());
+        let written = self.out.write_all(self.page.as_bytes());
         self.page.clear();
-        if written.as_ref().is_err_and(|error| error.kind() == ErrorKind::BrokenPipe) {
+        self.judge(written)
+    }
+
+    fn judge(&mut self, written: std::io::Result<()>) -> Result<(), ReportError> {
+        if written.as_ref().is_err_and(reader_left) {
             // Who read along has seen enough; the exit code stays about the tests.
             self.out = Box::new(std::io::sink());
             return Ok(());
@@ -122,11 +163,14 @@ impl Reporter for Console {
         for line in lines::left_open(record) {
             self.line(&line);
         }
+        self.tell_left_out();
         self.end_line();
         if self.options.summary {
             self.page += &summary::of(record, "results");
         }
-        self.flush()
+        self.flush()?;
+        let written = self.out.flush();
+        self.judge(written)
     }
 }
 

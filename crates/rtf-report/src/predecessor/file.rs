@@ -44,6 +44,9 @@ impl Reporter for ResultFile {
 
 fn write(out: &mut dyn Write, journal: &Path, detail: bool) -> io::Result<()> {
     let mut problem = None;
+    for damage in &journal::find_damage(journal).map_err(unreadable)? {
+        writeln!(out, "the journal of this run is damaged: {damage}")?;
+    }
     let stored = journal::read_with(journal, |event, record| {
         if problem.is_none() {
             problem = put_all(out, &lines::of(event, record), detail).err();
@@ -53,13 +56,16 @@ fn write(out: &mut dyn Write, journal: &Path, detail: bool) -> io::Result<()> {
     if let Some(problem) = problem {
         return Err(problem);
     }
-    let record = match stored {
-        Ok(stored) => stored.record,
-        Err(JournalError::Read { source, .. }) => return Err(source),
-        Err(error) => return Err(io::Error::other(error)),
-    };
+    let record = stored.map_err(unreadable)?.record;
     put_all(out, &lines::left_open(&record), detail)?;
     out.write_all(summary::of(&record, "summary").as_bytes())
+}
+
+fn unreadable(error: JournalError) -> io::Error {
+    match error {
+        JournalError::Read { source, .. } => source,
+        error => io::Error::other(error),
+    }
 }
 
 fn put_all(out: &mut dyn Write, lines: &[Line], detail: bool) -> io::Result<()> {

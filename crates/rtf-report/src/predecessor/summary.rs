@@ -2,6 +2,8 @@
 
 use rtf_model::{Record, SuiteId, SuiteRecord};
 
+use crate::words;
+
 /// Whether it is a suite of a file: plug-ins of the command line are gathered
 /// in one that the predecessor did not know.
 pub(super) fn is_suite(suite: &SuiteRecord) -> bool {
@@ -19,6 +21,7 @@ pub(super) fn suite_passed(record: &Record, id: SuiteId) -> bool {
 /// The block, with an empty line before it.
 pub(super) fn of(record: &Record, title: &str) -> String {
     let mut block = format!("\n---------- {title} -----------\n");
+    block.extend(words::damage(record).map(|damage| damage + "\n"));
     let suites: Vec<_> = record.suites.iter().filter(|suite| is_suite(suite)).collect();
     if !suites.is_empty() {
         let passed = suites.iter().filter(|s| suite_passed(record, s.plan.suite)).count();

@@ -14,7 +14,7 @@ use rtf_model::{Event, EventKind, Record, SuiteRecord};
 
 use crate::report_file::ReportFile;
 use crate::stream::Stream;
-use crate::{ReportError, Reporter, escape, finding};
+use crate::{ReportError, Reporter, escape, finding, words};
 
 /// Writes the TAP report of a record that will not change any more.
 ///
@@ -77,7 +77,7 @@ impl Reporter for TapStream {
 
     fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
         self.go_on(record, true);
-        self.stream.flush()
+        self.stream.finish()
     }
 }
 
@@ -96,7 +96,12 @@ impl Walk {
     fn go_on(&mut self, text: &mut String, record: &Record, over: bool) {
         if !self.planned {
             self.planned = true;
-            *text += &format!("TAP version 14\n1..{}\n", record.suites.len());
+            *text += "TAP version 14\n";
+            // A bail-out ends a stream: here only what is said first.
+            if let Some(damage) = words::damage(record) {
+                *text += &format!("# {}\n", escape::line(&damage));
+            }
+            *text += &format!("1..{}\n", record.suites.len());
         }
         while let Some(suite) = record.suites.get(self.suites) {
             if !self.suite(text, record, suite, over) {

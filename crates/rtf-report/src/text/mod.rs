@@ -59,6 +59,10 @@ impl Reporter for TextFile {
 }
 
 fn head(lines: &mut Lines, record: &Record) {
+    if record.is_damaged() {
+        lines.at(0, "the journal of this run is damaged, what follows is incomplete:");
+        record.damages.iter().for_each(|damage| lines.fact(2, "damage", &damage.to_string()));
+    }
     let Some(run) = &record.run else {
         return lines.at(0, "run: its beginning is missing");
     };
@@ -145,6 +149,10 @@ fn result(lines: &mut Lines, record: &Record) {
         lines.at(0, &format!("hooks that failed: {failed}"));
     }
     lines.at(0, &format!("time: {}", words::time(record.last_at.as_duration())));
-    let result = if record.is_green() { "passed" } else { "not passed" };
+    let result = match record.is_green() {
+        true => "passed",
+        false if record.is_damaged() => "not passed (the journal is damaged)",
+        false => "not passed",
+    };
     lines.at(0, &format!("result: {result}"));
 }

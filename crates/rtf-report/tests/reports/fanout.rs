@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, Sender};
 
 use crate::support::*;
-use rtf_model::{Event, Record};
+use rtf_model::{Event, Record, Source, TestId};
 use rtf_report::{Fanout, ReportError, Reporter};
 
 #[derive(Debug, PartialEq, Eq)]
@@ -94,6 +94,39 @@ fn a_run_that_breaks_the_order_is_noticed() {
     drop(fanout.join());
 }
 
+/// Panics at the first event.
+struct Panics;
+
+impl Reporter for Panics {
+    fn event(&mut self, _event: &Event, _record: &Record) -> Result<(), ReportError> {
+        panic!("a reporter that is wrong")
+    }
+}
+
+#[test]
+fn a_reporter_that_panics_stops_neither_the_others_nor_the_run() {
+    let (events, stored) = events("verdicts");
+    let (working, of_working) = Probe::new(None);
+    let fanout = Fanout::start(vec![Box::new(Panics), working]).unwrap();
+    let handle = fanout.handle();
+    events.iter().for_each(|event| fanout.send(event.clone()));
+    let tests = (0..stored.record.tests.len()).map(|test| TestId(u32::try_from(test).unwrap()));
+    let sources: Vec<_> = tests.map(Source::Test).collect();
+    while calls_until_last(&of_working, &events) {}
+    assert!(sources.iter().all(|source| handle.backlog(*source) == 0));
+    drop(handle);
+    let finished = fanout.join();
+    assert_eq!(finished.record.totals(), stored.record.totals());
+    let errors: Vec<_> = finished.errors.iter().map(ToString::to_string).collect();
+    assert_eq!(errors, ["cannot write a report to `its place`"]);
+}
+
+/// Whether the last event is still to come.
+fn calls_until_last(calls: &Receiver<Call>, events: &[Event]) -> bool {
+    let last = events.last().map(|event| Call::Event(event.seq));
+    Some(calls.recv().unwrap()) != last
+}
+
 /// Each write fails, the error is told once, and the run goes on.
 #[test]
 #[cfg(target_os = "linux")]
@@ -111,4 +144,21 @@ fn what_cannot_be_written_is_told_once() {
     let errors: Vec<_> = finished.errors.iter().map(ToString::to_string).collect();
     assert_eq!(errors, ["cannot write what happens to `standard output`"]);
     assert!(finished.record.is_complete());
+}
+
+/// A full disk is reported when it is full, not hours later.
+#[test]
+fn what_cannot_be_written_is_said_at_once() {
+    let (events, _) = events("verdicts");
+    let (failing, _calls) = Probe::new(Some(3));
+    let paper = Paper::default();
+    let options = rtf_report::console::ConsoleOptions::default();
+    let console = rtf_report::console::Console::new(Box::new(paper.clone()), options);
+    let fanout = Fanout::start(vec![failing, Box::new(console)]).unwrap();
+    events.into_iter().for_each(|event| fanout.send(event));
+    assert!(fanout.join().record.is_complete());
+    let text = paper.text();
+    let told = text.find("a probe `there`: no storage space").expect("it is said");
+    let first_test = text.find("passed").expect("a test passed");
+    assert!(told < first_test, "{text}");
 }

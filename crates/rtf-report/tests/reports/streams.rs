@@ -26,7 +26,7 @@ fn the_streams_are_legal() {
         for event in &events {
             order.check(event).unwrap_or_else(|error| panic!("{name}: {error}"));
         }
-        assert!(stored.damages.is_empty(), "{name}: {:?}", stored.damages);
+        assert!(stored.record.damages.is_empty(), "{name}: {:?}", stored.record.damages);
         assert_eq!(stored.torn, name == KILLED, "{name}");
         assert_eq!(order.finish().is_err(), name == KILLED, "{name}");
     }

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-use rtf_model::{Event, Record};
+use rtf_model::{Event, LineSealer, Record};
 use rtf_report::console::{Console, ConsoleOptions};
 use rtf_report::journal::{self, Stored};
 
@@ -38,6 +38,17 @@ pub fn events(name: &str) -> (Vec<Event>, Stored) {
 
 pub fn record(name: &str) -> Record {
     journal::read(&stream_path(name)).unwrap().record
+}
+
+/// A stored stream as a journal with check values.
+pub fn sealed(name: &str) -> Vec<u8> {
+    let (mut sealer, mut journal) = (LineSealer::default(), Vec::new());
+    for event in events(name).0 {
+        let start = journal.len();
+        serde_json::to_writer(&mut journal, &event).unwrap();
+        sealer.seal(&mut journal, start);
+    }
+    journal
 }
 
 /// A place to write to that can be read afterwards.

@@ -3,11 +3,16 @@
 //!
 //! [`guard`] stands before every route.
 
+mod guesses;
 mod host;
 mod secret;
 
+use std::io;
+use std::net::IpAddr;
+use std::sync::mpsc::{SyncSender, sync_channel};
+
 use axum::body::Body;
-use axum::extract::{Request, State};
+use axum::extract::{ConnectInfo, Request, State};
 use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
@@ -17,7 +22,10 @@ pub use secret::{Secret, TokenError};
 
 use crate::api::ROOT;
 use crate::app::App;
+use crate::connections::Peer;
 use crate::problem::Problem;
+
+use guesses::Guesses;
 
 /// The largest body of a request: a token and some room.
 const BODY: usize = 4096;
@@ -33,6 +41,15 @@ pub enum Who {
     Session,
 }
 
+/// What holds for all requests.
+#[derive(Clone, Copy, Debug)]
+pub struct Rules {
+    /// Whether other machines may connect: reading then needs the token, too.
+    pub remote: bool,
+    /// Whether TLS is spoken.
+    pub tls: bool,
+}
+
 /// Who may do what.
 #[derive(Debug)]
 pub struct Access {
@@ -43,6 +60,49 @@ pub struct Access {
     /// Whether reading needs the token, too.
     remote: bool,
     tls: bool,
+    guesses: Guesses,
+    log: Log,
+}
+
+/// How many reports wait for whoever writes them; further ones are dropped.
+const REPORTS: usize = 16;
+
+/// Where it is reported that somebody sent a wrong token.
+#[derive(Debug)]
+pub struct Log(SyncSender<WrongToken>);
+
+impl Log {
+    /// Reports on a thread of its own: whoever writes it may have to wait.
+    ///
+    /// # Errors
+    /// The system has no thread to give.
+    pub fn start(report: impl Fn(WrongToken) + Send + 'static) -> io::Result<Self> {
+        let (sender, reports) = sync_channel(REPORTS);
+        let write = move || reports.iter().for_each(report);
+        std::thread::Builder::new().name("web-log".into()).spawn(write)?;
+        Ok(Self(sender))
+    }
+
+    fn report(&self, wrong: WrongToken) {
+        // When nobody takes them, the count in the next one tells how many there were.
+        let _ = self.0.try_send(wrong);
+    }
+}
+
+/// Somebody sent a wrong token.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WrongToken {
+    /// The client.
+    pub client: IpAddr,
+    /// How many it has sent lately.
+    pub count: u64,
+}
+
+impl WrongToken {
+    /// Whether it is worth a line: the first one, and then ever fewer.
+    fn is_reported(self) -> bool {
+        self.count.is_power_of_two()
+    }
 }
 
 impl Access {
@@ -50,9 +110,11 @@ impl Access {
     ///
     /// # Errors
     /// The system has no random bytes.
-    pub fn new(token: Secret, hosts: Hosts, remote: bool, tls: bool) -> Result<Self, TokenError> {
-        let cookie = format!("rtf-{}", hosts.port());
-        Ok(Self { token, session: Secret::random()?, cookie, hosts, remote, tls })
+    pub fn new(token: Secret, hosts: Hosts, rules: Rules, log: Log) -> Result<Self, TokenError> {
+        let (cookie, session) = (format!("rtf-{}", hosts.port()), Secret::random()?);
+        let Rules { remote, tls } = rules;
+        let guesses = Guesses::default();
+        Ok(Self { token, session, cookie, hosts, remote, tls, guesses, log })
     }
 
     /// Whether reading needs the token.
@@ -61,13 +123,26 @@ impl Access {
         self.remote
     }
 
+    /// Whether this is the token. After a wrong one, the client waits; the log tells.
+    async fn is_token(&self, client: IpAddr, guess: &str) -> bool {
+        let Err(count) = self.guesses.attempt(client, || self.token.is(guess)).await else {
+            return true;
+        };
+        let wrong = WrongToken { client, count };
+        if wrong.is_reported() {
+            self.log.report(wrong);
+        }
+        false
+    }
+
     /// Who makes the request with these headers.
-    #[must_use]
-    pub fn who(&self, headers: &HeaderMap) -> Who {
+    async fn who(&self, client: IpAddr, headers: &HeaderMap) -> Who {
         let text = |value: &HeaderValue| value.to_str().ok().map(str::to_owned);
         let bearer = headers.get(header::AUTHORIZATION).and_then(text);
         let bearer = bearer.as_deref().and_then(|value| value.strip_prefix("Bearer "));
-        if bearer.is_some_and(|token| self.token.is(token.trim())) {
+        if let Some(token) = bearer
+            && self.is_token(client, token.trim()).await
+        {
             return Who::Token;
         }
         let cookies = headers.get_all(header::COOKIE).iter().filter_map(text);
@@ -82,9 +157,9 @@ impl Access {
     }
 
     /// The cookie of a session, for whoever has the token.
-    #[must_use]
-    pub fn open_session(&self, token: &str) -> Option<HeaderValue> {
-        self.token.is(token).then(|| self.cookie(self.session.text(), ""))
+    pub async fn open_session(&self, client: IpAddr, token: &str) -> Option<HeaderValue> {
+        let is_token = self.is_token(client, token).await;
+        is_token.then(|| self.cookie(self.session.text(), ""))
     }
 
     /// The cookie that ends a session.
@@ -100,11 +175,13 @@ impl Access {
         HeaderValue::from_str(&cookie).unwrap_or(HeaderValue::from_static("rtf="))
     }
 
-    fn check(&self, request: &Request) -> Result<(), Problem> {
-        let headers = request.headers();
-        let host = self.hosts.check(request.uri(), headers)?;
+    /// Finds out who makes the request, and whether that is allowed.
+    async fn check(&self, client: IpAddr, request: &mut Request) -> Result<(), Problem> {
+        let host = self.hosts.check(request.uri(), request.headers())?;
+        let headers = request.headers().clone();
+        let who = self.who(client, &headers).await;
+        request.extensions_mut().insert(who);
         let path = request.uri().path();
-        let who = self.who(headers);
         if !request.method().is_safe() {
             self.check_change(request, &host, who)?;
         }
@@ -172,17 +249,59 @@ fn is_known(method: &Method) -> bool {
     [Method::POST, Method::DELETE].contains(method)
 }
 
-/// Whether this path may lead to what was tested; the page itself holds none of it.
+/// Whether this path may lead to what was tested; the page itself and the API's
+/// description hold none of it. Whole routes are compared: parts of a path are the
+/// names of runs and files, which may be anything.
 fn is_data(path: &str) -> bool {
-    path.starts_with("/api/v1") && !path.ends_with("/openapi.json")
-        || path.starts_with("/status")
-        || path.starts_with("/update")
+    let below = |root: &str| path.strip_prefix(root).filter(|rest| !is_name(rest));
+    let in_api = below("/api").is_some();
+    let is_description = path.strip_prefix(ROOT) == Some("/openapi.json");
+    let is_viewer = path == "/api/docs";
+    in_api && !is_description && !is_viewer
+        || below("/status").is_some()
+        || below("/update").is_some()
+}
+
+/// Whether this goes on a name: `/api` is no part of `/apiary`.
+fn is_name(rest: &str) -> bool {
+    !rest.is_empty() && !rest.starts_with('/')
 }
 
 /// Lets through what is allowed.
-pub async fn guard(State(app): State<App>, request: Request<Body>, next: Next) -> Response {
-    match app.access.check(&request) {
+pub async fn guard(
+    State(app): State<App>,
+    ConnectInfo(Peer(client)): ConnectInfo<Peer>,
+    mut request: Request<Body>,
+    next: Next,
+) -> Response {
+    match app.access.check(client.ip(), &mut request).await {
         Ok(()) => next.run(request).await,
         Err(problem) => problem.into_response(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_whole_routes_need_no_token() {
+        for open in ["/", "/assets/x.js", "/api/docs", "/api/v1/openapi.json", "/apiary"] {
+            assert!(!is_data(open), "{open}");
+        }
+        for data in [
+            "/api",
+            "/api/v1",
+            "/api/v1/runs/own/files/attachments/openapi.json",
+            "/api/v1/runs/openapi.json",
+            "/api/v1//openapi.json",
+            "/api/v1/openapi.json/",
+            "/api/v2/anything",
+            "/status",
+            "/status/",
+            "/update",
+        ] {
+            assert!(is_data(data), "{data}");
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! A secret that is compared in constant time.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
@@ -10,6 +11,9 @@ const BYTES: usize = 32;
 
 /// The least number of characters of a token that somebody chose.
 const SHORTEST: usize = 16;
+
+/// How much of a token's file is read: no token is that long.
+const LONGEST: u64 = 64 * 1024;
 
 /// There is no token.
 #[derive(Debug, thiserror::Error)]
@@ -25,6 +29,12 @@ pub enum TokenError {
         /// Why.
         #[source]
         source: std::io::Error,
+    },
+    /// Others can read the token's file.
+    #[error("the token in `{}` can be read by other users", path.display())]
+    Open {
+        /// Which.
+        path: PathBuf,
     },
     /// What stands in the file is no token.
     #[error("the token in `{}` is not one line of at least {SHORTEST} visible ASCII characters", path.display())]
@@ -53,8 +63,13 @@ impl Secret {
     /// # Errors
     /// It cannot be read, or is too short for a token.
     pub fn read(path: &Path) -> Result<Self, TokenError> {
-        let text = std::fs::read_to_string(path);
-        let text = text.map_err(|source| TokenError::Read { path: path.to_owned(), source })?;
+        let failed = |source| TokenError::Read { path: path.to_owned(), source };
+        // The same open file is looked at and read.
+        let file = std::fs::File::open(path).map_err(failed)?;
+        if others_may_read(&file.metadata().map_err(failed)?) {
+            return Err(TokenError::Open { path: path.to_owned() });
+        }
+        let text = std::io::read_to_string(file.take(LONGEST)).map_err(failed)?;
         let token = text.strip_suffix('\n').unwrap_or(&text);
         let token = token.strip_suffix('\r').unwrap_or(token);
         if token.len() < SHORTEST || !token.bytes().all(|byte| byte.is_ascii_graphic()) {
@@ -77,6 +92,19 @@ impl Secret {
     }
 }
 
+/// Whether others than the file's owner can read it. A pipe, as of a shell's
+/// `<(…)`, is nobody else's.
+#[cfg(unix)]
+fn others_may_read(file: &std::fs::Metadata) -> bool {
+    use std::os::unix::fs::PermissionsExt;
+    file.is_file() && file.permissions().mode() & 0o077 != 0
+}
+
+#[cfg(not(unix))]
+fn others_may_read(_file: &std::fs::Metadata) -> bool {
+    false
+}
+
 impl std::fmt::Debug for Secret {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str("Secret(…)")
@@ -96,12 +124,32 @@ mod tests {
         assert_eq!(format!("{token:?}"), "Secret(…)");
     }
 
+    fn private(path: &Path, text: &str) {
+        use std::os::unix::fs::PermissionsExt;
+        std::fs::write(path, text).unwrap();
+        std::fs::set_permissions(path, PermissionsExt::from_mode(0o600)).unwrap();
+    }
+
+    #[test]
+    fn a_file_that_others_can_read_holds_no_secret() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("token");
+        private(&path, "0123456789abcdef");
+        assert!(Secret::read(&path).is_ok());
+        for mode in [0o640, 0o604, 0o660, 0o644] {
+            std::fs::set_permissions(&path, PermissionsExt::from_mode(mode)).unwrap();
+            let refused = Secret::read(&path);
+            assert!(matches!(refused, Err(TokenError::Open { .. })), "{mode:o}: {refused:?}");
+        }
+    }
+
     #[test]
     fn a_token_is_one_long_line() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("token");
         let read = |text: &str| {
-            std::fs::write(&path, text).unwrap();
+            private(&path, text);
             Secret::read(&path).map(|secret| secret.0).map_err(|error| error.to_string())
         };
         assert_eq!(read("0123456789abcdef\n").as_deref(), Ok("0123456789abcdef"));

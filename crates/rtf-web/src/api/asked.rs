@@ -34,12 +34,48 @@ impl<T: DeserializeOwned + Send, S: Send + Sync> FromRequestParts<S> for Asked<T
     }
 }
 
+/// A number of an event or a byte: one that every JSON reader takes exactly.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(try_from = "u64")]
+pub struct Number(pub u64);
+
+/// The largest [`Number`].
+const LARGEST_NUMBER: u64 = (1 << 53) - 1;
+
+impl TryFrom<u64> for Number {
+    type Error = String;
+
+    fn try_from(number: u64) -> Result<Self, String> {
+        match number {
+            0..=LARGEST_NUMBER => Ok(Self(number)),
+            _ => Err(format!("{number} is larger than {LARGEST_NUMBER}")),
+        }
+    }
+}
+
+/// The words of a list that is separated by commas.
+///
+/// # Errors
+/// One of them is not known.
+pub fn words(name: &str, list: &str, known: &[&str]) -> Result<Vec<String>, Problem> {
+    let word = |word: &str| match known.contains(&word) {
+        true => Ok(word.to_owned()),
+        false => {
+            let known: Vec<_> = known.iter().map(|known| format!("`{known}`")).collect();
+            let known = known.join(", ");
+            Err(Problem::bad_request(format!("`{name}` has `{word}`, expected some of {known}")))
+        }
+    };
+    list.split(',').map(word).collect()
+}
+
 /// A page of a list.
 #[derive(Clone, Copy, Debug, Default, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub struct Page {
     /// The `next` of the page before.
-    pub after: Option<u64>,
+    #[param(value_type = Option<u64>, maximum = 9_007_199_254_740_991_i64)]
+    pub after: Option<Number>,
     /// How many entries at most.
     #[param(minimum = 1, maximum = 1000, default = 100)]
     pub limit: Option<usize>,

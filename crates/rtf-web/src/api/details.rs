@@ -6,7 +6,7 @@ use rtf_model::{Event, EventKind, FixtureId, HookId, Source, TestId};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
-use super::asked::{Asked, At, Page};
+use super::asked::{Asked, At, Number, Page, words};
 use super::problems::Problems;
 use super::types::{
     Attached, Attachments, Measured, Measurements, Messages, OutputPage, Printed, Said, Stack,
@@ -41,10 +41,10 @@ impl Part {
         let limit = self.page.limit()?;
         let mut lines = self.lines(run)?;
         let (mut entries, mut bytes, mut last) = (Vec::new(), 0, 0);
-        let failed = |error| Problem::unreadable(std::path::Path::new("events.jsonl"), &error);
+        let failed = crate::runs::unreadable;
         while let Some(line) = lines.next().map_err(failed)? {
             let Ok(head) = serde_json::from_slice::<Head>(line.text) else { continue };
-            let wanted = self.page.after.is_none_or(|after| head.seq > after);
+            let wanted = self.page.after.is_none_or(|Number(after)| head.seq > after);
             if !wanted || *head.kind != *self.kind || head.detail_of() != Some(self.source) {
                 continue;
             }
@@ -64,7 +64,7 @@ impl Part {
     /// Goes through all entries, of all pages.
     pub(super) fn each(&self, run: &Run, mut take: impl FnMut(Event)) -> Result<(), Problem> {
         let mut lines = self.lines(run)?;
-        let failed = |error| Problem::unreadable(std::path::Path::new("events.jsonl"), &error);
+        let failed = crate::runs::unreadable;
         while let Some(line) = lines.next().map_err(failed)? {
             let Ok(head) = serde_json::from_slice::<Head>(line.text) else { continue };
             if *head.kind == *self.kind && head.detail_of() == Some(self.source) {
@@ -85,12 +85,12 @@ impl Part {
             let number = self.number;
             return Err(Problem::not_found(format!("there is no {what} {number} of {id}")));
         };
-        let known = self.page.after.map_or(0, |after| index.places().before(after));
+        let known = self.page.after.map_or(0, |Number(after)| index.places().before(after));
         let end = place.end.unwrap_or(index.offset());
         let start = place.start.max(known);
         drop(index);
         let lines = Lines::between(run.journal()?, start, end);
-        lines.map_err(|error| Problem::unreadable(&run.folder, &error))
+        lines.map_err(crate::runs::unreadable)
     }
 }
 
@@ -99,24 +99,30 @@ impl Part {
 #[into_params(parameter_in = Query)]
 pub struct Kinds {
     /// Only these kinds, separated by commas: `report`, `check`, `failure`, `error`.
+    #[param(pattern = "^(report|check|failure|error)(,(report|check|failure|error))*$")]
     kind: Option<String>,
     /// The `next` of the page before.
-    after: Option<u64>,
+    #[param(value_type = Option<u64>, maximum = 9_007_199_254_740_991_i64)]
+    after: Option<Number>,
     /// How many entries at most.
     #[param(minimum = 1, maximum = 1000, default = 100)]
     limit: Option<usize>,
 }
 
+/// The kinds of messages.
+const KINDS: [&str; 4] = ["report", "check", "failure", "error"];
+
 async fn messages(app: App, run: String, (source, number): (Source, u32), kinds: Kinds) -> Answer {
     let page = Page { after: kinds.after, limit: kinds.limit };
     let part = Part { source, number, kind: "message", page };
+    let wanted = kinds.kind.map(|list| words("kind", &list, &KINDS)).transpose()?;
     app.with_run(run, move |run| {
         let (messages, next) = part.read(run, |event| {
             let EventKind::Message { message, .. } = event.kind else { return None };
             let kind = serde_json::to_value(message.kind).ok()?;
-            let named = |list: &String| list.split(',').any(|name| Some(name) == kind.as_str());
+            let named = |list: &Vec<String>| list.iter().any(|name| Some(&**name) == kind.as_str());
             let said = Said { seq: event.seq, at: event.at.0, message };
-            kinds.kind.as_ref().is_none_or(named).then_some(said)
+            wanted.as_ref().is_none_or(named).then_some(said)
         })?;
         JsonText::of(&Messages { messages, next })
     })

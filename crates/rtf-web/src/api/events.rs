@@ -4,14 +4,14 @@ use std::convert::Infallible;
 use std::time::Duration;
 
 use axum::extract::State;
-use axum::http::{HeaderMap, StatusCode};
+use axum::http::{HeaderMap, HeaderValue, StatusCode};
 use axum::response::sse::{KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use futures_util::stream::{self, StreamExt};
 use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
 
-use super::asked::{Asked, At};
+use super::asked::{Asked, At, Number};
 use super::problems::Problems;
 use crate::app::App;
 use crate::feed::{Details, Feed};
@@ -25,10 +25,24 @@ const SILENCE: Duration = Duration::from_secs(1);
 #[into_params(parameter_in = Query)]
 pub struct Which {
     /// The number of the first event; the next one to come when it is left out.
-    from: Option<u64>,
+    #[param(value_type = Option<u64>, maximum = 9_007_199_254_740_991_i64)]
+    from: Option<Number>,
     /// Whose messages, measurements and outputs: `all`, `none`, or a list like
     /// `test:3,fixture:0,hook:1`.
+    #[param(
+        pattern = "^(all|none|(test|fixture|hook):[0-9]{1,9}(,(test|fixture|hook):[0-9]{1,9})*)$"
+    )]
     details: Option<String>,
+}
+
+/// Where a stream goes on that was cut.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Header)]
+#[expect(dead_code, reason = "read from the headers; this describes it")]
+pub struct Resumed {
+    /// The last event that was seen.
+    #[param(rename = "last-event-id", required = false, maximum = 9_007_199_254_740_991_i64)]
+    last_event_id: u64,
 }
 
 /// What is sent of a stream, again and again.
@@ -47,8 +61,7 @@ pub struct Sent {
 
 /// The events of a run as they happen.
 #[utoipa::path(get, path = "/runs/{run}/events", tag = "events",
-    params(("run" = String, Path), Which,
-        ("last-event-id" = Option<u64>, Header, description = "the last event that was seen")),
+    params(("run" = String, Path), Which, Resumed),
     responses(
         (status = 200, content_type = "text/event-stream", body = Sent),
         (status = 204, description = "the run is over, and nothing follows"),
@@ -60,8 +73,10 @@ pub async fn events(
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
     let details = Details::parse(which.details.as_deref().unwrap_or("all"))?;
-    let last = headers.get("last-event-id").and_then(|id| id.to_str().ok()?.parse::<u64>().ok());
-    let from = last.map(|last| last.saturating_add(1)).or(which.from);
+    let from = match headers.get("last-event-id").map(last_event) {
+        Some(last) => Some(last?.saturating_add(1)),
+        None => which.from.map(|Number(from)| from),
+    };
     let place = app.streams.clone().try_acquire_owned().map_err(|_| {
         Problem::new(StatusCode::SERVICE_UNAVAILABLE, "there are too many event streams")
     })?;
@@ -79,4 +94,12 @@ pub async fn events(
         event
     });
     Ok(Sse::new(events).keep_alive(KeepAlive::new().interval(SILENCE)).into_response())
+}
+
+/// The number in `Last-Event-ID`.
+fn last_event(value: &HeaderValue) -> Result<u64, Problem> {
+    let number = value.to_str().ok().and_then(|id| id.parse().ok());
+    let number = number.and_then(|number: u64| Number::try_from(number).ok());
+    let bad = || Problem::bad_request("`Last-Event-ID` is no number of an event");
+    number.map(|Number(last)| last).ok_or_else(bad)
 }

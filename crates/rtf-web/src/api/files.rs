@@ -4,7 +4,7 @@
 //! run scripts, and nothing outside of `attachments/` is ever opened.
 
 use std::fs::File;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
@@ -14,23 +14,33 @@ use super::ROOT;
 use super::asked::At;
 use super::problems::Problems;
 use crate::app::App;
+use crate::index::Description;
 use crate::problem::Problem;
+use crate::runs::Run;
 use crate::stream_file;
 
 /// The only folder of which files are served.
 const FOLDER: &str = "attachments";
 
-/// What a browser shows without running anything of it.
-const SHOWN: [&str; 9] = [
-    "image/png",
-    "image/jpeg",
-    "image/gif",
-    "image/webp",
-    "image/avif",
-    "image/bmp",
-    "text/plain",
-    "text/csv",
-    "application/json",
+/// What a browser shows or plays without running anything of it, and the usual
+/// extension of its files.
+const SHOWN: [(&str, &str); 16] = [
+    ("image/png", "png"),
+    ("image/jpeg", "jpg"),
+    ("image/gif", "gif"),
+    ("image/webp", "webp"),
+    ("image/avif", "avif"),
+    ("image/bmp", "bmp"),
+    ("text/plain", "txt"),
+    ("text/csv", "csv"),
+    ("application/json", "json"),
+    ("video/mp4", "mp4"),
+    ("video/webm", "webm"),
+    ("video/ogg", "ogv"),
+    ("audio/mpeg", "mp3"),
+    ("audio/ogg", "ogg"),
+    ("audio/wav", "wav"),
+    ("audio/webm", "weba"),
 ];
 
 /// Nothing of a file may do anything, whatever it is.
@@ -39,6 +49,11 @@ const POLICY: HeaderValue = HeaderValue::from_static("sandbox; default-src 'none
 /// The address of a file in the run's folder.
 pub fn url(run: &str, path: &str) -> String {
     format!("{ROOT}/runs/{}/files/{}", encoded(run), encoded(path))
+}
+
+/// As it may stand in a part of a path or a header: a `/` is encoded, too.
+fn encoded_part(text: &str) -> String {
+    encoded(text).replace('/', "%2F")
 }
 
 /// As it may stand in a path; a `/` stays one.
@@ -66,16 +81,17 @@ pub async fn file(
     At((run, path)): At<(String, String)>,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    let (file, length) = app
-        .with_run(run, {
-            let path = path.clone();
-            move |run| open(&run.folder, &path)
-        })
-        .await?;
+    let place = app.place_for_file()?;
+    let opened = app.with_run(run, move |run| {
+        let file = open(run, &path)?;
+        let said = run.read()?.attached().of(&path).cloned();
+        Ok((file, Kind::of(&path, said.as_ref())))
+    });
+    let ((file, length), kind) = opened.await?;
     let mut response = match range(&headers, length) {
-        Asked::All => stream_file::body(file, 0, length)?.into_response(),
+        Asked::All => stream_file::body(file, 0..length, place)?.into_response(),
         Asked::Part(start, end) => {
-            let mut part = stream_file::body(file, start, end - start)?.into_response();
+            let mut part = stream_file::body(file, start..end, place)?.into_response();
             *part.status_mut() = StatusCode::PARTIAL_CONTENT;
             let text = format!("bytes {start}-{}/{length}", end - 1);
             insert(part.headers_mut(), header::CONTENT_RANGE, &text);
@@ -93,22 +109,66 @@ pub async fn file(
     if whole {
         insert(headers, header::CONTENT_LENGTH, &length.to_string());
     }
-    describe(headers, &path);
+    kind.describe(headers);
     Ok(response)
 }
 
-fn describe(headers: &mut HeaderMap, path: &str) {
-    let kind = mime_guess::from_path(path).first_raw().unwrap_or_default();
-    let name = Path::new(path).file_name().unwrap_or_default().to_string_lossy();
-    let shown = SHOWN.contains(&kind);
-    let text = if kind.starts_with("text/") { "; charset=utf-8" } else { "" };
-    let kind = if shown { kind } else { "application/octet-stream" };
-    insert(headers, header::CONTENT_TYPE, &format!("{kind}{}", if shown { text } else { "" }));
-    let place = if shown { "inline" } else { "attachment" };
-    let disposition = format!("{place}; filename*=UTF-8''{}", encoded(&name));
-    insert(headers, header::CONTENT_DISPOSITION, &disposition);
-    headers.insert(header::CONTENT_SECURITY_POLICY, POLICY);
-    headers.insert(header::ACCEPT_RANGES, HeaderValue::from_static("bytes"));
+/// What a file is to a browser.
+#[derive(Debug, PartialEq, Eq)]
+struct Kind {
+    name: String,
+    media_type: String,
+    shown: bool,
+}
+
+impl Kind {
+    /// The test's media type counts; without one, the ending of the name tells it.
+    fn of(path: &str, said: Option<&Description>) -> Self {
+        let guessed = |name: &str| mime_guess::from_path(name).first_raw();
+        let given = said.map(|said| essence(&said.media_type)).filter(|kind| !kind.is_empty());
+        let named = || said.and_then(|said| guessed(&said.name)).map(str::to_owned);
+        let media_type = given.or_else(named);
+        let media_type = media_type.or_else(|| guessed(path).map(str::to_owned));
+        let media_type = media_type.unwrap_or_default();
+        let file = Path::new(path).file_name().unwrap_or_default().to_string_lossy();
+        let name = said.map_or(&*file, |said| &said.name);
+        let name = with_extension(name, path, &media_type);
+        let shown = SHOWN.iter().any(|(kind, _)| *kind == media_type);
+        Self { name, media_type, shown }
+    }
+
+    fn describe(&self, headers: &mut HeaderMap) {
+        let kind = if self.shown { &*self.media_type } else { "application/octet-stream" };
+        let text = if kind.starts_with("text/") { "; charset=utf-8" } else { "" };
+        insert(headers, header::CONTENT_TYPE, &format!("{kind}{text}"));
+        let place = if self.shown { "inline" } else { "attachment" };
+        let disposition = format!("{place}; filename*=UTF-8''{}", encoded_part(&self.name));
+        insert(headers, header::CONTENT_DISPOSITION, &disposition);
+        headers.insert(header::CONTENT_SECURITY_POLICY, POLICY);
+        headers.insert(header::ACCEPT_RANGES, HeaderValue::from_static("bytes"));
+    }
+}
+
+/// A media type without its parameters, under the name that browsers know.
+fn essence(media_type: &str) -> String {
+    let essence = media_type.split(';').next().unwrap_or_default().trim().to_ascii_lowercase();
+    match &*essence {
+        "image/jpg" => "image/jpeg".to_owned(),
+        "audio/x-wav" | "audio/wave" => "audio/wav".to_owned(),
+        "audio/mp3" => "audio/mpeg".to_owned(),
+        _ => essence,
+    }
+}
+
+/// The name with an extension: its own, that of the file, or that of the media type.
+fn with_extension(name: &str, path: &str, media_type: &str) -> String {
+    if Path::new(name).extension().is_some() {
+        return name.to_owned();
+    }
+    let own = Path::new(path).extension().map(|own| own.to_string_lossy().into_owned());
+    let usual = SHOWN.iter().find(|(kind, _)| *kind == media_type);
+    let extension = own.or_else(|| usual.map(|(_, extension)| (*extension).to_owned()));
+    extension.map_or_else(|| name.to_owned(), |extension| format!("{name}.{extension}"))
 }
 
 fn insert(headers: &mut HeaderMap, name: header::HeaderName, value: &str) {
@@ -118,25 +178,21 @@ fn insert(headers: &mut HeaderMap, name: header::HeaderName, value: &str) {
 }
 
 /// Opens a file below `attachments/`, and nothing else, whatever the path says.
-fn open(folder: &Path, path: &str) -> Result<(File, u64), Problem> {
+fn open(run: &Run, path: &str) -> Result<(File, u64), Problem> {
     let none = || Problem::not_found(format!("there is no file `{path}` in this run"));
-    let inside = place(folder, path).ok_or_else(none)?;
-    let file = File::open(&inside).map_err(|_| none())?;
+    if !is_attachment(path) {
+        return Err(none());
+    }
+    let file = run.open_file(Path::new(path)).map_err(|_| none())?;
     let metadata = file.metadata().map_err(|_| none())?;
     Ok((file, metadata.len()))
 }
 
-fn place(folder: &Path, path: &str) -> Option<PathBuf> {
+fn is_attachment(path: &str) -> bool {
     let parts: Vec<_> = path.split('/').collect();
     let odd = |part: &&str| part.is_empty() || *part == "." || *part == "..";
-    let allowed = parts.first() == Some(&FOLDER) && parts.len() > 1 && !parts.iter().any(odd);
-    if !allowed || path.contains(['\\', '\0']) {
-        return None;
-    }
-    // Links may lead anywhere: what counts is where they end.
-    let root = folder.join(FOLDER).canonicalize().ok()?;
-    let file = folder.join(path).canonicalize().ok()?;
-    (file.starts_with(&root) && file.is_file()).then_some(file)
+    let below = parts.first() == Some(&FOLDER) && parts.len() > 1 && !parts.iter().any(odd);
+    below && !path.contains(['\\', '\0'])
 }
 
 /// What a `Range` asks for.
@@ -166,12 +222,13 @@ fn range(headers: &HeaderMap, length: u64) -> Asked {
 #[utoipa::path(get, path = "/runs/{run}/journal", tag = "files", params(("run" = String, Path)),
     responses((status = 200, content_type = "application/x-ndjson", body = String), Problems))]
 pub async fn journal(State(app): State<App>, At(run): At<String>) -> Result<Response, Problem> {
+    let place = app.place_for_file()?;
     let opened = app.with_run(run, |run| {
         let length = run.read()?.offset();
         Ok((run.journal()?, length, run.name.clone()))
     });
     let (file, length, name) = opened.await?;
-    let mut response = stream_file::body(file, 0, length)?.into_response();
+    let mut response = stream_file::body(file, 0..length, place)?.into_response();
     let headers = response.headers_mut();
     insert(headers, header::CONTENT_TYPE, "application/x-ndjson");
     insert(headers, header::CONTENT_LENGTH, &length.to_string());
@@ -185,35 +242,49 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_files_below_attachments_have_a_place() {
-        let temp = tempfile::tempdir().unwrap();
-        let folder = temp.path().join("run");
-        std::fs::create_dir_all(folder.join("attachments/deep")).unwrap();
-        for file in ["attachments/a b.png", "attachments/deep/b.txt", "events.jsonl", "../secret"] {
-            std::fs::write(folder.join(file), "x").unwrap();
-        }
-        std::os::unix::fs::symlink("../../secret", folder.join("attachments/link")).unwrap();
-        std::os::unix::fs::symlink("deep/b.txt", folder.join("attachments/inside")).unwrap();
-        for good in ["attachments/a b.png", "attachments/deep/b.txt", "attachments/inside"] {
-            assert!(place(&folder, good).is_some(), "{good}");
+    fn only_paths_below_attachments_are_those_of_attachments() {
+        for good in ["attachments/a b.png", "attachments/deep/b.txt"] {
+            assert!(is_attachment(good), "{good}");
         }
         for bad in [
             "events.jsonl",
             "attachments",
             "attachments/",
-            "attachments/deep",
             "attachments/../events.jsonl",
-            "attachments/../../secret",
             "attachments/./a b.png",
             "attachments//a b.png",
             "attachments\\a b.png",
-            "attachments/link",
             "/etc/passwd",
             "../secret",
             "attachments/a b.png\0",
         ] {
-            assert_eq!(place(&folder, bad), None, "{bad}");
+            assert!(!is_attachment(bad), "{bad}");
         }
+    }
+
+    #[test]
+    fn the_media_type_of_the_test_counts_and_the_name_has_an_extension() {
+        let kind = |path: &str, name: &str, media_type: &str| {
+            let said = Description { name: name.into(), media_type: media_type.into() };
+            let Kind { name, media_type, shown } = Kind::of(path, Some(&said));
+            (name, media_type, shown)
+        };
+        for (path, name, said, wanted) in [
+            ("attachments/1-video", "video", "video/mp4", ("video.mp4", "video/mp4", true)),
+            (
+                "attachments/1-log.bin",
+                "log",
+                "text/plain; charset=x",
+                ("log.bin", "text/plain", true),
+            ),
+            ("attachments/1-forces", "forces.csv", "", ("forces.csv", "text/csv", true)),
+            ("attachments/1-a.png", "a.png", "text/html", ("a.png", "text/html", false)),
+            ("attachments/1-a", "a", "", ("a", "", false)),
+        ] {
+            let (shown_name, media_type, shown) = kind(path, name, said);
+            assert_eq!((&*shown_name, &*media_type, shown), wanted, "{path}");
+        }
+        assert_eq!(Kind::of("attachments/b.json", None).media_type, "application/json");
     }
 
     #[test]

@@ -12,7 +12,7 @@ use rtf_report::logs;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 
-use super::asked::{Asked, At};
+use super::asked::{Asked, At, Number};
 use super::problems::Problems;
 use crate::app::{App, JsonText};
 use crate::problem::Problem;
@@ -40,7 +40,8 @@ pub enum Kind {
 #[into_params(parameter_in = Query)]
 pub struct Which {
     /// The offset of its first byte. With this or `limit`, the answer is JSON.
-    offset: Option<u64>,
+    #[param(value_type = Option<u64>, maximum = 9_007_199_254_740_991_i64)]
+    offset: Option<Number>,
     /// How many bytes at most.
     #[param(minimum = 4, maximum = 1_048_576, default = 65536)]
     limit: Option<u64>,
@@ -89,14 +90,16 @@ pub async fn log(
     At((run, kind, id, number)): At<(String, Kind, u32, u32)>,
     Asked(which): Asked<Which>,
 ) -> Result<Response, Problem> {
+    let place = app.place_for_file();
     app.with_run(run, move |run| {
+        let place = place?;
         let path = path(run.read()?.record(), kind, id, number);
         let none = || Problem::not_found("there is no such log: nothing was printed");
-        let file = path.and_then(|path| File::open(run.folder.join(path)).ok()).ok_or_else(none)?;
+        let file = path.and_then(|path| run.open_file(&path).ok()).ok_or_else(none)?;
         let size = file.metadata().map_err(|_| none())?.len();
         if which.offset.is_none() && which.limit.is_none() {
             let kind = [(header::CONTENT_TYPE, "text/plain; charset=utf-8")];
-            return Ok((kind, stream_file::body(file, 0, size)?).into_response());
+            return Ok((kind, stream_file::body(file, 0..size, place)?).into_response());
         }
         let part = part(file, size, &which)?;
         Ok(JsonText::of(&part)?.into_response())
@@ -110,7 +113,7 @@ fn part(mut file: File, size: u64, which: &Which) -> Result<LogPart, Problem> {
         let expected = format!("expected a number from 4 to {LARGEST_PART}");
         return Err(Problem::bad_request(format!("`limit` is {limit}, {expected}")));
     }
-    let offset = which.offset.unwrap_or(0).min(size);
+    let offset = which.offset.map_or(0, |Number(offset)| offset).min(size);
     let failed = |error| Problem::unreadable(std::path::Path::new("log"), &error);
     file.seek(SeekFrom::Start(offset)).map_err(failed)?;
     let mut bytes = Vec::new();

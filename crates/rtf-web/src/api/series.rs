@@ -2,20 +2,55 @@
 //! are drawn. The samples themselves are in the journal.
 
 use axum::extract::State;
-use rtf_model::{Curve, EventKind, Series, Source, TestId};
+use rtf_model::{Curve, EventKind, Samples, Series, Source, TestId};
+use serde::Deserialize;
+use utoipa::IntoParams;
 
-use super::asked::{At, Page};
+use super::asked::{Asked, At, Page};
 use super::details::{Answer, Part, Path3};
 use super::problems::Problems;
 use super::types::{Signal, Signals};
 use crate::app::{App, JsonText};
+use crate::problem::Problem;
+
+/// Which part of the curves. The numbers are always those of the whole signal.
+#[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct Window {
+    /// Points from this time on, in seconds.
+    from: Option<f64>,
+    /// Points up to this time, in seconds.
+    to: Option<f64>,
+}
+
+impl Window {
+    fn check(self) -> Result<Self, Problem> {
+        let is_number = |time: Option<f64>| time.is_none_or(f64::is_finite);
+        if is_number(self.from) && is_number(self.to) {
+            return Ok(self);
+        }
+        Err(Problem::bad_request("`from` and `to` are no window: expected finite numbers"))
+    }
+
+    /// The samples in the window.
+    fn of(self, mut samples: Samples) -> Samples {
+        let (from, to) = (self.from.unwrap_or(f64::MIN), self.to.unwrap_or(f64::MAX));
+        samples.points.retain(|(at, _)| (from..=to).contains(at));
+        samples
+    }
+}
 
 /// The signals that an attempt of a test sampled.
 #[utoipa::path(get, path = "/runs/{run}/tests/{test}/attempts/{number}/series",
     tag = "details",
-    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path)),
+    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), Window),
     responses((status = 200, body = Signals), Problems))]
-pub async fn series(State(app): State<App>, At((run, test, number)): Path3) -> Answer {
+pub async fn series(
+    State(app): State<App>,
+    At((run, test, number)): Path3,
+    Asked(window): Asked<Window>,
+) -> Answer {
+    let window = window.check()?;
     let page = Page { after: None, limit: None };
     let part = Part { source: Source::Test(TestId(test)), number, kind: "sampled", page };
     app.with_run(run, move |run| {
@@ -25,12 +60,12 @@ pub async fn series(State(app): State<App>, At((run, test, number)): Path3) -> A
             match all.iter_mut().find(|(series, _)| series.name == samples.name) {
                 Some((series, curve)) => {
                     series.extend(&samples);
-                    curve.extend(&samples);
+                    curve.extend(&window.of(samples));
                 }
                 None => {
-                    let mut curve = Curve::default();
-                    curve.extend(&samples);
-                    all.push((Series::new(&samples), curve));
+                    let (series, mut curve) = (Series::new(&samples), Curve::default());
+                    curve.extend(&window.of(samples));
+                    all.push((series, curve));
                 }
             }
         })?;

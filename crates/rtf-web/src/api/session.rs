@@ -1,18 +1,19 @@
 //! What this server is, and sessions of browsers.
 
-use std::time::SystemTime;
+use std::time::{Instant, SystemTime};
 
-use axum::Json;
-use axum::extract::State;
 use axum::extract::rejection::JsonRejection;
-use axum::http::{HeaderMap, StatusCode, header};
+use axum::extract::{ConnectInfo, State};
+use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use axum::{Extension, Json};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::problems::{ChangeProblems, Problems};
 use crate::access::Who;
 use crate::app::{App, JsonText, blocking};
+use crate::connections::Peer;
 use crate::problem::Problem;
 
 /// What this server is.
@@ -38,14 +39,21 @@ pub struct Server {
     authorised: bool,
     /// Whether reading needs the token.
     token_to_read: bool,
+    /// For how many seconds the server goes on, when the run is over that it was
+    /// a part of.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lingers_s: Option<u64>,
     /// The server's time of day, in seconds since 1970.
     seconds: f64,
 }
 
 /// What this server is.
 #[utoipa::path(get, path = "", tag = "server", responses((status = 200, body = Server), Problems))]
-pub async fn server(State(app): State<App>, headers: HeaderMap) -> Result<JsonText, Problem> {
-    let authorised = app.access.who(&headers) != Who::Nobody;
+pub async fn server(
+    State(app): State<App>,
+    Extension(who): Extension<Who>,
+) -> Result<JsonText, Problem> {
+    let authorised = who != Who::Nobody;
     let token_to_read = app.access.token_to_read();
     blocking(move || {
         let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
@@ -61,6 +69,10 @@ pub async fn server(State(app): State<App>, headers: HeaderMap) -> Result<JsonTe
             rerun: !makes,
             authorised,
             token_to_read,
+            lingers_s: app
+                .lingers
+                .get()
+                .map(|end| end.saturating_duration_since(Instant::now()).as_secs()),
             seconds: now.as_secs_f64(),
         })
     })
@@ -79,10 +91,11 @@ pub struct Opening {
     responses((status = 204), ChangeProblems))]
 pub async fn open(
     State(app): State<App>,
+    ConnectInfo(Peer(client)): ConnectInfo<Peer>,
     body: Result<Json<Opening>, JsonRejection>,
 ) -> Result<Response, Problem> {
     let Json(Opening { token }) = body.map_err(rejected)?;
-    let Some(cookie) = app.access.open_session(&token) else {
+    let Some(cookie) = app.access.open_session(client.ip(), &token).await else {
         return Err(Problem::new(StatusCode::UNAUTHORIZED, "this is not the token")
             .hint("it is part of the address that was printed at the start"));
     };

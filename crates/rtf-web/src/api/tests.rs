@@ -1,11 +1,11 @@
 //! The tests of a run.
 
 use axum::extract::State;
-use rtf_model::{Record, TestRecord};
+use rtf_model::{Record, TestRecord, Verdict};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
-use super::asked::{Asked, At, limit};
+use super::asked::{Asked, At, limit, words};
 use super::parts::entry;
 use super::problems::Problems;
 use super::types::{Attempt, Test, TestDetail, TestPage, TestState};
@@ -20,17 +20,22 @@ const PAGE: usize = 100;
 #[into_params(parameter_in = Query)]
 pub struct Which {
     /// Tests of this suite.
+    #[param(maximum = 4_294_967_295_i64)]
     suite: Option<u32>,
     /// Tests in this state.
     #[param(inline)]
     state: Option<TestState>,
     /// Tests with one of these verdicts, separated by commas.
+    #[param(
+        pattern = "^(passed|failed|error|crashed|timed-out|collapsed|skipped|interrupted)(,(passed|failed|error|crashed|timed-out|collapsed|skipped|interrupted))*$"
+    )]
     verdict: Option<String>,
     /// Tests with this tag.
     tag: Option<String>,
     /// Tests with this in `suite/name`, whatever the case.
     q: Option<String>,
     /// The `next` of the page before.
+    #[param(maximum = 4_294_967_295_i64)]
     after: Option<u32>,
     /// How many at most.
     #[param(minimum = 1, maximum = 1000, default = 100)]
@@ -38,7 +43,7 @@ pub struct Which {
 }
 
 impl Which {
-    fn matches(&self, test: &Test, record: &Record) -> bool {
+    fn matches(&self, test: &Test, record: &Record, verdicts: Option<&[String]>) -> bool {
         let verdict = test.verdict.map(|verdict| verdict.as_str());
         let name = || {
             let suite = record.suites.get(test.suite as usize);
@@ -47,16 +52,20 @@ impl Which {
         };
         self.suite.is_none_or(|suite| suite == test.suite)
             && self.state.is_none_or(|state| state == test.state)
-            && self.verdict.as_ref().is_none_or(|list| list.split(',').any(|v| Some(v) == verdict))
+            && verdicts.is_none_or(|list| list.iter().any(|wanted| Some(&**wanted) == verdict))
             && self.tag.as_ref().is_none_or(|tag| test.tags.contains(tag))
             && self.q.as_ref().is_none_or(|q| name().contains(&q.to_lowercase()))
     }
 
     fn page(&self, record: &Record, over: bool) -> Result<TestPage, Problem> {
         let limit = limit(self.limit, PAGE)?;
+        let known = Verdict::ALL.map(|verdict| verdict.as_str());
+        let verdicts = self.verdict.as_ref().map(|list| words("verdict", list, &known));
+        let verdicts = verdicts.transpose()?;
+        let matches = |test: &Test| self.matches(test, record, verdicts.as_deref());
         let (mut page, mut more) = (TestPage { tests: Vec::new(), total: 0, next: None }, false);
         let view = |test: &TestRecord| Test::of(test, over);
-        for test in record.tests.iter().map(view).filter(|test| self.matches(test, record)) {
+        for test in record.tests.iter().map(view).filter(matches) {
             page.total += 1;
             let wanted = self.after.is_none_or(|after| test.id > after);
             match wanted && page.tests.len() < limit {
@@ -89,11 +98,13 @@ pub async fn test(
     State(app): State<App>,
     At((run, test)): At<(String, u32)>,
 ) -> Result<JsonText, Problem> {
+    let rerun = app.rerun;
     app.read(run, move |_, index| {
         let test = entry(&index.record().tests, test, "test")?;
         let attempts = test.attempts.iter().zip(1..).map(|(a, number)| Attempt::of(a, number));
         let attempts = attempts.collect();
-        Ok(TestDetail { test: Test::of(test, index.state().is_over()), attempts })
+        let command = rerun()(index.record(), test.plan.test);
+        Ok(TestDetail { test: Test::of(test, index.state().is_over()), attempts, command })
     })
     .await
 }

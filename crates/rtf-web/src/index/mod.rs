@@ -4,22 +4,20 @@
 //! The journal is read as far as it is written; [`Index::advance`] goes on from
 //! there. This is the same for a run that goes on and for a past one.
 
+mod attached;
 mod lines;
 mod parse;
 mod places;
 
 use std::fs::File;
 use std::io;
-use std::path::{Path, PathBuf};
 
-use rtf_model::{EVENTS_VERSION, Event, EventKind, Record, RunState};
-use rtf_report::journal::{self, Damage};
+use rtf_model::{Damage, Record, RunState};
+use rtf_report::journal::{self, JournalLines};
 
-pub use lines::{Head, Line, Lines};
+pub use attached::{Attached, Description};
+pub use lines::{Head, Lines};
 pub use places::Places;
-
-/// How many damages are kept; a file that is full of them has one story to tell.
-const DAMAGES_KEPT: usize = 100;
 
 /// How far a run is, in the words of the API.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, utoipa::ToSchema)]
@@ -50,33 +48,27 @@ impl State {
 /// What is held of one run.
 #[derive(Debug)]
 pub struct Index {
-    path: PathBuf,
     file: File,
     record: Record,
     places: Places,
-    damages: Vec<Damage>,
+    lines: JournalLines,
+    attached: Attached,
     /// Whole lines were read up to here.
     offset: u64,
-    line: u64,
-    next_seq: u64,
 }
 
 impl Index {
-    /// Opens a journal; nothing is read yet.
-    ///
-    /// # Errors
-    /// It cannot be opened.
-    pub fn open(path: &Path) -> io::Result<Self> {
-        Ok(Self {
-            path: path.to_owned(),
-            file: File::open(path)?,
+    /// The index of a journal; nothing is read yet.
+    #[must_use]
+    pub fn new(file: File) -> Self {
+        Self {
+            file,
             record: Record::lean(),
             places: Places::default(),
-            damages: Vec::new(),
+            lines: JournalLines::default(),
+            attached: Attached::default(),
             offset: 0,
-            line: 0,
-            next_seq: 0,
-        })
+        }
     }
 
     /// Reads what was written since.
@@ -84,46 +76,27 @@ impl Index {
     /// # Errors
     /// The journal cannot be read, or is of a newer version.
     pub fn advance(&mut self) -> io::Result<()> {
-        if self.file.metadata()?.len() == self.offset {
+        let length = self.file.metadata()?.len();
+        if length < self.offset {
+            self.lines.shrunk(&mut self.record);
+        }
+        if length <= self.offset {
             return Ok(());
         }
         let mut lines = Lines::between(self.file.try_clone()?, self.offset, u64::MAX)?;
         while let Some(line) = lines.next()? {
-            self.line += 1;
-            match parse::event(line.text) {
-                Ok(event) => self.event(&event, &line)?,
-                Err(error) => self.damage(format!("this is not an event: {error}")),
+            let taken = self.lines.take(line.text, parse::event, &mut self.record);
+            let newer = |error| io::Error::new(io::ErrorKind::InvalidData, error);
+            if let Some(event) = taken.map_err(newer)? {
+                self.places.take(&event, line.start, line.end);
+                self.attached.take(&event);
             }
             self.offset = line.end;
         }
+        if self.offset < length {
+            self.lines.torn(&mut self.record);
+        }
         Ok(())
-    }
-
-    fn event(&mut self, event: &Event, line: &Line<'_>) -> io::Result<()> {
-        if let EventKind::RunStarted(run) = &event.kind
-            && run.version > EVENTS_VERSION
-        {
-            let found = format!("the journal is of version {}", run.version);
-            let known = format!("this program reads up to version {EVENTS_VERSION}");
-            return Err(io::Error::new(io::ErrorKind::InvalidData, format!("{found}, {known}")));
-        }
-        if event.seq != self.next_seq {
-            let expected = self.next_seq;
-            self.damage(format!("event {} stands where event {expected} should be", event.seq));
-        }
-        if event.seq < self.next_seq {
-            return Ok(());
-        }
-        self.next_seq = event.seq.saturating_add(1);
-        self.record.apply(event);
-        self.places.take(event, line.start, line.end);
-        Ok(())
-    }
-
-    fn damage(&mut self, problem: String) {
-        if self.damages.len() < DAMAGES_KEPT {
-            self.damages.push(Damage { line: self.line, problem });
-        }
     }
 
     /// How far the run is.
@@ -150,16 +123,16 @@ impl Index {
         &self.places
     }
 
+    /// What tests said about their attachments.
+    #[must_use]
+    pub fn attached(&self) -> &Attached {
+        &self.attached
+    }
+
     /// What could not be read.
     #[must_use]
     pub fn damages(&self) -> &[Damage] {
-        &self.damages
-    }
-
-    /// The journal's path.
-    #[must_use]
-    pub fn path(&self) -> &Path {
-        &self.path
+        &self.record.damages
     }
 
     /// How many bytes were read: all whole lines.
@@ -171,6 +144,6 @@ impl Index {
     /// The number of the next event.
     #[must_use]
     pub fn next_seq(&self) -> u64 {
-        self.next_seq
+        self.lines.next_seq()
     }
 }

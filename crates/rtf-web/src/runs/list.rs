@@ -6,12 +6,23 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::{Run, Runs};
+use super::{Run, RunFilter, Runs};
 use crate::api::RunInfo;
 use crate::problem::Problem;
 
 /// How long an answer may wait for journals that were never read.
 const BUDGET: Duration = Duration::from_millis(500);
+
+/// A page of the list.
+#[derive(Debug, Default)]
+pub struct Listing {
+    /// The runs, the newest first.
+    pub runs: Vec<RunInfo>,
+    /// The name with which it goes on.
+    pub next: Option<String>,
+    /// How many runs were left out because nobody knows yet whether they match.
+    pub unread: usize,
+}
 
 /// What is known of runs that are over.
 #[derive(Debug, Default)]
@@ -34,32 +45,42 @@ impl Listed {
 }
 
 impl Runs {
-    /// A page of the list, the newest first, and the name with which it goes on.
+    /// A page of the list, the newest first.
     #[must_use]
     pub fn list(
         self: &Arc<Self>,
         before: Option<&str>,
         limit: usize,
-    ) -> (Vec<RunInfo>, Option<String>) {
+        filter: &RunFilter,
+    ) -> Listing {
         let mut names = self.names();
         names.retain(|name| before.is_none_or(|before| name.as_str() < before));
-        let next = names.get(limit).and_then(|_| names.get(limit - 1)).cloned();
-        names.truncate(limit);
         let until = Instant::now() + BUDGET;
-        let mut unread = Vec::new();
-        let infos = names.iter().map(|name| match self.listed.get(name) {
-            Some(info) => info,
-            None if Instant::now() < until => {
-                self.info(name).unwrap_or_else(|problem| RunInfo::unreadable(name, &problem))
+        let (mut listing, mut unread) = (Listing::default(), Vec::new());
+        for name in names {
+            if listing.runs.len() >= limit {
+                listing.next = listing.runs.last().map(|run| run.run.clone());
+                break;
             }
-            None => {
-                unread.push(name.clone());
-                RunInfo::unread(name)
+            match self.listed.get(&name) {
+                Some(info) => listing.runs.extend(Some(info).filter(|run| filter.matches(run))),
+                None if Instant::now() < until => {
+                    let info = self.info(&name);
+                    let info = info.unwrap_or_else(|problem| RunInfo::unreadable(&name, &problem));
+                    listing.runs.extend(Some(info).filter(|run| filter.matches(run)));
+                }
+                None => {
+                    if filter.is_empty() {
+                        listing.runs.push(RunInfo::unread(&name));
+                    } else {
+                        listing.unread += 1;
+                    }
+                    unread.push(name);
+                }
             }
-        });
-        let infos = infos.collect();
+        }
         self.read_on(unread);
-        (infos, next)
+        listing
     }
 
     fn info(&self, name: &str) -> Result<RunInfo, Problem> {

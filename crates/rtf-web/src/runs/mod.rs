@@ -1,15 +1,21 @@
 //! The runs of a results folder: finding one by its name, and keeping the
 //! indexes of those that are looked at.
 
+mod filter;
 mod list;
 
 use std::fs::{self, File};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use rtf_report::journal;
 use rtf_report::run_folder::{JOURNAL, LATEST};
 
+pub use filter::{RunFilter, RunResult};
+pub use list::Listing;
+
+use crate::below;
 use crate::index::Index;
 use crate::problem::Problem;
 
@@ -24,17 +30,16 @@ const CURRENT_AMONG: usize = 20;
 pub struct Run {
     /// Its name.
     pub name: String,
-    /// Its folder.
-    pub folder: PathBuf,
+    /// The results folder.
+    results: PathBuf,
     index: Mutex<Index>,
 }
 
 impl Run {
     fn open(results: &Path, name: &str) -> Result<Self, Problem> {
-        let folder = results.join(name);
-        let path = folder.join(JOURNAL);
-        let index = Index::open(&path).map_err(|error| Problem::unreadable(&path, &error))?;
-        Ok(Self { name: name.to_owned(), folder, index: Mutex::new(index) })
+        let journal = below::open(results, &journal_of(name)).map_err(unreadable)?;
+        let index = Mutex::new(Index::new(journal));
+        Ok(Self { name: name.to_owned(), results: results.to_owned(), index })
     }
 
     /// Its index, read as far as the journal is written. Takes as long as that
@@ -45,7 +50,7 @@ impl Run {
     pub fn read(&self) -> Result<MutexGuard<'_, Index>, Problem> {
         let mut index = self.index.lock().unwrap_or_else(PoisonError::into_inner);
         let advanced = index.advance();
-        advanced.map_err(|error| Problem::unreadable(index.path(), &error))?;
+        advanced.map_err(unreadable)?;
         Ok(index)
     }
 
@@ -54,8 +59,15 @@ impl Run {
     /// # Errors
     /// It cannot be opened.
     pub fn journal(&self) -> Result<File, Problem> {
-        let path = self.folder.join(JOURNAL);
-        File::open(&path).map_err(|error| Problem::unreadable(&path, &error))
+        self.open_file(Path::new(JOURNAL)).map_err(unreadable)
+    }
+
+    /// Opens a regular file in the run's folder; no part of the path may be a link.
+    ///
+    /// # Errors
+    /// There is no such file.
+    pub fn open_file(&self, path: &Path) -> io::Result<File> {
+        below::open(&self.results, &Path::new(&self.name).join(path))
     }
 }
 
@@ -86,7 +98,7 @@ impl Runs {
         }
         let newest = self.names().into_iter().take(CURRENT_AMONG);
         newest.into_iter().find(|name| {
-            let journal = File::open(self.results.join(name).join(JOURNAL));
+            let journal = below::open(&self.results, &journal_of(name));
             journal.is_ok_and(|journal| journal::is_written(&journal))
         })
     }
@@ -113,7 +125,7 @@ impl Runs {
             open.push(run.clone());
             return Ok(run);
         }
-        if !is_plain(&name) || !self.results.join(&name).join(JOURNAL).is_file() {
+        if !self.is_run(&name) {
             return Err(Problem::not_found(format!("there is no run `{asked}`")));
         }
         let run = Arc::new(Run::open(&self.results, &name)?);
@@ -130,24 +142,32 @@ impl Runs {
     fn latest(&self) -> Option<String> {
         let linked = fs::read_link(self.results.join(LATEST)).ok();
         let linked = linked.and_then(|path| path.to_str().map(str::to_owned));
-        let is_run = |name: &String| self.results.join(name).join(JOURNAL).is_file();
-        linked
-            .filter(|name| is_plain(name))
-            .filter(is_run)
-            .or_else(|| self.names().into_iter().next())
+        linked.filter(|name| self.is_run(name)).or_else(|| self.names().into_iter().next())
+    }
+
+    /// Whether there is a run of this name.
+    fn is_run(&self, name: &str) -> bool {
+        name != LATEST && is_plain(name) && below::is_file(&self.results, &journal_of(name))
     }
 
     /// The names of all runs, the newest first.
     fn names(&self) -> Vec<String> {
         let Ok(entries) = fs::read_dir(&self.results) else { return Vec::new() };
         let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-        let is_run = |name: &String| {
-            name != LATEST && is_plain(name) && self.results.join(name).join(JOURNAL).is_file()
-        };
-        let mut names: Vec<_> = names.filter(is_run).collect();
+        let mut names: Vec<_> = names.filter(|name| self.is_run(name)).collect();
         names.sort_unstable_by(|a, b| b.cmp(a));
         names
     }
+}
+
+/// A run's journal, below the results folder.
+fn journal_of(name: &str) -> PathBuf {
+    Path::new(name).join(JOURNAL)
+}
+
+/// A journal that cannot be read.
+pub fn unreadable(error: io::Error) -> Problem {
+    Problem::unreadable(Path::new(JOURNAL), &error)
 }
 
 /// Whether this is the name of a folder in the results folder, and of none elsewhere.

@@ -1,5 +1,8 @@
 //! Attached files, logs, and what lies beside them.
 
+use std::os::unix::fs::symlink;
+use std::path::Path;
+
 use rtf_model::Verdict;
 
 use crate::client::ask;
@@ -41,6 +44,111 @@ fn attachments_are_shown_when_they_cannot_run_anything() {
     );
     assert_eq!((part.status, part.body.as_slice()), (206, &b"PN"[..]));
     assert_eq!(part.header("content-range"), Some("bytes 1-2/4"));
+}
+
+#[test]
+fn attachments_keep_the_type_and_the_name_that_the_test_gave() {
+    let (world, mut run) = World::new();
+    run.plan("arm", &["first"]);
+    run.start(TEST);
+    for (file, name, media_type, kind, saved) in [
+        (
+            "1-a",
+            "forces",
+            "text/csv",
+            "text/csv; charset=utf-8",
+            "inline; filename*=UTF-8''forces.csv",
+        ),
+        (
+            "2-a",
+            "state",
+            "application/json",
+            "application/json",
+            "inline; filename*=UTF-8''state.json",
+        ),
+        ("3-a.dat", "clip", "video/mp4", "video/mp4", "inline; filename*=UTF-8''clip.dat"),
+        ("4-a", "sound.ogg", "audio/ogg", "audio/ogg", "inline; filename*=UTF-8''sound.ogg"),
+        (
+            "5-a.png",
+            "a/../b.png",
+            "text/html",
+            "application/octet-stream",
+            "attachment; filename*=UTF-8''a%2F..%2Fb.png",
+        ),
+        (
+            "6-a",
+            "x",
+            "bad\r\nX-Evil: 1",
+            "application/octet-stream",
+            "attachment; filename*=UTF-8''x",
+        ),
+    ] {
+        run.attach_as(file, name, media_type, b"0123456789");
+        run.flush();
+        let answer = world.get(&format!("{FILES}/attachments/{file}"));
+        assert_eq!(answer.header("content-type"), Some(kind), "{file}");
+        assert_eq!(answer.header("content-disposition"), Some(saved), "{file}");
+        assert_eq!(answer.header("x-evil"), None);
+    }
+}
+
+/// A test may plant whatever it likes in its run's folder.
+#[test]
+fn planted_links_and_pipes_lead_nowhere_and_hang_nothing() {
+    let (world, mut run) = World::new();
+    let secret = world.temp.path().join("secret");
+    std::fs::create_dir(&secret).unwrap();
+    std::fs::write(secret.join("x.log"), "secret").unwrap();
+    std::fs::write(secret.join("events.jsonl"), "{}\n").unwrap();
+    run.plan("arm", &["first"]);
+    run.start(TEST);
+    run.print("printed");
+    run.attach("plot.png", b"png");
+    run.attach("pipe", b"");
+    run.flush();
+    let log = "/api/v1/runs/own/logs/tests/0/1";
+    assert_eq!(world.get(log).text(), "printed");
+    let attachments = run.folder.join("attachments");
+    replace_by_fifo(&attachments.join("pipe"));
+    for _ in 0..8 {
+        assert_eq!(world.get(&format!("{FILES}/attachments/pipe")).status, 404);
+    }
+    let logged = std::fs::read_dir(run.folder.join("logs")).unwrap().next().unwrap().unwrap();
+    std::fs::remove_file(logged.path()).unwrap();
+    symlink(secret.join("x.log"), logged.path()).unwrap();
+    assert_eq!(world.get(log).status, 404, "a log that is a link");
+    std::fs::rename(&attachments, run.folder.join("kept")).unwrap();
+    symlink(&secret, &attachments).unwrap();
+    assert_eq!(world.get(&format!("{FILES}/attachments/x.log")).status, 404, "a linked folder");
+    for (name, plant) in [
+        ("linked", &(|path: &Path| symlink(&secret, path).unwrap()) as &dyn Fn(&Path)),
+        ("journal", &|path| {
+            std::fs::create_dir(path).unwrap();
+            symlink(secret.join("events.jsonl"), path.join("events.jsonl")).unwrap();
+        }),
+        ("pipe", &|path| {
+            std::fs::create_dir(path).unwrap();
+            replace_by_fifo(&path.join("events.jsonl"));
+        }),
+    ] {
+        plant(&world.temp.path().join(name));
+        for what in ["", "/snapshot", "/journal", "/events", "/files/x.log"] {
+            assert_eq!(
+                world.get(&format!("/api/v1/runs/{name}{what}")).status,
+                404,
+                "{name}{what}"
+            );
+        }
+    }
+    let runs = world.get("/api/v1/runs").json();
+    let names: Vec<_> = runs["runs"].as_array().unwrap().iter().map(|run| &run["run"]).collect();
+    assert_eq!(names, ["secret", "own"], "nothing else is a run");
+}
+
+fn replace_by_fifo(path: &Path) {
+    drop(std::fs::remove_file(path));
+    let made = std::process::Command::new("mkfifo").arg(path).status().unwrap();
+    assert!(made.success());
 }
 
 #[test]

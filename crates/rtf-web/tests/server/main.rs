@@ -3,7 +3,9 @@
 #![expect(clippy::expect_used, clippy::unwrap_used, reason = "what cannot go on fails its test")]
 
 mod client;
+mod damaged;
 mod files;
+mod limits;
 mod reading;
 mod security;
 mod streams;

@@ -4,6 +4,7 @@
 use rtf_model::{MessageKind, TestId, Verdict};
 use serde_json::{Value, json};
 
+use crate::client::ask;
 use crate::world::{TEST, World, Writer};
 
 /// Text that breaks whoever does not escape.
@@ -31,6 +32,8 @@ fn a_run_is_seen_as_it_goes_on() {
     let counts = json!({"messages": 1, "failures": 1, "measurements": 2, "violations": 1,
         "attachments": 0, "output_bytes": 4});
     assert_eq!(test["counts"], counts);
+    let detail = world.get("/api/v1/runs/current/tests/1").json();
+    assert_eq!(detail["command"], "rtf run suite.xml::1", "how it is run again");
     run.finish(TEST, Verdict::Failed);
     run.start(TestId(1));
     run.finish(TestId(1), Verdict::Passed);
@@ -40,6 +43,44 @@ fn a_run_is_seen_as_it_goes_on() {
     assert_eq!(info["totals"]["verdicts"]["failed"], 1);
     let tests = world.get("/api/v1/runs/latest/tests?verdict=failed,crashed&q=FIR").json();
     assert_eq!((&tests["total"], &tests["tests"][0]["name"]), (&json!(1), &json!("first")));
+}
+
+#[test]
+fn a_query_that_makes_no_sense_is_a_bad_request() {
+    let (world, mut run) = World::new();
+    run.plan("arm", &["first"]);
+    run.start(TEST);
+    run.flush();
+    let attempt = "/api/v1/runs/own/tests/0/attempts/1";
+    for query in [
+        "/api/v1/runs/own/tests?verdict=green",
+        "/api/v1/runs/own/tests?verdict=",
+        "/api/v1/runs/own/tests?verdict=passed,nonsense",
+        "/api/v1/runs/own/tests?state=gone",
+        "/api/v1/runs/own/tests?suite=4294967296",
+        "/api/v1/runs/own/tests?suite=-1",
+        "/api/v1/runs/own/tests?after=9223372036854775808",
+        &format!("{attempt}/messages?kind=nonsense"),
+        &format!("{attempt}/messages?after=9007199254740992"),
+        &format!("{attempt}/output?after=18446744073709551616"),
+        "/api/v1/runs/own/events?from=9007199254740992",
+        "/api/v1/runs/own/events?details=",
+        "/api/v1/runs/own/events?details=test:",
+        "/api/v1/runs/own/events?details=test:-1",
+        "/api/v1/runs/own/events?details=test:1,,",
+    ] {
+        let answer = world.get(query);
+        assert_eq!(answer.status, 400, "{query}");
+        assert!(answer.json()["detail"].is_string(), "{query}: {}", answer.text());
+    }
+    for last in ["x", "-1", "9007199254740992", ""] {
+        let line = format!("Last-Event-ID: {last}");
+        let answer = ask(world.address(), "GET /api/v1/runs/own/events", &[&line], "");
+        assert_eq!(answer.status, 400, "{last}");
+    }
+    let bad = world.get("/api/v1/runs/own/tests?verdict=passed,green").json();
+    let detail = bad["detail"].as_str().unwrap();
+    assert!(detail.starts_with("`verdict` has `green`, expected some of `passed`, "), "{detail}");
 }
 
 #[test]
@@ -58,8 +99,47 @@ fn a_signal_is_seen_in_numbers_and_as_a_curve() {
         "times": [0.0, 0.5, 1.0], "values": [0.25, 1.0, 1.75],
     }]});
     assert_eq!(seen, expected);
+    let path = "/api/v1/runs/own/tests/0/attempts/1/series";
+    let part = world.get(&format!("{path}?from=0.4&to=0.6")).json();
+    let part = &part["series"][0];
+    assert_eq!((&part["times"], &part["count"]), (&json!([0.5]), &json!(3)));
+    for bad in ["from=x", "from=NaN", "to=inf"] {
+        assert_eq!(world.get(&format!("{path}?{bad}")).status, 400, "{bad}");
+    }
     let none = world.get("/api/v1/runs/own/tests/0/attempts/2/series");
     assert_eq!(none.json()["status"], 404);
+}
+
+/// The curve of a million samples has a thousand points; that of a part has them all.
+#[test]
+fn a_part_of_a_long_signal_comes_in_full_resolution() {
+    let (world, mut run) = World::new();
+    run.plan("arm", &["first"]);
+    run.start(TEST);
+    let values: Vec<f64> = (0..20_000).map(|n| f64::from(n % 7)).collect();
+    run.sample(0.0, &values);
+    run.flush();
+    let path = "/api/v1/runs/own/tests/0/attempts/1/series";
+    let whole = world.get(path).json();
+    assert!(whole["series"][0]["times"].as_array().unwrap().len() <= 1024);
+    let part = world.get(&format!("{path}?from=1000&to=1100")).json();
+    let times = part["series"][0]["times"].as_array().unwrap();
+    assert_eq!((times.len(), &times[0]), (201, &json!(1000.0)));
+    assert_eq!(part["series"][0]["count"], 20_000);
+}
+
+#[test]
+fn values_near_the_end_of_their_range_have_a_mean() {
+    let (world, mut run) = World::new();
+    run.plan("arm", &["first"]);
+    run.start(TEST);
+    run.sample(0.0, &[1e308, -1e308, 1e308, -1e308]);
+    run.flush();
+    let seen = world.get("/api/v1/runs/own/tests/0/attempts/1/series").json();
+    let signal = &seen["series"][0];
+    let mean = signal["mean"].as_f64().expect("a number");
+    assert!(mean.abs() < 1e300, "{signal}");
+    assert_eq!((&signal["min"], &signal["max"]), (&json!(-1e308), &json!(1e308)));
 }
 
 #[test]
@@ -125,6 +205,66 @@ fn whatever_a_test_says_it_stays_text() {
     let Value::String(html) = update.json() else { panic!("a string") };
     assert_eq!(update.text(), format!("\"{html}\""), "the same for those who take it as HTML");
     assert!(html.contains("[ERROR]") && !html.contains("<script"), "{html}");
+}
+
+#[test]
+fn runs_are_found_by_what_they_were() {
+    let (world, mut run) = World::new();
+    run.plan("arm", &["only"]);
+    run.flush();
+    for (name, suite, branch, robot, verdict) in [
+        ("2026-01-01", "walk", "main", "red", Verdict::Passed),
+        ("2026-01-02", "walk", "main", "blue", Verdict::Failed),
+        ("2026-01-03", "grasp", "new/hand", "red", Verdict::Passed),
+    ] {
+        let mut past = Writer::new(world.temp.path(), name);
+        past.plan_of(suite, &["only"], &|started| {
+            let commit = format!("{name:0<40}").replace('-', "a");
+            let revision = rtf_model::Revision { commit, branch: Some(branch.to_owned()) };
+            started.started_at = format!("{name}T06:30:12+01:00");
+            started.manifest.revision = Some(revision);
+            started.manifest.profile = Some(format!("{branch} profile"));
+            started.manifest.set = vec![format!("robot={robot}"), "speed=3".to_owned()];
+        });
+        past.start(TEST);
+        past.finish(TEST, verdict);
+        past.end();
+    }
+    let found = |query: &str| {
+        let page = world.get(&format!("/api/v1/runs?{query}")).json();
+        let runs = page["runs"].as_array().unwrap_or_else(|| panic!("{query}: {page}"));
+        let days = runs.iter().map(|run| run["run"].as_str().unwrap().replace("2026-01-0", ""));
+        days.collect::<Vec<_>>().join(" ")
+    };
+    for (query, wanted) in [
+        ("", "own 3 2 1"),
+        ("result=running", "own"),
+        ("result=green", "3 1"),
+        ("result=red", "2"),
+        ("result=damaged", ""),
+        ("suite=walk", "2 1"),
+        ("branch=new%2Fhand", "3"),
+        ("commit=2026A01a02", "2"),
+        ("robot=red", "3 1"),
+        ("profile=main%20profile", "2 1"),
+        ("since=2026-01-02&until=2026-01-03", "3 2"),
+        ("q=MAIN%20blue", "2"),
+        ("q=main&result=green&robot=red", "1"),
+        ("suite=walk&limit=1", "2"),
+        ("suite=nothing", ""),
+    ] {
+        assert_eq!(found(query), wanted, "{query}");
+    }
+    let page = world.get("/api/v1/runs?suite=walk&limit=1").json();
+    assert_eq!(page["next"], "2026-01-02", "the next page begins after what was found");
+    let info = &page["runs"][0];
+    assert_eq!(
+        (&info["suite_names"], &info["robots"], &info["revision"]["branch"]),
+        (&json!(["walk"]), &json!(["blue"]), &json!("main"))
+    );
+    for bad in ["result=good", "commit=xyz", "commit=ab", "since=yesterday", "until=2026-1-1"] {
+        assert_eq!(world.get(&format!("/api/v1/runs?{bad}")).status, 400, "{bad}");
+    }
 }
 
 #[test]

@@ -44,6 +44,27 @@ fn control_needs_the_token() {
 }
 
 #[test]
+fn wrong_tokens_are_slowed_down_and_reported() {
+    let (world, _run) = running();
+    let start = std::time::Instant::now();
+    for guess in 0..5 {
+        let guess = format!("Authorization: Bearer guess{guess}");
+        assert_eq!(world.post(STOP, &[&guess], "").status, 401);
+    }
+    let body = "{\"token\":\"guess\"}";
+    let session = world.post("/api/v1/session", &["Content-Type: application/json"], body);
+    assert_eq!(session.status, 401);
+    assert!(start.elapsed().as_millis() >= 125 + 250 + 500 + 1000 + 1000, "{:?}", start.elapsed());
+    // A cookie of another server at the same port is no guess.
+    let cookie = format!("Cookie: rtf-{}=old", world.address().port());
+    let _ = ask(world.address(), "GET /api/v1", &[&cookie], "");
+    let bearer = format!("Authorization: Bearer {}", world.token());
+    assert_eq!(world.post(STOP, &[&bearer], "").status, 202, "the right one is taken");
+    assert_eq!(world.wrong_tokens(3), [1, 2, 4]);
+    assert_eq!(world.asked(), ["stop"]);
+}
+
+#[test]
 fn a_browser_controls_from_its_own_page_only() {
     let (world, _run) = running();
     let (cookie, host) = (session(&world), world.address());
@@ -136,6 +157,13 @@ fn a_token_may_come_from_a_file() {
     let temp = tempfile::tempdir().unwrap();
     let path = temp.path().join("token");
     std::fs::write(&path, "my-own-token-of-some-length\n").unwrap();
+    let mode = std::os::unix::fs::PermissionsExt::from_mode;
+    std::fs::set_permissions(&path, mode(0o640)).unwrap();
+    let open = rtf_web::Settings { token_file: Some(path.clone()), ..settings() };
+    let refused = Bound::new(&open).expect_err("others can read it");
+    assert!(refused.to_string().contains("can be read by other users"), "{refused}");
+    assert!(refused.hint().is_some_and(|hint| hint.contains("chmod 600")));
+    std::fs::set_permissions(&path, mode(0o600)).unwrap();
     let (world, mut run) = World::with(&rtf_web::Settings { token_file: Some(path), ..settings() });
     run.plan("arm", &["first"]);
     run.flush();

@@ -52,6 +52,16 @@ fn from_beyond_this_machine_reading_needs_the_token_too() {
         assert_eq!(ask(&world, &config, &first, "").status, 401, "{path}");
         assert_eq!(ask(&world, &config, &first, &bearer).status, 200, "{path}");
     }
+    for path in [
+        "/api/v1/runs/own/files/attachments/openapi.json",
+        "/api/v1/runs/openapi.json",
+        "/api/v1/nowhere/openapi.json",
+    ] {
+        let first = format!("GET {path}");
+        assert_eq!(ask(&world, &config, &first, "").status, 401, "{path}");
+        assert_eq!(ask(&world, &config, &first, &bearer).status, 404, "{path}");
+    }
+    assert_eq!(ask(&world, &config, "GET /api/v1/openapi.json", "").status, 200);
     let server = ask(&world, &config, "GET /api/v1", "").json();
     assert_eq!((&server["token_to_read"], server.get("current")), (&true.into(), None));
     let page = ask(&world, &config, "GET /", "");

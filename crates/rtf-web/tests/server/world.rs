@@ -1,6 +1,6 @@
 //! A results folder, a run that is being written, and a server over it.
 
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
@@ -10,17 +10,22 @@ use rtf_model::{
     Verdict,
 };
 use rtf_report::Reporter;
+use rtf_report::console::Rerun;
 use rtf_report::journal::Journal;
 use rtf_report::logs::Logs;
-use rtf_web::{Bound, Control, Live, NotStarted, Past, Role, Served, Server, Settings, Starter};
+use rtf_web::{
+    Bound, Control, Limits, Live, NotStarted, Past, Role, Served, Server, Settings, Starter,
+    WrongToken,
+};
 
 use crate::client::{self, Answer};
 
 pub const TEST: TestId = TestId(0);
 
 /// What the control was asked for.
+/// And which wrong tokens were reported.
 #[derive(Debug, Default)]
-pub struct Asked(pub Mutex<Vec<String>>);
+pub struct Asked(pub Mutex<Vec<String>>, pub Mutex<Vec<(IpAddr, u64)>>);
 
 impl Control for Asked {
     fn stop_run(&self) {
@@ -95,7 +100,12 @@ impl Writer {
 
     /// The plan: one suite, and tests of these names.
     pub fn plan(&mut self, suite: &str, tests: &[&str]) {
-        self.emit(EventKind::RunStarted(RunStarted {
+        self.plan_of(suite, tests, &|_| ());
+    }
+
+    /// The plan of a run about which more is known.
+    pub fn plan_of(&mut self, suite: &str, tests: &[&str], more: &dyn Fn(&mut RunStarted)) {
+        let mut started = RunStarted {
             version: 1,
             run: self.folder.file_name().unwrap().to_string_lossy().into_owned(),
             rtf: "0.1.0".to_owned(),
@@ -105,7 +115,9 @@ impl Writer {
             suites: 1,
             tests: u32::try_from(tests.len()).unwrap(),
             manifest: Default::default(),
-        }));
+        };
+        more(&mut started);
+        self.emit(EventKind::RunStarted(started));
         self.emit(EventKind::SuitePlanned(SuitePlanned {
             suite: SuiteId(0),
             name: suite.to_owned(),
@@ -165,10 +177,15 @@ impl Writer {
 
     /// Attaches a file that holds this.
     pub fn attach(&mut self, name: &str, what: &[u8]) {
-        let path = format!("attachments/{name}");
+        self.attach_as(name, name, "", what);
+    }
+
+    /// Attaches a file that the test calls otherwise.
+    pub fn attach_as(&mut self, file: &str, name: &str, media_type: &str, what: &[u8]) {
+        let path = format!("attachments/{file}");
         std::fs::create_dir_all(self.folder.join("attachments")).unwrap();
         std::fs::write(self.folder.join(&path), what).unwrap();
-        let (name, media_type) = (name.to_owned(), String::new());
+        let (name, media_type) = (name.to_owned(), media_type.to_owned());
         let attachment = Attachment { name, path, media_type };
         self.emit(EventKind::Attached { test: TEST, fixture: None, attachment });
     }
@@ -200,6 +217,15 @@ pub struct World {
     pub asked: Arc<Asked>,
 }
 
+fn served<'a>(results: &'a Path, role: Role, asked: &Arc<Asked>) -> Served<'a> {
+    let asked = asked.clone();
+    let wrong_token = Box::new(move |wrong: WrongToken| {
+        asked.1.lock().unwrap().push((wrong.client, wrong.count));
+    });
+    let rerun: fn() -> Rerun = || Box::new(|_, test| Some(format!("rtf run suite.xml::{test}")));
+    Served { results, role, rerun, wrong_token }
+}
+
 pub fn settings() -> Settings {
     Settings {
         address: "127.0.0.1:0".parse().unwrap(),
@@ -207,6 +233,7 @@ pub fn settings() -> Settings {
         token_file: None,
         tls: None,
         hosts: Vec::new(),
+        limits: Limits::default(),
     }
 }
 
@@ -222,7 +249,7 @@ impl World {
         let asked = Arc::new(Asked::default());
         let role = Role::Makes("own".to_owned(), asked.clone());
         let bound = Bound::new(settings).unwrap();
-        let server = bound.serve(Served { results: temp.path(), role }).unwrap();
+        let server = bound.serve(served(temp.path(), role, &asked)).unwrap();
         writer.live = Some(server.live());
         (Self { temp, server, asked }, writer)
     }
@@ -234,7 +261,7 @@ impl World {
         let asked = Arc::new(Asked::default());
         let bound = Bound::new(&settings()).unwrap();
         let role = Role::Shows(asked.clone());
-        let server = bound.serve(Served { results: temp.path(), role }).unwrap();
+        let server = bound.serve(served(temp.path(), role, &asked)).unwrap();
         (Self { temp, server, asked }, writer)
     }
 
@@ -252,6 +279,20 @@ impl World {
 
     pub fn post(&self, path: &str, lines: &[&str], body: &str) -> Answer {
         client::ask(self.address(), &format!("POST {path}"), lines, body)
+    }
+
+    /// The counts of wrong tokens that were reported, once there are so many reports.
+    pub fn wrong_tokens(&self, reports: usize) -> Vec<u64> {
+        let start = std::time::Instant::now();
+        loop {
+            let wrong = self.asked.1.lock().unwrap().clone();
+            if wrong.len() >= reports {
+                assert!(wrong.iter().all(|(client, _)| client.is_loopback()));
+                return wrong.into_iter().map(|(_, count)| count).collect();
+            }
+            assert!(start.elapsed().as_secs() < 30, "{wrong:?} of {reports} reports");
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
     }
 
     pub fn asked(&self) -> Vec<String> {

@@ -88,6 +88,6 @@ mod tests {
     /// An `rtf.toml` takes what the command line takes.
     #[test]
     fn the_formats_of_a_configuration_are_those_of_the_command_line() {
-        assert_eq!(super::REPORTS.map(|(name, _)| name), rtf_engine::config::REPORTS);
+        assert_eq!(super::REPORTS.map(|(name, _)| name), rtf_plan::config::REPORTS);
     }
 }

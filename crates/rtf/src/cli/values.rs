@@ -50,7 +50,7 @@ pub fn parse_seed(value: &str) -> Result<u64, String> {
 /// What is wrong with it.
 pub fn parse_setting(value: &str) -> Result<(String, String), String> {
     match value.split_once('=') {
-        Some((name, value)) if rtf_engine::config::is_name(name) => {
+        Some((name, value)) if rtf_plan::config::is_name(name) => {
             Ok((name.to_owned(), value.to_owned()))
         }
         Some((name, _)) => Err(format!("`{name}` is not the name of a parameter")),

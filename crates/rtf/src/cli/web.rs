@@ -2,8 +2,10 @@
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::Args;
+use rtf_plan::suite::parse_duration;
 
 use super::ResultsArgs;
 
@@ -22,6 +24,11 @@ pub struct WebRunArgs {
     #[arg(num_args = 0..=1, require_equals = true, default_missing_value = ADDRESS)]
     pub web: Option<SocketAddr>,
 
+    /// Keep serving the run after it has ended, for this long or until Ctrl-C, like `10min`
+    #[arg(help_heading = HEADING, long, value_name = "DURATION")]
+    #[arg(value_parser = parse_duration)]
+    pub web_linger: Option<Duration>,
+
     #[command(flatten)]
     pub access: WebAccessArgs,
 }
@@ -31,6 +38,7 @@ impl WebRunArgs {
     pub fn without_effect(&self) -> Option<&'static str> {
         let access = &self.access;
         let given = [
+            ("--web-linger", self.web_linger.is_some()),
             ("--web-token-file", access.web_token_file.is_some()),
             ("--web-allow-remote", access.web_allow_remote),
             ("--web-cert", access.web_cert.is_some()),

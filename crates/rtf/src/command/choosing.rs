@@ -8,9 +8,9 @@ use std::hash::{BuildHasher, Hasher, RandomState};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use rtf_engine::select::{self, Filter, Selection, Shard, ShardBy};
-use rtf_engine::suite::{Source, Sources};
 use rtf_model::{Diagnostic, Manifest, Record, TestId, Verdict};
+use rtf_plan::select::{self, Filter, Selection, Shard, ShardBy};
+use rtf_plan::suite::{SourceMap, SourceText};
 use rtf_report::journal;
 
 use super::show;
@@ -44,7 +44,7 @@ pub fn ask(args: &InputArgs, results: &ResultsArgs) -> Result<Asked, Failure> {
     if let Some(result) = repeat.flaky_result {
         manifest.flaky_fails = result == FlakyResult::Fail;
     }
-    manifest.shard = shard.as_ref().map(|shard| format!("{}/{}", shard.index, shard.of));
+    manifest.shard = shard.as_ref().map(|shard| format!("{}/{}", shard.index, shard.count));
     Ok(Asked { manifest, folder, shard })
 }
 
@@ -151,7 +151,8 @@ fn durations(record: &Record) -> HashMap<(String, String), std::time::Duration> 
 
 fn record(results: &ResultsArgs, run: &str) -> Result<Record, Failure> {
     let stored = journal::read(&show::find(results, run)?).map_err(show::unreadable)?;
-    show::tell_damage(&stored)?;
+    // Which of its tests have to be run is not certain.
+    show::refuse_damaged(run, &stored.record)?;
     Ok(stored.record)
 }
 
@@ -162,20 +163,20 @@ fn some_seed() -> u64 {
 
 impl Asked {
     /// The selection; every mistake in a filter is added to the problems.
-    pub fn selection(&self, problems: &mut Vec<Diagnostic>, sources: &mut Sources) -> Selection {
+    pub fn selection(&self, problems: &mut Vec<Diagnostic>, sources: &mut SourceMap) -> Selection {
         let only = self.manifest.only.as_ref().map(|only| only.iter().cloned().collect());
         let filters = self.filters(problems, sources);
         Selection { filters, only, shuffle: self.manifest.shuffle, shard: self.shard.clone() }
     }
 
-    fn filters(&self, problems: &mut Vec<Diagnostic>, sources: &mut Sources) -> Vec<Filter> {
+    fn filters(&self, problems: &mut Vec<Diagnostic>, sources: &mut SourceMap) -> Vec<Filter> {
         let mut filters = Vec::new();
         for (number, text) in (1..).zip(&self.manifest.filters) {
             let name = match self.manifest.filters.len() {
                 1 => "--filter".to_owned(),
                 _ => format!("--filter ({number})"),
             };
-            let source = Source::new(name, text);
+            let source = SourceText::new(name, text);
             match select::parse(&source) {
                 Ok(filter) => filters.push(filter),
                 Err(problem) => problems.push(*problem),

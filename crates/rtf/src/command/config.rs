@@ -5,9 +5,11 @@ use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
-use rtf_engine::config::{self, Asked, Files, OfSuite, Question, Run, Shown, View};
-use rtf_engine::plan::Surroundings;
-use rtf_engine::suite::{self, Source};
+use rtf_plan::config::{
+    self, ConfigFiles, ConfigRequest, ProfileView, RunConfig, Setting, SettingsQuery,
+};
+use rtf_plan::plan::RunnerEnvironment;
+use rtf_plan::suite::{self, SourceText, SuiteSettings};
 
 use super::{Outcome, planning};
 use crate::cli::ConfigArgs;
@@ -19,18 +21,18 @@ const COMMENT: usize = 44;
 
 /// Prints.
 pub fn show(args: &ConfigArgs) -> Outcome {
-    let surroundings = Surroundings::of_process().map_err(Failure::own)?;
+    let surroundings = RunnerEnvironment::from_current_process().map_err(Failure::own)?;
     let path: std::path::PathBuf =
-        surroundings.current_folder.join(&args.input).components().collect();
+        surroundings.current_dir.join(&args.input).components().collect();
     if !path.exists() {
         let what = format!("there is no file or folder `{}`", args.input.display());
         return Err(Failure::input(what));
     }
     let asked = settings::asked(&args.profile);
-    let mut files = Files::new(&surroundings.current_folder);
-    let folder = config::folder_of_input(&path);
-    let view = files.above(&folder).map(|file| View::of(file, &asked));
-    let run = Run::of([folder.as_path()].into_iter(), &asked, &mut files);
+    let mut files = ConfigFiles::new(&surroundings.current_dir);
+    let folder = config::input_dir(&path);
+    let view = files.find_nearest(&folder).map(|file| ProfileView::new(file, &asked));
+    let run = RunConfig::collect([folder.as_path()].into_iter(), &asked, &mut files);
     let mut problems = std::mem::take(&mut files.problems);
     problems.extend(asked.check_profile(&files));
     if !problems.is_empty() {
@@ -38,14 +40,14 @@ pub fn show(args: &ConfigArgs) -> Outcome {
     }
     let suite = of_suite(&path, &args.input);
     let mut text = head(view.as_ref(), &asked);
-    let question = Question {
+    let question = SettingsQuery {
         view,
         suite: suite.as_ref().map(|(source, suite)| (source, suite)),
         run: &run.values,
-        asked: &asked,
+        request: &asked,
         user: &surroundings.variables,
     };
-    for shown in config::show(&question) {
+    for shown in config::effective_settings(&question) {
         text += &line(&shown);
     }
     let mut out = anstream::stdout().lock();
@@ -54,16 +56,16 @@ pub fn show(args: &ConfigArgs) -> Outcome {
 }
 
 /// The suite's own values; its problems are `rtf check`'s.
-fn of_suite(path: &Path, name: &Path) -> Option<(Source, OfSuite)> {
+fn of_suite(path: &Path, name: &Path) -> Option<(SourceText, SuiteSettings)> {
     if !path.is_file() || !suite::is_suite_file(path) {
         return None;
     }
-    let source = suite::open(path, &name.to_string_lossy()).ok()?;
-    let values = suite::places(&source);
-    Some((source, OfSuite { values }))
+    let source = suite::read_source(path, &name.to_string_lossy()).ok()?;
+    let settings = suite::shared_settings(&source);
+    Some((source, settings))
 }
 
-fn head(view: Option<&View>, asked: &Asked) -> String {
+fn head(view: Option<&ProfileView>, asked: &ConfigRequest) -> String {
     let Some(view) = view else { return "# no rtf.toml\n".to_owned() };
     let mut text = format!("# {}\n", rtf_report::escape::line(view.file.source.name()));
     if let Some((profile, _)) = &view.profile {
@@ -75,12 +77,17 @@ fn head(view: Option<&View>, asked: &Asked) -> String {
             _ => "--profile or RTF_PROFILE".to_owned(),
         };
         let values = vec![profile.clone()];
-        text += &line(&Shown { key: "profile".to_owned(), values, from, over: Vec::new() });
+        text += &line(&Setting {
+            key: "profile".to_owned(),
+            values,
+            origin: from,
+            overridden: Vec::new(),
+        });
     }
     text
 }
 
-fn line(shown: &Shown) -> String {
+fn line(shown: &Setting) -> String {
     let quoted = |text: &String| format!("\"{}\"", text.escape_debug());
     let value = match shown.key.as_str() {
         "reports" => {
@@ -90,9 +97,9 @@ fn line(shown: &Shown) -> String {
     };
     let mut text = format!("{} = {value}", shown.key);
     let pad = COMMENT.saturating_sub(text.chars().count());
-    let _ = write!(text, "{:pad$}  # {}", "", shown.from);
-    if !shown.over.is_empty() {
-        let _ = write!(text, ", over {}", shown.over.join(", "));
+    let _ = write!(text, "{:pad$}  # {}", "", shown.origin);
+    if !shown.overridden.is_empty() {
+        let _ = write!(text, ", over {}", shown.overridden.join(", "));
     }
     text.push('\n');
     rtf_report::escape::block(&text).into_owned()

@@ -8,14 +8,16 @@ use std::time::Duration;
 use rtf_engine::guard::Link;
 use rtf_engine::locks::LockOptions;
 use rtf_engine::run::{Forks, RunOptions, Sink, execute};
-use rtf_engine::signal;
-use rtf_model::{EVENTS_VERSION, Event, Manifest, RunStarted};
+use rtf_engine::signal::{self, Signals};
+use rtf_model::{EVENTS_VERSION, Event, Manifest, RunStarted, Source};
+use rtf_report::outlet::Outlet;
 use rtf_report::run_folder::RunFolder;
-use rtf_report::{Fanout, FanoutHandle, Reporter};
+use rtf_report::{Fanout, FanoutHandle, Finished, Reporter};
+use tokio::runtime::Runtime;
 
-use super::Outcome;
 use super::planning::Planned;
 use super::web::Asks;
+use super::{Outcome, revision};
 use crate::error::Failure;
 use crate::exit;
 
@@ -35,14 +37,20 @@ pub struct Job<'a> {
     pub locks: LockOptions,
     /// How many suites run at the same time at the most.
     pub jobs: NonZeroU16,
+    /// Where standard output is written.
+    pub outlet: &'a Outlet,
 }
 
 impl Job<'_> {
     /// Runs under a guard; `reporters` tell of it, in this order.
     pub fn perform(&self, reporters: Vec<Box<dyn Reporter>>, guard: Link) -> Outcome {
         let fanout = Fanout::start(reporters).map_err(Failure::own)?;
-        let ended = self.run_plan(fanout.handle(), Arc::new(guard));
-        let finished = fanout.join();
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+        let runtime = runtime.map_err(Failure::own)?;
+        let guard = Arc::new(guard);
+        let ended = self.run_plan(&runtime, fanout.handle(), guard.clone());
+        let finished = runtime.block_on(self.reported(fanout)).map_err(Failure::own)?;
+        guard.finish();
         let killed_by = ended.map_err(Failure::own)?;
         let wrote_all = finished.errors.is_empty();
         for error in finished.errors {
@@ -56,8 +64,12 @@ impl Job<'_> {
     }
 
     /// Runs the plan; `Some` with the signal that ended `rtf` the hard way.
-    fn run_plan(&self, events: FanoutHandle, guard: Arc<Link>) -> std::io::Result<Option<i32>> {
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+    fn run_plan(
+        &self,
+        runtime: &Runtime,
+        events: FanoutHandle,
+        guard: Arc<Link>,
+    ) -> std::io::Result<Option<i32>> {
         let Asks { stops, controls, shutdown_timeout } = self.asks;
         let stopped = stops.subscribe();
         let options = RunOptions {
@@ -86,10 +98,26 @@ impl Job<'_> {
         })
     }
 
+    /// Waits until everything is reported. The run is over, so a signal ends only the wait
+    /// for whoever reads standard output.
+    async fn reported(&self, fanout: Fanout) -> std::io::Result<Finished> {
+        let mut signals = Signals::install()?;
+        let mut joined = tokio::task::spawn_blocking(|| fanout.join());
+        let joined = tokio::select! {
+            joined = &mut joined => joined,
+            _ = signals.next() => {
+                self.outlet.abandon();
+                joined.await
+            }
+        };
+        Ok(joined.unwrap_or_else(|error| std::panic::resume_unwind(error.into_panic())))
+    }
+
     fn started(&self) -> RunStarted {
         let plan = &self.planned.plan;
         let jobs = Some(self.jobs.get().into()).filter(|jobs| *jobs > 1);
-        let manifest = Manifest { jobs, ..self.planned.manifest.clone() };
+        let revision = revision::of(&self.planned.folder);
+        let manifest = Manifest { jobs, revision, ..self.planned.manifest.clone() };
         RunStarted {
             version: EVENTS_VERSION,
             run: self.folder.name.clone(),
@@ -113,7 +141,7 @@ impl Sink for Reports {
         self.0.send(event);
     }
 
-    fn is_congested(&self) -> bool {
-        self.0.is_congested()
+    fn backlog(&self, source: Source) -> usize {
+        self.0.backlog(source)
     }
 }

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use rtf_engine::plan::{Plan, SuitePlan, TestPlan};
+use rtf_plan::plan::{Plan, SuitePlan, TestPlan};
 use rtf_report::escape;
 use serde::Serialize;
 

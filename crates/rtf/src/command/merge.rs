@@ -15,8 +15,8 @@ use rtf_report::merge::{self, Header, Part, Problem};
 use rtf_report::run_folder::{self, RunFolder};
 use rtf_report::{ReportError, Reporter};
 
-use super::show::{self, find, unreadable};
-use super::{Outcome, again};
+use super::show::{find, unreadable};
+use super::{Outcome, again, show};
 use crate::cli::MergeArgs;
 use crate::error::Failure;
 use crate::exit;
@@ -55,7 +55,7 @@ pub fn run(args: &MergeArgs) -> Outcome {
         command: std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect(),
     };
     let record = write(&merged.events(header), &folder).map_err(Failure::own)?;
-    Ok(show::exit_code(&record))
+    Ok(exit::of_run(&record))
 }
 
 /// All events of a run that is over.
@@ -66,11 +66,7 @@ fn read(run: &str, path: &Path) -> Result<Vec<Event>, Failure> {
         Ok(())
     });
     let stored = stored.map_err(unreadable)?;
-    if let Some(damage) = stored.damages.first() {
-        let what = format!("the journal of `{run}` is damaged: {damage}");
-        let hint = format!("`rtf show {}` shows what can be read of it", shell_words::quote(run));
-        return Err(Failure::input(what).hint(hint));
-    }
+    show::refuse_damaged(run, &stored.record)?;
     let goes_on = stored.record.state == RunState::Running
         && File::open(path).is_ok_and(|journal| journal::is_written(&journal));
     if goes_on {

@@ -16,6 +16,7 @@ pub mod output;
 pub mod planning;
 pub mod report;
 mod rerun;
+mod revision;
 pub mod run;
 pub mod serve;
 pub mod show;

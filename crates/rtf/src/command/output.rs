@@ -8,9 +8,10 @@ use rtf_report::console::{Console, ConsoleOptions, Verbosity};
 use rtf_report::event_stream::EventStream;
 use rtf_report::gitlab::Sections;
 use rtf_report::junit::{self, JunitFile};
+use rtf_report::outlet::Outlet;
 use rtf_report::tap::{self, TapStream};
 use rtf_report::text::{self, TextFile};
-use rtf_report::{AtTheEnd, ReportError, Reporter, code_quality, github};
+use rtf_report::{AtTheEnd, FailureNotice, ReportError, Reporter, code_quality, github};
 
 use super::again;
 use crate::cli::{Annotations, Format, RunArgs, Shown};
@@ -67,21 +68,31 @@ pub fn write(
     }
 }
 
+/// Standard output, which a run does not wait for.
+pub fn outlet() -> Result<Outlet, Failure> {
+    Outlet::new(Box::new(io::stdout())).map_err(Failure::own)
+}
+
 /// What goes to standard output, and to the code host.
-pub fn shown(args: &RunArgs, folder: &Path) -> Vec<Box<dyn Reporter>> {
+pub fn shown(args: &RunArgs, folder: &Path, outlet: &Outlet) -> Vec<Box<dyn Reporter>> {
     let host = host(args.annotations);
     let main: Box<dyn Reporter> = match args.format {
-        Shown::Json => Box::new(EventStream::new(Box::new(io::stdout()))),
-        Shown::Tap => Box::new(TapStream::new(Box::new(io::stdout()))),
+        Shown::Json => Box::new(EventStream::new(Box::new(outlet.for_stream()))),
+        Shown::Tap => Box::new(TapStream::new(Box::new(outlet.for_stream()))),
         Shown::Console => {
-            let console = Box::new(Console::stdout(console_options(args, folder)));
+            let console = Box::new(Console::over(outlet, console_options(args, folder)));
             match host {
-                Annotations::Gitlab => Box::new(Sections::around(console, Box::new(io::stdout()))),
+                Annotations::Gitlab => {
+                    Box::new(Sections::around(console, Box::new(outlet.clone())))
+                }
                 _ => console,
             }
         }
     };
     let mut shown = vec![main];
+    if !matches!(args.format, Shown::Console) {
+        shown.push(Box::new(FailureNotice));
+    }
     if host == Annotations::Github {
         // GitHub reads both outputs; one of them may be data.
         shown.push(Box::new(AtTheEnd::new(Box::new(|record| annotate(&mut io::stderr(), record)))));

@@ -4,12 +4,12 @@
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
 
-use rtf_engine::plan::{self, Options, Plan, Request, Surroundings};
-use rtf_engine::select::select;
-use rtf_engine::suite::Sources;
+use rtf_engine::verify;
 use rtf_model::{Diagnostic, Manifest, Severity};
+use rtf_plan::plan::{self, InputPath, Options, Plan, RunnerEnvironment};
+use rtf_plan::select::select;
+use rtf_plan::suite::SourceMap;
 
 use super::choosing;
 use crate::cli::{InputArgs, ResultsArgs};
@@ -27,13 +27,12 @@ pub struct Planned {
     pub folder: PathBuf,
     /// Warnings. A run's reporters show them; other verbs do it themselves.
     pub warnings: Vec<Diagnostic>,
-    sources: Sources,
+    sources: SourceMap,
 }
 
 /// Plans; shows every problem on standard error when there is an error.
 pub fn plan(args: &InputArgs, results: &ResultsArgs) -> Result<Planned, Failure> {
-    let verify = Options::new(Surroundings::default()).verify;
-    let draft = draft(args, results, verify)?;
+    let draft = draft(args, results, Verify::Plugins)?;
     let Draft { plan, of, mut manifest, folder, problems, sources } = draft;
     let Some(mut plan) = plan else { return Err(refused(&problems, &sources)?) };
     repeat(&mut plan, &manifest);
@@ -53,24 +52,32 @@ pub struct Draft {
     pub folder: PathBuf,
     /// Everything that is wrong or worth a look.
     pub problems: Vec<Diagnostic>,
-    sources: Sources,
+    sources: SourceMap,
 }
 
-/// Plans and shows nothing. The hosts are asked about the plug-ins, unless
-/// `verify` is `None`: then nothing is started.
-pub fn draft(
-    args: &InputArgs,
-    results: &ResultsArgs,
-    verify: Option<Duration>,
-) -> Result<Draft, Failure> {
+/// Whether planning starts the hosts to check the plug-ins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verify {
+    /// The hosts load each plug-in.
+    Plugins,
+    /// Nothing is started.
+    Nothing,
+}
+
+/// Plans and shows nothing.
+pub fn draft(args: &InputArgs, results: &ResultsArgs, verify: Verify) -> Result<Draft, Failure> {
     let asked = choosing::ask(args, results)?;
-    let mut surroundings = Surroundings::of_process().map_err(Failure::own)?;
+    let mut surroundings = RunnerEnvironment::from_current_process().map_err(Failure::own)?;
     if let Some(folder) = &asked.folder {
-        surroundings.current_folder.clone_from(folder);
+        surroundings.current_dir.clone_from(folder);
     }
-    let folder = surroundings.current_folder.clone();
-    let options = Options { verify, ..options(&asked.manifest, surroundings) };
-    let outcome = plan::build(&inputs(&asked.manifest), &options);
+    let folder = surroundings.current_dir.clone();
+    let options = options(&asked.manifest, surroundings);
+    let draft = plan::draft(&inputs(&asked.manifest), &options);
+    let outcome = match verify {
+        Verify::Plugins => verify::verify(draft, verify::DEFAULT_LIMIT),
+        Verify::Nothing => draft.unchecked(),
+    };
     let (mut problems, mut sources) = (outcome.diagnostics, outcome.sources);
     let selection = asked.selection(&mut problems, &mut sources);
     let broken = problems.iter().any(|problem| problem.severity == Severity::Error);
@@ -80,12 +87,12 @@ pub fn draft(
         let selected = select(whole, &selection);
         problems.extend(selected.warnings);
         if selected.plan.tests == 0 {
-            let what = format!("no test is chosen, of {}", count(selected.of, "test"));
+            let what = format!("no test is chosen, of {}", count(selected.total, "test"));
             let problem = Diagnostic::error("no-tests", what)
                 .hint("`rtf list` without these options shows all of them");
             problems.insert(0, problem);
         } else {
-            of = u32::try_from(selected.of).unwrap_or(u32::MAX);
+            of = u32::try_from(selected.total).unwrap_or(u32::MAX);
             plan = Some(selected.plan);
         }
     }
@@ -103,33 +110,34 @@ fn repeat(plan: &mut Plan, manifest: &Manifest) {
 
 /// Plans what was asked for in another way, all of it. The run's manifest is
 /// empty: it cannot be run again by its names.
-pub fn plan_requests(requests: &[Request], options: &Options) -> Result<Planned, Failure> {
-    let outcome = plan::build_requests(requests, options);
+pub fn plan_requests(requests: &[InputPath], options: &Options) -> Result<Planned, Failure> {
+    let outcome = verify::verify(plan::draft(requests, options), verify::DEFAULT_LIMIT);
     let (warnings, sources) = (outcome.diagnostics, outcome.sources);
     let Some(plan) = outcome.plan else { return Err(refused(&warnings, &sources)?) };
-    let folder = options.surroundings.current_folder.clone();
+    let folder = options.runner.current_dir.clone();
     let plan = Arc::new(plan);
     Ok(Planned { plan, manifest: Manifest::default(), folder, warnings, sources })
 }
 
-fn inputs(manifest: &Manifest) -> Vec<PathBuf> {
-    manifest.inputs.iter().map(PathBuf::from).collect()
+fn inputs(manifest: &Manifest) -> Vec<InputPath> {
+    manifest.inputs.iter().map(|input| InputPath::Any(PathBuf::from(input))).collect()
 }
 
-fn options(manifest: &Manifest, surroundings: Surroundings) -> Options {
+fn options(manifest: &Manifest, surroundings: RunnerEnvironment) -> Options {
     let mut options = Options::new(surroundings);
     options.recursive = manifest.recursive;
     options.param = manifest.param.clone().unwrap_or_default();
     options.environment = manifest.environment.clone().unwrap_or_default();
     options.repetitions = manifest.repetition.unwrap_or(1);
-    options.asked.profile.clone_from(&manifest.profile);
+    options.config_request.profile.clone_from(&manifest.profile);
     let set = manifest.set.iter().filter_map(|text| text.split_once('='));
-    options.asked.params = set.map(|(name, value)| (name.to_owned(), value.to_owned())).collect();
+    options.config_request.params =
+        set.map(|(name, value)| (name.to_owned(), value.to_owned())).collect();
     options
 }
 
 /// Shows what is wrong.
-pub fn refused(problems: &[Diagnostic], sources: &Sources) -> Result<Failure, Failure> {
+pub fn refused(problems: &[Diagnostic], sources: &SourceMap) -> Result<Failure, Failure> {
     show(problems, sources)?;
     let told = writeln!(anstream::stderr(), "{}; nothing was started", sum(problems));
     Failure::unless_reader_left(told)?;
@@ -143,7 +151,7 @@ impl Planned {
     }
 }
 
-fn show(diagnostics: &[Diagnostic], sources: &Sources) -> Result<(), Failure> {
+fn show(diagnostics: &[Diagnostic], sources: &SourceMap) -> Result<(), Failure> {
     // The stream takes the colours out where they are not wanted.
     let mut err = anstream::stderr().lock();
     Failure::unless_reader_left(render::write(&mut err, diagnostics, sources, true))

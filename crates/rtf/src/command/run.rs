@@ -7,6 +7,7 @@ use rtf_engine::locks::LockOptions;
 use rtf_report::Reporter;
 use rtf_report::journal::Journal;
 use rtf_report::logs::Logs;
+use rtf_report::outlet::Outlet;
 use rtf_report::run_folder::{self, RunFolder};
 use rtf_web::{Live, Role, Server};
 
@@ -36,12 +37,18 @@ pub fn run(args: &RunArgs, guard: Link) -> Outcome {
     let role = Role::Makes(folder.name.clone(), asks.clone());
     let web = web.map(|bound| web::serve(bound, &args.results.results, role)).transpose()?;
     let live = web.as_ref().map(Server::live);
-    let reporters = reporters(journal, live, args, &folder)?;
+    let outlet = output::outlet()?;
+    let reporters = reporters(journal, live, args, (&folder, &outlet))?;
     let (forks, max_fail) = (args.fork, args.input.repeat.most_fails());
     let locks = LockOptions { folder: locks::folder(), limit: args.lock_timeout };
-    let (planned, folder, asks, jobs) = (&planned, &folder, &asks, args.jobs);
-    let job = Job { planned, folder, forks, asks, max_fail, locks, jobs };
+    let (planned, folder, asks, jobs, outlet) = (&planned, &folder, &asks, args.jobs, &outlet);
+    let job = Job { planned, folder, forks, asks, max_fail, locks, jobs, outlet };
     let ended = job.perform(reporters, guard);
+    if let (Some(server), Some(time)) = (&web, args.web.web_linger)
+        && !asks.is_interrupted()
+    {
+        web::linger(server, time)?;
+    }
     // What is wrong with the server is not the run's: `rtf serve` shows it again.
     drop(web.map(Server::stop));
     ended
@@ -51,7 +58,7 @@ fn reporters(
     journal: Journal,
     live: Option<Live>,
     args: &RunArgs,
-    folder: &RunFolder,
+    (folder, outlet): (&RunFolder, &Outlet),
 ) -> Result<Vec<Box<dyn Reporter>>, Failure> {
     let logs = Logs::new(&folder.path);
     let mut reporters: Vec<Box<dyn Reporter>> = vec![Box::new(journal), Box::new(logs)];
@@ -61,6 +68,6 @@ fn reporters(
         reporters.push(output::open_report(*format, path, Some(&folder.path))?);
     }
     // What is shown comes last: what it names is there.
-    reporters.extend(output::shown(args, &folder.path));
+    reporters.extend(output::shown(args, &folder.path, outlet));
     Ok(reporters)
 }

@@ -2,11 +2,10 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
-use rtf_model::Record;
+use rtf_model::{Damage, Record};
 use rtf_report::console::{Console, ConsoleOptions, Verbosity};
-use rtf_report::journal::{self, JournalError, Stored};
+use rtf_report::journal::{self, JournalError};
 use rtf_report::run_folder;
 
 use super::{Outcome, again};
@@ -24,13 +23,7 @@ pub fn run(args: &ShowArgs) -> Outcome {
         rerun: again::command(),
     });
     let stored = journal::replay(&path, &mut console).map_err(unreadable)?;
-    tell_damage(&stored)?;
-    Ok(exit_code(&stored.record))
-}
-
-/// The exit code of a past run, which may have no end.
-pub fn exit_code(record: &Record) -> ExitCode {
-    if record.is_complete() { exit::of_run(record) } else { ExitCode::from(exit::FAILED) }
+    Ok(exit::of_run(&stored.record))
 }
 
 /// The journal of a run, in the run's own folder: what leads through `latest`
@@ -58,11 +51,20 @@ pub fn unreadable(error: JournalError) -> Failure {
     }
 }
 
-/// Says on standard error what of the journal could not be read.
-pub fn tell_damage(stored: &Stored) -> Result<(), Failure> {
+/// For commands whose result would hide what is missing from a damaged journal.
+pub fn refuse_damaged(run: &str, record: &Record) -> Result<(), Failure> {
+    let Some(damage) = record.damages.first() else { return Ok(()) };
+    let what = format!("the journal of `{run}` is damaged: {damage}");
+    let hint = format!("`rtf show {}` shows what can be read of it", shell_words::quote(run));
+    Err(Failure::input(what).hint(hint))
+}
+
+/// Prints on standard error where the journal is damaged.
+pub fn print_damage(damages: &[Damage]) -> Result<(), Failure> {
     let mut err = anstream::stderr().lock();
-    for damage in &stored.damages {
-        let told = writeln!(err, "warning: the journal is damaged: {damage}");
+    let (red, reset) = ("\u{1b}[1;31m", "\u{1b}[0m");
+    for damage in damages {
+        let told = writeln!(err, "{red}error{reset}: the journal is damaged: {damage}");
         Failure::unless_reader_left(told)?;
     }
     Ok(())

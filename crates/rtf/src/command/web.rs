@@ -6,8 +6,10 @@ use std::path::Path;
 use std::time::Duration;
 
 use rtf_engine::run::{Control, Stop, StopLevel};
+use rtf_engine::signal::Signals;
 use rtf_model::{SuiteId, TestId};
-use rtf_web::{Bound, Role, Served, Server, Settings};
+use rtf_report::console::Rerun;
+use rtf_web::{Bound, Limits, Role, Served, Server, Settings, WrongToken};
 use tokio::sync::watch;
 
 use crate::cli::WebAccessArgs;
@@ -32,6 +34,13 @@ impl Asks {
     pub fn new(shutdown_timeout: Duration) -> Self {
         let (stops, controls) = (watch::channel(None).0, watch::channel(Vec::new()).0);
         Self { stops, controls, shutdown_timeout }
+    }
+}
+
+impl Asks {
+    /// Whether something else than the browser has ended the run.
+    pub fn is_interrupted(&self) -> bool {
+        self.stops.borrow().as_ref().is_some_and(|stop| stop.reason != PERSON)
     }
 }
 
@@ -67,6 +76,7 @@ pub fn bind(address: SocketAddr, args: &WebAccessArgs) -> Result<Bound, Failure>
         token_file: args.web_token_file.clone(),
         tls: args.web_cert.clone().zip(args.web_key.clone()),
         hosts: args.web_hosts.clone(),
+        limits: Limits::default(),
     };
     Bound::new(&settings).map_err(failed)
 }
@@ -79,10 +89,41 @@ pub fn bind_loopback(port: u16) -> Result<Bound, Failure> {
 
 /// Serves, and says where.
 pub fn serve(bound: Bound, results: &Path, role: Role) -> Result<Server, Failure> {
-    let server = bound.serve(Served { results, role }).map_err(failed)?;
+    let server = {
+        let (rerun, wrong_token) = (super::again::command as fn() -> Rerun, Box::new(report));
+        bound.serve(Served { results, role, rerun, wrong_token }).map_err(failed)?
+    };
     let mut err = anstream::stderr().lock();
     Failure::unless_reader_left(tell(&mut err, &server))?;
     Ok(server)
+}
+
+/// Serves on after the run, for this long or until a signal.
+pub fn linger(server: &Server, time: Duration) -> Result<(), Failure> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    runtime.map_err(Failure::own)?.block_on(async {
+        let mut signals = Signals::install().map_err(Failure::own)?;
+        server.linger(time);
+        let (bold, reset) = ("\u{1b}[1m", "\u{1b}[0m");
+        // Whoever has left needs no word.
+        let _ = writeln!(
+            anstream::stderr(),
+            "{bold}web{reset}: the run is over, and shown for {time:?} more, or until Ctrl-C"
+        );
+        tokio::select! {
+            _ = signals.next() => {}
+            () = tokio::time::sleep(time) => {}
+        }
+        Ok(())
+    })
+}
+
+/// Reports that somebody sent a wrong token.
+fn report(WrongToken { client, count }: WrongToken) {
+    let (bold, reset) = ("\u{1b}[1m", "\u{1b}[0m");
+    let times = if count > 1 { format!(", {count} times in a minute") } else { String::new() };
+    // Whoever has left needs no word.
+    let _ = writeln!(anstream::stderr(), "{bold}web{reset}: wrong token from {client}{times}");
 }
 
 fn failed(error: rtf_web::ServeError) -> Failure {

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use insta::assert_snapshot;
-use rtf_engine::plan::{self, Options, Outcome, Surroundings};
+use rtf_plan::plan::{self, InputPath, Options, PlanOutcome, RunnerEnvironment};
 
 /// A folder with suites, whose hosts do not exist and need not.
 struct Bench {
@@ -25,23 +25,23 @@ impl Bench {
         }
         std::fs::create_dir(root.join("suites")).unwrap();
         let variables = [("PATH".to_owned(), root.join("bin").display().to_string())];
-        let surroundings = Surroundings {
-            current_folder: root.join("suites"),
+        let surroundings = RunnerEnvironment {
+            current_dir: root.join("suites"),
             executable: root.join("bin/rtf"),
             variables: variables.into_iter().collect(),
         };
-        let options = Options { verify: None, ..Options::new(surroundings) };
+        let options = Options::new(surroundings);
         let bench = Self { folder, options };
         bench.write("ArmTest.lua", "").write("SensorTest.so", "")
     }
 
     fn write(self, name: &str, text: &str) -> Self {
-        std::fs::write(self.options.surroundings.current_folder.join(name), text).unwrap();
+        std::fs::write(self.options.runner.current_dir.join(name), text).unwrap();
         self
     }
 
-    fn outcome(&self, name: &str) -> Outcome {
-        plan::build(&[PathBuf::from(name)], &self.options)
+    fn outcome(&self, name: &str) -> PlanOutcome {
+        plan::draft(&[InputPath::Any(PathBuf::from(name))], &self.options).unchecked()
     }
 
     /// What is printed for the file `name`.
@@ -71,7 +71,7 @@ fn missing_plugin() {
       |                     ^^^^^^^^^
     3 |   <test> ArmTest </test>
     4 |   <test> SensrTest </test>
-      |          --------- and here
+      |          ---------
       |
       = note: looked for `SensrTest.so`, `libSensrTest.so`, `SensrTest` in
                 [ROOT]/suites
@@ -119,7 +119,7 @@ fn missing_program() {
 fn control_characters_do_not_reach_the_terminal() {
     let problem = rtf_model::Diagnostic::error("x", "a \u{1b}[31mred\u{7} message\nof two lines");
     let mut out = Vec::new();
-    super::write(&mut out, &[problem], &rtf_engine::suite::Sources::default(), false).unwrap();
+    super::write(&mut out, &[problem], &rtf_plan::suite::SourceMap::default(), false).unwrap();
     let text = String::from_utf8(out).unwrap();
     assert!(!text.contains('\u{1b}') && !text.contains('\u{7}'), "{text:?}");
 }

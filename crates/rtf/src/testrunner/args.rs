@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::{ArgAction, Parser, ValueEnum};
-use rtf_engine::plan::Request;
+use rtf_plan::plan::InputPath;
 
 /// The command line of robot-testing-framework 2.x, for the scripts that use it; `rtf run` does more
 #[derive(Debug, Parser)]
@@ -105,15 +105,15 @@ pub enum OutputType {
 
 impl Args {
     /// What is to be run. An empty value is none.
-    pub fn requests(&self) -> Vec<Request> {
-        let of = |path: &Option<PathBuf>, kind: fn(PathBuf) -> Request| {
+    pub fn requests(&self) -> Vec<InputPath> {
+        let of = |path: &Option<PathBuf>, kind: fn(PathBuf) -> InputPath| {
             path.clone().filter(|path| !path.as_os_str().is_empty()).map(kind)
         };
         [
-            of(&self.test, Request::Plugin),
-            of(&self.tests, Request::Plugins),
-            of(&self.suite, Request::Suite),
-            of(&self.suites, Request::Suites),
+            of(&self.test, InputPath::Plugin),
+            of(&self.tests, InputPath::Plugins),
+            of(&self.suite, InputPath::Suite),
+            of(&self.suites, InputPath::Suites),
         ]
         .into_iter()
         .flatten()

@@ -17,9 +17,9 @@ use clap::Parser as _;
 use clap::error::ErrorKind;
 use rtf_engine::guard::Link;
 use rtf_engine::locks::LockOptions;
-use rtf_engine::plan::{Manner, Options, Surroundings};
 use rtf_engine::run::Forks;
 use rtf_model::Record;
+use rtf_plan::plan::{Compatibility, Options, RunnerEnvironment};
 use rtf_report::journal::Journal;
 use rtf_report::junit::JunitFile;
 use rtf_report::logs::Logs;
@@ -30,6 +30,7 @@ use rtf_web::{Role, Server};
 use crate::command::Outcome;
 use crate::command::job::Job;
 use crate::command::locks;
+use crate::command::output;
 use crate::command::planning;
 use crate::command::web::{self, Asks};
 use crate::error::Failure;
@@ -88,8 +89,8 @@ fn run(args: &Args) -> Outcome {
         perform(args, &results, guard)
     };
     let close = |journal: &Path, record: &Record| after_death(args, journal, record);
-    let guarded = Guarded { run, close: &close, kept: results.scratch.is_none(), lifeline: None };
-    let outcome = guarded.watch();
+    let (kept, lifeline, patience) = (results.scratch.is_none(), None, SHUTDOWN);
+    let outcome = Guarded { run, close: &close, kept, lifeline, patience }.watch();
     // The guard is still there when the runner is not.
     if !runner.get() {
         results.clear();
@@ -107,9 +108,9 @@ fn warn(args: &Args) -> io::Result<()> {
 }
 
 fn perform(args: &Args, results: &Results, guard: Link) -> Outcome {
-    let surroundings = Surroundings::of_process().map_err(Failure::own)?;
+    let surroundings = RunnerEnvironment::from_current_process().map_err(Failure::own)?;
     let mut options = Options::new(surroundings);
-    options.manner = Manner::Predecessor;
+    options.compatibility = Compatibility::Predecessor;
     options.recursive = args.recursive;
     options.param.clone_from(&args.param);
     options.environment.clone_from(&args.environment);
@@ -133,7 +134,8 @@ fn perform(args: &Args, results: &Results, guard: Link) -> Outcome {
     let web = web.map(|bound| web::serve(bound, &results.folder, role)).transpose()?;
     reporters.extend(web.as_ref().map(|web| Box::new(web.live()) as Box<dyn Reporter>));
     reporters.extend(result_file(args, &folder.journal())?);
-    reporters.push(Box::new(console(args)));
+    let outlet = output::outlet()?;
+    reporters.push(Box::new(Console::over(&outlet, console_options(args))));
     let job = Job {
         planned: &planned,
         folder: &folder,
@@ -142,6 +144,7 @@ fn perform(args: &Args, results: &Results, guard: Link) -> Outcome {
         max_fail: None,
         locks: LockOptions { folder: locks::folder(), limit: None },
         jobs: NonZeroU16::MIN,
+        outlet: &outlet,
     };
     let ended = job.perform(reporters, guard);
     // What is wrong with the server is not the run's.
@@ -154,15 +157,11 @@ fn after_death(args: &Args, journal: &Path, record: &Record) {
     if let Some(file) = result_file(args, journal).transpose() {
         finish(file, record);
     }
-    finish(Ok(Box::new(console(args))), record);
+    finish(Ok(Box::new(Console::stdout(console_options(args)))), record);
 }
 
-fn console(args: &Args) -> Console {
-    Console::stdout(ConsoleOptions {
-        verbose: args.verbose,
-        detail: args.detail,
-        summary: !args.no_summary,
-    })
+fn console_options(args: &Args) -> ConsoleOptions {
+    ConsoleOptions { verbose: args.verbose, detail: args.detail, summary: !args.no_summary }
 }
 
 /// Opens the result file; finds out whether it can be written.

@@ -27,7 +27,7 @@ pub fn refused_suite(text: &str) -> String {
 #[test]
 fn a_suite_that_is_not_there() {
     assert_snapshot!(refused(&Folder::new(), &["run", "arm.xml"]), @"
-    error: there is no file or folder `arm.xml`
+    error: there is no file or directory `arm.xml`
      |
      = note: looked for [FOLDER]/arm.xml
 
@@ -40,7 +40,7 @@ fn a_suite_without_its_extension() {
     let folder = Folder::new();
     folder.file("arm.xml", "<suite/>");
     assert_snapshot!(refused(&folder, &["run", "arm"]), @"
-    error: there is no file or folder `arm`
+    error: there is no file or directory `arm`
      |
      = note: looked for [FOLDER]/arm
      = help: did you mean `arm.xml`?
@@ -52,7 +52,7 @@ fn a_suite_without_its_extension() {
 #[test]
 fn an_ampersand_alone() {
     assert_snapshot!(refused_suite("<suite name=\"arm & leg\">\n  <test>EncoderTest.lua</test>\n</suite>\n"), @r#"
-    error: malformed XML: `&` is written `&amp;`
+    error: malformed XML: `&` must be written `&amp;`
      --> arm.xml:1:18
       |
     1 | <suite name="arm & leg">
@@ -65,7 +65,7 @@ fn an_ampersand_alone() {
 #[test]
 fn an_end_tag_that_does_not_fit() {
     assert_snapshot!(refused_suite("<suite name=\"arm\">\n  <test>EncoderTest.lua</tset>\n</suite>\n"), @"
-    error: malformed XML: `</tset>` where `<test>` has to be closed
+    error: malformed XML: expected `</test>`, found `</tset>`
      --> arm.xml:2:24
       |
     2 |   <test>EncoderTest.lua</tset>
@@ -91,7 +91,7 @@ fn a_file_that_ends_too_early() {
 #[test]
 fn an_empty_file() {
     assert_snapshot!(refused_suite(""), @"
-    error: malformed XML: there is no element in the file
+    error: malformed XML: the file contains no element
      --> arm.xml:1:1
       |
     1 |
@@ -104,7 +104,7 @@ fn an_empty_file() {
 #[test]
 fn an_attribute_twice() {
     assert_snapshot!(refused_suite("<suite name=\"arm\" name=\"leg\">\n  <test>EncoderTest.lua</test>\n</suite>\n"), @r#"
-    error: malformed XML: the attribute `name` is there twice
+    error: malformed XML: duplicate attribute `name`
      --> arm.xml:1:19
       |
     1 | <suite name="arm" name="leg">
@@ -134,7 +134,7 @@ fn a_dtd() {
      --> arm.xml:1:1
       |
     1 | <!DOCTYPE suite [<!ENTITY name SYSTEM "/etc/passwd">]>
-      | ^^^^^^^^^ not read, for safety
+      | ^^^^^^^^^ refused for safety
       |
       = help: remove the `<!DOCTYPE …>`
 
@@ -147,9 +147,9 @@ fn a_folder_without_tests() {
     let folder = Folder::new();
     folder.file("tests/readme.txt", "none yet");
     assert_snapshot!(refused(&folder, &["run", "tests"]), @"
-    error: the folder `tests` holds neither a suite nor a plug-in
+    error: the directory `tests` contains neither a suite nor a plug-in
      |
-     = help: folders inside of it are searched with `--recursive`
+     = help: `--recursive` also searches subdirectories
 
     1 error; nothing was started
     ");
@@ -162,7 +162,7 @@ fn a_folder_in_which_only_a_fixture_is() {
     assert_snapshot!(refused(&folder, &["run", "tests"]), @"
     error: there is no test to run
      |
-     = note: [FOLDER]/tests/Driver.lua holds no test
+     = note: [FOLDER]/tests/Driver.lua contains no test
 
     1 error; nothing was started
     ");
@@ -179,7 +179,7 @@ fn dashes_in_a_comment_are_accepted_with_a_warning() {
     exit code 0
     ----- stdout
         warning  arm.xml:2:13: `--` in a comment is not legal XML; accepted
-                 hint: write the option without its dashes in comments, other programs refuse the file
+                 hint: remove the dashes: other programs refuse the file
     suite arm  1 test  arm.xml
          passed     [TIME]  arm/EncoderTest
 

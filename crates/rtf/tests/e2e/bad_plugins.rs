@@ -35,7 +35,7 @@ fn a_plug_in_that_is_not_there() {
                 /opt/robot
                 [PREFIX]/lib/rtf/plugins
                 [ROOT]/fixtures
-      = help: other folders are searched when `RTF_PLUGIN_PATH` names them
+      = help: `RTF_PLUGIN_PATH` adds directories to the search
 
     1 error; nothing was started
     "#);
@@ -165,7 +165,7 @@ fn without_python(variable: &str, value: &Path) -> String {
 #[test]
 fn an_interpreter_that_is_not_there() {
     assert_snapshot!(without_python("PATH", Path::new("/nowhere")), @"
-    error: plug-ins of type `python` need `python3`, which is not there
+    error: plug-ins of type `python` need `python3`, which is missing
      --> arm.xml:2:9
       |
     2 |   <test>encoder.py</test>
@@ -173,7 +173,7 @@ fn an_interpreter_that_is_not_there() {
       |
       = note: searched `PATH`:
                 /nowhere
-      = help: install it, or name another one in `RTF_PYTHON`
+      = help: install it, or select another one in `RTF_PYTHON`
 
     1 error; nothing was started
     ");
@@ -182,7 +182,7 @@ fn an_interpreter_that_is_not_there() {
 #[test]
 fn an_interpreter_that_was_named_and_is_not_there() {
     assert_snapshot!(without_python("RTF_PYTHON", Path::new("python2.4")), @"
-    error: the interpreter `python2.4` is not there
+    error: the interpreter `python2.4` is missing
      --> arm.xml:2:9
       |
     2 |   <test>encoder.py</test>
@@ -190,7 +190,7 @@ fn an_interpreter_that_was_named_and_is_not_there() {
       |
       = note: searched `PATH`:
                 /nowhere
-      = note: `RTF_PYTHON` names it
+      = note: `RTF_PYTHON` selects it
 
     1 error; nothing was started
     ");
@@ -205,7 +205,7 @@ fn an_interpreter_that_is_none() {
     2 |   <test>encoder.py</test>
       |         ^^^^^^^^^^ needed here
       |
-      = help: `/bin/false -m rtf.host --check` has to end with exit code 0
+      = help: `/bin/false -m rtf.host --check` must exit with code 0
 
     1 error; nothing was started
     ");
@@ -216,7 +216,7 @@ fn a_plug_in_with_nothing_in_it() {
     let folder = folder("<fixture>Arm.py</fixture>\n  <test>Encoder.rb</test>");
     folder.file("Arm.py", "import rtf\n").file("Encoder.rb", "class Encoder; end\n");
     assert_snapshot!(refused(&folder, &["run", "arm.xml"]), @"
-    error: `Arm.py` holds no fixture
+    error: `Arm.py` contains no fixture
      --> arm.xml:2:12
       |
     2 |   <fixture>Arm.py</fixture>
@@ -224,7 +224,7 @@ fn a_plug_in_with_nothing_in_it() {
       |
       = help: a fixture is a class that derives from `rtf.FixtureManager`
 
-    error: `Encoder.rb` holds no test
+    error: `Encoder.rb` contains no test
      --> arm.xml:3:9
       |
     3 |   <test>Encoder.rb</test>

@@ -110,7 +110,7 @@ fn a_suite_without_tests() {
      --> arm.xml:1:1
       |
     1 | <suite name="arm">
-      | ^^^^^^ no `<test>` in it
+      | ^^^^^^ contains no `<test>`
 
     1 error; nothing was started
     "#);
@@ -173,7 +173,7 @@ fn five_mistakes_are_five_messages() {
                 [FOLDER]
                 [PREFIX]/lib/rtf/plugins
                 [ROOT]/fixtures
-      = help: other folders are searched when `RTF_PLUGIN_PATH` names them
+      = help: `RTF_PLUGIN_PATH` adds directories to the search
 
     5 errors; nothing was started
     "#);

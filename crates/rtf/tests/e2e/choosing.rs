@@ -64,7 +64,7 @@ fn mistakes_in_filters_are_all_shown_with_those_of_the_suite() {
       = note: `<test>` can have the attributes `name`, `type`, `param`, `repetition`, `tags`, `timeout`, `load-timeout`, `setup-timeout`, `teardown-timeout`, `slow`, `grace`, `after-collapse`, `leaks`, `retries`, `retry-delay`, `critical`, `exclusive`, `isolation`
       = help: did you mean `type`?
 
-    error: the filter cannot be understood
+    error: invalid filter
      --> --filter (1):1:9
       |
     1 | tag(slow
@@ -72,7 +72,7 @@ fn mistakes_in_filters_are_all_shown_with_those_of_the_suite() {
       |    |
       |    opened here
 
-    error: the filter cannot be understood
+    error: invalid filter
      --> --filter (2):1:1
       |
     1 | nmae(x)

@@ -55,7 +55,7 @@ fn with_a_format_for_programs_standard_output_has_nothing_else() {
     for format in ["json", "tap"] {
         let finished = folder.rtf(&["run", "tests/nothing.xml", "--format", format]);
         assert_eq!((finished.code, finished.stdout.as_str()), (Some(2), ""));
-        assert!(finished.stderr.contains("there is no file or folder"), "{}", finished.stderr);
+        assert!(finished.stderr.contains("there is no file or directory"), "{}", finished.stderr);
     }
 }
 
@@ -137,7 +137,7 @@ fn annotations_when_github_runs_it() {
     let finished = with_variables(&folder, &["run", "tests/arm.xml"], &github);
     assert_snapshot!(folder.redact(&finished.stderr), @"
     ::error file=tests/Brake.lua,line=4,title=arm/Brake failed::failure: 100%25: the brake, it is open%0A  at [FOLDER]/tests/Brake.lua:4
-    ::warning file=tests/arm.xml,line=2,col=13,title=`--` in a comment is not legal XML; accepted::`--` in a comment is not legal XML; accepted%0Ahint: write the option without its dashes in comments, other programs refuse the file
+    ::warning file=tests/arm.xml,line=2,col=13,title=`--` in a comment is not legal XML; accepted::`--` in a comment is not legal XML; accepted%0Ahint: remove the dashes: other programs refuse the file
     ");
     let finished =
         with_variables(&folder, &["run", "tests/arm.xml", "--annotations", "none"], &github);
@@ -156,7 +156,7 @@ fn gitlab_gets_sections() {
     let times = regex::Regex::new(r":1\d{9}:").expect("a pattern");
     assert_snapshot!(times.replace_all(&folder.redact(&stdout), ":[TIME]:"), @"
         warning  arm.xml:2:13: `--` in a comment is not legal XML; accepted
-                 hint: write the option without its dashes in comments, other programs refuse the file
+                 hint: remove the dashes: other programs refuse the file
     <ESC>[0Ksection_start:[TIME]:rtf_suite_0[collapsed=true]<CR><ESC>[0Ksuite arm
     suite arm  3 tests  arm.xml
          passed     [TIME]  arm/Encoder
@@ -213,7 +213,7 @@ fn gitlab_gets_a_code_quality_report() {
         }
       },
       {
-        "description": "`--` in a comment is not legal XML; accepted\nhint: write the option without its dashes in comments, other programs refuse the file",
+        "description": "`--` in a comment is not legal XML; accepted\nhint: remove the dashes: other programs refuse the file",
         "check_name": "rtf-comment-dashes",
         "fingerprint": "de08e7e5cf7d1344907ebe93efb4542e",
         "severity": "minor",

@@ -23,14 +23,14 @@ fn first(args: &[&str]) -> String {
 #[test]
 fn a_test_of_what_has_none() {
     assert_snapshot!(refused(&folder(), &["run", "EncoderTest.lua::run"]), @"
-    error: `EncoderTest.lua` is no suite of which `::` could name a test
+    error: `EncoderTest.lua` is not a suite: `::` cannot select a test of it
      |
-     = help: leave `::` away: `EncoderTest.lua`
+     = help: remove the `::`: `EncoderTest.lua`
 
     1 error; nothing was started
     ");
     assert_snapshot!(refused(&folder(), &["run", "amr.xml::EncoderTest"]), @"
-    error: there is no file or folder `amr.xml`
+    error: there is no file or directory `amr.xml`
      |
      = note: looked for [FOLDER]/amr.xml
 

@@ -47,7 +47,7 @@ fn a_machine_without_anything() {
       ok       dll             plug-ins in C and C++
                                [BIN]/rtf-host-native
       missing  python          plug-ins in Python, all fixture managers of rtf
-                               plug-ins of type `python` need `python3`, which is not there
+                               plug-ins of type `python` need `python3`, which is missing
                                hint: Python 3.9 or later: `apt-get install python3`, or an active virtual environment; RTF_PYTHON names another one
       missing  stacks          stack dumps of native code that hangs
                                there is no program `gdb` or `eu-stack` on PATH
@@ -57,7 +57,7 @@ fn a_machine_without_anything() {
                                hint: `apt-get install openssh-client`, or RTF_SSH names another program
     fixtures
       missing  ros2launch      a launch file of ROS 2
-                               plug-ins of type `python` need `python3`, which is not there
+                               plug-ins of type `python` need `python3`, which is missing
                                hint: `rtf doctor python` tells more
                                there is no program `ros2` on PATH
                                hint: ROS 2 from https://docs.ros.org, on Ubuntu 24.04 for example `apt-get install ros-jazzy-ros-base` with its repository; then `. /opt/ros/jazzy/setup.bash` before rtf

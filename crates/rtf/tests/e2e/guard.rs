@@ -7,7 +7,7 @@ use std::time::Duration;
 use rtf_model::{EventKind, HookId, Phase, Source, TestId, Verdict};
 
 use crate::modes::{MODES, Mode};
-use crate::support::{Folder, Journal, Random, Running, nothing_left, number, wait_until};
+use crate::support::{Folder, Journal, Random, Running, nothing_left, number, send, wait_until};
 
 /// A simulator that prints all the time, and a daemon that detaches itself twice.
 const SIMULATOR: &str = "<fixture type='process' name='arm'>\
@@ -62,7 +62,7 @@ fn a_killed_runner_leaves_nothing_and_the_robot_is_parked() {
     assert!(owners.iter().filter(|owner| *owner == "fixture s/arm").count() >= 3, "{owners:?}");
     assert_eq!(journal.record.final_verdict(TestId(0)), Verdict::Interrupted);
     let shown = folder.rtf(&["show", "latest"]);
-    assert_eq!(shown.code, Some(1));
+    assert_eq!(shown.code, Some(5));
     assert!(shown.stdout.contains("the runner died: signal 9 (SIGKILL)"), "{}", shown.stdout);
     assert!(folder.path().join("junit.xml").exists(), "the reports are written nevertheless");
 }
@@ -135,6 +135,38 @@ fn a_hook_that_hangs_or_fails_is_told() {
     }
 }
 
+/// A hook is over when its process is, whoever still prints in its name.
+#[test]
+fn a_hook_that_leaves_a_process_that_prints_for_ever_comes_to_its_end() {
+    let folder = Folder::new();
+    let hook = "<hook name='park' on='interrupt'><command>sh -c 'for i in 1 2 3 4; do yes &amp; yes >&amp;2 &amp; done; exit 0'</command></hook>";
+    suite(&folder, hook, PATIENT);
+    let running = folder.start(&["run", "s.xml"]);
+    running.wait_for(is_in_run);
+    running.kill_runner();
+    let finished = running.finish();
+    assert_eq!(finished.code, Some(5), "{}", finished.stderr);
+    assert!(finished.stderr.contains("  hook park: parked\n"), "{}", finished.stderr);
+    assert!(nothing_left(&folder));
+}
+
+#[test]
+fn a_killed_runner_leaves_no_temporary_files() {
+    let folder = Folder::new();
+    let temporary = folder.path().join("tmp");
+    std::fs::create_dir(&temporary).expect("a folder");
+    suite(&folder, "", PATIENT);
+    let mut command = folder.command(&["run", "s.xml"]);
+    command.env("TMPDIR", &temporary);
+    let running = folder.start_command(command);
+    running.wait_for(is_in_run);
+    let files = || std::fs::read_dir(&temporary).expect("the folder").count();
+    assert_eq!(files(), 1);
+    running.kill_runner();
+    assert_eq!(running.finish().code, Some(5));
+    assert_eq!(files(), 0);
+}
+
 #[test]
 fn a_killed_guard_lets_the_runner_tear_down_in_order() {
     let folder = Folder::new();
@@ -188,13 +220,11 @@ fn a_terminals_ctrl_c_counts_once() {
 }
 
 #[test]
-fn the_third_signal_kills_and_a_frozen_runner_cannot_prevent_it() {
+fn whoever_keeps_hitting_ctrl_c_ends_a_run_whose_runner_was_stopped() {
     let folder = Folder::new();
     suite(&folder, SIMULATOR, PATIENT);
     let mut running = in_own_group(&folder);
-    let stop = Command::new("kill").args(["-STOP", &running.runner().to_string()]).status();
-    assert!(stop.expect("kill").success());
-    // Signals that come at once are one signal: somebody who keeps hitting Ctrl-C.
+    send(running.runner(), "STOP");
     wait_until("the end", || {
         let ended = running.child.try_wait().expect("a child").is_some();
         if !ended {
@@ -203,7 +233,8 @@ fn the_third_signal_kills_and_a_frozen_runner_cannot_prevent_it() {
         ended.then_some(())
     });
     let finished = running.finish();
-    assert_eq!(finished.code, Some(5), "{}", finished.stderr);
+    assert_eq!(finished.code, Some(130), "{}", finished.stderr);
+    assert_eq!(folder.journal().record.interrupted(), Some("SIGINT"));
     assert!(nothing_left(&folder));
 }
 

@@ -136,3 +136,33 @@ fn a_daemon_without_a_trace_is_found() {
     }
     assert!(nothing_left(&folder));
 }
+
+/// What starts a hook must not be looked for where the suite says.
+#[test]
+fn an_absolute_command_needs_nothing_of_the_suites_path() {
+    let folder = Folder::new();
+    folder.file("Passes.lua", PASSES);
+    let env = "<env name='PATH' value='/nowhere'/>";
+    let hook =
+        "<hook name='park' on='end'><command>/bin/sh -c 'echo here > parked'</command></hook>";
+    folder.file("s.xml", &suite(&format!("{env}{hook}"), "<test>Passes.lua</test>"));
+    let finished = folder.rtf(&["run", "s.xml"]);
+    assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
+    assert_eq!(parked(&folder), "here\n");
+}
+
+#[test]
+fn a_command_that_cannot_be_executed_says_why() {
+    let folder = Folder::new();
+    folder.file("Passes.lua", PASSES).file("park", "#!/nowhere/sh\n");
+    let executable = std::os::unix::fs::PermissionsExt::from_mode(0o755);
+    std::fs::set_permissions(folder.path().join("park"), executable).expect("the file");
+    let hook = "<hook name='park' on='end'><command>./park</command></hook>";
+    folder.file("s.xml", &suite(hook, "<test>Passes.lua</test>"));
+    let finished = folder.rtf(&["run", "s.xml"]);
+    assert_eq!(finished.code, Some(4), "{}{}", finished.stdout, finished.stderr);
+    let ran = &folder.journal().record.hooks[0].runs[0];
+    let (problem, output) = (ran.problem(), &ran.output);
+    assert_eq!(problem, Some("it ended with exit code 127"), "{output}");
+    assert!(output.contains("/park` cannot be executed: No such file"), "{output}");
+}

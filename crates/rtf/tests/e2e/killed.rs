@@ -23,7 +23,7 @@ fn a_killed_run_can_still_be_shown_and_reported() {
         assert_eq!(running.finish().code, Some(5));
         let before = read_journal(&journal);
         let shown = folder.rtf(&["show", "latest"]);
-        assert_eq!(shown.code, Some(1), "{}{}", shown.stdout, shown.stderr);
+        assert_eq!(shown.code, Some(5), "{}{}", shown.stdout, shown.stderr);
         assert!(shown.stdout.contains("INCOMPLETE"), "{}", shown.stdout);
         let passed = before.record.totals().of(Verdict::Passed);
         assert_eq!(shown.stdout.matches("  passed  ").count(), passed as usize, "{}", shown.stdout);

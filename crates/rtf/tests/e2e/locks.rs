@@ -6,7 +6,7 @@ use std::time::Duration;
 use insta::assert_snapshot;
 use rtf_model::EventKind;
 
-use crate::support::{Folder, Random, build_cpp, nothing_left, root, wait_until};
+use crate::support::{Folder, Random, Running, build_cpp, nothing_left, root, send, wait_until};
 
 /// Says that it runs, and waits until it may end.
 const WAITS: &str = "TestCase = {}\nfunction TestCase.run()\n  io.open('begun', 'w'):close()\n  \
@@ -92,10 +92,9 @@ fn who_waits_says_for_whom_and_gives_up() {
     let text = String::from_utf8_lossy(&gave_up.stdout);
     assert_eq!(gave_up.status.code(), Some(1), "{text}");
     assert!(text.contains("waiting  suite next waits for `robot`, held by ada@"), "{text}");
-    assert!(
-        text.contains("`robot` is held by ada@") && text.contains("given up after 0.3 s"),
-        "{text}"
-    );
+    // The time that it really waited: on a busy machine more than its limit.
+    assert!(text.contains("`robot` is held by ada@"), "{text}");
+    assert!(text.contains("; given up after "), "{text}");
     folder.file("end", "");
     assert_eq!(running.finish().code, Some(0));
     let free = rtf(&folder, &["locks", "--wait", "robot"]);
@@ -153,7 +152,7 @@ fn mistakes_in_requires() {
     1 | <suite requires='robot arm/0 arm/two robot /etc .hidden'><test>P.lua</test></suite>
       |                        ^^^^^
       |
-      = help: `gpu/2`: two suites at a time may have a `gpu`
+      = help: with `gpu/2`, two suites at a time can use a `gpu`
 
     error: `arm/two` has `two`, expected a number from 1 to 1000
      --> s.xml:1:30
@@ -161,7 +160,7 @@ fn mistakes_in_requires() {
     1 | <suite requires='robot arm/0 arm/two robot /etc .hidden'><test>P.lua</test></suite>
       |                              ^^^^^^^
       |
-      = help: `gpu/2`: two suites at a time may have a `gpu`
+      = help: with `gpu/2`, two suites at a time can use a `gpu`
 
     error: `robot` is required twice
      --> s.xml:1:38
@@ -175,7 +174,7 @@ fn mistakes_in_requires() {
     1 | <suite requires='robot arm/0 arm/two robot /etc .hidden'><test>P.lua</test></suite>
       |                                            ^^^^
       |
-      = help: `gpu/2`: two suites at a time may have a `gpu`
+      = help: with `gpu/2`, two suites at a time can use a `gpu`
 
     error: `.hidden` is not the name of a resource
      --> s.xml:1:49
@@ -187,4 +186,36 @@ fn mistakes_in_requires() {
 
     5 errors; nothing was started
     ");
+}
+
+/// The last line of defence: the driver lives, its lock is free, and nobody has
+/// parked the robot.
+#[test]
+fn what_a_run_left_whose_guard_was_killed_too_is_stopped_before_the_robot_is_used() {
+    let folder = folder();
+    let driver = "<fixture type='process'><command>sh -c 'echo $$ > driver; echo up; exec sleep 1000'</command><ready log='up'/></fixture>";
+    let suite = format!("<suite requires='robot'>{driver}<test>W.lua</test></suite>");
+    folder.file("long.xml", &suite);
+    let finds = "<fixture type='process'><command>sh -c 'grep -q . /proc/$(cat driver)/cmdline &amp;&amp; touch met; echo up; exec sleep 1000'</command><ready log='up'/></fixture>";
+    let suite = format!("<suite requires='robot'>{finds}<test>P.lua</test></suite>");
+    folder.file("next.xml", &suite);
+    let running = long(&folder);
+    send(running.child.id().cast_signed(), "STOP");
+    running.kill_runner();
+    send(running.child.id().cast_signed(), "KILL");
+    // Its driver has its outputs: they stay open.
+    let Running { mut child, .. } = running;
+    child.wait().expect("the guard was killed");
+    assert!(!nothing_left(&folder), "the driver lives");
+    let next = rtf(&folder, &["run", "next.xml"]);
+    let shown = String::from_utf8_lossy(&next.stdout).into_owned();
+    assert_eq!(next.status.code(), Some(0), "{shown}");
+    assert!(!folder.path().join("met").exists(), "{shown}");
+    assert!(shown.contains("(suite long of run"), "{shown}");
+    assert!(shown.contains("were killed: its hooks did not run"), "{shown}");
+    assert!(shown.contains("sleep 1000"), "what was stopped is named: {shown}");
+    wait_until("the end of the driver", || nothing_left(&folder).then_some(()));
+    let again = rtf(&folder, &["run", "next.xml"]);
+    let shown = String::from_utf8_lossy(&again.stdout).into_owned();
+    assert!(!shown.contains("were killed"), "it is said once: {shown}");
 }

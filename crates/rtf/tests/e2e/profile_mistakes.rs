@@ -18,7 +18,7 @@ fn every_mistake_is_told_at_its_place() {
     exit code 2
     ----- stdout
     ----- stderr
-    error: nothing says what `${param:tolerance}` is
+    error: the parameter `tolerance` has no value
      --> tests/arm.xml:4:45
       |
     4 |   <test param="--within ${param:tolerance}">Told.py</test>
@@ -26,7 +26,7 @@ fn every_mistake_is_told_at_its_place() {
       |
       = help: write it under `[param]` in `rtf.toml`, give `--set tolerance=VALUE`, or a default: `${param:tolerance=VALUE}`
 
-    error: nothing says what `${param:n}` is
+    error: the parameter `n` has no value
      --> tests/arm.xml:5:55
       |
     5 |   <test name="special" param="$${param:x} ${param:n}">Told.py
@@ -195,7 +195,7 @@ fn a_profile_that_there_is_not() {
     ----- stderr
     error: there is no profile `reel`
      |
-     = note: looked in rtf.toml
+     = note: searched rtf.toml
      = help: did you mean `real`?
 
     1 error; nothing was started
@@ -206,7 +206,7 @@ fn a_profile_that_there_is_not() {
     ----- stderr
     error: there is no profile `lab`
      |
-     = note: looked in rtf.toml
+     = note: searched rtf.toml
      = help: the profiles are `real`, `sim`
 
     1 error; nothing was started
@@ -219,7 +219,7 @@ fn a_profile_that_there_is_not() {
     ----- stderr
     error: there is no profile `real`
      |
-     = help: profiles are written in an `rtf.toml` beside the suites, or above them
+     = help: define profiles in an `rtf.toml` next to the suites, or above them
 
     1 error; nothing was started
     ");
@@ -234,7 +234,7 @@ fn a_parameter_that_nobody_sets() {
     exit code 2
     ----- stdout
     ----- stderr
-    error: nothing says what `${param:tolerance}` is
+    error: the parameter `tolerance` has no value
      --> tests/arm.xml:4:45
       |
     4 |   <test param="--within ${param:tolerance}">Told.py</test>
@@ -266,7 +266,7 @@ fn two_files_cannot_both_decide_over_one_run() {
     exit code 2
     ----- stdout
     ----- stderr
-    error: `results` holds for the whole run, and two files of it say what it is
+    error: `results` applies to the whole run, and two files set it
      --> a/rtf.toml:1:1
       |
     1 | results = "runs"
@@ -277,7 +277,7 @@ fn two_files_cannot_both_decide_over_one_run() {
     2 | results = "runs"
       | -------
       |
-      = help: run the suites one after the other, or say it in one file above both
+      = help: run the suites one after the other, or set it in one file above both
 
     1 error; nothing was started
     "#);

@@ -37,7 +37,7 @@ fn a_run_as_it_is_told() {
     exit code 1
     ----- stdout
         warning  arm.xml:2:13: `--` in a comment is not legal XML; accepted
-                 hint: write the option without its dashes in comments, other programs refuse the file
+                 hint: remove the dashes: other programs refuse the file
     suite arm  2 tests  arm.xml
          passed     [TIME]  arm/Encoder
          failed     [TIME]  arm/rate

@@ -30,7 +30,8 @@ class Shared(rtf.TestCase):
         if self.what == "exit":
             os._exit(0)
         if self.what == "leave":
-            subprocess.Popen(["setsid", "sh", "-c", "sleep 1000 & exit 0"]).wait()
+            script = "sleep 1000 & until read name < /proc/$!/comm && test $name = sleep; do :; done"
+            subprocess.Popen(["setsid", "sh", "-c", script]).wait()
         if self.what == "zombie":
             subprocess.Popen(["true"])
             time.sleep(0.05)
@@ -122,6 +123,47 @@ fn printed(events: &[Event]) -> BTreeMap<u32, String> {
         }
     }
     printed.into_iter().map(|(test, texts)| (test, texts.concat())).collect()
+}
+
+/// Its end takes a while, since its output is held open by something that cannot be
+/// found, and it is asked for the next test meanwhile.
+#[test]
+fn a_host_that_is_asked_for_a_test_while_it_ends_never_hangs_the_run() {
+    let folder = Folder::new();
+    let plugin = r#"
+import os, subprocess, threading, time, rtf
+class T(rtf.TestCase):
+    def run(self):
+        threading.Thread(target=self.end, daemon=True).start()
+    def end(self):
+        while not os.path.exists(f"checking-{os.getpid()}"):
+            time.sleep(0.001)
+        subprocess.Popen(["setsid", "env", "-i", "sleep", "2"])
+        os._exit(7)
+    def tearDown(self):
+        with open("pid", "w") as stream:
+            stream.write(str(os.getpid()))
+"#;
+    let fixture = r#"
+import os, time, rtf
+class F(rtf.FixtureManager):
+    def check(self):
+        if os.path.exists("pid"):
+            with open("pid") as stream:
+                pid = stream.read()
+            os.rename("pid", f"checking-{pid}")
+            while os.path.exists(f"/proc/{pid}"):
+                time.sleep(0.001)
+"#;
+    folder.file("T.py", plugin).file("F.py", fixture);
+    let text = "<suite name='s' timeout='30s'><fixture type='python'>F</fixture>\
+        <test isolation='shared' type='python' repetition='3'>T</test></suite>";
+    folder.file("s.xml", text);
+    let finished = folder.rtf(&["run", "s.xml"]);
+    assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
+    let attempts = &folder.journal().record.tests[0].attempts;
+    assert_eq!(attempts.len(), 3);
+    assert!(finished.stdout.contains("ended between two tests"), "{}", finished.stdout);
 }
 
 #[test]

@@ -1,16 +1,16 @@
 //! Ctrl-C: once tears down, twice kills, and nothing is left.
 
 use std::io::Write as _;
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 
 use rtf_model::{EventKind, Phase, TestId, Verdict};
 
-use crate::support::{Folder, Running, nothing_left};
+use crate::support::{Folder, Running, next_request, nothing_left};
 
 const FIXTURE: &str = "import rtf\nclass F(rtf.FixtureManager):\n    def setup(self, args):\n        return True\n    def tearDown(self):\n        open('torn-down', 'w').close()\n";
 const PATIENT: &str =
     "import rtf\nclass T(rtf.TestCase):\n    def run(self):\n        self.sleep(1000)\n";
-const STUBBORN: &str = "import rtf, signal, time\nclass T(rtf.TestCase):\n    def run(self):\n        signal.signal(signal.SIGTERM, signal.SIG_IGN)\n        while True:\n            time.sleep(1)\n";
+const STUBBORN: &str = "import rtf, signal, time\nclass T(rtf.TestCase):\n    def run(self):\n        signal.signal(signal.SIGTERM, signal.SIG_IGN)\n        while True:\n            try:\n                time.sleep(1000)\n            except BaseException:\n                pass\n";
 
 fn run(folder: &Folder, test: &str) -> Running {
     folder.file("F.py", FIXTURE).file("T.py", test);
@@ -68,6 +68,7 @@ fn the_second_signal_kills_without_tear_down() {
     let running = run(&folder, STUBBORN);
     running.signal("INT");
     running.wait_for(|kind| matches!(kind, EventKind::TestStopping { .. }));
+    next_request();
     running.signal("INT");
     assert_eq!(running.finish().code, Some(130));
     assert_eq!(folder.journal().record.verdict(TestId(0)), Some(Verdict::Interrupted));
@@ -101,5 +102,122 @@ fn a_tear_down_that_hangs_ends_with_the_time_for_the_shutdown() {
     assert_eq!(record.fixtures[0].problems[0].1, format!("it was killed: {told}"));
     assert!(folder.path().join("torn-down").exists(), "its tear-down had begun");
     assert!(folder.path().join("parked").exists());
+    assert!(nothing_left(&folder));
+}
+
+const HOOK: &str =
+    "<hook name='park' on='interrupt'><command>sh -c 'echo parked >> parked'</command></hook>";
+
+/// A patient test over a fixture, with a hook; it runs already.
+fn run_with_hook(folder: &Folder, hook: &str) -> Running {
+    folder.file("F.py", FIXTURE).file("T.py", PATIENT);
+    let suite = format!(
+        "<suite><fixture type='python'>F</fixture>{hook}<test type='python'>T</test></suite>"
+    );
+    folder.file("s.xml", &suite);
+    let running = folder.start(&["run", "s.xml"]);
+    running.wait_for(|kind| matches!(kind, EventKind::TestPhase { phase: Phase::Run, .. }));
+    running
+}
+
+fn shell(script: &str) {
+    assert!(Command::new("sh").args(["-c", script]).status().expect("sh").success());
+}
+
+/// `timeout` signals its child and then its group, a logout sends SIGHUP, SIGTERM
+/// and SIGCONT.
+#[test]
+fn signals_that_come_together_are_one_request() {
+    let folder = Folder::new();
+    let running = run_with_hook(&folder, HOOK);
+    let guard = running.child.id();
+    shell(&format!("for s in TERM HUP INT TERM CONT TERM; do kill -$s {guard}; done"));
+    assert_eq!(running.finish().code, Some(143));
+    assert!(folder.path().join("torn-down").exists(), "torn down, not killed");
+    assert_eq!(folder.read("parked"), "parked\n");
+    assert!(nothing_left(&folder));
+}
+
+/// A logout does that: it stops processes, signals them, and lets them go on.
+#[test]
+fn signals_that_wait_for_a_stopped_runner_are_one_request() {
+    let folder = Folder::new();
+    let running = run_with_hook(&folder, HOOK);
+    let runner = running.runner();
+    shell(&format!("for s in STOP TERM HUP CONT; do kill -$s {runner}; done"));
+    let code = running.finish().code;
+    assert!(code == Some(143) || code == Some(129), "{code:?}");
+    assert!(folder.path().join("torn-down").exists(), "torn down, not killed");
+    assert_eq!(folder.read("parked"), "parked\n");
+    assert!(nothing_left(&folder));
+}
+
+#[test]
+fn the_second_request_kills_and_the_hook_runs() {
+    let folder = Folder::new();
+    folder.file("T.py", STUBBORN).file("F.py", FIXTURE);
+    let suite = format!(
+        "<suite><fixture type='python'>F</fixture>{HOOK}<test type='python' grace='60s'>T</test></suite>"
+    );
+    folder.file("s.xml", &suite);
+    let running = folder.start(&["run", "s.xml"]);
+    running.wait_for(|kind| matches!(kind, EventKind::TestPhase { phase: Phase::Run, .. }));
+    running.signal("INT");
+    running.wait_for(|kind| matches!(kind, EventKind::TestStopping { .. }));
+    next_request();
+    running.signal("INT");
+    assert_eq!(running.finish().code, Some(130));
+    assert!(!folder.path().join("torn-down").exists());
+    assert_eq!(folder.read("parked"), "parked\n");
+}
+
+#[test]
+fn the_third_request_kills_the_hook_which_the_journal_and_the_exit_code_say() {
+    let folder = Folder::new();
+    let hook = "<hook name='park' on='interrupt' timeout='1h'><command>sleep 1000</command></hook>";
+    let running = run_with_hook(&folder, hook);
+    running.signal("INT");
+    running.wait_for(|kind| matches!(kind, EventKind::HookStarted { .. }));
+    next_request();
+    running.signal("INT");
+    running.wait_for(|kind| matches!(kind, EventKind::FixtureStopped { .. }));
+    next_request();
+    running.signal("INT");
+    let finished = running.finish();
+    assert_eq!(finished.code, Some(4), "{}{}", finished.stdout, finished.stderr);
+    let record = folder.journal().record;
+    assert_eq!(record.interrupted(), Some("SIGINT"));
+    assert_eq!(
+        record.hooks[0].problems().collect::<Vec<_>>(),
+        ["hook `park` on interrupt: it was killed by the third request to end the run"]
+    );
+    assert_eq!(folder.rtf(&["show", "latest"]).code, Some(4));
+    assert!(nothing_left(&folder));
+}
+
+/// SIGXFSZ would end the runner and the guard without a word. What they start
+/// keeps its own way with it.
+#[test]
+fn a_limit_of_file_sizes_is_reported_and_does_not_end_the_run() {
+    let folder = Folder::new();
+    folder.file("F.py", FIXTURE).file(
+        "T.py",
+        "import rtf\nclass T(rtf.TestCase):\n    def run(self):\n        for i in range(2000):\n            self.report('line %d' % i)\n",
+    );
+    let hook = "<hook name='park' on='end'><command>sh -c 'exec head -c 1000000 /dev/zero > big'</command></hook>";
+    folder.file(
+        "s.xml",
+        &format!(
+            "<suite><fixture type='python'>F</fixture>{hook}<test type='python'>T</test></suite>"
+        ),
+    );
+    let mut command = Command::new("sh");
+    command.args(["-c", "ulimit -f 64; exec \"$0\" run s.xml", env!("CARGO_BIN_EXE_rtf")]);
+    let output = command.current_dir(folder.path()).output().expect("sh");
+    let shown = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{shown}");
+    assert!(shown.contains("File too large"), "{shown}");
+    assert!(shown.contains("it ended with signal 25 (SIGXFSZ)"), "{shown}");
+    assert!(folder.path().join("torn-down").exists(), "{shown}");
     assert!(nothing_left(&folder));
 }

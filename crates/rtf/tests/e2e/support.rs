@@ -217,14 +217,24 @@ impl Running {
     }
 
     pub fn signal(&self, signal: &str) {
-        let status =
-            Command::new("kill").args(["-s", signal, &self.child.id().to_string()]).status();
-        assert!(status.expect("kill").success());
+        send(self.child.id().cast_signed(), signal);
     }
 
     pub fn finish(self) -> Finished {
         Finished::of(self.child.wait_with_output().expect("rtf ends"))
     }
+}
+
+/// Waits until the next signal is another request to end the run: signals within
+/// the documented window belong to the one before.
+pub fn next_request() {
+    std::thread::sleep(rtf_engine::guard::WINDOW + Duration::from_millis(100));
+}
+
+/// Sends a signal.
+pub fn send(pid: i32, signal: &str) {
+    let status = Command::new("kill").args(["-s", signal, &pid.to_string()]).status();
+    assert!(status.expect("kill").success());
 }
 
 /// Kills a process with SIGKILL; whether it was there.

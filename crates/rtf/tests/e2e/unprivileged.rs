@@ -53,6 +53,28 @@ fn end(running: Running) -> (Option<i32>, String) {
     (finished.code, finished.stdout + &finished.stderr)
 }
 
+/// Without control groups, it has to be caught between two of its lives.
+#[test]
+fn what_a_test_left_is_found_when_it_starts_anew_all_the_time() {
+    let folder = Folder::new();
+    // It ends by itself if nobody catches it.
+    let chain = "import os\nos.setsid()\nopen('began', 'w').close()\n\
+        for life in range(20000):\n    if os.fork():\n        os._exit(0)\n";
+    let test = "TestCase = {}\nfunction TestCase.run()\n  \
+        os.execute('python3 chain.py >/dev/null 2>&1 & while ! test -e began; do sleep 0.01; done')\nend\n";
+    folder.file("chain.py", chain).file("T.lua", test);
+    folder.file("s.xml", "<suite name='s'><test leaks='fail'>T.lua</test></suite>");
+    let mut command = for_nobody(&folder);
+    command.args(["run", "s.xml"]);
+    let (code, printed) = end(start(&folder, command));
+    assert_eq!(code, Some(1), "{printed}");
+    let record = folder.journal().record;
+    assert_eq!(record.verdict(TestId(0)), Some(Verdict::Error), "{printed}");
+    let reason = record.tests[0].reason().expect("a reason");
+    assert!(reason.contains("chain.py"), "{reason}");
+    assert!(nothing_left(&folder));
+}
+
 /// Where the kernel allows it to everybody, it needs no root; where it does
 /// not, that is said.
 #[test]

@@ -59,7 +59,7 @@ fn check_counts_what_is_there() {
     2 |   <!-- -- -->
       |        ^^
       |
-      = help: write the option without its dashes in comments, other programs refuse the file
+      = help: remove the dashes: other programs refuse the file
     ");
     assert!(!folder.path().join("rtf-results").exists());
 }
@@ -75,7 +75,7 @@ fn options_that_have_no_effect_are_told() {
     ----- stderr
     warning: the parameter string has no effect: no plug-in is given directly
      |
-     = note: tests of a suite have what their suite says
+     = note: a suite file defines these values for its tests
     ");
 }
 
@@ -210,6 +210,8 @@ fn help_of_run() {
     Web:
           --web[=<ADDR:PORT>]      Show the run live in a browser, on this address (127.0.0.1:8080) or
                                    the next free port
+          --web-linger <DURATION>  Keep serving the run after it has ended, for this long or until
+                                   Ctrl-C, like `10min`
           --web-token-file <FILE>  Read the token from a file, instead of making a new one
           --web-allow-remote       Let other machines connect: with the token, also for reading, and
                                    with TLS

@@ -28,7 +28,7 @@ impl Web {
         Self::of(folder.start(args))
     }
 
-    fn of(mut running: Running) -> Self {
+    pub fn of(mut running: Running) -> Self {
         let err = running.child.stderr.take().expect("standard error");
         let mut before = Vec::new();
         let mut lines = BufReader::new(err).lines();
@@ -54,13 +54,18 @@ impl Web {
         ask(self.address, &format!("POST /api/v1/runs/{run}{path}"), &[&bearer], "")
     }
 
+    /// Waits for the end of the run.
+    pub fn finish(self) -> Finished {
+        self.running.finish()
+    }
+
     /// Ends the server with a signal.
     pub fn end(self, signal: &str) -> Finished {
         self.running.signal(signal);
         self.running.finish()
     }
 
-    fn events(&self, query: &str) -> Stream {
+    pub fn events(&self, query: &str) -> Stream {
         Stream::open(self.address, &format!("/api/v1/runs/current/events{query}"), &[])
     }
 }
@@ -200,6 +205,8 @@ fn what_is_not_allowed_starts_nothing() {
     error: `0.0.0.0` can be reached from beyond this machine
     hint: `--web-allow-remote` allows that: reading then needs the token, and TLS is used
     ");
+    let private = std::os::unix::fs::PermissionsExt::from_mode(0o600);
+    std::fs::set_permissions(folder.path().join("token"), private).expect("permissions");
     let weak = ["run", "--web=0", "--web-token-file", "token", "quick.lua"];
     insta::assert_snapshot!(folder.shown(&folder.rtf(&weak)), @"
     exit code 2

@@ -15,11 +15,15 @@ namespace robottestingframework {
 namespace internal {
 class HostedTest;
 }
+namespace plugin {
+class DllPluginLoader;
+}
 
 class TestCase : public Test
 {
 public:
-    TestCase(std::string name, std::string param = "") : Test(name), param_(param) {}
+    // A test without a name gets that of its plug-in.
+    TestCase(std::string name = "", std::string param = "") : Test(name), param_(param) {}
     ~TestCase() override {}
 
     // Called first. argv[0] is the test's name, then come the arguments in its
@@ -80,6 +84,7 @@ public:
 
 private:
     friend class internal::HostedTest;
+    friend class plugin::DllPluginLoader;
 
     void begin(TestResult &result)
     {

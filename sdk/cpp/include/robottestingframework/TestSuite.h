@@ -18,6 +18,9 @@
 #include "internal/Attempt.h"
 
 namespace robottestingframework {
+namespace internal {
+class HostedSuite;
+}
 
 class TestSuite : public Test, public FixtureEvents
 {
@@ -127,6 +130,8 @@ protected:
     }
 
 private:
+    friend class internal::HostedSuite;
+
     bool set_up()
     {
         bool ready = false;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shows a run in a browser on this machine: http://127.0.0.1:<port>. The page
-// asks /events?from=N for what happened since its last question, in JSON.
+// asks /events?from=N for what happened since its last question, in JSON. Clients
+// of robot-testing-framework 2.x have /status and /update, as spec/web.md tells.
 #ifndef ROBOTTESTINGFRAMEWORK_WEBPROGRESSLISTENER_H
 #define ROBOTTESTINGFRAMEWORK_WEBPROGRESSLISTENER_H
 
 #include <cstddef>
 #include <cstdlib>
+#include <cstring>
 #include <iostream>
 #include <memory>
 #include <mutex>
@@ -13,9 +15,11 @@
 #include <vector>
 
 #include "TestListener.h"
+#include "TestSuite.h"
 #include "internal/Json.h"
 #include "internal/LoopbackServer.h"
 #include "internal/WebPage.h"
+#include "internal/WebStatus.h"
 
 namespace robottestingframework {
 
@@ -39,40 +43,66 @@ public:
     // Where it listens; 0 when it does not.
     unsigned int port() const { return server_->port(); }
 
-    void addReport(const Test *test, TestMessage msg) override { tell("report", test, msg); }
-    void addError(const Test *test, TestMessage msg) override { tell("error", test, msg); }
-    void addFailure(const Test *test, TestMessage msg) override { tell("failure", test, msg); }
-    void startTest(const Test *test) override { keep("test-started", test->getName(), ""); }
+    void addReport(const Test *test, TestMessage msg) override
+    {
+        tell("report", "INFO", test, msg);
+    }
+    void addError(const Test *test, TestMessage msg) override { tell("error", "ERROR", test, msg); }
+    void addFailure(const Test *test, TestMessage msg) override
+    {
+        tell("failure", "FAIL", test, msg);
+    }
+    void startTest(const Test *test) override
+    {
+        const std::string name = test->getName();
+        keep("test-started", name, "", [&] { status_.test_started(name); });
+    }
     void endTest(const Test *test) override
     {
-        keep("test-ended", test->getName(), test->succeeded() ? "passed" : "failed");
+        const std::string name = test->getName();
+        const bool passed = test->succeeded();
+        keep("test-ended", name, outcome(passed), [&] { status_.test_ended(name, passed); });
     }
-    void startTestSuite(const Test *test) override { keep("suite-started", test->getName(), ""); }
+    void startTestSuite(const Test *test) override
+    {
+        const std::string name = test->getName();
+        const TestSuite *const suite = dynamic_cast<const TestSuite *>(test);
+        const std::size_t size = suite == nullptr ? 0 : suite->size();
+        keep("suite-started", name, "", [&] { status_.suite_started(name, size); });
+    }
     void endTestSuite(const Test *test) override
     {
-        keep("suite-ended", test->getName(), test->succeeded() ? "passed" : "failed");
+        const std::string name = test->getName();
+        const bool passed = test->succeeded();
+        keep("suite-ended", name, outcome(passed), [&] { status_.suite_ended(name, passed); });
     }
     void startTestRunner() override { set_running(true); }
     void endTestRunner() override { set_running(false); }
 
 private:
-    void tell(const std::string &kind, const Test *test, const TestMessage &message)
+    static const char *outcome(bool passed) { return passed ? "passed" : "failed"; }
+
+    void tell(const char *kind, const char *word, const Test *test, const TestMessage &message)
     {
         std::string text = internal::text_of(message);
         if (verbose_ && !message.getSourceFileName().empty()) {
             text += " (" + message.getSourceFileName() + ":" +
                     std::to_string(message.getSourceLineNumber()) + ")";
         }
-        keep(kind, test->getName(), text);
+        const std::string name = test->getName();
+        keep(kind, name, text, [&] { status_.reported(word, name, text); });
     }
 
-    void keep(const std::string &kind, const std::string &name, const std::string &text)
+    // Both views of what happened change at once.
+    template <class Change>
+    void keep(const char *kind, const std::string &name, const std::string &text, Change change)
     {
         const std::string json = "{\"kind\":" + internal::json_string(kind) +
                                  ",\"name\":" + internal::json_string(name) +
                                  ",\"text\":" + internal::json_string(text) + "}";
         const std::lock_guard<std::mutex> lock(mutex_);
         events_.push_back(json);
+        change();
     }
 
     void set_running(bool running)
@@ -86,6 +116,11 @@ private:
         const std::string events = "/events";
         if (path == "/") {
             return internal::Answer{200, "text/html", internal::web_page()};
+        }
+        if (path == "/status" || path == "/update") {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            return internal::Answer{200, "application/json",
+                                    path == "/status" ? status_.status() : status_.update()};
         }
         if (path.compare(0, events.size(), events) != 0) {
             return internal::Answer{404, "text/plain", "no such page\n"};
@@ -112,6 +147,7 @@ private:
     bool verbose_;
     std::mutex mutex_; // of what follows
     std::vector<std::string> events_;
+    internal::WebStatus status_;
     bool running_ = false;
     // Last: it may be asked as soon as it is there.
     std::unique_ptr<internal::LoopbackServer> server_;

@@ -15,4 +15,8 @@ using ::robottestingframework::FixtureManager;
 
 } // namespace RTF
 
+// In the first versions this header was all that a plug-in included.
+#include "TestAssert.h"
+#include "dll/Plugin.h"
+
 #endif

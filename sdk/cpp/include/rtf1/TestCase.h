@@ -14,4 +14,8 @@ using ::robottestingframework::TestCase;
 
 } // namespace RTF
 
+// In the first versions this header was all that a plug-in included.
+#include "TestAssert.h"
+#include "dll/Plugin.h"
+
 #endif

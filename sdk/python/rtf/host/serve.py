@@ -177,7 +177,6 @@ class Host:
     def __init__(self, line: channel.Channel) -> None:
         """Answer on `line`."""
         self._channel = line
-        self._process = os.getpid()
         self._is_initialized = False
         self._fixture: FixtureManager | None = None
         self._task: Task | None = None
@@ -197,9 +196,6 @@ class Host:
             reader.finish(request, fixture_is_up=self._fixture is not None)
             self._channel.refuse(request.number, refused.code, refused.text)
             return True
-        if os.getpid() != self._process:
-            # A forked child came back from the plug-in; its parent serves the runner.
-            os._exit(0)
         reader.finish(request, fixture_is_up=self._fixture is not None, last=last)
         # The beginning of the next test tells that this one is over: both in one piece.
         held = "stays" in result and reader.has_next()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 
@@ -145,6 +146,7 @@ def _tear_down(session: Session, plugin: TestCase | FixtureManager) -> None:
 
 def _guard(session: Session, function: Callable[[], object]) -> None:
     """Call into the plug-in and record what it raises. Only `SystemExit` gets through."""
+    process = os.getpid()
     try:
         try:
             _interruptible.append(session)
@@ -161,6 +163,11 @@ def _guard(session: Session, function: Callable[[], object]) -> None:
         # Ctrl-C in place of our handler's exception: a library set its own.
         if not (isinstance(problem, KeyboardInterrupt) and session.judge.stop_requested()):
             record_exception(session, problem)
+    if os.getpid() != process:
+        # A forked child came back from the plug-in; its parent serves the runner.
+        _flush_output()
+        session.sampling.send()
+        os._exit(0)
 
 
 def record_exception(session: Session, problem: BaseException) -> None:
@@ -189,9 +196,13 @@ def _is_false(result: object) -> bool:
     return type(result).__name__ in {"bool", "bool_"} and not result
 
 
-def _answer(session: Session) -> Answer:
+def _flush_output() -> None:
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
+
+
+def _answer(session: Session) -> Answer:
+    _flush_output()
     session.sampling.send()
     problem = session.judge.first()
     if problem is None:

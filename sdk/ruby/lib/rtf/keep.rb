@@ -5,6 +5,17 @@ module RTF
   module Keep
     module_function
 
+    KINDS = { "directory" => "a directory", "fifo" => "a FIFO" }.freeze
+
+    # Raises an error that says why something cannot be attached: only files can.
+    def check(path)
+      return if File.file?(path)
+      raise Errno::ENOENT, "there is no file `#{path}` to attach" unless File.exist?(path)
+
+      kind = KINDS.fetch(File.ftype(File.realpath(path)), "a device or a socket")
+      raise IOError, "`#{path}` cannot be attached: it is #{kind}, not a file"
+    end
+
     # Copies a file into `folder`, under a name that no other has; returns where.
     def copy(path, name, folder)
       make(folder)

@@ -21,8 +21,7 @@ module RTF
     # Keeps a file with the result. It is copied now: write it before, to its end.
     def attach(path, name: nil, media_type: nil)
       full = File.expand_path(path)
-      raise Errno::ENOENT, "there is no file `#{full}` to attach" unless File.file?(full)
-
+      Keep.check(full)
       name = Text.utf8(name || File.basename(full))
       session = Session.current
       folder = session.task.keep_folder

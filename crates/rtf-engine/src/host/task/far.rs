@@ -1,8 +1,6 @@
 //! A process on another machine.
 
-use tokio::io::AsyncWriteExt;
-
-use super::{DRAIN_LIMIT, Task};
+use super::Task;
 use crate::host::remote;
 
 impl Task {
@@ -12,11 +10,8 @@ impl Task {
     }
 
     /// Sends a signal there.
-    pub(super) async fn signal_remote(&mut self, signal: i32) {
-        if let Some(channel) = &mut self.process.channel {
-            let line = remote::signal_line(signal);
-            // A connection that is stuck is noticed by its limit.
-            let _ = tokio::time::timeout(DRAIN_LIMIT, channel.write_all(&line)).await;
-        }
+    pub(super) fn signal_remote(&mut self, signal: i32) {
+        // A connection that is stuck is noticed by its limit.
+        self.outgoing.push(&remote::signal_line(signal));
     }
 }

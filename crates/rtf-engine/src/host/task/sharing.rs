@@ -10,9 +10,10 @@ use std::collections::VecDeque;
 
 use rtf_model::protocol::{Notification, OWNER_VARIABLE, Plugin, Reply, Request};
 use rtf_model::{ExitStatus, LeftProcess, Phase, Source, Stream};
+use tokio::sync::mpsc;
 
-use super::{LINE_LIMIT, Task, keep};
-use crate::host::codec::{self, FromHost};
+use super::{Order, Task, keep};
+use crate::host::codec::FromHost;
 use crate::host::usage;
 use crate::run::machine::{HostId, HostInput};
 
@@ -41,9 +42,8 @@ pub(super) struct Sharing {
     released: bool,
     /// Whether each output has ended, for this test.
     marked: [bool; 2],
-    /// What is held back of the channel, up to where it was read, and of each output.
-    channel: Vec<u8>,
-    read: usize,
+    /// What is held back of the channel, and of each output.
+    lines: VecDeque<Result<FromHost, String>>,
     outputs: [Vec<u8>; 2],
     /// How many tests the host has served, the present one included.
     served: u32,
@@ -62,8 +62,7 @@ impl Sharing {
             answered: false,
             released: false,
             marked: [false; 2],
-            channel: Vec::new(),
-            read: 0,
+            lines: VecDeque::new(),
             outputs: [Vec::new(), Vec::new()],
             served: 1,
             owner: None,
@@ -71,21 +70,14 @@ impl Sharing {
         }
     }
 
-    /// The next line that is complete.
-    fn take_line(&mut self) -> Option<Result<FromHost, String>> {
-        let rest = &self.channel[self.read..];
-        let Some(end) = rest.iter().position(|byte| *byte == b'\n') else {
-            self.channel.drain(..std::mem::take(&mut self.read));
-            return None;
-        };
-        self.read += end + 1;
-        Some(codec::decode(&rest[..end]))
+    /// Takes what came over the channel.
+    pub(super) fn push(&mut self, lines: Vec<Result<FromHost, String>>) {
+        self.lines.extend(lines);
     }
 
-    /// What the present test was saying when the channel was closed.
-    pub(super) fn take_rest(&mut self) -> Vec<u8> {
-        let rest = self.channel.split_off(self.read);
-        if self.answered { Vec::new() } else { rest }
+    /// Whether the present test was answered for: what the host says then belongs to none.
+    pub(super) fn has_answered(&self) -> bool {
+        self.answered
     }
 
     /// What one output has for the present test.
@@ -128,24 +120,7 @@ impl Task {
         if let Some(sharing) = &mut self.sharing {
             sharing.upcoming.push_back(next);
         }
-        self.write(Some(request), Request::RunTest(plugin)).await;
-    }
-
-    pub(super) async fn heard_shared(&mut self, bytes: &[u8]) {
-        let Some(sharing) = &mut self.sharing else { return };
-        sharing.channel.extend_from_slice(bytes);
-        if bytes.is_empty() {
-            self.process.channel = None;
-        }
-        self.advance().await;
-        if let Some(sharing) = &mut self.sharing
-            && sharing.channel.len() - sharing.read > LINE_LIMIT
-            && !sharing.answered
-        {
-            (sharing.channel, sharing.read) = (Vec::new(), 0);
-            let what = format!("it wrote a line of more than {LINE_LIMIT} bytes");
-            self.tell(HostInput::Garbage(what)).await;
-        }
+        self.write(Some(request), Request::RunTest(plugin));
     }
 
     pub(super) async fn printed_shared(&mut self, stream: Stream, bytes: &[u8]) {
@@ -162,7 +137,7 @@ impl Task {
     }
 
     /// Delivers what belongs to the present test, and goes on to the next.
-    async fn advance(&mut self) {
+    pub(super) async fn advance(&mut self) {
         loop {
             while let Some(line) = self.next_line() {
                 self.understand_shared(line).await;
@@ -175,7 +150,7 @@ impl Task {
                     self.tell(HostInput::Printed(stream, text)).await;
                 }
             }
-            if !self.is_behind_marks() {
+            if !self.is_behind_marks() || self.copy.is_some() {
                 return;
             }
             let Some(sharing) = &mut self.sharing else { return };
@@ -188,7 +163,7 @@ impl Task {
                 }
                 return;
             }
-            let Some(line) = sharing.take_line() else { return };
+            let Some(line) = sharing.lines.pop_front() else { return };
             if begins_a_test(&line) {
                 self.go_on().await;
             } else {
@@ -207,8 +182,9 @@ impl Task {
 
     /// The next line of the present test.
     fn next_line(&mut self) -> Option<Result<FromHost, String>> {
+        let is_copying = self.copy.is_some();
         let sharing = self.sharing.as_mut()?;
-        if sharing.answered { None } else { sharing.take_line() }
+        if sharing.answered || is_copying { None } else { sharing.lines.pop_front() }
     }
 
     async fn understand_shared(&mut self, line: Result<FromHost, String>) {
@@ -279,6 +255,25 @@ impl Task {
             return HostInput::Unbegun(status);
         }
         HostInput::Exited(status, left)
+    }
+
+    /// The process has ended: every test that was sent to it and has not begun, or
+    /// that is sent to it now, is reported as such. Returns when the suite's task
+    /// has dropped all senders, so no order is lost in between.
+    pub(super) async fn refuse(
+        &mut self,
+        mut orders: mpsc::UnboundedReceiver<Order>,
+        status: ExitStatus,
+    ) {
+        let upcoming = self.sharing.take().map(|sharing| sharing.upcoming);
+        for next in upcoming.into_iter().flatten() {
+            drop(self.inputs.send((next.host, HostInput::Unbegun(status))).await);
+        }
+        while let Some(order) = orders.recv().await {
+            if let Order::ServeNext(next) = order {
+                drop(self.inputs.send((next.host, HostInput::Unbegun(status))).await);
+            }
+        }
     }
 }
 

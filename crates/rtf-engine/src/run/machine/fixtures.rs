@@ -8,9 +8,9 @@ use rtf_model::TestId;
 use rtf_model::protocol::{Notice, Request};
 
 use super::fixture::{FixtureRun, State};
-use super::io::HostId;
+use super::io::{HostId, Probes};
 use super::suite::Context;
-use crate::plan::{FixtureBody, SuitePlan};
+use rtf_plan::plan::SuitePlan;
 
 /// The fixtures of a suite, in the order of its plan.
 #[derive(Debug)]
@@ -118,6 +118,18 @@ impl<'p> Fixtures<'p> {
         self.runs.iter_mut().rev().for_each(|fixture| fixture.kill(why, cx));
     }
 
+    /// The suite's limit has passed: a problem of those that are being torn down, or of
+    /// all that are there.
+    pub fn note_late(&mut self, reason: &str, all: bool) {
+        for fixture in &mut self.runs {
+            match fixture.state() {
+                State::Stopping | State::Ending => fixture.note_late(reason),
+                State::Ready | State::Unwell if all => fixture.note_late(reason),
+                _ => {}
+            }
+        }
+    }
+
     /// Takes one of a fixture's restarts; false when they are used up.
     pub fn take_restart(&mut self, place: usize) -> bool {
         if self.restarts[place] >= self.runs[place].plan().restarts {
@@ -128,11 +140,17 @@ impl<'p> Fixtures<'p> {
         true
     }
 
-    /// The processes of all that are ready; what is attached has none.
-    pub fn processes(&self) -> Vec<HostId> {
-        let ready = self.runs.iter().filter(|fixture| fixture.state() == State::Ready);
-        let own = ready.filter(|f| !matches!(f.plan().body, FixtureBody::Attached(_)));
-        own.filter_map(FixtureRun::host).collect()
+    /// Has all that are ready examined: their places, and the numbers of the
+    /// examinations.
+    pub fn examine_all(&mut self, probes: Probes, cx: &mut Context<'_>) -> Vec<(usize, u64)> {
+        let all = self.runs.iter_mut().enumerate();
+        let ready = all.filter(|(_, fixture)| fixture.state() == State::Ready);
+        ready.map(|(place, fixture)| (place, fixture.examine(probes, cx))).collect()
+    }
+
+    /// Whether these examinations were passed.
+    pub fn have_passed(&self, needs: &[(usize, u64)]) -> bool {
+        needs.iter().all(|(place, number)| self.runs[*place].has_passed(*number))
     }
 
     /// Asks each plug-in whether it is well.

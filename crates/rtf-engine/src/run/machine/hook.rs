@@ -8,8 +8,8 @@ use rtf_model::{
 use super::capture::Capture;
 use super::io::{Deadline, Effect, HostId, HostInput, Program, Start, environment};
 use super::suite::Context;
-use super::test::{TERM_GRACE, parse_answer};
-use crate::plan::{HookBody, HookPlan, SuitePlan};
+use super::test::{KILL_WAIT, KILLS, TERM_GRACE, parse_answer};
+use rtf_plan::plan::{HookBody, HookPlan, SuitePlan};
 
 /// The number of `run-test` on a hook's channel.
 const RUN: u64 = 2;
@@ -44,12 +44,7 @@ impl<'p> HookRun<'p> {
     pub fn start(suite: &'p SuitePlan, call: Call, cx: &mut Context<'_>) -> Self {
         let plan = &suite.hooks[call.place];
         let (host, source) = (cx.new_host(), Source::Hook(plan.id));
-        cx.emit(EventKind::HookStarted {
-            hook: plan.id,
-            trigger: call.trigger,
-            reason: call.reason.clone(),
-            test: call.test.as_ref().map(|(id, _)| *id),
-        });
+        cx.emit(started(plan, &call));
         cx.out(Effect::Spawn { host, source, start: start(suite, plan, call) });
         if let HookBody::Plugin(plugin) = &plan.body {
             let request = Request::RunTest(Plugin {
@@ -123,16 +118,34 @@ impl<'p> HookRun<'p> {
         self.problem.get_or_insert(problem);
     }
 
-    /// Its limit, or that of a step of its stop, has passed.
-    pub fn deadline(&mut self, cx: &mut Context<'_>) {
-        self.note(format!("it did not end within {:?}", self.plan.timeout));
-        let effect = match self.force {
-            0 => Effect::Signal(self.host, SIGTERM),
-            _ => Effect::KillTree(self.host),
+    /// Its limit, or that of a step of its stop, has passed; true when it is over,
+    /// since its process does not end although it was killed.
+    pub fn deadline(&mut self, cx: &mut Context<'_>) -> bool {
+        let limit = self.plan.timeout;
+        let (effect, wait) = match self.force {
+            0 => (Effect::Signal(self.host, SIGTERM), TERM_GRACE),
+            kills if kills <= KILLS => (Effect::KillTree(self.host), KILL_WAIT),
+            _ => {
+                cx.abandon(format!("the process of hook `{}`", self.plan.name));
+                let what = "its process was killed and did not end";
+                self.problem = Some(format!("it did not end within {limit:?}; {what}"));
+                self.end(None, Vec::new(), cx);
+                return true;
+            }
         };
+        self.note(format!("it did not end within {limit:?}"));
         self.force += 1;
         cx.out(effect);
-        cx.set(Deadline::Hook, TERM_GRACE);
+        cx.set(Deadline::Hook, wait);
+        false
+    }
+
+    /// Kills it, with this problem.
+    pub fn kill(&mut self, why: &str, cx: &mut Context<'_>) {
+        self.note(why.to_owned());
+        self.force += 1;
+        cx.out(Effect::KillTree(self.host));
+        cx.set(Deadline::Hook, KILL_WAIT);
     }
 
     fn end(&mut self, exit: Option<ExitStatus>, left: Vec<LeftProcess>, cx: &mut Context<'_>) {
@@ -164,6 +177,22 @@ impl<'p> HookRun<'p> {
             (_, Some(ExitStatus::Code(0))) | (_, None) => None,
             (_, Some(status)) => Some(format!("it ended with {status}")),
         }
+    }
+}
+
+/// Reports a hook that was called for and is not run, with this problem.
+pub fn refuse(suite: &SuitePlan, call: &Call, why: &str, cx: &mut Context<'_>) {
+    let plan = &suite.hooks[call.place];
+    cx.emit(started(plan, call));
+    cx.emit(EventKind::HookFinished { hook: plan.id, problem: Some(why.to_owned()) });
+}
+
+fn started(plan: &HookPlan, call: &Call) -> EventKind {
+    EventKind::HookStarted {
+        hook: plan.id,
+        trigger: call.trigger,
+        reason: call.reason.clone(),
+        test: call.test.as_ref().map(|(id, _)| *id),
     }
 }
 

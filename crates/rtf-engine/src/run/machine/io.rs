@@ -7,7 +7,7 @@ use std::time::Duration;
 use rtf_model::protocol::{Notification, OWNER_VARIABLE, Plugin, Reply, Request, StackSupport};
 use rtf_model::{Attachment, EventKind, ExitStatus, LeftProcess, Source, Stream, TestId, Usage};
 
-use crate::plan::{AttachedPlan, HostPlan, ProcessPlan, SuitePlan};
+use rtf_plan::plan::{AttachedPlan, HostPlan, ProcessPlan, SuitePlan};
 
 /// One process that the machine asked for. Never used twice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -45,6 +45,11 @@ pub enum HostInput {
     Answered(u64, Reply<serde_json::Value>),
     /// It wrote something that is not a message of the protocol.
     Garbage(String),
+    /// It tells more than can be reported, so it is not read for a while: the clock of the
+    /// test is paused.
+    Throttled(Source),
+    /// It is read again.
+    Resumed,
     /// It printed something.
     Printed(Stream, Vec<u8>),
     /// All probes that are asked from outside hold: a process fixture is ready.
@@ -61,7 +66,7 @@ pub enum HostInput {
         /// How many tests it has served, when it is one that tests share.
         served: Option<u32>,
     },
-    /// It lives, and has told nothing that was not delivered.
+    /// It lives, its probes hold, and it has told nothing that was not delivered.
     Lives,
     /// It is dying; its end follows.
     Dies,
@@ -82,8 +87,10 @@ pub enum HostInput {
 pub enum StopLevel {
     /// Stop the test, tear down.
     TearDown,
-    /// Kill everything now.
+    /// Kill everything now, without tear-down; hooks run.
     Kill,
+    /// Kill the hooks, too.
+    KillHooks,
 }
 
 /// A request to end the suite early.
@@ -113,6 +120,8 @@ pub enum Deadline {
     Retry(TestId),
     /// The limit of the running hook, or of a step of its stop.
     Hook,
+    /// The end of a shared host that was killed while it had no test.
+    SharedHost,
 }
 
 /// What is waited for in a test.
@@ -129,7 +138,7 @@ pub enum TestTimer {
 pub enum FixtureTimer {
     /// The end of set-up or tear-down, or of a step of its stop.
     Limit,
-    /// The answer to `check`.
+    /// The answer to `check`, and whether its process lives.
     Check,
     /// The answer to `test-started` or `test-finished`.
     Notice,
@@ -177,6 +186,15 @@ pub enum Program {
     Command(Vec<String>),
 }
 
+/// Which probes are asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Probes {
+    /// All of them.
+    All,
+    /// Those that are answered without starting a program.
+    Quick,
+}
+
 /// What is to be done.
 #[derive(Debug)]
 pub enum Effect {
@@ -219,9 +237,10 @@ pub enum Effect {
     KillTree(HostId),
     /// Ask the `alive` probes of a process fixture from now on.
     WatchAlive(HostId),
-    /// Look whether the process lives; answered by [`HostInput::Lives`] or
-    /// [`HostInput::Dies`], or by its end.
-    LookAlive(HostId),
+    /// Look whether the process lives and its `alive` probes hold: all of them, or those
+    /// that are answered without starting a program. Answered by [`HostInput::Lives`],
+    /// [`HostInput::Dies`] or [`HostInput::ProbeFailed`], or by its end.
+    LookAlive(HostId, Probes),
     /// Wait for a moment, in the time of `now`.
     SetDeadline(Deadline, Duration),
     /// Do not wait for it any more.

@@ -3,7 +3,7 @@
 use rtf_model::protocol::{Answer, RpcError};
 use rtf_model::{ExitStatus, LeftProcess, Outcome, Phase, StopCause, Verdict};
 
-use crate::plan::Leaks;
+use rtf_plan::plan::Leaks;
 
 /// A first failure or error, which decides.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -26,8 +26,9 @@ mod test;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub use hooks::{HOOK_KILLED, HOOK_NOT_RUN};
 pub use io::{
-    Deadline, Effect, FixtureTimer, HostId, HostInput, Input, Program, Start, Stop, StopLevel,
-    TestTimer,
+    Deadline, Effect, FixtureTimer, HostId, HostInput, Input, Probes, Program, Start, Stop,
+    StopLevel, TestTimer,
 };
 pub use suite::SuiteMachine;

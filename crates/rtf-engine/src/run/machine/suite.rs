@@ -23,6 +23,7 @@
 
 mod cursor;
 mod ending;
+mod invariant;
 mod looking;
 mod parking;
 mod retries;
@@ -40,10 +41,10 @@ use super::fixtures::Fixtures;
 use super::hooks::Hooks;
 use super::io::{Deadline, Effect, HostId, HostInput, Input};
 use super::test::{Ended, TestRun};
-use crate::plan::{AfterCollapse, Given, SuitePlan};
 use crate::run::FailLimit;
 use cursor::Cursor;
 use looking::Looks;
+use rtf_plan::plan::{AfterCollapse, Preparation, SuitePlan};
 use turns::Turns;
 
 /// What a step of the machine may use: the time, and a list for its effects.
@@ -52,6 +53,7 @@ pub struct Context<'a> {
     now: Duration,
     out: &'a mut Vec<Effect>,
     hosts: &'a mut u64,
+    abandoned: Option<String>,
 }
 
 impl Context<'_> {
@@ -76,6 +78,12 @@ impl Context<'_> {
         self.out.push(Effect::ClearDeadline(deadline));
     }
 
+    /// A process was killed and does not end: nobody waits for it any more. Whose
+    /// it is, in words.
+    pub fn abandon(&mut self, whose: String) {
+        self.abandoned.get_or_insert(whose);
+    }
+
     pub fn new_host(&mut self) -> HostId {
         *self.hosts += 1;
         HostId(*self.hosts)
@@ -98,11 +106,15 @@ pub struct SuiteMachine<'p> {
     fails: FailLimit,
     /// When the run was asked to end: how long that may take, and who asked.
     shutdown: Option<(Duration, String)>,
+    /// Whether the `interrupt` hooks were called for, for the end of the run.
+    interrupted: bool,
     /// Whether the `end` hooks were called for.
     end_called: bool,
     started: bool,
     over: bool,
     hosts: u64,
+    #[cfg(debug_assertions)]
+    waits: invariant::Waits,
 }
 
 impl<'p> SuiteMachine<'p> {
@@ -120,17 +132,22 @@ impl<'p> SuiteMachine<'p> {
             looks: Looks::default(),
             checked: false,
             shutdown: None,
+            interrupted: false,
             end_called: false,
             started: false,
             over: false,
             hosts: 0,
+            #[cfg(debug_assertions)]
+            waits: invariant::Waits::default(),
         }
     }
 
     /// Takes in what happened at `now` and appends what is to be done.
     pub fn handle(&mut self, input: Input, now: Duration, out: &mut Vec<Effect>) {
+        #[cfg(debug_assertions)]
+        let begin = self.waits.begin(&input, out);
         let mut hosts = self.hosts;
-        let mut cx = Context { now, out, hosts: &mut hosts };
+        let mut cx = Context { now, out, hosts: &mut hosts, abandoned: None };
         match input {
             Input::Start => self.start(&mut cx),
             Input::Host(host, input) => self.host(host, input, &mut cx),
@@ -140,18 +157,23 @@ impl<'p> SuiteMachine<'p> {
             Input::StopTest(test, by) => self.stop_test(test, &by, &mut cx),
             Input::Skip(by) => self.skip(&by, &mut cx),
         }
+        self.end_if_abandoned(&mut cx);
         self.look_over(&mut cx);
         self.proceed(&mut cx);
         self.hosts = hosts;
+        #[cfg(debug_assertions)]
+        self.waits.check(&out[begin..], self.started && !self.over);
     }
 
     fn start(&mut self, cx: &mut Context<'_>) {
         self.started = true;
         cx.emit(EventKind::SuiteStarted { suite: self.plan.id });
-        match &self.plan.given {
-            Given::Refused(reason) if self.ending.is_none() => return self.refuse(reason, cx),
-            Given::Nothing | Given::Refused(_) => {}
-            Given::All(prepared) => cx.emit(EventKind::SuitePrepared(prepared.clone())),
+        match &self.plan.preparation {
+            Preparation::Refused(reason) if self.ending.is_none() => {
+                return self.refuse(reason, cx);
+            }
+            Preparation::NotNeeded | Preparation::Refused(_) => {}
+            Preparation::Done(prepared) => cx.emit(EventKind::SuitePrepared(prepared.clone())),
         }
         if let Some(timeout) = self.plan.timeout {
             cx.set(Deadline::Suite, timeout);
@@ -193,13 +215,12 @@ impl<'p> SuiteMachine<'p> {
             self.look_alive(test, cx);
             self.turns.ask_ahead(test, cx);
         } else if let Some(place) = self.fixtures.place_of(host) {
-            match input {
-                HostInput::Lives => self.seen_alive(host),
-                HostInput::Dies => self.seen_dying(host, cx),
-                _ => {}
+            if matches!(input, HostInput::Dies) {
+                self.seen_dying(host, cx);
             }
             let change = self.fixtures.get(place).handle(input, cx);
             self.fixture_changed(place, change, cx);
+            self.pass_seen();
         } else if self.hooks.owns(host) {
             self.hooks.handle(input, cx);
         } else if let HostInput::Exited(status, _) = input {
@@ -221,6 +242,7 @@ impl<'p> SuiteMachine<'p> {
                 self.fixture_changed(place, change, cx);
             }
             Deadline::Hook => self.hooks.deadline(cx),
+            Deadline::SharedHost => self.turns.shared_host_late(cx),
         }
     }
 
@@ -266,7 +288,7 @@ impl<'p> SuiteMachine<'p> {
             self.fails.count(finished);
         }
         cx.emit(finished);
-        self.look_away(test);
+        self.checked = self.look_away(test);
         if let Some(text) = &ended.critical {
             self.end_critically(format!(
                 "a critical assertion of `{}` did not hold: {text}",
@@ -278,7 +300,6 @@ impl<'p> SuiteMachine<'p> {
                 plan.name, ended.verdict
             ));
         }
-        self.checked = false;
         let rounds = &mut self.turns.rounds;
         let next = cursor.next(rerun, rounds.last_of(plan));
         match (next, given_up) {
@@ -313,6 +334,7 @@ impl<'p> SuiteMachine<'p> {
             self.end_early(reason);
         }
         if self.hooks.run_next(cx) {
+            self.checked = false;
             return;
         }
         if self.ending.is_none() {

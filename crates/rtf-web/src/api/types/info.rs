@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use rtf_model::{Record, Verdict};
+use rtf_model::{Record, Revision, Verdict};
 use serde::Serialize;
 use utoipa::ToSchema;
 use utoipa::openapi::schema::{Object, ObjectBuilder, Type};
 
+use super::model;
 use crate::index::{Index, State};
 use crate::problem::Problem;
 
@@ -40,6 +41,18 @@ pub struct RunInfo {
     pub last_at: u64,
     /// How many suites it has.
     pub suites: usize,
+    /// The names of its suites; only the first ones, when there are many.
+    pub suite_names: Vec<String>,
+    /// What Git had checked out in its folder.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<model::Revision>)]
+    pub revision: Option<Revision>,
+    /// The profile that it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub profile: Option<String>,
+    /// The robots that it was for: `--set robot=NAME`, and `--robot NAME` in the
+    /// environments of its suites.
+    pub robots: Vec<String>,
     /// How long its journal is, as far as it was read.
     pub bytes: u64,
     /// How many tests are in which state.
@@ -97,6 +110,11 @@ impl From<&rtf_model::Totals> for Totals {
     }
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
+fn is_zero(number: &usize) -> bool {
+    *number == 0
+}
+
 /// A page of the list of runs.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct RunList {
@@ -105,6 +123,11 @@ pub struct RunList {
     /// The `before` of the next page.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next: Option<String>,
+    /// How many runs are still being read, so that nobody knows whether they match;
+    /// ask again.
+    #[serde(skip_serializing_if = "is_zero")]
+    #[schema(required = false)]
+    pub unread: usize,
 }
 
 impl RunInfo {
@@ -116,7 +139,11 @@ impl RunInfo {
         let suites = record.suites.iter();
         let totals = if state.is_over() { record.final_totals() } else { record.totals() };
         let started = record.run.as_ref();
+        let manifest = started.map(|run| &*run.manifest);
         Self {
+            revision: manifest.and_then(|manifest| manifest.revision.clone()),
+            profile: manifest.and_then(|manifest| manifest.profile.clone()),
+            robots: robots(record),
             started_at: started.map(|run| run.started_at.clone()).unwrap_or_default(),
             rtf: started.map(|run| run.rtf.clone()).unwrap_or_default(),
             command: started.map(|run| run.command.clone()).unwrap_or_default(),
@@ -135,6 +162,7 @@ impl RunInfo {
     }
 
     fn empty(name: &str, state: State, record: &Record) -> Self {
+        let names = record.suites.iter();
         Self {
             run: name.to_owned(),
             started_at: String::new(),
@@ -148,6 +176,10 @@ impl RunInfo {
             seq: 0,
             last_at: 0,
             suites: record.suites.len(),
+            suite_names: names.take(NAMES).map(|suite| suite.plan.name.clone()).collect(),
+            revision: None,
+            profile: None,
+            robots: Vec::new(),
             bytes: 0,
             totals: Totals::from(&rtf_model::Totals::default()),
             problems: Vec::new(),
@@ -169,8 +201,33 @@ impl RunInfo {
     }
 }
 
-impl From<&rtf_report::journal::Damage> for DamageAt {
-    fn from(damage: &rtf_report::journal::Damage) -> Self {
+/// How many names of suites are told.
+const NAMES: usize = 100;
+
+fn robots(record: &Record) -> Vec<String> {
+    let manifest = record.run.as_ref().map(|run| &*run.manifest);
+    let set = manifest.into_iter().flat_map(|manifest| &manifest.set);
+    let set = set.filter_map(|setting| setting.strip_prefix("robot="));
+    let named = record.suites.iter().filter_map(|suite| robot_of(&suite.plan.environment));
+    let mut robots: Vec<_> = set.chain(named).map(str::to_owned).collect();
+    robots.sort();
+    robots.dedup();
+    robots.truncate(NAMES);
+    robots
+}
+
+/// The robot that is named in an environment string: `--robot NAME`.
+fn robot_of(environment: &str) -> Option<&str> {
+    let mut words = environment.split_whitespace();
+    let after = words.by_ref().find_map(|word| match word.strip_prefix("--robot")? {
+        "" => Some(None),
+        rest => rest.strip_prefix('=').map(Some),
+    })?;
+    after.or_else(|| words.next())
+}
+
+impl From<&rtf_model::Damage> for DamageAt {
+    fn from(damage: &rtf_model::Damage) -> Self {
         Self { line: damage.line, problem: damage.problem.clone() }
     }
 }

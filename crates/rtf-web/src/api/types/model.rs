@@ -34,5 +34,5 @@ macro_rules! model {
 
 model! {
     Attachment, Diagnostic, Event, ExitStatus, LeftProcess, Measurement, Message, Phase, Stream,
-    SuitePrepared, Trigger, Verdict,
+    Revision, SuitePrepared, Trigger, Verdict,
 }

@@ -126,6 +126,9 @@ pub struct TestDetail {
     pub test: Test,
     /// Its attempts, in order.
     pub attempts: Vec<Attempt>,
+    /// The command that runs it again, in the folder of its run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub command: Option<String>,
 }
 
 /// One attempt of a test.

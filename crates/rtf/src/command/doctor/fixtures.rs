@@ -6,7 +6,7 @@ use std::io;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use rtf_engine::plan::{HostPlan, Surroundings, fixtures_there, program_there};
+use rtf_plan::plan::{HostPlan, RunnerEnvironment, find_in_path, shipped_fixtures_dir};
 use serde::Deserialize;
 
 use super::{Finding, Missing, Part, own};
@@ -42,8 +42,8 @@ struct Need {
 
 impl Table {
     /// Reads it. A fixture manager that is not there is not in it.
-    pub fn read(surroundings: &Surroundings) -> io::Result<Self> {
-        let Some(folder) = fixtures_there(surroundings) else {
+    pub fn read(surroundings: &RunnerEnvironment) -> io::Result<Self> {
+        let Some(folder) = shipped_fixtures_dir(surroundings) else {
             return Ok(Self { folder: None, fixtures: BTreeMap::new() });
         };
         let file = folder.join("needs.json");
@@ -65,7 +65,7 @@ impl Table {
     /// Looks at what is asked for.
     pub fn look(
         &self,
-        surroundings: &Surroundings,
+        surroundings: &RunnerEnvironment,
         is_asked: &dyn Fn(&str) -> bool,
     ) -> Vec<Finding> {
         let asked: Vec<_> = self.fixtures.iter().filter(|(name, _)| is_asked(name)).collect();
@@ -82,7 +82,7 @@ impl Table {
         name: &str,
         needs: &Needs,
         python: &Result<HostPlan, String>,
-        surroundings: &Surroundings,
+        surroundings: &RunnerEnvironment,
     ) -> Finding {
         let mut missing = Vec::new();
         let mut found = Vec::new();
@@ -111,12 +111,12 @@ impl Table {
 
 impl Need {
     /// What is there of it.
-    fn look(&self, python: Option<&HostPlan>, surroundings: &Surroundings) -> Option<String> {
+    fn look(&self, python: Option<&HostPlan>, surroundings: &RunnerEnvironment) -> Option<String> {
         if let Some(module) = &self.module {
             let program = python?.command.first()?;
             return imports(program, module).then(|| format!("{module} of {program}"));
         }
-        let files = self.programs.iter().filter_map(|name| program_there(name, surroundings));
+        let files = self.programs.iter().filter_map(|name| find_in_path(name, surroundings));
         files.map(|file| file.display().to_string()).next()
     }
 

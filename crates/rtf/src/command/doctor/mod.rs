@@ -9,7 +9,7 @@ mod show;
 
 use std::process::ExitCode;
 
-use rtf_engine::plan::Surroundings;
+use rtf_plan::plan::RunnerEnvironment;
 use serde::Serialize;
 
 use super::Outcome;
@@ -57,7 +57,7 @@ struct Missing {
 /// Looks, and tells. The exit code is 1 when something is missing: of what was
 /// asked for, or of what each run needs.
 pub fn run(args: &DoctorArgs) -> Outcome {
-    let surroundings = Surroundings::of_process().map_err(Failure::own)?;
+    let surroundings = RunnerEnvironment::from_current_process().map_err(Failure::own)?;
     let table = fixtures::Table::read(&surroundings).map_err(Failure::own)?;
     let known: Vec<&str> = own::NAMES.into_iter().chain(table.names()).collect();
     if let Some(unknown) = args.names.iter().find(|name| !known.contains(&name.as_str())) {

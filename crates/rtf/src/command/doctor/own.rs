@@ -5,8 +5,8 @@ use std::process::{Command, Stdio};
 use rtf_engine::host::cgroup::Cgroups;
 use rtf_engine::host::spawner::Spawner;
 use rtf_engine::isolate;
-use rtf_engine::plan::{HostPlan, HostThere, Surroundings, hosts_there, program_there};
 use rtf_engine::run::Forks;
+use rtf_plan::plan::{HostPlan, LocatedHost, RunnerEnvironment, find_in_path, installed_hosts};
 
 use super::{Finding, Missing, Part};
 
@@ -15,8 +15,8 @@ pub const NAMES: [&str; 8] =
     ["dll", "lua", "python", "ruby", "stacks", "cgroups", "network", "ssh"];
 
 /// Looks at what is asked for.
-pub fn look(surroundings: &Surroundings, is_asked: &dyn Fn(&str) -> bool) -> Vec<Finding> {
-    let hosts = hosts_there(surroundings).into_iter();
+pub fn look(surroundings: &RunnerEnvironment, is_asked: &dyn Fn(&str) -> bool) -> Vec<Finding> {
+    let hosts = installed_hosts(surroundings).into_iter();
     let mut found: Vec<Finding> = hosts
         .filter(|(name, _)| is_asked(name))
         .map(|(name, there)| of_host(name, there))
@@ -33,14 +33,14 @@ pub fn look(surroundings: &Surroundings, is_asked: &dyn Fn(&str) -> bool) -> Vec
 }
 
 /// Whether Python plug-ins, as the fixture managers are, can run.
-pub fn python(surroundings: &Surroundings) -> Result<HostPlan, String> {
-    let mut hosts = hosts_there(surroundings).into_iter();
+pub fn python(surroundings: &RunnerEnvironment) -> Result<HostPlan, String> {
+    let mut hosts = installed_hosts(surroundings).into_iter();
     let python = hosts.find(|(name, _)| *name == "python");
     let there = python.map(|(_, there)| there).ok_or("rtf has no host for Python")?;
     started(there)
 }
 
-fn of_host(name: &str, there: HostThere) -> Finding {
+fn of_host(name: &str, there: LocatedHost) -> Finding {
     let (part, about, install) = match name {
         "dll" => (Part::Rtf, "plug-ins in C and C++", "it is installed together with rtf"),
         "lua" => (Part::Rtf, "plug-ins in Lua", "it is installed together with rtf"),
@@ -60,7 +60,7 @@ fn of_host(name: &str, there: HostThere) -> Finding {
 }
 
 /// The host if it starts: its check of no files does nothing else.
-fn started(there: HostThere) -> Result<HostPlan, String> {
+fn started(there: LocatedHost) -> Result<HostPlan, String> {
     let plan = there.map_err(|problem| problem.message)?;
     let (program, arguments) = plan.command.split_first().ok_or("it has no program")?;
     let mut command = Command::new(program);
@@ -88,9 +88,9 @@ fn described(plan: &HostPlan) -> String {
     }
 }
 
-fn stacks(surroundings: &Surroundings) -> Finding {
+fn stacks(surroundings: &RunnerEnvironment) -> Finding {
     let debuggers = ["gdb", "eu-stack"].iter();
-    let found = debuggers.filter_map(|name| program_there(name, surroundings)).next();
+    let found = debuggers.filter_map(|name| find_in_path(name, surroundings)).next();
     let found = found
         .map(|file| file.display().to_string())
         .ok_or_else(|| "there is no program `gdb` or `eu-stack` on PATH".to_owned());
@@ -126,8 +126,8 @@ fn network() -> Finding {
     finding("network", Part::Optional, about, found, install)
 }
 
-fn ssh(surroundings: &Surroundings) -> Finding {
-    let found = program_there("ssh", surroundings)
+fn ssh(surroundings: &RunnerEnvironment) -> Finding {
+    let found = find_in_path("ssh", surroundings)
         .map(|file| file.display().to_string())
         .ok_or_else(|| "there is no program `ssh` on PATH".to_owned());
     let install = "`apt-get install openssh-client`, or RTF_SSH names another program";

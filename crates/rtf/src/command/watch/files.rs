@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 
 use notify::event::{AccessKind, AccessMode, CreateKind, ModifyKind, RenameMode};
 use notify::{Event, EventKind};
-use rtf_engine::config::Files;
-use rtf_engine::plan::{FixtureBody, HookBody, Plan};
 use rtf_model::Diagnostic;
+use rtf_plan::config::ConfigFiles;
+use rtf_plan::plan::{FixtureBody, HookBody, Plan};
 
 use super::debounce::Touch;
 use crate::cli::RunArgs;
-use crate::command::planning::{self, Draft};
+use crate::command::planning::{self, Draft, Verify};
 
 /// What is watched. Paths are absolute, their folders without links.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -41,7 +41,7 @@ impl Watched {
         for input in inputs.iter().filter(|_| args.input.select.rerun.is_empty()) {
             watched.add_input(input, args.input.recursive);
         }
-        let draft = planning::draft(&args.input, &args.results, None).ok();
+        let draft = planning::draft(&args.input, &args.results, Verify::Nothing).ok();
         watched.broken = draft.as_ref().is_none_or(|draft| draft.plan.is_none());
         if watched.broken {
             watched.files.extend(before.files.iter().cloned());
@@ -88,7 +88,7 @@ impl Watched {
         let named = text.split_once("::").filter(|_| !input.exists());
         let path = named.map_or(input, |(file, _)| Path::new(file));
         let Ok(path) = std::path::absolute(path) else { return };
-        self.add_configuration(&rtf_engine::config::folder_of_input(&path));
+        self.add_configuration(&rtf_plan::config::input_dir(&path));
         match path.canonicalize() {
             Ok(folder) if folder.is_dir() => self.add_folder(folder, recursive),
             _ => self.add(&path),
@@ -110,8 +110,8 @@ impl Watched {
 
     /// The `rtf.toml` that holds in a folder, and the one that it may get.
     fn add_configuration(&mut self, folder: &Path) {
-        let mut files = Files::new(folder);
-        files.above(folder);
+        let mut files = ConfigFiles::new(folder);
+        files.find_nearest(folder);
         files.all().iter().for_each(|file| self.add(&file.path));
         self.add(&folder.join("rtf.toml"));
     }

@@ -3,6 +3,7 @@
 #ifndef ROBOTTESTINGFRAMEWORK_DLLPLUGINLOADER_H
 #define ROBOTTESTINGFRAMEWORK_DLLPLUGINLOADER_H
 
+#include <cstddef>
 #include <string>
 
 #include "../PluginLoader.h"
@@ -19,7 +20,12 @@ public:
 
     TestCase *open(const std::string filename) override
     {
-        return plugin_.open(filename, "robottestingframework_dll_factory");
+        TestCase *const test = plugin_.open(filename, "robottestingframework_dll_factory");
+        if (test != nullptr && test->getName().empty()) {
+            const std::size_t folder = filename.find_last_of('/') + 1; // 0 without a folder
+            test->setName(filename.substr(folder, filename.find_last_of('.') - folder));
+        }
+        return test;
     }
     void close() override { plugin_.close(); }
     std::string getLastError() override { return plugin_.error(); }

@@ -12,18 +12,19 @@
 #include "../FixtureManager.h"
 #include "Attempt.h"
 #include "Host.h"
+#include "HostedSuite.h"
 
 namespace robottestingframework {
 namespace internal {
 
-class HostedFixture : private FixtureEvents
+class HostedFixture
 {
 public:
     HostedFixture(const rtf_host &host, std::unique_ptr<FixtureManager> fixture)
-        : host_(host), fixture_(std::move(fixture))
+        : host_(host), suite_(host), fixture_(std::move(fixture))
     {
         fixture_->setParam(from_text(host.param(host.context)));
-        fixture_->setDispatcher(this);
+        fixture_->setDispatcher(&suite_);
     }
 
     // A fixture's arguments begin with the first one, not with a name; without
@@ -51,15 +52,10 @@ public:
     }
 
 private:
-    void fixtureCollapsed(TestMessage reason) override
-    {
-        const std::string text = text_of(reason);
-        host_.collapsed(host_.context, to_text(text));
-    }
-
     template <class Step>
     std::int32_t step(Step step)
     {
+        const HostedSuite::Step in_step(suite_);
         try {
             return step() ? RTF_DONE : RTF_REFUSED;
         } catch (...) {
@@ -71,6 +67,7 @@ private:
     const rtf_host &host_;
     char empty_ = '\0';
     char *nothing_[2];
+    HostedSuite suite_; // outlives the fixture, which may report to its end
     std::unique_ptr<FixtureManager> fixture_;
 };
 

@@ -47,6 +47,9 @@ public:
         : host_(host), listener_(host), test_(std::move(test)), own_(own)
     {
         result_.addListener(&listener_);
+        if (test_->getName().empty()) {
+            test_->setName(from_text(host.name(host.context)));
+        }
         test_->setParam(from_text(host.param(host.context)));
         test_->setEnvironment(from_text(host.environment(host.context)));
         test_->begin(result_);

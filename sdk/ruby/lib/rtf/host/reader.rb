@@ -36,6 +36,7 @@ module RTF
         @channel = channel
         @requests = Queue.new
         @open = []
+        @last_answered = false
         @fixture_up = false
         @lock = Mutex.new
         @main = Thread.current
@@ -48,13 +49,14 @@ module RTF
       end
 
       # Forgets a request that is about to be answered: the runner may go then.
-      # It may not while a fixture is up, which nobody else would stop. With the
-      # last one, what has not begun is forgotten, too.
+      # It may not while a fixture is up, which nobody else would stop. After the
+      # last one, requests that have not started, or that still arrive, are ignored.
       def finish(request, fixture_up:, last: false)
         request.judge.finish
         @lock.synchronize do
           @open.delete(request)
           @open.clear if last
+          @last_answered ||= last
           @fixture_up = fixture_up
         end
       end
@@ -85,7 +87,7 @@ module RTF
           return if message["id"].nil?
 
           request = Request.new(message)
-          @lock.synchronize { @open << request }
+          @lock.synchronize { @open << request unless @last_answered }
           @requests.push(request)
         end
       end

@@ -110,6 +110,17 @@ module RTF
       # Calls into the plug-in and records what it raises. Only SystemExit gets
       # through: the plug-in ends its process, and the runner shall see that.
       def guard(session, &block)
+        process = Process.pid
+        result = call(session, &block)
+        return result if Process.pid == process
+
+        # A forked child came back from the plug-in; its parent serves the runner.
+        flush_output
+        session.sampling.send_pending
+        exit!(0)
+      end
+
+      def call(session, &block)
         session.judge.enter_plugin(&block)
       rescue SystemExit
         raise
@@ -123,8 +134,12 @@ module RTF
         nil
       end
 
-      def answer(session)
+      def flush_output
         [$stdout, $stderr].each(&:flush)
+      end
+
+      def answer(session)
+        flush_output
         session.sampling.send_pending
         outcome, reason = session.judge.first
         outcome ? { outcome: outcome, reason: reason } : { outcome: "passed" }

@@ -17,13 +17,16 @@ impl SuiteMachine<'_> {
         let limit = self.plan.timeout.unwrap_or_default();
         let reason = format!("the suite did not end within {limit:?}");
         self.hooks.call(Trigger::Timeout, &reason, self.turns.only_one());
+        // No test shows it when the tear-down takes too long.
+        self.fixtures.note_late(&reason, self.turns.all_ended());
         self.turns.stop_all(StopCause::Timeout, &reason, cx);
         self.end_early(reason);
     }
 
     pub(super) fn stop(&mut self, stop: Stop, cx: &mut Context<'_>) {
         let reason = format!("stopped by {}", stop.reason);
-        if self.started && stop.level == StopLevel::TearDown {
+        // Of requests that come at once only the last may arrive, whatever its level.
+        if !std::mem::replace(&mut self.interrupted, true) && self.started {
             self.hooks.call(Trigger::Interrupt, &reason, self.turns.only_one());
         }
         self.turns.stop_all(StopCause::Interrupt, &reason, cx);
@@ -34,6 +37,10 @@ impl SuiteMachine<'_> {
             }
             StopLevel::TearDown => {}
             StopLevel::Kill => self.kill(None, cx),
+            StopLevel::KillHooks => {
+                self.kill(None, cx);
+                self.hooks.kill_all(cx);
+            }
         }
         self.end_early(reason);
     }
@@ -75,6 +82,19 @@ impl SuiteMachine<'_> {
         self.turns.running().for_each(|run| run.kill(cx));
         cx.clear(Deadline::Shutdown);
         self.fixtures.kill_all(why, cx);
+    }
+
+    /// A process was killed and does not end. It may have the robot: nothing else is
+    /// started beside it.
+    pub(super) fn end_if_abandoned(&mut self, cx: &mut Context<'_>) {
+        let Some(whose) = cx.abandoned.take() else { return };
+        let reason = format!("{whose} was killed and did not end");
+        let diagnostic = Diagnostic::warning("process-not-ended", reason.clone())
+            .note("the rest of the suite is skipped, since the process may still use the robot")
+            .hint("it waits in the kernel: `ps -eo pid,stat,wchan:32,args` shows for what");
+        cx.emit(EventKind::Warning { diagnostic });
+        self.turns.stop_all(StopCause::Interrupt, &reason, cx);
+        self.end_early(reason);
     }
 
     pub(super) fn end_early(&mut self, reason: String) {

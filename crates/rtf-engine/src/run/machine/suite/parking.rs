@@ -20,7 +20,9 @@ impl SuiteMachine<'_> {
     /// Fixtures are being told of tests that are judged. Hooks need not wait for that.
     pub(super) fn park_or_begin_beside(&mut self, cx: &mut Context<'_>) {
         let parks = self.hooks.run_next(cx) || (self.ending.is_some() && self.run_end_hooks(cx));
-        if !parks {
+        if parks {
+            self.checked = false;
+        } else {
             self.begin_beside(cx);
         }
     }

@@ -5,9 +5,9 @@ use std::time::Duration;
 use rtf_model::{TestId, Verdict};
 
 use super::{Context, Cursor, SuiteMachine};
-use crate::plan::TestPlan;
 use crate::run::machine::io::Deadline;
 use crate::run::machine::test::Ended;
+use rtf_plan::plan::TestPlan;
 
 /// Whether an attempt that has ended so is tried again. A collapse has a rule of
 /// its own, and after a critical assertion nothing follows.
@@ -42,6 +42,7 @@ impl SuiteMachine<'_> {
     pub(super) fn retry_is_due(&mut self, test: TestId) {
         if let Some(turn) = self.turns.of_test(test) {
             turn.waits = false;
+            self.checked = false;
         }
     }
 }

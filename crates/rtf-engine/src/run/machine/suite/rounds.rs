@@ -8,8 +8,8 @@ use std::time::Duration;
 use rtf_model::{EventKind, TestId};
 
 use super::{Context, Cursor, SuiteMachine};
-use crate::plan::TestPlan;
 use crate::run::machine::io::Deadline;
+use rtf_plan::plan::TestPlan;
 
 /// How far the rounds are. A suite that is not repeated has one.
 #[derive(Debug)]

@@ -10,9 +10,9 @@ use rtf_model::{Diagnostic, EventKind, ExitStatus, TestId};
 
 use super::turns::Turns;
 use super::{Context, Cursor, SuiteMachine};
-use crate::plan::{SuitePlan, TestPlan};
-use crate::run::machine::io::{Effect, HostId};
-use crate::run::machine::test::{Place, TestRun, sharing};
+use crate::run::machine::io::{Deadline, Effect, HostId};
+use crate::run::machine::test::{KILL_WAIT, KILLS, Place, TestRun, sharing};
+use rtf_plan::plan::{SuitePlan, TestPlan};
 
 /// The host that outlives its tests.
 #[derive(Debug)]
@@ -25,8 +25,8 @@ pub(super) struct Sharing<'p> {
     begun: Option<HostId>,
     /// It has nothing to do, and served this test last.
     idle: Option<(HostId, &'p TestPlan)>,
-    /// It was killed, and its end is awaited.
-    killed: Option<HostId>,
+    /// It was killed so often, and its end is awaited.
+    killed: Option<(HostId, u32)>,
 }
 
 impl Sharing<'_> {
@@ -128,8 +128,21 @@ impl<'p> Turns<'p> {
     }
 
     fn kill_host(&mut self, host: HostId, cx: &mut Context<'_>) {
-        self.sharing.killed = Some(host);
+        self.sharing.killed = Some((host, 1));
         cx.out(Effect::KillTree(host));
+        cx.set(Deadline::SharedHost, KILL_WAIT);
+    }
+
+    /// A shared host that was killed has not ended in time.
+    pub(super) fn shared_host_late(&mut self, cx: &mut Context<'_>) {
+        match self.sharing.killed.take() {
+            Some((host, kills)) if kills < KILLS => {
+                self.kill_host(host, cx);
+                self.sharing.killed = Some((host, kills + 1));
+            }
+            Some(_) => cx.abandon("a shared host".to_owned()),
+            None => {}
+        }
     }
 
     /// Whether there is a host that no test has; it is ended.
@@ -150,9 +163,9 @@ impl SuiteMachine<'_> {
         cx: &mut Context<'_>,
     ) {
         let sharing = &mut self.turns.sharing;
-        if sharing.killed.take_if(|killed| *killed == host).is_none()
-            && sharing.idle.take_if(|(idle, _)| *idle == host).is_some()
-        {
+        if sharing.killed.take_if(|(killed, _)| *killed == host).is_some() {
+            cx.clear(Deadline::SharedHost);
+        } else if sharing.idle.take_if(|(idle, _)| *idle == host).is_some() {
             self.warn_of_end(status, cx);
         }
     }

@@ -14,9 +14,9 @@ use super::Context;
 use super::cursor::Cursor;
 use super::rounds::Rounds;
 use super::sharing::Sharing;
-use crate::plan::{SuitePlan, TestPlan};
 use crate::run::machine::io::{HostId, Start};
 use crate::run::machine::test::{Ended, TestRun};
+use rtf_plan::plan::{SuitePlan, TestPlan};
 
 /// How many hosts are started ahead of their need. Starting one takes longer than
 /// a short test; two keep a second core busy.
@@ -105,6 +105,21 @@ impl<'p> Turns<'p> {
     /// Whether no test is left.
     pub fn all_over(&self) -> bool {
         self.open.is_empty() && self.next >= self.suite.tests.len()
+    }
+
+    /// Whether nothing follows a test in this round, if it passes.
+    pub fn is_last(&self, test: TestId) -> bool {
+        let ends =
+            |turn: &Turn<'_>| turn.cursor.next(false, self.rounds.last_of(turn.plan)).is_none();
+        self.next >= self.suite.tests.len()
+            && self.open.iter().all(|turn| turn.plan.id == test && ends(turn))
+    }
+
+    /// Whether the processes of all tests have ended, and no other follows.
+    pub fn all_ended(&self) -> bool {
+        let mut open = self.open.iter();
+        let ended = |turn: &Turn<'_>| turn.run.as_ref().is_some_and(TestRun::has_ended);
+        self.all_over() || open.all(|turn| ended(turn) && self.is_last(turn.plan.id))
     }
 
     /// No test will begin any more.

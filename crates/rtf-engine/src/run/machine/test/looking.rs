@@ -5,13 +5,19 @@ use crate::run::machine::io::{Deadline, TestTimer};
 use crate::run::machine::suite::Context;
 
 impl TestRun<'_> {
+    /// Whether its process has ended.
+    pub fn has_ended(&self) -> bool {
+        self.process != Process::Alive
+    }
+
     /// Whether its verdict depends on whether fixtures live.
     pub fn is_looking(&self) -> bool {
         matches!(self.process, Process::Looking | Process::Settling)
     }
 
-    /// All fixtures live: it has passed. One that did not waits a moment longer,
-    /// since what broke its connection may be a part of a fixture that is about to die.
+    /// All fixtures have passed: so has the test. One that did not pass waits a moment
+    /// longer, since what broke its connection may be a part of a fixture that is about
+    /// to die.
     pub fn seen_alive(&mut self) {
         if self.process == Process::Looking {
             self.process = Process::Over;

@@ -20,13 +20,13 @@ use rtf_model::{
 pub use answers::{parse_answer, parse_initialized};
 
 use crate::host::codec::INITIALIZE;
-use crate::plan::{SuitePlan, TestPlan};
 use crate::run::machine::capture::Capture;
 use crate::run::machine::io::{
     Deadline, Effect, HostId, HostInput, Program, Start, TestTimer, environment,
 };
 use crate::run::machine::judge::{Evidence, judge, leak_of};
 use crate::run::machine::suite::Context;
+use rtf_plan::plan::{SuitePlan, TestPlan};
 use stopwatch::Stopwatch;
 
 /// The number of the first `run-test` on a host's channel.
@@ -34,10 +34,14 @@ const RUN_TEST: u64 = 2;
 
 /// From SIGTERM to SIGKILL.
 pub const TERM_GRACE: Duration = Duration::from_secs(1);
+/// How often a process is killed, and how long each time until it must have ended.
+/// One that waits in the kernel may never end.
+pub const KILLS: u32 = 2;
+pub const KILL_WAIT: Duration = Duration::from_secs(5);
 /// A test that did not pass waits this long for a fixture's collapse: a connection
 /// breaks before the kernel tells of the death at its other end. One that passed
-/// waits until the fixtures were seen to live, this long at the most. Both wait for
-/// the end of a fixture that was seen to die.
+/// waits until all fixtures have passed an examination, which has limits of its own.
+/// Both wait for the end of a fixture that was seen to die.
 const SETTLE: Duration = Duration::from_millis(200);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,6 +115,8 @@ pub struct TestRun<'p> {
     stack: StackSupport,
     stack_taken: bool,
     step: Option<Step>,
+    /// How often its process was killed.
+    kills: u32,
     /// How many times a limit it may take in wall time, if it follows another clock.
     backstop: Option<u32>,
     /// The measure of its phase, if it follows another clock.
@@ -157,6 +163,7 @@ impl<'p> TestRun<'p> {
             stack: StackSupport::None,
             stack_taken: false,
             step: None,
+            kills: 0,
             backstop: suite.clock.as_ref().map(|clock| clock.backstop),
             stopwatch: None,
             process: Process::Alive,
@@ -217,6 +224,8 @@ impl<'p> TestRun<'p> {
             HostInput::Uses { usage, served } => {
                 cx.emit(EventKind::Used { source: Source::Test(self.plan.id), usage, served });
             }
+            HostInput::Throttled(_) => self.pause_clock(true),
+            HostInput::Resumed => self.pause_clock(false),
             HostInput::Unbegun(_)
             | HostInput::ProbesHold
             | HostInput::ProbeWaits(_)
@@ -286,8 +295,10 @@ impl<'p> TestRun<'p> {
             (true, true) => Process::Looking,
             (true, false) => Process::Settling,
         };
-        if may_be_collapsed {
-            cx.set(Deadline::Test(self.plan.id, TestTimer::Limit), SETTLE);
+        let limit = Deadline::Test(self.plan.id, TestTimer::Limit);
+        match self.process {
+            Process::Settling => cx.set(limit, SETTLE),
+            _ => cx.clear(limit),
         }
     }
 

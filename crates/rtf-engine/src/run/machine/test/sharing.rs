@@ -4,9 +4,9 @@ use rtf_model::Source;
 use rtf_model::protocol::{Plugin, Request};
 
 use super::{Process, RUN_TEST, TestRun};
-use crate::plan::{SuitePlan, TestPlan};
 use crate::run::machine::io::{Deadline, Effect, HostId, TestTimer};
 use crate::run::machine::suite::Context;
+use rtf_plan::plan::{SuitePlan, TestPlan};
 
 impl TestRun<'_> {
     /// Whether its host can be asked for a further test.

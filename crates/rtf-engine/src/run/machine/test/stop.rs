@@ -6,15 +6,13 @@ use std::time::Duration;
 use rtf_model::protocol::Request;
 use rtf_model::{EventKind, Phase, Source, StopCause};
 
-use super::{Process, Step, TERM_GRACE, TestRun};
+use super::{KILL_WAIT, KILLS, Process, Step, TERM_GRACE, TestRun};
 use crate::run::machine::io::{Deadline, Effect, TestTimer};
 use crate::run::machine::suite::Context;
 
 const SIGTERM: i32 = 15;
 /// A stack dump takes no longer than this; the shell answers earlier.
 const STACK_LIMIT: Duration = Duration::from_secs(15);
-/// The process is killed again when it is still there after this time.
-const KILL_AGAIN: Duration = Duration::from_secs(5);
 
 impl TestRun<'_> {
     /// Asks the test to stop. The first cause is the one that counts.
@@ -23,7 +21,7 @@ impl TestRun<'_> {
             return;
         }
         if self.process != Process::Alive && cause != StopCause::Collapse {
-            self.process = Process::Over;
+            // It has ended; whether the fixtures live still counts.
             return;
         }
         cx.emit(EventKind::TestStopping { test: self.plan.id, cause, reason: reason.clone() });
@@ -76,11 +74,24 @@ impl TestRun<'_> {
     /// Kills its process and everything below it, now.
     pub fn kill(&mut self, cx: &mut Context<'_>) {
         if self.process != Process::Alive {
+            if self.is_looking() {
+                self.process = Process::Over;
+            }
             return;
         }
         self.step = Some(Step::Killed);
+        self.kills += 1;
         cx.out(Effect::KillTree(self.host));
-        cx.set(Deadline::Test(self.plan.id, TestTimer::Limit), KILL_AGAIN);
+        cx.set(Deadline::Test(self.plan.id, TestTimer::Limit), KILL_WAIT);
+    }
+
+    /// Its process does not end although it was killed: nobody waits any more.
+    fn abandon(&mut self, cx: &mut Context<'_>) {
+        cx.abandon(format!("the process of test `{}`", self.plan.name));
+        if let Some((_, reason, _)) = &mut self.evidence.stopped {
+            reason.push_str("; its process was killed and did not end");
+        }
+        self.exited(None, Vec::new(), cx);
     }
 
     /// A deadline about this test has passed.
@@ -103,6 +114,7 @@ impl TestRun<'_> {
             Some(Step::DumpThenAsk) => self.ask(cx),
             Some(Step::Asked) if !self.stack_taken => self.dump_stack(Step::DumpThenForce, cx),
             Some(Step::Asked | Step::DumpThenForce) => self.terminate(cx),
+            Some(Step::Killed) if self.kills >= KILLS => self.abandon(cx),
             Some(Step::Terminated | Step::Killed) => self.kill(cx),
         }
     }

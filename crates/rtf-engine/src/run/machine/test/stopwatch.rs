@@ -25,6 +25,8 @@ pub struct Stopwatch {
     shown: Option<(Duration, Duration)>,
     /// How far it went. What it jumped back is no time.
     passed: Duration,
+    /// What passes now does not count: the test waits for the runner.
+    is_paused: bool,
 }
 
 /// What a look at the clock means for the test.
@@ -42,7 +44,8 @@ impl Stopwatch {
     /// Begins at `now`; the limit, and how many times it may take in wall time.
     fn new((limit, backstop): (Duration, u32), slow: Option<Duration>, now: Duration) -> Self {
         let backstop = limit.saturating_mul(backstop);
-        Self { limit, backstop, slow, began: now, shown: None, passed: Duration::ZERO }
+        let (shown, passed, is_paused) = (None, Duration::ZERO, false);
+        Self { limit, backstop, slow, began: now, shown, passed, is_paused }
     }
 
     /// The clock shows a time.
@@ -51,7 +54,9 @@ impl Stopwatch {
             Some((before, _)) if before == time => {}
             before => {
                 let before = before.map_or(time, |(before, _)| before);
-                self.passed += time.saturating_sub(before);
+                if !self.is_paused {
+                    self.passed += time.saturating_sub(before);
+                }
                 self.shown = Some((time, now));
             }
         }
@@ -115,6 +120,11 @@ impl TestRun<'_> {
         self.stopwatch = Some(stopwatch);
     }
 
+    /// Lets no time of that clock count, or lets it count again.
+    pub(super) fn pause_clock(&mut self, is_paused: bool) {
+        self.stopwatch.iter_mut().for_each(|stopwatch| stopwatch.is_paused = is_paused);
+    }
+
     /// Whether it waits for the clock that its suite follows.
     pub fn follows_clock(&self) -> bool {
         self.stopwatch.is_some()
@@ -176,6 +186,17 @@ mod tests {
             assert_eq!(watch.look(tenths(time), SECOND), Passed::Within);
         }
         assert_eq!(watch.look(tenths(4), SECOND), Passed::Limit);
+    }
+
+    #[test]
+    fn what_passes_while_the_clock_is_paused_does_not_count() {
+        let mut watch = Stopwatch::new((SECOND, 10), None, Duration::ZERO);
+        watch.look(tenths(50), SECOND);
+        watch.is_paused = true;
+        assert_eq!(watch.look(tenths(90), SECOND), Passed::Within);
+        watch.is_paused = false;
+        assert_eq!(watch.look(tenths(99), SECOND), Passed::Within);
+        assert_eq!(watch.look(tenths(100), SECOND), Passed::Limit);
     }
 
     #[test]

@@ -6,8 +6,8 @@ use insta::assert_snapshot;
 use rtf_model::{ExitStatus, TestId, Verdict};
 
 use super::world::{FIXTURE, SECOND, TEST, World, suite};
-use crate::plan::{AttachedPlan, FixtureBody, Probe, ProbeKind, SuitePlan};
 use crate::run::machine::{Deadline, FixtureTimer, HostInput};
+use rtf_plan::plan::{AttachedPlan, FixtureBody, Probe, ProbeKind, SuitePlan};
 
 fn plan() -> SuitePlan {
     let mut plan = suite(1, 2);

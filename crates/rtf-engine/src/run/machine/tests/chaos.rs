@@ -12,8 +12,8 @@ use rtf_model::{
 
 use super::world::{SECOND, World, hook, suite};
 use crate::host::codec::INITIALIZE;
-use crate::plan::{AfterCollapse, Retries, SuitePlan};
 use crate::run::machine::{HostInput, Input, StopLevel};
+use rtf_plan::plan::{AfterCollapse, Retries, SuitePlan};
 
 /// What becomes of a shared host that has nothing to do; false when it is not its turn.
 fn act_idle(world: &mut World<'_>, choice: u8) -> bool {
@@ -33,7 +33,7 @@ fn phase(step: u8) -> Phase {
     }
 }
 
-fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool) {
+pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool) {
     let alive: Vec<_> = world.hosts.iter().map(|(host, source)| (*host, *source)).collect();
     if act_idle(world, choice) {
         return;
@@ -83,6 +83,7 @@ fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool) {
         14 => drop((!world.deadlines.is_empty()).then(|| world.next_deadline())),
         _ if choice == 255 => world.stop(StopLevel::Kill),
         _ if choice == 239 => world.stop(StopLevel::TearDown),
+        _ if choice == 207 => world.stop(StopLevel::KillHooks),
         _ if choice == 223 => world.feed(Input::Skip("a person".to_owned())),
         _ if choice % 32 == 15 => {
             let test = TestId(u32::try_from(which).unwrap_or_default());

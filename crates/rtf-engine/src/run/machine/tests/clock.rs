@@ -6,8 +6,8 @@ use insta::assert_snapshot;
 use rtf_model::{ExitStatus, Phase, Source, TestId, Verdict};
 
 use super::world::{SECOND, World, suite};
-use crate::plan::{ClockPlan, SuitePlan};
 use crate::run::machine::{Deadline, HostInput, Input, TestTimer};
+use rtf_plan::plan::{ClockPlan, SuitePlan};
 
 const TEST: Source = Source::Test(TestId(0));
 

@@ -1,11 +1,12 @@
 //! Fixtures that collapse: in a test, in set-up, between tests, in tear-down.
 
 use insta::assert_snapshot;
+use rtf_model::protocol::Request;
 use rtf_model::{ExitStatus, FixtureId, Source, TestId, Verdict};
 
 use super::world::{FIXTURE, SECOND, TEST, World, suite};
-use crate::plan::AfterCollapse;
-use crate::run::machine::{Deadline, FixtureTimer, HostInput};
+use crate::run::machine::{Deadline, FixtureTimer, HostInput, Probes};
+use rtf_plan::plan::AfterCollapse;
 
 const GONE: &str = "the motor driver is gone";
 
@@ -230,22 +231,88 @@ fn a_test_passes_at_once_when_all_fixtures_were_seen_to_live() {
     let mut world = World::running(&plan);
     world.unseen = true;
     world.end(TEST, "passed");
-    for fixture in 0..2 {
-        world.input(Source::Fixture(FixtureId(fixture)), HostInput::Lives);
-    }
+    world.examined(0);
+    assert!(world.record.tests[0].is_running(), "its last word is not spoken yet");
+    world.examined(1);
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Passed));
     assert_eq!(world.now, std::time::Duration::ZERO);
 }
 
 #[test]
-fn a_fixture_that_cannot_be_seen_holds_a_test_up_for_a_moment_only() {
-    let plan = suite(1, 1);
+fn a_fixture_that_is_not_seen_to_live_after_the_last_test_has_collapsed() {
+    for (lives, reason) in [
+        (true, "check did not answer within 1s"),
+        (false, "it could not be seen in time whether its process lives"),
+    ] {
+        let plan = suite(1, 1);
+        let mut world = World::running(&plan);
+        world.unseen = true;
+        world.end(TEST, "passed");
+        if lives {
+            world.input(FIXTURE, HostInput::Lives);
+        } else {
+            world.answer(FIXTURE, "passed");
+        }
+        assert_eq!(world.next_deadline(), Deadline::Fixture(0, FixtureTimer::Check));
+        assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Collapsed));
+        assert_eq!(world.record.fixtures[0].collapses[0].1, reason);
+    }
+}
+
+/// The device is gone since the last test ended, and nothing would ask any more.
+#[test]
+fn a_check_that_fails_after_the_last_test_is_a_collapse_of_that_test() {
+    for every in [None, Some(SECOND)] {
+        let mut plan = suite(1, 1);
+        plan.fixtures[0].check_every = every;
+        let mut world = World::running(&plan);
+        world.unseen = true;
+        world.end(TEST, "passed");
+        world.input(FIXTURE, HostInput::Lives);
+        assert!(world.record.tests[0].is_running(), "its last word is not spoken yet");
+        world.answer(FIXTURE, "failed");
+        world.tear_down(0);
+        world.finish();
+        assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Collapsed));
+        assert_eq!(world.record.fixtures[0].collapses[0].1, "check failed: says failed");
+    }
+}
+
+#[test]
+fn a_check_is_asked_once_between_two_tests() {
+    let plan = suite(1, 3);
+    let mut world = World::started(&plan);
+    world.ready(1);
+    (0..3).for_each(|test| world.pass(test));
+    world.tear_down(0);
+    world.finish();
+    let checks = world.sent.iter().filter(|sent| matches!(sent.2, Request::CheckFixture {}));
+    assert_eq!(checks.count(), 4, "before the first test and after each");
+}
+
+/// A check that was asked before its end says nothing about the time since then.
+#[test]
+fn a_test_is_not_passed_by_a_check_that_was_asked_before_its_end() {
+    let mut plan = suite(1, 1);
+    plan.fixtures[0].check_every = Some(SECOND);
     let mut world = World::running(&plan);
+    world.next_deadline();
     world.unseen = true;
     world.end(TEST, "passed");
-    world.next_deadline();
-    assert!(world.now.as_millis() <= 200);
+    world.answer(FIXTURE, "passed");
+    assert!(world.record.tests[0].is_running(), "its last word is not spoken yet");
+    world.examined(0);
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Passed));
+}
+
+#[test]
+fn probes_that_cost_a_process_are_asked_after_the_last_test_only() {
+    let plan = suite(1, 2);
+    let mut world = World::started(&plan);
+    world.ready(1);
+    world.pass(0);
+    world.pass(1);
+    assert_eq!(world.probes, [Probes::Quick, Probes::All]);
 }
 
 /// A fixture whose memory image is written takes its time to end.

@@ -5,8 +5,8 @@ use insta::assert_snapshot;
 use rtf_model::{ExitStatus, TestId, Trigger, Verdict};
 
 use super::world::{FIXTURE, HOOK, TEST, World, hook, suite};
-use crate::plan::SuitePlan;
 use crate::run::machine::Input;
+use rtf_plan::plan::SuitePlan;
 
 fn plan(repetitions: u32) -> SuitePlan {
     let mut plan = suite(1, 2);
@@ -80,7 +80,7 @@ fn a_test_that_does_not_run_is_not_stopped() {
 #[test]
 fn a_stopped_test_that_collapses_too_is_not_run_again() {
     let mut plan = plan(2);
-    plan.tests[0].after_collapse = crate::plan::AfterCollapse::Rerun;
+    plan.tests[0].after_collapse = rtf_plan::plan::AfterCollapse::Rerun;
     let mut world = World::running(&plan);
     world.exit(FIXTURE, ExitStatus::Signal(11));
     stop(&mut world, 0);

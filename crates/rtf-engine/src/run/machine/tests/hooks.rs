@@ -4,8 +4,8 @@ use insta::assert_snapshot;
 use rtf_model::{ExitStatus, FixtureId, Phase, Source, TestId, Trigger, Verdict};
 
 use super::world::{FIXTURE, HOOK, TEST, World, hook, suite};
-use crate::plan::SuitePlan;
 use crate::run::machine::{Deadline, StopLevel};
+use rtf_plan::plan::SuitePlan;
 
 fn plan(tests: usize, on: &[Trigger]) -> SuitePlan {
     let mut plan = suite(1, tests);
@@ -162,4 +162,42 @@ fn a_fixture_that_breaks_calls_its_hook_before_the_others_are_torn_down() {
     world.tear_down(0);
     world.finish();
     assert_eq!(world.record.hooks[0].runs[0].trigger, Trigger::FixtureBroken);
+}
+
+#[test]
+fn a_second_request_that_hides_the_first_one_runs_the_interrupt_hooks() {
+    let plan = plan(1, &[Trigger::Interrupt]);
+    let mut world = World::running(&plan);
+    world.stop(StopLevel::Kill);
+    world.exit(TEST, ExitStatus::Signal(9));
+    world.exit(FIXTURE, ExitStatus::Signal(9));
+    world.exit(HOOK, ExitStatus::Code(0));
+    world.finish();
+    let triggers: Vec<_> = world.record.hooks[0].runs.iter().map(|run| run.trigger).collect();
+    assert_eq!(triggers, [Trigger::Interrupt]);
+    assert!(!world.record.hook_failed(), "{}", world.story());
+}
+
+#[test]
+fn the_third_request_kills_the_hook_and_refuses_those_that_wait() {
+    let mut plan = plan(1, &[Trigger::Interrupt]);
+    plan.hooks.push(hook(1, &[Trigger::Interrupt]));
+    plan.hooks.push(hook(2, &[Trigger::End]));
+    let mut world = World::running(&plan);
+    world.stop(StopLevel::TearDown);
+    world.end(TEST, "interrupted");
+    world.stop(StopLevel::Kill);
+    world.exit(FIXTURE, ExitStatus::Signal(9));
+    world.stop(StopLevel::KillHooks);
+    world.exit(HOOK, ExitStatus::Signal(9));
+    world.finish();
+    let problems = world.record.suite_problems(plan.id);
+    assert_eq!(
+        problems,
+        [
+            "hook `hook0` on interrupt: it was killed by the third request to end the run",
+            "hook `hook1` on interrupt: it did not run: the end of the run was requested three times",
+            "hook `hook2` on end: it did not run: the end of the run was requested three times",
+        ]
+    );
 }

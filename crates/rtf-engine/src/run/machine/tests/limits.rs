@@ -202,7 +202,7 @@ fn a_hook_that_runs_when_the_shutdown_is_over_comes_to_its_end() {
 #[test]
 fn a_stubborn_test_is_killed_when_the_shutdown_is_over() {
     let mut plan = suite(0, 2);
-    let limits = crate::plan::TestLimits { grace: 100 * SECOND, ..*plan.tests[0].limits };
+    let limits = rtf_plan::plan::TestLimits { grace: 100 * SECOND, ..*plan.tests[0].limits };
     plan.tests[0].limits = std::sync::Arc::new(limits);
     let mut world = World::started(&plan);
     world.phase(TEST, Phase::Run);

@@ -1,5 +1,6 @@
 //! The state machine with invented times: no processes, no sleeps.
 
+mod abandoned;
 mod attached;
 mod chaos;
 mod clock;
@@ -15,4 +16,5 @@ mod prepared;
 mod retries;
 mod rounds;
 mod shared;
+mod silence;
 pub(crate) mod world;

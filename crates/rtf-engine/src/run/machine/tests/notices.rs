@@ -26,7 +26,7 @@ fn told(world: &World<'_>) -> String {
 }
 
 /// A suite whose fixture was told that its test begins, and whose test runs.
-fn begun<'p>(plan: &'p crate::plan::SuitePlan) -> World<'p> {
+fn begun<'p>(plan: &'p rtf_plan::plan::SuitePlan) -> World<'p> {
     let mut world = World::started(plan);
     world.set_up_to_hear(0);
     world.answer(RECORDER, "passed");
@@ -288,15 +288,20 @@ fn tests_that_run_at_once_are_told_one_by_one() {
     answer(&mut world, starts[1]);
     world.pass(1);
     world.pass(0);
-    let ends = requests(&world, |r| matches!(r, Request::TestFinished(_)));
-    // The host is still with the end of the second test.
+    let ends = |world: &World<'_>| requests(world, |r| matches!(r, Request::TestFinished(_)));
+    // The host is still with the end of the second test, and can say later only
+    // whether it was well at the end of the first.
     attach(&mut world);
-    answer(&mut world, ends[0]);
+    let first = ends(&world)[0];
+    answer(&mut world, first);
     assert_eq!(world.record.tests[1].verdict(), Some(Verdict::Passed));
+    assert_eq!(ends(&world).len(), 1);
+    world.examined(0);
     assert_eq!(world.record.tests[0].verdict(), None);
     attach(&mut world);
     attach(&mut world);
-    answer(&mut world, ends[1]);
+    let second = ends(&world)[1];
+    answer(&mut world, second);
     world.tear_down(0);
     world.finish();
     let kept = |test: usize| world.record.tests[test].attempts[0].attachments.len();

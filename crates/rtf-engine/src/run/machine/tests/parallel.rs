@@ -5,9 +5,9 @@ use rtf_model::protocol::Notification;
 use rtf_model::{EventKind, ExitStatus, Phase, Source, TestId, Trigger, Verdict};
 
 use super::world::{FIXTURE, HOOK, SECOND, World, hook, suite};
-use crate::plan::{AfterCollapse, Retries, SuitePlan};
 use crate::run::FailLimit;
 use crate::run::machine::{Deadline, HostInput, Input, StopLevel, SuiteMachine};
+use rtf_plan::plan::{AfterCollapse, Retries, SuitePlan};
 
 const OK: ExitStatus = ExitStatus::Code(0);
 
@@ -183,13 +183,12 @@ fn a_collapse_that_is_told_late_counts_for_all_that_ended_beside_it() {
 fn each_test_that_would_pass_has_the_fixtures_looked_at_after_its_own_end() {
     let plan = plan(1, 2, 2);
     let mut world = started(&plan);
-    let fixture = world.host_of(FIXTURE);
     world.unseen = true;
     world.pass(0);
     world.pass(1);
-    world.feed(Input::Host(fixture, HostInput::Lives));
+    world.examined(0);
     assert_eq!(verdicts(&world), ["passed", "none"]);
-    world.feed(Input::Host(fixture, HostInput::Lives));
+    world.examined(0);
     assert_eq!(verdicts(&world), ["passed", "passed"]);
     world.tear_down(0);
     world.finish();
@@ -342,12 +341,14 @@ fn when_enough_have_failed_those_that_run_come_to_their_end() {
 }
 
 #[test]
-fn check_is_asked_before_a_test_begins_beside_others() {
+fn a_check_that_fails_between_two_tests_counts_for_the_one_before_and_those_beside() {
     let plan = plan(1, 3, 2);
     let mut world = started(&plan);
     assert_eq!(running(&world), [0, 1]);
+    world.unseen = true;
     world.pass(0);
-    assert_eq!(running(&world), [1]);
+    assert_eq!(running(&world), [1], "no other one has begun");
+    world.unseen = false;
     world.answer(FIXTURE, "failed");
     let stopping =
         |kind: &EventKind| matches!(kind, EventKind::TestStopping { test, .. } if test.0 == 1);
@@ -358,5 +359,5 @@ fn check_is_asked_before_a_test_begins_beside_others() {
     world.pass(2);
     world.tear_down(0);
     world.finish();
-    assert_eq!(verdicts(&world), ["passed", "collapsed", "passed"]);
+    assert_eq!(verdicts(&world), ["collapsed", "collapsed", "passed"]);
 }

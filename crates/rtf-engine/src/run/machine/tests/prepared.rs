@@ -4,22 +4,22 @@ use insta::assert_snapshot;
 use rtf_model::{FixtureId, Source, SuiteId, SuitePrepared, TestId, Trigger, Verdict};
 
 use super::world::{World, hook, suite};
-use crate::plan::{Given, SuitePlan};
 use crate::run::machine::StopLevel;
+use rtf_plan::plan::{Preparation, SuitePlan};
 
 fn refused() -> SuitePlan {
     let mut plan = suite(1, 2);
     plan.hooks = vec![hook(0, &Trigger::ALL)];
     plan.tests[1].repetitions = 3;
     plan.timeout = Some(super::world::SECOND);
-    plan.given = Given::Refused("no network of its own: refused".to_owned());
+    plan.preparation = Preparation::Refused("no network of its own: refused".to_owned());
     plan
 }
 
 #[test]
 fn it_is_told_before_anything_begins() {
     let mut plan = suite(1, 1);
-    plan.given = Given::All(SuitePrepared {
+    plan.preparation = Preparation::Done(SuitePrepared {
         suite: SuiteId(0),
         network: None,
         ports: Vec::new(),

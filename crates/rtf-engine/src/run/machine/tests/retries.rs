@@ -6,9 +6,9 @@ use insta::assert_snapshot;
 use rtf_model::{ExitStatus, Phase, Source, TestId, Verdict};
 
 use super::world::{SECOND, TEST, World, hook, suite};
-use crate::plan::{Retries, SuitePlan};
 use crate::run::FailLimit;
 use crate::run::machine::{Deadline, StopLevel, SuiteMachine};
+use rtf_plan::plan::{Retries, SuitePlan};
 
 fn plan(count: u32, delay: Duration) -> SuitePlan {
     let mut plan = suite(0, 2);

@@ -3,9 +3,9 @@
 use rtf_model::{ExitStatus, FixtureId, Phase, Source, TestId, Verdict};
 
 use super::world::{SECOND, TEST, World, suite};
-use crate::plan::{Retries, SuitePlan};
 use crate::run::FailLimit;
 use crate::run::machine::{Input, StopLevel, SuiteMachine};
+use rtf_plan::plan::{Retries, SuitePlan};
 
 const TESTS: [Source; 2] = [TEST, Source::Test(TestId(1))];
 

@@ -7,7 +7,7 @@ mod story;
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
-use rtf_model::protocol::Request;
+use rtf_model::protocol::{Reply, Request};
 use rtf_model::{
     Event, EventKind, ExitStatus, FixturePlanned, HookPlanned, Micros, OrderChecker, Record,
     RunStarted, Source, SuitePlanned, TestPlanned,
@@ -16,11 +16,11 @@ use rtf_model::{
 pub use self::acts::{FIXTURE, HOOK, TEST};
 pub use self::plans::{hook, suite};
 use self::story::{effect_of, line_of};
-use crate::plan::SuitePlan;
 use crate::run::FailLimit;
 use crate::run::machine::{
-    Deadline, Effect, HostId, HostInput, Input, Stop, StopLevel, SuiteMachine,
+    Deadline, Effect, HostId, HostInput, Input, Probes, Stop, StopLevel, SuiteMachine,
 };
+use rtf_plan::plan::SuitePlan;
 
 pub const SECOND: Duration = Duration::from_secs(1);
 
@@ -42,6 +42,8 @@ pub struct World<'p> {
     pub joined: BTreeMap<HostId, (HostId, Source, u64)>,
     /// Whether it cannot be seen that fixtures live.
     pub unseen: bool,
+    /// Which probes were asked after tests.
+    pub probes: Vec<Probes>,
     order: OrderChecker,
     seq: u64,
 }
@@ -71,6 +73,7 @@ impl<'p> World<'p> {
             answered: BTreeSet::new(),
             joined: BTreeMap::new(),
             unseen: false,
+            probes: Vec::new(),
             order: OrderChecker::default(),
             seq: 0,
         };
@@ -140,19 +143,29 @@ impl<'p> World<'p> {
     }
 
     pub fn feed(&mut self, input: Input) {
-        let mut effects = Vec::new();
+        use HostInput::{Exited, Released};
+        let ends = matches!(&input, Input::Host(_, Exited(..) | Released));
+        let (mut effects, mut checked) = (Vec::new(), Vec::new());
         self.machine.handle(input, self.now, &mut effects);
         let mut looked_at = Vec::new();
         for effect in effects {
             match effect {
-                Effect::LookAlive(host) => looked_at.push(host),
+                Effect::LookAlive(host, probes) => {
+                    self.probes.push(probes);
+                    looked_at.push(host);
+                }
                 Effect::Emit(kind) => self.emit(kind),
                 Effect::Spawn { host, source, .. } => drop(self.hosts.insert(host, source)),
                 Effect::Join { host, on, source, request, .. } => {
                     assert!(self.hosts.contains_key(&on) || self.idle.contains(&on));
                     assert!(self.joined.insert(on, (host, source, request)).is_none());
                 }
-                Effect::Send(host, id, request) => self.sent.push((host, id, request)),
+                Effect::Send(host, id, request) => {
+                    if let (true, Some(id), Request::CheckFixture {}) = (ends, id, &request) {
+                        checked.push((host, id));
+                    }
+                    self.sent.push((host, id, request));
+                }
                 Effect::SetDeadline(deadline, at) => drop(self.deadlines.insert(deadline, at)),
                 Effect::ClearDeadline(deadline) => drop(self.deadlines.remove(&deadline)),
                 Effect::Done => self.done = true,
@@ -166,6 +179,12 @@ impl<'p> World<'p> {
         }
         looked_at.retain(|host| !self.unseen && self.hosts.contains_key(host));
         looked_at.into_iter().for_each(|host| self.feed(Input::Host(host, HostInput::Lives)));
+        // When a test has ended, fixtures that are asked say that they are well.
+        checked.retain(|(host, _)| !self.unseen && self.hosts.contains_key(host));
+        for (host, id) in checked {
+            let answer = Reply::Result(serde_json::json!({ "outcome": "passed" }));
+            self.feed(Input::Host(host, HostInput::Answered(id, answer)));
+        }
     }
 
     pub fn start(&mut self) {

@@ -4,8 +4,8 @@ use rtf_model::protocol::{Notification, Reply};
 use rtf_model::{ExitStatus, FixtureId, HookId, Message, MessageKind, Phase, Source, TestId};
 
 use super::World;
-use crate::plan::SuitePlan;
 use crate::run::machine::HostInput;
+use rtf_plan::plan::SuitePlan;
 
 /// The first fixture.
 pub const FIXTURE: Source = Source::Fixture(FixtureId(0));
@@ -77,6 +77,13 @@ impl<'p> World<'p> {
         let message =
             Message { kind, text: text.to_owned(), location: None, comparison: None, critical };
         self.input(source, HostInput::Told(Notification::Message(message)));
+    }
+
+    /// A fixture is seen to live, and says that it is well.
+    pub fn examined(&mut self, fixture: u32) {
+        let source = Source::Fixture(FixtureId(fixture));
+        self.input(source, HostInput::Lives);
+        self.answer(source, "passed");
     }
 
     /// A test that goes through all its phases and ends well.

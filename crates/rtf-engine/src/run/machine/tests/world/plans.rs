@@ -7,7 +7,7 @@ use std::time::Duration;
 use rtf_model::{FixtureId, HookId, SuiteId, TestId, Trigger};
 
 use super::SECOND;
-use crate::plan::*;
+use rtf_plan::plan::*;
 
 pub fn suite(fixtures: usize, tests: usize) -> SuitePlan {
     SuitePlan {
@@ -20,7 +20,7 @@ pub fn suite(fixtures: usize, tests: usize) -> SuitePlan {
         env: Arc::default(),
         timeout: None,
         isolate: Isolation::default(),
-        given: Given::Nothing,
+        preparation: Preparation::NotNeeded,
         requires: Vec::new(),
         tolerates_collapse: false,
         critical_stops_run: false,

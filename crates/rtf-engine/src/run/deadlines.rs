@@ -1,0 +1,138 @@
+//! The deadlines of a suite. Those of a process that is throttled are paused: it must not be
+//! blamed for a disk that is slow.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::time::Duration;
+
+use rtf_model::Source;
+
+use super::machine::{Deadline, HostId};
+use rtf_plan::plan::SuitePlan;
+
+/// The deadlines that are waited for, as times of the run.
+#[derive(Debug, Default)]
+pub(super) struct Deadlines {
+    at: BTreeMap<Deadline, Duration>,
+    /// Whose are paused, and since when.
+    paused: HashMap<HostId, (Source, Duration)>,
+    /// Hosts that are being stopped: nothing of them is paused.
+    stopping: HashSet<HostId>,
+}
+
+impl Deadlines {
+    pub(super) fn set(&mut self, deadline: Deadline, at: Duration) {
+        self.at.insert(deadline, at);
+    }
+
+    pub(super) fn clear(&mut self, deadline: Deadline) {
+        self.at.remove(&deadline);
+    }
+
+    /// The next one.
+    pub(super) fn next(&self, plan: &SuitePlan) -> Option<Duration> {
+        let due = self.at.iter().filter(|(deadline, _)| !self.is_paused(**deadline, plan));
+        due.map(|(_, at)| *at).min()
+    }
+
+    /// Those that have passed.
+    pub(super) fn passed(&self, now: Duration, plan: &SuitePlan) -> Vec<Deadline> {
+        let passed = self.at.iter().filter(|(_, at)| **at <= now).map(|(deadline, _)| *deadline);
+        passed.filter(|deadline| !self.is_paused(*deadline, plan)).collect()
+    }
+
+    /// Takes one away, if it has passed.
+    pub(super) fn take(&mut self, deadline: Deadline, now: Duration, plan: &SuitePlan) -> bool {
+        let has_passed = self.at.get(&deadline).is_some_and(|at| *at <= now);
+        let is_due = has_passed && !self.is_paused(deadline, plan);
+        if is_due {
+            self.at.remove(&deadline);
+        }
+        is_due
+    }
+
+    /// Lets no time pass for a host.
+    pub(super) fn pause(&mut self, host: HostId, source: Source, now: Duration) {
+        if !self.stopping.contains(&host) {
+            self.paused.entry(host).or_insert((source, now));
+        }
+    }
+
+    /// Lets time pass for a host again.
+    pub(super) fn resume(&mut self, host: HostId, now: Duration, plan: &SuitePlan) {
+        let Some((source, since)) = self.paused.remove(&host) else { return };
+        let late = now.saturating_sub(since);
+        let ours = self.at.iter_mut().filter(|(deadline, _)| is_of(**deadline, source, plan));
+        ours.for_each(|(_, at)| *at += late);
+    }
+
+    /// A host is being stopped: its deadlines are not paused from now on.
+    pub(super) fn stop(&mut self, host: HostId, now: Duration, plan: &SuitePlan) {
+        self.resume(host, now, plan);
+        self.stopping.insert(host);
+    }
+
+    /// A host has ended.
+    pub(super) fn forget(&mut self, host: HostId, now: Duration, plan: &SuitePlan) {
+        self.resume(host, now, plan);
+        self.stopping.remove(&host);
+    }
+
+    fn is_paused(&self, deadline: Deadline, plan: &SuitePlan) -> bool {
+        self.paused.values().any(|(source, _)| is_of(deadline, *source, plan))
+    }
+}
+
+fn is_of(deadline: Deadline, source: Source, plan: &SuitePlan) -> bool {
+    match (deadline, source) {
+        (Deadline::Test(test, _), Source::Test(of)) => test == of,
+        (Deadline::Fixture(place, _), Source::Fixture(of)) => {
+            plan.fixtures.get(place).is_some_and(|fixture| fixture.id == of)
+        }
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rtf_model::TestId;
+
+    use super::*;
+    use crate::run::machine::TestTimer;
+    use crate::run::machine::tests::world::suite;
+
+    const SECOND: Duration = Duration::from_secs(1);
+    const HOST: HostId = HostId(7);
+
+    fn limit(test: u32) -> Deadline {
+        Deadline::Test(TestId(test), TestTimer::Limit)
+    }
+
+    fn two() -> Deadlines {
+        let mut deadlines = Deadlines::default();
+        deadlines.set(limit(1), 5 * SECOND);
+        deadlines.set(limit(2), 6 * SECOND);
+        deadlines
+    }
+
+    #[test]
+    fn a_throttled_test_gets_the_time_back_for_which_it_was_not_read() {
+        let (mut deadlines, plan) = (two(), suite(0, 3));
+        deadlines.pause(HOST, Source::Test(TestId(1)), 4 * SECOND);
+        assert_eq!(deadlines.next(&plan), Some(6 * SECOND), "that of the other one goes on");
+        assert_eq!(deadlines.passed(10 * SECOND, &plan), [limit(2)]);
+        assert!(!deadlines.take(limit(1), 10 * SECOND, &plan));
+        deadlines.resume(HOST, 10 * SECOND, &plan);
+        assert!(deadlines.passed(11 * SECOND - SECOND / 2, &plan).len() == 1);
+        assert!(deadlines.take(limit(1), 11 * SECOND, &plan));
+    }
+
+    #[test]
+    fn the_deadlines_of_a_stop_are_not_paused() {
+        let (mut deadlines, plan) = (two(), suite(0, 3));
+        deadlines.pause(HOST, Source::Test(TestId(1)), 4 * SECOND);
+        deadlines.stop(HOST, 5 * SECOND, &plan);
+        deadlines.set(limit(1), 7 * SECOND);
+        deadlines.pause(HOST, Source::Test(TestId(1)), 6 * SECOND);
+        assert!(deadlines.take(limit(1), 7 * SECOND, &plan));
+    }
+}

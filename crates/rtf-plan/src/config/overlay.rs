@@ -1,0 +1,274 @@
+//! Overlays an `rtf.toml` on a suite before it is planned.
+
+use std::collections::HashMap;
+use std::time::Duration;
+
+use rtf_model::Diagnostic;
+
+use super::param_reference;
+use super::profile_view::{ConfigRequest, ProfileView};
+use crate::plan::defaults;
+use crate::suite::{
+    DeclaredLimits, DeclaredPlugin, DeclaredProbe, DeclaredProbeKind, DeclaredSuite, FixtureKind,
+    HookKind, MAX_DURATION, SourceText, Span,
+};
+use crate::wording::nearest;
+
+/// Applies the settings to a suite. `user` contains the user's environment variables.
+pub(crate) fn overlay_suite(
+    suite: &mut DeclaredSuite,
+    source: &SourceText,
+    view: Option<&ProfileView>,
+    (request, user): (&ConfigRequest, &HashMap<String, String>),
+) -> Vec<Diagnostic> {
+    let params = Params { view, request, user };
+    if let Some(view) = view {
+        overlay_environment(suite, view);
+        overlay_variables(&mut suite.env, view);
+        overlay_limits(suite, view);
+        overlay_parallel(suite, view);
+    }
+    let problems = ParamSubstitution { params: &params, source, problems: Vec::new() }.run(suite);
+    suite.env.splice(0..0, params.variables());
+    problems
+}
+
+fn overlay_environment(suite: &mut DeclaredSuite, view: &ProfileView) {
+    let default = view.file.defaults.get("environment").filter(|_| suite.environment.is_empty());
+    if let Some(entry) = view.profile_value("environment").or(default) {
+        suite.environment = entry.text().unwrap_or_default().to_owned();
+    }
+}
+
+/// Precedence: file < suite < profile.
+fn overlay_variables(env: &mut Vec<(String, String)>, view: &ProfileView) {
+    for (name, entry) in view.table("env") {
+        let in_profile = view.profile_value(&entry.key).is_some();
+        let value = entry.text().unwrap_or_default();
+        match env.iter_mut().find(|(known, _)| known == name) {
+            Some((_, declared)) if in_profile => value.clone_into(declared),
+            Some(_) => {}
+            None => env.push((name.to_owned(), value.to_owned())),
+        }
+    }
+}
+
+/// A file can only lower the number: only the suite knows which tests may run concurrently.
+fn overlay_parallel(suite: &mut DeclaredSuite, view: &ProfileView) {
+    let most = view.text("parallel").and_then(|text| text.parse().ok());
+    suite.parallel = suite.parallel.min(most.unwrap_or(u32::MAX));
+}
+
+fn overlay_limits(suite: &mut DeclaredSuite, view: &ProfileView) {
+    let scale = scale(view);
+    for test in &mut suite.tests {
+        test.limits = test_limits(test.limits, view, scale);
+    }
+    let default = defaults::FIXTURE;
+    for fixture in &mut suite.fixtures {
+        fixture.setup = limit(fixture.setup, ("fixture-setup", default.setup), view, scale);
+        fixture.check = limit(fixture.check, ("fixture-check", default.check), view, scale);
+        fixture.teardown =
+            limit(fixture.teardown, ("fixture-teardown", default.teardown), view, scale);
+    }
+    for hook in &mut suite.hooks {
+        hook.timeout = limit(hook.timeout, ("hook", defaults::HOOK), view, scale);
+    }
+    let suite_limit = suite.timeout.or_else(|| view.duration("timeouts.suite"));
+    suite.timeout = suite_limit.map(|limit| scaled(limit, scale));
+}
+
+/// The settings of plug-ins that are given directly.
+#[derive(Debug)]
+pub(crate) struct DirectPluginConfig {
+    /// The environment string.
+    pub environment: String,
+    /// The environment variables.
+    pub env: Vec<(String, String)>,
+    /// The limits.
+    pub limits: DeclaredLimits,
+}
+
+/// Returns the settings of plug-ins that are given directly. `environment` is
+/// the environment string of the command line.
+pub(crate) fn direct_plugin_config(
+    view: Option<&ProfileView>,
+    environment: &str,
+    (request, user): (&ConfigRequest, &HashMap<String, String>),
+) -> DirectPluginConfig {
+    let params = Params { view, request, user };
+    let mut config = DirectPluginConfig {
+        environment: environment.to_owned(),
+        env: params.variables(),
+        limits: DeclaredLimits::default(),
+    };
+    if let Some(view) = view {
+        overlay_variables(&mut config.env, view);
+        config.limits = test_limits(config.limits, view, scale(view));
+        if environment.is_empty() {
+            config.environment = view.text("environment").unwrap_or_default().to_owned();
+        }
+    }
+    config
+}
+
+fn scale(view: &ProfileView) -> f64 {
+    view.text("timeouts.scale").and_then(|text| text.parse().ok()).unwrap_or(1.0)
+}
+
+/// Returns the declared limit, else the one in `timeouts`, scaled; a scale also
+/// applies to the default. `None` if nothing deviates from the default.
+fn limit(
+    declared: Option<Duration>,
+    (key, default): (&str, Duration),
+    view: &ProfileView,
+    scale: f64,
+) -> Option<Duration> {
+    let known = declared.or_else(|| view.duration(&format!("timeouts.{key}")));
+    (scale != 1.0).then(|| scaled(known.unwrap_or(default), scale)).or(known)
+}
+
+fn test_limits(declared: DeclaredLimits, view: &ProfileView, scale: f64) -> DeclaredLimits {
+    let default = defaults::TEST;
+    DeclaredLimits {
+        load: limit(declared.load, ("load", default.load), view, scale),
+        setup: limit(declared.setup, ("setup", default.setup), view, scale),
+        run: limit(declared.run, ("run", default.run), view, scale),
+        teardown: limit(declared.teardown, ("teardown", default.teardown), view, scale),
+        slow: limit(declared.slow, ("slow", default.slow), view, scale),
+        // Not scaled: a slow robot must not delay the kill.
+        grace: declared.grace.or_else(|| view.duration("timeouts.grace")),
+    }
+}
+
+fn scaled(limit: Duration, scale: f64) -> Duration {
+    Duration::try_from_secs_f64(limit.as_secs_f64() * scale)
+        .map_or(MAX_DURATION, |it| it.min(MAX_DURATION))
+}
+
+/// The values of parameters: command line > user's variables > profile > file.
+struct Params<'a> {
+    view: Option<&'a ProfileView>,
+    request: &'a ConfigRequest,
+    user: &'a HashMap<String, String>,
+}
+
+impl Params<'_> {
+    fn get(&self, name: &str) -> Option<String> {
+        let set = self.request.params.iter().rev().find(|(known, _)| known == name);
+        set.map(|(_, value)| value.clone())
+            .or_else(|| self.user.get(&param_reference::variable(name)).cloned())
+            .or_else(|| Some(self.view?.text(&format!("param.{name}"))?.to_owned()))
+    }
+
+    /// Returns all known parameters as environment variables.
+    fn variables(&self) -> Vec<(String, String)> {
+        let configured = self.view.into_iter().flat_map(|view| view.table("param"));
+        let configured = configured.map(|(name, _)| name.to_owned());
+        let mut names: Vec<_> =
+            configured.chain(self.request.params.iter().map(|(name, _)| name.clone())).collect();
+        names.sort();
+        names.dedup();
+        let value = |name: String| Some((param_reference::variable(&name), self.get(&name)?));
+        names.into_iter().filter_map(value).collect()
+    }
+}
+
+/// Replaces `${param:…}` in a suite.
+struct ParamSubstitution<'a> {
+    params: &'a Params<'a>,
+    source: &'a SourceText,
+    problems: Vec<Diagnostic>,
+}
+
+impl ParamSubstitution<'_> {
+    fn run(mut self, suite: &mut DeclaredSuite) -> Vec<Diagnostic> {
+        let span = suite.span;
+        self.text(&mut suite.environment, span);
+        self.env(&mut suite.env, span);
+        for test in &mut suite.tests {
+            self.env(&mut test.env, test.span);
+            self.plugin(&mut test.plugin);
+        }
+        for fixture in &mut suite.fixtures {
+            self.env(&mut fixture.env, fixture.span);
+            match &mut fixture.body {
+                FixtureKind::Plugin(plugin) => self.plugin(plugin),
+                FixtureKind::Process(process) => {
+                    let span = process.command.span;
+                    self.words(&mut process.command.value, span);
+                    self.probes(process.ready.iter_mut().chain(&mut process.alive));
+                }
+                FixtureKind::Attached(attached) => {
+                    self.probes(attached.ready.iter_mut().chain(&mut attached.alive));
+                }
+            }
+        }
+        for hook in &mut suite.hooks {
+            match &mut hook.body {
+                HookKind::Plugin(plugin) => {
+                    self.plugin(plugin);
+                    self.env(&mut hook.env, plugin.name.span);
+                }
+                HookKind::Command(command) => {
+                    self.words(&mut command.value, command.span);
+                    self.env(&mut hook.env, command.span);
+                }
+            }
+        }
+        self.problems
+    }
+
+    fn probes<'p>(&mut self, probes: impl Iterator<Item = &'p mut DeclaredProbe>) {
+        for probe in probes {
+            match &mut probe.kind {
+                DeclaredProbeKind::Tcp(text)
+                | DeclaredProbeKind::Http(text)
+                | DeclaredProbeKind::File(text) => {
+                    self.text(text, probe.span);
+                }
+                DeclaredProbeKind::Command(words) => self.words(words, probe.span),
+                DeclaredProbeKind::Middleware(query) => self.text(&mut query.name, probe.span),
+                DeclaredProbeKind::Log(_) => {}
+            }
+        }
+    }
+
+    fn plugin(&mut self, plugin: &mut DeclaredPlugin) {
+        self.text(&mut plugin.param, plugin.name.span);
+    }
+
+    fn env(&mut self, env: &mut [(String, String)], span: Span) {
+        env.iter_mut().for_each(|(_, value)| self.text(value, span));
+    }
+
+    fn words(&mut self, words: &mut [String], span: Span) {
+        words.iter_mut().for_each(|word| self.text(word, span));
+    }
+
+    fn text(&mut self, text: &mut String, span: Span) {
+        if !text.contains("${param:") {
+            return;
+        }
+        let mut missing = Vec::new();
+        let value = |name: &str| self.params.get(name);
+        *text = param_reference::expand(text, value, &mut |name| missing.push(name.to_owned()));
+        for name in missing {
+            self.problems.push(self.unknown(&name, span));
+        }
+    }
+
+    fn unknown(&self, name: &str, span: Span) -> Diagnostic {
+        let problem =
+            Diagnostic::error("unknown-param", format!("the parameter `{name}` has no value"))
+                .label(self.source.label(span, "needed here"));
+        let known = self.params.view.into_iter().flat_map(|view| view.table("param"));
+        match nearest(name, known.map(|(known, _)| known)) {
+            Some(near) => problem.hint(format!("did you mean `${{param:{near}}}`?")),
+            None => problem.hint(format!(
+                "write it under `[param]` in `rtf.toml`, give `--set {name}=VALUE`, or a default: \
+                 `${{param:{name}=VALUE}}`"
+            )),
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! The plug-ins to check, and the diagnostics that follow from the answers.
+//!
+//! Before a run, each host is started with `--check` and all of its files, in
+//! the directory and with the variables that its processes will have. This
+//! finds missing symbols, wrong ABI versions, syntax errors and fixtures used as
+//! tests before anything has moved. This module collects the files and judges
+//! the answers; `rtf-engine` starts the hosts.
+
+mod diagnose;
+
+use std::collections::{BTreeSet, HashMap};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use rtf_model::Diagnostic;
+use serde::Deserialize;
+
+use super::HostPlan;
+use super::search_scope::SearchScope;
+use super::use_site::{PluginRole, UseSite, UseSites};
+use crate::suite::SourceMap;
+
+/// A use of a plug-in that has to be checked.
+pub(super) struct PluginUse<'a> {
+    pub host: &'a Arc<HostPlan>,
+    pub scope: &'a SearchScope<'a>,
+    pub file: &'a Path,
+    pub role: PluginRole,
+    pub site: &'a UseSite,
+    /// Whether the file is omitted, without an error, if it contains no plug-in of this role.
+    pub optional: bool,
+}
+
+/// All files to check, each once per way of loading it.
+#[derive(Debug, Default)]
+pub(super) struct PluginChecks {
+    groups: Vec<CheckGroup>,
+}
+
+/// Files that the same host loads in the same way.
+#[derive(Debug)]
+pub struct CheckGroup {
+    /// The host to start with `--check` and the files.
+    pub host: Arc<HostPlan>,
+    /// The working directory of the host.
+    pub folder: PathBuf,
+    /// Environment variables in addition to the runner's; later ones win.
+    pub env: Vec<(String, String)>,
+    files: Vec<FileUse>,
+    index: HashMap<PathBuf, usize>,
+}
+
+impl CheckGroup {
+    /// Returns the files to check, in the order of the answers that
+    /// [`PlanDraft::finish`](super::PlanDraft::finish) expects.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.files.iter().map(|entry| entry.file.as_path())
+    }
+}
+
+/// A host's answer about one file.
+#[derive(Clone, Debug)]
+pub enum CheckAnswer {
+    /// The host's report.
+    Report(CheckReport),
+    /// The host died while it loaded this file.
+    Died {
+        /// `exit code 3`, `signal 11`.
+        how: String,
+        /// The end of its standard error.
+        stderr: String,
+    },
+    /// The host did not finish loading this file within this time.
+    Silent(Duration),
+    /// The host does not work at all.
+    HostFailed {
+        /// `exit code 3`, `it cannot be started: …`.
+        how: String,
+        /// The end of its standard error.
+        stderr: String,
+    },
+}
+
+/// One line of a host's output after `--check FILE…` (`spec/protocol.md`).
+#[derive(Clone, Debug, Deserialize)]
+pub struct CheckReport {
+    /// The file, as passed to the host.
+    pub file: String,
+    /// Whether it could be loaded.
+    pub ok: bool,
+    /// The reason if it could not.
+    pub message: Option<String>,
+    /// The line of the file with the error, from 1.
+    pub line: Option<u32>,
+    /// The plug-ins in the file, `test` or `fixture`, if the host knows them.
+    pub kinds: Option<Vec<String>>,
+}
+
+/// A file and its uses.
+#[derive(Debug)]
+struct FileUse {
+    file: PathBuf,
+    tests: UseSites,
+    fixtures: UseSites,
+    hooks: UseSites,
+    optional: bool,
+}
+
+/// The findings of all checks.
+#[derive(Default)]
+pub(super) struct CheckFindings {
+    /// The problems.
+    pub problems: Vec<Diagnostic>,
+    /// The plug-ins' texts to which the problems refer.
+    pub sources: SourceMap,
+    /// Files of input directories that contain no test.
+    pub omitted: BTreeSet<PathBuf>,
+}
+
+impl PluginChecks {
+    /// Records a use.
+    pub fn add(&mut self, plugin: PluginUse<'_>) {
+        let group = self.group(plugin.host, plugin.scope);
+        let index = match group.index.get(plugin.file) {
+            Some(index) => *index,
+            None => {
+                let index = group.files.len();
+                group.index.insert(plugin.file.to_path_buf(), index);
+                group.files.push(FileUse {
+                    file: plugin.file.to_path_buf(),
+                    tests: UseSites::default(),
+                    fixtures: UseSites::default(),
+                    hooks: UseSites::default(),
+                    optional: plugin.optional,
+                });
+                index
+            }
+        };
+        let entry = &mut group.files[index];
+        entry.optional &= plugin.optional;
+        let sites = match plugin.role {
+            PluginRole::Test => &mut entry.tests,
+            PluginRole::Fixture => &mut entry.fixtures,
+            PluginRole::Hook => &mut entry.hooks,
+        };
+        sites.add(plugin.site);
+    }
+
+    fn group(&mut self, host: &Arc<HostPlan>, scope: &SearchScope<'_>) -> &mut CheckGroup {
+        let env = || scope.suite_env.iter().chain(scope.own_env);
+        let is_same = |group: &CheckGroup| {
+            Arc::ptr_eq(&group.host, host)
+                && group.folder == scope.dir
+                && group.env.iter().eq(env())
+        };
+        // Searched backwards: most uses belong to the group of the previous one.
+        let index = match self.groups.iter().rposition(is_same) {
+            Some(index) => index,
+            None => {
+                self.groups.push(CheckGroup {
+                    host: Arc::clone(host),
+                    folder: scope.dir.to_path_buf(),
+                    env: env().cloned().collect(),
+                    files: Vec::new(),
+                    index: HashMap::new(),
+                });
+                self.groups.len() - 1
+            }
+        };
+        &mut self.groups[index]
+    }
+
+    /// Returns the groups to check.
+    pub fn groups(&self) -> &[CheckGroup] {
+        &self.groups
+    }
+
+    /// Turns the answers, one per file of each group, into diagnostics.
+    pub fn diagnose(&self, answers: Vec<Vec<CheckAnswer>>) -> CheckFindings {
+        let mut findings = CheckFindings::default();
+        for (group, answers) in self.groups.iter().zip(answers) {
+            diagnose::diagnose(group, answers, &mut findings);
+        }
+        findings
+    }
+}

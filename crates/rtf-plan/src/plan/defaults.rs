@@ -1,0 +1,26 @@
+//! The default limits; `spec/suite.md` lists them.
+
+use std::time::Duration;
+
+use super::{FixtureLimits, TestLimits};
+
+/// The limits of a test.
+pub(crate) const TEST: TestLimits = TestLimits {
+    load: Duration::from_secs(30),
+    setup: Duration::from_secs(60),
+    run: Duration::from_secs(300),
+    teardown: Duration::from_secs(30),
+    slow: Duration::from_secs(60),
+    grace: Duration::from_secs(2),
+};
+
+/// The limits of a fixture.
+pub(crate) const FIXTURE: FixtureLimits = FixtureLimits {
+    setup: Duration::from_secs(60),
+    check: Duration::from_secs(5),
+    notice: Duration::from_secs(10),
+    teardown: Duration::from_secs(30),
+};
+
+/// The limit of a hook.
+pub(crate) const HOOK: Duration = Duration::from_secs(30);

@@ -1,0 +1,217 @@
+//! Plans the fixtures of a suite.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use rtf_model::{Diagnostic, FixtureId};
+
+use super::context::PlanContext;
+use super::names::UniqueNames;
+use super::plugin_planner::PluginPlanner;
+use super::plugin_search::base_name;
+use super::search_scope::SearchScope;
+use super::use_site::PluginRole;
+use super::{
+    AttachedPlan, FixtureBody, FixtureLimits, FixturePlan, Probe, ProbeKind, ProcessPlan,
+    RemotePlan, defaults, dependencies, middleware, program,
+};
+use crate::suite::{
+    self, DeclaredAttachment, DeclaredFixture, DeclaredProbeKind, DeclaredProcess, FixtureKind,
+    SourceText, Spanned,
+};
+
+// `spec/suite.md` lists these defaults.
+pub(super) const RESTARTS: u32 = 3;
+pub(super) const RESTART_DELAY: Duration = Duration::from_millis(100);
+const READY_EVERY: Duration = Duration::from_millis(100);
+const ALIVE_EVERY: Duration = Duration::from_secs(1);
+const PROBE_TIMEOUT: Duration = Duration::from_secs(1);
+/// The variable with the user's `ssh` command line.
+const SSH_VARIABLE: &str = "RTF_SSH";
+const STOP_SIGNAL: i32 = 15;
+const STOP_GRACE: Duration = Duration::from_secs(5);
+
+/// Plans all fixtures of a suite, each after its dependencies.
+pub(super) fn plan_all(
+    planner: &mut PluginPlanner<'_, '_>,
+    source: &Arc<SourceText>,
+    fixtures: Vec<DeclaredFixture>,
+) -> Vec<FixturePlan> {
+    let declared = fixtures.iter().map(|fixture| fixture.name.as_ref());
+    let problems = &mut planner.context.problems;
+    let mut unique = UniqueNames::reserve("fixture", declared, source, problems);
+    let names: Vec<String> = fixtures
+        .iter()
+        .map(|fixture| match &fixture.name {
+            Some(name) => name.value.clone(),
+            None => unique.unique(default_name(fixture)),
+        })
+        .collect();
+    let steps = dependencies::setup_order(&fixtures, &names, source, problems);
+    let mut fixtures: Vec<_> = fixtures.into_iter().zip(names).map(Some).collect();
+    let mut plans = Vec::with_capacity(steps.len());
+    for step in steps {
+        let Some((fixture, name)) = fixtures[step.fixture].take() else { continue };
+        let planned = plan(planner, source, fixture, name);
+        plans.extend(planned.map(|planned| FixturePlan { depends: step.depends, ..planned }));
+    }
+    plans
+}
+
+/// Returns the name of a fixture without `name`.
+fn default_name(fixture: &DeclaredFixture) -> &str {
+    match &fixture.body {
+        FixtureKind::Plugin(plugin) => base_name(&plugin.name.value),
+        FixtureKind::Process(process) => program::base_name(&process.command.value),
+        FixtureKind::Attached(_) => "attached",
+    }
+}
+
+fn plan(
+    planner: &mut PluginPlanner<'_, '_>,
+    source: &Arc<SourceText>,
+    fixture: DeclaredFixture,
+    name: String,
+) -> Option<FixturePlan> {
+    let limits = FixtureLimits {
+        setup: fixture.setup.unwrap_or(defaults::FIXTURE.setup),
+        check: fixture.check.unwrap_or(defaults::FIXTURE.check),
+        notice: fixture.notice.unwrap_or(defaults::FIXTURE.notice),
+        teardown: fixture.teardown.unwrap_or(defaults::FIXTURE.teardown),
+    };
+    let check_every = fixture.check_every;
+    let body = match fixture.body {
+        FixtureKind::Plugin(plugin) => {
+            let role = PluginRole::Fixture;
+            FixtureBody::Plugin(planner.plan(plugin, source, &fixture.env, role)?)
+        }
+        FixtureKind::Process(process) => {
+            let suite_scope = planner.scope();
+            let mut planner =
+                ProcessPlanner::new(source, suite_scope.with(&fixture.env), planner.context);
+            FixtureBody::Process(Arc::new(planner.plan(*process, check_every)))
+        }
+        FixtureKind::Attached(attached) => {
+            let suite_scope = planner.scope();
+            let mut planner =
+                ProcessPlanner::new(source, suite_scope.with(&fixture.env), planner.context);
+            FixtureBody::Attached(Arc::new(planner.plan_attached(attached, check_every)))
+        }
+    };
+    Some(FixturePlan {
+        id: FixtureId(0),
+        name,
+        depends: Vec::new(),
+        body,
+        env: fixture.env,
+        limits,
+        restarts: fixture.restarts.unwrap_or(RESTARTS),
+        restart_delay: fixture.restart_delay.unwrap_or(RESTART_DELAY),
+        check_every,
+    })
+}
+
+struct ProcessPlanner<'a> {
+    source: &'a Arc<SourceText>,
+    scope: SearchScope<'a>,
+    problems: &'a mut Vec<Diagnostic>,
+}
+
+impl<'a> ProcessPlanner<'a> {
+    fn new(
+        source: &'a Arc<SourceText>,
+        scope: SearchScope<'a>,
+        context: &'a mut PlanContext<'_>,
+    ) -> Self {
+        Self { source, scope, problems: &mut context.problems }
+    }
+
+    fn plan(&mut self, declared: DeclaredProcess, check_every: Option<Duration>) -> ProcessPlan {
+        let alive_every = check_every.unwrap_or(ALIVE_EVERY);
+        let mut probes = |probes: Vec<suite::DeclaredProbe>, every| {
+            probes.into_iter().map(|probe| self.probe(probe, every)).collect()
+        };
+        let ready = probes(declared.ready, READY_EVERY);
+        let alive = probes(declared.alive, alive_every);
+        let remote =
+            declared.host.map(|host| RemotePlan { ssh: self.ssh(&host), host: host.value });
+        let command = match remote {
+            Some(_) => declared.command.value,
+            None => self.command(declared.command),
+        };
+        ProcessPlan {
+            command,
+            ready,
+            alive,
+            stop_signal: declared.stop_signal.unwrap_or(STOP_SIGNAL),
+            stop_grace: declared.stop_grace.unwrap_or(STOP_GRACE),
+            stop_codes: declared.stop_codes,
+            remote,
+        }
+    }
+
+    /// All probes must pass before it is ready. Without `<alive>`, the `<ready>`
+    /// probes also run as `<alive>` probes.
+    fn plan_attached(
+        &mut self,
+        declared: DeclaredAttachment,
+        check_every: Option<Duration>,
+    ) -> AttachedPlan {
+        let every = check_every.unwrap_or(ALIVE_EVERY);
+        let intervals: Vec<_> = declared.ready.iter().map(|probe| probe.every).collect();
+        let mut probes = |probes: Vec<suite::DeclaredProbe>, every| -> Vec<Probe> {
+            probes.into_iter().map(|probe| self.probe(probe, every)).collect()
+        };
+        let mut ready = probes(declared.ready, READY_EVERY);
+        let mut alive = probes(declared.alive, every);
+        let at = |probe: &Probe, every| Probe { every, ..probe.clone() };
+        if alive.is_empty() {
+            let both = ready.iter().zip(intervals);
+            alive = both.map(|(probe, interval)| at(probe, interval.unwrap_or(every))).collect();
+        } else {
+            ready.extend(alive.iter().map(|probe| at(probe, READY_EVERY)));
+        }
+        AttachedPlan { ready, alive }
+    }
+
+    fn probe(&mut self, declared: suite::DeclaredProbe, every: Duration) -> Probe {
+        let mut timeout = declared.timeout.unwrap_or(PROBE_TIMEOUT);
+        let kind = match declared.kind {
+            DeclaredProbeKind::Tcp(address) => ProbeKind::Tcp(address),
+            DeclaredProbeKind::Http(url) => ProbeKind::Http(url),
+            DeclaredProbeKind::Log(pattern) => ProbeKind::Log(pattern),
+            DeclaredProbeKind::Command(words) => {
+                ProbeKind::Command(self.command(Spanned::new(words, declared.span)))
+            }
+            DeclaredProbeKind::File(path) => ProbeKind::File(self.scope.dir.join(path)),
+            DeclaredProbeKind::Middleware(query) => {
+                let limit = declared.timeout.unwrap_or(middleware::TIMEOUT);
+                timeout = limit + middleware::STARTUP_TIME;
+                middleware::probe(&query, limit, &self.scope).unwrap_or_else(|problem| {
+                    self.problems.push(problem.label(self.source.label(declared.span, "")));
+                    ProbeKind::Command(Vec::new())
+                })
+            }
+        };
+        Probe { kind, every: declared.every.unwrap_or(every), timeout }
+    }
+
+    /// Returns the user's `ssh` command with its options.
+    fn ssh(&mut self, host: &Spanned<String>) -> Vec<String> {
+        let variable = self.scope.variable(SSH_VARIABLE).filter(|line| !line.is_empty());
+        let line = variable.unwrap_or("ssh");
+        match shell_words::split(line) {
+            Ok(words) if !words.is_empty() => self.command(Spanned::new(words, host.span)),
+            _ => {
+                let message = format!("`{SSH_VARIABLE}` is not a command: `{line}`");
+                let label = self.source.label(host.span, "");
+                self.problems.push(Diagnostic::error("invalid-value", message).label(label));
+                Vec::new()
+            }
+        }
+    }
+
+    fn command(&mut self, declared: Spanned<Vec<String>>) -> Vec<String> {
+        program::command(declared, &self.scope, self.source, self.problems)
+    }
+}

@@ -1,0 +1,31 @@
+//! The hosts and fixture managers that are installed, independent of a suite.
+
+use std::path::PathBuf;
+
+use rtf_model::Diagnostic;
+
+use super::hosts::HOSTS;
+use super::search_scope::SearchScope;
+use super::{HostPlan, RunnerEnvironment, plugin_search, program};
+
+/// The plan of a host, or the reason why it cannot be used.
+pub type LocatedHost = Result<HostPlan, Box<Diagnostic>>;
+
+/// Returns all hosts by the names of their types.
+#[must_use]
+pub fn installed_hosts(runner: &RunnerEnvironment) -> Vec<(&'static str, LocatedHost)> {
+    let scope = SearchScope::of_runner(runner);
+    HOSTS.iter().map(|kind| (kind.name, kind.locate(&scope))).collect()
+}
+
+/// Returns the directory of the fixture managers that come with `rtf`.
+#[must_use]
+pub fn shipped_fixtures_dir(runner: &RunnerEnvironment) -> Option<PathBuf> {
+    plugin_search::shipped_dir(&SearchScope::of_runner(runner))
+}
+
+/// Finds a program in the user's `PATH`.
+#[must_use]
+pub fn find_in_path(name: &str, runner: &RunnerEnvironment) -> Option<PathBuf> {
+    program::in_path(name, &SearchScope::of_runner(runner))
+}

@@ -1,0 +1,58 @@
+//! Probes of middleware, as commands: `rtf` itself speaks no middleware. Also
+//! defines which of the shipped fixture managers start middleware.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use rtf_model::Diagnostic;
+
+use super::ProbeKind;
+use super::hosts;
+use super::plugin_search::shipped_dir;
+use super::program::utf8;
+use super::search_scope::SearchScope;
+use crate::suite::{DeclaredPlugin, MiddlewareProbe};
+
+/// The default limit for one answer.
+pub(super) const TIMEOUT: Duration = Duration::from_secs(5);
+/// The additional time for the start of the probe program.
+pub(super) const STARTUP_TIME: Duration = Duration::from_secs(2);
+/// The probe program, relative to the directory of the shipped fixture managers.
+const PROGRAM: &str = "rtf_fixtures/probe.py";
+/// Options that speed up the interpreter; the ROS 2 probes need installed packages.
+const ISOLATED: [&str; 2] = ["-E", "-S"];
+
+/// The fixture managers that start middleware. Recorders use existing middleware.
+const STARTING_MIDDLEWARE: [&str; 6] =
+    ["roscore", "roslaunch", "yarpserver", "yarpmanager", "ros2launch", "orocos"];
+
+/// Checks by its name whether a fixture starts middleware. A user's plug-in with
+/// the name of a shipped one is expected to do the same.
+pub(super) fn starts_middleware(plugin: &DeclaredPlugin) -> bool {
+    plugin.plugin_type.is_none() && STARTING_MIDDLEWARE.contains(&plugin.name.value.as_str())
+}
+
+/// Plans the command of a probe.
+pub(super) fn probe(
+    query: &MiddlewareProbe,
+    timeout: Duration,
+    scope: &SearchScope<'_>,
+) -> Result<ProbeKind, Box<Diagnostic>> {
+    let program = shipped_dir(scope).map(|dir| dir.join(PROGRAM));
+    let Some(program) = program.filter(|program: &PathBuf| program.is_file()) else {
+        let message = format!("`{}` cannot be probed: `{PROGRAM}` is missing", query.kind);
+        let hint = "it is installed together with `rtf`, in `share/rtf/fixtures`";
+        return Err(Diagnostic::error("no-such-program", message).hint(hint).into());
+    };
+    let mut command = vec![utf8(&hosts::python(scope)?)?];
+    if !query.kind.starts_with("ros2-") {
+        command.extend(ISOLATED.map(str::to_owned));
+    }
+    command.extend([utf8(&program)?, query.kind.to_owned(), query.name.clone()]);
+    command.extend(["--timeout".to_owned(), timeout.as_secs_f64().to_string()]);
+    if let Some(rate) = query.min_rate {
+        command.extend(["--min-rate".to_owned(), rate.to_string()]);
+    }
+    let subject = format!("{} `{}`", query.kind, query.name);
+    Ok(ProbeKind::Middleware { command, subject })
+}

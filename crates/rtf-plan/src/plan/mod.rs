@@ -1,0 +1,38 @@
+//! Input paths + options → [`Plan`].
+//!
+//! Responsible for finding every suite, plug-in, host and program, for unique
+//! names, and for reporting *all* problems at once. A [`PlanDraft`] lists the
+//! plug-ins that their hosts have to check, and becomes a [`PlanOutcome`] with the
+//! hosts' answers. A valid plan can fail only because of the outside world, not
+//! because of its input files.
+
+mod checks;
+mod clock;
+mod context;
+pub(crate) mod defaults;
+mod dependencies;
+mod draft;
+mod fixture;
+mod hook;
+mod hosts;
+mod inputs;
+mod installed;
+mod middleware;
+mod names;
+mod options;
+mod plugin_planner;
+mod plugin_search;
+mod program;
+mod runner_environment;
+mod search_scope;
+mod suite;
+mod types;
+mod unix;
+mod use_site;
+
+pub use checks::{CheckAnswer, CheckGroup, CheckReport};
+pub use draft::{PlanDraft, PlanOutcome, draft};
+pub use installed::{LocatedHost, find_in_path, installed_hosts, shipped_fixtures_dir};
+pub use options::{Compatibility, InputPath, Options};
+pub use runner_environment::RunnerEnvironment;
+pub use types::*;

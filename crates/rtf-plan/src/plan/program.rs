@@ -1,0 +1,93 @@
+//! Finds the programs of `<command>` and `command="…"`.
+
+use std::path::{Path, PathBuf};
+
+use rtf_model::Diagnostic;
+
+use super::search_scope::SearchScope;
+use super::unix::is_executable;
+use crate::suite::{SourceText, Spanned};
+
+/// Resolves the program of a command line and reports it if it is missing.
+/// Without words, which was reported before, returns no words.
+pub(super) fn command(
+    declared: Spanned<Vec<String>>,
+    scope: &SearchScope<'_>,
+    source: &SourceText,
+    problems: &mut Vec<Diagnostic>,
+) -> Vec<String> {
+    let mut words = declared.value;
+    let Some(first) = words.first_mut() else { return words };
+    match find(first, scope).and_then(|file| utf8(&file)) {
+        Ok(file) => *first = file,
+        Err(problem) => problems.push(problem.label(source.label(declared.span, ""))),
+    }
+    words
+}
+
+/// Returns the default name of a fixture or hook with a command: its program's
+/// name without the directory.
+pub(super) fn base_name(command: &[String]) -> &str {
+    let program = command.first().map_or("process", String::as_str);
+    Path::new(program).file_name().and_then(|name| name.to_str()).unwrap_or(program)
+}
+
+/// Finds a program. A name with a slash is a path relative to the suite's
+/// directory; any other name is searched in `PATH`.
+pub(super) fn find(name: &str, scope: &SearchScope<'_>) -> Result<PathBuf, Box<Diagnostic>> {
+    if name.contains('/') {
+        let dirs = std::iter::once(scope.dir).chain(scope.fallback_dir);
+        let mut files = dirs.map(|dir| dir.join(name).components().collect::<PathBuf>());
+        let first = files.next().unwrap_or_default();
+        let file = if first.exists() { first } else { files.next().unwrap_or(first) };
+        return if is_executable(&file) {
+            Ok(file)
+        } else if file.is_file() {
+            let message = format!("the program `{name}` is not executable");
+            let hint = format!("make it executable with `chmod +x {name}`");
+            Err(Diagnostic::error("no-such-program", message).hint(hint).into())
+        } else {
+            let note = format!("looked for {}", file.display());
+            Err(no_such_program(name).note(note).into())
+        };
+    }
+    in_path(name, scope).ok_or_else(|| {
+        let problem = no_such_program(name).note(searched_path(scope));
+        if scope.dir.join(name).is_file() {
+            problem.hint(format!("use `./{name}` for the one in the suite's directory")).into()
+        } else {
+            problem.into()
+        }
+    })
+}
+
+fn no_such_program(name: &str) -> Diagnostic {
+    Diagnostic::error("no-such-program", format!("there is no program `{name}`"))
+}
+
+/// Finds the first program of this name in `PATH`.
+pub(super) fn in_path(name: &str, scope: &SearchScope<'_>) -> Option<PathBuf> {
+    scope.dirs("PATH").into_iter().map(|dir| dir.join(name)).find(|file| is_executable(file))
+}
+
+/// Returns a note with the directories of `PATH`.
+pub(super) fn searched_path(scope: &SearchScope<'_>) -> String {
+    match list(&scope.dirs("PATH")) {
+        list if list.is_empty() => "`PATH` contains no directory".to_owned(),
+        list => format!("searched `PATH`:\n{list}"),
+    }
+}
+
+/// Formats directories as lines of a note.
+pub(super) fn list(dirs: &[PathBuf]) -> String {
+    let lines: Vec<_> = dirs.iter().map(|dir| format!("  {}", dir.display())).collect();
+    lines.join("\n")
+}
+
+/// Converts a path for a command line or for the protocol, which are UTF-8.
+pub(super) fn utf8(path: &Path) -> Result<String, Box<Diagnostic>> {
+    path.to_str().map(str::to_owned).ok_or_else(|| {
+        let message = format!("the path `{}` is not UTF-8", path.display());
+        Diagnostic::error("path-encoding", message).into()
+    })
+}

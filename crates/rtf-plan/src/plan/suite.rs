@@ -1,0 +1,240 @@
+//! Plans a suite file, or the plug-ins that are given directly.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use rtf_model::{SuiteId, TestId};
+
+use super::context::{PlanContext, parent_dir};
+use super::hosts::HostKind;
+use super::inputs::InputFile;
+use super::names::UniqueNames;
+use super::plugin_planner::PluginPlanner;
+use super::plugin_search::base_name;
+use super::search_scope::SearchScope;
+use super::use_site::PluginRole;
+use super::{
+    AfterCollapse, Compatibility, Isolation, Leaks, OwnMiddleware, Preparation, Retries, SuitePlan,
+    TestLimits, TestPlan, clock, defaults, fixture, hook, middleware,
+};
+use crate::config;
+use crate::suite::{
+    DeclaredLimits, DeclaredMiddleware, DeclaredSuite, DeclaredTest, FixtureKind, SourceText,
+};
+
+/// The name of the suite of the plug-ins that are given directly.
+const DIRECT_PLUGINS: &str = "plug-ins";
+
+/// The limits of tests; tests with equal limits share them.
+#[derive(Default)]
+struct SharedLimits {
+    known: HashMap<DeclaredLimits, Arc<TestLimits>>,
+}
+
+impl SharedLimits {
+    fn get(&mut self, declared: DeclaredLimits) -> Arc<TestLimits> {
+        let limits = self.known.entry(declared).or_insert_with(|| {
+            Arc::new(TestLimits {
+                load: declared.load.unwrap_or(defaults::TEST.load),
+                setup: declared.setup.unwrap_or(defaults::TEST.setup),
+                run: declared.run.unwrap_or(defaults::TEST.run),
+                teardown: declared.teardown.unwrap_or(defaults::TEST.teardown),
+                slow: declared.slow.unwrap_or(defaults::TEST.slow),
+                grace: declared.grace.unwrap_or(defaults::TEST.grace),
+            })
+        });
+        Arc::clone(limits)
+    }
+}
+
+/// Plans a suite file. [`Plan::new`](super::Plan::new) assigns the ids.
+pub(super) fn plan_suite(
+    context: &mut PlanContext<'_>,
+    file: &InputFile,
+    source: &Arc<SourceText>,
+    suite: DeclaredSuite,
+) -> SuitePlan {
+    let suite_dir = parent_dir(&file.path);
+    let runner = &context.options.runner;
+    let (dir, fallback_dir) = match context.options.compatibility {
+        Compatibility::Native => (suite_dir, None),
+        Compatibility::Predecessor => (runner.current_dir.clone(), Some(suite_dir)),
+    };
+    let isolate = isolation(&suite);
+    let env = Arc::new(suite.env);
+    let name = suite.name.map(|name| name.value).unwrap_or_else(|| stem(&file.path));
+    let declared = suite.tests.iter().map(|test| test.name.as_ref());
+    let mut names = UniqueNames::reserve("test", declared, source, &mut context.problems);
+    let fallback_dir = fallback_dir.as_deref();
+    let scope = SearchScope { runner, dir: &dir, fallback_dir, suite_env: &env, own_env: &[] };
+    let mut planner = PluginPlanner::new(context, scope);
+    let mut fixtures = fixture::plan_all(&mut planner, source, suite.fixtures);
+    let clock = clock::plan(&mut planner, source, suite.clock, &mut fixtures);
+    let hooks = hook::plan_all(&mut planner, source, suite.hooks);
+    let tests = plan_tests(&mut planner, source, &mut names, (&suite.tags, suite.tests));
+    planner.report_missing();
+    SuitePlan {
+        id: SuiteId(0),
+        name,
+        file: file.name.clone(),
+        folder: dir,
+        description: suite.description,
+        environment: suite.environment,
+        env,
+        timeout: suite.timeout,
+        isolate,
+        preparation: Preparation::NotNeeded,
+        requires: suite.requires,
+        tolerates_collapse: suite.tolerates_collapse,
+        critical_stops_run: suite.critical_stops_run,
+        parallel: suite.parallel,
+        clock,
+        fixtures,
+        hooks,
+        tests,
+    }
+}
+
+/// Plans the tests of a suite; omits those without a plug-in, which are reported.
+fn plan_tests(
+    planner: &mut PluginPlanner<'_, '_>,
+    source: &Arc<SourceText>,
+    names: &mut UniqueNames,
+    (suite_tags, tests): (&[String], Vec<DeclaredTest>),
+) -> Vec<TestPlan> {
+    let (mut limits, mut plans) = (SharedLimits::default(), Vec::with_capacity(tests.len()));
+    for test in tests {
+        let declared = test.name.as_ref().map(|name| name.value.clone());
+        let name = declared.unwrap_or_else(|| names.unique(base_name(&test.plugin.name.value)));
+        let (tags, env) = (tags(suite_tags, &test), &test.env);
+        let Some(plugin) = planner.plan(test.plugin, source, env, PluginRole::Test) else {
+            continue;
+        };
+        plans.push(TestPlan {
+            id: TestId(0),
+            name,
+            plugin,
+            env: test.env,
+            repetitions: test.repetitions,
+            limits: limits.get(test.limits),
+            after_collapse: test.after_collapse,
+            leaks: test.leaks,
+            retries: test.retries,
+            critical: test.critical,
+            exclusive: test.exclusive,
+            shared: test.shared,
+            tags,
+        });
+    }
+    plans
+}
+
+/// Determines the private resources of a suite, as specified in `spec/suite.md`.
+fn isolation(suite: &DeclaredSuite) -> Isolation {
+    let network = suite.isolate.network;
+    // A fixture outside of the suite cannot know the ids of private middleware. A
+    // user's plug-in may start middleware or use an existing one: as in 2.x, its
+    // suite shares middleware.
+    let (mut starts, mut is_outside) = (false, false);
+    for fixture in &suite.fixtures {
+        match &fixture.body {
+            FixtureKind::Attached(_) => is_outside = true,
+            FixtureKind::Process(process) if process.host.is_some() => is_outside = true,
+            FixtureKind::Process(_) => starts = true,
+            FixtureKind::Plugin(plugin) => starts |= middleware::starts_middleware(plugin),
+        }
+    }
+    let middleware = match suite.isolate.middleware {
+        Some(DeclaredMiddleware::Own) => OwnMiddleware::Always,
+        Some(DeclaredMiddleware::Shared) => OwnMiddleware::No,
+        // A private network cannot reach shared middleware.
+        None if network => OwnMiddleware::Always,
+        None if starts && !is_outside => OwnMiddleware::UnlessSet,
+        None => OwnMiddleware::No,
+    };
+    Isolation { network, middleware, ports: suite.isolate.ports.clone() }
+}
+
+/// Returns the tags of the suite, then those of the test.
+fn tags(suite: &[String], test: &DeclaredTest) -> Vec<String> {
+    let mut tags: Vec<String> = Vec::with_capacity(suite.len() + test.tags.len());
+    for tag in suite.iter().chain(&test.tags) {
+        if !tags.contains(tag) {
+            tags.push(tag.clone());
+        }
+    }
+    tags
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// A plug-in that is given directly: by name, or as a file of a directory.
+#[derive(Debug)]
+pub(super) struct DirectPlugin {
+    /// The file.
+    pub file: InputFile,
+    /// The type.
+    pub kind: &'static HostKind,
+    /// Whether it is a file of an input directory. If it contains no test, it is omitted.
+    pub from_dir: bool,
+}
+
+/// Plans one suite of all plug-ins that are given directly.
+pub(super) fn plan_direct_plugins(
+    context: &mut PlanContext<'_>,
+    plugins: &[DirectPlugin],
+) -> SuitePlan {
+    let options = context.options;
+    let use_options = plugins.iter().any(|plugin| options.apply_to_plugin(plugin.from_dir));
+    let dir = options.runner.current_dir.clone();
+    let runner = &options.runner;
+    let environment = if use_options { options.environment.as_str() } else { "" };
+    let config::DirectPluginConfig { environment, env, limits } =
+        context.direct_plugin_config(&dir, environment);
+    let scope = SearchScope { suite_env: &env, ..SearchScope::of_runner(runner) };
+    let mut names = UniqueNames::default();
+    let limits = SharedLimits::default().get(limits);
+    let mut planner = PluginPlanner::new(context, scope);
+    let mut tests = Vec::with_capacity(plugins.len());
+    for direct in plugins {
+        let Some(plugin) = planner.plan_file(direct) else { continue };
+        tests.push(TestPlan {
+            id: TestId(0),
+            name: names.unique(base_name(&direct.file.name)),
+            plugin,
+            env: Vec::new(),
+            repetitions: if use_options { options.repetitions.max(1) } else { 1 },
+            limits: Arc::clone(&limits),
+            after_collapse: AfterCollapse::default(),
+            leaks: Leaks::default(),
+            retries: Retries::default(),
+            critical: false,
+            exclusive: false,
+            shared: false,
+            tags: Vec::new(),
+        });
+    }
+    SuitePlan {
+        id: SuiteId(0),
+        name: DIRECT_PLUGINS.to_owned(),
+        file: String::new(),
+        folder: dir,
+        description: String::new(),
+        environment,
+        env: Arc::new(env),
+        timeout: None,
+        isolate: Isolation::default(),
+        preparation: Preparation::NotNeeded,
+        requires: Vec::new(),
+        tolerates_collapse: false,
+        critical_stops_run: false,
+        parallel: 1,
+        clock: None,
+        fixtures: Vec::new(),
+        hooks: Vec::new(),
+        tests,
+    }
+}

@@ -1,0 +1,357 @@
+//! The plan: suites, fixtures, hooks and tests with every plug-in and host resolved.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use rtf_model::{FixtureId, HookId, SuiteId, SuitePrepared, TestId, Trigger};
+
+pub use crate::suite::{AfterCollapse, Leaks, RequiredResource, Retries};
+
+/// The plan of a run. All input files are valid; only the outside world can still fail.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    /// The suites, in the order in which they run; the index is the [`SuiteId`].
+    pub suites: Vec<SuitePlan>,
+    /// The number of fixtures over all suites.
+    pub fixtures: u32,
+    /// The number of hooks over all suites.
+    pub hooks: u32,
+    /// The number of tests over all suites.
+    pub tests: u32,
+}
+
+impl Plan {
+    /// Creates a plan of suites with distinct names, and assigns all ids.
+    #[must_use]
+    pub fn new(mut suites: Vec<SuitePlan>) -> Self {
+        let (mut fixtures, mut hooks, mut tests) = (0, 0, 0);
+        for (id, suite) in (0..).zip(&mut suites) {
+            suite.id = SuiteId(id);
+            for fixture in &mut suite.fixtures {
+                fixture.id = FixtureId(fixtures);
+                fixtures += 1;
+            }
+            for hook in &mut suite.hooks {
+                hook.id = HookId(hooks);
+                hooks += 1;
+            }
+            for test in &mut suite.tests {
+                test.id = TestId(tests);
+                tests += 1;
+            }
+        }
+        Self { suites, fixtures, hooks, tests }
+    }
+}
+
+/// The plan of a suite.
+#[derive(Clone, Debug)]
+pub struct SuitePlan {
+    /// The id.
+    pub id: SuiteId,
+    /// The name, unique in the run.
+    pub name: String,
+    /// The file as the user named it; empty for plug-ins that are given directly.
+    pub file: String,
+    /// The working directory of its processes: the suite file's, or the current one.
+    pub folder: PathBuf,
+    /// The description, white space folded.
+    pub description: String,
+    /// The environment string.
+    pub environment: String,
+    /// Environment variables of all its processes, in order.
+    pub env: Arc<Vec<(String, String)>>,
+    /// The limit for the whole suite, including set-up and tear-down of fixtures.
+    pub timeout: Option<Duration>,
+    /// The private resources that it gets when it starts.
+    pub isolate: Isolation,
+    /// Whether it got them.
+    pub preparation: Preparation,
+    /// Exclusive resources, sorted by name.
+    pub requires: Vec<RequiredResource>,
+    /// Whether the suite stays green when a fixture collapses.
+    pub tolerates_collapse: bool,
+    /// Whether a failed critical test or assertion ends the whole run, not only the suite.
+    pub critical_stops_run: bool,
+    /// The maximum number of tests that run at the same time.
+    pub parallel: u32,
+    /// The simulated clock; `None` for the wall clock.
+    pub clock: Option<ClockPlan>,
+    /// The fixtures: each after its dependencies, otherwise in the order of the file.
+    pub fixtures: Vec<FixturePlan>,
+    /// The hooks, in the order in which simultaneously triggered ones run.
+    pub hooks: Vec<HookPlan>,
+    /// The tests, in the order in which they run.
+    pub tests: Vec<TestPlan>,
+}
+
+impl SuitePlan {
+    /// Checks whether any test has more than one repetition.
+    #[must_use]
+    pub fn repeats(&self) -> bool {
+        self.tests.iter().any(|test| test.repetitions > 1)
+    }
+}
+
+/// The plan of a simulated clock.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ClockPlan {
+    /// The limit in wall time, as a multiple of a test's limit; at least 1.
+    pub backstop: u32,
+}
+
+/// The private resources of a suite. The texts of the plan still contain `${port:name}`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Isolation {
+    /// Whether it gets a private network.
+    pub network: bool,
+    /// Whether it gets private middleware.
+    pub middleware: OwnMiddleware,
+    /// The names of its ports, sorted.
+    pub ports: Vec<String>,
+}
+
+/// Whether a suite gets private middleware.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OwnMiddleware {
+    /// It shares existing middleware.
+    #[default]
+    No,
+    /// It gets private middleware unless the user's environment selects one.
+    UnlessSet,
+    /// It gets private middleware, regardless of the user's environment.
+    Always,
+}
+
+/// The result of preparing a suite's isolation. The engine sets it when the suite starts.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Preparation {
+    /// No isolation is needed, or the suite has not started yet.
+    #[default]
+    NotNeeded,
+    /// The isolation that it got.
+    Done(SuitePrepared),
+    /// The isolation is not available, for this reason; the suite is not started.
+    Refused(String),
+}
+
+/// The plan of a fixture.
+#[derive(Clone, Debug)]
+pub struct FixturePlan {
+    /// The id.
+    pub id: FixtureId,
+    /// The name, unique in the suite.
+    pub name: String,
+    /// The dependencies, as indexes of the suite's fixtures. They must be ready
+    /// before its set-up and are torn down after it.
+    pub depends: Vec<usize>,
+    /// The plug-in or process.
+    pub body: FixtureBody,
+    /// Environment variables in addition to the suite's.
+    pub env: Vec<(String, String)>,
+    /// The limits of its phases.
+    pub limits: FixtureLimits,
+    /// The maximum number of restarts after a collapse.
+    pub restarts: u32,
+    /// The delay before the first restart; it doubles with each further restart,
+    /// up to ten seconds.
+    pub restart_delay: Duration,
+    /// The interval of `check` or `<alive>` while tests run; `None`: only before each test.
+    pub check_every: Option<Duration>,
+}
+
+/// The limits of a fixture's phases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FixtureLimits {
+    /// From the start of its process until it is ready.
+    pub setup: Duration,
+    /// For one `check`.
+    pub check: Duration,
+    /// For one `testStarted` or `testFinished`.
+    pub notice: Duration,
+    /// From the request to stop until its process has exited.
+    pub teardown: Duration,
+}
+
+/// The kinds of fixtures.
+#[derive(Clone, Debug)]
+pub enum FixtureBody {
+    /// A fixture plug-in in a host.
+    Plugin(PluginPlan),
+    /// The built-in `type="process"`.
+    Process(Arc<ProcessPlan>),
+    /// A process that is already running, and is only monitored.
+    Attached(Arc<AttachedPlan>),
+}
+
+/// The plan of a test.
+#[derive(Clone, Debug)]
+pub struct TestPlan {
+    /// The id.
+    pub id: TestId,
+    /// The name, unique in the suite.
+    pub name: String,
+    /// The plug-in.
+    pub plugin: PluginPlan,
+    /// Environment variables in addition to the suite's.
+    pub env: Vec<(String, String)>,
+    /// The number of repetitions, at least 1.
+    pub repetitions: u32,
+    /// The limits of its phases; tests with equal limits share them.
+    pub limits: Arc<TestLimits>,
+    /// The reaction to a fixture that collapses while the test runs.
+    pub after_collapse: AfterCollapse,
+    /// The reaction to leftover processes.
+    pub leaks: Leaks,
+    /// The retries after a failure.
+    pub retries: Retries,
+    /// Whether the rest of the suite is skipped unless the test passes.
+    pub critical: bool,
+    /// Whether no other test of the suite runs at the same time.
+    pub exclusive: bool,
+    /// Whether it may share a host with other tests.
+    pub shared: bool,
+    /// The tags of the suite and of the test.
+    pub tags: Vec<String>,
+}
+
+/// The limits of a test's phases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct TestLimits {
+    /// From the start of its process to `setup`.
+    pub load: Duration,
+    /// For `setup`.
+    pub setup: Duration,
+    /// For `run`.
+    pub run: Duration,
+    /// For `tearDown`, and then for the exit of the process.
+    pub teardown: Duration,
+    /// The time in `run` after which the test is reported as slow.
+    pub slow: Duration,
+    /// The time between the request to stop and the kill.
+    pub grace: Duration,
+}
+
+/// The plan of a hook, which brings the robot into a safe state.
+#[derive(Clone, Debug)]
+pub struct HookPlan {
+    /// The id.
+    pub id: HookId,
+    /// The name, unique in the suite.
+    pub name: String,
+    /// The triggers.
+    pub on: Vec<Trigger>,
+    /// The plug-in or command.
+    pub body: HookBody,
+    /// Environment variables in addition to the suite's.
+    pub env: Vec<(String, String)>,
+    /// The limit.
+    pub timeout: Duration,
+}
+
+/// The kinds of hooks.
+#[derive(Clone, Debug)]
+pub enum HookBody {
+    /// A test plug-in in a host; it succeeds by passing.
+    Plugin(PluginPlan),
+    /// A command; it succeeds with exit code 0.
+    Command(Vec<String>),
+}
+
+/// The plan of a plug-in and its host.
+#[derive(Clone, Debug)]
+pub struct PluginPlan {
+    /// The type: `dll`, `lua`, `python`, `ruby`.
+    pub plugin_type: Arc<str>,
+    /// The absolute path of the plug-in's file.
+    pub file: PathBuf,
+    /// The parameter string.
+    pub param: String,
+    /// The parameter string, split into arguments.
+    pub args: Vec<String>,
+    /// The host, shared by all plug-ins of a type.
+    pub host: Arc<HostPlan>,
+}
+
+/// The plan of a host.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct HostPlan {
+    /// The program and its arguments.
+    pub command: Vec<String>,
+    /// Environment variables that it needs.
+    pub env: Vec<(String, String)>,
+    /// Whether it can run as a fork server, which is forked for each test.
+    pub forks: bool,
+}
+
+/// The plan of a fixture with `type="process"`.
+#[derive(Clone, Debug)]
+pub struct ProcessPlan {
+    /// The program, as an absolute path unless it is remote, and its arguments.
+    pub command: Vec<String>,
+    /// The probes that must pass before it is ready; without probes, it is ready once started.
+    pub ready: Vec<Probe>,
+    /// The probes that must pass while it is ready.
+    pub alive: Vec<Probe>,
+    /// The signal that stops it, by default 15 (SIGTERM).
+    pub stop_signal: i32,
+    /// The time between that signal and the kill.
+    pub stop_grace: Duration,
+    /// The accepted exit codes of a stopped process, in addition to 0.
+    pub stop_codes: Vec<i32>,
+    /// The remote machine on which it runs; `None` for this one.
+    pub remote: Option<RemotePlan>,
+}
+
+/// A remote machine.
+#[derive(Clone, Debug)]
+pub struct RemotePlan {
+    /// The machine, as declared in the suite.
+    pub host: String,
+    /// The `ssh` command with the user's options.
+    pub ssh: Vec<String>,
+}
+
+/// The plan of a fixture with `type="process"` and `attach="true"`.
+#[derive(Clone, Debug)]
+pub struct AttachedPlan {
+    /// The probes that must pass before it is ready.
+    pub ready: Vec<Probe>,
+    /// The probes that must pass while it is ready.
+    pub alive: Vec<Probe>,
+}
+
+/// A probe of a process fixture.
+#[derive(Clone, Debug)]
+pub struct Probe {
+    /// The kind, with its value.
+    pub kind: ProbeKind,
+    /// The interval.
+    pub every: Duration,
+    /// The limit for one answer.
+    pub timeout: Duration,
+}
+
+/// The kinds of probes.
+#[derive(Clone, Debug)]
+pub enum ProbeKind {
+    /// Whether `host:port` accepts a TCP connection.
+    Tcp(String),
+    /// Whether an HTTP GET of the URL returns a 2xx status.
+    Http(String),
+    /// Whether a line of its output matches (for `alive`: whether none does).
+    Log(regex::Regex),
+    /// Whether the program exits with code 0.
+    Command(Vec<String>),
+    /// Whether the file exists.
+    File(PathBuf),
+    /// Whether a program that comes with `rtf` exits with code 0; otherwise its
+    /// output is the reason.
+    Middleware {
+        /// The program and its arguments.
+        command: Vec<String>,
+        /// The probed object, for messages: "ros-topic `/chatter`".
+        subject: String,
+    },
+}

@@ -1,0 +1,132 @@
+//! Selects and orders the tests of a plan.
+//!
+//! A selection removes and reorders tests; it never changes one. A suite without
+//! selected tests does not run, and neither do its fixtures.
+//!
+//! - [`filter`]: the syntax tree of the filter language.
+//! - [`mod@parse`]: text → syntax tree, with the position of every error.
+//! - [`shard`]: one of several parts that together contain all tests.
+
+pub mod filter;
+mod parse;
+mod shard;
+
+use std::collections::{BTreeSet, HashSet};
+use std::hash::Hasher;
+
+use rtf_model::Diagnostic;
+use siphasher::sip::SipHasher13;
+
+pub use filter::Filter;
+pub use parse::parse;
+pub use shard::{Shard, ShardBy};
+
+use crate::plan::{Plan, SuitePlan, TestPlan};
+use crate::wording::suggest;
+use filter::Candidate;
+
+/// The options of a selection; by default all tests, in the order of the plan.
+#[derive(Debug, Default)]
+pub struct Selection {
+    /// Selects a test if any filter matches it; without filters, selects all.
+    pub filters: Vec<Filter>,
+    /// Further restricts the selection to these names of suites and tests.
+    pub only: Option<HashSet<(String, String)>>,
+    /// The seed for a random order of suites, and of the tests of each.
+    pub shuffle: Option<u64>,
+    /// One part of the selected tests.
+    pub shard: Option<Shard>,
+}
+
+/// The result of a selection.
+#[derive(Debug)]
+pub struct Selected {
+    /// The plan with the selected tests; possibly empty.
+    pub plan: Plan,
+    /// The number of tests before the selection.
+    pub total: usize,
+    /// Warnings about values in filters that no test has.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Applies a selection.
+#[must_use]
+pub fn select(plan: Plan, selection: &Selection) -> Selected {
+    let warnings = warn_of_unknown_values(&plan, &selection.filters);
+    let total = plan.suites.iter().map(|suite| suite.tests.len()).sum();
+    let mut suites = plan.suites;
+    retain(&mut suites, |suite, test| {
+        let candidate = Candidate { suite, test };
+        let filters = &selection.filters;
+        let is_named = |only: &HashSet<(String, String)>| {
+            only.contains(&(suite.name.clone(), test.name.clone()))
+        };
+        (filters.is_empty() || filters.iter().any(|filter| filter.matches(&candidate)))
+            && selection.only.as_ref().is_none_or(is_named)
+    });
+    if let Some(shard) = &selection.shard {
+        shard.apply(&mut suites);
+    }
+    if let Some(seed) = selection.shuffle {
+        shuffle(&mut suites, seed);
+    }
+    suites.retain(|suite| !suite.tests.is_empty());
+    Selected { plan: Plan::new(suites), total, warnings }
+}
+
+/// Keeps the tests for which `keep` returns true.
+fn retain(suites: &mut [SuitePlan], mut keep: impl FnMut(&SuitePlan, &TestPlan) -> bool) {
+    for suite in suites {
+        let mut tests = std::mem::take(&mut suite.tests);
+        tests.retain(|test| keep(suite, test));
+        suite.tests = tests;
+    }
+}
+
+/// Sorts by seed and name, so that the order does not depend on which other tests
+/// are selected.
+fn shuffle(suites: &mut [SuitePlan], seed: u64) {
+    suites.sort_by_cached_key(|suite| hash(seed, &suite.name, ""));
+    for suite in suites {
+        let name = suite.name.clone();
+        suite.tests.sort_by_cached_key(|test| hash(seed, &name, &test.name));
+    }
+}
+
+/// Hashes a test to the same number on every machine and in every version.
+fn hash(seed: u64, suite: &str, test: &str) -> u64 {
+    let mut hasher = SipHasher13::new_with_keys(seed, 0);
+    hasher.write(suite.as_bytes());
+    // A separator that no UTF-8 name contains.
+    hasher.write_u8(0xff);
+    hasher.write(test.as_bytes());
+    hasher.finish()
+}
+
+/// Warns about values in filters that no test has: a misspelt tag selects no
+/// test, and with `!` all of them.
+fn warn_of_unknown_values(plan: &Plan, filters: &[Filter]) -> Vec<Diagnostic> {
+    let mut known: [BTreeSet<&str>; filter::SUBJECTS.len()] = Default::default();
+    for suite in &plan.suites {
+        for test in &suite.tests {
+            for (subject, values) in filter::SUBJECTS.iter().zip(&mut known) {
+                Candidate { suite, test }.for_each_value(*subject, |value| {
+                    values.insert(value);
+                });
+            }
+        }
+    }
+    let mut warnings = Vec::new();
+    for filter in filters {
+        filter.for_each_equals(&mut |subject, value, label| {
+            let known = &known[subject as usize];
+            if known.contains(value) {
+                return;
+            }
+            let message = format!("no test has the {} `{value}`", subject.noun());
+            let warning = Diagnostic::warning("unknown-word", message).label(label.clone());
+            warnings.push(suggest(warning, value, known.iter().copied()));
+        });
+    }
+    warnings
+}

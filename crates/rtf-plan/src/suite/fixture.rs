@@ -1,0 +1,112 @@
+//! `<fixture>`, with a plug-in or `type="process"`; [`process`] reads the
+//! children of the latter.
+
+use std::time::Duration;
+
+use roxmltree::Node;
+use rtf_model::Diagnostic;
+
+use super::reader::ElementReader;
+use super::schema::{self, check};
+use super::{DeclaredFixture, FixtureKind, Span, env, process, test};
+
+/// Reads a `<fixture>`; `None` if it names neither a plug-in nor a process.
+pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredFixture> {
+    let is_process = is_process(reader, node);
+    let is_attached = reader.boolean(node, "attach").unwrap_or_default();
+    let element_schema = match (is_process, is_attached) {
+        (true, true) => &schema::ATTACHED,
+        (true, false) => &schema::PROCESS,
+        (false, _) => &schema::FIXTURE,
+    };
+    check(reader, node, element_schema);
+    if !is_process {
+        for name in ["attach", "host"] {
+            report_process_attribute(reader, node, name);
+        }
+    }
+    let name = reader.word(node, "name");
+    let depends = node.has_attribute("depends").then(|| reader.words(node, "depends"));
+    let setup = reader.duration(node, "timeout");
+    let check = reader.duration(node, "check-timeout");
+    let notice = reader.duration(node, "notice-timeout");
+    let teardown = reader.duration(node, "teardown-timeout");
+    let restarts = reader.number(node, "restarts", 0);
+    let restart_delay = restart_delay(reader, node);
+    let check_every = reader.duration(node, "check-every");
+    let env = env::read(reader, node);
+    let body = match (is_process, is_attached) {
+        (true, true) => FixtureKind::Attached(process::attached(reader, node)),
+        (true, false) => FixtureKind::Process(Box::new(process::read(reader, node))),
+        (false, _) => FixtureKind::Plugin(test::plugin(reader, node)?),
+    };
+    let span = ElementReader::tag(node);
+    Some(DeclaredFixture {
+        span,
+        name,
+        depends,
+        body,
+        env,
+        setup,
+        check,
+        notice,
+        teardown,
+        restarts,
+        restart_delay,
+        check_every,
+    })
+}
+
+/// Reports an attribute that has no meaning for a plug-in, which defines its own set-up.
+fn report_process_attribute(reader: &mut ElementReader<'_>, node: Node<'_, '_>, name: &str) {
+    let Some(attribute) = node.attribute_node(name).filter(|found| found.value() != "false") else {
+        return;
+    };
+    let (message, hint) = match name {
+        "attach" => (
+            "only `type=\"process\"` can be attached",
+            "a plug-in that only watches needs no `attach`: it has a `check`, and no `setup`",
+        ),
+        _ => (
+            "only `type=\"process\"` can run on another machine",
+            "write a `<command>` that is started there",
+        ),
+    };
+    let label = reader.source.label(Span::new(attribute.range_qname()), "");
+    reader.report(Diagnostic::error("wrong-type", message).label(label).hint(hint));
+}
+
+/// The maximum delay before any restart, also after it has doubled several times.
+const MAX_RESTART_DELAY: Duration = Duration::from_secs(10);
+
+fn restart_delay(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Duration> {
+    const NAME: &str = "restart-delay";
+    let delay = reader.duration(node, NAME)?;
+    if delay <= MAX_RESTART_DELAY {
+        return Some(delay);
+    }
+    let what = format!("is longer than {MAX_RESTART_DELAY:?}, the maximum delay before a restart");
+    if let Some(attribute) = reader.attribute(node, NAME) {
+        reader.wrong(NAME, &attribute, &what, None);
+    }
+    None
+}
+
+/// Checks for the built-in fixture. A fixture with a `<command>` but another
+/// `type` counts as one, so that it is one problem and not one per child.
+fn is_process(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> bool {
+    let declared = reader.attribute(node, "type");
+    if declared.as_ref().is_some_and(|kind| kind.value.trim() == "process") {
+        return true;
+    }
+    let has_command = node.children().any(|child| child.has_tag_name("command"));
+    if has_command {
+        let message = "a fixture with a `<command>` has the type `process`";
+        let span = declared.map_or_else(|| ElementReader::tag(node), |declared| declared.span);
+        let problem = Diagnostic::error("wrong-type", message)
+            .label(reader.source.label(span, ""))
+            .hint("write `type=\"process\"`");
+        reader.report(problem);
+    }
+    has_command
+}

@@ -1,0 +1,43 @@
+//! Suite files: text → [`DeclaredSuite`].
+//!
+//! Responsible for the XML, for the known elements and attributes, and for the
+//! format of their values, each with its position in the file. Reports every
+//! problem of a file, not only the first one. Whether a plug-in, a program or a
+//! host exists is checked by [`crate::plan`].
+//!
+//! `spec/suite.md` specifies the file, `spec/suite.xsd` is its schema.
+
+mod clock;
+mod command;
+mod duration;
+mod env;
+mod fixture;
+mod hook;
+mod middleware;
+mod param_string;
+pub mod port_reference;
+mod prepass;
+mod probe;
+mod process;
+mod reader;
+mod requires;
+mod root;
+mod schema;
+mod settings;
+mod signal;
+mod source;
+mod source_file;
+mod test;
+mod types;
+mod xml;
+
+pub(crate) use duration::MAX_DURATION;
+pub use duration::{DurationError, parse_duration};
+pub(crate) use env::is_reserved;
+pub use param_string::split_param;
+pub use root::parse;
+pub use settings::{SuiteSettings, shared_settings};
+pub use signal::signal_name;
+pub use source::{SourceMap, SourceText, Span, Spanned};
+pub use source_file::{MAX_SUITE_BYTES, UnreadableFile, is_suite_file, read_source};
+pub use types::*;

@@ -1,0 +1,130 @@
+//! `<suite>`, the root element.
+
+use roxmltree::Node;
+use rtf_model::Diagnostic;
+
+use super::reader::ElementReader;
+use super::schema::{self, check};
+use super::test::{self, Defaults};
+use super::{
+    DeclaredIsolation, DeclaredMiddleware, DeclaredSuite, Retries, SourceText, Spanned, clock, env,
+    fixture, hook, port_reference, requires, xml,
+};
+
+/// Parses the text of a suite file and adds every problem to `problems`.
+///
+/// Returns the readable part of the suite even if there are errors, so that the
+/// planner can find further ones; `None` if the text is not a suite at all.
+#[must_use]
+pub fn parse(source: &SourceText, problems: &mut Vec<Diagnostic>) -> Option<DeclaredSuite> {
+    let scan = xml::prepare(source, problems)?;
+    let document = xml::parse(source, &scan.text, problems)?;
+    let root = document.root_element();
+    let mut reader = ElementReader { source, problems, ports: port_reference::Ports::default() };
+    let name = root.tag_name();
+    if name.name() != "suite" || name.namespace().is_some() {
+        reader.report(not_a_suite(source, root));
+        return None;
+    }
+    Some(read_suite(&mut reader, root))
+}
+
+fn not_a_suite(source: &SourceText, root: Node<'_, '_>) -> Diagnostic {
+    let name = root.tag_name();
+    let message = match name.namespace() {
+        Some(_) if name.name() == "suite" => {
+            "a suite file has no XML namespace; remove the `xmlns`".to_owned()
+        }
+        _ => {
+            format!("`{}` is not a suite: its first element is `<{}>`", source.name(), name.name())
+        }
+    };
+    let label = source.label(ElementReader::tag(root), "`<suite>` is expected here");
+    Diagnostic::error("not-a-suite", message).label(label)
+}
+
+fn read_suite(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> DeclaredSuite {
+    check(reader, root, &schema::SUITE);
+    let defaults = Defaults {
+        limits: test::limits(reader, root, "test-"),
+        after_collapse: test::after_collapse(reader, root).unwrap_or_default(),
+        leaks: test::leaks(reader, root).unwrap_or_default(),
+        retries: test::retries(reader, root, Retries::default()),
+    };
+    let mut suite = DeclaredSuite {
+        span: ElementReader::tag(root),
+        name: reader.word(root, "name"),
+        description: String::new(),
+        environment: String::new(),
+        env: env::read(reader, root),
+        timeout: reader.duration(root, "timeout"),
+        tags: test::values(reader.words(root, "tags")),
+        isolate: isolation(reader, root),
+        requires: requires::read(reader, root),
+        tolerates_collapse: reader.boolean(root, "tolerate-collapse").unwrap_or(false),
+        critical_stops_run: reader
+            .choice(root, "critical-stops", &[("suite", false), ("run", true)])
+            .unwrap_or(false),
+        parallel: reader.number(root, "parallel", 1).unwrap_or(1),
+        clock: clock::read(reader, root),
+        fixtures: Vec::new(),
+        hooks: Vec::new(),
+        tests: Vec::new(),
+    };
+    for node in root.children().filter(Node::is_element) {
+        match node.tag_name().name() {
+            "description" => {
+                let text = last_text(reader, node, "description");
+                suite.description = text.value.split_whitespace().collect::<Vec<_>>().join(" ");
+            }
+            "environment" => {
+                let text = last_text(reader, node, "environment");
+                port_reference::check(reader, "<environment>", &text);
+                suite.environment = text.value;
+            }
+            "fixture" => suite.fixtures.extend(fixture::read(reader, node)),
+            "hook" => suite.hooks.extend(hook::read(reader, node)),
+            "test" => suite.tests.extend(test::read(reader, node, defaults)),
+            _ => {}
+        }
+    }
+    suite.isolate.ports = reader.ports.names();
+    // An unknown element may be a misspelt test, and is reported as unknown.
+    let may_be_test = |node: &Node<'_, '_>| {
+        node.has_tag_name("test") || !schema::SUITE.elements.contains(&node.tag_name().name())
+    };
+    if !root.children().filter(Node::is_element).any(|node| may_be_test(&node)) {
+        let problem = Diagnostic::error("no-tests", "the suite has no tests")
+            .label(reader.source.label(suite.span, "contains no `<test>`"));
+        reader.report(problem);
+    }
+    suite
+}
+
+fn isolation(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> DeclaredIsolation {
+    let middleware = [("own", DeclaredMiddleware::Own), ("shared", DeclaredMiddleware::Shared)];
+    DeclaredIsolation {
+        network: reader.choice(root, "isolate", &[("network", ())]).is_some(),
+        middleware: reader.choice(root, "middleware", &middleware),
+        ports: Vec::new(),
+    }
+}
+
+/// Reads the text of an element. Of several, the last one applies, as in 2.x,
+/// with a warning.
+fn last_text(
+    reader: &mut ElementReader<'_>,
+    node: Node<'_, '_>,
+    name: &'static str,
+) -> Spanned<String> {
+    check(reader, node, &schema::text(name));
+    let earlier = node.prev_siblings().skip(1).find(|sibling| sibling.has_tag_name(name));
+    if let Some(earlier) = earlier {
+        let message = format!("repeated `<{name}>`: the last one applies");
+        let problem = Diagnostic::warning("repeated-element", message)
+            .label(reader.source.label(ElementReader::tag(node), ""))
+            .label(reader.source.label(ElementReader::tag(earlier), "the earlier one"));
+        reader.report(problem);
+    }
+    reader.text(node).unwrap_or_else(|| Spanned::new(String::new(), ElementReader::tag(node)))
+}

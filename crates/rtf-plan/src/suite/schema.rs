@@ -1,0 +1,268 @@
+//! The elements and attributes of a suite file, and the report of unknown ones.
+//!
+//! `spec/suite.xsd` contains the same schema; a test validates files with both.
+
+use roxmltree::Node;
+use rtf_model::{Diagnostic, Label};
+
+use super::Span;
+use super::reader::ElementReader;
+use crate::wording::{quoted, suggest};
+
+/// The attributes and children that an element may have.
+pub(super) struct ElementSchema {
+    /// The element's name in messages.
+    pub name: &'static str,
+    /// Its attributes.
+    pub attributes: &'static [&'static str],
+    /// Its child elements.
+    pub elements: &'static [&'static str],
+    /// Whether it may contain text.
+    pub text: bool,
+}
+
+/// `<suite>`.
+pub(super) const SUITE: ElementSchema = ElementSchema {
+    name: "suite",
+    attributes: &[
+        "name",
+        "timeout",
+        "tags",
+        "isolate",
+        "requires",
+        "critical-stops",
+        "parallel",
+        "middleware",
+        "clock",
+        "clock-backstop",
+        "tolerate-collapse",
+        "after-collapse",
+        "leaks",
+        "retries",
+        "retry-delay",
+        "test-timeout",
+        "test-load-timeout",
+        "test-setup-timeout",
+        "test-teardown-timeout",
+        "test-slow",
+        "test-grace",
+    ],
+    elements: &["description", "environment", "env", "fixture", "hook", "test"],
+    text: false,
+};
+
+/// `<test>`.
+pub(super) const TEST: ElementSchema = ElementSchema {
+    name: "test",
+    attributes: &[
+        "name",
+        "type",
+        "param",
+        "repetition",
+        "tags",
+        "timeout",
+        "load-timeout",
+        "setup-timeout",
+        "teardown-timeout",
+        "slow",
+        "grace",
+        "after-collapse",
+        "leaks",
+        "retries",
+        "retry-delay",
+        "critical",
+        "exclusive",
+        "isolation",
+    ],
+    elements: &["env"],
+    text: true,
+};
+
+/// `<fixture>` with a plug-in.
+pub(super) const FIXTURE: ElementSchema = ElementSchema {
+    name: "fixture",
+    attributes: &[
+        "name",
+        "type",
+        "param",
+        "depends",
+        "timeout",
+        "check-timeout",
+        "notice-timeout",
+        "teardown-timeout",
+        "restarts",
+        "restart-delay",
+        "check-every",
+        "attach",
+        "host",
+    ],
+    elements: &["env"],
+    text: true,
+};
+
+/// `<fixture type="process">`.
+pub(super) const PROCESS: ElementSchema = ElementSchema {
+    name: "fixture type=\"process\"",
+    attributes: &[
+        "name",
+        "type",
+        "depends",
+        "timeout",
+        "teardown-timeout",
+        "restarts",
+        "restart-delay",
+        "check-every",
+        "attach",
+        "host",
+    ],
+    elements: &["command", "ready", "alive", "stop", "env"],
+    text: false,
+};
+
+/// `<fixture type="process" attach="true">`: a process that `rtf` neither starts nor stops.
+pub(super) const ATTACHED: ElementSchema = ElementSchema {
+    name: "fixture attach=\"true\"",
+    attributes: &[
+        "name",
+        "type",
+        "depends",
+        "timeout",
+        "restarts",
+        "restart-delay",
+        "check-every",
+        "attach",
+    ],
+    elements: &["ready", "alive", "env"],
+    text: false,
+};
+
+/// `<hook>`. `hook.rs` checks which attributes require a plug-in.
+pub(super) const HOOK: ElementSchema = ElementSchema {
+    name: "hook",
+    attributes: &["name", "on", "type", "param", "timeout"],
+    elements: &["command", "env"],
+    text: true,
+};
+
+/// `<env>`.
+pub(super) const ENV: ElementSchema = leaf("env", &["name", "value"]);
+/// `<ready>`.
+pub(super) const READY: ElementSchema = leaf(
+    "ready",
+    &[
+        "tcp",
+        "http",
+        "log",
+        "file",
+        "command",
+        "ros-node",
+        "ros-topic",
+        "ros-service",
+        "ros2-topic",
+        "yarp-port",
+        "min-rate",
+        "timeout",
+        "every",
+    ],
+);
+/// `<alive>`.
+pub(super) const ALIVE: ElementSchema = leaf(
+    "alive",
+    &[
+        "tcp",
+        "http",
+        "log-bad",
+        "file",
+        "command",
+        "ros-node",
+        "ros-topic",
+        "ros-service",
+        "ros2-topic",
+        "yarp-port",
+        "min-rate",
+        "timeout",
+        "every",
+    ],
+);
+/// `<stop>`.
+pub(super) const STOP: ElementSchema = leaf("stop", &["signal", "grace", "exit-codes"]);
+/// `<command>`, `<description>`, `<environment>`.
+pub(super) const fn text(name: &'static str) -> ElementSchema {
+    ElementSchema { name, attributes: &[], elements: &[], text: true }
+}
+
+const fn leaf(name: &'static str, attributes: &'static [&'static str]) -> ElementSchema {
+    ElementSchema { name, attributes, elements: &[], text: false }
+}
+
+/// The namespace of `xsi:noNamespaceSchemaLocation`, with which editors find
+/// the schema. Its attributes are ignored.
+const SCHEMA_INSTANCE: &str = "http://www.w3.org/2001/XMLSchema-instance";
+
+/// Reports everything in `node` that `schema` does not contain.
+pub(super) fn check(reader: &mut ElementReader<'_>, node: Node<'_, '_>, schema: &ElementSchema) {
+    for attribute in node.attributes() {
+        if attribute.namespace() == Some(SCHEMA_INSTANCE) {
+            continue;
+        }
+        let name = attribute.name();
+        if attribute.namespace().is_some() || !schema.attributes.contains(&name) {
+            let span = Span::new(attribute.range_qname());
+            reader.report(unknown_attribute(name, schema).label(label(reader, span, schema)));
+        }
+    }
+    for child in node.children() {
+        if child.is_element() {
+            let name = child.tag_name();
+            if name.namespace().is_some() || !schema.elements.contains(&name.name()) {
+                let span = ElementReader::tag(child);
+                let problem = unknown_element(name.name(), schema);
+                reader.report(problem.label(label(reader, span, schema)));
+            }
+        } else if child.is_text() && !schema.text {
+            report_stray_text(reader, child, schema);
+        }
+    }
+}
+
+fn report_stray_text(reader: &mut ElementReader<'_>, child: Node<'_, '_>, schema: &ElementSchema) {
+    let Some(span) = reader.trimmed(child) else { return };
+    let message = format!("text has no meaning in `<{}>`", schema.name);
+    let label = reader.source.label(span, "not expected here");
+    reader.report(Diagnostic::error("stray-text", message).label(label));
+}
+
+fn label(reader: &ElementReader<'_>, span: Span, schema: &ElementSchema) -> Label {
+    reader.source.label(span, format!("not known in `<{}>`", schema.name))
+}
+
+fn unknown_attribute(name: &str, schema: &ElementSchema) -> Diagnostic {
+    let message = format!("unknown attribute `{name}`");
+    let problem = Diagnostic::error("unknown-attribute", message);
+    with_known(problem, name, ("attributes", schema.attributes), schema)
+}
+
+fn unknown_element(name: &str, schema: &ElementSchema) -> Diagnostic {
+    let problem = Diagnostic::error("unknown-element", format!("unknown element `<{name}>`"));
+    let problem = with_known(problem, name, ("elements", schema.elements), schema);
+    if problem.hint.is_none() && SUITE.elements.contains(&name) {
+        return problem.hint(format!("`<{name}>` is written directly in `<suite>`"));
+    }
+    problem
+}
+
+fn with_known(
+    problem: Diagnostic,
+    name: &str,
+    (plural, known): (&str, &[&'static str]),
+    schema: &ElementSchema,
+) -> Diagnostic {
+    let note = match known {
+        [] => format!("`<{}>` has no {plural}", schema.name),
+        known => {
+            let list = quoted(known.iter().copied(), ", ");
+            format!("`<{}>` can have the {plural} {list}", schema.name)
+        }
+    };
+    suggest(problem.note(note), name, known.iter().copied())
+}

@@ -1,0 +1,103 @@
+//! Reads the text of a suite file or of an `rtf.toml`.
+
+use std::fs::File;
+use std::io::{ErrorKind, Read as _};
+use std::path::Path;
+
+use rtf_model::Diagnostic;
+
+use super::{SourceText, Span, prepass};
+
+/// The maximum size of a suite file: about 600 000 tests.
+pub const MAX_SUITE_BYTES: u64 = 64 * 1024 * 1024;
+
+/// The size of the prefix in which [`is_suite_file`] searches the first element.
+const PREFIX_BYTES: u64 = 64 * 1024;
+
+/// Checks whether a file's first element is `<suite>`, even if the file is malformed.
+#[must_use]
+pub fn is_suite_file(path: &Path) -> bool {
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(PREFIX_BYTES).read_to_end(&mut bytes));
+    read.is_ok() && prepass::root_name(&String::from_utf8_lossy(&bytes)) == Some("suite")
+}
+
+/// The reason why a file cannot be read.
+#[derive(Debug)]
+pub struct UnreadableFile {
+    /// The error.
+    pub problem: Diagnostic,
+    /// The file's text, if the error points into it.
+    pub source: Option<SourceText>,
+}
+
+impl UnreadableFile {
+    fn new(problem: Diagnostic, source: Option<SourceText>) -> Box<Self> {
+        Box::new(Self { problem, source })
+    }
+}
+
+/// Reads a file. Messages call it `name`.
+///
+/// # Errors
+/// The file does not exist, cannot be read, is too long, or is not UTF-8.
+pub fn read_source(path: &Path, name: &str) -> Result<SourceText, Box<UnreadableFile>> {
+    let bytes = read(path, name).map_err(|problem| UnreadableFile::new(*problem, None))?;
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
+    if bytes.starts_with(b"\xFF\xFE") || bytes.starts_with(b"\xFE\xFF") {
+        let problem = Diagnostic::error("encoding", format!("`{name}` is encoded in UTF-16"));
+        return Err(UnreadableFile::new(problem.hint("save it as UTF-8"), None));
+    }
+    match std::str::from_utf8(bytes) {
+        Ok(text) => check_encoding(SourceText::new(name, text)),
+        Err(error) => {
+            let start = error.valid_up_to();
+            let source = SourceText::new(name, String::from_utf8_lossy(bytes));
+            let label = source.label(Span::new(start..start + 3), "this byte is not UTF-8");
+            let problem =
+                Diagnostic::error("encoding", format!("`{name}` is not encoded in UTF-8"))
+                    .label(label)
+                    .hint("save the file as UTF-8");
+            Err(UnreadableFile::new(problem, Some(source)))
+        }
+    }
+}
+
+fn read(path: &Path, name: &str) -> Result<Vec<u8>, Box<Diagnostic>> {
+    let unreadable = |error: std::io::Error| {
+        Box::new(if error.kind() == ErrorKind::NotFound {
+            Diagnostic::error("no-such-file", format!("there is no file `{name}`"))
+        } else {
+            Diagnostic::error("unreadable-file", format!("cannot read `{name}`: {error}"))
+        })
+    };
+    let file = File::open(path).map_err(unreadable)?;
+    let mut bytes = Vec::new();
+    // Reading one more byte than allowed also detects a pipe that is too long.
+    file.take(MAX_SUITE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() as u64 > MAX_SUITE_BYTES {
+        let limit = MAX_SUITE_BYTES / 1024 / 1024;
+        let message = format!("`{name}` is longer than {limit} MiB");
+        let problem = Diagnostic::error("file-too-long", message);
+        return Err(problem.hint("split it into several suites").into());
+    }
+    Ok(bytes)
+}
+
+/// Refuses a file that declares another encoding, unless it is ASCII only.
+fn check_encoding(source: SourceText) -> Result<SourceText, Box<UnreadableFile>> {
+    let label = match prepass::declared_encoding(source.text()) {
+        Some((encoding, span))
+            if !encoding.eq_ignore_ascii_case("utf-8")
+                && !encoding.eq_ignore_ascii_case("utf8")
+                && !source.text().is_ascii() =>
+        {
+            source.label(span, "only UTF-8 is supported")
+        }
+        _ => return Ok(source),
+    };
+    let problem = Diagnostic::error("encoding", "the file declares an encoding other than UTF-8")
+        .label(label)
+        .hint("save the file as UTF-8 and write `encoding=\"UTF-8\"`");
+    Err(UnreadableFile::new(problem, Some(source)))
+}

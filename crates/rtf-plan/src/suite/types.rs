@@ -1,0 +1,333 @@
+//! The declarations of a suite file, before any name is resolved.
+
+use std::time::Duration;
+
+use rtf_model::Trigger;
+
+use super::{Span, Spanned};
+
+/// The contents of a suite file.
+#[derive(Clone, Debug)]
+pub struct DeclaredSuite {
+    /// The position of the `<suite>` tag.
+    pub span: Span,
+    /// The name.
+    pub name: Option<Spanned<String>>,
+    /// The description, white space folded.
+    pub description: String,
+    /// The environment string.
+    pub environment: String,
+    /// Environment variables of all its processes, in order.
+    pub env: Vec<(String, String)>,
+    /// The limit for the whole suite.
+    pub timeout: Option<Duration>,
+    /// Tags of all its tests.
+    pub tags: Vec<String>,
+    /// The private resources that it requests.
+    pub isolate: DeclaredIsolation,
+    /// Exclusive resources, sorted by name.
+    pub requires: Vec<RequiredResource>,
+    /// Whether the suite stays green when a fixture collapses.
+    pub tolerates_collapse: bool,
+    /// Whether a failed critical test or assertion ends the whole run, not only the suite.
+    pub critical_stops_run: bool,
+    /// The maximum number of tests that run at the same time.
+    pub parallel: u32,
+    /// The simulated clock; `None` for the wall clock.
+    pub clock: Option<DeclaredClock>,
+    /// The fixtures, in order.
+    pub fixtures: Vec<DeclaredFixture>,
+    /// The hooks, in order.
+    pub hooks: Vec<DeclaredHook>,
+    /// The tests, in order.
+    pub tests: Vec<DeclaredTest>,
+}
+
+/// A resource that a limited number of suites can use at the same time.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RequiredResource {
+    /// The name: `robot:icub`.
+    pub name: String,
+    /// The number of suites that can use it at the same time.
+    pub slots: u32,
+}
+
+/// The private resources that a suite requests.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct DeclaredIsolation {
+    /// Whether it gets a private network.
+    pub network: bool,
+    /// Whether its middleware is private or shared.
+    pub middleware: Option<DeclaredMiddleware>,
+    /// The names of its ports, sorted.
+    pub ports: Vec<String>,
+}
+
+/// A simulated clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DeclaredClock {
+    /// The source of the time.
+    pub source: ClockSource,
+    /// The limit in wall time, as a multiple of a test's limit.
+    pub backstop: Option<u32>,
+    /// The position of the attribute.
+    pub span: Span,
+}
+
+/// A source of simulated time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClockSource {
+    /// The ROS 1 topic `/clock`.
+    Ros,
+    /// The ROS 2 topic `/clock`.
+    Ros2,
+    /// YARP's network clock.
+    Yarp,
+    /// A file that a fixture writes.
+    File,
+}
+
+impl ClockSource {
+    /// Returns the word for it in suites.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Ros => "ros",
+            Self::Ros2 => "ros2",
+            Self::Yarp => "yarp",
+            Self::File => "file",
+        }
+    }
+}
+
+/// The middleware that the processes of a suite use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DeclaredMiddleware {
+    /// Private middleware of the suite.
+    Own,
+    /// Middleware that is already running.
+    Shared,
+}
+
+/// A `<test>`.
+#[derive(Clone, Debug)]
+pub struct DeclaredTest {
+    /// The position of the tag.
+    pub span: Span,
+    /// The name.
+    pub name: Option<Spanned<String>>,
+    /// The plug-in and its parameters.
+    pub plugin: DeclaredPlugin,
+    /// The number of repetitions, at least 1.
+    pub repetitions: u32,
+    /// The limits, including those of the suite.
+    pub limits: DeclaredLimits,
+    /// The reaction to a fixture that collapses while the test runs.
+    pub after_collapse: AfterCollapse,
+    /// The reaction to leftover processes.
+    pub leaks: Leaks,
+    /// The retries after a failure.
+    pub retries: Retries,
+    /// Whether the rest of the suite is skipped unless the test passes.
+    pub critical: bool,
+    /// Whether no other test of the suite runs at the same time.
+    pub exclusive: bool,
+    /// Whether it may share a host with other tests.
+    pub shared: bool,
+    /// The tags of the test itself.
+    pub tags: Vec<String>,
+    /// Environment variables in addition to the suite's.
+    pub env: Vec<(String, String)>,
+}
+
+/// The retries of a test after a failure.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Retries {
+    /// The maximum number of retries of each repetition.
+    pub count: u32,
+    /// The delay before each retry.
+    pub delay: Duration,
+}
+
+/// A reference to a plug-in.
+#[derive(Clone, Debug)]
+pub struct DeclaredPlugin {
+    /// The plug-in's name.
+    pub name: Spanned<String>,
+    /// The plug-in's type.
+    pub plugin_type: Option<Spanned<String>>,
+    /// The parameter string.
+    pub param: String,
+}
+
+/// The limits of tests; `None` for the default.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct DeclaredLimits {
+    /// For loading.
+    pub load: Option<Duration>,
+    /// For `setup`.
+    pub setup: Option<Duration>,
+    /// For `run`.
+    pub run: Option<Duration>,
+    /// For `tearDown`.
+    pub teardown: Option<Duration>,
+    /// The time in `run` after which the test is reported as slow.
+    pub slow: Option<Duration>,
+    /// The time between the request to stop and the kill.
+    pub grace: Option<Duration>,
+}
+
+/// The reaction of a test to a fixture that collapses while it runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum AfterCollapse {
+    /// The test is `collapsed`; the suite continues with the next test.
+    #[default]
+    Fail,
+    /// The test is rerun once the fixture is ready.
+    Rerun,
+    /// The test is `skipped`.
+    Skip,
+}
+
+/// The reaction to a test that leaves processes running.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Leaks {
+    /// The processes are killed and reported.
+    #[default]
+    Report,
+    /// In addition, a test that passed becomes an error.
+    Fail,
+}
+
+/// A `<fixture>`.
+#[derive(Clone, Debug)]
+pub struct DeclaredFixture {
+    /// The position of the tag.
+    pub span: Span,
+    /// The name.
+    pub name: Option<Spanned<String>>,
+    /// The fixtures that must be ready before it; `None` without the attribute.
+    pub depends: Option<Vec<Spanned<String>>>,
+    /// The plug-in or process.
+    pub body: FixtureKind,
+    /// Environment variables in addition to the suite's.
+    pub env: Vec<(String, String)>,
+    /// The limit for its set-up.
+    pub setup: Option<Duration>,
+    /// The limit for one `check`.
+    pub check: Option<Duration>,
+    /// The limit for one `testStarted` or `testFinished`.
+    pub notice: Option<Duration>,
+    /// The limit for its tear-down.
+    pub teardown: Option<Duration>,
+    /// The maximum number of restarts after a collapse.
+    pub restarts: Option<u32>,
+    /// The delay before the first restart.
+    pub restart_delay: Option<Duration>,
+    /// The interval of checks while tests run.
+    pub check_every: Option<Duration>,
+}
+
+/// The kinds of a `<fixture>`.
+#[derive(Clone, Debug)]
+pub enum FixtureKind {
+    /// A fixture plug-in.
+    Plugin(DeclaredPlugin),
+    /// The built-in `type="process"`.
+    Process(Box<DeclaredProcess>),
+    /// The built-in `type="process"` with `attach="true"`.
+    Attached(DeclaredAttachment),
+}
+
+/// A `<fixture type="process" attach="true">`.
+#[derive(Clone, Debug)]
+pub struct DeclaredAttachment {
+    /// The `<ready>` probes.
+    pub ready: Vec<DeclaredProbe>,
+    /// The `<alive>` probes.
+    pub alive: Vec<DeclaredProbe>,
+}
+
+/// A `<fixture type="process">`.
+#[derive(Clone, Debug)]
+pub struct DeclaredProcess {
+    /// The program and its arguments; empty if they are missing, which was reported.
+    pub command: Spanned<Vec<String>>,
+    /// The `<ready>` probes.
+    pub ready: Vec<DeclaredProbe>,
+    /// The `<alive>` probes.
+    pub alive: Vec<DeclaredProbe>,
+    /// The signal that stops it.
+    pub stop_signal: Option<i32>,
+    /// The time between that signal and the kill.
+    pub stop_grace: Option<Duration>,
+    /// The accepted exit codes of a stopped process, in addition to 0.
+    pub stop_codes: Vec<i32>,
+    /// The remote machine on which it runs; `None` for this one.
+    pub host: Option<Spanned<String>>,
+}
+
+/// A `<hook>`.
+#[derive(Clone, Debug)]
+pub struct DeclaredHook {
+    /// The name.
+    pub name: Option<Spanned<String>>,
+    /// Its triggers without duplicates; empty if all are unknown, which was reported.
+    pub on: Vec<Trigger>,
+    /// The plug-in or command.
+    pub body: HookKind,
+    /// Environment variables in addition to the suite's.
+    pub env: Vec<(String, String)>,
+    /// The limit.
+    pub timeout: Option<Duration>,
+}
+
+/// The kinds of a `<hook>`.
+#[derive(Clone, Debug)]
+pub enum HookKind {
+    /// A test plug-in.
+    Plugin(DeclaredPlugin),
+    /// A program and its arguments; empty if they are invalid, which was reported.
+    Command(Spanned<Vec<String>>),
+}
+
+/// A `<ready>` or `<alive>` probe.
+#[derive(Clone, Debug)]
+pub struct DeclaredProbe {
+    /// The kind, with its value.
+    pub kind: DeclaredProbeKind,
+    /// The position of the value.
+    pub span: Span,
+    /// The interval.
+    pub every: Option<Duration>,
+    /// The limit for one answer.
+    pub timeout: Option<Duration>,
+}
+
+/// The kinds of probes.
+#[derive(Clone, Debug)]
+pub enum DeclaredProbeKind {
+    /// Whether `host:port` accepts a TCP connection.
+    Tcp(String),
+    /// Whether an HTTP GET of the URL returns a 2xx status.
+    Http(String),
+    /// Whether a line of the output matches.
+    Log(regex::Regex),
+    /// Whether the program exits with code 0.
+    Command(Vec<String>),
+    /// Whether the file exists.
+    File(String),
+    /// Whether a node, topic, service or port of a middleware is available.
+    Middleware(MiddlewareProbe),
+}
+
+/// A probe of a middleware.
+#[derive(Clone, Debug)]
+pub struct MiddlewareProbe {
+    /// The attribute: `ros-node`, `ros-topic`, …
+    pub kind: &'static str,
+    /// The name of the node, topic, service or port.
+    pub name: String,
+    /// The minimum rate of a topic in messages per second.
+    pub min_rate: Option<f64>,
+}

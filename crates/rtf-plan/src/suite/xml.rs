@@ -1,0 +1,109 @@
+//! Parses XML and turns the parser's errors into diagnostics.
+
+use roxmltree::{Document, Error, ParsingOptions, TextPos};
+use rtf_model::Diagnostic;
+
+use super::prepass::{self, Scan};
+use super::{SourceText, Span};
+
+/// Runs the pre-pass and reports its findings; `None` if the file is refused.
+pub(super) fn prepare<'a>(
+    source: &'a SourceText,
+    problems: &mut Vec<Diagnostic>,
+) -> Option<Scan<'a>> {
+    let scan = prepass::scan(source.text());
+    if let Some(first) = scan.dashes.first() {
+        problems.push(dashes_warning(source, *first, scan.dashes.len()));
+    }
+    if let Some(span) = scan.doctype {
+        let problem = Diagnostic::error("doctype", "a suite file cannot have a DTD")
+            .label(source.label(span, "refused for safety"))
+            .hint("remove the `<!DOCTYPE …>`");
+        problems.push(problem);
+    }
+    if let Some(span) = scan.too_many_attributes {
+        let problem =
+            Diagnostic::error("too-many-attributes", "too many attributes on one element");
+        problems.push(problem.label(source.label(span, "")));
+    }
+    (scan.doctype.is_none() && scan.too_many_attributes.is_none()).then_some(scan)
+}
+
+/// Parses the text that [`prepare`] returned.
+pub(super) fn parse<'a>(
+    source: &SourceText,
+    text: &'a str,
+    problems: &mut Vec<Diagnostic>,
+) -> Option<Document<'a>> {
+    let options = ParsingOptions { allow_dtd: false, ..ParsingOptions::default() };
+    match Document::parse_with_options(text, options) {
+        Ok(document) => Some(document),
+        Err(error) => {
+            problems.push(malformed(source, text, &error));
+            None
+        }
+    }
+}
+
+fn dashes_warning(source: &SourceText, first: Span, count: usize) -> Diagnostic {
+    let problem =
+        Diagnostic::warning("comment-dashes", "`--` in a comment is not legal XML; accepted")
+            .label(source.label(first, ""))
+            .hint("remove the dashes: other programs refuse the file");
+    match count {
+        1 => problem,
+        2 => problem.note("one more comment of this file contains it"),
+        _ => problem.note(format!("{} more comments of this file contain it", count - 1)),
+    }
+}
+
+fn malformed(source: &SourceText, text: &str, error: &Error) -> Diagnostic {
+    let start = match error {
+        Error::UnclosedRootNode | Error::NoRootNode | Error::UnexpectedEndOfStream => {
+            text.trim_end().len()
+        }
+        _ => offset(text, error.pos()),
+    };
+    let length = text[start..].chars().next().map_or(0, char::len_utf8);
+    let label = source.label(Span::new(start..start + length), "");
+    Diagnostic::error("malformed-xml", explanation(error)).label(label)
+}
+
+/// Describes the error without its position, which is in the label.
+fn explanation(error: &Error) -> String {
+    match error {
+        Error::UnexpectedCloseTag(open, close, _) => {
+            format!("malformed XML: expected `</{open}>`, found `</{close}>`")
+        }
+        Error::UnclosedRootNode => {
+            "malformed XML: the file ends before its first element is closed".into()
+        }
+        Error::NoRootNode => "malformed XML: the file contains no element".into(),
+        Error::UnexpectedEndOfStream => "malformed XML: the file ends too early".into(),
+        Error::DuplicatedAttribute(name, _) => {
+            format!("malformed XML: duplicate attribute `{name}`")
+        }
+        Error::InvalidAttributeValue(_) => {
+            "malformed XML: `<` in a value must be written `&lt;`".into()
+        }
+        Error::MalformedEntityReference(_) => "malformed XML: `&` must be written `&amp;`".into(),
+        Error::UnknownEntityReference(name, _) => {
+            format!("malformed XML: unknown entity `&{name};`; a plain `&` is written `&amp;`")
+        }
+        other => {
+            let text = other.to_string();
+            let position = format!(" at {}", other.pos());
+            format!("malformed XML: {}", text.strip_suffix(&position).unwrap_or(&text))
+        }
+    }
+}
+
+/// Returns the byte offset of the parser's row and column, which start at 1.
+fn offset(text: &str, at: TextPos) -> usize {
+    let mut start = 0;
+    for line in text.split_inclusive('\n').take(at.row.saturating_sub(1) as usize) {
+        start += line.len();
+    }
+    let column = at.col.saturating_sub(1) as usize;
+    text[start..].char_indices().nth(column).map_or(text.len(), |(offset, _)| start + offset)
+}

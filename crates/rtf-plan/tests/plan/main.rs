@@ -1,0 +1,14 @@
+//! Input paths → plans, in directories with shell scripts as hosts.
+
+#![expect(clippy::unwrap_used, reason = "that is where a test ends")]
+
+mod bench;
+mod clock;
+mod depends;
+mod hooks;
+mod inputs;
+mod isolation;
+mod plugins;
+mod predecessor;
+mod select;
+mod suites;

@@ -1,0 +1,144 @@
+//! Every element and attribute is read.
+
+use std::time::Duration;
+
+use rtf_model::Trigger;
+use rtf_plan::suite::{
+    AfterCollapse, ClockSource, DeclaredLimits, DeclaredProbe, DeclaredProbeKind, FixtureKind,
+    HookKind, Leaks, MiddlewareProbe,
+};
+
+use crate::file;
+
+#[test]
+fn every_attribute_is_read() {
+    let (suite, problems) = file("valid/everything.xml");
+    assert!(problems.is_empty(), "{problems:#?}");
+    let secs = Duration::from_secs;
+    assert_eq!(suite.timeout, Some(secs(5400)));
+    assert_eq!(suite.tags, ["hardware", "slow"]);
+    assert!(suite.tolerates_collapse);
+    assert!(suite.critical_stops_run);
+    assert_eq!(suite.parallel, 4);
+    let clock = suite.clock.unwrap();
+    assert_eq!((clock.source, clock.backstop), (ClockSource::Ros, Some(20)));
+    assert_eq!(
+        suite.env,
+        [("ARM_PORT", "17681"), ("EMPTY", "")].map(|(n, v)| (n.into(), v.into()))
+    );
+    let test = &suite.tests[0];
+    assert_eq!(test.name.as_ref().unwrap().value, "reach");
+    assert_eq!(test.plugin.name.value, "ReachTest");
+    assert_eq!(test.plugin.param, "--n 3 \"a b\"");
+    assert_eq!(test.repetitions, 5);
+    assert_eq!(
+        test.limits,
+        DeclaredLimits {
+            load: Some(secs(11)),
+            setup: Some(secs(12)),
+            run: Some(secs(120)),
+            teardown: Some(secs(13)),
+            slow: Some(secs(14)),
+            grace: Some(secs(15)),
+        }
+    );
+    assert_eq!((test.after_collapse, test.leaks), (AfterCollapse::Skip, Leaks::Report));
+    assert!(test.critical && test.exclusive);
+    assert_eq!(test.tags, ["reach", "slow"]);
+    assert_eq!(test.env, [("SEED".to_owned(), "7".to_owned())]);
+    let other = &suite.tests[1];
+    assert!(!other.critical && !other.exclusive);
+    assert_eq!((other.after_collapse, other.leaks), (AfterCollapse::Rerun, Leaks::Fail));
+    assert_eq!(
+        other.limits,
+        DeclaredLimits {
+            load: Some(secs(1)),
+            setup: Some(secs(2)),
+            run: Some(secs(10)),
+            teardown: Some(secs(3)),
+            slow: Some(secs(4)),
+            grace: Some(Duration::from_millis(500)),
+        }
+    );
+}
+
+#[test]
+fn every_part_of_a_process_fixture_is_read() {
+    let (suite, _) = file("valid/everything.xml");
+    let fixture = &suite.fixtures[0];
+    assert_eq!(fixture.setup, Some(Duration::from_secs(20)));
+    assert_eq!(fixture.restarts, Some(0));
+    assert_eq!(fixture.check_every, Some(Duration::from_secs(2)));
+    let FixtureKind::Process(process) = &fixture.body else { panic!("a process") };
+    assert_eq!(process.command.value, ["python3", "simulator.py", "two words", "#7"]);
+    assert_eq!(process.stop_signal, Some(2));
+    assert_eq!(process.stop_grace, Some(Duration::from_secs(3)));
+    assert_eq!(process.stop_codes, [1, 130]);
+    let probe = |kind, name: &str, min_rate| {
+        format!("{:?}", MiddlewareProbe { kind, name: name.to_owned(), min_rate })
+    };
+    let kinds = |probes: &[DeclaredProbe]| {
+        let kind = |probe: &DeclaredProbe| match &probe.kind {
+            DeclaredProbeKind::Tcp(address) => address.clone(),
+            DeclaredProbeKind::Http(url) => url.clone(),
+            DeclaredProbeKind::Log(pattern) => pattern.to_string(),
+            DeclaredProbeKind::Command(words) => words.join("|"),
+            DeclaredProbeKind::File(path) => path.clone(),
+            DeclaredProbeKind::Middleware(probe) => format!("{probe:?}"),
+        };
+        probes.iter().map(kind).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        kinds(&process.ready),
+        [
+            "127.0.0.1:17681",
+            "http://127.0.0.1:8080/health",
+            "listening on port \\d+",
+            "run/sim.pid",
+            "python3|arm_client.py|time",
+            &probe("ros-node", "/robot/${param:node=driver}", None),
+            &probe("ros-service", "/reset", None),
+            &probe("yarp-port", "/icubSim/head/state:o", None),
+        ]
+    );
+    assert_eq!(
+        kinds(&process.alive),
+        [
+            "python3|arm_client.py|time",
+            "(?i)fatal",
+            "[::1]:17681",
+            &probe("ros-topic", "/joint_states", Some(99.5)),
+            &probe("ros2-topic", "/joint_states", Some(0.5))
+        ]
+    );
+    assert_eq!(process.ready[0].every, Some(Duration::from_millis(50)));
+    assert_eq!(process.ready[0].timeout, Some(Duration::from_millis(500)));
+    assert_eq!(suite.fixtures[0].depends, None);
+    assert_eq!(suite.fixtures[0].restart_delay, Some(Duration::from_millis(500)));
+    assert_eq!(suite.fixtures[1].depends.as_ref().unwrap()[0].value, "sim");
+}
+
+#[test]
+fn every_part_of_a_hook_is_read() {
+    let (suite, _) = file("valid/everything.xml");
+    let park = &suite.hooks[0];
+    assert_eq!(park.name.as_ref().unwrap().value, "park");
+    assert_eq!(
+        park.on,
+        [
+            Trigger::Failure,
+            Trigger::Collapse,
+            Trigger::Timeout,
+            Trigger::Interrupt,
+            Trigger::FixtureBroken,
+            Trigger::End,
+        ]
+    );
+    assert_eq!(park.timeout, Some(Duration::from_secs(10)));
+    assert_eq!(park.env, [("SPEED".to_owned(), "0.1".to_owned())]);
+    let HookKind::Plugin(plugin) = &park.body else { panic!("a plug-in") };
+    assert_eq!((plugin.name.value.as_str(), plugin.param.as_str()), ("Park.lua", "--slow"));
+    let HookKind::Command(command) = &suite.hooks[1].body else { panic!("a command") };
+    assert_eq!(command.value, ["python3", "park.py", "--fast"]);
+    assert_eq!((suite.hooks[1].timeout, suite.hooks[1].name.is_none()), (None, true));
+}

@@ -1,0 +1,109 @@
+//! How much of what each process told waits to be reported.
+
+use std::sync::{Mutex, PoisonError};
+
+use rtf_model::{Event, EventKind, Source};
+
+/// About what an event takes in memory beside its texts, in bytes.
+const EVENT_BYTES: usize = 200;
+/// What a sample takes.
+const SAMPLE_BYTES: usize = 16;
+
+/// What waits, of each process that told something.
+#[derive(Debug, Default)]
+pub(crate) struct Backlog(Mutex<Waiting>);
+
+#[derive(Debug, Default)]
+struct Waiting {
+    /// Few processes have something that waits at the same time.
+    of: Vec<(Source, usize)>,
+    is_closed: bool,
+}
+
+impl Backlog {
+    /// An event waits from now on.
+    pub fn add(&self, event: &Event) {
+        let Some((source, bytes)) = size(&event.kind) else { return };
+        let mut waiting = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if waiting.is_closed {
+            return;
+        }
+        match waiting.of.iter_mut().find(|(of, _)| *of == source) {
+            Some((_, known)) => *known += bytes,
+            None => waiting.of.push((source, bytes)),
+        }
+    }
+
+    /// An event waits no longer.
+    pub fn remove(&self, event: &Event) {
+        let Some((source, bytes)) = size(&event.kind) else { return };
+        let mut waiting = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let Some(place) = waiting.of.iter().position(|(of, _)| *of == source) else { return };
+        let known = &mut waiting.of[place].1;
+        *known = known.saturating_sub(bytes);
+        if *known == 0 {
+            waiting.of.swap_remove(place);
+        }
+    }
+
+    /// How much of a process waits, in bytes.
+    pub fn of(&self, source: Source) -> usize {
+        let waiting = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.of.iter().find(|(of, _)| *of == source).map_or(0, |(_, bytes)| *bytes)
+    }
+
+    /// Nothing waits any more, and nothing ever will.
+    pub fn close(&self) {
+        let mut waiting = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        *waiting = Waiting { of: Vec::new(), is_closed: true };
+    }
+}
+
+/// Who told it, and how much memory it takes. `None` for what the run itself tells, and for
+/// what a process printed, of which the run keeps only so much.
+fn size(kind: &EventKind) -> Option<(Source, usize)> {
+    let teller = |test, fixture: Option<_>| fixture.map_or(Source::Test(test), Source::Fixture);
+    let (source, more) = match kind {
+        EventKind::Message { source, message, .. } => {
+            let compared = message.comparison.as_ref();
+            let compared = compared.map_or(0, |it| it.expected.len() + it.got.len());
+            (*source, message.text.len() + compared)
+        }
+        EventKind::Measured { test, fixture, .. } => (teller(*test, *fixture), 0),
+        EventKind::Attached { test, fixture, .. } => (teller(*test, *fixture), 0),
+        EventKind::Sampled { test, samples } => {
+            (Source::Test(*test), samples.points.len() * SAMPLE_BYTES)
+        }
+        _ => return None,
+    };
+    Some((source, EVENT_BYTES + more))
+}
+
+#[cfg(test)]
+mod tests {
+    use rtf_model::{FixtureId, Message, MessageKind, Micros, TestId};
+
+    use super::*;
+
+    fn message(source: Source) -> Event {
+        let (text, kind) = ("x".repeat(100), MessageKind::Report);
+        let message = Message { kind, text, location: None, comparison: None, critical: false };
+        let kind = EventKind::Message { source, message, test: None };
+        Event { seq: 0, at: Micros::default(), kind }
+    }
+
+    #[test]
+    fn each_process_has_a_backlog_of_its_own() {
+        let (backlog, test, fixture) =
+            (Backlog::default(), Source::Test(TestId(3)), Source::Fixture(FixtureId(3)));
+        backlog.add(&message(test));
+        backlog.add(&message(test));
+        assert_eq!((backlog.of(test), backlog.of(fixture)), (600, 0));
+        backlog.add(&message(fixture));
+        backlog.remove(&message(test));
+        assert_eq!((backlog.of(test), backlog.of(fixture)), (300, 300));
+        backlog.close();
+        backlog.add(&message(test));
+        assert_eq!((backlog.of(test), backlog.of(fixture)), (0, 0));
+    }
+}

@@ -1,0 +1,172 @@
+//! Standard output, written to by a thread of its own.
+//!
+//! Whoever reads there (a pager, a terminal after Ctrl-S, a slow connection) may stop for as
+//! long as they like: neither the run nor its journal waits for that. What waits to be
+//! written is kept in memory; [`Outlet::is_full`] tells a reporter to leave out detail.
+
+use std::io::{self, ErrorKind, Write};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread;
+
+use crate::console::{Bar, BarState};
+
+/// When so many bytes wait, detail should be left out.
+const FULL: usize = 4 * 1024 * 1024;
+
+/// A stream of data leaves nothing out: it waits when so many bytes do.
+const STREAM_LIMIT: usize = 4 * 1024 * 1024;
+
+/// A place that is written to by a thread of its own. Cheap to clone; what is written through
+/// one handle keeps its order. [`Write::flush`] waits until everything is written.
+#[derive(Clone, Debug)]
+pub struct Outlet {
+    shared: Arc<Shared>,
+    /// How many bytes may wait before [`Write::write`] does.
+    limit: usize,
+    _handle: Arc<Handle>,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    state: Mutex<State>,
+    changed: Condvar,
+    /// How many bytes are not written yet.
+    waiting: AtomicUsize,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    text: Vec<u8>,
+    bar: Option<BarState>,
+    /// The thread has taken something and is not done with it.
+    is_writing: bool,
+    /// Nothing is written any more: nobody reads it, or it cannot be written.
+    is_over: bool,
+    error: Option<io::Error>,
+    /// All handles are gone.
+    is_closed: bool,
+}
+
+/// Ends the thread when it is dropped.
+#[derive(Debug)]
+struct Handle(Arc<Shared>);
+
+impl Drop for Handle {
+    fn drop(&mut self) {
+        self.0.lock().is_closed = true;
+        self.0.changed.notify_all();
+    }
+}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits while a condition holds.
+    fn wait_while(&self, condition: impl Fn(&State) -> bool) -> MutexGuard<'_, State> {
+        let state = self.changed.wait_while(self.lock(), |state| condition(state));
+        state.unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Outlet {
+    /// A place for lines that people read. It never waits.
+    ///
+    /// # Errors
+    /// The system has no thread to give.
+    pub fn new(out: Box<dyn Write + Send>) -> io::Result<Self> {
+        let shared = Arc::new(Shared::default());
+        let ours = Arc::clone(&shared);
+        thread::Builder::new().name("output".into()).spawn(move || write_all(&ours, out))?;
+        let handle = Arc::new(Handle(Arc::clone(&shared)));
+        Ok(Self { shared, limit: usize::MAX, _handle: handle })
+    }
+
+    /// The same place for a stream of data: writing waits when very much does.
+    #[must_use]
+    pub fn for_stream(&self) -> Self {
+        Self { limit: STREAM_LIMIT, ..self.clone() }
+    }
+
+    /// Whether so much waits that detail should be left out.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        self.shared.waiting.load(Ordering::Relaxed) > FULL
+    }
+
+    /// Shows a progress bar below what is written.
+    pub(crate) fn show(&self, bar: BarState) {
+        self.shared.lock().bar = Some(bar);
+        self.shared.changed.notify_all();
+    }
+
+    /// Writes no more, and lets nobody wait: the reader is not waited for any longer.
+    pub fn abandon(&self) {
+        self.shared.lock().is_over = true;
+        self.shared.changed.notify_all();
+    }
+}
+
+impl Write for Outlet {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let waiting = &self.shared.waiting;
+        let is_full = |state: &State| {
+            !state.is_over
+                && waiting.load(Ordering::Relaxed).saturating_add(bytes.len()) > self.limit
+        };
+        let mut state = self.shared.wait_while(is_full);
+        if let Some(error) = state.error.take() {
+            return Err(error);
+        }
+        if !state.is_over {
+            state.text.extend_from_slice(bytes);
+            waiting.fetch_add(bytes.len(), Ordering::Relaxed);
+            self.shared.changed.notify_all();
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let is_busy = |state: &State| {
+            !state.is_over && (state.is_writing || !state.text.is_empty() || state.bar.is_some())
+        };
+        match self.shared.wait_while(is_busy).error.take() {
+            Some(error) => Err(error),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The thread: writes what waits, until all handles are gone.
+fn write_all(shared: &Shared, mut out: Box<dyn Write + Send>) {
+    let mut bar = Bar::hidden();
+    loop {
+        let is_idle =
+            |state: &State| state.text.is_empty() && state.bar.is_none() && !state.is_closed;
+        let mut state = shared.wait_while(is_idle);
+        if state.is_over || (state.text.is_empty() && state.bar.is_none()) {
+            return;
+        }
+        let (text, shown) = (std::mem::take(&mut state.text), state.bar.take());
+        state.is_writing = true;
+        drop(state);
+        shown.into_iter().for_each(|shown| bar.show(&shown));
+        let written = match text.is_empty() {
+            true => Ok(()),
+            false => bar.around(|| out.write_all(&text).and_then(|()| out.flush())),
+        };
+        shared.waiting.fetch_sub(text.len(), Ordering::Relaxed);
+        let mut state = shared.lock();
+        state.is_writing = false;
+        if let Err(error) = written {
+            state.is_over = true;
+            // Whoever read along (`head`, a pager) has seen enough: the run goes on, and its
+            // exit code stays about the tests.
+            state.error = Some(error).filter(|error| error.kind() != ErrorKind::BrokenPipe);
+        }
+        drop(state);
+        shared.changed.notify_all();
+    }
+}

@@ -1,0 +1,36 @@
+//! What tests said about the files that they attached: media types and names.
+
+use std::collections::HashMap;
+
+use rtf_model::{Event, EventKind};
+
+/// Names and media types of attachments, by their paths in the run's folder.
+#[derive(Debug, Default)]
+pub struct Attached(HashMap<Box<str>, Description>);
+
+/// What a test said about an attachment.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Description {
+    /// Its name.
+    pub name: Box<str>,
+    /// Its media type; empty when the test gave none.
+    pub media_type: Box<str>,
+}
+
+impl Attached {
+    /// Takes in an event.
+    pub(super) fn take(&mut self, event: &Event) {
+        let EventKind::Attached { attachment, .. } = &event.kind else { return };
+        let description = Description {
+            name: attachment.name.as_str().into(),
+            media_type: attachment.media_type.as_str().into(),
+        };
+        self.0.insert(attachment.path.as_str().into(), description);
+    }
+
+    /// What was said about the file at this path.
+    #[must_use]
+    pub fn of(&self, path: &str) -> Option<&Description> {
+        self.0.get(path)
+    }
+}

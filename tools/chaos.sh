@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# Kills fixtures, hosts and runners at random moments, for half an hour.
+# RTF_CHAOS_SEED=N repeats the random numbers of a run, which prints its seed.
+
+. "$(dirname "$0")/env.sh"
+
+export RTF_CHAOS_SUITES=3000 RTF_CHAOS_RUNS=1000 RTF_CHAOS_ROUNDS=50
+cargo test --workspace --test e2e -- \
+  --nocapture chaos guard::a_runner_killed_at_any_moment \
+  side_by_side::twenty_suites side_by_side::a_runner_killed_at_any_moment
