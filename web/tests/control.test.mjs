@@ -62,6 +62,19 @@ test('with the token the run is stopped', async () => {
     await guarded.close();
 });
 
+test('who has lost the token is told by the first button', async () => {
+    const guarded = await Guarded.open(browser, run.url);
+    await guarded.button('Control is on').waitFor();
+    await guarded.context.clearCookies();
+    await guarded.button('Stop the run').click();
+    await guarded.button('Yes, stop the run').click();
+    await guarded.see(/token/, '[role=alert]');
+    await guarded.button('Control …').waitFor();
+    assert.equal(await guarded.button('Control is on').count(), 0);
+    await guarded.rowIs('First', 'running');
+    await guarded.close();
+});
+
 test('without the token there is no button, with it there is', async () => {
     const guarded = await Guarded.open(browser, run.origin);
     await guarded.rowIs('First', 'running');
@@ -83,7 +96,13 @@ test('without the token there is no button, with it there is', async () => {
     assert.equal(await guarded.page.evaluate(() => document.cookie), '');
     await guarded.page.reload();
     await guarded.button('Stop the test').waitFor();
+    // One click on the badge forgets nothing: it asks.
     await guarded.button('Control is on').click();
+    await guarded.button('Keep it').click();
+    await guarded.button('Stop the test').waitFor();
+    await guarded.button('Control is on').click();
+    await guarded.button('Forget the token').click();
     await guarded.button('Stop the test').waitFor({ state: 'detached' });
+    await guarded.button('Control …').waitFor();
     await guarded.close();
 });

@@ -17,7 +17,7 @@ before(async () => {
     const serve = await bench.serve();
     guarded = await Guarded.open(browser, serve.url);
     const [name] = await bench.names();
-    await guarded.page.getByRole('link', { name }).click();
+    await guarded.run(name).click();
 });
 after(async () => {
     await guarded.close();

@@ -1,5 +1,6 @@
 // Requests to the server that the page came from (spec/web.md).
 
+import type { RunFilter } from './run-filter';
 import type { ApiRoot, Attempt, RunInfo, Snapshot, Started, Test } from './api-types';
 
 const BASE = '/api/v1';
@@ -77,14 +78,24 @@ export function address(
 
 export const root = () => get<ApiRoot>('');
 
-export const runs = (before?: string, limit = 50) =>
-    get<{ runs: RunInfo[]; next?: string }>(path(['runs'], { limit, before }));
+export interface RunPage {
+    runs: RunInfo[];
+    next?: string;
+    /** How many runs are still being read: whether they match is not known yet. */
+    unread?: number;
+}
+
+export const runs = (before?: string, limit = 50, filter: RunFilter = {}) =>
+    get<RunPage>(path(['runs'], { limit, before, ...filter }));
 
 export const snapshot = (run: string, signal: AbortSignal | null = null) =>
     get<Snapshot>(path(['runs', run, 'snapshot']), signal);
 
 export const test = (run: string, id: number, signal: AbortSignal | null = null) =>
-    get<{ test: Test; attempts: Attempt[] }>(path(['runs', run, 'tests', id]), signal);
+    get<{ test: Test; attempts: Attempt[]; command?: string }>(
+        path(['runs', run, 'tests', id]),
+        signal,
+    );
 
 export const signIn = (token: string) => request('/session', { method: 'POST', body: { token } });
 

@@ -43,6 +43,27 @@ export function short(value: number): string {
     return number(Number(value.toPrecision(4)));
 }
 
+/**
+ * Labels for an axis, whose values are `step` apart: with as many digits as it takes to tell
+ * them apart, and no more.
+ */
+export function axisLabels(values: readonly number[], step: number): string[] {
+    const largest = Math.max(0, ...values.map(Math.abs));
+    if (!(step > 0) || largest === 0) return values.map(short);
+    if (largest < 1e6 && step >= 1e-6) {
+        const decimals = Math.min(9, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)));
+        // A step of 0.25 needs two decimals, one of 0.2 needs one.
+        const exact = [decimals, decimals + 1, decimals + 2].find(
+            (each) => Math.abs(Number(step.toFixed(each)) - step) < step * 1e-6,
+        );
+        return values.map((value) =>
+            value.toFixed(exact ?? decimals).replace(/^-(0(\.0*)?)$/, '$1'),
+        );
+    }
+    const digits = Math.min(15, Math.max(1, Math.ceil(Math.log10(largest / step)) + 1));
+    return values.map((value) => number(Number(value.toPrecision(digits))));
+}
+
 /** A size in bytes: `12 B`, `3.4 kB`. */
 export function size(bytes: number): string {
     if (bytes < 1000) return `${bytes} B`;

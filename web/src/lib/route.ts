@@ -1,8 +1,10 @@
 // The places inside the page, behind the `#` of its address.
 
+import { filterQuery, parseFilter, type RunFilter } from './run-filter';
+
 export type Route =
     | { at: 'home' }
-    | { at: 'runs' }
+    | { at: 'runs'; filter: RunFilter; problems?: string[] }
     | { at: 'run'; run: string; show: Shown }
     | { at: 'compare'; old: string; new: string };
 
@@ -14,14 +16,16 @@ export type Shown =
     | { what: 'hook'; id: number };
 
 export function parseRoute(hash: string): Route {
-    const [route = '', query = ''] = hash.replace(/^#\/?/, '').split('?', 2);
+    const [, route = '', query = ''] = /^#?\/?([^?]*)\??(.*)$/s.exec(hash) ?? [];
     const parts = route.split('/').map(decode);
     const [where, first, kind, second] = parts;
     if (where === 'compare' && first && kind) return { at: 'compare', old: first, new: kind };
     if (where === 'runs' && first) {
         return { at: 'run', run: first, show: shown(kind, second, new URLSearchParams(query)) };
     }
-    return where === 'runs' ? { at: 'runs' } : { at: 'home' };
+    if (where !== 'runs') return { at: 'home' };
+    const { filter, problems } = parseFilter(query);
+    return problems.length === 0 ? { at: 'runs', filter } : { at: 'runs', filter, problems };
 }
 
 function shown(kind: string | undefined, text: string | undefined, query: URLSearchParams): Shown {
@@ -53,8 +57,10 @@ export function hrefOf(route: Route): string {
     switch (route.at) {
         case 'home':
             return '#/';
-        case 'runs':
-            return '#/runs';
+        case 'runs': {
+            const query = filterQuery(route.filter);
+            return query === '' ? '#/runs' : `#/runs?${query}`;
+        }
         case 'compare':
             return `#/compare/${run(route.old)}/${run(route.new)}`;
         case 'run':

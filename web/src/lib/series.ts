@@ -4,7 +4,7 @@ import type { MeasurementEntry, Signal } from './api-types';
 import { isWithin } from './record/detail';
 
 export interface Point {
-    /** Microseconds since the run's start, or the number of an attempt. */
+    /** Microseconds since the attempt began, or the number of an attempt. */
     at: number;
     value: number | null;
 }
@@ -25,39 +25,48 @@ export interface Series {
     violations: number;
 }
 
-/** Entries of the same name and unit, in the order in which the names came. */
-export function series(entries: readonly MeasurementEntry[]): Series[] {
-    const found = new Map<string, Series & { sum: number; finite: number }>();
+/**
+ * Entries of the same name and unit, in the order in which the names came; their
+ * times are counted from `zero` on.
+ */
+export function series(entries: readonly MeasurementEntry[], zero = 0): Series[] {
+    const found = new Map<string, Series>();
+    const finite = new Map<string, number>();
     for (const { at, measurement } of entries) {
         const { name, unit = '', low = null, high = null, value = null } = measurement;
         const key = `${name}\n${unit}`;
         let one = found.get(key);
         if (one === undefined) {
             const fresh = { points: [], last: null, least: Infinity, most: -Infinity, mean: NaN };
-            one = { key, name, unit, low, high, ...fresh, violations: 0, sum: 0, finite: 0 };
+            one = { key, name, unit, low, high, ...fresh, violations: 0 };
             found.set(key, one);
         }
         one.low = low;
         one.high = high;
-        one.points.push({ at, value });
+        one.points.push({ at: at - zero, value });
         one.last = value;
         if (!isWithin(measurement)) one.violations += 1;
         if (value === null) continue;
         one.least = Math.min(one.least, value);
         one.most = Math.max(one.most, value);
-        one.sum += value;
-        one.finite += 1;
+        const taken = (finite.get(key) ?? 0) + 1;
+        finite.set(key, taken);
+        // No sum: values near the end of their range would overflow it.
+        const mean = taken === 1 ? value : one.mean;
+        one.mean = mean + (value / taken - mean / taken);
     }
-    return [...found.values()].map(({ sum, finite, ...one }) => ({
-        ...one,
-        mean: finite === 0 ? NaN : sum / finite,
-    }));
+    return [...found.values()];
 }
 
-/** What a drawing of the values against their limits reaches over; `null` without limits. */
+/**
+ * What a drawing of the values against their limits reaches over; `null` without limits. With
+ * one limit it also reaches from there to zero, or as far as the limit is from zero: the same
+ * limit has the same drawing as long as the values fit, and other values other places.
+ */
 export function scaleOf(one: Series): { from: number; to: number } | null {
     const { low, high, least, most } = one;
     if (low === null && high === null) return null;
+    if (low === null || high === null) return oneSided((low ?? high)!, high !== null, one);
     const known = [low, high, least, most].filter(
         (each): each is number => each !== null && Number.isFinite(each),
     );
@@ -68,11 +77,26 @@ export function scaleOf(one: Series): { from: number; to: number } | null {
     return Number.isFinite(scale.to - scale.from) ? scale : null;
 }
 
-/** A signal as its plot takes it: its curve. */
-export function ofSignal(signal: Signal): Series {
+function oneSided(limit: number, isUpper: boolean, { least, most }: Series) {
+    const size = Math.abs(limit) || Math.max(Math.abs(least), Math.abs(most)) || 1;
+    const by = Number.isFinite(size) ? size : 1;
+    const [inner, outer] = isUpper ? [limit - by, limit + by / 4] : [limit - by / 4, limit + by];
+    const finite = [least, most].filter(Number.isFinite);
+    const scale = {
+        from: Math.min(inner, outer, ...finite),
+        to: Math.max(inner, outer, ...finite),
+    };
+    return Number.isFinite(scale.to - scale.from) ? scale : null;
+}
+
+/** A signal as its plot takes it: its curve, `zero` microseconds after the attempt's start. */
+export function ofSignal(signal: Signal, zero = 0): Series {
     const { name, unit, low = null, high = null, last = null } = signal;
     const { times, values, outside: violations, mean = NaN } = signal;
-    const points = times.map((time, index) => ({ at: time * 1e6, value: values[index] ?? null }));
+    const points = times.map((time, index) => ({
+        at: time * 1e6 + zero,
+        value: values[index] ?? null,
+    }));
     // A test may give times of its own in any order; a plot goes from left to right.
     points.sort((a, b) => a.at - b.at);
     const [least, most] = [signal.min ?? Infinity, signal.max ?? -Infinity];

@@ -8,6 +8,10 @@ class Session {
     root: ApiRoot | null = $state.raw(null);
     /** Why the server cannot be asked, in words. */
     problem: string | null = $state(null);
+    /** Whether the server has refused the token that this browser had. */
+    hasLostToken = $state(false);
+    /** Whether the server does not answer at all. */
+    isGone = $state(false);
 
     /** Whether this browser may do what the token allows. */
     get mayControl(): boolean {
@@ -38,7 +42,9 @@ class Session {
         try {
             this.root = await api.root();
             this.problem = null;
+            this.isGone = false;
         } catch (problem) {
+            this.isGone = problem instanceof api.ApiError && problem.status === 0;
             this.problem = problem instanceof Error ? problem.message : String(problem);
         }
     }
@@ -57,12 +63,26 @@ class Session {
     /** Throws an `ApiError` when the token is not the right one. */
     async signIn(token: string): Promise<void> {
         await api.signIn(token);
+        this.hasLostToken = false;
         await this.refresh();
     }
 
     async signOut(): Promise<void> {
         await api.signOut();
         await this.refresh();
+    }
+
+    /** Does what needs the token; a refusal tells that this browser has it no longer. */
+    async control<T>(act: () => Promise<T>): Promise<T> {
+        try {
+            return await act();
+        } catch (problem) {
+            if (problem instanceof api.ApiError && problem.status === 401) {
+                this.hasLostToken = true;
+                await this.refresh();
+            }
+            throw problem;
+        }
     }
 }
 

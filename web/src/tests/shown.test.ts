@@ -1,7 +1,10 @@
 import { describe, expect, test } from 'vitest';
 import { compareRuns } from '../lib/compare';
-import { clock, count, duration, grouped, limits, number, size } from '../lib/format';
+import { groupFailures } from '../lib/failures';
+import { axisLabels, clock, count, duration, grouped, limits, number, size } from '../lib/format';
 import { OutputRows } from '../lib/output';
+import { phaseTimes, setUpAfter } from '../lib/phases';
+import { padded } from '../lib/plot';
 import { estimate, historyOf } from '../lib/progress';
 import { hrefOf, parseRoute, type Route } from '../lib/route';
 import { ofSignal, scaleOf, series } from '../lib/series';
@@ -28,10 +31,86 @@ describe('numbers and times', () => {
     ])('%s', (shown, expected) => expect(shown).toBe(expected));
 });
 
+describe('what is drawn', () => {
+    test.each([
+        [[1.3405, 1.341, 1.3415], 0.0005, ['1.3405', '1.3410', '1.3415']],
+        [[0, 0.25, 0.5], 0.25, ['0.00', '0.25', '0.50']],
+        [[-0.2, 0, 0.2], 0.2, ['-0.2', '0.0', '0.2']],
+        [[0, 10, 20], 10, ['0', '10', '20']],
+        [[1e9, 1e9 + 1], 1, ['1000000000', '1000000001']],
+        [[1e308, 1.5e308], 5e307, ['1e+308', '1.5e+308']],
+    ])('labels of an axis tell its values apart: %j', (values, step, labels) => {
+        expect(axisLabels(values, step)).toEqual(labels);
+    });
+
+    const of = (value: number, low: number | null, high: number | null) =>
+        series([{ seq: 1, at: 0, within: true, measurement: { name: 'x', value, low, high } }])[0]!;
+    const place = (value: number, low: number | null, high: number | null) => {
+        const { from, to } = scaleOf(of(value, low, high))!;
+        return (value - from) / (to - from);
+    };
+
+    test('other values have other places against one limit', () => {
+        expect(place(4.09, null, 5) - place(3.67, null, 5)).toBeGreaterThan(0.05);
+        expect(place(7, 5, null) - place(6, 5, null)).toBeGreaterThan(0.05);
+        expect(place(-3, null, 0)).toBeCloseTo(0);
+        for (const value of [-1e308, -1, 0, 1e-9, 99])
+            for (const limit of [-1e308, 0, 5, 1e308]) {
+                const scale = scaleOf(of(value, limit, null));
+                if (scale !== null) expect(place(value, limit, null)).toBeLessThanOrEqual(1);
+            }
+    });
+
+    test('values near the end of their range have a mean, and leave the plot in order', () => {
+        const entries = [1e308, -1e308, 1e308].map((value, index) => ({
+            ...{ seq: index, at: index * 1e6, within: true },
+            measurement: { name: 'x', value },
+        }));
+        const [one] = series(entries, 1e6);
+        expect(Number.isFinite(one!.mean)).toBe(true);
+        expect(one!.points.map(({ at }) => at)).toEqual([-1e6, 0, 1e6]);
+        const [low, high] = padded(-Number.MAX_VALUE, Number.MAX_VALUE);
+        expect(Number.isFinite(high - low)).toBe(true);
+    });
+
+    test('phases begin with the time that it took to load', () => {
+        const phases = [
+            { phase: 'setup' as const, at: 150 },
+            { phase: 'run' as const, at: 200 },
+        ];
+        expect(phaseTimes(100, phases, 260)).toEqual([
+            { name: 'load', took: 50 },
+            { name: 'set-up', took: 50 },
+            { name: 'run', took: 60 },
+        ]);
+        expect(setUpAfter(100, phases)).toBe(50);
+    });
+});
+
+describe('tests that did not pass', () => {
+    test('are one group when their causes differ in numbers only', () => {
+        const tests = [
+            { id: 1, reason: 'elbow is 1.75 rad at 0.3 s' },
+            { id: 2, reason: 'no answer of /arm' },
+            { id: 3, reason: 'elbow is -2e-3 rad at 12 s' },
+            { id: 4, reason: 'elbow is lost' },
+            { id: 5 },
+        ];
+        const groups = groupFailures(tests, ({ id }) => (id === 4 ? 'crashed' : 'failed'));
+        expect(groups.map((group) => group.tests.map(({ id }) => id))).toEqual([
+            [1, 3],
+            [2],
+            [4],
+            [5],
+        ]);
+    });
+});
+
 describe('places in the page', () => {
     const routes: Route[] = [
         { at: 'home' },
-        { at: 'runs' },
+        { at: 'runs', filter: {} },
+        { at: 'runs', filter: { q: 'arm &?', result: 'red', since: '2026-11-21' } },
         { at: 'compare', old: 'a/b', new: 'c?d' },
         { at: 'run', run: '2026 %', show: { what: 'overview' } },
         { at: 'run', run: 'r', show: { what: 'test', id: 3, attempt: 2 } },
@@ -40,6 +119,20 @@ describe('places in the page', () => {
         { at: 'run', run: 'r', show: { what: 'hook', id: 1 } },
     ];
     test.each(routes)('$at', (route) => expect(parseRoute(hrefOf(route))).toEqual(route));
+
+    test('a filter that is nonsense is told, and the rest of it holds', () => {
+        const query = 'result=good&commit=xyz&until=2026-02-30&branch=main&colour=red&robot=';
+        expect(parseRoute(`#/runs?${query}`)).toEqual({
+            at: 'runs',
+            filter: { branch: 'main' },
+            problems: [
+                '“good” is no result: running, green, red, interrupted, died, damaged',
+                '“xyz” is no commit: 4 to 64 hexadecimal digits',
+                '“2026-02-30” is no day: like 2026-11-21',
+                'there is no filter “colour”',
+            ],
+        });
+    });
 
     test('an address that is nonsense leads home', () => {
         expect(parseRoute('#/%zz/x')).toEqual({ at: 'home' });

@@ -86,6 +86,30 @@ export class Guarded {
             .waitFor({ state: 'hidden' });
     }
 
+    /** Waits until an attempt is drawn that has said and printed all that it will. */
+    async seeAttempt() {
+        await this.see('one more message');
+        await this.see('one more line', '.output');
+        await this.page.getByText('Loading …').waitFor({ state: 'hidden' });
+        await this.button('Copy the command').waitFor();
+        await this.see('set-up', '#detail');
+    }
+
+    /** A run in the list of runs. */
+    run(name) {
+        return this.page.locator(`main a[href="#/runs/${name}"]`);
+    }
+
+    /** How far the page itself can be scrolled, and how far its middle. */
+    beyond() {
+        return this.page.evaluate(() => {
+            const { scrollingElement } = document;
+            scrollingElement.scrollTop = 1e6;
+            const main = document.getElementById('main');
+            return [scrollingElement.scrollTop, main.scrollHeight - main.clientHeight];
+        });
+    }
+
     button(name) {
         return this.page.getByRole('button', { name, exact: true });
     }
@@ -100,6 +124,26 @@ export class Guarded {
             .getByRole('treeitem')
             .filter({ hasText: new RegExp(`${state}:\\s*${name}`) })
             .waitFor();
+    }
+
+    /** Another tab of the same browser. */
+    async tab(url) {
+        const tab = new Guarded();
+        tab.context = this.context;
+        tab.mistakes = this.mistakes;
+        tab.page = await this.context.newPage();
+        tab.page.setDefaultTimeout(PATIENCE_MS);
+        tab.watch(new URL(url).origin);
+        await tab.page.goto(url);
+        return tab;
+    }
+
+    /** Hides the page, or shows it: a browser without windows shows all of them. */
+    async hide(isHidden) {
+        await this.page.evaluate((value) => {
+            Object.defineProperty(document, 'hidden', { value, configurable: true });
+            document.dispatchEvent(new Event('visibilitychange'));
+        }, isHidden);
     }
 
     async close() {

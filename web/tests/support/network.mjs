@@ -5,9 +5,12 @@ import http from 'node:http';
 
 export class Network {
     sockets = new Set();
+    /** What was asked for: the address and the headers. */
+    requests = [];
     server = http.createServer((request, response) => {
         const { hostname, port, pathname, search } = new URL(request.url);
         const { method, headers } = request;
+        this.requests.push({ url: request.url, headers });
         const onward = http.request({ hostname, port, path: pathname + search, method, headers });
         onward.on('response', (answer) => {
             response.writeHead(answer.statusCode, answer.headers);

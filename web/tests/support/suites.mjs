@@ -41,6 +41,11 @@ export const HOSTILE = `<suite name="&lt;b&gt; &quot;quoted&quot; 'suite' &amp;a
   <test type="python" name="größe 🤖 \u202egnp.exe" param="through">Step</test>
 </suite>`;
 
+/** Signals of many samples. */
+export const SIGNALS = `<suite name="signals">
+  <test type="python" name="Samples">Samples</test>
+</suite>`;
+
 /** What has to be run again. */
 export const BROKEN = `<suite name="broken">
   <test type="python" name="Works" param="through">Step</test>

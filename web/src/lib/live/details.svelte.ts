@@ -35,6 +35,8 @@ export class Details {
     /** Grows with each change of the lists. */
     version = $state(0);
     isLoading = $state(true);
+    /** Whether what is there is all that there was. */
+    isLoaded = $state(false);
     problem: string | null = $state(null);
     /** Lists of which the server has more, and where it goes on. */
     more: Partial<Record<ListName, number>> = $state.raw({});
@@ -79,8 +81,13 @@ export class Details {
         await this.attempt(() => this.pages(list, after, 1));
     }
 
+    private get key(): string {
+        const { kind, id, number } = this.subject;
+        return `${kind}/${id}/${number}`;
+    }
+
     private async load(): Promise<void> {
-        await this.attempt(async () => {
+        const loaded = await this.attempt(async () => {
             const { kind } = this.subject;
             await Promise.all([
                 ...LISTS[kind].map((list) => this.pages(list, undefined, FIRST_PAGES)),
@@ -91,12 +98,33 @@ export class Details {
             missed.forEach((event) => this.add(event));
         });
         this.isLoading = false;
+        if (loaded) this.keep();
+        else this.restore();
+        this.isLoaded ||= loaded;
+    }
+
+    private keep(): void {
+        this.run.keep(this.key, { lists: this.all, more: this.more, signals: this.signals });
+    }
+
+    /** What was loaded before is better than nothing. */
+    private restore(): void {
+        const kept = this.run.kept.get(this.key);
+        if (kept === undefined || this.closing.signal.aborted) return;
+        this.all = kept.lists;
+        this.more = kept.more;
+        this.signals = kept.signals;
+        this.isLoaded = true;
+        this.problem = null;
+        this.version += 1;
     }
 
     private async loadSignals(): Promise<void> {
         const { id, number } = this.subject;
         const route = ['runs', this.run.name, 'tests', id, 'attempts', number, 'series'];
         this.signals = (await get<Signals>(path(route), this.closing.signal)).series;
+        const kept = this.run.kept.get(this.key);
+        if (kept !== undefined) kept.signals = this.signals;
     }
 
     private renewSignals(): void {
@@ -106,15 +134,19 @@ export class Details {
         }, SIGNALS_EVERY);
     }
 
-    private async attempt(work: () => Promise<void>): Promise<void> {
+    /** Whether it was done. */
+    private async attempt(work: () => Promise<void>): Promise<boolean> {
+        let isDone = false;
         try {
             await work();
             this.problem = null;
+            isDone = true;
         } catch (problem) {
-            if (this.closing.signal.aborted) return;
+            if (this.closing.signal.aborted) return false;
             this.problem = problem instanceof Error ? problem.message : String(problem);
         }
         this.version += 1;
+        return isDone;
     }
 
     private async pages(list: ListName, from: number | undefined, most: number): Promise<void> {

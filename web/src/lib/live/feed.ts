@@ -1,15 +1,18 @@
 // Keeps a record up to date: gets the snapshot, follows the events, takes up
 // the stream where it was cut, and starts over when the server asks for it.
 
-import { address, ApiError, snapshot } from '../api';
+import { ApiError, snapshot } from '../api';
 import type { RunStateName, Snapshot } from '../api-types';
 import type { Event } from '../event';
 import { RunRecord } from '../record/record';
-import { follow, type SseEvent } from './sse';
+import { followRun } from './shared-stream';
+import type { SseEvent } from './sse';
 
 export type Connection =
     | { kind: 'loading' }
     | { kind: 'live' }
+    /** The page is hidden, and follows again when it is looked at. */
+    | { kind: 'paused' }
     | { kind: 'reconnecting'; reason: string }
     | { kind: 'ended' }
     | { kind: 'refused'; status: number; reason: string };
@@ -29,7 +32,7 @@ export class Feed {
     private record: RunRecord | null = null;
     /** The record has to be replaced by a new snapshot. */
     private isStale = true;
-    private details = '';
+    private details: readonly string[] = [];
     private stream: AbortController | null = null;
     private readonly closing = new AbortController();
 
@@ -40,6 +43,13 @@ export class Feed {
 
     /** Loads and follows until the run is over or the feed is closed. */
     async start(): Promise<void> {
+        const hidden = () => document.hidden && this.stream?.abort();
+        document.addEventListener('visibilitychange', hidden);
+        await this.follow();
+        document.removeEventListener('visibilitychange', hidden);
+    }
+
+    private async follow(): Promise<void> {
         let delay = FIRST_DELAY_MS;
         while (!this.closing.signal.aborted) {
             const step = await this.step();
@@ -60,9 +70,8 @@ export class Feed {
 
     /** Of whom messages, measurements and output are wanted: `test:3`. */
     watch(sources: string[]): void {
-        const details = sources.join(',');
-        if (details === this.details) return;
-        this.details = details;
+        if (sources.join() === this.details.join()) return;
+        this.details = sources;
         this.stream?.abort();
     }
 
@@ -106,14 +115,17 @@ export class Feed {
             this.listener.connected({ kind: 'ended' });
             return 'over';
         }
-        const { seq } = record.info;
+        if (document.hidden) {
+            this.listener.connected({ kind: 'paused' });
+            await this.shown();
+            return 'again';
+        }
         const stream = new AbortController();
         this.stream = stream;
-        const details = this.details === '' ? 'none' : this.details;
         let connected = false;
-        const end = await follow(address(['runs', this.run, 'events'], { from: seq, details }), {
+        const request = { run: this.run, from: record.info.seq, details: this.details };
+        const end = await followRun(request, {
             signal: stream.signal,
-            lastEventId: seq === 0 ? null : seq - 1,
             opened: () => {
                 connected = true;
                 this.listener.connected({ kind: 'live' });
@@ -157,6 +169,21 @@ export class Feed {
             }
         }
         this.listener.changed(events);
+    }
+
+    /** Waits until somebody looks at the page, or the feed is closed. */
+    private shown(): Promise<void> {
+        return new Promise((resolve) => {
+            const done = () => {
+                if (document.hidden && !this.closing.signal.aborted) return;
+                document.removeEventListener('visibilitychange', done);
+                this.closing.signal.removeEventListener('abort', done);
+                resolve();
+            };
+            document.addEventListener('visibilitychange', done);
+            this.closing.signal.addEventListener('abort', done);
+            done();
+        });
     }
 
     private pause(milliseconds: number): Promise<void> {

@@ -5,9 +5,21 @@
 
 import { flushSync } from 'svelte';
 import * as api from '../api';
+import type { Signal } from '../api-types';
 import type { Event } from '../event';
+import type { ListName, Lists } from '../record/detail';
 import { RunRecord } from '../record/record';
 import { Feed, type Connection } from './feed';
+
+/** What was loaded of one attempt, start or run. */
+export interface Kept {
+    lists: Lists;
+    more: Partial<Record<ListName, number>>;
+    signals: readonly Signal[];
+}
+
+/** What of so many of them is kept. */
+const KEPT = 30;
 
 /** Gets what came in, as long as it wants to. */
 export type DetailListener = (events: Event[]) => void;
@@ -31,8 +43,12 @@ export class LiveRun {
     calm: RunRecord = $state.raw(new RunRecord());
     /** Microseconds since the run started, as of `calm`. */
     now = $state(0);
+    /** The moment that is shown in the time line, in microseconds since the run's start. */
+    moment: number | null = $state(null);
     /** Grows with each new record: what was loaded beside it is old. */
     generation = $state(0);
+    /** What was loaded of attempts, starts and hook runs: it stays when the server goes. */
+    readonly kept = new Map<string, Kept>();
     private readonly feed: Feed;
     private readonly listeners = new Set<DetailListener>();
     private readonly watched = new Map<symbol, string[]>();
@@ -70,6 +86,16 @@ export class LiveRun {
     close(): void {
         clearInterval(this.timer);
         this.feed.close();
+    }
+
+    /** Keeps what was loaded; what was not looked at for longest is forgotten. */
+    keep(key: string, kept: Kept): void {
+        this.kept.delete(key);
+        this.kept.set(key, kept);
+        for (const old of this.kept.keys()) {
+            if (this.kept.size <= KEPT) break;
+            this.kept.delete(old);
+        }
     }
 
     private tick(): void {

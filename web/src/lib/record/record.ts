@@ -183,6 +183,7 @@ export class RunRecord {
 
     private isGreen(): boolean {
         return (
+            this.info.damages.length === 0 &&
             this.info.state === 'finished' &&
             this.tests.length > 0 &&
             this.tests.every((test) => test.verdict === 'passed') &&
@@ -238,6 +239,8 @@ export function emptySnapshot(): Snapshot {
         seq: 0,
         last_at: 0,
         suites: 0,
+        suite_names: [],
+        robots: [],
         bytes: 0,
         totals: noTotals(),
         problems: [],

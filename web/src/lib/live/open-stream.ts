@@ -1,0 +1,14 @@
+// A stream of a run's events, over a connection of its own.
+
+import { address } from '../api';
+import type { Request, StreamOptions } from './hub';
+import { follow, type StreamEnd } from './sse';
+
+export function openStream(request: Request, options: StreamOptions): Promise<StreamEnd> {
+    const { run, from } = request;
+    const details = request.details.length === 0 ? 'none' : request.details.join(',');
+    return follow(address(['runs', run, 'events'], { from, details }), {
+        ...options,
+        lastEventId: from === 0 ? null : from - 1,
+    });
+}

@@ -1,0 +1,33 @@
+// How long each phase of an attempt took.
+
+import type { Attempt } from './api-types';
+import { phaseName } from './event';
+
+export interface PhaseTime {
+    name: string;
+    /** Microseconds; `null` while it lasts. */
+    took: number | null;
+}
+
+/** All phases from the start of the attempt on: before the first one the plug-in was loaded. */
+export function phaseTimes(
+    started: number,
+    phases: Attempt['phases'],
+    finished: number | null,
+): PhaseTime[] {
+    const begins = phases.map(({ phase, at }) => ({ name: phaseName(phase), at }));
+    const first = begins[0];
+    if (first === undefined || first.at > started) begins.unshift({ name: 'load', at: started });
+    // An empty phase between two of one name is one phase.
+    const joined = begins.filter(({ name }, index) => begins[index - 1]?.name !== name);
+    return joined.map(({ name, at }, index) => {
+        const to = joined[index + 1]?.at ?? finished;
+        return { name, took: to === null ? null : to - at };
+    });
+}
+
+/** When the plug-in's set-up began, in microseconds after the attempt: its own clock's zero. */
+export function setUpAfter(started: number, phases: Attempt['phases']): number {
+    const setUp = phases.find(({ phase }) => phase === 'setup') ?? phases[0];
+    return setUp === undefined ? 0 : setUp.at - started;
+}

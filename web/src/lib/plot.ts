@@ -1,0 +1,49 @@
+// What a plot draws, without how it draws it.
+
+import uPlot from 'uplot';
+import type { Series } from './series';
+
+/**
+ * The times and the values of series; of one alone with its limits. Times are multiplied by
+ * `factor`.
+ */
+export function alignedData(series: readonly Series[], factor: number): uPlot.AlignedData {
+    const tables = series.map(({ points }): uPlot.AlignedData => [
+        points.map(({ at }) => at * factor),
+        points.map(({ value }) => value),
+    ]);
+    const [one] = series;
+    if (one === undefined) return [[]];
+    if (series.length > 1) return uPlot.join(tables);
+    const limit = (value: number | null) => one.points.map(() => value);
+    return [...tables.flat(), limit(one.low), limit(one.high)] as uPlot.AlignedData;
+}
+
+/** A range with some room around it. */
+export function padded(low: number | null, high: number | null): [number, number] {
+    if (low === null || high === null || !Number.isFinite(low + high)) return [0, 1];
+    const by = (high - low) * 0.08 || Math.abs(high) * 0.05 || 1;
+    const range: [number, number] = [low - by, high + by];
+    // Numbers near the end of their range have no room around them.
+    return Number.isFinite(range[1] - range[0])
+        ? range
+        : [-Number.MAX_VALUE / 4, Number.MAX_VALUE / 4];
+}
+
+/** Plots that are reset together, by their links. */
+class Linked {
+    private readonly resets = new Map<string, Set<() => void>>();
+
+    /** Until the answer is called. */
+    join(link: string, reset: () => void): () => void {
+        const group = this.resets.get(link) ?? new Set();
+        this.resets.set(link, group.add(reset));
+        return () => group.delete(reset);
+    }
+
+    reset(link: string): void {
+        for (const reset of this.resets.get(link) ?? []) reset();
+    }
+}
+
+export const linked = new Linked();

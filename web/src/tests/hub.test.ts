@@ -1,0 +1,105 @@
+// One stream for all who follow a run.
+
+import { afterEach, beforeEach, expect, test, vi } from 'vitest';
+import { Hub, type Request, type StreamOptions } from '../lib/live/hub';
+import type { SseEvent, StreamEnd } from '../lib/live/sse';
+
+interface Opened extends Request, StreamOptions {
+    end: (end: StreamEnd) => void;
+}
+
+let opened: Opened[];
+let hub: Hub;
+
+beforeEach(() => {
+    vi.useFakeTimers();
+    opened = [];
+    hub = new Hub(
+        (request, options) => new Promise((end) => opened.push({ ...request, ...options, end })),
+    );
+});
+afterEach(() => vi.useRealTimers());
+
+function join(from: number, details: string[] = [], run = 'run') {
+    const seen: string[] = [];
+    const leave = hub.subscribe(run, {
+        from,
+        details,
+        opened: () => seen.push('opened'),
+        received: (events) => seen.push(...events.map(({ id }) => id)),
+        ended: (end) => seen.push('lost' in end ? 'lost' : `${end.status}`),
+    });
+    return { seen, leave };
+}
+
+const event = (id: number): SseEvent => ({ type: 'message', id: `${id}`, data: '{}' });
+const soon = () => vi.advanceTimersByTimeAsync(20);
+const running = () => opened.filter(({ signal }) => !signal.aborted);
+
+test('ten tabs have one stream, from where the last of them is', async () => {
+    const tabs = Array.from({ length: 10 }, (_, index) => join(100 - index));
+    await soon();
+    expect(opened.map(({ from, details }) => [from, details])).toEqual([[91, []]]);
+    opened[0]?.opened();
+    opened[0]?.received([event(100), event(101)]);
+    expect(tabs.map(({ seen }) => seen)).toEqual(Array(10).fill(['opened', '100', '101']));
+    tabs.slice(1).forEach(({ leave }) => leave());
+    await soon();
+    expect(running()).toHaveLength(1);
+    tabs[0]?.leave();
+    expect(running()).toHaveLength(0);
+});
+
+test('who comes later misses nothing, and who is there already is not sent back', async () => {
+    const first = join(5);
+    await soon();
+    opened[0]?.opened();
+    opened[0]?.received([event(5), event(6)]);
+    const behind = join(3);
+    await soon();
+    expect(opened[0]?.signal.aborted).toBe(true);
+    expect(opened[1]?.from).toBe(3);
+    opened[1]?.opened();
+    const ahead = join(9);
+    await soon();
+    expect(opened).toHaveLength(2);
+    expect(ahead.seen).toEqual(['opened']);
+    // What the first stream still delivers is nobody's any more.
+    opened[0]?.received([event(7)]);
+    opened[1]?.received([event(7)]);
+    expect(first.seen).toEqual(['opened', '5', '6', 'opened', '7']);
+    expect(behind.seen).toEqual(['opened', '7']);
+});
+
+test('the details of all are asked for, and no longer when nobody wants them', async () => {
+    const one = join(0, ['test:3']);
+    const other = join(0, ['fixture:0', 'test:3']);
+    await soon();
+    expect(opened[0]?.details).toEqual(['fixture:0', 'test:3']);
+    opened[0]?.opened();
+    other.leave();
+    await soon();
+    expect(opened[1]?.details).toEqual(['test:3']);
+    one.leave();
+    expect(running()).toHaveLength(0);
+});
+
+test('the end of the stream is the end for all, and each begins again by itself', async () => {
+    const tabs = [join(0), join(1)];
+    await soon();
+    opened[0]?.opened();
+    opened[0]?.end({ lost: true });
+    await soon();
+    expect(tabs.map(({ seen }) => seen)).toEqual(Array(2).fill(['opened', 'lost']));
+    expect(opened).toHaveLength(1);
+    join(7);
+    await soon();
+    expect(opened[1]?.from).toBe(7);
+});
+
+test('each run has its own stream', async () => {
+    join(0, [], 'one');
+    join(0, [], 'other');
+    await soon();
+    expect(opened.map(({ run }) => run)).toEqual(['one', 'other']);
+});
