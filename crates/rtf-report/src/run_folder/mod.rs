@@ -4,9 +4,10 @@
 mod resolve;
 
 use std::fs;
-use std::hash::{BuildHasher, Hasher};
 use std::io;
 use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::Duration;
 
 use jiff::Zoned;
 use jiff::tz::TimeZone;
@@ -21,6 +22,9 @@ pub const LATEST: &str = "latest";
 
 /// How often another name is tried when a folder of this name exists.
 const TRIES: u32 = 100;
+
+/// After this time the name is another one: a step of its last digits.
+const NEXT_NAME: Duration = Duration::from_micros(16);
 
 /// The folder of one run.
 #[derive(Clone, Debug)]
@@ -87,15 +91,16 @@ pub fn create(results: &Path) -> Result<RunFolder, RunFolderError> {
         |source| RunFolderError::Create { path, source }
     };
     fs::create_dir_all(results).map_err(failed(results))?;
-    let now = Zoned::now();
     let mut tried = 0;
-    let (name, path) = loop {
+    let (now, name, path) = loop {
+        let now = Zoned::now();
         let name = name(&now);
         let path = results.join(&name);
         match fs::create_dir(&path) {
-            Ok(()) => break (name, path),
+            Ok(()) => break (now, name, path),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists && tried < TRIES => {
                 tried += 1;
+                thread::sleep(NEXT_NAME);
             }
             Err(error) => return Err(failed(&path)(error)),
         }
@@ -109,11 +114,12 @@ pub fn create(results: &Path) -> Result<RunFolder, RunFolderError> {
     Ok(RunFolder { path, name, started_at })
 }
 
-/// Names sort by time; the last four digits keep runs of one second apart.
+/// Names sort by time: the last four digits are the fraction of the second, in
+/// steps of 1/65536 s. They also keep runs of one second apart.
 fn name(now: &Zoned) -> String {
     let time = now.with_time_zone(TimeZone::UTC).strftime("%Y-%m-%dT%H-%M-%SZ").to_string();
-    let random = std::hash::RandomState::new().build_hasher().finish();
-    format!("{time}-{:04x}", random & 0xFFFF)
+    let fraction = (i64::from(now.subsec_nanosecond()) << 16) / 1_000_000_000;
+    format!("{time}-{fraction:04x}")
 }
 
 /// Replaces the link at once: it never leads nowhere while runs come and go.
@@ -171,11 +177,18 @@ mod tests {
     }
 
     #[test]
+    fn runs_of_one_second_sort_by_time() {
+        let results = tempfile::tempdir().unwrap();
+        let names: Vec<_> = (0..200).map(|_| create(results.path()).unwrap().name).collect();
+        assert!(names.is_sorted(), "{names:#?}");
+    }
+
+    #[test]
     fn the_name_is_the_time_in_utc() {
-        let now: Zoned = "2026-11-21T08:30:12+02:00[+02:00]".parse().unwrap();
-        let name = name(&now);
-        assert_eq!(name.len(), "2026-11-21T06-30-12Z-1f3a".len());
-        assert!(name.starts_with("2026-11-21T06-30-12Z-"), "{name}");
+        let name_at = |time: &str| name(&time.parse().unwrap());
+        assert_eq!(name_at("2026-11-21T08:30:12+02:00[+02:00]"), "2026-11-21T06-30-12Z-0000");
+        assert_eq!(name_at("2026-11-21T08:30:12.5+02:00[+02:00]"), "2026-11-21T06-30-12Z-8000");
+        assert_eq!(name_at("2026-11-21T06:30:12.999999999Z[UTC]"), "2026-11-21T06-30-12Z-ffff");
     }
 
     #[test]
