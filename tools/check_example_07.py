@@ -46,7 +46,7 @@ def all_levels(rtf: str, example: Path, folder: Path) -> None:
     expect("turns", turns, ["suite-started", "suite-finished"] * len(LEVELS))
     repetitions = [event["repetition"] for event in run.events("test-started")]
     expect("repetitions", max(repetitions), 5)
-    expect("measured", any(run.events("used")), True)
+    expect("measured", any(run.events("resources-measured")), True)
     expect("growth", "grow" in run.output.read_text(), False)
     expect("arms left", arms(), [])
 

@@ -18,7 +18,7 @@ pub fn run() -> Result<(), Box<dyn Error>> {
             args: vec!["--rate".into(), "100".into()],
             param: "--rate 100".into(),
             repetition: 1,
-            last: true,
+            is_last: true,
             ..Plugin::default()
         });
         if codec::encode(Some(number), request)?.ends_with(b"}\n") {
@@ -31,8 +31,12 @@ pub fn run() -> Result<(), Box<dyn Error>> {
             comparison: None,
             critical: false,
         };
-        let answer =
-            Answer { outcome: Outcome::Passed, reason: None, notices: Vec::new(), stays: false };
+        let answer = Answer {
+            outcome: Outcome::Passed,
+            reason: None,
+            subscriptions: Vec::new(),
+            continues: false,
+        };
         let lines = [
             line(None, Notification::Phase { phase: Phase::Run })?,
             line(None, Notification::Message(message))?,

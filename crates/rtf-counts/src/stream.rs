@@ -43,7 +43,7 @@ fn before() -> Vec<EventKind> {
             rtf: "0".into(),
             started_at: "2026-01-01T00:00:00+00:00".into(),
             command: vec!["counted".into()],
-            folder: String::new(),
+            working_dir: String::new(),
             suites: 1,
             tests: TESTS,
             manifest: Box::default(),
@@ -90,7 +90,12 @@ fn test(number: u32) -> Vec<EventKind> {
         kinds.push(EventKind::Message { source, message, test: None });
     }
     let text = format!("a line of test {number}\n");
-    kinds.push(EventKind::Output(Output { source, stream: Stream::Stdout, omitted: 0, text }));
+    kinds.push(EventKind::Output(Output {
+        source,
+        stream: Stream::Stdout,
+        omitted_bytes: 0,
+        text,
+    }));
     kinds.push(EventKind::TestFinished(TestFinished {
         test,
         verdict: if failed { Verdict::Failed } else { Verdict::Passed },

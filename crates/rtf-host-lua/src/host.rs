@@ -5,7 +5,9 @@ use std::path::Path;
 use mlua::{Function, IntoLua, Lua, MultiValue, Table, Value};
 use rtf_host::{HostPlugin, LoadError, Reaction, Role, Session, Step, StepEnd, Told};
 use rtf_model::Location;
-use rtf_model::protocol::{Initialized, Notice, PROTOCOL_VERSION, Plugin, StackSupport, ToldTest};
+use rtf_model::protocol::{
+    Initialized, PROTOCOL_VERSION, Plugin, StackSupport, Subscription, TestAttempt,
+};
 
 use crate::source::{Files, Style};
 use crate::state::State;
@@ -43,7 +45,7 @@ impl HostPlugin for LuaHost {
     fn describe(&self) -> Initialized {
         let host = format!("lua {}", watch::lua_release());
         let stack = StackSupport::Message;
-        Initialized { protocol: PROTOCOL_VERSION, host, stack, shares: true }
+        Initialized { protocol: PROTOCOL_VERSION, host, stack, supports_shared: true }
     }
 
     fn idle(&mut self) {
@@ -58,7 +60,7 @@ impl HostPlugin for LuaHost {
         let state = state.and_then(|state| state.dedicate(&self.session, plugin));
         let (lua, call) = state.map_err(unexpected)?;
         watch::look_at(&lua);
-        let compiled = match plugin.last {
+        let compiled = match plugin.is_last {
             true => source::compile(&lua, Path::new(&plugin.file), &plugin.file)?,
             false => self.files.compile(&lua, &plugin.file)?,
         };
@@ -89,13 +91,13 @@ impl HostPlugin for LuaHost {
         end
     }
 
-    fn notices(&self) -> Vec<Notice> {
+    fn subscriptions(&self) -> Vec<Subscription> {
         let has = |name: &str| {
             let table = self.loaded.as_ref().map(|loaded| &loaded.table);
             table.is_some_and(|table| matches!(table.get(name), Ok(Value::Function(_))))
         };
-        let started = has("testStarted").then_some(Notice::TestStarted);
-        let finished = has("testFinished").then_some(Notice::TestFinished);
+        let started = has("testStarted").then_some(Subscription::TestStarted);
+        let finished = has("testFinished").then_some(Subscription::TestFinished);
         started.into_iter().chain(finished).collect()
     }
 
@@ -174,7 +176,7 @@ impl Loaded {
         Ok(ended(self.call.call(args)))
     }
 
-    fn test(&self, test: &ToldTest) -> mlua::Result<Value> {
+    fn test(&self, test: &TestAttempt) -> mlua::Result<Value> {
         let table = self.lua.create_table()?;
         table.set("id", test.id.0)?;
         table.set("name", test.name.as_str())?;

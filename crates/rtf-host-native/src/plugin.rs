@@ -5,7 +5,9 @@ use std::ffi::{CString, NulError, c_char, c_int, c_void};
 use std::path::Path;
 
 use rtf_host::{HostPlugin, LoadError, Role, Session, Step, StepEnd, Told};
-use rtf_model::protocol::{Initialized, Notice, PROTOCOL_VERSION, Plugin, StackSupport, ToldTest};
+use rtf_model::protocol::{
+    Initialized, PROTOCOL_VERSION, Plugin, StackSupport, Subscription, TestAttempt,
+};
 
 use crate::abi::{RTF_DONE, RTF_REFUSED, RTF_STOPPED, rtf_plugin_table, rtf_test, rtf_text};
 use crate::host_table;
@@ -44,7 +46,7 @@ impl HostPlugin for NativeHost {
     fn describe(&self) -> Initialized {
         let host = concat!("native ", env!("CARGO_PKG_VERSION")).to_owned();
         let stack = StackSupport::None;
-        Initialized { protocol: PROTOCOL_VERSION, host, stack, shares: true }
+        Initialized { protocol: PROTOCOL_VERSION, host, stack, supports_shared: true }
     }
 
     fn idle(&mut self) {
@@ -72,10 +74,10 @@ impl HostPlugin for NativeHost {
         self.loaded.as_mut().map_or(StepEnd::Stopped, |loaded| loaded.step(step))
     }
 
-    fn notices(&self) -> Vec<Notice> {
+    fn subscriptions(&self) -> Vec<Subscription> {
         let Some(Loaded { table, .. }) = &self.loaded else { return Vec::new() };
-        let started = table.test_started.map(|_| Notice::TestStarted);
-        let finished = table.test_finished.map(|_| Notice::TestFinished);
+        let started = table.test_started.map(|_| Subscription::TestStarted);
+        let finished = table.test_finished.map(|_| Subscription::TestFinished);
         started.into_iter().chain(finished).collect()
     }
 
@@ -139,7 +141,7 @@ fn end_of(code: i32) -> StepEnd {
     }
 }
 
-fn test_of(test: &ToldTest, verdict: &str, reason: &str) -> rtf_test {
+fn test_of(test: &TestAttempt, verdict: &str, reason: &str) -> rtf_test {
     let text = |text: &str| rtf_text { data: text.as_ptr().cast(), length: text.len() };
     rtf_test {
         size: size_of::<rtf_test>(),

@@ -131,12 +131,12 @@ fn a_fixture_is_told_of_each_test() {
     let mut host = Host::start();
     let ready = host.ask("set-up-fixture", json!({"file": library, "name": "recorder"}));
     let wanted = json!(["test-started", "test-finished"]);
-    assert_eq!(ready, json!({"outcome": "passed", "notices": wanted}));
+    assert_eq!(ready, json!({"outcome": "passed", "subscriptions": wanted}));
     let test = json!({"id": 3, "name": "Move", "repetition": 2, "attempt": 1});
     let passed = json!({"outcome": "passed"});
     assert_eq!(host.ask("test-started", json!({"test": test})), passed);
     let keep = folder().join("kept-by-recorder");
-    let ends = json!({"test": test, "verdict": "failed", "reason": "far", "keep_folder": keep});
+    let ends = json!({"test": test, "verdict": "failed", "reason": "far", "attachments_dir": keep});
     host.send(json!({"id": 1, "method": "test-finished", "params": ends}));
     let said: Vec<Value> = (0..4).map(|_| host.next().unwrap()).collect();
     assert_eq!(said[0]["params"]["text"], "3 Move 2.1 failed: far");

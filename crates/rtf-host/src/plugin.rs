@@ -1,7 +1,7 @@
 //! What a host has to be able to do.
 
 use rtf_model::Location;
-use rtf_model::protocol::{Initialize, Initialized, Notice, Plugin, TestEnds, TestStarts};
+use rtf_model::protocol::{Initialize, Initialized, Plugin, Subscription, TestEnds, TestStarts};
 
 use crate::Session;
 
@@ -98,7 +98,7 @@ pub trait HostPlugin {
     fn step(&mut self, step: Step) -> StepEnd;
 
     /// What the loaded fixture, which is set up, wants to be told of each test.
-    fn notices(&self) -> Vec<Notice> {
+    fn subscriptions(&self) -> Vec<Subscription> {
         Vec::new()
     }
 

@@ -95,18 +95,18 @@ impl<H: HostPlugin> Server<'_, H> {
         let sets_up = matches!(request, Request::SetUpFixture(_));
         match request {
             Request::RunTest(plugin) => {
-                last = plugin.last;
-                if plugin.shared.is_some() {
+                last = plugin.is_last;
+                if plugin.end_marker.is_some() {
                     self.begin_shared();
                 }
                 self.run_test(&plugin);
-                shared = plugin.shared;
+                shared = plugin.end_marker;
             }
             Request::SetUpFixture(plugin) => self.set_up_fixture(&plugin),
             Request::CheckFixture {} => self.check_fixture(),
             Request::TestStarted(starts) => self.tell(Told::Starts(&starts)),
             Request::TestFinished(ends) => {
-                self.session.keep_in(ends.keep_folder.as_ref().map(Into::into));
+                self.session.keep_in(ends.attachments_dir.as_ref().map(Into::into));
                 self.tell(Told::Ends(&ends));
                 self.session.keep_in(None);
             }
@@ -119,12 +119,12 @@ impl<H: HostPlugin> Server<'_, H> {
         self.session.engage(self.loaded.is_some());
         let mut answer = self.session.conclude();
         if sets_up && answer.outcome == Outcome::Passed {
-            answer.notices = self.host.notices();
+            answer.subscriptions = self.host.subscriptions();
         }
         if let (Some(mark), false) = (shared, last) {
             let passed = answer.outcome == Outcome::Passed;
-            answer.stays = passed && self.sharing.as_ref().is_some_and(|ours| ours.stay(&mark));
-            last = !answer.stays;
+            answer.continues = passed && self.sharing.as_ref().is_some_and(|ours| ours.stay(&mark));
+            last = !answer.continues;
         }
         self.answer(id, answer);
         last
@@ -163,7 +163,7 @@ impl<H: HostPlugin> Server<'_, H> {
     }
 
     fn run_test(&mut self, plugin: &Plugin) {
-        self.session.keep_in(plugin.keep_folder.as_ref().map(Into::into));
+        self.session.keep_in(plugin.attachments_dir.as_ref().map(Into::into));
         if !self.load(Role::Test, plugin) {
             return;
         }

@@ -64,7 +64,7 @@ struct State {
     request: Option<u64>,
     stop_reason: Option<String>,
     /// Where the copies of attached files go, and how many there are.
-    keep_folder: Option<PathBuf>,
+    attachments_dir: Option<PathBuf>,
     attached: u64,
     judge: Judge,
 }
@@ -156,12 +156,12 @@ impl Session {
         state.attached += 1;
         let number = state.attached;
         let name: String = name.chars().map(safe).collect();
-        state.keep_folder.as_ref().map(|folder| folder.join(format!("{number}-{name}")))
+        state.attachments_dir.as_ref().map(|folder| folder.join(format!("{number}-{name}")))
     }
 
     /// Says where the copies of attached files go.
     pub(crate) fn keep_in(&self, folder: Option<PathBuf>) {
-        self.state().keep_folder = folder;
+        self.state().attachments_dir = folder;
     }
 
     /// Reports that the fixture is not well any more.

@@ -53,5 +53,5 @@ impl Judge {
 }
 
 fn answer(outcome: Outcome, reason: Option<String>) -> Answer {
-    Answer { outcome, reason, notices: Vec::new(), stays: false }
+    Answer { outcome, reason, subscriptions: Vec::new(), continues: false }
 }

@@ -65,7 +65,7 @@ impl Script {
 impl HostPlugin for Script {
     fn describe(&self) -> Initialized {
         let stack = StackSupport::Message;
-        Initialized { protocol: 1, host: "script 1".into(), stack, shares: true }
+        Initialized { protocol: 1, host: "script 1".into(), stack, supports_shared: true }
     }
 
     fn load(&mut self, _role: Role, plugin: &Plugin) -> Result<(), LoadError> {
@@ -107,7 +107,7 @@ impl Runner {
         runner.send(
             r#"{"jsonrpc":"2.0","id":0,"method":"initialize","params":{"protocol":1,"rtf":"x"}}"#,
         );
-        let expected = r#"{"jsonrpc":"2.0","id":0,"result":{"protocol":1,"host":"script 1","stack":"message","shares":true}}"#;
+        let expected = r#"{"jsonrpc":"2.0","id":0,"result":{"protocol":1,"host":"script 1","stack":"message","supports_shared":true}}"#;
         assert_eq!(runner.line(), expected);
         (runner, host)
     }
@@ -321,7 +321,7 @@ fn stacks_are_dumped_while_the_plugin_hangs() {
 #[test]
 fn the_last_test_ends_the_host() {
     let (mut runner, host) = Runner::start();
-    let params = r#"{"file":"report:;report:;report:","name":"T","last":true}"#;
+    let params = r#"{"file":"report:;report:;report:","name":"T","is_last":true}"#;
     runner.send(&format!(r#"{{"id":1,"method":"run-test","params":{params}}}"#));
     assert_eq!(runner.result(), r#""outcome":"passed""#);
     host.join().unwrap().unwrap();

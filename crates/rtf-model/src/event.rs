@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub use self::planned::{
     FixturePlanned, HookPlanned, RunStarted, SuitePlanned, TestPlanned, Trigger,
 };
-pub use self::process::{ExitStatus, LeftProcess, Output, Source, Stream};
+pub use self::process::{ExitStatus, LeakedProcess, Output, Source, Stream};
 pub use self::test::{Phase, StopCause, TestFinished};
 use crate::{
     Attachment, Diagnostic, FixtureId, HookId, Measurement, Message, Micros, Samples, SuiteId,
@@ -191,7 +191,7 @@ pub enum EventKind {
     },
     /// What a process and all that it started uses, at the end of a test in a
     /// suite in which tests are repeated.
-    Used {
+    ResourcesMeasured {
         /// A fixture, whose process it is, or the test that a shared host has
         /// just served.
         source: Source,
@@ -199,14 +199,14 @@ pub enum EventKind {
         usage: Usage,
         /// How many tests the shared host has served, this one included.
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        served: Option<u32>,
+        tests_served: Option<u32>,
     },
     /// Processes that should have ended and did not; they were killed.
-    ProcessesLeft {
+    ProcessesLeaked {
         /// Who started them.
         source: Source,
         /// The processes.
-        processes: Vec<LeftProcess>,
+        processes: Vec<LeakedProcess>,
     },
     /// The end of what `test-started` began.
     TestFinished(TestFinished),
@@ -263,6 +263,6 @@ pub enum EventKind {
         reason: String,
         /// What it had started and was still alive.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        left: Vec<LeftProcess>,
+        leaked: Vec<LeakedProcess>,
     },
 }

@@ -27,14 +27,14 @@ mod verdict;
 pub use clock::parse_clock;
 pub use diagnostic::{Diagnostic, Label, Severity};
 pub use event::{
-    Event, EventKind, ExitStatus, FixturePlanned, HookPlanned, LeftProcess, Output, Phase,
+    Event, EventKind, ExitStatus, FixturePlanned, HookPlanned, LeakedProcess, Output, Phase,
     RunStarted, Source, StopCause, Stream, SuitePlanned, TestFinished, TestPlanned, Trigger,
 };
 pub use ids::{FixtureId, HookId, Micros, SuiteId, TestId};
 pub use journal::{Checked, Damage, LineCheck, LineChecker, LineSealer, StreamChecker};
 pub use manifest::{Manifest, Revision};
 pub use order::{OrderChecker, OrderError};
-pub use prepared::{OwnNetwork, OwnPort, OwnVariable, SuitePrepared};
+pub use prepared::{SuiteNetwork, SuitePort, SuitePrepared, SuiteVariable};
 pub use record::{
     AttemptRecord, Counts, FixtureLife, FixtureRecord, FixtureState, HookRecord, HookRun,
     HostRecord, Record, RunState, Series, SuiteRecord, TestRecord, Totals,

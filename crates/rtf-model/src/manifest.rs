@@ -62,7 +62,7 @@ pub struct Manifest {
     pub revision: Option<Revision>,
     /// How many tests there were of which these were chosen.
     #[serde(skip_serializing_if = "is_default")]
-    pub chosen_of: u32,
+    pub selected_from: u32,
 }
 
 /// A revision of sources.

@@ -39,7 +39,7 @@ pub struct OrderChecker {
     hooks: Vec<(SuiteId, bool)>,
     tests: Vec<Test>,
     beside: Beside,
-    served: Served,
+    tests_served: Served,
 }
 
 type Rule = Result<(), String>;
@@ -108,7 +108,7 @@ impl OrderChecker {
             EventKind::TestStarted { test, repetition, attempt } => {
                 self.start_test(*test, (*repetition, *attempt))
             }
-            EventKind::TestPhase { test, phase: Phase::Notice } => self.judge_test(*test),
+            EventKind::TestPhase { test, phase: Phase::Notify } => self.judge_test(*test),
             EventKind::TestPhase { test, .. }
             | EventKind::Sampled { test, .. }
             | EventKind::TestSlow { test }
@@ -120,10 +120,12 @@ impl OrderChecker {
             EventKind::Message { source, test, .. } => {
                 self.inside_both(test.map(Source::Test), *source)
             }
-            EventKind::StackDumped { source, .. } | EventKind::ProcessesLeft { source, .. } => {
+            EventKind::StackDumped { source, .. } | EventKind::ProcessesLeaked { source, .. } => {
                 self.inside(*source)
             }
-            EventKind::Used { source, served, .. } => self.used(*source, *served),
+            EventKind::ResourcesMeasured { source, tests_served, .. } => {
+                self.used(*source, *tests_served)
+            }
             EventKind::Output(output) => self.inside(output.source),
             EventKind::TestFinished(finished) => self.finish_test(finished.test, finished.rerun),
             EventKind::TestSkipped { test, .. } => self.skip_test(*test),
@@ -303,13 +305,13 @@ impl OrderChecker {
         }
     }
 
-    fn used(&mut self, source: Source, served: Option<u32>) -> Rule {
+    fn used(&mut self, source: Source, tests_served: Option<u32>) -> Rule {
         self.inside(source)?;
-        match (source, served) {
+        match (source, tests_served) {
             (Source::Fixture(_), None) => Ok(()),
-            (Source::Test(test), Some(served)) => {
+            (Source::Test(test), Some(tests_served)) => {
                 let suite = self.test(test)?.suite;
-                self.served.test(suite, served)
+                self.tests_served.test(suite, tests_served)
             }
             _ => Err("a shared host, and nothing else, tells how many tests it has served".into()),
         }

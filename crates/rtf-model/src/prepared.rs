@@ -12,21 +12,21 @@ pub struct SuitePrepared {
     pub suite: SuiteId,
     /// Its own network namespace.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub network: Option<OwnNetwork>,
+    pub network: Option<SuiteNetwork>,
     /// Its own ports, in the order of their names.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub ports: Vec<OwnPort>,
+    pub ports: Vec<SuitePort>,
     /// Environment variables that name its own middleware.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub variables: Vec<OwnVariable>,
+    pub variables: Vec<SuiteVariable>,
     /// A command for a shell, with which a person joins in while the suite runs.
-    pub join: String,
+    pub join_command: String,
 }
 
 /// A network namespace with nothing but a loopback interface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct OwnNetwork {
+pub struct SuiteNetwork {
     /// A process in it that lives as long as the suite: `/proc/<pid>/ns/net`.
     pub pid: i32,
     /// Whether it came with a user namespace, because the runner is not root.
@@ -37,14 +37,14 @@ pub struct OwnNetwork {
 /// A TCP port that no other suite has.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct OwnPort {
+pub struct SuitePort {
     /// Its name in the suite: `${port:name}`.
     pub name: String,
     /// Its number.
     pub port: u16,
 }
 
-impl OwnPort {
+impl SuitePort {
     /// The environment variable that holds the port of this name.
     #[must_use]
     pub fn variable(name: &str) -> String {
@@ -55,12 +55,12 @@ impl OwnPort {
 /// An environment variable of a suite's processes.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct OwnVariable {
+pub struct SuiteVariable {
     /// Its name.
     pub name: String,
     /// Its value.
     pub value: String,
     /// Whether it is the user's: it was set before, and was kept.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub kept: bool,
+    pub inherited: bool,
 }

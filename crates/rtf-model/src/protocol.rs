@@ -27,7 +27,7 @@ pub const OWNER_VARIABLE: &str = "RTF_OWNER";
 pub const ENVIRONMENT_VARIABLE: &str = "RTF_ENVIRONMENT";
 
 /// The environment variable that names the run's folder, in which the journal is.
-pub const RUN_FOLDER_VARIABLE: &str = "RTF_RUN_FOLDER";
+pub const RUN_DIR_VARIABLE: &str = "RTF_RUN_DIR";
 
 /// The environment variable that names the file with the simulated time, for tests,
 /// which follow it. Empty or not set: they follow the wall clock.
@@ -56,7 +56,7 @@ pub const VERSION_MISMATCH: i32 = -32001;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ForkRequest {
     /// The working folder.
-    pub folder: PathBuf,
+    pub working_dir: PathBuf,
     /// Environment variables that only this process has.
     pub env: BTreeMap<String, String>,
 }
@@ -86,7 +86,7 @@ pub enum Request {
     /// Ask the fixture whether it is still well. Answered with [`Answer`].
     CheckFixture {},
     /// Tell the fixture that an attempt of a test is about to begin. Only for one that
-    /// asked for it in [`Answer::notices`]. Answered with [`Answer`].
+    /// asked for it in [`Answer::subscriptions`]. Answered with [`Answer`].
     TestStarted(TestStarts),
     /// Tell the fixture how an attempt of a test was judged, in the same way.
     TestFinished(TestEnds),
@@ -136,9 +136,9 @@ pub struct Initialized {
     /// How the runner gets a stack dump from a host that hangs.
     #[serde(default)]
     pub stack: StackSupport,
-    /// Whether it knows [`Plugin::shared`].
+    /// Whether it knows [`Plugin::end_marker`].
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub shares: bool,
+    pub supports_shared: bool,
 }
 
 /// How the runner gets a stack dump from a host that hangs.
@@ -177,21 +177,21 @@ pub struct Plugin {
     pub repetition: u32,
     /// Whether this is the host's only request: it ends after the answer.
     #[serde(default)]
-    pub last: bool,
+    pub is_last: bool,
     /// For a test whose host may serve further tests: what the host then writes
     /// to both outputs at the end of this one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub shared: Option<String>,
+    pub end_marker: Option<String>,
     /// A test's folder for what it attaches. The host makes it when it is needed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub keep_folder: Option<String>,
+    pub attachments_dir: Option<String>,
 }
 
 /// What a fixture may be told of each test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-pub enum Notice {
+pub enum Subscription {
     /// An attempt is about to begin: [`Request::TestStarted`].
     TestStarted,
     /// An attempt was judged: [`Request::TestFinished`].
@@ -201,7 +201,7 @@ pub enum Notice {
 /// The attempt of a test that a fixture is told of.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ToldTest {
+pub struct TestAttempt {
     /// The test, as in events.
     pub id: TestId,
     /// Its name in the suite.
@@ -217,7 +217,7 @@ pub struct ToldTest {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TestStarts {
     /// Which one.
-    pub test: ToldTest,
+    pub test: TestAttempt,
 }
 
 /// An attempt of a test was judged.
@@ -225,7 +225,7 @@ pub struct TestStarts {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TestEnds {
     /// Which one.
-    pub test: ToldTest,
+    pub test: TestAttempt,
     /// The judgement.
     pub verdict: Verdict,
     /// Why it did not pass.
@@ -233,7 +233,7 @@ pub struct TestEnds {
     pub reason: Option<String>,
     /// The folder for what the fixture attaches. The host makes it when it is needed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub keep_folder: Option<String>,
+    pub attachments_dir: Option<String>,
 }
 
 /// The answer to a request that carries out something.
@@ -247,11 +247,11 @@ pub struct Answer {
     pub reason: Option<String>,
     /// After a fixture's set-up: what it wants to be told of each test.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub notices: Vec<Notice>,
-    /// The host has written [`Plugin::shared`] and takes the next test. Else it
+    pub subscriptions: Vec<Subscription>,
+    /// The host has written [`Plugin::end_marker`] and takes the next test. Else it
     /// ends.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub stays: bool,
+    pub continues: bool,
 }
 
 /// What a host tells without being asked.

@@ -63,7 +63,7 @@ fn before() -> Vec<EventKind> {
             rtf: env!("CARGO_PKG_VERSION").into(),
             started_at: "2026-01-01T00:00:00+00:00".into(),
             command: vec!["throughput".into()],
-            folder: String::new(),
+            working_dir: String::new(),
             suites: 1,
             tests: 1,
             manifest: Box::default(),

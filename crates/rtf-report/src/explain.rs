@@ -2,7 +2,7 @@
 //! tell it alike; each paints and indents the lines as it likes.
 
 use rtf_model::{
-    AttemptRecord, Comparison, HookRun, LeftProcess, Measurement, Message, MessageKind, Series,
+    AttemptRecord, Comparison, HookRun, LeakedProcess, Measurement, Message, MessageKind, Series,
 };
 
 use crate::{escape, words};
@@ -68,7 +68,7 @@ pub(crate) fn hook(run: &HookRun, extent: Extent, sink: Sink<'_>) {
     for stack in &run.stacks {
         self::stack(stack, extent, sink);
     }
-    left(&run.left, sink);
+    left(&run.leaked, sink);
 }
 
 /// Whether the reason is one of the failures or measurements that are told
@@ -149,7 +149,7 @@ pub(crate) fn stack(stack: &str, extent: Extent, sink: Sink<'_>) {
 }
 
 /// The processes that had to be killed.
-pub(crate) fn left(processes: &[LeftProcess], sink: Sink<'_>) {
+pub(crate) fn left(processes: &[LeakedProcess], sink: Sink<'_>) {
     if processes.is_empty() {
         return;
     }
@@ -161,7 +161,7 @@ pub(crate) fn left(processes: &[LeftProcess], sink: Sink<'_>) {
 }
 
 /// `4711 sleep 1000 (test arm/EncoderTest)`.
-pub(crate) fn process(process: &LeftProcess) -> String {
+pub(crate) fn process(process: &LeakedProcess) -> String {
     let command = escape::line(&process.command);
     let owner = process.owner.as_deref();
     let owner = owner.map_or(String::new(), |owner| format!(" ({})", escape::line(owner)));

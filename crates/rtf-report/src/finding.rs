@@ -125,7 +125,7 @@ fn of_fixtures(record: &Record, suite: &SuiteRecord, roots: &Roots<'_>) -> Vec<F
                 problems.iter().map(|p| escape::block(p).into_owned()).collect();
             let sink = &mut |_, line: &str| lines.push(line.to_owned());
             fixture.messages.iter().take(EXTENT.items).for_each(|m| explain::message(m, sink));
-            explain::left(&fixture.left, sink);
+            explain::left(&fixture.leaked, sink);
             explain::printed(fixture.log_tail.iter().map(String::as_str), sink);
             Some(Finding {
                 rank: Rank::Bench,
@@ -153,7 +153,7 @@ fn of_test(record: &Record, test: &TestRecord, roots: &Roots<'_>) -> Option<Find
     if let Some(attempt) = test.decisive_attempt() {
         let sink = &mut |_, line: &str| lines.push(line.to_owned());
         explain::explain(attempt, EXTENT, sink);
-        explain::left(&attempt.left, sink);
+        explain::left(&attempt.leaked, sink);
     }
     if lines.is_empty() {
         lines.push(escape::block(test.reason().unwrap_or(verdict.as_str())).into_owned());

@@ -188,8 +188,8 @@ fn create(path: &Path) -> std::io::Result<File> {
 
 impl Log {
     fn print(&mut self, output: &Output) -> std::io::Result<()> {
-        if output.omitted > 0 {
-            write!(self.file, "\n[… {} bytes left out …]\n", output.omitted)?;
+        if output.omitted_bytes > 0 {
+            write!(self.file, "\n[… {} bytes left out …]\n", output.omitted_bytes)?;
         }
         self.file.write_all(output.text.as_bytes())
     }

@@ -1,13 +1,13 @@
 //! What a suite has for itself, line by line: console, text and logs tell it alike.
 
-use rtf_model::{OwnNetwork, OwnVariable, SuitePrepared};
+use rtf_model::{SuiteNetwork, SuitePrepared, SuiteVariable};
 
 use crate::escape;
 use crate::explain::{Sink, Tone};
 
 /// Tells all of it, and how a person joins in.
 pub(crate) fn show(prepared: &SuitePrepared, sink: Sink<'_>) {
-    if let Some(OwnNetwork { pid, user_namespace }) = prepared.network {
+    if let Some(SuiteNetwork { pid, user_namespace }) = prepared.network {
         let user = if user_namespace { ", with a user namespace" } else { "" };
         sink(Tone::Plain, &format!("network of its own: held by process {pid}{user}"));
     }
@@ -15,19 +15,19 @@ pub(crate) fn show(prepared: &SuitePrepared, sink: Sink<'_>) {
         sink(Tone::Plain, &format!("port {}: {}", escape::line(&own.name), own.port));
     }
     for variable in &prepared.variables {
-        let yours = if variable.kept { " (yours, kept)" } else { "" };
+        let yours = if variable.inherited { " (yours, kept)" } else { "" };
         sink(Tone::Plain, &format!("{}{yours}", assignment(variable)));
     }
-    sink(Tone::Dim, &format!("join in: {}", escape::line(&prepared.join)));
+    sink(Tone::Dim, &format!("join in: {}", escape::line(&prepared.join_command)));
 }
 
 /// The variables that the user had set and that were kept.
 pub(crate) fn kept(prepared: &SuitePrepared) -> String {
-    let kept = prepared.variables.iter().filter(|variable| variable.kept);
+    let kept = prepared.variables.iter().filter(|variable| variable.inherited);
     let list: Vec<_> = kept.map(assignment).collect();
     format!("{} of your environment (`middleware=\"own\"` replaces it)", list.join(", "))
 }
 
-fn assignment(variable: &OwnVariable) -> String {
+fn assignment(variable: &SuiteVariable) -> String {
     format!("{}={}", escape::line(&variable.name), escape::line(&variable.value))
 }

@@ -168,9 +168,9 @@ impl Bound {
     ///
     /// # Errors
     /// The system has no thread to give.
-    pub fn serve(self, served: Served<'_>) -> Result<Server, ServeError> {
+    pub fn serve(self, tests_served: Served<'_>) -> Result<Server, ServeError> {
         let Self { listener, address, wanted, token, tls, hosts, remote, limits } = self;
-        let Served { results, role, rerun, wrong_token } = served;
+        let Served { results, role, rerun, wrong_token } = tests_served;
         let shown = token.text().to_owned();
         let rules = Rules { remote, tls: tls.is_some() };
         let log = Log::start(wrong_token).map_err(ServeError::Start)?;
@@ -329,7 +329,7 @@ fn serve(listener: TcpListener, limits: Limits, tls: Option<Tls>, app: App) -> i
         .max_blocking_threads(4)
         .on_thread_start(give_way)
         .build()?;
-    let served = runtime.block_on(async {
+    let tests_served = runtime.block_on(async {
         let handle = Handle::new();
         let mut ending = app.ending.clone();
         let parting = handle.clone();
@@ -350,7 +350,7 @@ fn serve(listener: TcpListener, limits: Limits, tls: Option<Tls>, app: App) -> i
         }
     });
     runtime.shutdown_background();
-    served
+    tests_served
 }
 
 /// Lets the threads of the run go first, where the processor is short.

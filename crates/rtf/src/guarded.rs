@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use rtf_engine::guard::{self, Died, Ended, Link, Side};
-use rtf_model::{LeftProcess, Record};
+use rtf_model::{LeakedProcess, Record};
 use rtf_report::{Reporter, journal};
 
 use crate::cli::RunArgs;
@@ -123,8 +123,8 @@ fn tell(err: &mut impl Write, died: &Died, kept: bool) -> io::Result<()> {
     }
 }
 
-fn tell_left(err: &mut impl Write, left: &[LeftProcess]) -> io::Result<()> {
-    for LeftProcess { pid, command, owner } in left {
+fn tell_left(err: &mut impl Write, left: &[LeakedProcess]) -> io::Result<()> {
+    for LeakedProcess { pid, command, owner } in left {
         let owner = owner.as_ref().map_or(String::new(), |owner| format!("  ({owner})"));
         writeln!(err, "  killed: {pid} {command}{owner}")?;
     }

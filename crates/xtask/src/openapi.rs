@@ -2,7 +2,7 @@
 //! model, which are those of the journal, in their places.
 
 use rtf_model::{
-    Attachment, Diagnostic, Event, ExitStatus, LeftProcess, Measurement, Message, Phase, Stream,
+    Attachment, Diagnostic, Event, ExitStatus, LeakedProcess, Measurement, Message, Phase, Stream,
     SuitePrepared, Trigger, Verdict,
 };
 use schemars::SchemaGenerator;
@@ -48,7 +48,7 @@ fn model() -> Map<String, Value> {
     generator.subschema_for::<Attachment>();
     generator.subschema_for::<Diagnostic>();
     generator.subschema_for::<ExitStatus>();
-    generator.subschema_for::<LeftProcess>();
+    generator.subschema_for::<LeakedProcess>();
     generator.subschema_for::<Measurement>();
     generator.subschema_for::<Message>();
     generator.subschema_for::<Phase>();

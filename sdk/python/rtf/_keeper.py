@@ -41,7 +41,7 @@ class Keeper(Plugin):
         _keep.check(full)
         name = name or os.path.basename(full)
         session = _session.current()
-        if session.task.keep_folder:
-            full = _keep.copy(full, name, session.task.keep_folder)
+        if session.task.attachments_dir:
+            full = _keep.copy(full, name, session.task.attachments_dir)
         params: dict[str, object] = {"name": name, "path": full, "media_type": media_type or ""}
         session.notify("attached", params)

@@ -109,10 +109,10 @@ class Task:
             raise TypeError("`repetition` is not a whole number")
         self.args: list[str] = args
         self.repetition = repetition
-        self.last = params.get("last", False) is True
-        self.keep_folder = _text_of(params, "keep_folder", "")
+        self.last = params.get("is_last", False) is True
+        self.attachments_dir = _text_of(params, "attachments_dir", "")
         # What tells the test's output from the next one's, if its host may go on.
-        self.shared = _text_of(params, "shared", "")
+        self.shared = _text_of(params, "end_marker", "")
 
 
 def _text_of(params: dict[str, object], name: str, default: str | None = None) -> str:

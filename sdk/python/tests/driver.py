@@ -110,7 +110,7 @@ def plugin(folder: Path, body: str, name: str = "plugin.py") -> dict[str, Any]:
     """Write a plug-in and return the parameters of a request about it."""
     file = folder / name
     file.write_text("import rtf\n" + body, encoding="utf-8")
-    return {"file": str(file), "name": "Arm", "args": ["--rate", "100"], "last": True}
+    return {"file": str(file), "name": "Arm", "args": ["--rate", "100"], "is_last": True}
 
 
 def run(folder: Path, body: str, **more: Any) -> Ran:

@@ -122,11 +122,11 @@ def test_a_fixture_is_told_of_each_test(tmp_path: Path) -> None:
     host = Host(tmp_path)
     answer = host.ask("set-up-fixture", plugin(tmp_path, RECORDER))
     wanted = ["test-started", "test-finished"]
-    assert answer["result"] == {"outcome": "passed", "notices": wanted}
+    assert answer["result"] == {"outcome": "passed", "subscriptions": wanted}
     test = {"id": 3, "name": "Move", "repetition": 2, "attempt": 1}
     assert host.ask("test-started", {"test": test})["result"] == {"outcome": "passed"}
     folder = str(tmp_path / "kept")
-    ends = {"test": test, "verdict": "failed", "reason": "too far", "keep_folder": folder}
+    ends = {"test": test, "verdict": "failed", "reason": "too far", "attachments_dir": folder}
     assert host.ask("test-finished", ends)["result"] == {"outcome": "passed"}
     assert host.texts() == [("report", "3 Move 2.1"), ("report", "Move failed: too far")]
     assert host.of("measured")[0]["name"] == "size"
@@ -146,5 +146,5 @@ def test_a_fixture_that_hears_nothing_asks_for_nothing(tmp_path: Path) -> None:
     )
     assert host.ask("set-up-fixture", plugin(tmp_path, FIXTURE))["result"] == {"outcome": "passed"}
     host = Host(tmp_path)
-    inherited = {"outcome": "passed", "notices": ["test-finished"]}
+    inherited = {"outcome": "passed", "subscriptions": ["test-finished"]}
     assert host.ask("set-up-fixture", plugin(tmp_path, body))["result"] == inherited

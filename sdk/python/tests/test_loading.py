@@ -78,7 +78,7 @@ def test_the_folder_of_the_plugin_is_searched_first_and_the_working_folder_is_no
 def test_the_second_plugin_of_a_host_is_not_the_first(tmp_path: Path) -> None:
     host = Host(tmp_path)
     for text in ("first", "second"):
-        params = {**plugin(tmp_path, arm(f"self.report({text!r})")), "last": text == "second"}
+        params = {**plugin(tmp_path, arm(f"self.report({text!r})")), "is_last": text == "second"}
         assert host.ask("run-test", params)["result"] == {"outcome": "passed"}
     assert host.texts() == [("report", "first"), ("report", "second")]
     assert host.end()[0] == 0
@@ -120,7 +120,7 @@ def test_initialize_comes_first_and_names_the_interpreter(tmp_path: Path) -> Non
         "protocol": 1,
         "host": f"python {version}",
         "stack": "none",
-        "shares": True,
+        "supports_shared": True,
     }
 
 

@@ -126,7 +126,7 @@ def test_the_host_ends_with_its_runner_while_a_test_runs(tmp_path: Path) -> None
 def test_an_idle_host_ends_in_the_ordinary_way_with_the_channel(tmp_path: Path) -> None:
     host = Host(tmp_path)
     body = "import atexit\natexit.register(print, 'bye')\n" + arm("pass")
-    host.ask("run-test", {**plugin(tmp_path, body), "last": False})
+    host.ask("run-test", {**plugin(tmp_path, body), "is_last": False})
     host.channel.shutdown(1)
     assert host.end()[:2] == (0, "bye\n")
 
@@ -157,7 +157,7 @@ def test_a_request_that_comes_after_the_last_answer_is_not_missed(tmp_path: Path
     """A test that fails ends its host, which may have been asked for the next one just then."""
     for _ in range(8):
         host = Host(tmp_path)
-        params = {**plugin(tmp_path, arm("self.fail('no')")), "last": False, "shared": "\0mark\n"}
+        params = {**plugin(tmp_path, arm("self.fail('no')")), "is_last": False, "end_marker": "\0mark\n"}
         host.send("run-test", params, number=2)
         host.wait_for("message")
         with suppress(OSError):  # it has ended already

@@ -117,7 +117,7 @@ class HostTest < Minitest::Test
     file = File.join(@folder, name)
     File.write(file, body)
     { file: file, name: "Arm", param: "--rate 100", args: ["--rate", "100"],
-      environment: "--robot sim", repetition: 3, last: true, **more }
+      environment: "--robot sim", repetition: 3, is_last: true, **more }
   end
 
   # A test with this body of `run`, and further methods.

@@ -52,10 +52,10 @@ class FixturesTest < HostTest
 
   def test_a_fixture_is_told_of_each_test
     host, result = set_up(RECORDER)
-    assert_equal %w[test-started test-finished], result["notices"]
+    assert_equal %w[test-started test-finished], result["subscriptions"]
     test = { "id" => 3, "name" => "Move", "repetition" => 2, "attempt" => 1 }
     assert_equal({ "outcome" => "passed" }, host.ask("test-started", { test: test })["result"])
-    ends = { test: test, verdict: "failed", reason: "far", keep_folder: File.join(@folder, "k") }
+    ends = { test: test, verdict: "failed", reason: "far", attachments_dir: File.join(@folder, "k") }
     assert_equal({ "outcome" => "passed" }, host.ask("test-finished", ends)["result"])
     assert_equal [["report", "3 Move 2.1 failed: far"]], host.texts
     assert_equal 3.5, host.of("measured").first["value"]
@@ -65,7 +65,7 @@ class FixturesTest < HostTest
   end
 
   def test_a_fixture_that_hears_nothing_asks_for_nothing
-    assert_nil set_up("def check = true").last["notices"]
+    assert_nil set_up("def check = true").last["subscriptions"]
   end
 
   def test_what_is_not_up_cannot_be_checked

@@ -49,7 +49,7 @@ class LoadingTest < HostTest
     %w[first second].each do |text|
       body = arm("report(#{text.inspect}); report(defined?(Left).inspect)", "  #{text} = 1\n") +
              (text == "first" ? "class Left; end\n" : "")
-      params = plugin(body, name: "#{text}.rb", last: text == "second")
+      params = plugin(body, name: "#{text}.rb", is_last: text == "second")
       assert_equal({ "outcome" => "passed" }, host.ask("run-test", params)["result"])
     end
     assert_equal ["first", "\"constant\"", "second", "nil"], host.texts.map(&:last)
@@ -78,7 +78,7 @@ class LoadingTest < HostTest
 
   def test_initialize_names_the_interpreter
     expected = { "protocol" => 1, "host" => "ruby #{RUBY_VERSION}", "stack" => "message",
-                 "shares" => true }
+                 "supports_shared" => true }
     assert_equal expected, host.initialized["result"]
   end
 

@@ -65,7 +65,7 @@ class MessagesTest < HostTest
     keep = File.join(@folder, "keep", "deep")
     body = "2.times { File.write(\"t.csv\", \"1\"); attach(\"t.csv\", media_type: \"text/csv\"); " \
            "File.delete(\"t.csv\") }\nattach(\"gone\")"
-    result, host, = run_plugin(arm(body), keep_folder: keep)
+    result, host, = run_plugin(arm(body), attachments_dir: keep)
     attached = host.of("attached")
     assert_equal(%w[1-t.csv 2-t.csv], attached.map { |one| File.basename(one["path"]) })
     assert_equal "1", File.read(attached.last["path"])

@@ -38,7 +38,7 @@ class PredecessorTest < HostTest
   def test_two_of_them_in_one_host_are_two
     host = self.host
     down = "  def tearDown = RTF::testReport(\"down\")\n"
-    host.ask("run-test", plugin(old("RTF::testReport(\"a\")", down), name: "a.rb", last: false))
+    host.ask("run-test", plugin(old("RTF::testReport(\"a\")", down), name: "a.rb", is_last: false))
     host.ask("run-test", plugin(old("RTF::testReport(\"b\")"), name: "b.rb"))
     assert_equal %w[a down b], host.texts.map(&:last)
   end

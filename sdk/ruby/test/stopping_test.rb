@@ -101,7 +101,7 @@ class StoppingTest < HostTest
 
   def test_an_idle_host_ends_in_the_ordinary_way_with_the_channel
     host = self.host
-    host.ask("run-test", plugin("at_exit { puts \"bye\" }\n#{arm("")}", last: false))
+    host.ask("run-test", plugin("at_exit { puts \"bye\" }\n#{arm("")}", is_last: false))
     host.channel.shutdown(Socket::SHUT_WR)
     status, output = host.finish
     assert_equal [0, "bye\n"], [status.exitstatus, output]

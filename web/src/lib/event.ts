@@ -9,7 +9,7 @@ export type {
     Event,
     FixturePlanned,
     HookPlanned,
-    LeftProcess,
+    LeakedProcess,
     Measurement,
     Message,
     Output,

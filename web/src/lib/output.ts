@@ -22,7 +22,7 @@ export class OutputRows {
     constructor(private readonly columns: number) {}
 
     add(entry: OutputEntry): void {
-        if (entry.omitted !== undefined) this.gap(entry);
+        if (entry.omitted_bytes !== undefined) this.gap(entry);
         const pieces = this.readers[entry.stream].read(entry.text);
         for (const piece of pieces) {
             piece.text.split('\n').forEach((text, index) => {
@@ -34,7 +34,7 @@ export class OutputRows {
 
     private gap(entry: OutputEntry): void {
         if (this.open !== null) this.end(entry);
-        const text = `… ${entry.omitted} bytes left out …`;
+        const text = `… ${entry.omitted_bytes} bytes left out …`;
         const row = this.row(entry, false);
         row.pieces.push({ text, classes: 'ansi-dim', color: null, background: null });
         this.end(entry);

@@ -266,7 +266,7 @@ describe('output', () => {
     test('streams do not share a row, and what was left out is told', () => {
         const rows = new OutputRows(80);
         rows.add(row('out'));
-        rows.add({ ...row('err\n', 'stderr'), omitted: 123 });
+        rows.add({ ...row('err\n', 'stderr'), omitted_bytes: 123 });
         expect(shown(rows)).toEqual(['out', '… 123 bytes left out …', 'err']);
     });
 });

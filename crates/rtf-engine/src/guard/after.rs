@@ -5,7 +5,7 @@ use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use rtf_model::{EventKind, LeftProcess};
+use rtf_model::{EventKind, LeakedProcess};
 use rustix::event::{PollFd, PollFlags, poll};
 
 use super::closing::{self, Ended, Happened, Told};
@@ -26,7 +26,7 @@ pub struct Died {
     /// The hooks that were run, or were let come to their end.
     pub hooks: Vec<Parked>,
     /// What the runner had started, was still alive, and was killed.
-    pub left: Vec<LeftProcess>,
+    pub left: Vec<LeakedProcess>,
     /// The journal, when the run had begun.
     pub journal: Option<PathBuf>,
     /// Why the journal could not be closed.
@@ -77,7 +77,7 @@ pub fn finish(duties: Duties, reason: String, mut signals: Signals, forked: Inst
     }
     tree::add(&mut left, tree::clear(SWEEP_LIMIT));
     duties.held.values().for_each(Held::clear_locks);
-    let end = EventKind::RunnerDied { reason: reason.clone(), left: left.clone() };
+    let end = EventKind::RunnerDied { reason: reason.clone(), leaked: left.clone() };
     happened.push(Happened { at: Instant::now(), kind: end });
     let (journal, problem) = match duties.run {
         Some(RunFiles { journal, scratch, started }) => {
@@ -125,7 +125,7 @@ fn in_order(mut hooks: Vec<Duty>) -> Vec<Duty> {
 fn with_folder(mut hook: super::note::Hook, run: Option<&Path>) -> super::note::Hook {
     if let (Some(plugin), Some(run)) = (&mut hook.plugin, run) {
         let folder = run.join(format!("attachments/hook-{}/guard", hook.id));
-        plugin.keep_folder = Some(folder.to_string_lossy().into_owned());
+        plugin.attachments_dir = Some(folder.to_string_lossy().into_owned());
     }
     hook
 }

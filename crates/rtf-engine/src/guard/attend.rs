@@ -223,11 +223,16 @@ impl Attendant<'_> {
             let text = String::from_utf8_lossy(&bytes).into_owned();
             let source = Source::Hook(self.hook.id);
             if !text.is_empty() {
-                self.happens(EventKind::Output(Output { source, stream, omitted: 0, text }));
+                self.happens(EventKind::Output(Output { source, stream, omitted_bytes: 0, text }));
             }
             if omitted > 0 {
                 let text = String::new();
-                self.happens(EventKind::Output(Output { source, stream, omitted, text }));
+                self.happens(EventKind::Output(Output {
+                    source,
+                    stream,
+                    omitted_bytes: omitted,
+                    text,
+                }));
             }
         }
         if let Some(problem) = self.problem_of(status) {

@@ -179,9 +179,9 @@ impl Hook {
                     args: plugin.args.clone(),
                     environment: suite.environment.clone(),
                     repetition: 1,
-                    last: true,
-                    shared: None,
-                    keep_folder: None,
+                    is_last: true,
+                    end_marker: None,
+                    attachments_dir: None,
                 };
                 (plugin.host.command.clone(), Some(asked))
             }

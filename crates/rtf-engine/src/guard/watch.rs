@@ -7,7 +7,7 @@ use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
-use rtf_model::{ExitStatus, LeftProcess};
+use rtf_model::{ExitStatus, LeakedProcess};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::net::{RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, recv, recvmsg};
 
@@ -63,7 +63,7 @@ pub enum Ended {
         /// Its exit code.
         code: u8,
         /// What it left behind and was killed: there should be nothing.
-        left: Vec<LeftProcess>,
+        left: Vec<LeakedProcess>,
     },
     /// The runner died. What it had started was stopped.
     Died(Died),

@@ -9,7 +9,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use rtf_model::LeftProcess;
+use rtf_model::LeakedProcess;
 
 use super::tree;
 
@@ -69,7 +69,7 @@ impl Cgroup {
 
     /// Kills all that is in it, and waits a moment for its end. Returns what was
     /// killed.
-    pub async fn clear(&self) -> Vec<LeftProcess> {
+    pub async fn clear(&self) -> Vec<LeakedProcess> {
         let mut left = Vec::new();
         for _ in 0..LOOKS {
             let members = members(&self.folder);

@@ -146,7 +146,7 @@ fn split(request: &SpawnRequest) -> Option<(Kind, Vec<u8>)> {
     if own.iter().map(|(name, value)| name.len() + value.len() + 2).sum::<usize>() > ROOM {
         return None;
     }
-    let fork = ForkRequest { folder: folder.clone(), env: own.into_iter().collect() };
+    let fork = ForkRequest { working_dir: folder.clone(), env: own.into_iter().collect() };
     let fork = serde_json::to_vec(&fork).ok().filter(|packet| packet.len() < PACKET_BYTES)?;
     let (command, folder, network) = (command.clone(), folder.clone(), network.clone());
     Some((Kind { command, env, folder, network }, fork))

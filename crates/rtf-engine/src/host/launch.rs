@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use rtf_model::LeftProcess;
+use rtf_model::LeakedProcess;
 use rtf_model::protocol::SCOPE_VARIABLE;
 use tokio::sync::oneshot;
 
@@ -67,7 +67,7 @@ impl Launch {
     }
 
     /// Kills what a process that has ended left. Returns what was killed.
-    pub async fn sweep(&mut self, effort: Effort) -> Vec<LeftProcess> {
+    pub async fn sweep(&mut self, effort: Effort) -> Vec<LeakedProcess> {
         let mut left = Vec::new();
         if let Some(group) = self.cgroup.take() {
             left = group.clear().await;

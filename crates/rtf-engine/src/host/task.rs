@@ -319,12 +319,12 @@ impl Task {
         if let Request::RunTest(plugin) = &mut request {
             let (source, host) = (self.job.source, self.job.host);
             self.dress(plugin, (source, host), id.unwrap_or_default());
-            if let (Some(mark), None) = (&plugin.shared, &self.sharing) {
+            if let (Some(mark), None) = (&plugin.end_marker, &self.sharing) {
                 self.sharing = Some(Sharing::new(id.unwrap_or_default(), mark));
             }
-        } else if let Request::TestFinished(TestEnds { keep_folder, .. }) = &mut request {
-            let folder = self.shared.run_folder.join(self.keep_folder());
-            *keep_folder = Some(folder.to_string_lossy().into_owned());
+        } else if let Request::TestFinished(TestEnds { attachments_dir, .. }) = &mut request {
+            let folder = self.shared.run_folder.join(self.attachments_dir());
+            *attachments_dir = Some(folder.to_string_lossy().into_owned());
         }
         self.write(id, request);
     }

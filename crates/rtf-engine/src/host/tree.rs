@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{LazyLock, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use rtf_model::LeftProcess;
+use rtf_model::LeakedProcess;
 use rtf_model::protocol::{FORK_SERVER_VARIABLE, OWNER_VARIABLE, SCOPE_VARIABLE};
 
 use super::unix;
@@ -73,27 +73,27 @@ pub fn kill_tree(root: i32) {
 
 /// Kills the orphans of a scope and all that is below them. Returns what was killed.
 #[must_use]
-pub fn sweep(scope: &str, effort: Effort) -> Vec<LeftProcess> {
+pub fn sweep(scope: &str, effort: Effort) -> Vec<LeakedProcess> {
     sweep_if(effort, |pid| scope_of(pid).is_some_and(|found| found == scope.as_bytes()))
 }
 
 /// Kills every process below this one, also those that the runner waits for.
 #[must_use]
-pub fn kill_everything() -> Vec<LeftProcess> {
+pub fn kill_everything() -> Vec<LeakedProcess> {
     OWN_CHILDREN.lock().unwrap_or_else(PoisonError::into_inner).clear();
     sweep_all()
 }
 
 /// Kills every process below this one that the runner does not wait for itself.
 #[must_use]
-pub fn sweep_all() -> Vec<LeftProcess> {
+pub fn sweep_all() -> Vec<LeakedProcess> {
     sweep_if(Effort::Once, |_| true)
 }
 
 /// Kills every process below this one, again and again until there is none or
 /// the time is over. Returns what was killed.
 #[must_use]
-pub fn clear(limit: Duration) -> Vec<LeftProcess> {
+pub fn clear(limit: Duration) -> Vec<LeakedProcess> {
     let end = Instant::now() + limit;
     let mut left = Vec::new();
     loop {
@@ -106,7 +106,7 @@ pub fn clear(limit: Duration) -> Vec<LeftProcess> {
 }
 
 /// Adds processes that are not known yet.
-pub fn add(known: &mut Vec<LeftProcess>, more: Vec<LeftProcess>) {
+pub fn add(known: &mut Vec<LeakedProcess>, more: Vec<LeakedProcess>) {
     let pids: HashSet<i32> = known.iter().map(|process| process.pid).collect();
     known.extend(more.into_iter().filter(|process| !pids.contains(&process.pid)));
 }
@@ -114,7 +114,7 @@ pub fn add(known: &mut Vec<LeftProcess>, more: Vec<LeftProcess>) {
 /// Kills what is below this process and whose owner begins so, and all that is
 /// below that. Returns what was killed. Nothing is reaped.
 #[must_use]
-pub fn kill_owned(prefix: &str) -> Vec<LeftProcess> {
+pub fn kill_owned(prefix: &str) -> Vec<LeakedProcess> {
     let mut left = Vec::new();
     loop {
         // A runner that hangs in the kernel still has its children.
@@ -195,7 +195,7 @@ pub fn members(root: i32, scope: &str) -> Vec<i32> {
 /// The processes of this user on this machine whose scope begins so, and all that
 /// is below them.
 #[must_use]
-pub fn of_scopes(prefix: &str) -> Vec<LeftProcess> {
+pub fn of_scopes(prefix: &str) -> Vec<LeakedProcess> {
     let own = rustix::process::geteuid().as_raw();
     let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
     let pids = entries.filter_map(|entry| {
@@ -289,8 +289,8 @@ fn environ_of(pid: i32) -> Option<Vec<u8>> {
 }
 
 /// A process as it is told of.
-pub(super) fn described(pid: i32) -> LeftProcess {
-    LeftProcess { pid, command: command_of(pid), owner: owner_of(pid) }
+pub(super) fn described(pid: i32) -> LeakedProcess {
+    LeakedProcess { pid, command: command_of(pid), owner: owner_of(pid) }
 }
 
 /// Who started a process: `test arm/EncoderTest`.

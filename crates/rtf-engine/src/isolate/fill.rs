@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use rtf_model::{OwnPort, SuitePrepared};
+use rtf_model::{SuitePort, SuitePrepared};
 
 use rtf_plan::plan::{
     FixtureBody, HookBody, PluginPlan, Preparation, Probe, ProbeKind, ProcessPlan, SuitePlan,
@@ -23,14 +23,14 @@ pub fn fill(plan: &mut SuitePlan, given: Preparation) {
 
 /// The suite's environment behind what it was given: what it sets itself counts.
 fn prefixed(prepared: &SuitePrepared, own: &[(String, String)]) -> Vec<(String, String)> {
-    let ids = prepared.variables.iter().filter(|variable| !variable.kept);
+    let ids = prepared.variables.iter().filter(|variable| !variable.inherited);
     let ids = ids.map(|variable| (variable.name.clone(), variable.value.clone()));
     let ports = prepared.ports.iter();
-    let ports = ports.map(|own| (OwnPort::variable(&own.name), own.port.to_string()));
+    let ports = ports.map(|own| (SuitePort::variable(&own.name), own.port.to_string()));
     ids.chain(ports).chain(own.iter().cloned()).collect()
 }
 
-struct Filler<'a>(&'a [OwnPort]);
+struct Filler<'a>(&'a [SuitePort]);
 
 impl Filler<'_> {
     fn text(&self, text: &mut String) {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use rtf_model::{OwnPort, OwnVariable};
+use rtf_model::{SuitePort, SuiteVariable};
 
 use rtf_plan::plan::{FixtureBody, FixturePlan, OwnMiddleware, SuitePlan};
 
@@ -22,7 +22,7 @@ pub struct Own<'a> {
     /// A number that no other suite has.
     pub domain: u16,
     /// The suite's ports.
-    pub ports: &'a [OwnPort],
+    pub ports: &'a [SuitePort],
 }
 
 impl Own<'_> {
@@ -32,7 +32,7 @@ impl Own<'_> {
         &self,
         plan: &SuitePlan,
         user: impl Fn(&str) -> Option<String>,
-    ) -> Vec<OwnVariable> {
+    ) -> Vec<SuiteVariable> {
         let keep = plan.isolate.middleware == OwnMiddleware::UnlessSet;
         let written = |name: &str| plan.env.iter().any(|(known, _)| known == name);
         let user = |name: &str| user(name).filter(|value| keep && !value.is_empty());
@@ -64,8 +64,8 @@ impl Own<'_> {
             }
             let name = name.to_owned();
             variables.push(match user(&name).filter(|_| !of_master) {
-                Some(value) => OwnVariable { name, value, kept: true },
-                None => OwnVariable { name, value, kept: false },
+                Some(value) => SuiteVariable { name, value, inherited: true },
+                None => SuiteVariable { name, value, inherited: false },
             });
         }
         variables

@@ -25,7 +25,7 @@ use std::os::fd::{AsFd, BorrowedFd};
 use std::path::Path;
 use std::sync::Arc;
 
-use rtf_model::{OwnNetwork, OwnPort, OwnVariable, SuitePrepared};
+use rtf_model::{SuiteNetwork, SuitePort, SuitePrepared, SuiteVariable};
 
 pub use holder::hold;
 pub use namespaces::Namespaces;
@@ -114,10 +114,10 @@ impl<'p> Prepared<'p> {
         let mut ports = Vec::new();
         let always = middleware::PORTS.iter().copied().filter(|_| own);
         for name in always.chain(wanted.ports.iter().map(String::as_str)) {
-            if ports.iter().all(|known: &OwnPort| known.name != name) {
+            if ports.iter().all(|known: &SuitePort| known.name != name) {
                 let lease = lease::port(&seed)?;
                 let port = lease.number();
-                ports.push(OwnPort { name: name.to_owned(), port });
+                ports.push(SuitePort { name: name.to_owned(), port });
                 self.leases.push(lease);
             }
         }
@@ -134,7 +134,7 @@ impl<'p> Prepared<'p> {
         }
         let network = self.holder.as_ref().map(Holder::told);
         let join = join(network, &ports, &variables);
-        Ok(Some(SuitePrepared { suite: plan.id, network, ports, variables, join }))
+        Ok(Some(SuitePrepared { suite: plan.id, network, ports, variables, join_command: join }))
     }
 
     /// The network of its processes.
@@ -174,8 +174,8 @@ impl<'p> Prepared<'p> {
 }
 
 /// A command for a shell, with which a person joins in.
-fn join(network: Option<OwnNetwork>, ports: &[OwnPort], variables: &[OwnVariable]) -> String {
-    let ports = ports.iter().map(|own| (OwnPort::variable(&own.name), own.port.to_string()));
+fn join(network: Option<SuiteNetwork>, ports: &[SuitePort], variables: &[SuiteVariable]) -> String {
+    let ports = ports.iter().map(|own| (SuitePort::variable(&own.name), own.port.to_string()));
     let ids = variables.iter().map(|own| (own.name.clone(), own.value.clone()));
     let words = ids.chain(ports).map(|(name, value)| {
         let value = shell_words::quote(&value);
@@ -184,7 +184,7 @@ fn join(network: Option<OwnNetwork>, ports: &[OwnPort], variables: &[OwnVariable
     let words = words.collect::<Vec<_>>().join(" ");
     match network {
         None => format!("export {words}"),
-        Some(OwnNetwork { pid, user_namespace }) => {
+        Some(SuiteNetwork { pid, user_namespace }) => {
             let user = if user_namespace { "--user --preserve-credentials " } else { "" };
             format!("nsenter --target {pid} {user}--net env {words} ${{SHELL:-sh}}")
         }

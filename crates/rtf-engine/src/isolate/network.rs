@@ -7,7 +7,7 @@ use std::os::fd::AsFd;
 use std::sync::Arc;
 use std::time::Duration;
 
-use rtf_model::OwnNetwork;
+use rtf_model::SuiteNetwork;
 use tokio::io::{AsyncWriteExt, Interest};
 use tokio::net::{TcpSocket, TcpStream, UnixStream};
 use tokio::sync::Mutex;
@@ -110,7 +110,7 @@ pub async fn connect(network: Option<&Network>, address: &str) -> io::Result<Tcp
 #[derive(Debug)]
 pub struct Holder {
     network: Network,
-    told: OwnNetwork,
+    told: SuiteNetwork,
     end: End,
 }
 
@@ -139,7 +139,7 @@ impl Holder {
         let holder = Arc::new(Mutex::new(channel));
         Ok(Self {
             network: Network { namespaces: Arc::new(namespaces), holder },
-            told: OwnNetwork { pid: process.pid, user_namespace: hello.user },
+            told: SuiteNetwork { pid: process.pid, user_namespace: hello.user },
             end: process.end,
         })
     }
@@ -150,7 +150,7 @@ impl Holder {
     }
 
     /// What reports tell of it.
-    pub fn told(&self) -> OwnNetwork {
+    pub fn told(&self) -> SuiteNetwork {
         self.told
     }
 

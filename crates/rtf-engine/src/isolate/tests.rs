@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use rtf_model::{OwnNetwork, OwnPort, OwnVariable, SuiteId, SuitePrepared};
+use rtf_model::{SuiteId, SuiteNetwork, SuitePort, SuitePrepared, SuiteVariable};
 
 use super::middleware::Own;
 use super::{fill, join};
@@ -12,9 +12,9 @@ use rtf_plan::plan::{
     FixtureBody, OwnMiddleware, Preparation, Probe, ProbeKind, ProcessPlan, RemotePlan, SuitePlan,
 };
 
-fn ports() -> Vec<OwnPort> {
+fn ports() -> Vec<SuitePort> {
     [("gazebo-master", 20_001), ("ros-master", 20_002), ("sim", 20_003)]
-        .map(|(name, port)| OwnPort { name: name.to_owned(), port })
+        .map(|(name, port)| SuitePort { name: name.to_owned(), port })
         .to_vec()
 }
 
@@ -31,8 +31,8 @@ fn variables(
     let of_user = |name: &str| {
         user.iter().find(|(known, _)| *known == name).map(|(_, value)| (*value).to_owned())
     };
-    let shown = |own: OwnVariable| {
-        format!("{}={}{}", own.name, own.value, if own.kept { " kept" } else { "" })
+    let shown = |own: SuiteVariable| {
+        format!("{}={}{}", own.name, own.value, if own.inherited { " kept" } else { "" })
     };
     own.variables(&plan, of_user).into_iter().map(shown).collect()
 }
@@ -120,14 +120,14 @@ fn what_the_suite_sets_itself_is_left_to_it() {
 fn prepared() -> SuitePrepared {
     let variable = |name: &str, value: &str, kept| {
         let (name, value) = (name.to_owned(), value.to_owned());
-        OwnVariable { name, value, kept }
+        SuiteVariable { name, value, inherited: kept }
     };
     SuitePrepared {
         suite: SuiteId(0),
         network: None,
         ports: ports(),
         variables: vec![variable("A", "own", false), variable("B", "kept", true)],
-        join: String::new(),
+        join_command: String::new(),
     }
 }
 
@@ -192,10 +192,11 @@ fn a_suite_that_is_refused_keeps_its_texts() {
 
 #[test]
 fn a_person_can_join_in() {
-    let variable = OwnVariable { name: "A".to_owned(), value: "a b".to_owned(), kept: false };
-    let ports = [OwnPort { name: "name-server".to_owned(), port: 20_000 }];
+    let variable =
+        SuiteVariable { name: "A".to_owned(), value: "a b".to_owned(), inherited: false };
+    let ports = [SuitePort { name: "name-server".to_owned(), port: 20_000 }];
     let line = |network| join(network, &ports, std::slice::from_ref(&variable));
-    let inside = |user_namespace| Some(OwnNetwork { pid: 7, user_namespace });
+    let inside = |user_namespace| Some(SuiteNetwork { pid: 7, user_namespace });
     assert_eq!(line(None), "export A='a b' RTF_PORT_NAME_SERVER=20000");
     assert_eq!(
         line(inside(false)),

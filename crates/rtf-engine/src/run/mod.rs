@@ -113,7 +113,7 @@ pub async fn execute(
     let left = tree::sweep_all();
     if !left.is_empty() {
         let mut diagnostic = Diagnostic::warning(
-            "processes-left",
+            "processes-leaked",
             "processes were left at the end of the run and were killed",
         );
         for process in left {

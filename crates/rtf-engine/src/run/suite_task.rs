@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use std::time::Duration;
 
-use rtf_model::protocol::{ENVIRONMENT_VARIABLE, RUN_FOLDER_VARIABLE};
+use rtf_model::protocol::{ENVIRONMENT_VARIABLE, RUN_DIR_VARIABLE};
 use rtf_model::{EventKind, ExitStatus, Source, TestId};
 use tokio::sync::{mpsc, watch};
 use tokio::time::Instant;
@@ -361,7 +361,7 @@ impl SuiteTask<'_> {
         let run_folder = self.shared.run_folder.to_string_lossy().into_owned();
         let mut env = vec![
             (ENVIRONMENT_VARIABLE.to_owned(), self.plan.environment.clone()),
-            (RUN_FOLDER_VARIABLE.to_owned(), run_folder),
+            (RUN_DIR_VARIABLE.to_owned(), run_folder),
         ];
         env.extend(start.env);
         if !matches!(&start.what, Program::Process(plan) if plan.remote.is_some()) {

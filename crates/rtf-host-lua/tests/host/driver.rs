@@ -65,7 +65,7 @@ impl Host {
         std::fs::write(&file, source).unwrap();
         let params = json!({
             "file": file, "name": "Arm", "param": "--rate 100", "args": ["--rate", "100"],
-            "environment": "--robot sim", "repetition": 3, "last": method == "run-test",
+            "environment": "--robot sim", "repetition": 3, "is_last": method == "run-test",
         });
         self.send(Some(1), method, params);
         file

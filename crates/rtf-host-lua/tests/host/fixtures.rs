@@ -82,13 +82,13 @@ fn a_fixture_is_told_of_each_test() {
          end\n",
     );
     let wanted = json!(["test-started", "test-finished"]);
-    assert_eq!(host.answer(), json!({"outcome": "passed", "notices": wanted}));
+    assert_eq!(host.answer(), json!({"outcome": "passed", "subscriptions": wanted}));
     let test = json!({"id": 3, "name": "Move", "repetition": 2, "attempt": 1});
     let passed = json!({"outcome": "passed"});
     assert_eq!(host.ask_with("test-started", json!({"test": test})), passed);
     let folder = tempfile::tempdir().unwrap();
     let keep = folder.path().join("kept");
-    let ends = json!({"test": test, "verdict": "failed", "reason": "far", "keep_folder": keep});
+    let ends = json!({"test": test, "verdict": "failed", "reason": "far", "attachments_dir": keep});
     assert_eq!(host.ask_with("test-finished", ends), passed);
     assert_eq!(host.texts(), ["report: 3 Move 2.1 failed: far"]);
     assert_eq!(host.all("measured")[0]["value"], 3.5);

@@ -104,7 +104,7 @@ fn the_second_plugin_of_a_host_knows_nothing_of_the_first() {
         host.send(
             Some(id),
             "run-test",
-            json!({"file": file, "name": "Arm", "args": [], "last": id == 2}),
+            json!({"file": file, "name": "Arm", "args": [], "is_last": id == 2}),
         );
         assert_eq!(host.answer(), json!({"outcome": "passed"}));
     }

@@ -165,7 +165,7 @@ pub fn start_test(library: &Path, mut params: Value) -> Host {
     let mut host = Host::start();
     params["file"] = json!(library);
     params["name"] = json!("arm test");
-    params["last"] = json!(true);
+    params["is_last"] = json!(true);
     host.send(json!({"id": 1, "method": "run-test", "params": params}));
     host
 }

@@ -160,7 +160,7 @@ pub(crate) fn become_host(
     rustix::process::setpgid(None, None)?;
     rustix::stdio::dup2_stdout(stdout)?;
     rustix::stdio::dup2_stderr(stderr)?;
-    rustix::process::chdir(&request.folder)?;
+    rustix::process::chdir(&request.working_dir)?;
     for (name, value) in &request.env {
         // SAFETY: the process has one thread.
         unsafe { std::env::set_var(name, value) };

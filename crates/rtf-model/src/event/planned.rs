@@ -19,7 +19,7 @@ pub struct RunStarted {
     /// The command line, program first.
     pub command: Vec<String>,
     /// The folder in which the command was given.
-    pub folder: String,
+    pub working_dir: String,
     /// How many suites are planned.
     pub suites: u32,
     /// How many tests are planned.

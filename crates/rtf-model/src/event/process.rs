@@ -38,7 +38,7 @@ pub struct Output {
     pub stream: Stream,
     /// The number of bytes left out just before `text`.
     #[serde(default, skip_serializing_if = "is_zero")]
-    pub omitted: u64,
+    pub omitted_bytes: u64,
     /// The text; bytes that are not UTF-8 are replaced by U+FFFD.
     pub text: String,
 }
@@ -89,7 +89,7 @@ fn signal_name(signal: i32) -> Option<&'static str> {
 /// A process that should have ended with its test or fixture and did not.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct LeftProcess {
+pub struct LeakedProcess {
     /// Its process id.
     pub pid: i32,
     /// Its command line.

@@ -21,7 +21,7 @@ pub enum Phase {
     /// The host ends, after it has answered.
     Exit,
     /// The attempt is judged, and fixtures are told.
-    Notice,
+    Notify,
 }
 
 impl Phase {
@@ -34,7 +34,7 @@ impl Phase {
             Self::Run => "run",
             Self::TearDown => "tear-down",
             Self::Exit => "exit",
-            Self::Notice => "notice",
+            Self::Notify => "notify",
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What is known of one fixture.
 
 use crate::{
-    EventKind, FixturePlanned, Growth, LeftProcess, Message, MessageKind, Micros, UsageSeries,
+    EventKind, FixturePlanned, Growth, LeakedProcess, Message, MessageKind, Micros, UsageSeries,
 };
 
 /// Where a fixture is in its life.
@@ -69,7 +69,7 @@ pub struct FixtureRecord {
     /// Its failures and errors.
     pub messages: Vec<Message>,
     /// Processes of it that had to be killed.
-    pub left: Vec<LeftProcess>,
+    pub leaked: Vec<LeakedProcess>,
 }
 
 impl FixtureRecord {
@@ -86,7 +86,7 @@ impl FixtureRecord {
             problems: Vec::new(),
             log_tail: Vec::new(),
             messages: Vec::new(),
-            left: Vec::new(),
+            leaked: Vec::new(),
         }
     }
 
@@ -122,7 +122,9 @@ impl FixtureRecord {
                 self.broken = Some(reason.clone());
             }
             EventKind::Message { message, .. } => self.keep(message),
-            EventKind::ProcessesLeft { processes, .. } => self.left.extend_from_slice(processes),
+            EventKind::ProcessesLeaked { processes, .. } => {
+                self.leaked.extend_from_slice(processes)
+            }
             _ => {}
         }
     }
@@ -138,7 +140,7 @@ impl FixtureRecord {
                 life.collapsed = Some((at, reason.clone()));
             }
             EventKind::FixtureStopping { .. } => life.stopping = Some(at),
-            EventKind::Used { usage, .. } => life.usage.add(*usage),
+            EventKind::ResourcesMeasured { usage, .. } => life.usage.add(*usage),
             EventKind::FixtureStopped { problem, .. } => {
                 life.stopped = Some(at);
                 life.problem.clone_from(problem);

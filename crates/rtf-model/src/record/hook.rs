@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::{EventKind, HookPlanned, LeftProcess, Message, MessageKind, Micros, TestId, Trigger};
+use crate::{EventKind, HookPlanned, LeakedProcess, Message, MessageKind, Micros, TestId, Trigger};
 
 /// What is known of one hook.
 #[derive(Clone, Debug)]
@@ -33,7 +33,7 @@ pub struct HookRun {
     /// Where it was before it was stopped by force.
     pub stacks: Vec<String>,
     /// Processes of it that had to be killed.
-    pub left: Vec<LeftProcess>,
+    pub leaked: Vec<LeakedProcess>,
 }
 
 impl HookRecord {
@@ -70,7 +70,7 @@ impl HookRun {
             messages: Vec::new(),
             output: String::new(),
             stacks: Vec::new(),
-            left: Vec::new(),
+            leaked: Vec::new(),
         }
     }
 
@@ -83,13 +83,15 @@ impl HookRun {
                 }
             }
             EventKind::Output(output) => {
-                if output.omitted > 0 {
-                    self.output += &format!("\n[… {} bytes left out …]\n", output.omitted);
+                if output.omitted_bytes > 0 {
+                    self.output += &format!("\n[… {} bytes left out …]\n", output.omitted_bytes);
                 }
                 self.output += &output.text;
             }
             EventKind::StackDumped { text, .. } => self.stacks.push(text.clone()),
-            EventKind::ProcessesLeft { processes, .. } => self.left.extend_from_slice(processes),
+            EventKind::ProcessesLeaked { processes, .. } => {
+                self.leaked.extend_from_slice(processes)
+            }
             _ => {}
         }
     }

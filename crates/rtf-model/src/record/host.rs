@@ -14,19 +14,24 @@ pub struct HostRecord {
     /// The tests that it served, each once.
     pub tests: Vec<TestId>,
     /// How many tests it had served when it was measured last; each repetition counts.
-    pub served: u32,
+    pub tests_served: u32,
     /// What it used after each of them.
     pub usage: UsageSeries,
 }
 
 /// The host of a suite that lives has served a test.
-pub(super) fn uses(hosts: &mut Vec<HostRecord>, test: TestId, served: Option<u32>, usage: Usage) {
-    let served = served.unwrap_or(1);
-    if served == 1 || hosts.is_empty() {
+pub(super) fn uses(
+    hosts: &mut Vec<HostRecord>,
+    test: TestId,
+    tests_served: Option<u32>,
+    usage: Usage,
+) {
+    let tests_served = tests_served.unwrap_or(1);
+    if tests_served == 1 || hosts.is_empty() {
         hosts.push(HostRecord::default());
     }
     let Some(host) = hosts.last_mut() else { return };
-    host.served = served;
+    host.tests_served = tests_served;
     host.usage.add(usage);
     // The repetitions of a test follow each other.
     if host.tests.last() != Some(&test) {

@@ -8,7 +8,7 @@ mod fixture;
 mod gap;
 mod hook;
 mod host;
-mod left;
+mod leaked;
 mod series;
 pub(crate) mod source;
 mod suite;
@@ -92,7 +92,7 @@ pub struct Record {
     /// The tests, by their ids.
     pub tests: Vec<TestRecord>,
     /// What was left at the end and had to be killed, when the runner died.
-    pub left: Vec<crate::LeftProcess>,
+    pub leaked: Vec<crate::LeakedProcess>,
     /// What the user should look at.
     pub warnings: Vec<Diagnostic>,
     /// Where the journal that this was read from is damaged, up to
@@ -140,9 +140,9 @@ impl Record {
                     self.fixtures.push(FixtureRecord::new(plan.clone()));
                 }
             }
-            EventKind::RunnerDied { reason, left } => {
+            EventKind::RunnerDied { reason, leaked } => {
                 self.state = RunState::Died { reason: reason.clone() };
-                self.left.extend_from_slice(left);
+                self.leaked.extend_from_slice(leaked);
             }
             EventKind::HookPlanned(plan) => {
                 let missing = |index| gap::hook(index, plan.suite);
@@ -162,9 +162,9 @@ impl Record {
                     self.tests.push(TestRecord::new(plan.clone()));
                 }
             }
-            EventKind::Used { source: Source::Test(test), usage, served } => {
+            EventKind::ResourcesMeasured { source: Source::Test(test), usage, tests_served } => {
                 if let Some(suite) = self.suite_of(Source::Test(*test)) {
-                    self.suite(suite, |s| host::uses(&mut s.hosts, *test, *served, *usage));
+                    self.suite(suite, |s| host::uses(&mut s.hosts, *test, *tests_served, *usage));
                 }
             }
             kind => self.apply_to_source(at, kind),

@@ -26,8 +26,8 @@ pub(crate) fn of(kind: &EventKind) -> Option<Source> {
         EventKind::TestFinished(finished) => Some(Source::Test(finished.test)),
         EventKind::Message { source, test, .. } => Some(test.map_or(*source, Source::Test)),
         EventKind::StackDumped { source, .. }
-        | EventKind::Used { source, .. }
-        | EventKind::ProcessesLeft { source, .. } => Some(*source),
+        | EventKind::ResourcesMeasured { source, .. }
+        | EventKind::ProcessesLeaked { source, .. } => Some(*source),
         EventKind::Output(output) => Some(output.source),
         _ => None,
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::counts::{Counts, is_detail};
 use super::series::Series;
 use crate::{
-    Attachment, EventKind, LeftProcess, Measurement, Message, MessageKind, Micros, Phase,
+    Attachment, EventKind, LeakedProcess, Measurement, Message, MessageKind, Micros, Phase,
     TestFinished, TestPlanned, Verdict,
 };
 
@@ -52,7 +52,7 @@ pub struct AttemptRecord {
     /// Where it was before it was stopped by force.
     pub stacks: Vec<String>,
     /// Processes of it that had to be killed.
-    pub left: Vec<LeftProcess>,
+    pub leaked: Vec<LeakedProcess>,
     /// Whether it took longer than its `slow` limit.
     pub slow: bool,
     kept: [u32; 4],
@@ -183,7 +183,7 @@ impl AttemptRecord {
             attachments: Vec::new(),
             output: String::new(),
             stacks: Vec::new(),
-            left: Vec::new(),
+            leaked: Vec::new(),
             slow: false,
             kept: [0; 4],
             lean: false,
@@ -202,14 +202,16 @@ impl AttemptRecord {
             }
             EventKind::Attached { attachment, .. } => self.attachments.push(attachment.clone()),
             EventKind::Output(output) => {
-                if output.omitted > 0 {
-                    self.output += &format!("\n[… {} bytes left out …]\n", output.omitted);
+                if output.omitted_bytes > 0 {
+                    self.output += &format!("\n[… {} bytes left out …]\n", output.omitted_bytes);
                 }
                 self.output += &output.text;
             }
             EventKind::TestSlow { .. } => self.slow = true,
             EventKind::StackDumped { text, .. } => self.stacks.push(text.clone()),
-            EventKind::ProcessesLeft { processes, .. } => self.left.extend_from_slice(processes),
+            EventKind::ProcessesLeaked { processes, .. } => {
+                self.leaked.extend_from_slice(processes)
+            }
             EventKind::TestFinished(finished) => self.finish(at, finished),
             _ => {}
         }
@@ -248,7 +250,7 @@ impl AttemptRecord {
     /// How long it took until it was judged, `None` while it runs.
     #[must_use]
     pub fn duration(&self) -> Option<Duration> {
-        let noticed = self.phases.iter().find(|(phase, _)| *phase == Phase::Notice);
+        let noticed = self.phases.iter().find(|(phase, _)| *phase == Phase::Notify);
         let judged = noticed.map(|(_, at)| *at).or(self.finished.as_ref().map(|(at, _)| *at));
         judged.map(|at| at.since(self.started))
     }

@@ -67,7 +67,7 @@ fn no_test_runs_beside_a_hook() {
 /// The robot is parked while fixtures are told how a test ended.
 #[test]
 fn a_hook_runs_beside_a_test_that_is_judged() {
-    let judged = || EventKind::TestPhase { test: TestId(0), phase: Phase::Notice };
+    let judged = || EventKind::TestPhase { test: TestId(0), phase: Phase::Notify };
     let rest = || [start(1), finish(1), start(2), finish(2)];
     for body in [
         vec![start(0), judged(), park(true), park(false), finish(0)],

@@ -25,9 +25,9 @@ fn dying(body: impl IntoIterator<Item = EventKind>) -> Vec<EventKind> {
     opened_with_hook(1).into_iter().chain(body).chain([runner_died()]).collect()
 }
 
-fn printed(text: &str, omitted: u64) -> EventKind {
+fn printed(text: &str, omitted_bytes: u64) -> EventKind {
     let source = Source::Hook(PARK);
-    EventKind::Output(Output { source, stream: Stream::Stdout, omitted, text: text.into() })
+    EventKind::Output(Output { source, stream: Stream::Stdout, omitted_bytes, text: text.into() })
 }
 
 fn told(kind: MessageKind, text: &str) -> EventKind {
@@ -155,7 +155,7 @@ fn a_hook_keeps_what_explains_its_failure() {
         told(MessageKind::Report, "22 joints"),
         told(MessageKind::Error, "no bus"),
         dump("poll"),
-        EventKind::ProcessesLeft { source: Source::Hook(PARK), processes },
+        EventKind::ProcessesLeaked { source: Source::Hook(PARK), processes },
         hook_finished(Some("no bus")),
     ]));
     let run = &record.hooks[0].runs[0];

@@ -45,7 +45,7 @@ fn broken() -> EventKind {
 }
 
 pub fn left(source: Source) -> EventKind {
-    EventKind::ProcessesLeft { source, processes: Vec::new() }
+    EventKind::ProcessesLeaked { source, processes: Vec::new() }
 }
 
 #[test]
@@ -284,7 +284,7 @@ fn prepared(suite: u32) -> EventKind {
         network: None,
         ports: Vec::new(),
         variables: Vec::new(),
-        join: String::new(),
+        join_command: String::new(),
     })
 }
 

@@ -26,9 +26,9 @@ fn message(kind: MessageKind) -> EventKind {
     EventKind::Message { source: Source::Test(TEST), message, test: None }
 }
 
-fn printed(text: &str, omitted: u64) -> EventKind {
+fn printed(text: &str, omitted_bytes: u64) -> EventKind {
     let source = Source::Test(TEST);
-    EventKind::Output(Output { source, stream: Stream::Stdout, omitted, text: text.into() })
+    EventKind::Output(Output { source, stream: Stream::Stdout, omitted_bytes, text: text.into() })
 }
 
 /// What was reported is counted in both, and kept by one.

@@ -7,29 +7,33 @@ use rtf_model::{EventKind, Resource, Source, TestId, Usage, Verdict};
 
 const MIB: u64 = 1024 * 1024;
 
-fn used(source: Source, served: Option<u32>, memory: u64) -> EventKind {
-    EventKind::Used { source, usage: Usage { processes: 1, memory, descriptors: 9 }, served }
+fn used(source: Source, tests_served: Option<u32>, memory: u64) -> EventKind {
+    EventKind::ResourcesMeasured {
+        source,
+        usage: Usage { processes: 1, memory, descriptors: 9 },
+        tests_served,
+    }
 }
 
 /// Repetitions of which each has its host served so many tests.
-fn repetitions(served: impl IntoIterator<Item = u32>, leak: u64) -> Vec<EventKind> {
+fn repetitions(tests_served: impl IntoIterator<Item = u32>, leak: u64) -> Vec<EventKind> {
     let mut kinds = Vec::new();
-    for (repetition, served) in (1..).zip(served) {
-        let memory = 8 * MIB + u64::from(served) * leak;
+    for (repetition, tests_served) in (1..).zip(tests_served) {
+        let memory = 8 * MIB + u64::from(tests_served) * leak;
         let finished = finished(Verdict::Passed);
-        let used = used(Source::Test(TEST), Some(served), memory);
+        let used = used(Source::Test(TEST), Some(tests_served), memory);
         kinds.extend([started(repetition, 1), used, finished]);
     }
     kinds
 }
 
-fn run(served: &[u32]) -> Vec<EventKind> {
-    run_that_leaks(served, MIB)
+fn run(tests_served: &[u32]) -> Vec<EventKind> {
+    run_that_leaks(tests_served, MIB)
 }
 
-fn run_that_leaks(served: &[u32], leak: u64) -> Vec<EventKind> {
-    let count = u32::try_from(served.len()).unwrap_or(u32::MAX);
-    let body = repetitions(served.iter().copied(), leak);
+fn run_that_leaks(tests_served: &[u32], leak: u64) -> Vec<EventKind> {
+    let count = u32::try_from(tests_served.len()).unwrap_or(u32::MAX);
+    let body = repetitions(tests_served.iter().copied(), leak);
     opened(count).into_iter().chain(body).chain(closed()).collect()
 }
 
@@ -59,13 +63,14 @@ fn only_the_host_of_a_test_that_runs_tells_how_many_it_has_served() {
 
 #[test]
 fn another_host_is_another_series() {
-    let served: Vec<u32> = (1..=30).chain(1..=12).collect();
-    let record = record(run(&served));
+    let tests_served: Vec<u32> = (1..=30).chain(1..=12).collect();
+    let record = record(run(&tests_served));
     let suite = &record.suites[0];
-    let seen: Vec<_> = suite.hosts.iter().map(|host| (host.served, host.usage.seen())).collect();
+    let seen: Vec<_> =
+        suite.hosts.iter().map(|host| (host.tests_served, host.usage.seen())).collect();
     assert_eq!(seen, [(30, 30), (12, 12)]);
     let [(host, growth)] = &suite.growing_hosts()[..] else { panic!("{:?}", suite.hosts) };
-    assert_eq!((host.served, &host.tests[..]), (30, &[TestId(0)][..]));
+    assert_eq!((host.tests_served, &host.tests[..]), (30, &[TestId(0)][..]));
     assert_eq!((growth.len(), growth[0].resource), (1, Resource::Memory));
     assert!((growth[0].each - MIB as f64).abs() < 1.0, "{growth:?}");
     assert!(record.is_green(), "growth changes no verdict");
@@ -73,9 +78,9 @@ fn another_host_is_another_series() {
 
 #[test]
 fn what_hosts_keep_themselves_is_no_growth() {
-    let served: Vec<u32> = (1..=5000).collect();
+    let tests_served: Vec<u32> = (1..=5000).collect();
     let grows = |leak| {
-        let record = record(run_that_leaks(&served, leak));
+        let record = record(run_that_leaks(&tests_served, leak));
         record.suites[0].growing_hosts().len()
     };
     assert_eq!((grows(600), grows(6000)), (0, 1));

@@ -1,7 +1,7 @@
 //! Short ways to write event streams.
 
 use rtf_model::{
-    Event, EventKind, FixtureId, FixturePlanned, HookId, HookPlanned, LeftProcess, Micros, Phase,
+    Event, EventKind, FixtureId, FixturePlanned, HookId, HookPlanned, LeakedProcess, Micros, Phase,
     RunStarted, SuiteId, SuitePlanned, TestFinished, TestId, TestPlanned, Trigger, Verdict,
 };
 
@@ -17,7 +17,7 @@ pub fn run_started() -> EventKind {
         rtf: "0.1.0".into(),
         started_at: "2026-11-21T06:30:12+00:00".into(),
         command: vec!["rtf".into()],
-        folder: "/robot".into(),
+        working_dir: "/robot".into(),
         suites: 1,
         tests: 1,
         manifest: Box::default(),
@@ -77,11 +77,11 @@ pub fn hook_finished(problem: Option<&str>) -> EventKind {
 
 pub fn runner_died() -> EventKind {
     let left = vec![process(7, Some("test suite-0/test-0"))];
-    EventKind::RunnerDied { reason: "signal 9 (SIGKILL)".into(), left }
+    EventKind::RunnerDied { reason: "signal 9 (SIGKILL)".into(), leaked: left }
 }
 
-pub fn process(pid: i32, owner: Option<&str>) -> LeftProcess {
-    LeftProcess { pid, command: "sleep 9".into(), owner: owner.map(str::to_owned) }
+pub fn process(pid: i32, owner: Option<&str>) -> LeakedProcess {
+    LeakedProcess { pid, command: "sleep 9".into(), owner: owner.map(str::to_owned) }
 }
 
 pub fn started(repetition: u32, attempt: u32) -> EventKind {

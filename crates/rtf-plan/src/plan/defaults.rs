@@ -18,7 +18,7 @@ pub(crate) const TEST: TestLimits = TestLimits {
 pub(crate) const FIXTURE: FixtureLimits = FixtureLimits {
     setup: Duration::from_secs(60),
     check: Duration::from_secs(5),
-    notice: Duration::from_secs(10),
+    notify: Duration::from_secs(10),
     teardown: Duration::from_secs(30),
 };
 

@@ -76,7 +76,7 @@ fn plan(
     let limits = FixtureLimits {
         setup: fixture.setup.unwrap_or(defaults::FIXTURE.setup),
         check: fixture.check.unwrap_or(defaults::FIXTURE.check),
-        notice: fixture.notice.unwrap_or(defaults::FIXTURE.notice),
+        notify: fixture.notify.unwrap_or(defaults::FIXTURE.notify),
         teardown: fixture.teardown.unwrap_or(defaults::FIXTURE.teardown),
     };
     let check_every = fixture.check_every;

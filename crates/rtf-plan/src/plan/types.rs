@@ -169,7 +169,7 @@ pub struct FixtureLimits {
     /// For one `check`.
     pub check: Duration,
     /// For one `testStarted` or `testFinished`.
-    pub notice: Duration,
+    pub notify: Duration,
     /// From the request to stop until its process has exited.
     pub teardown: Duration,
 }

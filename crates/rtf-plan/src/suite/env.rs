@@ -14,7 +14,7 @@ const RESERVED: [&str; 12] = [
     protocol::SCOPE_VARIABLE,
     protocol::OWNER_VARIABLE,
     protocol::ENVIRONMENT_VARIABLE,
-    protocol::RUN_FOLDER_VARIABLE,
+    protocol::RUN_DIR_VARIABLE,
     protocol::CLOCK_VARIABLE,
     protocol::CLOCK_FILE_VARIABLE,
     "RTF_FIXTURE_START",

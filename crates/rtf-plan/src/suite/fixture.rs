@@ -29,7 +29,7 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option
     let depends = node.has_attribute("depends").then(|| reader.words(node, "depends"));
     let setup = reader.duration(node, "timeout");
     let check = reader.duration(node, "check-timeout");
-    let notice = reader.duration(node, "notice-timeout");
+    let notify = reader.duration(node, "notify-timeout");
     let teardown = reader.duration(node, "teardown-timeout");
     let restarts = reader.number(node, "restarts", 0);
     let restart_delay = restart_delay(reader, node);
@@ -49,7 +49,7 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option
         env,
         setup,
         check,
-        notice,
+        notify,
         teardown,
         restarts,
         restart_delay,

@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use rtf_model::{Diagnostic, OwnPort};
+use rtf_model::{Diagnostic, SuitePort};
 
 use super::reader::ElementReader;
 use super::{Span, Spanned};
@@ -87,7 +87,7 @@ fn record(reader: &mut ElementReader<'_>, name: &str, span: Span) {
         let problem = Diagnostic::error("invalid-port", message).label(label).note(expected);
         return reader.report(problem);
     }
-    let variable = OwnPort::variable(name);
+    let variable = SuitePort::variable(name);
     if let Some((other, first)) = reader.ports.0.get(&variable) {
         if other != name {
             let message = format!("the ports `{other}` and `{name}` would both be in `{variable}`");

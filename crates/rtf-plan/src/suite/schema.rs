@@ -88,7 +88,7 @@ pub(super) const FIXTURE: ElementSchema = ElementSchema {
         "depends",
         "timeout",
         "check-timeout",
-        "notice-timeout",
+        "notify-timeout",
         "teardown-timeout",
         "restarts",
         "restart-delay",

@@ -217,7 +217,7 @@ pub struct DeclaredFixture {
     /// The limit for one `check`.
     pub check: Option<Duration>,
     /// The limit for one `testStarted` or `testFinished`.
-    pub notice: Option<Duration>,
+    pub notify: Option<Duration>,
     /// The limit for its tear-down.
     pub teardown: Option<Duration>,
     /// The maximum number of restarts after a collapse.

@@ -65,8 +65,8 @@ fn fixtures_with_their_defaults() {
     assert_eq!(names, ["sim", "A", "A#2"]);
     assert_eq!((plan.fixtures, fixtures[2].id.0), (3, 2));
     let secs = Duration::from_secs;
-    let (setup, check, notice, teardown) = (secs(60), secs(5), secs(10), secs(30));
-    let limits = FixtureLimits { setup, check, notice, teardown };
+    let (setup, check, notify, teardown) = (secs(60), secs(5), secs(10), secs(30));
+    let limits = FixtureLimits { setup, check, notify, teardown };
     assert_eq!(
         (fixtures[0].limits, fixtures[0].restarts, fixtures[0].check_every),
         (limits, 3, None)

@@ -24,7 +24,7 @@ pub(super) fn finished(page: &mut Page, options: &ConsoleOptions, record: &Recor
         let reason = style::paint(DIM, &words::first_line(cause::short(record, &run.reason)));
         page.entry((GOOD, "hook"), &time, &format!("{title}: done  {reason}"));
     }
-    live::leaked(page, &title, &run.left);
+    live::leaked(page, &title, &run.leaked);
 }
 
 /// `arm/park (collapse)`.

@@ -1,7 +1,7 @@
 //! What is told while the run goes on.
 
 use rtf_model::{
-    Event, EventKind, FixtureId, LeftProcess, Manifest, Message, MessageKind, Micros, Record,
+    Event, EventKind, FixtureId, LeakedProcess, Manifest, Message, MessageKind, Micros, Record,
     Source, StopCause, SuiteId, SuitePrepared, TestFinished, TestId, Verdict,
 };
 
@@ -56,7 +56,7 @@ pub(super) fn show(page: &mut Page, options: &ConsoleOptions, event: &Event, rec
         EventKind::TestStopping { test, cause, reason } => {
             live.stopping(page, *test, *cause, reason);
         }
-        EventKind::ProcessesLeft { source, processes } => live.left(page, *source, processes),
+        EventKind::ProcessesLeaked { source, processes } => live.left(page, *source, processes),
         EventKind::StackDumped { source: Source::Fixture(fixture), text } => {
             page.remark((LOUD, "stack"), &live.fixture(*fixture));
             explain::stack(text, EXTENT, &mut |tone, line| page.detail(tone, line));
@@ -64,9 +64,9 @@ pub(super) fn show(page: &mut Page, options: &ConsoleOptions, event: &Event, rec
         EventKind::TestFinished(finished) => live.finished(page, finished),
         EventKind::TestSkipped { test, reason } if !quiet => live.skipped(page, *test, reason),
         EventKind::HookFinished { hook, .. } => hooks::finished(page, options, record, *hook),
-        EventKind::RunnerDied { reason, left } => {
+        EventKind::RunnerDied { reason, leaked } => {
             page.remark((BAD, "RUNNER DIED"), &escape::line(reason));
-            explain::left(left, &mut |tone, line| page.detail(tone, line));
+            explain::left(leaked, &mut |tone, line| page.detail(tone, line));
         }
         EventKind::RunFinished { interrupted: Some(reason) } => {
             page.remark((LOUD, "INTERRUPTED"), &escape::line(reason));
@@ -94,8 +94,8 @@ fn damage(page: &mut Page, record: &Record) {
 /// Which tests are run, unless it is all of them as they are written.
 fn chosen(page: &mut Page, manifest: &Manifest) {
     let mut parts = Vec::new();
-    if manifest.chosen_of > 0 {
-        parts.push(format!("a part of {}", words::count(manifest.chosen_of.into(), "test")));
+    if manifest.selected_from > 0 {
+        parts.push(format!("a part of {}", words::count(manifest.selected_from.into(), "test")));
     }
     parts.extend(manifest.shard.iter().map(|shard| format!("--shard {shard}")));
     parts.extend(manifest.shuffle.iter().map(|seed| format!("--shuffle={seed}")));
@@ -162,7 +162,7 @@ impl Live<'_> {
     /// What a person must know who looks for the suite's processes.
     fn prepared(&self, page: &mut Page, prepared: &SuitePrepared) {
         let all = self.options.verbosity == Verbosity::Verbose;
-        let kept = prepared.variables.iter().any(|variable| variable.kept);
+        let kept = prepared.variables.iter().any(|variable| variable.inherited);
         let suite = match self.record.suites.get(prepared.suite.index()) {
             Some(suite) if self.record.is_side_by_side() => {
                 format!("suite {}", escape::line(&suite.plan.name))
@@ -177,7 +177,7 @@ impl Live<'_> {
             page.remark((DIM, "isolated"), &text);
             // The command is long, and seldom needed.
             let log = self.options.shown(&logs::suite_log(self.record, prepared.suite));
-            let how = log.unwrap_or_else(|| escape::line(&prepared.join).into_owned());
+            let how = log.unwrap_or_else(|| escape::line(&prepared.join_command).into_owned());
             page.detail(Tone::Dim, &how);
         }
         if kept && !all {
@@ -269,7 +269,7 @@ impl Live<'_> {
     }
 
     /// What a test or a hook left behind is told with its end.
-    fn left(&self, page: &mut Page, source: Source, processes: &[LeftProcess]) {
+    fn left(&self, page: &mut Page, source: Source, processes: &[LeakedProcess]) {
         if let Source::Fixture(id) = source {
             page.remark((LOUD, "left"), &self.fixture(id));
             explain::left(processes, &mut |tone, line| page.detail(tone, line));
@@ -297,11 +297,11 @@ impl Live<'_> {
             page.entry(verdict, &words::time(attempt.duration().unwrap_or_default()), &name);
         }
         if green {
-            return leaked(page, &name, &attempt.left);
+            return leaked(page, &name, &attempt.leaked);
         }
         let sink = &mut |tone, line: &str| page.detail(tone, line);
         explain::explain(attempt, EXTENT, sink);
-        explain::left(&attempt.left, sink);
+        explain::left(&attempt.leaked, sink);
         if !attempt.output.is_empty() && self.options.verbosity < Verbosity::Verbose {
             output(&attempt.output, self.log(Source::Test(finished.test)), sink);
         }
@@ -319,7 +319,7 @@ impl Live<'_> {
 }
 
 /// Tells what somebody left behind whose work was done nevertheless.
-pub(super) fn leaked(page: &mut Page, name: &str, processes: &[LeftProcess]) {
+pub(super) fn leaked(page: &mut Page, name: &str, processes: &[LeakedProcess]) {
     if !processes.is_empty() {
         page.remark((LOUD, "leaked"), name);
         explain::left(processes, &mut |tone, line| page.detail(tone, line));

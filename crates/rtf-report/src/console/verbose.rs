@@ -123,8 +123,8 @@ impl Verbose {
     fn output(&mut self, page: &mut Page, output: &Output, record: &Record) {
         let key = Key::of(output);
         let partial = self.partial.entry(key).or_default();
-        if output.omitted > 0 {
-            let bytes = words::count(output.omitted, "byte");
+        if output.omitted_bytes > 0 {
+            let bytes = words::count(output.omitted_bytes, "byte");
             partial.push_str(&format!("\n[… {bytes} left out …]\n"));
         }
         partial.push_str(&output.text);

@@ -26,7 +26,7 @@ pub(crate) struct Roots<'a> {
 impl<'a> Roots<'a> {
     /// Those of a run. Without a repository, the run's folder stands for it.
     pub fn new(record: &'a Record, repository: Option<&'a Path>) -> Self {
-        let folder = Path::new(record.run.as_ref().map_or("", |run| run.folder.as_str()));
+        let folder = Path::new(record.run.as_ref().map_or("", |run| run.working_dir.as_str()));
         Self { folder, repository: repository.unwrap_or(folder) }
     }
 

@@ -120,7 +120,7 @@ mod tests {
         for (seq, length) in (0..).zip(lengths.into_iter().chain(at_the_end)) {
             let text = "x".repeat(length);
             let (source, stream) = (Source::Test(TestId(0)), Stream::Stdout);
-            let kind = EventKind::Output(Output { source, stream, omitted: 0, text });
+            let kind = EventKind::Output(Output { source, stream, omitted_bytes: 0, text });
             let event = Event { seq, at: Micros(seq), kind };
             page.add(&event).unwrap();
             let line = page.lines().strip_suffix(b"\n").unwrap();

@@ -102,7 +102,7 @@ enum Landmark {
 fn landmark(kind: &EventKind) -> Landmark {
     match kind {
         // A recorder reads what the test told until then.
-        EventKind::TestPhase { phase: Phase::Notice, .. } => Landmark::Now,
+        EventKind::TestPhase { phase: Phase::Notify, .. } => Landmark::Now,
         EventKind::SuitePlanned(_)
         | EventKind::FixturePlanned(_)
         | EventKind::HookPlanned(_)
@@ -113,7 +113,7 @@ fn landmark(kind: &EventKind) -> Landmark {
         | EventKind::Sampled { .. }
         | EventKind::Attached { .. }
         | EventKind::Output(_)
-        | EventKind::Used { .. }
+        | EventKind::ResourcesMeasured { .. }
         | EventKind::TestSkipped { .. }
         | EventKind::TestRepeated { .. } => Landmark::None,
         _ => Landmark::Soon,

@@ -31,7 +31,7 @@ pub(super) fn of(record: &Record, test: &TestRecord, folder: Option<&Path>) -> T
         case.timestamp = time::at(record, first.started);
     }
     properties(&mut case, test);
-    let left: Vec<_> = test.attempts.iter().flat_map(|a| a.left.iter().cloned()).collect();
+    let left: Vec<_> = test.attempts.iter().flat_map(|a| a.leaked.iter().cloned()).collect();
     super::leaked(&mut case, &left, test.final_verdict() == Verdict::Passed);
     let out = system_out(test, folder);
     if !out.is_empty() {
@@ -124,7 +124,7 @@ fn explained(attempt: &AttemptRecord) -> String {
     let mut lines = Vec::new();
     let sink = &mut |_, line: &str| lines.push(line.to_owned());
     explain::explain(attempt, Extent::ALL, sink);
-    explain::left(&attempt.left, sink);
+    explain::left(&attempt.leaked, sink);
     lines.join("\n")
 }
 

@@ -30,7 +30,7 @@ fn case(record: &Record, hook: &HookRecord, (name, run): (String, &HookRun)) -> 
     if let Some(test) = run.test {
         case.add_property(("test", text(&record.full_name(test)).as_str()));
     }
-    super::leaked(&mut case, &run.left, run.problem().is_none());
+    super::leaked(&mut case, &run.leaked, run.problem().is_none());
     if !run.output.is_empty() {
         case.set_system_out(text(&run.output));
     }

@@ -14,7 +14,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use quick_junit::{Report, TestCase, TestSuite};
-use rtf_model::{Event, LeftProcess, Record, SuiteRecord};
+use rtf_model::{Event, LeakedProcess, Record, SuiteRecord};
 
 use crate::growth::{self, Within};
 use crate::{ReportError, Reporter, escape, explain, output_file, words};
@@ -106,7 +106,7 @@ fn properties(junit: &mut TestSuite, record: &Record, suite: &SuiteRecord) {
         add("run", &run.run);
         add("rtf", &run.rtf);
         add("command", &words::command(&run.command));
-        add("folder", &run.folder);
+        add("folder", &run.working_dir);
     }
     add("file", &suite.plan.file);
     add("description", &suite.plan.description);
@@ -126,7 +126,7 @@ fn text(text: &str) -> String {
 
 /// Names what was left behind and killed, as properties; a case that passed
 /// also tells it on its standard error, which more servers show.
-fn leaked(case: &mut TestCase, left: &[LeftProcess], passed: bool) {
+fn leaked(case: &mut TestCase, left: &[LeakedProcess], passed: bool) {
     for process in left {
         case.add_property(("leaked", explain::process(process).as_str()));
     }

@@ -17,7 +17,7 @@ pub(super) fn of_fixture(
     let mut lines: Vec<_> = problems.iter().map(|problem| text(problem)).collect();
     let sink = &mut |_, line: &str| lines.push(line.to_owned());
     fixture.messages.iter().for_each(|message| explain::message(message, sink));
-    explain::left(&fixture.left, sink);
+    explain::left(&fixture.leaked, sink);
     explain::printed(fixture.log_tail.iter().map(String::as_str), sink);
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
     status.set_message(text(first.lines().next().unwrap_or_default()));
@@ -35,10 +35,10 @@ pub(super) fn of_run(record: &Record) -> Option<TestSuite> {
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
     status.set_message(text(&problem));
     status.set_type("run");
-    if !record.left.is_empty() || record.is_damaged() {
+    if !record.leaked.is_empty() || record.is_damaged() {
         let mut lines = vec![text(&problem)];
         lines.extend(record.damages.iter().map(|damage| text(&damage.to_string())));
-        explain::left(&record.left, &mut |_, line| lines.push(line.to_owned()));
+        explain::left(&record.leaked, &mut |_, line| lines.push(line.to_owned()));
         status.set_description(lines.join("\n"));
     }
     let mut case = TestCase::new("run", status);

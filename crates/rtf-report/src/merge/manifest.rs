@@ -32,8 +32,9 @@ pub(super) fn join(parts: &[Part], tests: usize) -> Asked {
         [one] => one.manifest.clone(),
         _ => Manifest { flaky_fails, ..Manifest::default() },
     };
-    let chosen_of = if manifest.chosen_of > count(tests) { manifest.chosen_of } else { 0 };
-    Asked { manifest: Manifest { chosen_of, ..manifest }, missing }
+    let selected_from =
+        if manifest.selected_from > count(tests) { manifest.selected_from } else { 0 };
+    Asked { manifest: Manifest { selected_from, ..manifest }, missing }
 }
 
 fn divisions(parts: &[Part]) -> Vec<Division> {
@@ -44,8 +45,8 @@ fn divisions(parts: &[Part]) -> Vec<Division> {
         let (part, of) = shard.unzip();
         // The merged run has one suite at a time.
         let asked = Manifest { shard: None, jobs: None, revision: None, ..(*run.manifest).clone() };
-        let manifest = match (of, asked.chosen_of) {
-            (Some(_), 0) => Manifest { chosen_of: run.tests, ..asked },
+        let manifest = match (of, asked.selected_from) {
+            (Some(_), 0) => Manifest { selected_from: run.tests, ..asked },
             _ => asked,
         };
         let same = |division: &&mut Division| division.manifest == manifest && division.of == of;
@@ -70,7 +71,7 @@ impl Division {
         let of = self.of?;
         let all = self.manifest.filters.is_empty() && self.manifest.only.is_none();
         let parts: Vec<_> = (1..=of).filter(|part| !self.parts.contains(part)).collect();
-        let complete = parts.is_empty() || (all && self.tests >= self.manifest.chosen_of);
+        let complete = parts.is_empty() || (all && self.tests >= self.manifest.selected_from);
         (!complete).then_some(Problem::Missing { parts, of })
     }
 }

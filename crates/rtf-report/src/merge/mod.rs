@@ -21,7 +21,7 @@ mod suite;
 use std::path::{Component, Path};
 
 use rtf_model::{
-    Diagnostic, EVENTS_VERSION, Event, EventKind, LeftProcess, Manifest, Micros, OrderChecker,
+    Diagnostic, EVENTS_VERSION, Event, EventKind, LeakedProcess, Manifest, Micros, OrderChecker,
     OrderError, RunStarted, SuiteId,
 };
 
@@ -141,7 +141,7 @@ impl Mergeable {
         let Self { parts, plan, manifest } = self;
         let mut runs = parts.iter().filter_map(started);
         let started_at = manifest::earliest(runs.clone().map(|run| run.started_at.as_str()));
-        let folder = runs.next().map(|run| run.folder.clone()).unwrap_or_default();
+        let working_dir = runs.next().map(|run| run.working_dir.clone()).unwrap_or_default();
         let mut merging = Merging::default();
         merging.push(EventKind::RunStarted(RunStarted {
             version: EVENTS_VERSION,
@@ -149,7 +149,7 @@ impl Mergeable {
             rtf: header.rtf,
             started_at,
             command: header.command,
-            folder,
+            working_dir,
             suites: count(plan.suites.len()),
             tests: count(plan.tests.len()),
             manifest: Box::new(manifest),
@@ -217,7 +217,7 @@ impl Merging {
         }
         self.push(match taken.died.is_empty() {
             true => EventKind::RunFinished { interrupted: taken.interrupted },
-            false => EventKind::RunnerDied { reason: taken.died.join("; "), left: taken.left },
+            false => EventKind::RunnerDied { reason: taken.died.join("; "), leaked: taken.leaked },
         });
     }
 }
@@ -230,14 +230,14 @@ struct Taken {
     warnings: Vec<Diagnostic>,
     interrupted: Option<String>,
     died: Vec<String>,
-    left: Vec<LeftProcess>,
+    leaked: Vec<LeakedProcess>,
 }
 
 impl Taken {
     fn new(plan: &Plan) -> Self {
         let suites = plan.suites.iter().map(|plan| Suite::new(plan.suite)).collect();
-        let (warnings, died, left) = (Vec::new(), Vec::new(), Vec::new());
-        Self { suites, warnings, interrupted: None, died, left }
+        let (warnings, died, leaked) = (Vec::new(), Vec::new(), Vec::new());
+        Self { suites, warnings, interrupted: None, died, leaked }
     }
 
     /// Hands a run's events to their suites.
@@ -251,10 +251,10 @@ impl Taken {
                     ended = true;
                     self.interrupted = self.interrupted.take().or(interrupted);
                 }
-                (EventKind::RunnerDied { reason, left }, _) => {
+                (EventKind::RunnerDied { reason, leaked }, _) => {
                     ended = true;
                     self.died.push(format!("{reason} in {}", part.name));
-                    self.left.extend(left);
+                    self.leaked.extend(leaked);
                 }
                 (kind, Some(suite)) => self.suites[suite.index()].add(at, kind),
                 // The same files give the same warnings in each part.

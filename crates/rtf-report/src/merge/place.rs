@@ -49,8 +49,8 @@ impl Ids<'_> {
                 Some(place)
             }
             EventKind::StackDumped { source, .. }
-            | EventKind::Used { source, .. }
-            | EventKind::ProcessesLeft { source, .. } => Some(self.source(source)),
+            | EventKind::ResourcesMeasured { source, .. }
+            | EventKind::ProcessesLeaked { source, .. } => Some(self.source(source)),
             EventKind::Output(output) => Some(self.source(&mut output.source)),
             EventKind::TestStarted { test, .. }
             | EventKind::TestPhase { test, .. }

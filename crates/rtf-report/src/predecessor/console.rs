@@ -106,9 +106,9 @@ impl Console {
         if self.leaves_out(output.text.lines().count()) {
             return;
         }
-        if output.omitted > 0 {
+        if output.omitted_bytes > 0 {
             self.end_line();
-            self.page += &format!("[… {} bytes left out …]\n", output.omitted);
+            self.page += &format!("[… {} bytes left out …]\n", output.omitted_bytes);
         }
         self.page += &escape::block(&output.text);
         self.within_line = !output.text.is_empty() && !output.text.ends_with('\n');

@@ -64,7 +64,7 @@ pub(super) fn of_bench(record: &Record, kind: &EventKind) -> Vec<Line> {
             of_fixture(record, *fixture, |fixture| Some((Word::Error, broken(fixture, reason))))
         }
         EventKind::HookFinished { hook, problem } => of_hook(record, *hook, problem.as_deref()),
-        EventKind::ProcessesLeft { source, processes } => {
+        EventKind::ProcessesLeaked { source, processes } => {
             let about = name(record, *source);
             return processes
                 .iter()

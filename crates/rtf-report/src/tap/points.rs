@@ -59,7 +59,7 @@ fn explained(yaml: &mut Yaml<'_>, test: &TestRecord, verdict: Verdict) {
     }
     let mut lines = Vec::new();
     explain::explain(attempt, Extent::ALL, &mut |_, line| lines.push(line.to_owned()));
-    explain::left(&attempt.left, &mut |_, line| lines.push(line.to_owned()));
+    explain::left(&attempt.leaked, &mut |_, line| lines.push(line.to_owned()));
     yaml.lines("details", lines);
     let (tail, total) = words::tail(&attempt.output, OUTPUT_LINES);
     let cut = (total > OUTPUT_LINES).then(|| format!("… the last {OUTPUT_LINES} of {total} lines"));

@@ -34,7 +34,7 @@ pub(super) fn show(lines: &mut Lines, fixture: &FixtureRecord) {
     for message in &fixture.messages {
         explain::message(message, &mut |_, line| lines.at(4, line));
     }
-    explain::left(&fixture.left, &mut |_, line| lines.at(4, line));
+    explain::left(&fixture.leaked, &mut |_, line| lines.at(4, line));
     if !fixture.log_tail.is_empty() {
         lines.at(4, "its last lines before something went wrong:");
         fixture.log_tail.iter().for_each(|line| lines.quoted(6, line));

@@ -69,7 +69,7 @@ fn head(lines: &mut Lines, record: &Record) {
     lines.fact(0, "run", &run.run);
     lines.fact(0, "started", &run.started_at);
     lines.fact(0, "command", &words::command(&run.command));
-    lines.fact(0, "folder", &run.folder);
+    lines.fact(0, "folder", &run.working_dir);
     lines.fact(0, "rtf", &run.rtf);
     for warning in &record.warnings {
         let place = warning.labels.first();

@@ -69,7 +69,7 @@ fn details(lines: &mut Lines, attempt: &AttemptRecord) {
     // Failures, violations, stacks and left processes are told as everywhere,
     // what did not speak against the test after them.
     explain::explain(attempt, Extent::ALL, &mut |_, line| lines.at(6, line));
-    explain::left(&attempt.left, &mut |_, line| lines.at(6, line));
+    explain::left(&attempt.leaked, &mut |_, line| lines.at(6, line));
     let others = attempt
         .messages
         .iter()

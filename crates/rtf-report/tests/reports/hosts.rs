@@ -78,7 +78,7 @@ fn code_quality_for_gitlab() {
 
 #[test]
 fn files_are_named_from_the_repositorys_root() {
-    let folder = record("verdicts").run.unwrap().folder;
+    let folder = record("verdicts").run.unwrap().working_dir;
     let above = Path::new(&folder).parent().unwrap();
     let report = written(|out| github::write(out, &record("verdicts"), Some(above)).unwrap());
     let inside = format!("file={}/", Path::new(&folder).file_name().unwrap().to_str().unwrap());

@@ -86,7 +86,7 @@ fn what_fixtures_may_read_is_written_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("events.jsonl");
     let mut journal = Journal::create(&path).unwrap();
-    let notice = EventKind::TestPhase { test: TestId(0), phase: Phase::Notice };
+    let notice = EventKind::TestPhase { test: TestId(0), phase: Phase::Notify };
     for (seq, kind) in [(0, EventKind::SuiteStarted { suite: SuiteId(0) }), (1, notice)] {
         let event = Event { seq, at: Micros::default(), kind };
         journal.event(&event, &Record::default()).unwrap();

@@ -87,7 +87,7 @@ proptest! {
             }
             if how > 1 {
                 let (seq, at) = (events.len() as u64, Micros(events[events.len() - 1].at.0));
-                let kind = EventKind::RunnerDied { reason: "signal 9".into(), left: Vec::new() };
+                let kind = EventKind::RunnerDied { reason: "signal 9".into(), leaked: Vec::new() };
                 events.push(Event { seq, at, kind });
             }
         }

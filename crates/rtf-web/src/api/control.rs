@@ -148,7 +148,7 @@ fn start(run: &Run, runs: &Runs, starter: &dyn Starter) -> Answer {
         }
         let started = index.record().run.as_ref();
         let started = started.ok_or_else(|| Problem::conflict("its journal has no beginning"))?;
-        started.folder.clone()
+        started.working_dir.clone()
     };
     if let Some(other) = runs.current() {
         return Err(Problem::conflict(format!("the run `{other}` goes on")));

@@ -235,9 +235,9 @@ async fn output(app: App, run: String, (source, number): (Source, u32), page: Pa
     app.with_run(run, move |run| {
         let (output, next) = part.read(run, |event| {
             let EventKind::Output(output) = event.kind else { return None };
-            let omitted = Some(output.omitted).filter(|omitted| *omitted > 0);
+            let omitted = Some(output.omitted_bytes).filter(|omitted| *omitted > 0);
             let (stream, text) = (output.stream, output.text);
-            Some(Printed { seq: event.seq, at: event.at.0, stream, omitted, text })
+            Some(Printed { seq: event.seq, at: event.at.0, stream, omitted_bytes: omitted, text })
         })?;
         JsonText::of(&OutputPage { output, next })
     })

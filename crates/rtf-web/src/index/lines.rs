@@ -49,7 +49,7 @@ impl Head {
         match &*self.kind {
             // A fixture's report about a test is the test's.
             "message" => self.test.map(Source::Test).or(self.source),
-            "output" | "stack-dumped" | "processes-left" => self.source,
+            "output" | "stack-dumped" | "processes-leaked" => self.source,
             "measured" | "sampled" | "attached" => self.test.map(Source::Test),
             _ => None,
         }

@@ -23,7 +23,7 @@ struct Frequent {
     samples: Option<Samples>,
     stream: Option<Stream>,
     #[serde(default)]
-    omitted: u64,
+    omitted_bytes: u64,
     text: Option<String>,
 }
 
@@ -41,7 +41,12 @@ impl Frequent {
             "sampled" => EventKind::Sampled { test: self.test?, samples: self.samples? },
             "output" => {
                 let (source, stream, text) = (self.source?, self.stream?, self.text?);
-                EventKind::Output(Output { source, stream, omitted: self.omitted, text })
+                EventKind::Output(Output {
+                    source,
+                    stream,
+                    omitted_bytes: self.omitted_bytes,
+                    text,
+                })
             }
             _ => return None,
         };

@@ -111,7 +111,7 @@ impl Writer {
             rtf: "0.1.0".to_owned(),
             started_at: "2026-11-21T06:30:12+00:00".to_owned(),
             command: vec!["rtf".to_owned()],
-            folder: "/robot".to_owned(),
+            working_dir: "/robot".to_owned(),
             suites: 1,
             tests: u32::try_from(tests.len()).unwrap(),
             manifest: Default::default(),
@@ -155,7 +155,7 @@ impl Writer {
 
     pub fn print(&mut self, text: &str) {
         let (source, stream, text) = (Source::Test(TEST), Stream::Stdout, text.to_owned());
-        self.emit(EventKind::Output(Output { source, stream, omitted: 0, text }));
+        self.emit(EventKind::Output(Output { source, stream, omitted_bytes: 0, text }));
     }
 
     pub fn measure(&mut self, value: f64, high: f64) {

@@ -107,7 +107,7 @@ fn again(args: &InputArgs, results: &ResultsArgs) -> Result<(Manifest, Option<Pa
         manifest.profile = Some(profile.clone());
     }
     manifest.set.extend(settings(args));
-    Ok((manifest, Some(PathBuf::from(&started.folder))))
+    Ok((manifest, Some(PathBuf::from(&started.working_dir))))
 }
 
 impl Rerun {

@@ -124,7 +124,7 @@ impl Job<'_> {
             rtf: env!("CARGO_PKG_VERSION").to_owned(),
             started_at: self.folder.started_at.clone(),
             command: std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect(),
-            folder: self.planned.folder.to_string_lossy().into_owned(),
+            working_dir: self.planned.folder.to_string_lossy().into_owned(),
             suites: u32::try_from(plan.suites.len()).unwrap_or(u32::MAX),
             tests: plan.tests,
             manifest: Box::new(manifest),

@@ -36,7 +36,7 @@ pub fn plan(args: &InputArgs, results: &ResultsArgs) -> Result<Planned, Failure>
     let Draft { plan, of, mut manifest, folder, problems, sources } = draft;
     let Some(mut plan) = plan else { return Err(refused(&problems, &sources)?) };
     repeat(&mut plan, &manifest);
-    manifest.chosen_of = if of == plan.tests { 0 } else { of };
+    manifest.selected_from = if of == plan.tests { 0 } else { of };
     let plan = Arc::new(plan);
     Ok(Planned { plan, manifest, folder, warnings: problems, sources })
 }

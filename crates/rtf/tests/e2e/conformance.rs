@@ -354,8 +354,8 @@ fn check_fact(line: &Value, attempt: &AttemptRecord) -> Option<String> {
         });
     }
     if let Some(command) = line.get("left").and_then(Value::as_str) {
-        let found = attempt.left.iter().any(|process| process.command.contains(command));
-        return (!found).then(|| format!("no process was left: {:?}", attempt.left));
+        let found = attempt.leaked.iter().any(|process| process.command.contains(command));
+        return (!found).then(|| format!("no process was left: {:?}", attempt.leaked));
     }
     None
 }
@@ -368,7 +368,7 @@ fn check_output(line: &Value, events: &[Event], test: rtf_model::TestId) -> Vec<
     let (mut text, mut omitted) = (String::new(), 0);
     for output in outputs {
         text += &output.text;
-        omitted += output.omitted;
+        omitted += output.omitted_bytes;
     }
     let wanted = |key: &str| line[key].as_str().unwrap_or_default();
     let mut problems = Vec::new();

@@ -219,7 +219,7 @@ fn a_copy_of_a_forked_host_is_found_and_killed() {
     let record = folder.journal().record;
     for (index, name) in [(0, "test s/Copy"), (1, "test s/Copy#2")] {
         assert_eq!(record.verdict(TestId(index)), Some(Verdict::Error));
-        let left = &record.tests[TestId(index).index()].attempts[0].left;
+        let left = &record.tests[TestId(index).index()].attempts[0].leaked;
         let owners: Vec<_> = left.iter().map(|process| process.owner.as_deref()).collect();
         assert_eq!(owners, [Some(name)]);
     }

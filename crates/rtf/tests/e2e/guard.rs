@@ -35,7 +35,7 @@ fn lines(folder: &Folder, file: &str) -> Vec<String> {
 
 fn died(journal: &Journal) -> (&str, Vec<String>) {
     match &journal.events.last().expect("events").kind {
-        EventKind::RunnerDied { reason, left } => {
+        EventKind::RunnerDied { reason, leaked: left } => {
             let owners = left.iter().filter_map(|process| process.owner.clone());
             (reason, owners.collect())
         }

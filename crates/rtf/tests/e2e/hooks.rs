@@ -131,7 +131,7 @@ fn a_daemon_without_a_trace_is_found() {
         // It may be seen before it has become `sleep`.
         assert!(reason.starts_with("it left "), "{reason}");
     } else {
-        let warned = record.warnings.iter().any(|warning| warning.code == "processes-left");
+        let warned = record.warnings.iter().any(|warning| warning.code == "processes-leaked");
         assert!(warned, "{}", finished.stdout);
     }
     assert!(nothing_left(&folder));

@@ -51,7 +51,7 @@ fn one_that_forks_twice_and_leaves_its_session_takes_its_daemon_along() {
     });
     let daemon: i32 = daemon.expect("its number");
     let left = journal.events.iter().any(|event| match &event.kind {
-        EventKind::ProcessesLeft { source: Source::Fixture(FixtureId(0)), processes } => {
+        EventKind::ProcessesLeaked { source: Source::Fixture(FixtureId(0)), processes } => {
             processes.iter().any(|process| process.pid == daemon)
         }
         _ => false,

@@ -109,7 +109,7 @@ fn ports_and_ids_of_two_runs_at_one_time_differ() {
     }
     let same = ["ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_HOSTNAME"];
     for mine in a.variables.iter().filter(|own| !same.contains(&own.name.as_str())) {
-        assert!(!mine.kept);
+        assert!(!mine.inherited);
         assert!(b.variables.iter().all(|other| other != mine), "{a:?} {b:?}");
     }
 }
@@ -246,7 +246,7 @@ fn joined_in(running: &Running) -> Option<String> {
         return None;
     };
     let mut shell = Command::new("sh");
-    shell.args(["-c", &prepared.join]).env("SHELL", "readlink -n /proc/self/ns/net");
+    shell.args(["-c", &prepared.join_command]).env("SHELL", "readlink -n /proc/self/ns/net");
     String::from_utf8(shell.output().expect("sh").stdout).ok()
 }
 

@@ -33,7 +33,7 @@ fn environment(attributes: &str, inside: &str, domain: Option<&str>) -> (Folder,
 fn domain_of(folder: &Folder) -> (String, bool) {
     let own = prepared(folder, "rtf-results").variables;
     let domain = own.into_iter().find(|own| own.name == "ROS_DOMAIN_ID").expect("a domain");
-    (domain.value, domain.kept)
+    (domain.value, domain.inherited)
 }
 
 const PROCESS: &str = "<fixture type='process' name='f'><command>sleep 1000</command></fixture>";
@@ -50,7 +50,7 @@ fn every_process_finds_its_suites_ports_and_ids() {
          ROS_DOMAIN_ID ROS_HOSTNAME ROS_LOG_DIR ROS_MASTER_URI RTF_PORT_GAZEBO_MASTER RTF_PORT_ROS_MASTER RTF_PORT_SIM YARP_NAMESPACE";
     assert!(told.contains(names), "{told}");
     let log = std::fs::read_to_string(folder.path().join("rtf-results/latest/logs/s.suite.log"));
-    assert!(log.expect("a log").contains(&format!("join in: {}\n", own.join)));
+    assert!(log.expect("a log").contains(&format!("join in: {}\n", own.join_command)));
 }
 
 #[test]

@@ -95,7 +95,7 @@ fn what_a_recorder_keeps_is_shown_with_the_test() {
 fn a_recorder_that_hangs_collapses_and_the_verdict_stands() {
     let folder = Folder::new();
     let recorder = RECORDER.replace("        self.report", "        self.sleep(1000)\n        #");
-    let fixture = "<fixture notice-timeout='300ms'>Recorder.py</fixture>";
+    let fixture = "<fixture notify-timeout='300ms'>Recorder.py</fixture>";
     suite(&folder, fixture, &recorder, "<test name='good'>Test.lua</test>\n");
     let finished = folder.rtf(&["run", "s.xml"]);
     assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
@@ -133,7 +133,7 @@ class Recorder(rtf.FixtureManager):
 #[test]
 fn a_robot_is_parked_while_a_recorder_has_not_answered_yet() {
     let folder = Folder::new();
-    let fixture = "<fixture notice-timeout='60s'>Recorder.py</fixture>\
+    let fixture = "<fixture notify-timeout='60s'>Recorder.py</fixture>\
                    <hook name='park' on='failure'><command>touch parked</command></hook>";
     let tests =
         "<test name='bad' param='fail'>Test.lua</test>\n<test name='good'>Test.lua</test>\n";

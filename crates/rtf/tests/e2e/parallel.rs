@@ -267,7 +267,7 @@ fn what_a_test_leaves_behind_is_its_own_when_two_run() {
         assert!(reason.contains(own) && !reason.contains(other), "{reason}");
     }
     let left = journal.events.iter().filter_map(|event| match &event.kind {
-        EventKind::ProcessesLeft { source: Source::Test(test), .. } => Some(test.0),
+        EventKind::ProcessesLeaked { source: Source::Test(test), .. } => Some(test.0),
         _ => None,
     });
     let mut left: Vec<_> = left.collect();

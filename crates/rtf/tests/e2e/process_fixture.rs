@@ -158,7 +158,7 @@ fn a_detached_grandchild_goes_with_its_fixture() {
     assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
     let journal = folder.journal();
     let left =
-        journal.events.iter().any(|event| matches!(event.kind, EventKind::ProcessesLeft { .. }));
+        journal.events.iter().any(|event| matches!(event.kind, EventKind::ProcessesLeaked { .. }));
     assert!(left, "what was left is told");
     assert!(nothing_left(&folder));
 }

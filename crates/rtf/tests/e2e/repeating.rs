@@ -233,7 +233,7 @@ fn a_shared_host_that_leaks_is_shown() {
     let record = folder.journal().record;
     let [host] = &record.suites[0].hosts[..] else { panic!("{:?}", record.suites[0].hosts) };
     // `Other` is the last one: the host ended with it.
-    assert_eq!((host.served, host.usage.seen(), host.tests.len()), (30, 30, 1));
+    assert_eq!((host.tests_served, host.usage.seen(), host.tests.len()), (30, 30, 1));
     let title = "shared hosts that grow while tests are repeated:\n";
     let (_, shown) = finished.stdout.split_once(title).expect("growth is shown");
     let mut lines = shown.lines();

@@ -263,7 +263,7 @@ fn what_a_test_leaves_is_its_own_and_ends_with_it() {
     let tests = [("a", "leaks='fail'>T.py"), ("b", leaves), ("c", "leaks='fail'>T.py")];
     let (record, ..) = run(&tests, "", 1);
     assert_eq!(verdicts(&record), [Verdict::Passed, Verdict::Error, Verdict::Passed]);
-    let left = &record.tests[1].attempts[0].left;
+    let left = &record.tests[1].attempts[0].leaked;
     assert!(left.iter().any(|process| process.command == "sleep 1000"), "{left:?}");
     assert!(left.iter().all(|process| process.owner.as_deref() == Some("test s/b")), "{left:?}");
     assert_eq!(processes(&record)[0], processes(&record)[1]);

@@ -103,7 +103,7 @@ fn without_root_a_user_namespace_does() {
     assert_eq!(code, Some(0), "{told}");
     let prepared = prepared(&folder, "rtf-results");
     assert!(prepared.network.expect("a network").user_namespace, "{prepared:?}");
-    assert!(prepared.join.contains("--user --preserve-credentials --net"), "{prepared:?}");
+    assert!(prepared.join_command.contains("--user --preserve-credentials --net"), "{prepared:?}");
     let looked = std::fs::read_to_string(folder.path().join("looked")).expect("a file");
     let (net, uid) = looked.trim().split_once('\n').expect("two lines");
     let own = std::fs::read_link("/proc/self/ns/net").expect("a namespace");

@@ -146,7 +146,7 @@ class Server:
         os.dup2(errors, 2)
         os.close(output)
         os.close(errors)
-        os.chdir(request["folder"])
+        os.chdir(request["working_dir"])
         # Not `update`: that asks what kind of thing it is given, at the price of fifty pages.
         for name, value in request["env"].items():
             os.environ[name] = value

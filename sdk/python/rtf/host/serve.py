@@ -198,7 +198,7 @@ class Host:
             return True
         reader.finish(request, fixture_is_up=self._fixture is not None, last=last)
         # The beginning of the next test tells that this one is over: both in one piece.
-        held = "stays" in result and reader.has_next()
+        held = "continues" in result and reader.has_next()
         self._channel.answer(request.number, result, held=held)
         return not last
 
@@ -219,7 +219,7 @@ class Host:
         if request.method not in known:
             raise _Refused(METHOD_NOT_FOUND, f"unknown method `{request.method}`")
         task = self._task or Task({"file": "", "name": ""})
-        task.keep_folder = str(request.params.get("keep_folder") or "")
+        task.attachments_dir = str(request.params.get("attachments_dir") or "")
         session = self._enter(task, request)
         if request.method == "check-fixture":
             return steps.check_fixture(session, self._fixture), False
@@ -235,9 +235,9 @@ class Host:
             self._sharing = sharing.Sharing.begin()
         session.announce("load")
         answer = steps.run_test(session)
-        stays = answer["outcome"] == "passed" and not task.last
-        if stays and self._sharing is not None and self._sharing.stay(task.shared):
-            return {**answer, "stays": True}, False
+        continues = answer["outcome"] == "passed" and not task.last
+        if continues and self._sharing is not None and self._sharing.stay(task.shared):
+            return {**answer, "continues": True}, False
         return answer, True
 
     def _initialize(self, params: dict[str, object]) -> dict[str, object]:
@@ -257,7 +257,7 @@ class Host:
         self._is_initialized = True
         name = sys.implementation.name.replace("cpython", "python")
         host = f"{name} {'.'.join(map(str, sys.version_info[:3]))}"
-        return {"protocol": PROTOCOL_VERSION, "host": host, "stack": stack, "shares": True}
+        return {"protocol": PROTOCOL_VERSION, "host": host, "stack": stack, "supports_shared": True}
 
     def _enter(self, task: Task, request: Request) -> Session:
         if not task.shared:

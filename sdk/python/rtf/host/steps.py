@@ -66,7 +66,7 @@ def set_up_fixture(
     answer = _answer(session)
     notices = _notices(fixture) if fixture is not None else []
     if notices and answer["outcome"] == "passed":
-        answer["notices"] = notices
+        answer["subscriptions"] = notices
     return fixture, answer
 
 

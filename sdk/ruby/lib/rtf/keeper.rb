@@ -24,7 +24,7 @@ module RTF
       Keep.check(full)
       name = Text.utf8(name || File.basename(full))
       session = Session.current
-      folder = session.task.keep_folder
+      folder = session.task.attachments_dir
       full = Keep.copy(full, name, folder) unless folder.empty?
       params = { name: name, path: Text.utf8(full), media_type: Text.utf8(media_type) }
       session.notify("attached", params)

@@ -11,7 +11,7 @@ module RTF
     attr_reader :file, :name, :param, :environment, :args, :repetition, :shared
 
     # Where copies of attached files go: of a test, or while a fixture is told of one.
-    attr_accessor :keep_folder
+    attr_accessor :attachments_dir
 
     # Reads the parameters of `run-test` or `set-up-fixture`.
     def initialize(params)
@@ -19,11 +19,11 @@ module RTF
       @name = text(params, "name")
       @param = text(params, "param", "")
       @environment = text(params, "environment", "")
-      @keep_folder = text(params, "keep_folder", "")
+      @attachments_dir = text(params, "attachments_dir", "")
       @args = params.fetch("args", [])
       @repetition = params.fetch("repetition", 0)
-      @last = params["last"] == true
-      @shared = text(params, "shared", "")
+      @last = params["is_last"] == true
+      @shared = text(params, "end_marker", "")
       strings = @args.is_a?(Array) && @args.all?(String)
       raise TypeError, "`args` is not a list of texts" unless strings
       raise TypeError, "`repetition` is not a whole number" unless @repetition.is_a?(Integer)

@@ -10,7 +10,7 @@ import type {
     StackEntry,
 } from '../api-types';
 import { address } from '../api';
-import type { Event, LeftProcess, Measurement } from '../event';
+import type { Event, LeakedProcess, Measurement } from '../event';
 
 export interface Lists {
     messages: MessageEntry[];
@@ -34,7 +34,7 @@ export function emptyLists(): Lists {
 }
 
 /** Puts an event of this source where it belongs. */
-export function addToLists(lists: Lists, event: Event, run: string): LeftProcess[] {
+export function addToLists(lists: Lists, event: Event, run: string): LeakedProcess[] {
     const { seq, at } = event;
     switch (event.type) {
         case 'message':
@@ -55,12 +55,12 @@ export function addToLists(lists: Lists, event: Event, run: string): LeftProcess
             append(lists.stacks, { seq, at, text: event.text });
             break;
         case 'output': {
-            const { stream, text, omitted } = event;
-            const gap = omitted === undefined ? {} : { omitted };
+            const { stream, text, omitted_bytes } = event;
+            const gap = omitted_bytes === undefined ? {} : { omitted_bytes };
             append(lists.output, { seq, at, stream, text, ...gap });
             break;
         }
-        case 'processes-left':
+        case 'processes-leaked':
             return event.processes;
     }
     return [];

@@ -39,8 +39,8 @@ export class RunRecord {
     get warnings() {
         return this.data.warnings;
     }
-    get left() {
-        return this.data.left;
+    get leaked() {
+        return this.data.leaked;
     }
 
     /** Whether nothing more will come. */
@@ -98,7 +98,7 @@ export class RunRecord {
                     started_at: event.started_at,
                     rtf: event.rtf,
                     command: event.command,
-                    folder: event.folder,
+                    working_dir: event.working_dir,
                     suites: event.suites,
                 });
                 break;
@@ -145,7 +145,7 @@ export class RunRecord {
                 data.info.state = 'died';
                 data.info.died = event.reason;
                 data.info.green = false;
-                data.left.push(...(event.left ?? []));
+                data.leaked.push(...(event.leaked ?? []));
                 break;
         }
     }
@@ -234,7 +234,7 @@ export function emptySnapshot(): Snapshot {
         started_at: '',
         rtf: '',
         command: [],
-        folder: '',
+        working_dir: '',
         state: 'running',
         seq: 0,
         last_at: 0,

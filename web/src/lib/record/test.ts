@@ -45,7 +45,7 @@ export function applyToTest(test: Test, event: Event): void {
         case 'test-phase':
             test.phase = event.phase;
             // It is judged; what follows is the fixtures' time.
-            if (event.phase === 'notice' && last !== undefined)
+            if (event.phase === 'notify' && last !== undefined)
                 test.duration_us += event.at - last.started;
             break;
         case 'test-slow':
@@ -57,7 +57,7 @@ export function applyToTest(test: Test, event: Event): void {
             last.verdict = event.verdict;
             if (event.rerun) last.rerun = true;
             if (event.reason != null) last.reason = event.reason;
-            if (test.phase !== 'notice') test.duration_us += event.at - last.started;
+            if (test.phase !== 'notify') test.duration_us += event.at - last.started;
             delete test.phase;
             test.state = 'pending';
             if (!event.rerun && test.timed !== true && last.repetition >= test.repetitions)

@@ -15,7 +15,7 @@ fn beginning(events: usize) -> String {
         rtf: "0".into(),
         started_at: String::new(),
         command: Vec::new(),
-        folder: String::new(),
+        working_dir: String::new(),
         suites: 1,
         tests: 0,
         manifest: Box::default(),
@@ -54,7 +54,7 @@ fn finished() -> EventKind {
 }
 
 fn died() -> EventKind {
-    EventKind::RunnerDied { reason: "signal 9 (SIGKILL)".into(), left: Vec::new() }
+    EventKind::RunnerDied { reason: "signal 9 (SIGKILL)".into(), leaked: Vec::new() }
 }
 
 /// Closes a journal with this text; returns what it holds then.

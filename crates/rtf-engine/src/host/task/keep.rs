@@ -9,15 +9,15 @@ use crate::run::machine::{HostId, HostInput};
 
 impl Task {
     /// The folder for what this process attaches, relative to the run's.
-    pub(super) fn keep_folder(&self) -> String {
-        keep_folder(self.job.source, self.job.host)
+    pub(super) fn attachments_dir(&self) -> String {
+        attachments_dir(self.job.source, self.job.host)
     }
 
     /// Names an attached file relative to the run's folder. A host that did not copy it
     /// there itself has it copied now: what it tells next waits for that, and so do its
     /// deadlines.
     pub(super) async fn keep(&mut self, attachment: Attachment) {
-        let folder = self.keep_folder();
+        let folder = self.attachments_dir();
         let own = self.shared.run_folder.join(&folder);
         let work = self.job.launch.request.folder.clone().unwrap_or_default();
         let source = work.join(&attachment.path);
@@ -86,7 +86,7 @@ impl Task {
 }
 
 /// The folder for what a process attaches while it has this id.
-pub(super) fn keep_folder(source: Source, host: HostId) -> String {
+pub(super) fn attachments_dir(source: Source, host: HostId) -> String {
     match source {
         Source::Test(id) => format!("attachments/{id}/{}", host.0),
         Source::Fixture(id) => format!("attachments/fixture-{id}/{}", host.0),

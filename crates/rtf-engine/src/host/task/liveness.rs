@@ -14,7 +14,7 @@ impl Task {
         let Some(probes) = self.looked_at.take() else { return };
         if self.job.measured {
             let usage = usage::of(self.process.pid, &self.job.launch.scope);
-            self.tell(HostInput::Uses { usage, served: None }).await;
+            self.tell(HostInput::Uses { usage, tests_served: None }).await;
         }
         let plan = self.job.process.as_deref();
         let alive = plan.map(|plan| asked(&plan.alive, probes)).unwrap_or_default();

@@ -9,7 +9,7 @@
 use std::collections::VecDeque;
 
 use rtf_model::protocol::{Notification, OWNER_VARIABLE, Plugin, Reply, Request};
-use rtf_model::{ExitStatus, LeftProcess, Phase, Source, Stream};
+use rtf_model::{ExitStatus, LeakedProcess, Phase, Source, Stream};
 use tokio::sync::mpsc;
 
 use super::{Order, Task, keep};
@@ -105,9 +105,9 @@ impl Sharing {
 impl Task {
     /// What only this task knows of a request.
     pub(super) fn dress(&self, plugin: &mut Plugin, (source, host): (Source, HostId), id: u64) {
-        let folder = self.shared.run_folder.join(keep::keep_folder(source, host));
-        plugin.keep_folder = Some(folder.to_string_lossy().into_owned());
-        if let Some(mark) = &mut plugin.shared {
+        let folder = self.shared.run_folder.join(keep::attachments_dir(source, host));
+        plugin.attachments_dir = Some(folder.to_string_lossy().into_owned());
+        if let Some(mark) = &mut plugin.end_marker {
             *mark = format!("\0rtf {} {id}\0", self.job.launch.scope);
         }
     }
@@ -115,7 +115,7 @@ impl Task {
     pub(super) async fn serve_next(&mut self, mut next: Next) {
         let mut plugin = std::mem::take(&mut next.plugin);
         self.dress(&mut plugin, (next.source, next.host), next.request);
-        next.plugin.shared = plugin.shared.clone();
+        next.plugin.end_marker = plugin.end_marker.clone();
         let request = next.request;
         if let Some(sharing) = &mut self.sharing {
             sharing.upcoming.push_back(next);
@@ -176,7 +176,7 @@ impl Task {
     async fn measure(&self, served: u32) {
         if self.job.measured {
             let usage = usage::of(self.process.pid, &self.job.launch.scope);
-            self.tell(HostInput::Uses { usage, served: Some(served) }).await;
+            self.tell(HostInput::Uses { usage, tests_served: Some(served) }).await;
         }
     }
 
@@ -194,7 +194,7 @@ impl Task {
         if let (Some(sharing), Ok(FromHost::Answered(id, Reply::Result(answer)))) =
             (&mut self.sharing, &line)
         {
-            sharing.answered = *id == sharing.request && answer["stays"] == true;
+            sharing.answered = *id == sharing.request && answer["continues"] == true;
         }
         self.understand(line).await;
     }
@@ -224,7 +224,7 @@ impl Task {
         (sharing.answered, sharing.marked) = (false, [false; 2]);
         sharing.served += 1;
         (sharing.request, sharing.owner) = (next.request, Some(next.owner));
-        sharing.mark = next.plugin.shared.unwrap_or_default().into_bytes();
+        sharing.mark = next.plugin.end_marker.unwrap_or_default().into_bytes();
         if !was_released {
             self.tell(HostInput::Released).await;
         }
@@ -232,7 +232,7 @@ impl Task {
     }
 
     /// Names the present test as the owner of what was left.
-    pub(super) fn disown(&self, left: &mut [LeftProcess]) {
+    pub(super) fn disown(&self, left: &mut [LeakedProcess]) {
         let Some(owner) = self.sharing.as_ref().and_then(|sharing| sharing.owner.as_ref()) else {
             return;
         };
@@ -246,7 +246,7 @@ impl Task {
     }
 
     /// How the end of the process is told; under which id, is decided here, too.
-    pub(super) fn end_of(&mut self, status: ExitStatus, left: Vec<LeftProcess>) -> HostInput {
+    pub(super) fn end_of(&mut self, status: ExitStatus, left: Vec<LeakedProcess>) -> HostInput {
         if let Some(sharing) = &mut self.sharing
             && sharing.released
             && let Some(next) = sharing.upcoming.pop_front()

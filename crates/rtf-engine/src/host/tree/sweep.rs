@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use rtf_model::LeftProcess;
+use rtf_model::LeakedProcess;
 
 use super::{
     OWN, SIGKILL, STARTS, children_of, descendants, described, is_fork_server, is_own_child,
@@ -40,7 +40,7 @@ impl Effort {
 }
 
 /// Looks again and again, until enough looks found nothing new or the time is over.
-pub(super) fn sweep_if(effort: Effort, belongs: impl Fn(i32) -> bool) -> Vec<LeftProcess> {
+pub(super) fn sweep_if(effort: Effort, belongs: impl Fn(i32) -> bool) -> Vec<LeakedProcess> {
     let end = Instant::now() + SWEEP_LIMIT;
     let mut sweep = Sweep::default();
     let mut quiet = 0;
@@ -63,7 +63,7 @@ pub(super) fn sweep_if(effort: Effort, belongs: impl Fn(i32) -> bool) -> Vec<Lef
 /// What a sweep has found so far.
 #[derive(Default)]
 struct Sweep {
-    left: Vec<LeftProcess>,
+    left: Vec<LeakedProcess>,
     killed: HashSet<i32>,
     zombies: HashSet<i32>,
     /// Orphans that belong to something else.
@@ -145,7 +145,7 @@ impl Sweep {
     fn give_up(&mut self) {
         if let (true, Some(pid)) = (self.others.is_empty(), self.missed) {
             let command = "(not killed: processes that start each other and end at once)";
-            self.left.push(LeftProcess { pid, command: command.to_owned(), owner: None });
+            self.left.push(LeakedProcess { pid, command: command.to_owned(), owner: None });
         }
     }
 }

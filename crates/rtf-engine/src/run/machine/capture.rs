@@ -77,7 +77,7 @@ impl Capture {
         (!text.is_empty()).then(|| Output {
             source: self.source,
             stream: self.stream,
-            omitted,
+            omitted_bytes: omitted,
             text: String::from_utf8_lossy(text).into_owned(),
         })
     }
@@ -133,7 +133,7 @@ mod tests {
         }
         assert_eq!(text.as_bytes(), &flood[..HEAD_BYTES]);
         let last = capture.finish().unwrap();
-        assert_eq!(last.omitted as usize, total - HEAD_BYTES - TAIL_BYTES);
+        assert_eq!(last.omitted_bytes as usize, total - HEAD_BYTES - TAIL_BYTES);
         assert_eq!(last.text.as_bytes(), &flood[total - TAIL_BYTES..]);
     }
 }

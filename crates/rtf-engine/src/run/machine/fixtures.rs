@@ -5,7 +5,7 @@
 //! go at the same time.
 
 use rtf_model::TestId;
-use rtf_model::protocol::{Notice, Request};
+use rtf_model::protocol::{Request, Subscription};
 
 use super::fixture::{FixtureRun, State};
 use super::io::{HostId, Probes};
@@ -159,12 +159,12 @@ impl<'p> Fixtures<'p> {
     }
 
     /// Whether any of them asked for it.
-    pub fn any_hears(&self, notice: Notice) -> bool {
+    pub fn any_hears(&self, notice: Subscription) -> bool {
         self.runs.iter().any(|fixture| fixture.hears(notice))
     }
 
     /// Tells each that asked for it of a test.
-    pub fn tell(&mut self, about: (Notice, TestId), told: &Request, cx: &mut Context<'_>) {
+    pub fn tell(&mut self, about: (Subscription, TestId), told: &Request, cx: &mut Context<'_>) {
         self.runs.iter_mut().for_each(|fixture| fixture.tell(about, told.clone(), cx));
     }
 

@@ -2,7 +2,7 @@
 
 use rtf_model::protocol::{Answer, Notification, Plugin, Request};
 use rtf_model::{
-    EventKind, ExitStatus, LeftProcess, MessageKind, Outcome, Source, Stream, TestId, Trigger,
+    EventKind, ExitStatus, LeakedProcess, MessageKind, Outcome, Source, Stream, TestId, Trigger,
 };
 
 use super::capture::Capture;
@@ -54,9 +54,9 @@ impl<'p> HookRun<'p> {
                 args: plugin.args.clone(),
                 environment: suite.environment.clone(),
                 repetition: 1,
-                last: true,
-                shared: None,
-                keep_folder: None,
+                is_last: true,
+                end_marker: None,
+                attachments_dir: None,
             });
             cx.out(Effect::Send(host, Some(RUN), request));
         }
@@ -148,7 +148,7 @@ impl<'p> HookRun<'p> {
         cx.set(Deadline::Hook, KILL_WAIT);
     }
 
-    fn end(&mut self, exit: Option<ExitStatus>, left: Vec<LeftProcess>, cx: &mut Context<'_>) {
+    fn end(&mut self, exit: Option<ExitStatus>, left: Vec<LeakedProcess>, cx: &mut Context<'_>) {
         cx.clear(Deadline::Hook);
         for capture in &mut self.captures {
             if let Some(output) = capture.finish() {
@@ -157,7 +157,7 @@ impl<'p> HookRun<'p> {
         }
         if !left.is_empty() {
             let source = Source::Hook(self.plan.id);
-            cx.emit(EventKind::ProcessesLeft { source, processes: left });
+            cx.emit(EventKind::ProcessesLeaked { source, processes: left });
         }
         if let Some(problem) = self.judge(exit) {
             self.note(problem);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_model::protocol::{Notification, OWNER_VARIABLE, Plugin, Reply, Request, StackSupport};
-use rtf_model::{Attachment, EventKind, ExitStatus, LeftProcess, Source, Stream, TestId, Usage};
+use rtf_model::{Attachment, EventKind, ExitStatus, LeakedProcess, Source, Stream, TestId, Usage};
 
 use rtf_plan::plan::{AttachedPlan, HostPlan, ProcessPlan, SuitePlan};
 
@@ -64,7 +64,7 @@ pub enum HostInput {
         /// What it uses.
         usage: Usage,
         /// How many tests it has served, when it is one that tests share.
-        served: Option<u32>,
+        tests_served: Option<u32>,
     },
     /// It lives, its probes hold, and it has told nothing that was not delivered.
     Lives,
@@ -79,7 +79,7 @@ pub enum HostInput {
     Unbegun(ExitStatus),
     /// It ended, everything that it printed was delivered, and what it left
     /// behind was killed. Nothing follows.
-    Exited(ExitStatus, Vec<LeftProcess>),
+    Exited(ExitStatus, Vec<LeakedProcess>),
 }
 
 /// How quickly a suite must end.

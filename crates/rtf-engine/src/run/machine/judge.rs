@@ -1,7 +1,7 @@
 //! The verdict over one attempt of a test, from all that was seen of it.
 
 use rtf_model::protocol::{Answer, RpcError};
-use rtf_model::{ExitStatus, LeftProcess, Outcome, Phase, StopCause, Verdict};
+use rtf_model::{ExitStatus, LeakedProcess, Outcome, Phase, StopCause, Verdict};
 
 use rtf_plan::plan::Leaks;
 
@@ -105,7 +105,7 @@ fn ended(exit: Option<ExitStatus>) -> String {
 }
 
 /// What is said of a test that passed and left processes behind, if that counts.
-pub fn leak_of(leaks: Leaks, left: &[LeftProcess]) -> Option<String> {
+pub fn leak_of(leaks: Leaks, left: &[LeakedProcess]) -> Option<String> {
     match (leaks, left) {
         (Leaks::Report, _) | (_, []) => None,
         (Leaks::Fail, [one]) => Some(format!("it left a process behind: {}", one.command)),
@@ -120,7 +120,7 @@ mod tests {
     use super::*;
 
     fn answered(outcome: Outcome, exit: ExitStatus) -> Evidence {
-        let answer = Answer { outcome, reason: None, notices: Vec::new(), stays: false };
+        let answer = Answer { outcome, reason: None, subscriptions: Vec::new(), continues: false };
         Evidence { answer: Some(Ok(answer)), exit: Some(exit), ..Evidence::default() }
     }
 

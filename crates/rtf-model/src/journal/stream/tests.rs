@@ -8,7 +8,7 @@ fn stream() -> Vec<Event> {
         rtf: "0".into(),
         started_at: String::new(),
         command: Vec::new(),
-        folder: String::new(),
+        working_dir: String::new(),
         suites: 1,
         tests: 2,
         manifest: Box::default(),

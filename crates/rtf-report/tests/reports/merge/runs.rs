@@ -74,7 +74,7 @@ pub struct Run {
     events: Vec<Event>,
     now: u64,
     /// How many tests the shared host of the suite has served.
-    served: u32,
+    tests_served: u32,
 }
 
 impl Run {
@@ -94,11 +94,11 @@ impl Run {
         let manifest = Manifest {
             inputs: vec!["suites".into()],
             shard: part.map(|part| format!("{}/{PARTS}", part + 1)),
-            chosen_of: if tests == all { 0 } else { all as u32 },
+            selected_from: if tests == all { 0 } else { all as u32 },
             ..Manifest::default()
         };
         let now = u64::from(part.unwrap_or(0)) * 1000;
-        let mut run = Self { events: Vec::new(), now, served: 0 };
+        let mut run = Self { events: Vec::new(), now, tests_served: 0 };
         run.push(run_started(tests as u32, manifest));
         let mut planned = Vec::new();
         for (number, suite) in suites.iter().enumerate() {
@@ -169,7 +169,7 @@ impl Run {
 
     fn suite(&mut self, plan: &Planned<'_>) {
         self.push(EventKind::SuiteStarted { suite: plan.id });
-        self.served = 0;
+        self.tests_served = 0;
         let fixtures = || (plan.fixture..plan.fixture + plan.suite.fixtures).map(FixtureId);
         fixtures().for_each(|fixture| self.up(fixture, 1));
         let (mut starts, mut broken) = (1, false);
@@ -249,13 +249,14 @@ impl Run {
     /// One host serves the tests, until one does not pass.
     fn used(&mut self, test: TestId, verdict: Verdict) {
         if verdict != Verdict::Passed {
-            self.served = 0;
+            self.tests_served = 0;
             return;
         }
-        self.served += 1;
-        let usage = Usage { processes: 1, memory: u64::from(self.served) << 20, descriptors: 9 };
-        let (source, served) = (Source::Test(test), Some(self.served));
-        self.push(EventKind::Used { source, usage, served });
+        self.tests_served += 1;
+        let usage =
+            Usage { processes: 1, memory: u64::from(self.tests_served) << 20, descriptors: 9 };
+        let (source, tests_served) = (Source::Test(test), Some(self.tests_served));
+        self.push(EventKind::ResourcesMeasured { source, usage, tests_served });
     }
 
     fn reports(&mut self, test: TestId, tried: &Try) {
@@ -301,7 +302,7 @@ fn run_started(tests: u32, manifest: Manifest) -> EventKind {
         rtf: "0.1.0".into(),
         started_at: "2026-11-21T06:30:12+00:00".into(),
         command: vec!["rtf".into()],
-        folder: "/robot".into(),
+        working_dir: "/robot".into(),
         suites: 1,
         tests,
         manifest: Box::new(manifest),

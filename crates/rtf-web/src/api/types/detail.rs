@@ -69,7 +69,7 @@ pub struct Printed {
     pub stream: Stream,
     /// Bytes left out just before the text.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub omitted: Option<u64>,
+    pub omitted_bytes: Option<u64>,
     /// The text.
     pub text: String,
 }

@@ -1,6 +1,6 @@
 //! Fixtures.
 
-use rtf_model::{FixtureLife, FixtureRecord, FixtureState, LeftProcess, Message};
+use rtf_model::{FixtureLife, FixtureRecord, FixtureState, LeakedProcess, Message};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -35,8 +35,8 @@ pub struct Fixture {
     pub messages: Vec<Message>,
     /// Processes of it that had to be killed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    #[schema(value_type = Vec<model::LeftProcess>, required = false)]
-    pub left: Vec<LeftProcess>,
+    #[schema(value_type = Vec<model::LeakedProcess>, required = false)]
+    pub leaked: Vec<LeakedProcess>,
 }
 
 /// One life of a fixture.
@@ -102,7 +102,7 @@ impl Fixture {
             broken: fixture.broken.clone(),
             log_tail: fixture.log_tail.clone(),
             messages: fixture.messages.clone(),
-            left: fixture.left.clone(),
+            leaked: fixture.leaked.clone(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Hooks.
 
-use rtf_model::{HookRecord, LeftProcess, Message, Trigger};
+use rtf_model::{HookRecord, LeakedProcess, Message, Trigger};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -55,8 +55,8 @@ pub struct HookRun {
     pub stacks: Vec<String>,
     /// Processes of it that had to be killed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    #[schema(value_type = Vec<model::LeftProcess>, required = false)]
-    pub left: Vec<LeftProcess>,
+    #[schema(value_type = Vec<model::LeakedProcess>, required = false)]
+    pub leaked: Vec<LeakedProcess>,
 }
 
 /// All hooks of a run.
@@ -94,7 +94,7 @@ impl HookRun {
             output: run.output.clone(),
             messages: run.messages.clone(),
             stacks: run.stacks.clone(),
-            left: run.left.clone(),
+            leaked: run.leaked.clone(),
         }
     }
 }

@@ -23,7 +23,7 @@ pub struct RunInfo {
     /// Its command line.
     pub command: Vec<String>,
     /// The folder in which the command was given.
-    pub folder: String,
+    pub working_dir: String,
     /// How far it is.
     pub state: State,
     /// The signal or request that cut it short.
@@ -147,7 +147,7 @@ impl RunInfo {
             started_at: started.map(|run| run.started_at.clone()).unwrap_or_default(),
             rtf: started.map(|run| run.rtf.clone()).unwrap_or_default(),
             command: started.map(|run| run.command.clone()).unwrap_or_default(),
-            folder: started.map(|run| run.folder.clone()).unwrap_or_default(),
+            working_dir: started.map(|run| run.working_dir.clone()).unwrap_or_default(),
             interrupted: record.interrupted().map(str::to_owned),
             died: record.died().map(str::to_owned),
             green: state.is_over().then(|| record.is_green()),
@@ -168,7 +168,7 @@ impl RunInfo {
             started_at: String::new(),
             rtf: String::new(),
             command: Vec::new(),
-            folder: String::new(),
+            working_dir: String::new(),
             state,
             interrupted: None,
             died: None,

@@ -33,6 +33,6 @@ macro_rules! model {
 }
 
 model! {
-    Attachment, Diagnostic, Event, ExitStatus, LeftProcess, Measurement, Message, Phase, Stream,
+    Attachment, Diagnostic, Event, ExitStatus, LeakedProcess, Measurement, Message, Phase, Stream,
     Revision, SuitePrepared, Trigger, Verdict,
 }

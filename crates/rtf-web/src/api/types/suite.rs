@@ -1,6 +1,6 @@
 //! Suites, and the snapshot of a whole run.
 
-use rtf_model::{Diagnostic, LeftProcess, Record, SuitePrepared, SuiteRecord};
+use rtf_model::{Diagnostic, LeakedProcess, Record, SuitePrepared, SuiteRecord};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -24,8 +24,8 @@ pub struct Snapshot {
     #[schema(value_type = Vec<model::Diagnostic>)]
     pub warnings: Vec<Diagnostic>,
     /// What was left at the end and had to be killed, when the runner died.
-    #[schema(value_type = Vec<model::LeftProcess>)]
-    pub left: Vec<LeftProcess>,
+    #[schema(value_type = Vec<model::LeakedProcess>)]
+    pub leaked: Vec<LeakedProcess>,
 }
 
 /// Where a suite is.
@@ -140,7 +140,7 @@ impl Snapshot {
             hooks: record.hooks.iter().map(Hook::of).collect(),
             tests: record.tests.iter().map(|test| Test::of(test, over)).collect(),
             warnings: record.warnings.clone(),
-            left: record.left.clone(),
+            leaked: record.leaked.clone(),
             info,
         }
     }

@@ -1,6 +1,6 @@
 //! Tests and their attempts.
 
-use rtf_model::{AttemptRecord, ExitStatus, LeftProcess, Phase, TestRecord, Verdict};
+use rtf_model::{AttemptRecord, ExitStatus, LeakedProcess, Phase, TestRecord, Verdict};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -158,8 +158,8 @@ pub struct Attempt {
     pub counts: Counts,
     /// Processes of it that had to be killed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    #[schema(value_type = Vec<model::LeftProcess>, required = false)]
-    pub left: Vec<LeftProcess>,
+    #[schema(value_type = Vec<model::LeakedProcess>, required = false)]
+    pub leaked: Vec<LeakedProcess>,
 }
 
 /// When a phase began.
@@ -235,7 +235,7 @@ impl Attempt {
             exit: finished.and_then(|finished| finished.exit),
             slow: attempt.slow,
             counts: attempt.counts.into(),
-            left: attempt.left.clone(),
+            leaked: attempt.leaked.clone(),
         }
     }
 }

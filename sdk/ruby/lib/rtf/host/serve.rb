@@ -93,7 +93,7 @@ module RTF
                             "host protocol, this host version #{PROTOCOL_VERSION}")
         end
         @initialized = true
-        { protocol: PROTOCOL_VERSION, host: "ruby #{RUBY_VERSION}", stack: "message", shares: true }
+        { protocol: PROTOCOL_VERSION, host: "ruby #{RUBY_VERSION}", stack: "message", supports_shared: true }
       end
 
       def run_test(request)
@@ -109,8 +109,8 @@ module RTF
         @sharing ||= Sharing.begin unless task.last?
         Steps.phase(session, "load")
         answer = Steps.run_test(session)
-        stays = answer[:outcome] == "passed" && !task.last? && @sharing&.stay(task.shared)
-        stays ? [answer.merge(stays: true), false] : [answer, true]
+        continues = answer[:outcome] == "passed" && !task.last? && @sharing&.stay(task.shared)
+        continues ? [answer.merge(continues: true), false] : [answer, true]
       end
 
       def set_up_fixture(request)
@@ -121,10 +121,10 @@ module RTF
 
       def tell_fixture(request)
         session = enter(@task, request)
-        session.task.keep_folder = request.params["keep_folder"].to_s
+        session.task.attachments_dir = request.params["attachments_dir"].to_s
         Steps.tell_fixture(session, @fixture, request.method, request.params)
       ensure
-        session.task.keep_folder = "" if session
+        session.task.attachments_dir = "" if session
       end
 
       def tear_down_fixture(request)

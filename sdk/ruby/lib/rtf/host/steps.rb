@@ -37,7 +37,7 @@ module RTF
         step(session, "setup") { fixture.setup(session.task.args) } if fixture
         answer = answer(session)
         notices = fixture && answer[:outcome] == "passed" ? notices(fixture) : []
-        answer[:notices] = notices if notices.any?
+        answer[:subscriptions] = notices if notices.any?
         [fixture, answer]
       end
 

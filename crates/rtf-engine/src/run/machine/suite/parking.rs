@@ -1,13 +1,18 @@
 //! Which hooks the suite calls for, and that they wait for no recorder.
 
-use rtf_model::protocol::ToldTest;
+use rtf_model::protocol::TestAttempt;
 use rtf_model::{Trigger, Verdict};
 
 use super::{Context, SuiteMachine};
 
 impl SuiteMachine<'_> {
     /// Calls for the hooks after an attempt.
-    pub(super) fn call_hooks(&mut self, test: &ToldTest, verdict: Verdict, reason: Option<&str>) {
+    pub(super) fn call_hooks(
+        &mut self,
+        test: &TestAttempt,
+        verdict: Verdict,
+        reason: Option<&str>,
+    ) {
         let trigger = match verdict {
             Verdict::Failed | Verdict::Error | Verdict::Crashed => Trigger::Failure,
             Verdict::TimedOut => Trigger::Timeout,

@@ -2,7 +2,7 @@
 //! and how it was judged. The next attempt waits until they have heard it; hooks do
 //! not: a robot is not parked later because something is being recorded.
 
-use rtf_model::protocol::{Notice, Request, TestEnds, TestStarts};
+use rtf_model::protocol::{Request, Subscription, TestEnds, TestStarts};
 use rtf_model::{EventKind, Phase};
 
 use super::{Context, SuiteMachine};
@@ -13,7 +13,7 @@ impl SuiteMachine<'_> {
     pub(super) fn tell_then_start(&mut self, cx: &mut Context<'_>) -> bool {
         while self.turns.open_next() {}
         while let Some(test) = self.turns.tell_next() {
-            let about = (Notice::TestStarted, test.id);
+            let about = (Subscription::TestStarted, test.id);
             if self.fixtures.any_hears(about.0) {
                 let told = Request::TestStarted(TestStarts { test });
                 self.fixtures.tell(about, &told, cx);
@@ -31,10 +31,10 @@ impl SuiteMachine<'_> {
     pub(super) fn look_over(&mut self, cx: &mut Context<'_>) {
         while let Some((test, verdict, reason)) = self.turns.judge_next(cx) {
             self.call_hooks(&test, verdict, reason.as_deref());
-            let about = (Notice::TestFinished, test.id);
+            let about = (Subscription::TestFinished, test.id);
             if self.fixtures.any_hears(about.0) {
-                cx.emit(EventKind::TestPhase { test: test.id, phase: Phase::Notice });
-                let ends = TestEnds { test, verdict, reason, keep_folder: None };
+                cx.emit(EventKind::TestPhase { test: test.id, phase: Phase::Notify });
+                let ends = TestEnds { test, verdict, reason, attachments_dir: None };
                 self.fixtures.tell(about, &Request::TestFinished(ends), cx);
             }
         }

@@ -7,7 +7,7 @@
 
 use std::time::Duration;
 
-use rtf_model::protocol::ToldTest;
+use rtf_model::protocol::TestAttempt;
 use rtf_model::{StopCause, TestId, Verdict};
 
 use super::Context;
@@ -44,9 +44,9 @@ impl Turn<'_> {
     }
 
     /// The attempt that runs, or is next, as fixtures are told.
-    fn told_test(&self) -> ToldTest {
+    fn told_test(&self) -> TestAttempt {
         let Cursor { repetition, attempt, .. } = self.cursor;
-        ToldTest { id: self.plan.id, name: self.plan.name.clone(), repetition, attempt }
+        TestAttempt { id: self.plan.id, name: self.plan.name.clone(), repetition, attempt }
     }
 }
 
@@ -169,7 +169,7 @@ impl<'p> Turns<'p> {
     pub fn judge_next(
         &mut self,
         cx: &mut Context<'_>,
-    ) -> Option<(ToldTest, Verdict, Option<String>)> {
+    ) -> Option<(TestAttempt, Verdict, Option<String>)> {
         self.open.iter_mut().find_map(|turn| {
             let (verdict, reason) = turn.run.as_mut()?.judge_once(cx)?;
             Some((turn.told_test(), verdict, reason))
@@ -190,7 +190,7 @@ impl<'p> Turns<'p> {
     }
 
     /// The next of the attempts that are due of which fixtures have to be told.
-    pub fn tell_next(&mut self) -> Option<ToldTest> {
+    pub fn tell_next(&mut self) -> Option<TestAttempt> {
         let turn = self.open.iter_mut().find(|turn| turn.is_due() && !turn.told)?;
         turn.told = true;
         Some(turn.told_test())

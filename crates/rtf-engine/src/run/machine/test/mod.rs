@@ -13,7 +13,7 @@ use std::time::Duration;
 
 use rtf_model::protocol::{Reply, StackSupport};
 use rtf_model::{
-    EventKind, ExitStatus, LeftProcess, Phase, Source, StopCause, Stream, TestFinished, TestId,
+    EventKind, ExitStatus, LeakedProcess, Phase, Source, StopCause, Stream, TestFinished, TestId,
     Verdict,
 };
 
@@ -221,8 +221,12 @@ impl<'p> TestRun<'p> {
                 }
             }
             HostInput::StackTaken(text) => self.stack_taken(text, cx),
-            HostInput::Uses { usage, served } => {
-                cx.emit(EventKind::Used { source: Source::Test(self.plan.id), usage, served });
+            HostInput::Uses { usage, tests_served } => {
+                cx.emit(EventKind::ResourcesMeasured {
+                    source: Source::Test(self.plan.id),
+                    usage,
+                    tests_served,
+                });
             }
             HostInput::Throttled(_) => self.pause_clock(true),
             HostInput::Resumed => self.pause_clock(false),
@@ -239,7 +243,7 @@ impl<'p> TestRun<'p> {
         match parse_initialized(reply) {
             Ok(initialized) => {
                 self.stack = initialized.stack;
-                self.shares = self.plan.shared && initialized.shares;
+                self.shares = self.plan.shared && initialized.supports_shared;
             }
             Err(what) => self.broke_protocol(what, cx),
         }
@@ -251,7 +255,7 @@ impl<'p> TestRun<'p> {
         }
         match parse_answer(reply) {
             Ok(answer) => {
-                if !answer.as_ref().is_ok_and(|answer| answer.stays) {
+                if !answer.as_ref().is_ok_and(|answer| answer.continues) {
                     cx.out(Effect::CloseChannel(self.host));
                 }
                 self.evidence.answer = Some(answer);
@@ -274,7 +278,7 @@ impl<'p> TestRun<'p> {
         self.stop(StopCause::Protocol, reason, cx);
     }
 
-    fn exited(&mut self, exit: Option<ExitStatus>, left: Vec<LeftProcess>, cx: &mut Context<'_>) {
+    fn exited(&mut self, exit: Option<ExitStatus>, left: Vec<LeakedProcess>, cx: &mut Context<'_>) {
         self.stopwatch = None;
         cx.clear(Deadline::Test(self.plan.id, TestTimer::Slow));
         for capture in &mut self.captures {
@@ -285,7 +289,7 @@ impl<'p> TestRun<'p> {
         self.leak = leak_of(self.plan.leaks, &left);
         if !left.is_empty() {
             let source = Source::Test(self.plan.id);
-            cx.emit(EventKind::ProcessesLeft { source, processes: left });
+            cx.emit(EventKind::ProcessesLeaked { source, processes: left });
         }
         (self.evidence.exit, self.evidence.released) = (exit, self.released);
         let (verdict, ..) = judge(&self.evidence, self.phase);

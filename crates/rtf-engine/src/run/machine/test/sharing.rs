@@ -79,9 +79,9 @@ fn plugin(suite: &SuitePlan, plan: &TestPlan, (repetition, last): (u32, bool)) -
         args: plan.plugin.args.clone(),
         environment: suite.environment.clone(),
         repetition,
-        last,
+        is_last: last,
         // The mark is known to the task around the process.
-        shared: plan.shared.then(String::new),
-        keep_folder: None,
+        end_marker: plan.shared.then(String::new),
+        attachments_dir: None,
     }
 }

@@ -129,7 +129,7 @@ impl TestRun<'_> {
             Phase::Setup => format!("set-up did not end within {:?}", limits.setup),
             Phase::Run => format!("run did not end within {:?}", limits.run),
             Phase::TearDown => format!("tear-down did not end within {:?}", limits.teardown),
-            Phase::Exit | Phase::Notice => {
+            Phase::Exit | Phase::Notify => {
                 format!("the process did not end within {:?} after the test", limits.teardown)
             }
         }

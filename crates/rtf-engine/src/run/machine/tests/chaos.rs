@@ -57,7 +57,7 @@ pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool)
                 let notices = ["test-started", "test-finished"];
                 let stays = shared && outcome == "passed" && matches!(source, Source::Test(_));
                 let value = serde_json::json!({
-                    "outcome": outcome, "notices": notices, "stays": stays
+                    "outcome": outcome, "subscriptions": notices, "continues": stays
                 });
                 if stays {
                     world.answered.insert(host);
@@ -66,7 +66,7 @@ pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool)
             }
         }
         5 if shared && choice > 100 => {
-            let value = serde_json::json!({ "protocol": 1, "host": "h", "shares": true });
+            let value = serde_json::json!({ "protocol": 1, "host": "h", "supports_shared": true });
             let answer = HostInput::Answered(INITIALIZE, Reply::Result(value));
             world.feed(Input::Host(host, answer));
         }
@@ -196,7 +196,7 @@ fn check_overlaps(world: &World<'_>) {
                 continue;
             };
             // What happens once it is judged, and fixtures are told, changes nothing.
-            let noticed = attempt.phases.iter().find(|(phase, _)| *phase == Phase::Notice);
+            let noticed = attempt.phases.iter().find(|(phase, _)| *phase == Phase::Notify);
             let judged = noticed.map_or(end, |(_, at)| at);
             let overlaps = collapses.iter().any(|at| *at > attempt.started && at < judged);
             assert!(!(overlaps && finished.verdict == Verdict::Passed), "{:#?}", world.log);

@@ -81,7 +81,7 @@ fn what_a_fixture_keeps_at_the_end_of_a_test_is_the_tests() {
     0.0  test-phase phase=run test=0
     0.0  test-phase phase=tear-down test=0
     0.0    → close the channel
-    0.0  test-phase phase=notice test=0
+    0.0  test-phase phase=notify test=0
     0.0  attached attachment={media_type:,name:run.mcap,path:attachments/fixture-0/1/1-run.mcap} fixture=0 test=0
     0.0  measured fixture=0 measurement={name:size,unit:MB,value:3.5} test=0
     0.0  message source={fixture:0}

@@ -24,15 +24,15 @@ fn it_is_told_before_anything_begins() {
         network: None,
         ports: Vec::new(),
         variables: Vec::new(),
-        join: "export A=1".to_owned(),
+        join_command: "export A=1".to_owned(),
     });
     let world = World::started(&plan);
     assert_snapshot!(world.story(), @"
     0.0  suite-started
-    0.0  suite-prepared join=export A=1
+    0.0  suite-prepared join_command=export A=1
     0.0  fixture-starting attempt=1 fixture=0
     ");
-    assert_eq!(world.record.suites[0].prepared.as_ref().expect("it").join, "export A=1");
+    assert_eq!(world.record.suites[0].prepared.as_ref().expect("it").join_command, "export A=1");
 }
 
 #[test]

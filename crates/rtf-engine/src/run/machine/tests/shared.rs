@@ -50,7 +50,7 @@ fn source(test: u32) -> Source {
 
 /// The host says that it can be shared.
 fn initialized(world: &mut World<'_>, test: u32) {
-    let value = serde_json::json!({ "protocol": 1, "host": "h", "shares": true });
+    let value = serde_json::json!({ "protocol": 1, "host": "h", "supports_shared": true });
     world.input(source(test), HostInput::Answered(INITIALIZE, Reply::Result(value)));
 }
 
@@ -62,7 +62,7 @@ pub(super) fn stays(world: &mut World<'_>, test: u32) -> HostId {
     let host = world.host_of(source(test));
     let asked = world.sent.iter().rev().find(|(to, id, _)| *to == host && id.is_some());
     let id = asked.and_then(|(_, id, _)| *id).expect("a request");
-    let value = serde_json::json!({ "outcome": "passed", "stays": true });
+    let value = serde_json::json!({ "outcome": "passed", "continues": true });
     world.input(source(test), HostInput::Answered(id, Reply::Result(value)));
     host
 }
@@ -96,7 +96,7 @@ fn what_a_host_uses_is_told_before_it_gets_the_next_repetition() {
         let host = stays(&mut world, 0);
         assert!(world.joined.is_empty(), "it is looked at first");
         let usage = Usage { processes: 1, memory: 4096, descriptors: 9 };
-        world.input(source(0), HostInput::Uses { usage, served: Some(served) });
+        world.input(source(0), HostInput::Uses { usage, tests_served: Some(served) });
         world.release(host);
         assert!(world.joined.contains_key(&host), "then it is asked again");
         world.begin_joined(host);
@@ -104,7 +104,7 @@ fn what_a_host_uses_is_told_before_it_gets_the_next_repetition() {
     world.pass(0);
     world.finish();
     let hosts = &world.record.suites[0].hosts;
-    assert_eq!((hosts.len(), hosts[0].served, hosts[0].usage.seen()), (1, 2, 2));
+    assert_eq!((hosts.len(), hosts[0].tests_served, hosts[0].usage.seen()), (1, 2, 2));
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Passed));
 }
 

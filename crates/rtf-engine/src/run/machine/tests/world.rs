@@ -88,7 +88,7 @@ impl<'p> World<'p> {
             rtf: "0".to_owned(),
             started_at: String::new(),
             command: Vec::new(),
-            folder: String::new(),
+            working_dir: String::new(),
             suites: 1,
             tests: u32::try_from(plan.tests.len()).unwrap(),
             manifest: Box::default(),

@@ -64,7 +64,7 @@ impl<'p> World<'p> {
     pub fn set_up_to_hear(&mut self, fixture: u32) {
         let source = Source::Fixture(FixtureId(fixture));
         let notices = ["test-started", "test-finished"];
-        let value = serde_json::json!({ "outcome": "passed", "notices": notices });
+        let value = serde_json::json!({ "outcome": "passed", "subscriptions": notices });
         self.input(source, HostInput::Answered(2, Reply::Result(value)));
     }
 

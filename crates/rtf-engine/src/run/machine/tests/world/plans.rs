@@ -56,7 +56,7 @@ fn fixture(index: usize) -> FixturePlan {
         limits: FixtureLimits {
             setup: 10 * SECOND,
             check: SECOND,
-            notice: 2 * SECOND,
+            notify: 2 * SECOND,
             teardown: 3 * SECOND,
         },
         restarts: 1,
