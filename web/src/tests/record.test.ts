@@ -54,7 +54,7 @@ test('what a suite got for itself is known, and the first of it stays', () => {
     expect(prepared).not.toHaveProperty('type');
     const told = events.find(({ type }) => type === 'suite-prepared');
     if (told?.type !== 'suite-prepared') throw new Error('the stream tells it');
-    record.apply({ ...told, seq: record.info.seq, join: 'another' });
+    record.apply({ ...told, seq: record.info.seq, join_command: 'another' });
     expect(record.suites[0]?.prepared).toBe(prepared);
 });
 

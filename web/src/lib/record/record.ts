@@ -210,10 +210,10 @@ function plannedSuite(plan: Extract<Event, { type: 'suite-planned' }>): Suite {
 
 /** What a suite got for itself, without what is the event's own. */
 function preparedOf(event: Extract<Event, { type: 'suite-prepared' }>): SuitePrepared {
-    const { suite, network, ports, variables, join } = event;
+    const { suite, network, ports, variables, join_command } = event;
     return {
         suite,
-        join,
+        join_command,
         ...(network == null ? {} : { network }),
         ...(ports === undefined ? {} : { ports }),
         ...(variables === undefined ? {} : { variables }),
@@ -246,5 +246,5 @@ export function emptySnapshot(): Snapshot {
         problems: [],
         damages: [],
     };
-    return { info, suites: [], fixtures: [], hooks: [], tests: [], warnings: [], left: [] };
+    return { info, suites: [], fixtures: [], hooks: [], tests: [], warnings: [], leaked: [] };
 }
