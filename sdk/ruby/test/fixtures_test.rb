@@ -55,7 +55,8 @@ class FixturesTest < HostTest
     assert_equal %w[test-started test-finished], result["subscriptions"]
     test = { "id" => 3, "name" => "Move", "repetition" => 2, "attempt" => 1 }
     assert_equal({ "outcome" => "passed" }, host.ask("test-started", { test: test })["result"])
-    ends = { test: test, verdict: "failed", reason: "far", attachments_dir: File.join(@folder, "k") }
+    ends = { test: test, verdict: "failed", reason: "far",
+             attachments_dir: File.join(@folder, "k") }
     assert_equal({ "outcome" => "passed" }, host.ask("test-finished", ends)["result"])
     assert_equal [["report", "3 Move 2.1 failed: far"]], host.texts
     assert_equal 3.5, host.of("measured").first["value"]

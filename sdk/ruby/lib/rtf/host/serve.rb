@@ -93,7 +93,8 @@ module RTF
                             "host protocol, this host version #{PROTOCOL_VERSION}")
         end
         @initialized = true
-        { protocol: PROTOCOL_VERSION, host: "ruby #{RUBY_VERSION}", stack: "message", supports_shared: true }
+        { protocol: PROTOCOL_VERSION, host: "ruby #{RUBY_VERSION}", stack: "message",
+          supports_shared: true }
       end
 
       def run_test(request)
