@@ -157,7 +157,11 @@ def test_a_request_that_comes_after_the_last_answer_is_not_missed(tmp_path: Path
     """A test that fails ends its host, which may have been asked for the next one just then."""
     for _ in range(8):
         host = Host(tmp_path)
-        params = {**plugin(tmp_path, arm("self.fail('no')")), "is_last": False, "end_marker": "\0mark\n"}
+        params = {
+            **plugin(tmp_path, arm("self.fail('no')")),
+            "is_last": False,
+            "end_marker": "\0mark\n",
+        }
         host.send("run-test", params, number=2)
         host.wait_for("message")
         with suppress(OSError):  # it has ended already
