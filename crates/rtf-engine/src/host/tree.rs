@@ -255,8 +255,20 @@ pub fn is_stopped(pid: i32) -> bool {
 
 /// The letter for what a process does.
 fn state_of(pid: i32) -> Option<char> {
+    stat_of(pid)?.chars().next()
+}
+
+/// Whether a process is exiting: `PF_EXITING` of Linux' include/linux/sched.h.
+fn is_exiting(pid: i32) -> bool {
+    const EXITING: u64 = 0x4;
+    let flags = stat_of(pid).and_then(|stat| stat.split(' ').nth(6)?.parse::<u64>().ok());
+    flags.is_none_or(|flags| flags & EXITING != 0)
+}
+
+/// The fields of `/proc/PID/stat` from the state on.
+fn stat_of(pid: i32) -> Option<String> {
     let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
-    stat.rsplit_once(") ")?.1.chars().next()
+    Some(stat.rsplit_once(") ")?.1.to_owned())
 }
 
 /// Whether an environment without a scope shows that a process belongs to nobody. While
@@ -266,8 +278,9 @@ fn is_settled(pid: i32) -> bool {
     match std::fs::read(format!("/proc/{pid}/environ")) {
         Ok(environ) if environ.is_empty() => matches!(state_of(pid), Some('S' | 'I' | 'T' | 't')),
         Ok(_) => true,
-        // Another user's process. One that has gone was looked at too late.
-        Err(error) => error.kind() == std::io::ErrorKind::PermissionDenied,
+        // Another user's process, or, for an ordinary user, any process that has given its
+        // memory back while it exits: its children are not orphans yet.
+        Err(error) => error.kind() == std::io::ErrorKind::PermissionDenied && !is_exiting(pid),
     }
 }
 

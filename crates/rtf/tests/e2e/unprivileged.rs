@@ -6,7 +6,7 @@ use std::process::Command;
 use rtf_model::{TestId, Verdict};
 
 use crate::isolation::{Network, prepared};
-use crate::support::{Folder, Running, nothing_left};
+use crate::support::{Folder, Running, nothing_left, wait_until};
 
 /// The folder and the programs for a user who may read nothing else of ours.
 fn for_nobody(folder: &Folder) -> Command {
@@ -56,13 +56,27 @@ fn end(running: Running) -> (Option<i32>, String) {
 /// Without control groups, it has to be caught between two of its lives.
 #[test]
 fn what_a_test_left_is_found_when_it_starts_anew_all_the_time() {
+    assert_chain_is_found("");
+}
+
+/// While a large process exits, an ordinary user cannot read its environment any more, and its
+/// child is not an orphan yet.
+#[test]
+fn what_a_test_left_is_found_when_each_life_exits_slowly() {
+    assert_chain_is_found("memory = bytearray(b'1') * 400_000_000");
+}
+
+/// A test leaves a process that forks and exits all the time.
+fn assert_chain_is_found(before: &str) {
     let folder = Folder::new();
     // It ends by itself if nobody catches it.
-    let chain = "import os\nos.setsid()\nopen('began', 'w').close()\n\
-        for life in range(20000):\n    if os.fork():\n        os._exit(0)\n";
+    let chain = format!(
+        "import os, time\n{before}\nos.setsid()\nopen('began', 'w').close()\nend = time.monotonic() + 20\n\
+         while time.monotonic() < end:\n    if os.fork():\n        os._exit(0)\n"
+    );
     let test = "TestCase = {}\nfunction TestCase.run()\n  \
         os.execute('python3 chain.py >/dev/null 2>&1 & while ! test -e began; do sleep 0.01; done')\nend\n";
-    folder.file("chain.py", chain).file("T.lua", test);
+    folder.file("chain.py", &chain).file("T.lua", test);
     folder.file("s.xml", "<suite name='s'><test leaks='fail'>T.lua</test></suite>");
     let mut command = for_nobody(&folder);
     command.args(["run", "s.xml"]);
@@ -71,8 +85,9 @@ fn what_a_test_left_is_found_when_it_starts_anew_all_the_time() {
     let record = folder.journal().record;
     assert_eq!(record.verdict(TestId(0)), Some(Verdict::Error), "{printed}");
     let reason = record.tests[0].reason().expect("a reason");
-    assert!(reason.contains("chain.py"), "{reason}");
-    assert!(nothing_left(&folder));
+    // A process that exits has no arguments any more.
+    assert!(reason.contains("behind") && reason.contains("python3"), "{reason}");
+    wait_until("the end of what was killed", || nothing_left(&folder).then_some(()));
 }
 
 /// Where the kernel allows it to everybody, it needs no root; where it does
