@@ -1,4 +1,4 @@
-# The front door. What each goal does is in tools/.
+# Entry points; the scripts are in tools/.
 
 PREFIX ?= /usr/local
 DESTDIR ?=
@@ -7,18 +7,18 @@ DESTDIR ?=
 .PHONY: help build web screenshots demo icub test test-quick chaos bench counts install uninstall clean
 
 help:
-	@echo "make demo       install what is missing, build, and test a simulated robot arm"
-	@echo "make icub       the same with a humanoid, the iCub, behind YARP (builds YARP, ten minutes, once)"
+	@echo "make demo       install requirements, build, and test a simulated robot arm"
+	@echo "make icub       the same with a humanoid, the iCub, behind YARP (builds YARP once, ten minutes)"
 	@echo "make build      build rtf and its hosts (target/release)"
-	@echo "make web        build the page that rtf shows in a browser (make build does, too)"
-	@echo "make test       every check there is: Rust, SDKs, examples, lints, installation"
-	@echo "make test-quick the same without what needs middleware (ROS, YARP): it says what it leaves out"
+	@echo "make web        build the page that rtf serves (included in make build)"
+	@echo "make test       run all checks: Rust, SDKs, examples, lints, installation"
+	@echo "make test-quick the same without steps that need middleware (ROS, YARP), which it lists"
 	@echo "make chaos      kill fixtures, hosts and runners at random moments, for half an hour"
 	@echo "make bench      measure speed and memory"
-	@echo "make counts     record how many instructions the hot paths take (make test compares them)"
-	@echo "make install    install into PREFIX=$(PREFIX); DESTDIR is put before it"
-	@echo "make uninstall  remove what make install has put there"
-	@echo "make clean      remove what was built"
+	@echo "make counts     record the instruction counts of the hot paths (make test compares them)"
+	@echo "make install    install into PREFIX=$(PREFIX), below DESTDIR if set"
+	@echo "make uninstall  remove the installed files"
+	@echo "make clean      remove build results"
 
 build:
 	@tools/bootstrap.sh build
@@ -34,7 +34,7 @@ screenshots:
 demo:
 	@tools/demo.sh
 
-# The iCub in simulation: examples/04-icub.
+# Runs examples/04-icub.
 icub:
 	@tools/icub.sh
 

@@ -33,8 +33,8 @@ def main() -> int:
     """Measures, prints, judges."""
     options = parse()
     with tempfile.TemporaryDirectory(prefix="rtf-bench-") as name:
-        folder = Path(name)
-        bench = Bench.open(folder, options.results or folder / "results", options.rtf.resolve())
+        work = Path(name)
+        bench = Bench.open(work, options.results or work / "results", options.rtf.resolve())
         if options.list:
             print_lines(bench)
             return 0
@@ -137,7 +137,7 @@ def about_machine() -> str:
 
 
 if __name__ == "__main__":
-    # So that the temporary folder is removed then, too.
+    # So that the temporary directory is removed then, too.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     try:
         sys.exit(main())

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures speed and memory, side by side with the peers. Options: benches/run.sh --help.
+# Compares speed and memory with the peers. Options: benches/run.sh --help.
 
 . "$(dirname "$0")/env.sh"
 

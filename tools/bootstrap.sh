@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Installs what a goal needs and this machine lacks. What is there is left alone.
+# Installs the missing requirements of a goal.
 #
 #   tools/bootstrap.sh build|demo|test
-#   tools/bootstrap.sh update             the lists of apt-get
+#   tools/bootstrap.sh update             updates apt-get's package lists
 #
-# Programs and libraries come from Debian or Ubuntu; on other systems the
-# script says what is missing. So does Rust, when it is missing or older than
-# Cargo.toml wants; tools/env.sh then uses the system's. Python packages go into a virtual environment
-# in the user's cache, see tools/venv.sh.
+# Programs and libraries come from Debian or Ubuntu; on other systems the script lists
+# what is missing. Rust is installed if it is missing or older than Cargo.toml requires;
+# tools/env.sh then uses the system's. Python packages go into a virtual environment in
+# the user's cache, see tools/venv.sh.
 
 . "$(dirname "$0")/env.sh"
 . tools/packages.sh
@@ -25,9 +25,9 @@ case $goal in
   *) die "no goal \`$goal\`: build, demo, test or update" ;;
 esac
 
-# Whether a package is needed is asked of the machine, not of dpkg: a Python
-# from elsewhere brings its own venv, a compiler may come from elsewhere too.
-is_there() {
+# Checks for the programs, not for dpkg's packages: Python and the compiler may come from
+# another source.
+is_present() {
   case $1 in
     gcc) have cc ;;
     g++) have c++ ;;
@@ -52,7 +52,7 @@ is_there() {
 find_missing() {
   missing=()
   for package in "${packages[@]}"; do
-    is_there "$package" || missing+=("$package")
+    is_present "$package" || missing+=("$package")
   done
 }
 
@@ -61,20 +61,19 @@ if [ "$goal" = update ]; then
   exit
 fi
 
-# Tests start an sshd of their own on loopback. The package would start one that
-# everybody reaches, now and with the machine: it is masked before it comes.
+# Tests start a separate sshd on loopback. The package would start one that listens on the
+# network, so it is masked first.
 keep_sshd_stopped() {
   local root=()
   [[ " ${missing[*]} " == *" openssh-server "* && -d /run/systemd/system ]] || return 0
   [ "$(id -u)" -eq 0 ] || root=(sudo)
   quietly "${root[@]}" systemctl mask ssh.service ssh.socket ||
-    die "openssh-server would start a server that everybody reaches" \
-      "install it by hand, or mask it: sudo systemctl mask ssh.service ssh.socket"
-  say "openssh-server will not start by itself; sudo systemctl unmask ssh.service ssh.socket undoes that"
+    die "openssh-server would start a server that listens on the network" \
+      "install it manually, or mask it: sudo systemctl mask ssh.service ssh.socket"
+  say "openssh-server is masked and will not start; to undo: sudo systemctl unmask ssh.service ssh.socket"
 }
 
-# Debian's name for a Rust that is new enough: rustc, or rustc-web, which is kept up
-# to date in a stable release. Sets `suffix`.
+# Sets `suffix` for Debian's newest Rust: rustc, or rustc-web, which stable releases update.
 find_rust() {
   for suffix in '' -web; do
     ! is_new_rust "$(candidate_of "rustc$suffix")" || return 0
@@ -83,26 +82,26 @@ find_rust() {
 }
 
 no_rust() {
-  local there
-  there=$(rust_version_of cargo)
-  die "cargo $RUST_VERSION or later is missing${there:+, this is $there}" \
+  local installed
+  installed=$(rust_version_of cargo)
+  die "cargo $RUST_VERSION or later is missing${installed:+, this is $installed}" \
     "this system has no package of it: install it from https://rustup.rs, then try again"
 }
 
 need_rust() {
   ! use_rust || return 0
   have apt-get || no_rust
-  # The lists may be older than the package, or not be there.
+  # The package lists may be outdated or missing.
   find_rust || { apt update && find_rust; } || no_rust
   install_packages "rustc$suffix" "cargo$suffix"
   use_rust || no_rust
 }
 
-# What checks the sources comes from where Rust does.
+# rustfmt and clippy come from the same source as Rust.
 need_rust_checkers() {
   if [ "$(readlink -f "$(command -v cargo)")" = /usr/bin/cargo ] && find_rust; then
     packages+=("rustfmt$suffix" "rust$suffix-clippy")
-  elif ! is_there rustfmt || ! is_there rust-clippy; then
+  elif ! is_present rustfmt || ! is_present rust-clippy; then
     die "cargo fmt or cargo clippy is missing" "rustup component add rustfmt clippy"
   fi
 }

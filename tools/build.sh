@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds the page, and rtf and its hosts, optimised.
 #
-# RTF_PAGE=none leaves the page as it is, for machines without npm or network.
+# RTF_PAGE=none does not build the page, for machines without npm or network.
 
 . "$(dirname "$0")/env.sh"
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Kills fixtures, hosts and runners at random moments, for half an hour.
-# RTF_CHAOS_SEED=N repeats the random numbers of a run, which prints its seed.
+# Each run prints its seed; RTF_CHAOS_SEED=N repeats its random numbers.
 
 . "$(dirname "$0")/env.sh"
 

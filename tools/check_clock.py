@@ -37,8 +37,8 @@ def main() -> int:
 class Scene:
     """Runs of one suite."""
 
-    def __init__(self, rtf: Path, suite: Path, folder: Path) -> None:
-        self.rtf, self.suite, self.folder = rtf, suite, folder
+    def __init__(self, rtf: Path, suite: Path, directory: Path) -> None:
+        self.rtf, self.suite, self.directory = rtf, suite, directory
 
     def goes(self) -> None:
         """A limit of eight seconds is less than eight of ours."""
@@ -72,7 +72,7 @@ class Scene:
     def start(self, name: str, *options: str) -> Run:
         """Begins a run."""
         print(f"--- {name}", flush=True)
-        return Run(str(self.rtf), str(self.suite), self.folder / f"{name}.run", *options)
+        return Run(str(self.rtf), str(self.suite), self.directory / f"{name}.run", *options)
 
     def disturb(self, run: Run, number: signal.Signals) -> None:
         """Sends a signal to the simulator while the first test waits."""
@@ -108,14 +108,14 @@ class Scene:
         """The processes of the runs whose command line has a word, zombies not counted."""
         mark = f"ROS_HOME={os.environ['ROS_HOME']}".encode()
         found = []
-        for folder in Path("/proc").glob("[0-9]*"):
+        for entry in Path("/proc").glob("[0-9]*"):
             try:
-                is_ours = mark in (folder / "environ").read_bytes().split(b"\0")
-                line = (folder / "cmdline").read_bytes().replace(b"\0", b" ").decode()
+                is_ours = mark in (entry / "environ").read_bytes().split(b"\0")
+                line = (entry / "cmdline").read_bytes().replace(b"\0", b" ").decode()
             except OSError:  # it has ended, or it is not ours
                 continue
-            if is_ours and word in line and unless not in line and int(folder.name) != os.getpid():
-                found.append(int(folder.name))
+            if is_ours and word in line and unless not in line and int(entry.name) != os.getpid():
+                found.append(int(entry.name))
         return found
 
 

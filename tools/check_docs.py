@@ -4,7 +4,7 @@
     check_docs.py RTF PAGE…
 
 A code block whose first line is a comment with a file name is that file. All
-files of a page go into one folder; its C++ plug-ins are built, and its suites
+files of a page go into one directory; its C++ plug-ins are built, and its suites
 must pass.
 """
 
@@ -31,27 +31,27 @@ def main() -> None:
     """Checks each page."""
     rtf = Path(sys.argv[1]).resolve()
     for page in map(Path, sys.argv[2:]):
-        with tempfile.TemporaryDirectory() as folder:
-            check(rtf, page, Path(folder))
+        with tempfile.TemporaryDirectory() as directory:
+            check(rtf, page, Path(directory))
 
 
-def check(rtf: Path, page: Path, folder: Path) -> None:
+def check(rtf: Path, page: Path, directory: Path) -> None:
     """Builds and runs what one page shows."""
-    suites = write_files(page, folder)
-    build(folder)
+    suites = write_files(page, directory)
+    build(directory)
     for suite in suites:
         print(f"{page}: {suite.name}", flush=True)
-        call(folder, str(rtf), "run", suite.name)
+        call(directory, str(rtf), "run", suite.name)
 
 
-def build(folder: Path) -> None:
+def build(directory: Path) -> None:
     """Builds the page's Ada plug-ins, and its C++ ones by its own or the obvious CMakeLists.txt."""
-    for project in sorted(folder.glob("*.gpr")):
-        call(folder, "gprbuild", "-p", "-q", "-P", project.name)
-    sources = sorted(folder.glob("*.cpp"))
+    for project in sorted(directory.glob("*.gpr")):
+        call(directory, "gprbuild", "-p", "-q", "-P", project.name)
+    sources = sorted(directory.glob("*.cpp"))
     if not sources:
         return
-    cmake = folder / "CMakeLists.txt"
+    cmake = directory / "CMakeLists.txt"
     if not cmake.exists():
         plugins = [
             f"robottestingframework_add_plugin({source.stem} SOURCES {source.name})\n"
@@ -59,17 +59,17 @@ def build(folder: Path) -> None:
         ]
         cmake.write_text(CMAKE_HEADER + "".join(plugins))
     package = TOP / "sdk" / "cpp" / "cmake" / "RobotTestingFramework"
-    call(folder, "cmake", "-S", ".", "-B", "build", f"-DRobotTestingFramework_DIR={package}")
-    call(folder, "cmake", "--build", "build")
+    call(directory, "cmake", "-S", ".", "-B", "build", f"-DRobotTestingFramework_DIR={package}")
+    call(directory, "cmake", "--build", "build")
 
 
-def call(folder: Path, *command: str) -> None:
+def call(directory: Path, *command: str) -> None:
     """Runs a command that must succeed."""
     environment = os.environ | {
-        "RTF_PLUGIN_PATH": str(folder / "build"),
+        "RTF_PLUGIN_PATH": str(directory / "build"),
         "GPR_PROJECT_PATH": str(TOP / "sdk" / "ada"),
     }
-    subprocess.run(command, cwd=folder, env=environment, check=True)
+    subprocess.run(command, cwd=directory, env=environment, check=True)
 
 
 if __name__ == "__main__":

@@ -22,15 +22,15 @@ VICTIM = "AccuracyTest"
 def main() -> int:
     """Runs both and tells the first thing that is not as it should be."""
     rtf, suite = (str(Path(argument).resolve()) for argument in sys.argv[1:])
-    with tempfile.TemporaryDirectory() as folder:
-        undisturbed(rtf, suite, Path(folder) / "undisturbed")
-        simulator_killed(rtf, suite, Path(folder) / "killed")
+    with tempfile.TemporaryDirectory() as directory:
+        undisturbed(rtf, suite, Path(directory) / "undisturbed")
+        simulator_killed(rtf, suite, Path(directory) / "killed")
     return 0
 
 
-def undisturbed(rtf: str, suite: str, folder: Path) -> None:
+def undisturbed(rtf: str, suite: str, directory: Path) -> None:
     """Everything passes, and nothing is left running."""
-    run = Run(rtf, suite, folder)
+    run = Run(rtf, suite, directory)
     expect("exit code", run.wait(), 0)
     expect("verdicts", set(run.verdicts().values()), {"passed"})
     expect("tests", len(run.verdicts()), 3)
@@ -39,9 +39,9 @@ def undisturbed(rtf: str, suite: str, folder: Path) -> None:
     expect("simulators left", simulators(suite), [])
 
 
-def simulator_killed(rtf: str, suite: str, folder: Path) -> None:
+def simulator_killed(rtf: str, suite: str, directory: Path) -> None:
     """The running test is `collapsed`, within a second; the others pass."""
-    run = Run(rtf, suite, folder)
+    run = Run(rtf, suite, directory)
     noticed = run.collapses(lambda: kill(simulators(suite)), VICTIM)
     expect("exit code", run.wait(), 1)
     expect("seconds until the collapse was seen, below 1", noticed < 1, True)
@@ -57,7 +57,7 @@ def simulators(suite: str) -> list[int]:
     """The processes that are simulators of this suite."""
     home = Path(suite).parent
     return select(
-        lambda folder, words, _: "simulator.py" in words and (folder / "cwd").resolve() == home
+        lambda entry, words, _: "simulator.py" in words and (entry / "cwd").resolve() == home
     )
 
 

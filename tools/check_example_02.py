@@ -22,15 +22,15 @@ RUNNER_DIED = 5
 def main() -> int:
     """Runs both and tells the first thing that is not as it should be."""
     rtf, suite = (str(Path(argument).resolve()) for argument in sys.argv[1:])
-    with tempfile.TemporaryDirectory() as folder:
-        undisturbed(rtf, suite, Path(folder) / "undisturbed")
-        runner_killed(rtf, suite, Path(folder) / "killed")
+    with tempfile.TemporaryDirectory() as directory:
+        undisturbed(rtf, suite, Path(directory) / "undisturbed")
+        runner_killed(rtf, suite, Path(directory) / "killed")
     return 0
 
 
-def undisturbed(rtf: str, suite: str, folder: Path) -> None:
+def undisturbed(rtf: str, suite: str, directory: Path) -> None:
     """The arm dies once, the test runs again, and the arm ends up parked."""
-    run = Run(rtf, suite, folder)
+    run = Run(rtf, suite, directory)
     expect("exit code", run.wait(), 0)
     expect("attempts", run.attempts(), ["collapsed", "passed", "passed"])
     expect("hooks", triggers(run), ["collapse", "end"])
@@ -38,9 +38,9 @@ def undisturbed(rtf: str, suite: str, folder: Path) -> None:
     expect("arms left", arms(), [])
 
 
-def runner_killed(rtf: str, suite: str, folder: Path) -> None:
+def runner_killed(rtf: str, suite: str, directory: Path) -> None:
     """The guard parks the arm and leaves nothing running."""
-    run = Run(rtf, suite, folder)
+    run = Run(rtf, suite, directory)
     try:
         run.wait_for(is_rerun)
         run.wait_for(lambda event: is_a(event, "test-phase") and runs_again(run))

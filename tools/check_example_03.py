@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Runs example 03 as a user does, and again while parts of the robot are killed.
 
-    check_example_03.py RTF FOLDER
+    check_example_03.py RTF DIRECTORY
 
-FOLDER is that of the example. YARP's programs, the robot's modules and the plug-ins
+DIRECTORY is that of the example. YARP's programs, the robot's modules and the plug-ins
 have to be found as the lesson says. Nothing is imitated: a module gets a SIGKILL, a
 connection is cut by YARP's own tool, and the fixture itself is killed. No packet may
 leave the machine.
@@ -49,11 +49,11 @@ def main() -> int:
 class Lesson:
     """The example, with a home of its own for what YARP writes."""
 
-    def __init__(self, rtf: str, example: Path, folder: Path) -> None:
+    def __init__(self, rtf: str, example: Path, directory: Path) -> None:
         self.rtf = rtf
         self.example = example
-        self.folder = folder
-        self.home = folder / "home"
+        self.directory = directory
+        self.home = directory / "home"
         # Every process of a run is known by it.
         os.environ["YARP_CONFIG_HOME"] = str(self.home)
 
@@ -87,7 +87,7 @@ class Lesson:
     def start(self, suite: str, name: str, *options: str) -> Run:
         """Begins a run of a suite."""
         print(f"--- {name}", flush=True)
-        return Run(self.rtf, str(self.example / suite), self.folder / f"{name}.run", *options)
+        return Run(self.rtf, str(self.example / suite), self.directory / f"{name}.run", *options)
 
     def processes(self, program: str = "") -> list[int]:
         """The processes of the runs, zombies not counted, or those of a program."""

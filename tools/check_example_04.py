@@ -25,27 +25,27 @@ STUCK = "l_elbow"
 def main() -> int:
     """Runs all and tells the first thing that is not as it should be."""
     rtf, suite = (str(Path(argument).resolve()) for argument in sys.argv[1:])
-    with tempfile.TemporaryDirectory() as folder:
-        os.environ["YARP_CONFIG_HOME"] = str(Path(folder) / "home")
-        undisturbed(rtf, suite, Path(folder) / "undisturbed")
-        broken(rtf, suite, Path(folder) / "broken")
-        killed(rtf, suite, Path(folder) / "killed")
+    with tempfile.TemporaryDirectory() as directory:
+        os.environ["YARP_CONFIG_HOME"] = str(Path(directory) / "home")
+        undisturbed(rtf, suite, Path(directory) / "undisturbed")
+        broken(rtf, suite, Path(directory) / "broken")
+        killed(rtf, suite, Path(directory) / "killed")
     return 0
 
 
-def undisturbed(rtf: str, suite: str, folder: Path) -> None:
+def undisturbed(rtf: str, suite: str, directory: Path) -> None:
     """Everything passes, and nothing is left running."""
-    run = Run(rtf, suite, folder)
+    run = Run(rtf, suite, directory)
     expect("exit code", run.wait(), 0)
     expect("verdicts", list(run.verdicts().values()), ["passed"] * 6)
     expect("pictures", pictures(run), {})
     expect("simulators left", simulators(suite), [])
 
 
-def broken(rtf: str, suite: str, folder: Path) -> None:
+def broken(rtf: str, suite: str, directory: Path) -> None:
     """Those tests fail that move the joint, each with a picture."""
     os.environ["ICUB_STUCK"] = STUCK
-    run = Run(rtf, suite, folder)
+    run = Run(rtf, suite, directory)
     del os.environ["ICUB_STUCK"]
     expect("exit code", run.wait(), 1)
     failed = [name for name, verdict in run.verdicts().items() if verdict != "passed"]
@@ -53,12 +53,12 @@ def broken(rtf: str, suite: str, folder: Path) -> None:
     taken = pictures(run)
     expect("tests with a picture", list(taken), failed)
     for picture in taken.values():
-        expect("a PNG", (folder / "latest" / picture).read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        expect("a PNG", (directory / "latest" / picture).read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
 
 
-def killed(rtf: str, suite: str, folder: Path) -> None:
+def killed(rtf: str, suite: str, directory: Path) -> None:
     """The test is `collapsed` by a module that the reason names; the others pass."""
-    run = Run(rtf, suite, folder)
+    run = Run(rtf, suite, directory)
     run.disturb(lambda: kill(simulators(suite)), VICTIM)
     expect("exit code", run.wait(), 1)
     verdicts = run.verdicts()

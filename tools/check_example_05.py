@@ -47,14 +47,14 @@ def main() -> int:
     rtf, example, probes = (Path(argument).resolve() for argument in sys.argv[1:])
     rover, slipping = example / "rover.xml", example / "slipping.xml"
     network.move_in()
-    with tempfile.TemporaryDirectory() as folder, network.quiet("lesson 5"):
-        home = Path(folder) / "home"
+    with tempfile.TemporaryDirectory() as directory, network.quiet("lesson 5"):
+        home = Path(directory) / "home"
         os.environ["ROS_HOME"] = str(home)
         for name in ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP", "ROS_LOG_DIR"):
             os.environ.pop(name, None)
 
         def scene(check: Check, suite: Path, options: list[str]) -> None:
-            Scene(rtf, suite, Path(folder) / f"run-{check.__name__}", options).play(check)
+            Scene(rtf, suite, Path(directory) / f"run-{check.__name__}", options).play(check)
 
         scenes: list[tuple[Check, Path, list[str]]] = [
             (undisturbed, rover, []),
@@ -66,15 +66,17 @@ def main() -> int:
             (fixture_killed, rover, [LONG]),
             (frozen, rover, []),
             (runner_killed, rover, [LONG]),
-            (not_launched, broken(Path(folder)), []),
+            (not_launched, broken(Path(directory)), []),
             (bag_kept, slipping, []),
             (bag_of_collapse, slipping, [LONG]),
             (silent, probes, [LONG]),
         ]
         with ThreadPoolExecutor(max_workers=3) as pool:
-            pages = [pool.submit(run_fixture_page, str(rtf), "roscore", Path(folder) / "roscore")]
+            pages = [
+                pool.submit(run_fixture_page, str(rtf), "roscore", Path(directory) / "roscore")
+            ]
             for page in ("roslaunch", "rosbag"):
-                place = Path(folder) / page
+                place = Path(directory) / page
                 pages.append(pool.submit(run_fixture_page, str(rtf), page, place, example))
             for played in [pool.submit(scene, *each) for each in scenes]:
                 played.result()
@@ -87,9 +89,9 @@ def main() -> int:
 class Scene:
     """A run of rtf with ROS of its own."""
 
-    def __init__(self, rtf: Path, suite: Path, folder: Path, options: list[str]) -> None:
-        self.run = Run(str(rtf), str(suite), folder, *options)
-        self.folder = folder
+    def __init__(self, rtf: Path, suite: Path, directory: Path, options: list[str]) -> None:
+        self.run = Run(str(rtf), str(suite), directory, *options)
+        self.directory = directory
 
     def play(self, check: Check) -> None:
         """Checks the run, and that nothing of ROS is left after it."""
@@ -143,11 +145,11 @@ class Scene:
 Check = Callable[[Scene], None]
 
 
-def broken(folder: Path) -> Path:
+def broken(directory: Path) -> Path:
     """A suite whose launch file names a node that is not there."""
-    (folder / "broken.launch").write_text(BROKEN)
-    (folder / "Never.py").write_text(NEVER)
-    suite = folder / "broken.xml"
+    (directory / "broken.launch").write_text(BROKEN)
+    (directory / "Never.py").write_text(NEVER)
+    suite = directory / "broken.xml"
     suite.write_text(BROKEN_SUITE)
     return suite
 
@@ -185,7 +187,7 @@ def required(scene: Scene) -> None:
     # What was logged before and after it is with the results.
     logs = scene.run.journal.parent / "logs" / "rover.ros"
     starts = {path.parent for path in logs.glob("*/rover-wheel-*.log")}
-    scene.expect("folders with the logs of nodes", len(starts), 2)
+    scene.expect("directories with the logs of nodes", len(starts), 2)
 
 
 def master_killed(scene: Scene) -> None:

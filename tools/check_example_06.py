@@ -30,21 +30,21 @@ def main() -> int:
     before = shared_memory()
     for name in (*OWN, "ROS_LOG_DIR"):
         os.environ.pop(name, None)
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as directory:
         with network.quiet("lesson 6"):
-            apart(Path(folder), *arguments)
-            killed(Path(folder), *arguments)
+            apart(Path(directory), *arguments)
+            killed(Path(directory), *arguments)
             lesson = Path(arguments[1]).parent
-            run_fixture_page(arguments[0], "ros2launch", Path(folder) / "page", lesson)
-        together(Path(folder), *arguments)
+            run_fixture_page(arguments[0], "ros2launch", Path(directory) / "page", lesson)
+        together(Path(directory), *arguments)
         expect("nodes left", running("joint.py"), [])
         expect("shared memory left", shared_memory() - before, set())
     return 0
 
 
-def apart(folder: Path, rtf: str, left: str, right: str) -> None:
+def apart(directory: Path, rtf: str, left: str, right: str) -> None:
     """Side by side, neither hears the other, and nobody outside hears them."""
-    run = Run(rtf, left, folder / "apart", "--jobs", "2", right)
+    run = Run(rtf, left, directory / "apart", "--jobs", "2", right)
     expect("exit code", run.wait(), 0)
     verdicts = outcomes(run)
     expect("tests", len(verdicts), 8)
@@ -56,21 +56,21 @@ def apart(folder: Path, rtf: str, left: str, right: str) -> None:
     expect("nodes left", running("joint.py"), [])
 
 
-def together(folder: Path, rtf: str, left: str, right: str) -> None:
+def together(directory: Path, rtf: str, left: str, right: str) -> None:
     """In one domain, with the default discovery, they hear each other, and others them."""
     before = network.packets()
     os.environ.update(zip(OWN, ("99", "SUBNET"), strict=True))
     only = ["--set", "seconds=8", "--filter", "name(AloneTest)", "--jobs", "2", right]
-    run = Run(rtf, left, folder / "together", *only)
+    run = Run(rtf, left, directory / "together", *only)
     expect("exit code in one domain", run.wait(), 1)
     heard = [each for each in outcomes(run) if each[2] == "failed"]
     expect("who is not alone, at least one", len(heard) > 0, True)
     expect("packets that left, more than none", network.packets() - before > 0, True)
 
 
-def killed(folder: Path, rtf: str, left: str, right: str) -> None:
+def killed(directory: Path, rtf: str, left: str, right: str) -> None:
     """A node of the left suite is killed: its test collapses, and nothing of the right one."""
-    run = Run(rtf, left, folder / "killed", "--jobs", "2", right)
+    run = Run(rtf, left, directory / "killed", "--jobs", "2", right)
     try:
         run.wait_for(lambda event: is_running(run, event))
         kill([joint for joint in running("joint.py") if variable(joint, "ROBOT") == "left"])

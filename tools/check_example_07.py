@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs example 07 as a user does, and once more while its simulator is killed.
 
-    check_example_07.py RTF FOLDER
+    check_example_07.py RTF DIRECTORY
 
 All levels, side by side as far as they may: they share one robot, so they take
 turns. Then the stress level for a time, and the system level, in the middle of
@@ -26,17 +26,17 @@ def main() -> int:
     """Runs all and tells the first thing that is not as it should be."""
     rtf, example = sys.argv[1], Path(sys.argv[2]).resolve()
     rtf = str(Path(rtf).resolve())
-    with tempfile.TemporaryDirectory() as folder:
-        all_levels(rtf, example, Path(folder) / "all")
-        in_ci(rtf, example, Path(folder) / "ci")
-        repeated(rtf, example, Path(folder) / "repeated")
-        simulator_killed(rtf, example, Path(folder) / "killed")
+    with tempfile.TemporaryDirectory() as directory:
+        all_levels(rtf, example, Path(directory) / "all")
+        in_ci(rtf, example, Path(directory) / "ci")
+        repeated(rtf, example, Path(directory) / "repeated")
+        simulator_killed(rtf, example, Path(directory) / "killed")
     return 0
 
 
-def all_levels(rtf: str, example: Path, folder: Path) -> None:
+def all_levels(rtf: str, example: Path, directory: Path) -> None:
     """Everything passes; no two levels have the arm at the same time."""
-    run = Run(rtf, str(example), folder, "--jobs", "4")
+    run = Run(rtf, str(example), directory, "--jobs", "4")
     expect("exit code", run.wait(), 0)
     expect("verdicts", set(run.verdicts().values()), {"passed"})
     planned = [event["name"] for event in run.events("suite-planned")]
@@ -51,10 +51,10 @@ def all_levels(rtf: str, example: Path, folder: Path) -> None:
     expect("arms left", arms(), [])
 
 
-def in_ci(rtf: str, example: Path, folder: Path) -> None:
+def in_ci(rtf: str, example: Path, directory: Path) -> None:
     """The profile leaves the stress level out, and writes a report."""
     report = example / "junit.xml"
-    run = Run(rtf, str(example), folder, "--profile", "ci")
+    run = Run(rtf, str(example), directory, "--profile", "ci")
     expect("exit code", run.wait(), 0)
     planned = {event["name"] for event in run.events("suite-planned")}
     expect("levels", planned, set(LEVELS) - {"stress"})
@@ -62,10 +62,10 @@ def in_ci(rtf: str, example: Path, folder: Path) -> None:
     report.unlink()
 
 
-def repeated(rtf: str, example: Path, folder: Path) -> None:
+def repeated(rtf: str, example: Path, directory: Path) -> None:
     """Rounds of one suite fill the time, on one start of the simulator."""
     suite = str(example / "integration.xml")
-    run = Run(rtf, suite, folder, "--for", f"{SOAK:.0f}s", "--until-fail")
+    run = Run(rtf, suite, directory, "--for", f"{SOAK:.0f}s", "--until-fail")
     expect("exit code", run.wait(), 0)
     events = list(run.events())
     (rounds,) = [event["repetitions"] for event in events if is_a(event, "test-repeated")]
@@ -75,9 +75,9 @@ def repeated(rtf: str, example: Path, folder: Path) -> None:
     expect("arms left", arms(), [])
 
 
-def simulator_killed(rtf: str, example: Path, folder: Path) -> None:
+def simulator_killed(rtf: str, example: Path, directory: Path) -> None:
     """The task begins anew on a new simulator, and the run is green."""
-    run = Run(rtf, str(example / "system.xml"), folder)
+    run = Run(rtf, str(example / "system.xml"), directory)
     run.disturb(lambda: kill(arms()), once="message")
     expect("exit code", run.wait(), 0)
     expect("attempts", run.attempts(), ["collapsed", "passed"])

@@ -44,28 +44,28 @@ def main() -> int:
     rtf = str(Path(sys.argv[1]).resolve())
     kept = {"": ["bad", "bad"], "--keep always": ["bad", "bad", "good"], "--keep never": []}
     for param, names in kept.items():
-        with tempfile.TemporaryDirectory() as folder:
-            recorded = run(rtf, Path(folder), param)
+        with tempfile.TemporaryDirectory() as directory:
+            recorded = run(rtf, Path(directory), param)
             expect(f"recordings with `{param}`", sorted(name for name, _ in recorded), names)
             for _, file in recorded:
                 look_into(file)
-    with tempfile.TemporaryDirectory() as folder:
-        expect("recordings over their limit", run(rtf, Path(folder), "--limit 1k"), [])
-        run_fixture_page(rtf, "mcap", Path(folder) / "page")
+    with tempfile.TemporaryDirectory() as directory:
+        expect("recordings over their limit", run(rtf, Path(directory), "--limit 1k"), [])
+        run_fixture_page(rtf, "mcap", Path(directory) / "page")
         left = list(Path(tempfile.gettempdir()).glob("rtf-mcap-*"))
-        expect("folders left", left, [])
+        expect("directories left", left, [])
     return 0
 
 
-def run(rtf: str, folder: Path, param: str) -> list[tuple[str, Path]]:
+def run(rtf: str, directory: Path, param: str) -> list[tuple[str, Path]]:
     """Runs the suite: the tests that have a recording, and the files."""
-    (folder / "Ramp.py").write_text(TEST)
-    (folder / "s.xml").write_text(SUITE.format(param=param))
+    (directory / "Ramp.py").write_text(TEST)
+    (directory / "s.xml").write_text(SUITE.format(param=param))
     ran = subprocess.run(
-        [rtf, "run", "s.xml"], cwd=folder, capture_output=True, text=True, check=False
+        [rtf, "run", "s.xml"], cwd=directory, capture_output=True, text=True, check=False
     )
     expect(f"exit code\n{ran.stdout}{ran.stderr}", ran.returncode, 1)
-    results = folder / "rtf-results/latest"
+    results = directory / "rtf-results/latest"
     events = [json.loads(line) for line in (results / "events.jsonl").open()]
     collapses = [event for event in events if event["type"] == "fixture-collapsed"]
     expect("collapses", collapses, [])

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs the fixture `orocos` while its deployer is killed, hangs, and has components that break.
 
-    check_fixture_orocos.py RTF FOLDER
+    check_fixture_orocos.py RTF DIRECTORY
 
 The program in the place of the deployer is built here: RTT is in no registry
 of packages. Its components are real CORBA objects, served by omniORB and named
@@ -31,16 +31,16 @@ DEPLOYER = "deployer-corba"
 def main() -> int:
     """Runs all and tells the first thing that is not as it should be."""
     rtf, sources = (Path(argument).resolve() for argument in sys.argv[1:])
-    with tempfile.TemporaryDirectory() as folder:
-        home = Path(folder)
-        os.environ["TMPDIR"] = folder
+    with tempfile.TemporaryDirectory() as directory:
+        home = Path(directory)
+        os.environ["TMPDIR"] = directory
         missing(str(rtf), str(sources / "prompt.xml"), home / "missing")
         build(sources, home / "bin")
         os.environ["PATH"] = f"{home / 'bin'}:{os.environ['PATH']}"
         checks(str(rtf), sources, home)
         expect("deployers left", running(DEPLOYER) + running("deployer-gnulinux"), [])
         expect("name servers left", running("omniNames"), [])
-        expect("folders left", list(home.glob("rtf-orocos-*")), [])
+        expect("directories left", list(home.glob("rtf-orocos-*")), [])
     return 0
 
 
@@ -62,29 +62,31 @@ def checks(rtf: str, sources: Path, home: Path) -> None:
     never_there(rtf, suite, home / "never")
 
 
-def build(sources: Path, folder: Path) -> None:
+def build(sources: Path, directory: Path) -> None:
     """Builds what stands in for both deployers."""
-    folder.mkdir()
-    subprocess.run(["omniidl", "-bcxx", str(sources / "TaskContext.idl")], cwd=folder, check=True)
+    directory.mkdir()
+    subprocess.run(
+        ["omniidl", "-bcxx", str(sources / "TaskContext.idl")], cwd=directory, check=True
+    )
     libraries = ["-lomniORB4", "-lomnithread", "-pthread"]
     program = ["-I.", str(sources / "deployer.cpp"), "TaskContextSK.cc", "-o", DEPLOYER]
     flags = ["-std=c++17", "-O1", "-Wall", "-Wextra"]
-    subprocess.run(["c++", *flags, *program, *libraries], cwd=folder, check=True)
-    shutil.copy(folder / DEPLOYER, folder / "deployer-gnulinux")
+    subprocess.run(["c++", *flags, *program, *libraries], cwd=directory, check=True)
+    shutil.copy(directory / DEPLOYER, directory / "deployer-gnulinux")
 
 
-def missing(rtf: str, suite: str, folder: Path) -> None:
+def missing(rtf: str, suite: str, directory: Path) -> None:
     """Where there is no deployer, the reason says so."""
     if found := shutil.which("deployer-gnulinux"):
         raise SystemExit(f"{found} is on PATH: this check needs a PATH without it")
-    run = Run(rtf, suite, folder)
+    run = Run(rtf, suite, directory)
     expect("exit code without a deployer", run.wait(), 1)
     expect_in("set-up failed: there is no program `deployer-gnulinux` on PATH", broken(run))
 
 
-def undisturbed(rtf: str, suite: str, folder: Path) -> None:
+def undisturbed(rtf: str, suite: str, directory: Path) -> None:
     """Everything passes."""
-    run = Run(rtf, suite, folder)
+    run = Run(rtf, suite, directory)
     expect("exit code", run.wait(), 0)
     expect("verdicts", set(run.verdicts().values()), {"passed"})
 
@@ -99,9 +101,9 @@ def collapses(run: Run, number: signal.Signals, reasons: list[str]) -> None:
     expect("deployers left", running(DEPLOYER), [])
 
 
-def never_there(rtf: str, suite: str, folder: Path) -> None:
+def never_there(rtf: str, suite: str, directory: Path) -> None:
     """A component that the script does not load: what was answered last is told."""
-    run = Run(rtf, suite, folder, "--set=second=elbow", "--set=timeout=1")
+    run = Run(rtf, suite, directory, "--set=second=elbow", "--set=timeout=1")
     expect("exit code", run.wait(), 1)
     expect_in("CORBA exception NotFound", broken(run))
     expect_in("component elbow is Running", broken(run))

@@ -28,8 +28,8 @@ def main() -> int:
     """Runs all and tells the first thing that is not as it should be."""
     rtf, suite = (str(Path(argument).resolve()) for argument in sys.argv[1:])
     before = shared_memory()
-    with tempfile.TemporaryDirectory() as folder:
-        home = Path(folder)
+    with tempfile.TemporaryDirectory() as directory:
+        home = Path(directory)
         for name in ("ROS_DOMAIN_ID", "ROS_LOG_DIR"):
             os.environ.pop(name, None)
         without_ros2(rtf, suite, home / "without")
@@ -44,28 +44,28 @@ def main() -> int:
     return 0
 
 
-def without_ros2(rtf: str, suite: str, folder: Path) -> None:
+def without_ros2(rtf: str, suite: str, directory: Path) -> None:
     """Where ROS 2 is missing, the reason says so and how to get it."""
     if found := shutil.which("ros2"):
         raise SystemExit(f"{found} is on PATH: this check needs a PATH without it")
-    run = Run(rtf, suite, folder)
+    run = Run(rtf, suite, directory)
     expect("exit code without ros2", run.wait(), 1)
     told = run.reason("fixture-broken")
     expect_in("set-up failed: there is no program `ros2` on PATH", told)
     expect_in("https://docs.ros.org", told)
 
 
-def undisturbed(rtf: str, suite: str, folder: Path) -> None:
+def undisturbed(rtf: str, suite: str, directory: Path) -> None:
     """Everything passes, also with a process that does its work and ends."""
-    run = Run(rtf, suite, folder)
+    run = Run(rtf, suite, directory)
     expect("exit code", run.wait(), 0)
     expect("verdicts", set(run.verdicts().values()), {"passed"})
     expect("nodes left", running("talker.py"), [])
 
 
-def collapses(rtf: str, suite: str, folder: Path, number: signal.Signals, why: str) -> None:
+def collapses(rtf: str, suite: str, directory: Path, number: signal.Signals, why: str) -> None:
     """A signal to the talker: the test is `collapsed`, the next one has another talker."""
-    run = Run(rtf, suite, folder, SECONDS)
+    run = Run(rtf, suite, directory, SECONDS)
     run.collapses(lambda: kill(running("talker.py"), number))
     expect(f"exit code after {number.name}", run.wait(), 1)
     expect("verdicts", list(run.verdicts().values()), ["collapsed", "passed"])
@@ -74,9 +74,9 @@ def collapses(rtf: str, suite: str, folder: Path, number: signal.Signals, why: s
     expect("nodes left", running("talker.py"), [])
 
 
-def launch_killed(rtf: str, suite: str, folder: Path) -> None:
+def launch_killed(rtf: str, suite: str, directory: Path) -> None:
     """A SIGKILL to launch itself leaves its nodes behind: they are ended, too."""
-    run = Run(rtf, suite, folder, SECONDS)
+    run = Run(rtf, suite, directory, SECONDS)
     run.collapses(lambda: kill(running("ros2")))
     expect("exit code", run.wait(), 1)
     expect("reason", run.reason(), "ros2 was killed by SIGKILL")
@@ -84,9 +84,9 @@ def launch_killed(rtf: str, suite: str, folder: Path) -> None:
     expect("nodes left", running("talker.py"), [])
 
 
-def dies_early(rtf: str, suite: str, folder: Path) -> None:
+def dies_early(rtf: str, suite: str, directory: Path) -> None:
     """A node that dies before it is ready fails the set-up at once; its last words are shown."""
-    run = Run(rtf, suite, folder, "--set=rate=fast")
+    run = Run(rtf, suite, directory, "--set=rate=fast")
     expect("exit code", run.wait(), 1)
     expect_in("talker-1 died, exit code 1", run.reason("fixture-broken"))
     told = "could not convert string to float: 'fast'" in run.output.read_text()

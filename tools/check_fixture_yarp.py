@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs YARP's fixtures while parts hang or do not start, and two of them side by side.
 
-    check_fixture_yarp.py RTF FOLDER
+    check_fixture_yarp.py RTF DIRECTORY
 
 All programs are YARP's own. What happens when they are killed is in check_example_03.py.
 """

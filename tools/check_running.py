@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs every command of docs/running.md as it stands there, in a folder that has its names.
+"""Runs every command of docs/running.md as it stands there, in a directory that has its names.
 
     check_running.py RTF
 
@@ -53,20 +53,20 @@ def main() -> None:
     if len(commands) < 15:
         raise SystemExit(f"{PAGE.name} has only {len(commands)} commands: was its form changed?")
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        for place in (folder, folder / "suites", folder / "tests"):
+        directory = Path(name)
+        for place in (directory, directory / "suites", directory / "tests"):
             fill(place)
-        (folder / "tests" / "hand.xml").unlink()
-        (folder / "tests" / "rtf.toml").write_text(
+        (directory / "tests" / "hand.xml").unlink()
+        (directory / "tests" / "rtf.toml").write_text(
             "".join(text for kind, text in blocks if kind == "toml")
         )
         for part in ("1/2", "2/2"):
             options = ["--shard", part, "--shard-by", "count", "--results", f"parts/{part[0]}"]
-            call(folder, rtf, ["rtf", "run", "arm.xml", "hand.xml", *options])
+            call(directory, rtf, ["rtf", "run", "arm.xml", "hand.xml", *options])
         for command in map(possible, commands):
             if "--rerun" in command:
-                call(folder, rtf, ["rtf", "run", "hand.xml"])
-            call(folder, rtf, ["bash", "-o", "pipefail", "-c", command])
+                call(directory, rtf, ["rtf", "run", "hand.xml"])
+            call(directory, rtf, ["bash", "-o", "pipefail", "-c", command])
 
 
 def possible(command: str) -> str:
@@ -76,23 +76,23 @@ def possible(command: str) -> str:
     return command
 
 
-def fill(folder: Path) -> None:
+def fill(directory: Path) -> None:
     """Writes the suites of which the page speaks, and their plug-ins."""
-    folder.mkdir(exist_ok=True)
+    directory.mkdir(exist_ok=True)
     for name in ("EncoderTest.lua", "JointLimitTest.lua"):
-        (folder / name).write_text(LUA)
-    (folder / "GripTest.py").write_text(GRIP)
-    (folder / "arm.xml").write_text(ARM)
-    (folder / "hand.xml").write_text(HAND)
+        (directory / name).write_text(LUA)
+    (directory / "GripTest.py").write_text(GRIP)
+    (directory / "arm.xml").write_text(ARM)
+    (directory / "hand.xml").write_text(HAND)
 
 
-def call(folder: Path, rtf: Path, command: list[str]) -> None:
+def call(directory: Path, rtf: Path, command: list[str]) -> None:
     """Runs a command that may say that a test failed, and nothing worse."""
     print(f"{PAGE.name}: {command[-1] if command[0] == 'bash' else ' '.join(command)}", flush=True)
     # Nobody else has the page's robot.
-    own = {"PATH": f"{rtf.parent}:{os.environ['PATH']}", "RTF_LOCKS": str(folder / "locks")}
+    own = {"PATH": f"{rtf.parent}:{os.environ['PATH']}", "RTF_LOCKS": str(directory / "locks")}
     ran = subprocess.run(
-        command, cwd=folder, env=os.environ | own, capture_output=True, text=True, check=False
+        command, cwd=directory, env=os.environ | own, capture_output=True, text=True, check=False
     )
     if ran.returncode not in {0, 1} or "error: " in ran.stderr:
         raise SystemExit(f"exit code {ran.returncode}\n{ran.stdout}{ran.stderr}")

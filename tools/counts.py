@@ -48,9 +48,9 @@ def tools() -> dict[str, str]:
 
 def count(program: Path, work: str) -> int:
     """The instructions of one work."""
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as directory:
         command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null"]
-        command += [str(program), work, folder]
+        command += [str(program), work, directory]
         # The same environment, address layout and locale for everybody.
         environment = {"PATH": os.environ["PATH"], "LC_ALL": "C"}
         try:

@@ -15,5 +15,5 @@ say "\$ rtf run examples/01-simulated-arm/arm.xml --web"
 status=0
 "$TARGET/release/rtf" run examples/01-simulated-arm/arm.xml --web || status=$?
 say
-say "in a browser again: ${TARGET#"$ROOT"/}/release/rtf serve"
+say "to open the run in a browser: ${TARGET#"$ROOT"/}/release/rtf serve"
 exit "$status"

@@ -1,13 +1,13 @@
 # shellcheck shell=bash
-# What all scripts here share: where things are, and how they talk to people.
-# To be sourced; it changes into the top of the checkout.
+# Paths, messages and Rust for all scripts. To be sourced; it changes into the root of
+# the checkout.
 
 set -euo pipefail
 
 ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$ROOT"
 
-# Whatever is downloaded stays out of the checkout and is shared between checkouts.
+# Downloads are shared between checkouts.
 CACHE=${XDG_CACHE_HOME:-${HOME:?HOME is not set}/.cache}/rtf
 BUILD=$ROOT/build
 TARGET=${CARGO_TARGET_DIR:-$ROOT/target}
@@ -31,12 +31,12 @@ die() {
   exit 1
 }
 
-# Whether a command can be called.
+# Whether a command exists.
 have() {
   command -v "$1" >/dev/null 2>&1
 }
 
-# Runs a command quietly; what it printed is shown only when it fails.
+# Runs a command and prints its output only if it fails.
 quietly() {
   local log status=0
   log=$(mktemp)
@@ -48,15 +48,15 @@ quietly() {
   return "$status"
 }
 
-# Rust: the version that Cargo.toml asks for, and where it is.
+# The Rust version that Cargo.toml requires.
 RUST_VERSION=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
 
-# Whether a version is that of RUST_VERSION or later.
+# Whether a version is RUST_VERSION or later.
 is_new_rust() {
   [[ $1 == [0-9]* ]] && printf '%s\n' "$RUST_VERSION" "${1%%-*}" | sort -V -C
 }
 
-# The version of the cargo or the rustc in a folder, or else on PATH; nothing when it does not run.
+# The version of cargo or rustc in a directory, or on PATH; empty if it does not run.
 rust_version_of() {
   local words
   read -r -a words < <("${2:+$2/}$1" --version 2>/dev/null) || true
@@ -67,25 +67,25 @@ has_new_rust() {
   is_new_rust "$(rust_version_of cargo "$@")" && is_new_rust "$(rust_version_of rustc "$@")"
 }
 
-# Puts a Rust that is new enough on PATH. When the one that is there is not, that is the system's:
-# its programs alone go before, so that nothing else in /usr/bin does.
+# Puts a Rust that is new enough on PATH. If the first one on PATH is too old, links to the
+# system's Rust are put before it; other programs of /usr/bin are not.
 use_rust() {
-  local tool folder=$CACHE/rust-of-the-system
-  if [[ $PATH != "$folder":* ]]; then
+  local tool dir=$CACHE/rust-of-the-system
+  if [[ $PATH != "$dir":* ]]; then
     ! has_new_rust || return 0
     has_new_rust /usr/bin || return
-    export PATH=$folder:$PATH
-    # rustup's programs call what these name.
+    export PATH=$dir:$PATH
+    # rustup's programs would use these.
     unset RUSTC RUSTDOC
   fi
-  mkdir -p "$folder"
+  mkdir -p "$dir"
   for tool in cargo rustc rustdoc rustfmt cargo-fmt cargo-clippy clippy-driver; do
-    [ ! -x "/usr/bin/$tool" ] || [ -L "$folder/$tool" ] || ln -sf "/usr/bin/$tool" "$folder/"
+    [ ! -x "/usr/bin/$tool" ] || [ -L "$dir/$tool" ] || ln -sf "/usr/bin/$tool" "$dir/"
   done
   has_new_rust
 }
 
-# Scripts that a script calls find it on PATH.
+# Scripts that a script calls inherit PATH.
 if [ "${RTF_RUST_IS_CHOSEN:-}" != "$RUST_VERSION" ] && use_rust; then
   export RTF_RUST_IS_CHOSEN=$RUST_VERSION
 fi

@@ -1,12 +1,11 @@
 #!/usr/bin/env bash
-# What the front door does on a machine with nothing but Debian's base, make, git
-# and ca-certificates: a folder with a Debian of its own, which is gone afterwards.
-# The machine's apt-get, npm and pip settings hold in it.
+# Tests the first steps of a new user in a temporary chroot with only Debian's base system,
+# make, git and ca-certificates. It uses the machine's apt-get, npm and pip settings.
 #
-#   tools/front_door.sh           an old Rust stays, Debian's is used; all packages have a name
+#   tools/front_door.sh           the bootstrap: an old Rust stays, Debian's is used
 #   tools/front_door.sh demo      make demo, from a fresh checkout (includes a release build)
 #
-# It needs root, or sudo without a password. The base is kept in the user's cache.
+# It needs root, or sudo without a password. The base system is kept in the user's cache.
 
 . "$(dirname "$0")/env.sh"
 . tools/packages.sh
@@ -18,11 +17,11 @@ if [ "$(id -u)" -ne 0 ]; then
 fi
 have mmdebstrap || install_packages mmdebstrap
 
-# What apt-get fetches Debian's packages from, as lines of sources.list.
+# The sources of Debian's packages, as lines of sources.list.
 # shellcheck disable=SC2016 # apt-get fills that in
 sources=$(apt-get indextargets --format '$(ORIGIN) deb $(REPO_URI) $(RELEASE) $(COMPONENT)' \
   'Created-By: Packages' | sed -n 's/^Debian //p' | sort -u)
-[ -n "$sources" ] || die "apt-get has no lists of Debian's packages" "sudo apt-get update; on Ubuntu this is not tested"
+[ -n "$sources" ] || die "apt-get has no lists of Debian's packages" "sudo apt-get update; not tested on Ubuntu"
 settings=$(apt-config dump Acquire | grep '::.*::' || true)
 release=$(. /etc/os-release && printf '%s' "$VERSION_CODENAME")
 
@@ -33,16 +32,16 @@ exec 9>"$base/lock"
 flock 9
 
 if [ ! -e "$base/root.tar" ]; then
-  say "making a base of Debian $release in $base"
+  say "creating a base of Debian $release in $base"
   printf '%s\n' "$settings" >"$base/apt.conf"
   quietly mmdebstrap --format=tar --variant=minbase --include=ca-certificates,make,git --aptopt="$base/apt.conf" \
-    "$release" "$base/root.tar.new" <<<"$sources" || die "mmdebstrap could not make it"
+    "$release" "$base/root.tar.new" <<<"$sources" || die "mmdebstrap could not create it"
   mv "$base/root.tar.new" "$base/root.tar"
 fi
 
 work=$(mktemp -d)
 debian=$work/debian
-# The mounts go with the session's namespace.
+# The mounts disappear with the session's namespace.
 trap 'rm -rf --one-file-system "$work"' EXIT
 mkdir "$debian"
 tar -xf "$base/root.tar" -C "$debian" --exclude './dev/*'
@@ -53,7 +52,7 @@ for file in /etc/pip.conf "$HOME/.config/pip/pip.conf" "$HOME/.npmrc" "$HOME/.ca
 done
 mkdir "$debian/checkout"
 git ls-files -z --cached --others --exclude-standard | tar -c --null --files-from=- | tar -x -C "$debian/checkout"
-# As somebody may have it who has installed Rust long ago.
+# An old Rust, as on a machine of a user who installed it long ago.
 mkdir -p "$debian/old/bin"
 for tool in cargo rustc; do
   printf '#!/bin/sh\necho "%s 1.63.0 (old)"\n' "$tool" >"$debian/old/bin/$tool"
@@ -66,33 +65,33 @@ case $goal in
   *) die "no goal \`$goal\`: packages or demo" ;;
 esac <<'SESSION'
 set -eux
-[ -z "$(command -v cc cargo python3 cmake)" ] # it is bare
+[ -z "$(command -v cc cargo python3 cmake)" ]
 
-# Where no package is new enough, one line says so, and nothing was installed.
+# If no package is new enough, bootstrap prints one error and installs nothing.
 sed -i.bak 's/^rust-version = .*/rust-version = "99.0"/' Cargo.toml
 dpkg --list >../before
-! PATH=/old/bin:$PATH tools/bootstrap.sh demo 2>../said || exit 1
+! PATH=/old/bin:$PATH tools/bootstrap.sh demo 2>../messages || exit 1
 dpkg --list | cmp - ../before
-cat ../said
-grep -x 'error: cargo 99.0 or later is missing, this is 1.63.0' ../said
-grep -x 'hint: this system has no package of it: .*rustup.rs.*' ../said
+cat ../messages
+grep -x 'error: cargo 99.0 or later is missing, this is 1.63.0' ../messages
+grep -x 'hint: this system has no package of it: .*rustup.rs.*' ../messages
 mv Cargo.toml.bak Cargo.toml
 
-# Debian's Rust comes beside the old one, which stays, and is the one that is used.
+# Debian's Rust is installed next to the old one and takes precedence.
 PATH=/old/bin:$PATH tools/bootstrap.sh demo
 /old/bin/cargo --version | grep -F 1.63.0
 for path in "$PATH" "/old/bin:$PATH"; do
   PATH=$path bash -c '. tools/env.sh; has_new_rust; cargo --version; rustc --print sysroot'
 done
-# All that the bootstrap names is there then, and it says and does nothing more.
+# A second bootstrap finds everything and prints nothing.
 [ -z "$(tools/bootstrap.sh demo 2>&1)" ]
 [ -z "$(tools/bootstrap.sh build 2>&1)" ]
-# What it installed is enough to compile, to link, and to make a virtual environment.
+# The installed packages can compile, link, and create a virtual environment.
 printf 'fn main() {}\n' >/tmp/a.rs && bash -c '. tools/env.sh; rustc -o /tmp/a /tmp/a.rs' && /tmp/a
 python3 -m venv /tmp/venv && /tmp/venv/bin/pip --version
 SESSION
 
-# The settings of this machine's session that the package managers read.
+# This session's variables that package managers read.
 environment=(PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8)
 while IFS= read -r name; do
   environment+=("$name=${!name}")

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # From a fresh checkout to a tested humanoid: examples/04-icub.
 #
-#   tools/icub.sh             runs it, to be watched in a browser
-#   tools/icub.sh COMMAND …   runs a command that finds YARP, the iCub and its plug-ins
+#   tools/icub.sh             runs it and serves the page
+#   tools/icub.sh COMMAND …   runs a command with the environment for YARP, the iCub and its plug-ins
 
 . "$(dirname "$0")/env.sh"
 . tools/packages.sh
 
 tools/bootstrap.sh demo
-# MuJoCo draws with them, on the processor.
+# For MuJoCo's software rendering.
 need_packages libegl1 libgl1-mesa-dri
 python=$(tools/venv.sh icub)
 settings=$(tools/middleware.sh yarp)
@@ -26,5 +26,5 @@ say "\$ rtf run examples/04-icub/icub.xml --web"
 status=0
 "$TARGET/release/rtf" run examples/04-icub/icub.xml --web || status=$?
 say
-say "in a browser again: ${TARGET#"$ROOT"/}/release/rtf serve"
+say "to open the run in a browser: ${TARGET#"$ROOT"/}/release/rtf serve"
 exit "$status"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs rtf below PREFIX; with DESTDIR, below DESTDIR/PREFIX (for packages).
-# What it installs is listed in share/rtf/manifest.txt, for tools/uninstall.sh.
+# tools/uninstall.sh reads the list of installed files from share/rtf/manifest.txt.
 
 . "$(dirname "$0")/env.sh"
 
@@ -22,14 +22,14 @@ put() {
   printf '%s\n' "$3" >>"$stage/manifest.txt"
 }
 
-# Installs a link: what it names, destination below the prefix.
+# Installs a link: target, destination below the prefix.
 put_link() {
   ln -sfn "$1" "$top/$2"
   printf '%s\n' "$2" >>"$stage/manifest.txt"
 }
 
-# Installs the files of a folder whose names match one of the patterns, but not
-# what running or building something there has left.
+# Installs the files of a directory whose names match one of the patterns, except build
+# results and caches.
 put_tree() {
   local source=$1 destination=$2 names=() file
   shift 2
@@ -43,7 +43,7 @@ put_tree() {
     -o -type f \( "${names[@]:1}" \) -print | sort)
 }
 
-# Under sudo nothing is built: root would leave its files in the checkout.
+# Do not build under sudo: root would own files in the checkout.
 if [ -z "${SUDO_USER:-}" ]; then
   tools/bootstrap.sh build
   tools/build.sh
@@ -64,7 +64,7 @@ for shell in bash zsh fish; do
 done
 
 put 755 "$release/rtf" bin/rtf
-put_link rtf bin/robottestingframework-testrunner # rtf, in its predecessor's manner
+put_link rtf bin/robottestingframework-testrunner # the command line of 2.x
 put 755 "$release/rtf-host-native" libexec/rtf/rtf-host-native
 put 755 "$release/rtf-host-lua" libexec/rtf/rtf-host-lua
 put_tree sdk/c/include include '*.h'

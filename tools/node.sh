@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Prints the bin folder of a Node that can build the page: the machine's own, or
-# else one from a virtual environment in the user's cache, see tools/venv.sh.
+# Prints the bin directory of a Node that can build the page: the machine's, or else one
+# from a virtual environment in the user's cache, see tools/venv.sh.
 
 . "$(dirname "$0")/env.sh"
 
-# What `engines` in web/package.json asks for.
+# Same as `engines` in web/package.json.
 is_enough='const [major, minor] = process.versions.node.split(".").map(Number);
   process.exit(major > 22 || (major === 22 && minor >= 12) || (major === 20 && minor >= 19) ? 0 : 1)'
 

@@ -1,8 +1,7 @@
 # shellcheck shell=bash
-# How Debian packages are installed; to be sourced after env.sh.
+# Installs Debian packages; to be sourced after env.sh.
 
-# Runs apt-get as root, by sudo if need be. A password is asked for only where
-# somebody can type it.
+# Runs apt-get as root, with sudo if necessary. It prompts for a password only on a terminal.
 apt() {
   local root=()
   if [ "$(id -u)" -ne 0 ]; then
@@ -14,25 +13,25 @@ apt() {
     -o DPkg::Lock::Timeout=300 "$@"
 }
 
-# The version of a package that apt-get would install; nothing when it knows none.
+# The version of a package that apt-get would install; empty if it knows none.
 candidate_of() {
   local version
   version=$(apt-cache policy "$1" 2>/dev/null | sed -n 's/^ *Candidate: *//p')
   [ "$version" = '(none)' ] || printf '%s' "$version"
 }
 
-# Installs packages, or tells how it is done by hand. None is removed for them.
+# Installs packages, or prints how to do so manually. It never removes a package.
 install_packages() {
   local by_hand="sudo apt-get install $*"
   have apt-get || die "missing: $* (Debian's names)" \
-    "install what this system calls them, then try again"
+    "install the equivalent packages of this system, then try again"
   say "installing: $*"
   apt install -y --no-install-recommends --no-remove "$@" ||
     { apt update && apt install -y --no-install-recommends --no-remove "$@"; } ||
     die "missing and could not be installed: $*" "as root: $by_hand"
 }
 
-# Installs those packages that dpkg does not know as installed.
+# Installs the packages that dpkg does not list as installed.
 need_packages() {
   local package missing=()
   for package in "$@"; do

@@ -21,7 +21,7 @@ _FILE = re.compile(
 _COMMANDS = re.compile(r"^```sh\n(.*?)^```$", re.M | re.S)
 
 
-def write_files(page: Path, folder: Path) -> list[Path]:
+def write_files(page: Path, directory: Path) -> list[Path]:
     """Writes the files that a page shows, and returns those that are suites."""
     suites = []
     shown = set()
@@ -29,31 +29,31 @@ def write_files(page: Path, folder: Path) -> list[Path]:
         if name in shown:
             raise SystemExit(f"{page}: {name} is shown twice")
         shown.add(name)
-        (folder / name).write_text(text)
+        (directory / name).write_text(text)
         if "<suite " in text:
-            suites.append(folder / name)
+            suites.append(directory / name)
     if not suites:
         raise SystemExit(f"{page}: no block is a suite: was the page's form changed?")
     return suites
 
 
-def run_fixture_page(rtf: str, fixture: str, folder: Path, lesson: Path | None = None) -> None:
+def run_fixture_page(rtf: str, fixture: str, directory: Path, lesson: Path | None = None) -> None:
     """Runs the commands and suites of a fixture's page, these beside the files of a lesson.
 
     Tests may fail, for pages show that, too; that they run, and the fixtures hold, is the page's.
     """
     page = TOP / "docs" / "fixtures" / f"{fixture}.md"
     if lesson is None:
-        folder.mkdir()
+        directory.mkdir()
     else:
-        shutil.copytree(lesson, folder, ignore=shutil.ignore_patterns("build", "rtf-results"))
+        shutil.copytree(lesson, directory, ignore=shutil.ignore_patterns("build", "rtf-results"))
     path = f"{Path(rtf).parent}:{os.environ['PATH']}"
     for commands in _COMMANDS.findall(page.read_text()):
         script = ["bash", "-e", "-o", "pipefail", "-c", commands]
         ran = subprocess.run(script, cwd=TOP, env={**os.environ, "PATH": path}, check=False)
         expect(f"{page.name}: exit code of `{commands.strip()}`", ran.returncode, 0)
-    for suite in write_files(page, folder):
-        run = Run(rtf, str(suite), folder / f"{suite.stem}.run")
+    for suite in write_files(page, directory):
+        run = Run(rtf, str(suite), directory / f"{suite.stem}.run")
         code = run.wait()
         verdicts = set(run.verdicts().values())
         told = f"{page.name}, {suite.name}: exit code {code}, verdicts {verdicts}"

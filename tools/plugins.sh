@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Builds a folder of C++ plug-ins against the C++ SDK in this checkout.
+# Builds a directory of C++ plug-ins against the C++ SDK in this checkout.
 #
 #   tools/plugins.sh examples/01-simulated-arm     into build/examples/01-simulated-arm
 
 . "$(dirname "$0")/env.sh"
 
-folder=${1:?a folder with a CMakeLists.txt}
+dir=${1:?a directory with a CMakeLists.txt}
 
-cmake -S "$folder" -B "$BUILD/$folder" \
+cmake -S "$dir" -B "$BUILD/$dir" \
   -DCMAKE_BUILD_TYPE=RelWithDebInfo \
   -DRobotTestingFramework_DIR="$ROOT/sdk/cpp/cmake/RobotTestingFramework"
-cmake --build "$BUILD/$folder" --parallel "$JOBS"
+cmake --build "$BUILD/$dir" --parallel "$JOBS"

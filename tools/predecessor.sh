@@ -1,11 +1,9 @@
 #!/usr/bin/env bash
-# Prints the folder of Debian's robot-testing-framework 2.x, with usr/bin and
-# usr/lib in it; downloads it when it is not there.
+# Prints the directory of Debian's robot-testing-framework 2.x, which contains usr/bin and
+# usr/lib; downloads it if necessary.
 #
-# It is unpacked into the user's cache and never installed, so that our package
-# and this one cannot be taken for each other; whether it is installed, too, does
-# not matter. The key is made of the packages' versions: another version is
-# another folder.
+# It is unpacked into the user's cache and not installed, so that the two packages cannot
+# be confused. Each version of the packages has a separate directory.
 
 . "$(dirname "$0")/env.sh"
 
@@ -15,7 +13,7 @@ libraries=(librobottestingframework2 librobottestingframework-{dll,lua,ruby}2)
 have apt-get || die "robot-testing-framework 2.x comes from Debian or Ubuntu" \
   "this system has no apt-get"
 
-# Its own packages, and of others what they need and this machine lacks.
+# Its packages and their missing dependencies.
 packages() {
   apt-get install --simulate --reinstall --no-install-recommends \
     "${wanted[@]}" "${libraries[@]}" 2>/dev/null |
@@ -32,33 +30,33 @@ fi
     "add Debian's main, or Ubuntu's main and universe, to its sources"
 
 key=$(printf '%s\n' "$list" | sort | sha256sum | cut -c1-12)
-folder=$CACHE/robot-testing-framework-2-$key
+dir=$CACHE/robot-testing-framework-2-$key
 
-# Two at once must not unpack it twice.
+# Only one process at a time may unpack it.
 mkdir -p "$CACHE"
-exec 9>"$folder.lock"
+exec 9>"$dir.lock"
 flock 9
 
-# Half a folder, left by an interrupted run, lacks this file.
-if [ ! -e "$folder/complete" ]; then
-  say "unpacking $(printf '%s\n' "$list" | tr '\n' ' ')in $folder"
-  rm -rf "$folder"
-  mkdir -p "$folder/packages"
-  cd "$folder/packages"
+# After an interrupted run, this file is missing.
+if [ ! -e "$dir/complete" ]; then
+  say "unpacking $(printf '%s\n' "$list" | tr '\n' ' ')in $dir"
+  rm -rf "$dir"
+  mkdir -p "$dir/packages"
+  cd "$dir/packages"
   download() {
     # shellcheck disable=SC2086 # one word for each package
     quietly apt-get -o APT::Sandbox::User="$(id -un)" download $list
   }
   if ! download && [ -z "${RTF_LISTS_ARE_NEW:-}" ]; then
-    # The lists may name versions that are not offered any more.
+    # Outdated lists may name versions that are no longer available.
     "$ROOT/tools/bootstrap.sh" update
     RTF_LISTS_ARE_NEW=yes exec "$ROOT/tools/predecessor.sh"
   fi
   compgen -G 'librobottestingframework-dev_*.deb' >/dev/null ||
     die "apt-get could not download robot-testing-framework 2.x"
   for package in *.deb; do
-    dpkg-deb -x "$package" "$folder"
+    dpkg-deb -x "$package" "$dir"
   done
-  touch "$folder/complete"
+  touch "$dir/complete"
 fi
-printf '%s\n' "$folder"
+printf '%s\n' "$dir"

@@ -10,20 +10,20 @@ from pathlib import Path
 
 
 def select(wanted: Callable[[Path, list[str], list[str]], bool]) -> list[int]:
-    """The processes for whose folder in /proc, words and environment this holds.
+    """The processes for whose directory in /proc, words and environment this holds.
 
     Those are left out that have ended and only wait for their parent, that belong to somebody
     else, and this one.
     """
     found = []
-    for folder in Path("/proc").glob("[0-9]*"):
+    for entry in Path("/proc").glob("[0-9]*"):
         try:
-            words = lines(folder / "cmdline")
-            is_wanted = any(words) and wanted(folder, words, lines(folder / "environ"))
+            words = lines(entry / "cmdline")
+            is_wanted = any(words) and wanted(entry, words, lines(entry / "environ"))
         except OSError:  # it has ended, or it is not ours
             continue
-        if is_wanted and int(folder.name) != os.getpid():
-            found.append(int(folder.name))
+        if is_wanted and int(entry.name) != os.getpid():
+            found.append(int(entry.name))
     return sorted(found)
 
 

@@ -18,14 +18,14 @@ RUN_SECS = 120
 class Run:
     """A run of rtf and its journal."""
 
-    def __init__(self, rtf: str, suite: str, folder: Path, *options: str) -> None:
-        folder.mkdir()
-        self.journal = folder / "latest" / "events.jsonl"
-        self.output = folder / "output"
+    def __init__(self, rtf: str, suite: str, directory: Path, *options: str) -> None:
+        directory.mkdir()
+        self.journal = directory / "latest" / "events.jsonl"
+        self.output = directory / "output"
         with self.output.open("wb") as output:
             self.process = subprocess.Popen(
-                [rtf, "run", "--results", str(folder), *options, suite],
-                cwd=folder,
+                [rtf, "run", "--results", str(directory), *options, suite],
+                cwd=directory,
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,

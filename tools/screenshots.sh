@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the pictures in docs/images: example 02 while it runs, and what there is
-# to be seen of a run afterwards. Needs what `make build` has built.
+# Creates the pictures in docs/images: example 02 while it runs, and a past run. Run
+# `make build` first.
 
 . "$(dirname "$0")/env.sh"
 
@@ -8,7 +8,7 @@ tools/bootstrap.sh test
 simulation=$(tools/venv.sh demo)
 tools/web.sh modules
 [ -x "$TARGET/release/rtf" ] || die "$TARGET/release/rtf is missing" "make build"
-# By its name, as a user calls it: the command is in the picture.
+# Called by its name as users do, because the command is in the picture.
 PATH=$simulation:$TARGET/release:$(tools/node.sh):$PATH
 export PATH RTF=rtf
 

@@ -1,10 +1,9 @@
 #!/usr/bin/env bash
-# Runs every check there is. A step that fails does not stop the others; the end
-# of its output is shown, and all of it is in build/test-logs. The last line
-# counts the steps.
+# Runs all checks. If a step fails, the script prints the end of its output and continues;
+# build/test-logs has complete logs. The last line counts the steps.
 #
 #   tools/test.sh             all steps
-#   tools/test.sh quick       all but those that need middleware (ROS, YARP, …)
+#   tools/test.sh quick       without steps that need middleware (ROS, YARP, …)
 #   tools/test.sh lint sdk    the steps whose names contain one of these words
 
 . "$(dirname "$0")/env.sh"
@@ -19,7 +18,7 @@ logs=$BUILD/test-logs
 mkdir -p "$logs"
 passed=0
 failed=()
-left_out=()
+skipped=()
 
 is_wanted() {
   local word
@@ -30,13 +29,13 @@ is_wanted() {
   return 1
 }
 
-# Runs one step: its name, then its command.
+# Runs a step: name, command.
 step() {
   local name=$1 log started=$EPOCHREALTIME seconds verdict
   shift
   is_wanted "$name" || return 0
   log=$logs/${name// /-}.log
-  # In the background, because in a condition bash goes on after an error.
+  # In the background, because bash ignores `set -e` in a condition.
   "$@" >"$log" 2>&1 </dev/null &
   if wait $!; then
     passed=$((passed + 1))
@@ -51,13 +50,13 @@ step() {
   printf '%-6s  %-28s %4d.%d s\n' "$verdict" "$name" $((seconds / 10)) $((seconds % 10))
 }
 
-# Runs one step that needs middleware: its name, the middleware, then its command.
+# Runs a step that needs middleware: name, middleware, command.
 step_with() {
   local name=$1 middleware=$2
   shift 2
   is_wanted "$name" || return 0
   if $quick; then
-    left_out+=("$name")
+    skipped+=("$name")
   else
     step "$name" with_middleware "$middleware" "$@"
   fi
@@ -75,12 +74,12 @@ lint_shell() {
   files '*.sh' .ci/run | xargs -d '\n' shellcheck
 }
 
-# The files of the project, those that are not committed yet included.
+# The project's files, including untracked ones.
 files() {
   git ls-files --cached --others --exclude-standard -- "$@"
 }
 
-# All but the header that cbindgen writes.
+# All except the header that cbindgen generates.
 lint_cpp() {
   files '*.c' '*.h' '*.cpp' '*.hpp' | grep -v -x sdk/c/include/rtf/plugin.h |
     xargs -d '\n' clang-format --style=file:sdk/.clang-format --dry-run --Werror
@@ -123,7 +122,7 @@ rust_docs() {
 
 lint_ruby() {
   (cd sdk/ruby && rubocop .)
-  # Plug-ins are named by their files, and say in a line what they do.
+  # Plug-ins are named after their files and described by one comment.
   files '*.rb' | grep -v '^sdk/ruby/' | xargs -d '\n' rubocop --config sdk/ruby/.rubocop.yml --except \
     Style/Documentation,Style/FrozenStringLiteralComment,Lint/BinaryOperatorWithIdenticalOperands
 }
@@ -148,13 +147,13 @@ lint_language() {
 }
 
 suites_are_valid() {
-  # What lies deeper in an example is its middleware's.
+  # XML files in subdirectories of examples belong to the middleware.
   files ':(glob)examples/*/*.xml' 'tests/install/*.xml' 'tests/fixtures/*/suite.xml' \
     'tests/fixtures/yarp/suites/*.xml' 'tests/fixtures/ros1/*.xml' 'tests/fixtures/clock/*.xml' |
     xargs -d '\n' xmllint --noout --schema spec/suite.xsd
 }
 
-# What the fixture managers make of the words of middleware.
+# Unit tests of the fixture managers.
 fixtures_python() {
   "$checkers/pytest" -q -p no:cacheprovider tests/fixtures
 }
@@ -226,7 +225,7 @@ example_07() {
     examples/07-levels
 }
 
-# The page's own checks; its tests in a browser need a built rtf.
+# Runs an npm script of the page.
 in_web() {
   tools/web.sh modules
   cd web
@@ -288,9 +287,9 @@ step 'predecessor ours' tests/predecessor/run.sh ours
 for name in "${failed[@]}"; do
   printf 'failed: %s\n' "$name"
 done
-if [ ${#left_out[@]} -gt 0 ]; then
-  printf 'left out, because they need middleware: %s\n' "$(printf '%s, ' "${left_out[@]}" | sed 's/, $//')"
+if [ ${#skipped[@]} -gt 0 ]; then
+  printf 'skipped, because they need middleware: %s\n' "$(printf '%s, ' "${skipped[@]}" | sed 's/, $//')"
 fi
 printf '%d passed, %d failed\n' "$passed" ${#failed[@]}
 [ ${#failed[@]} -eq 0 ] || exit 1
-[ "$passed" -gt 0 ] || die "no step has a name with: $*"
+[ "$passed" -gt 0 ] || die "no step has a name that contains: $*"

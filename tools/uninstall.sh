@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Removes what tools/install.sh has put below PREFIX, and the folders that are
-# empty then. Files that it has not installed are left alone.
+# Removes the files that tools/install.sh installed below PREFIX, and directories that are
+# empty afterwards. Other files are kept.
 
 . "$(dirname "$0")/env.sh"
 
@@ -10,15 +10,15 @@ manifest=$top/share/rtf/manifest.txt
 [ -e "$manifest" ] || die "$manifest is missing: rtf was not installed there by make install"
 
 remove() {
-  local folder
-  folder=$(dirname "$1")
+  local dir
+  dir=$(dirname "$1")
   rm -f "$top/$1"
-  if [[ $1 == *.py ]]; then # what Python made of it
-    rm -f "$top/$folder/__pycache__/$(basename "$1" .py)".*.pyc
-    rmdir "$top/$folder/__pycache__" 2>/dev/null || true
+  if [[ $1 == *.py ]]; then # its byte code
+    rm -f "$top/$dir/__pycache__/$(basename "$1" .py)".*.pyc
+    rmdir "$top/$dir/__pycache__" 2>/dev/null || true
   fi
-  while [ "$folder" != . ] && rmdir "$top/$folder" 2>/dev/null; do
-    folder=$(dirname "$folder")
+  while [ "$dir" != . ] && rmdir "$top/$dir" 2>/dev/null; do
+    dir=$(dirname "$dir")
   done
 }
 

@@ -1,11 +1,10 @@
 #!/usr/bin/env bash
-# Prints the bin folder of a virtual environment, which it makes when it is not there.
+# Prints the bin directory of a virtual environment, which it creates if necessary.
 #
 #   tools/venv.sh NAME      demo, test, …: one of tools/requirements-NAME.txt
 #
-# It lives in the user's cache under a key made of the interpreter and of the
-# wanted packages, tools/requirements-NAME.txt: another Python or another
-# version is another environment, and none is ever changed.
+# The environment is in the user's cache. Its name has a hash of the interpreter and of
+# tools/requirements-NAME.txt, so an existing environment is never changed.
 
 . "$(dirname "$0")/env.sh"
 
@@ -17,18 +16,18 @@ interpreter=$(python3 -c 'import sys; print(sys.executable, sys.version)')
 key=$(printf '%s\n' "$interpreter" | cat - "$requirements" | sha256sum | cut -c1-12)
 venv=$CACHE/venv-$name-$key
 
-# Two makes at once must not build it twice.
+# Only one process at a time may create it.
 mkdir -p "$CACHE"
 exec 9>"$venv.lock"
 flock 9
 
-# Half an environment, left by an interrupted run, lacks this file.
+# After an interrupted run, this file is missing.
 if [ ! -e "$venv/complete" ]; then
-  say "setting up what $requirements lists in $venv"
+  say "installing $requirements into $venv"
   rm -rf "$venv"
-  quietly python3 -m venv "$venv" || die "python3 cannot make a virtual environment"
+  quietly python3 -m venv "$venv" || die "python3 cannot create a virtual environment"
   quietly "$venv/bin/python" -m pip install --quiet --disable-pip-version-check \
-    --requirement "$requirements" || die "pip could not install what $requirements lists"
+    --requirement "$requirements" || die "pip could not install $requirements"
   touch "$venv/complete"
 fi
 printf '%s\n' "$venv/bin"

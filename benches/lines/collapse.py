@@ -25,12 +25,12 @@ PLUGIN = "plug-in"
 
 def group(bench: Bench) -> Group:
     """A program that is a fixture, and a fixture plug-in whose host is killed."""
-    pid = bench.folder / "victim.pid"
+    pid = bench.directory / "victim.pid"
     common = 'name="victim" restarts="0"'
     fixtures = {
         PROCESS: (
             f'<fixture type="process" {common}>'
-            f'<command>"{bench.folder}/victim" "{pid}"</command><ready log="^ready$"/></fixture>'
+            f'<command>"{bench.directory}/victim" "{pid}"</command><ready log="^ready$"/></fixture>'
         ),
         PLUGIN: f'<fixture type="dll" {common} param=\'"{pid}"\'>../VictimFixture</fixture>',
     }
@@ -38,12 +38,12 @@ def group(bench: Bench) -> Group:
     lines: list[Line] = []
     for kind, fixture in fixtures.items():
         # A suite for each collapse: within one, restarts wait ever longer.
-        folder = bench.folder / f"collapse-{kind}"
-        folder.mkdir(exist_ok=True)
+        directory = bench.directory / f"collapse-{kind}"
+        directory.mkdir(exist_ok=True)
         for number in range(COUNT):
             test = f"<test param='\"{pid}\"'>../Killer</test>"
-            suite.write(bench, f"{folder.name}/{number:02}", [fixture, test])
-        works.append(Work(kind, lambda folder=folder: collapses(bench, folder)))  # type: ignore[misc]
+            suite.write(bench, f"{directory.name}/{number:02}", [fixture, test])
+        works.append(Work(kind, lambda directory=directory: collapses(bench, directory)))  # type: ignore[misc]
         lines += lines_of(kind)
     return Group("collapse", tuple(works), tuple(lines), rounds=3, warm_up=False)
 
@@ -59,9 +59,9 @@ def lines_of(kind: str) -> list[Line]:
     ]
 
 
-def collapses(bench: Bench, folder: Path) -> Samples:
-    """Runs the suites of a folder; in each the fixture dies."""
-    with suite.Run(bench, folder, codes=(1,)) as run:
+def collapses(bench: Bench, directory: Path) -> Samples:
+    """Runs the suites of a directory; in each the fixture dies."""
+    with suite.Run(bench, directory, codes=(1,)) as run:
         run.expect("test-finished", COUNT, '"verdict":"collapsed"')
         events = run.events()
     latencies = [latency(event) for event in events if event["type"] == "measured"]

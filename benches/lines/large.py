@@ -57,9 +57,9 @@ def run(bench: Bench, file: Path) -> Samples:
 
 def junit(bench: Bench, file: Path) -> Samples:
     """Reads such a run's journal and writes the report."""
-    report = bench.folder / "junit.xml"
+    report = bench.directory / "junit.xml"
     with suite.Run(bench, file, codes=(1,)) as run:
-        command = [str(bench.rtf), "report", str(run.folder), "--format", "junit"]
+        command = [str(bench.rtf), "report", str(run.directory), "--format", "junit"]
         launched = bench.launch([*command, "--output", str(report)])
     suite.expect_in(report, COUNT, "<testcase ")
     return {SECONDS: [launched.seconds], MEMORY: [launched.children[0].rss_mb]}

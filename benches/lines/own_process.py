@@ -73,9 +73,9 @@ def predecessor(bench: Bench, kind: str, plugin: str) -> Callable[[], Samples]:
 
 def ctest(bench: Bench) -> Callable[[], Samples]:
     """Runs a C++ program as often with ctest, from a file as CMake writes it."""
-    folder = bench.folder / "ctest"
-    folder.mkdir(exist_ok=True)
-    program = bench.folder / "program"
+    directory = bench.directory / "ctest"
+    directory.mkdir(exist_ok=True)
+    program = bench.directory / "program"
     entries = "".join(f'add_test("test-{n:06}" "{program}")\n' for n in range(COUNT))
-    (folder / "CTestTestfile.cmake").write_text(entries, encoding="utf-8")
-    return lambda: a_test(bench.launch([bench.ctest, "--test-dir", str(folder)]))
+    (directory / "CTestTestfile.cmake").write_text(entries, encoding="utf-8")
+    return lambda: a_test(bench.launch([bench.ctest, "--test-dir", str(directory)]))

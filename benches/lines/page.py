@@ -76,11 +76,11 @@ def measure_served(bench: Bench) -> Samples:
 def started(bench: Bench, verb: str, *rest: str) -> Iterator[tuple[subprocess.Popen[bytes], str]]:
     """An rtf with a page: its process and its address."""
     command = [str(bench.rtf), verb, "--results", str(bench.results), "--web=127.0.0.1:0", *rest]
-    log = bench.folder / "page.log"
+    log = bench.directory / "page.log"
     with log.open("wb") as output:
         process = subprocess.Popen(
             command,
-            cwd=bench.folder,
+            cwd=bench.directory,
             env=bench.environment(),
             stdin=subprocess.DEVNULL,
             stdout=output,

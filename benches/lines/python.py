@@ -55,11 +55,11 @@ def rtf(bench: Bench, isolation: str) -> Callable[[], Samples]:
 
 def pytest(bench: Bench, *options: str) -> Callable[[], Samples]:
     """Runs as many functions with pytest, without its cache."""
-    folder = bench.folder / "pytest"
-    folder.mkdir(exist_ok=True)
+    directory = bench.directory / "pytest"
+    directory.mkdir(exist_ok=True)
     functions = "".join(f"def test_{n:06}():\n    assert True\n\n\n" for n in range(COUNT))
-    (folder / "test_trivial.py").write_text(functions, encoding="utf-8")
-    command = [bench.pytest, "-q", "-p", "no:cacheprovider", *options, str(folder)]
+    (directory / "test_trivial.py").write_text(functions, encoding="utf-8")
+    command = [bench.pytest, "-q", "-p", "no:cacheprovider", *options, str(directory)]
 
     def work() -> Samples:
         launched = bench.launch(command)

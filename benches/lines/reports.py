@@ -49,7 +49,7 @@ def predecessor(bench: Bench) -> Callable[[], Samples]:
 
     def work() -> Samples:
         launched = suite.run_predecessor(bench, file, 1)
-        suite.expect_in(bench.folder / suite.PREDECESSOR_RESULT, COUNT, "joint 3 moved")
+        suite.expect_in(bench.directory / suite.PREDECESSOR_RESULT, COUNT, "joint 3 moved")
         return {RATE: [COUNT / launched.seconds], MEMORY: [launched.children[0].rss_mb]}
 
     return work

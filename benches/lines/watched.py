@@ -24,7 +24,7 @@ WATCHED = "rtf run --web, in a browser"
 
 def group(bench: Bench) -> Group:
     """Tests of some 20 ms, begun when the page is open."""
-    gate = bench.folder / "gate"
+    gate = bench.directory / "gate"
     steps = suite.tests("python", "Steps", COUNT)
     file = suite.write(
         bench, "watched", [f'<test type="python" param="{gate}">Gate</test>', *steps]
@@ -42,7 +42,7 @@ def alone(bench: Bench, file: Path, gate: Path) -> Samples:
     """The same run without a page."""
     gate.touch()
     with suite.Run(bench, file) as run:
-        return {UNIT: [a_test(run.folder)]}
+        return {UNIT: [a_test(run.directory)]}
 
 
 def watched(bench: Bench, file: Path, gate: Path) -> Samples:
@@ -68,9 +68,9 @@ def browser(url: str) -> Iterator[None]:
         yield
 
 
-def a_test(folder: Path) -> float:
+def a_test(directory: Path) -> float:
     """Milliseconds a test, from the gate's end to the end of the last one."""
-    with (folder / "events.jsonl").open(encoding="utf-8") as journal:
+    with (directory / "events.jsonl").open(encoding="utf-8") as journal:
         events = [json.loads(line) for line in journal]
     ends = [event["at"] for event in events if event["type"] == "test-finished"]
     passed = sum(event.get("verdict") == "passed" for event in events)

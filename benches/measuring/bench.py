@@ -47,11 +47,11 @@ class Predecessor:
 
     @staticmethod
     def find() -> Predecessor | None:
-        """In the folder `RTF_BENCH_PREDECESSOR`, as Debian lays it out."""
-        folder = os.environ.get("RTF_BENCH_PREDECESSOR")
-        if not folder:
+        """In the directory `RTF_BENCH_PREDECESSOR`, as Debian lays it out."""
+        directory = os.environ.get("RTF_BENCH_PREDECESSOR")
+        if not directory:
             return None
-        system = Path(folder) / "usr"
+        system = Path(directory) / "usr"
         library = next(system.glob("lib/**/librobottestingframework.so"))
         runner = system / "bin" / "robottestingframework-testrunner"
         header = next(system.glob("include/**/robottestingframework/TestCase.h"))
@@ -64,9 +64,9 @@ class Predecessor:
 
 @dataclass(frozen=True)
 class Bench:
-    """A folder with everything that was built, and the programs to be measured."""
+    """A directory with everything that was built, and the programs to be measured."""
 
-    folder: Path
+    directory: Path
     results: Path
     """Where rtf keeps its runs."""
     rtf: Path
@@ -76,13 +76,13 @@ class Bench:
     """With its plug-in for forks, from `RTF_BENCH_PYTHON`."""
 
     @staticmethod
-    def open(folder: Path, results: Path, rtf: Path) -> Bench:
-        """A bench in an empty folder."""
+    def open(directory: Path, results: Path, rtf: Path) -> Bench:
+        """A bench in an empty directory."""
         if not rtf.exists():
             raise MeasuringError(f"{rtf} is missing: build it with `make build`")
         ctest = shutil.which("ctest") or ""
         pytest = shutil.which("pytest", path=os.environ.get("RTF_BENCH_PYTHON", "")) or ""
-        return Bench(folder, results, rtf, Predecessor.find(), ctest, pytest)
+        return Bench(directory, results, rtf, Predecessor.find(), ctest, pytest)
 
     def launch(
         self,
@@ -94,13 +94,13 @@ class Bench:
         """Runs a command that many times under the stopwatch, with these
         variables, too. Each has to end with one of the codes.
         """
-        times = self.folder / "times"
-        log = self.folder / "log"
+        times = self.directory / "times"
+        log = self.directory / "log"
         with log.open("wb") as output:
-            stopwatch = [str(self.folder / "launch"), str(count), str(times), *command]
+            stopwatch = [str(self.directory / "launch"), str(count), str(times), *command]
             done = subprocess.run(
                 stopwatch,
-                cwd=self.folder,
+                cwd=self.directory,
                 env={**self.environment(), **(settings or {})},
                 stdin=subprocess.DEVNULL,
                 stdout=output,

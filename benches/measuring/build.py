@@ -19,9 +19,9 @@ MODULE = ["-fPIC", "-shared"]
 
 
 def build(bench: Bench) -> None:
-    """Puts everything into the bench's folder, a core for each compiler."""
+    """Puts everything into the bench's directory, a core for each compiler."""
     for script in ("Trivial.lua", "Trivial.py", "Ticker.py", "Gate.py", "Steps.py"):
-        shutil.copy(SOURCES / script, bench.folder)
+        shutil.copy(SOURCES / script, bench.directory)
     commands = [
         [*C, *source("launch.c"), *output(bench, "launch")],
         [*C, *source("victim_program.c"), *output(bench, "victim")],
@@ -48,7 +48,7 @@ def source(name: str) -> list[str]:
 
 def output(bench: Bench, name: str) -> list[str]:
     """What is to be built."""
-    return ["-o", str(Path(bench.folder) / name)]
+    return ["-o", str(Path(bench.directory) / name)]
 
 
 def compile_one(command: Sequence[str]) -> None:

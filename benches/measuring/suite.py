@@ -18,8 +18,8 @@ TOTAL = re.compile(r"^Number of passed test cases +: (\d+)$", re.M)
 
 
 def write(bench: Bench, name: str, elements: Iterable[str]) -> Path:
-    """A suite with these elements, in the bench's folder."""
-    path = bench.folder / f"{name}.xml"
+    """A suite with these elements, in the bench's directory."""
+    path = bench.directory / f"{name}.xml"
     body = "\n".join(f"  {element}" for element in elements)
     path.write_text(f'<suite name="{name}">\n{body}\n</suite>\n', encoding="utf-8")
     return path
@@ -37,24 +37,24 @@ class Run:
     def __init__(self, bench: Bench, suite: Path, codes: Sequence[int] = (0,)) -> None:
         command = [str(bench.rtf), "run", "--results", str(bench.results), str(suite)]
         self.launched: Launched = bench.launch(command, codes=codes)
-        self.folder = (bench.results / "latest").resolve()
+        self.directory = (bench.results / "latest").resolve()
 
     def __enter__(self) -> Run:
         """Is there already."""
         return self
 
     def __exit__(self, *problem: object) -> None:
-        """Removes the run's folder."""
-        shutil.rmtree(self.folder)
+        """Removes the run's directory."""
+        shutil.rmtree(self.directory)
 
     def expect(self, kind: str, count: int, detail: str = "") -> None:
         """Makes sure that the journal has this many events of a kind."""
         wanted = (f'"type":"{kind}"', detail)
-        expect_in(self.folder / "events.jsonl", count, *wanted)
+        expect_in(self.directory / "events.jsonl", count, *wanted)
 
     def events(self) -> list[dict[str, object]]:
         """All of the journal."""
-        with (self.folder / "events.jsonl").open(encoding="utf-8") as journal:
+        with (self.directory / "events.jsonl").open(encoding="utf-8") as journal:
             return [json.loads(line) for line in journal]
 
 

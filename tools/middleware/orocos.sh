@@ -1,5 +1,4 @@
 # shellcheck shell=bash
-# omniORB, which OROCOS speaks with, and its name server. OROCOS itself is in no
-# registry of packages.
+# omniORB, which OROCOS uses, and its name server. There are no packages of OROCOS itself.
 
 need_packages omniorb omniorb-nameserver omniidl libomniorb4-dev g++

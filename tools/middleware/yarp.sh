@@ -1,13 +1,12 @@
 # shellcheck shell=bash
-# YARP from the source distribution on PyPI: its server, its tools, the devices
-# that the lessons use, and bindings for Lua and for the python3 in use. It is
-# built once, which takes two cores some minutes.
+# YARP from the source distribution on PyPI: its server, its tools, the devices that the
+# lessons use, and bindings for Lua and python3. It is built once, some minutes on two cores.
 
 yarp_version=3.5.0
 yarp_sha256=7a8f78e1b6d3477fcd5e73fd5839ebf6971c3c0f5d3208d3ec0ee2b0c44507b9
 ycm_version=0.15.3
 
-# Carriers and devices; YARP's defaults are many more and take twice as long.
+# Carriers and devices; YARP's defaults take twice as long.
 yarp_plugins=(
   yarpcar_portmonitor yarpmod_fakeMotionControl yarpmod_controlboardwrapper2
   yarpmod_controlBoard_nws_yarp yarpmod_remote_controlboard yarpmod_fakeFrameGrabber
@@ -16,7 +15,7 @@ yarp_plugins=(
 
 yarp_options=(
   -DCMAKE_BUILD_TYPE=Release
-  # Optimising costs more time in the build than the tests would gain.
+  # More optimization would cost more time than the tests would gain.
   "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG"
   -DCMAKE_INSTALL_LIBDIR=lib
   -DBUILD_SHARED_LIBS=ON
@@ -36,7 +35,7 @@ for plugin in "${yarp_plugins[@]}"; do
   yarp_options+=("-DENABLE_$plugin=ON")
 done
 
-# The sources are of 2021; the compilers of today want these headers named.
+# The sources are from 2021; current compilers require these headers.
 yarp_headers=(algorithm array cstdint functional iterator limits memory mutex string utility)
 yarp_flags=
 for header in "${yarp_headers[@]}"; do
@@ -46,12 +45,12 @@ yarp_options+=("-DCMAKE_CXX_FLAGS=$yarp_flags")
 
 yarp_download() {
   local tarball=$yarp_work/yarp_middleware-$yarp_version.tar.gz
-  # The tools that pip would build a wheel with come along, to read the name of the package.
+  # pip also downloads the build tools, to read the name of the package.
   [ -e "$tarball" ] || quietly python3 -m pip download --disable-pip-version-check --no-deps \
     --no-binary yarp-middleware --dest "$yarp_work" "yarp-middleware==$yarp_version" ||
     die "pip could not download yarp-middleware $yarp_version"
   printf '%s  %s\n' "$yarp_sha256" "$tarball" | sha256sum --check --quiet - ||
-    die "$tarball is not what was published" "delete it and try again"
+    die "$tarball has a wrong checksum" "delete it and try again"
   if [ ! -e "$yarp_work/sources/complete" ]; then
     rm -rf "$yarp_work/sources"
     mkdir -p "$yarp_work/sources"
@@ -65,9 +64,8 @@ yarp_download() {
     die "pip could not install ycm-cmake-modules $ycm_version"
 }
 
-# Those headers and others that most sources include, read once for all of them: most
-# sources then compile in half the time. Where the compiler's other options differ, of
-# which -Wvla is one (a macro goes with it), it reads the header itself.
+# Precompiles headers that most sources include, which halves the time for most of them.
+# It must have the same options as YARP's build, including -Wvla, which defines a macro.
 yarp_precompile() {
   local kind header=$yarp_work/headers.hpp
   mkdir -p "$header.gch"
@@ -80,7 +78,7 @@ yarp_precompile() {
   done
 }
 
-# An interrupted build goes on where it was.
+# An interrupted build is resumed.
 yarp_build() {
   say "building YARP $yarp_version into $yarp_prefix, once: some minutes"
   mkdir -p "$yarp_work" "$yarp_prefix"
