@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
-"""Runs what the user's guide shows: every file in it, every suite.
+"""Builds and runs the examples of the user's guide.
 
     check_docs.py RTF PAGE…
 
-A code block whose first line is a comment with a file name is that file. All
-files of a page go into one directory; its C++ plug-ins are built, and its suites
-must pass.
+A code block whose first line is a comment with a file name is that file. All files of a page
+are written to one directory, its C++ and Ada plug-ins are built, and its suites must pass.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ def main() -> None:
 
 
 def check(rtf: Path, page: Path, directory: Path) -> None:
-    """Builds and runs what one page shows."""
+    """Builds and runs the examples of one page."""
     suites = write_files(page, directory)
     build(directory)
     for suite in suites:
@@ -45,7 +44,7 @@ def check(rtf: Path, page: Path, directory: Path) -> None:
 
 
 def build(directory: Path) -> None:
-    """Builds the page's Ada plug-ins, and its C++ ones by its own or the obvious CMakeLists.txt."""
+    """Builds the page's Ada and C++ plug-ins, with its CMakeLists.txt or a default one."""
     for project in sorted(directory.glob("*.gpr")):
         call(directory, "gprbuild", "-p", "-q", "-P", project.name)
     sources = sorted(directory.glob("*.cpp"))
@@ -64,7 +63,7 @@ def build(directory: Path) -> None:
 
 
 def call(directory: Path, *command: str) -> None:
-    """Runs a command that must succeed."""
+    """Runs a command, which must succeed."""
     environment = os.environ | {
         "RTF_PLUGIN_PATH": str(directory / "build"),
         "GPR_PROJECT_PATH": str(TOP / "sdk" / "ada"),

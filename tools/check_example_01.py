@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
-"""Runs example 01 as a user does, and once more while its simulator is killed.
+"""Runs example 01 as a user does, and a second time while its simulator is killed.
 
     check_example_01.py RTF SUITE
 
-Nothing is imitated: the process that steps the physics gets a SIGKILL in the
-middle of a test. Both runs are judged by their exit code and their journal.
+The simulator gets a SIGKILL during a test. Exit code and journal of both runs are checked.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ VICTIM = "AccuracyTest"
 
 
 def main() -> int:
-    """Runs both and tells the first thing that is not as it should be."""
+    """Runs both; exits at the first difference."""
     rtf, suite = (str(Path(argument).resolve()) for argument in sys.argv[1:])
     with tempfile.TemporaryDirectory() as directory:
         undisturbed(rtf, suite, Path(directory) / "undisturbed")
@@ -29,7 +28,7 @@ def main() -> int:
 
 
 def undisturbed(rtf: str, suite: str, directory: Path) -> None:
-    """Everything passes, and nothing is left running."""
+    """All tests pass, and no process is left."""
     run = Run(rtf, suite, directory)
     expect("exit code", run.wait(), 0)
     expect("verdicts", set(run.verdicts().values()), {"passed"})
@@ -40,11 +39,11 @@ def undisturbed(rtf: str, suite: str, directory: Path) -> None:
 
 
 def simulator_killed(rtf: str, suite: str, directory: Path) -> None:
-    """The running test is `collapsed`, within a second; the others pass."""
+    """The running test is `collapsed` within a second; the others pass."""
     run = Run(rtf, suite, directory)
     noticed = run.collapses(lambda: kill(simulators(suite)), VICTIM)
     expect("exit code", run.wait(), 1)
-    expect("seconds until the collapse was seen, below 1", noticed < 1, True)
+    expect("seconds until the collapse was detected, below 1", noticed < 1, True)
     verdicts = run.verdicts()
     expect(f"verdict of {VICTIM}", verdicts.pop(VICTIM), "collapsed")
     expect("other verdicts", sorted(verdicts.values()), ["passed", "passed"])
@@ -54,7 +53,7 @@ def simulator_killed(rtf: str, suite: str, directory: Path) -> None:
 
 
 def simulators(suite: str) -> list[int]:
-    """The processes that are simulators of this suite."""
+    """The simulators of this suite."""
     home = Path(suite).parent
     return select(
         lambda entry, words, _: "simulator.py" in words and (entry / "cwd").resolve() == home

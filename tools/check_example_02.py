@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Runs example 02 as a user does, and once more while the runner is killed.
+"""Runs example 02 as a user does, and a second time while the runner is killed.
 
     check_example_02.py RTF SUITE
 
-The first run shows a collapse, a rerun and a parked arm. In the second one the
-runner gets a SIGKILL while the arm moves: its guard has to park the arm.
+The first run shows a collapse, a rerun and a parked arm. In the second, the runner gets a
+SIGKILL while the arm moves, and the guard must park the arm.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ RUNNER_DIED = 5
 
 
 def main() -> int:
-    """Runs both and tells the first thing that is not as it should be."""
+    """Runs both; exits at the first difference."""
     rtf, suite = (str(Path(argument).resolve()) for argument in sys.argv[1:])
     with tempfile.TemporaryDirectory() as directory:
         undisturbed(rtf, suite, Path(directory) / "undisturbed")
@@ -29,7 +29,7 @@ def main() -> int:
 
 
 def undisturbed(rtf: str, suite: str, directory: Path) -> None:
-    """The arm dies once, the test runs again, and the arm ends up parked."""
+    """The arm dies once, the test is rerun, and the arm is parked at the end."""
     run = Run(rtf, suite, directory)
     expect("exit code", run.wait(), 0)
     expect("attempts", run.attempts(), ["collapsed", "passed", "passed"])
@@ -39,7 +39,7 @@ def undisturbed(rtf: str, suite: str, directory: Path) -> None:
 
 
 def runner_killed(rtf: str, suite: str, directory: Path) -> None:
-    """The guard parks the arm and leaves nothing running."""
+    """The guard parks the arm, and no process is left."""
     run = Run(rtf, suite, directory)
     try:
         run.wait_for(is_rerun)
@@ -57,29 +57,29 @@ def runner_killed(rtf: str, suite: str, directory: Path) -> None:
 
 
 def is_rerun(event: Event) -> bool:
-    """Whether the test that was interrupted by the collapse begins again."""
+    """Whether the test that the collapse interrupted is rerun."""
     return is_a(event, "test-started") and bool(event["attempt"] == 2)
 
 
 def runs_again(run: Run) -> bool:
-    """Whether the second attempt has entered its run."""
+    """Whether the second attempt has reached the phase `run`."""
     events = list(run.events())
     again = next(index for index, event in enumerate(events) if is_rerun(event))
     return any(is_a(each, "test-phase") and each["phase"] == "run" for each in events[again:])
 
 
 def triggers(run: Run) -> list[str]:
-    """What called for a hook, in order."""
+    """The triggers of the hook, in order."""
     return [event["trigger"] for event in run.events("hook-started")]
 
 
 def hook_output(run: Run) -> str:
-    """What the hook printed."""
+    """The output of the hook."""
     return "".join(event["text"] for event in run.events("output") if "hook" in event["source"])
 
 
 def arms() -> list[int]:
-    """The simulators of this lesson that run."""
+    """The running simulators of this lesson."""
     return running("loose_arm.py")
 
 

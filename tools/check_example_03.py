@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
-"""Runs example 03 as a user does, and again while parts of the robot are killed.
+"""Runs example 03 as a user does, and while parts of the robot are killed.
 
     check_example_03.py RTF DIRECTORY
 
-DIRECTORY is that of the example. YARP's programs, the robot's modules and the plug-ins
-have to be found as the lesson says. Nothing is imitated: a module gets a SIGKILL, a
-connection is cut by YARP's own tool, and the fixture itself is killed. No packet may
-leave the machine.
+DIRECTORY is that of the example. The environment must be set up as the lesson says. A
+module, the name server and the fixture get a SIGKILL, and YARP's tool cuts a connection. No
+packet may leave the machine.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ CONNECTION = "/sensor/values:o -> /smoother/values:i"
 
 
 def main() -> int:
-    """Runs all and tells the first thing that is not as it should be."""
+    """Runs all; exits at the first difference."""
     rtf, example = (Path(argument).resolve() for argument in sys.argv[1:])
     network.move_in()
     with tempfile.TemporaryDirectory() as name, network.quiet("lesson 3"):
@@ -47,18 +46,18 @@ def main() -> int:
 
 
 class Lesson:
-    """The example, with a home of its own for what YARP writes."""
+    """The example, with a private home directory for YARP's files."""
 
     def __init__(self, rtf: str, example: Path, directory: Path) -> None:
         self.rtf = rtf
         self.example = example
         self.directory = directory
         self.home = directory / "home"
-        # Every process of a run is known by it.
+        # Identifies the processes of the runs.
         os.environ["YARP_CONFIG_HOME"] = str(self.home)
 
     def undisturbed(self, suite: str, tests: int) -> None:
-        """Everything passes, on loopback only, and nothing is left."""
+        """All tests pass, on loopback only, and no process is left."""
         run = self.start(suite, suite)
         expect("exit code", run.wait(), 0)
         expect("verdicts", list(run.verdicts().values()), ["passed"] * tests)
@@ -67,7 +66,7 @@ class Lesson:
     def disturbed(
         self, what: str, disturb: Callable[[Lesson, Run], None], expected: list[str]
     ) -> None:
-        """The running test is `collapsed`, the reason names what was lost, the rest passes."""
+        """The running test is `collapsed`, the reason names the lost part, and the others pass."""
         run = self.start("yarp.xml", what)
 
         def do() -> None:
@@ -76,7 +75,7 @@ class Lesson:
 
         noticed = run.collapses(do, VICTIM)
         expect("exit code", run.wait(), 1)
-        expect("seconds until the collapse was seen, below 3", noticed < 3, True)
+        expect("seconds until the collapse was detected, below 3", noticed < 3, True)
         verdicts = run.verdicts()
         expect(f"verdict of {VICTIM}", verdicts.pop(VICTIM), "collapsed")
         expect("other verdicts", list(verdicts.values()), ["passed", "passed"])
@@ -85,12 +84,12 @@ class Lesson:
         self.nothing_left()
 
     def start(self, suite: str, name: str, *options: str) -> Run:
-        """Begins a run of a suite."""
+        """Starts a run of a suite."""
         print(f"--- {name}", flush=True)
         return Run(self.rtf, str(self.example / suite), self.directory / f"{name}.run", *options)
 
     def processes(self, program: str = "") -> list[int]:
-        """The processes of the runs, zombies not counted, or those of a program."""
+        """The processes of the runs, or those of a program, without zombies."""
         mark = f"YARP_CONFIG_HOME={self.home}"
         return select(
             lambda _, words, variables: (
@@ -99,7 +98,7 @@ class Lesson:
         )
 
     def nothing_left(self) -> None:
-        """No process, and no address of a name server that is not there."""
+        """No process is left, and no address of a dead name server."""
         expect("processes left", self.processes(), [])
         expect("files left", [str(path) for path in self.home.rglob("*") if path.is_file()], [])
 
@@ -111,7 +110,7 @@ def kill_sensor(lesson: Lesson, run: Run) -> None:
 
 
 def cut_connection(lesson: Lesson, run: Run) -> None:
-    """Somebody disconnects two ports that belong together."""
+    """A connection is cut."""
     del lesson
     source, target = CONNECTION.split(" -> ")
     (join,) = [event["join"] for event in run.events("suite-prepared")]
@@ -133,7 +132,7 @@ def kill_fixture(lesson: Lesson, run: Run) -> None:
 
 
 def interfaces(run: Run) -> list[str]:
-    """The network interfaces that the suite's processes see."""
+    """The network interfaces that are visible to the suite's processes."""
     (network,) = [event["network"] for event in run.events("suite-prepared")]
     lines = Path(f"/proc/{network['pid']}/net/dev").read_text().splitlines()[2:]
     return [line.split(":")[0].strip() for line in lines]

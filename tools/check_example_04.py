@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
-"""Runs example 04 as a user does: the iCub as it should be, with a broken joint, and killed.
+"""Runs example 04 as a user does, with a broken joint, and while the simulator is killed.
 
     check_example_04.py RTF SUITE
 
-YARP's programs, the iCub and the plug-ins have to be found as the lesson says.
-Nothing is imitated: the simulator gets a SIGKILL in the middle of a test.
+The environment must be set up as the lesson says. The simulator gets a SIGKILL during a test.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ STUCK = "l_elbow"
 
 
 def main() -> int:
-    """Runs all and tells the first thing that is not as it should be."""
+    """Runs all; exits at the first difference."""
     rtf, suite = (str(Path(argument).resolve()) for argument in sys.argv[1:])
     with tempfile.TemporaryDirectory() as directory:
         os.environ["YARP_CONFIG_HOME"] = str(Path(directory) / "home")
@@ -34,7 +33,7 @@ def main() -> int:
 
 
 def undisturbed(rtf: str, suite: str, directory: Path) -> None:
-    """Everything passes, and nothing is left running."""
+    """All tests pass, and no process is left."""
     run = Run(rtf, suite, directory)
     expect("exit code", run.wait(), 0)
     expect("verdicts", list(run.verdicts().values()), ["passed"] * 6)
@@ -43,7 +42,7 @@ def undisturbed(rtf: str, suite: str, directory: Path) -> None:
 
 
 def broken(rtf: str, suite: str, directory: Path) -> None:
-    """Those tests fail that move the joint, each with a picture."""
+    """The tests that move the joint fail, each with a picture."""
     os.environ["ICUB_STUCK"] = STUCK
     run = Run(rtf, suite, directory)
     del os.environ["ICUB_STUCK"]
@@ -57,7 +56,7 @@ def broken(rtf: str, suite: str, directory: Path) -> None:
 
 
 def killed(rtf: str, suite: str, directory: Path) -> None:
-    """The test is `collapsed` by a module that the reason names; the others pass."""
+    """The test is `collapsed`, the reason names the module, and the others pass."""
     run = Run(rtf, suite, directory)
     run.disturb(lambda: kill(simulators(suite)), VICTIM)
     expect("exit code", run.wait(), 1)
@@ -69,7 +68,7 @@ def killed(rtf: str, suite: str, directory: Path) -> None:
 
 
 def pictures(run: Run) -> dict[str, str]:
-    """The pictures by the names of the tests that they belong to."""
+    """The pictures, by test."""
 
     def path(event: Event) -> str:
         return str(event["attachment"]["path"])

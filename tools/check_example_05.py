@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
-"""Runs example 05 as a user does, and again while parts of ROS are killed.
+"""Runs example 05 as a user does, and while parts of ROS are killed.
 
     check_example_05.py RTF EXAMPLE PROBES
 
-Nothing is imitated: roscore, roslaunch and nodes are real, and get a SIGKILL in
-the middle of a test. Some runs go side by side: each has a master of its own. No
-packet may leave the machine.
+roscore, roslaunch and nodes get a SIGKILL during a test. Some runs are parallel, with
+separate masters. No packet may leave the machine.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ from run import Event, Run, expect
 VICTIM = "RateTest"
 RUNNER_DIED = 5
 LONG = "--set=seconds=20"
-"""How long the victim listens: time enough to disturb it."""
+"""How long the victim listens, in seconds: long enough to disturb it."""
 
 BROKEN = """<launch>
   <node name="wheel" pkg="rover" type="wheel.py"/>
@@ -43,7 +42,7 @@ NEVER = "import rtf\nclass Never(rtf.TestCase):\n    def run(self):\n        pas
 
 
 def main() -> int:
-    """Runs all and tells the first thing that is not as it should be."""
+    """Runs all; exits at the first difference."""
     rtf, example, probes = (Path(argument).resolve() for argument in sys.argv[1:])
     rover, slipping = example / "rover.xml", example / "slipping.xml"
     network.move_in()
@@ -87,14 +86,14 @@ def main() -> int:
 
 
 class Scene:
-    """A run of rtf with ROS of its own."""
+    """A run of rtf with a private ROS master."""
 
     def __init__(self, rtf: Path, suite: Path, directory: Path, options: list[str]) -> None:
         self.run = Run(str(rtf), str(suite), directory, *options)
         self.directory = directory
 
     def play(self, check: Check) -> None:
-        """Checks the run, and that nothing of ROS is left after it."""
+        """Checks the run, and that no ROS process is left."""
         self.title = check.__name__
         try:
             check(self)
@@ -103,28 +102,28 @@ class Scene:
         self.expect("processes left", commands(self.processes()), [])
 
     def expect(self, what: str, got: object, expected: object) -> None:
-        """Ends with a message if something is not as expected."""
+        """Exits with a message if a value is not as expected."""
         expect(f"{self.title}: {what}", got, expected)
 
     def kill(self, word: str, number: signal.Signals = signal.SIGKILL) -> None:
-        """Sends a signal to a process of ROS while the victim runs."""
+        """Sends a signal to a ROS process while the victim runs."""
         self.disturb(lambda: kill(self.processes(word), number))
 
     def disturb(self, disturbance: Callable[[], None]) -> None:
-        """Does something while the victim runs."""
+        """Disturbs the run while the victim runs."""
         self.run.disturb(disturbance, VICTIM)
 
     def finish(self, code: int) -> None:
-        """Waits for the end of the run."""
+        """Waits until the run ends."""
         self.expect("exit code", self.run.wait(), code)
 
     def processes(self, word: str = "") -> list[int]:
-        """The processes that use the master of this run, or those with a word in their lines."""
+        """The processes that use this run's master, or those whose command lines contain a word."""
         master = self.master()
         return select(lambda _, words, variables: master in variables and word in " ".join(words))
 
     def master(self) -> str:
-        """The variable that names the master of this run."""
+        """The variable with the address of this run's master."""
         (prepared,) = self.events("suite-prepared")
         values = {each["name"]: each["value"] for each in prepared["variables"]}
         return f"ROS_MASTER_URI={values['ROS_MASTER_URI']}"
@@ -134,7 +133,7 @@ class Scene:
         return list(self.run.events(kind))
 
     def collapsed(self, reason: str) -> None:
-        """The victim is `collapsed` for this reason; the other tests pass."""
+        """The victim is `collapsed` with this reason; the other tests pass."""
         self.finish(1)
         self.expect("reason", self.run.reasons(), [reason])
         verdicts = self.run.verdicts()
@@ -146,7 +145,7 @@ Check = Callable[[Scene], None]
 
 
 def broken(directory: Path) -> Path:
-    """A suite whose launch file names a node that is not there."""
+    """A suite whose launch file names a missing node."""
     (directory / "broken.launch").write_text(BROKEN)
     (directory / "Never.py").write_text(NEVER)
     suite = directory / "broken.xml"
@@ -155,13 +154,13 @@ def broken(directory: Path) -> Path:
 
 
 def undisturbed(scene: Scene) -> None:
-    """Everything passes."""
+    """All tests pass."""
     scene.finish(0)
     scene.expect("verdicts", list(scene.run.verdicts().values()), ["passed"] * 3)
 
 
 def respawned(scene: Scene) -> None:
-    """The wheel dies and roslaunch starts it again: it is told, and nothing collapses."""
+    """The wheel dies and roslaunch restarts it: this is reported, and nothing collapses."""
     scene.kill("wheel.py")
     scene.finish(0)
     said = " ".join(str(event["message"]["text"]) for event in scene.events("message"))
@@ -171,7 +170,7 @@ def respawned(scene: Scene) -> None:
 
 
 def not_to_be_respawned(scene: Scene) -> None:
-    """Without `--allow-respawn` the same is a collapse."""
+    """Without `--allow-respawn`, the same is a collapse."""
     scene.kill("wheel.py")
     scene.collapsed(
         "node /rover/wheel was killed by SIGKILL (exit code -9) "
@@ -180,31 +179,31 @@ def not_to_be_respawned(scene: Scene) -> None:
 
 
 def required(scene: Scene) -> None:
-    """A required node dies, and roslaunch ends with exit code 0: it is a collapse."""
+    """A required node dies, and roslaunch exits with 0: this is a collapse."""
     scene.kill("rover/odometer")
     scene.collapsed("node /rover/odometer was killed by SIGKILL (exit code -9)")
     scene.expect("starts", len(scene.events("fixture-ready")), 3)
-    # What was logged before and after it is with the results.
+    # The logs of both starts are in the results.
     logs = scene.run.journal.parent / "logs" / "rover.ros"
     starts = {path.parent for path in logs.glob("*/rover-wheel-*.log")}
     scene.expect("directories with the logs of nodes", len(starts), 2)
 
 
 def master_killed(scene: Scene) -> None:
-    """The end of the master is noticed, and what stands on it is started again, too."""
+    """The death of the master is detected, and the fixtures that depend on it are restarted."""
     scene.kill("rosmaster")
     scene.collapsed("the master was killed by SIGKILL (exit code -9)")
     scene.expect("starts", len(scene.events("fixture-ready")), 4)
 
 
 def roslaunch_killed(scene: Scene) -> None:
-    """Its nodes are sessions of their own and survive it; they are ended, too."""
+    """Its nodes are separate sessions and survive it; rtf kills them."""
     scene.kill("bin/roslaunch")
     scene.collapsed("roslaunch was killed by SIGKILL")
 
 
 def frozen(scene: Scene) -> None:
-    """A node that hangs has a process and is in the master's list: before a test it is asked."""
+    """A hung node has a process and is in the master's list: `check` before a test detects it."""
     scene.kill("rover/odometer", signal.SIGSTOP)
     scene.finish(1)
     (reason,) = scene.run.reasons()
@@ -214,13 +213,13 @@ def frozen(scene: Scene) -> None:
 
 
 def fixture_killed(scene: Scene) -> None:
-    """The plug-in itself is killed, which would have ended the nodes: rtf does it."""
+    """The plug-in is killed, which should have ended the nodes: rtf kills them."""
     scene.disturb(lambda: kill([parent(*scene.processes("bin/roslaunch"))]))
     scene.collapsed("its process ended with signal 9 (SIGKILL)")
 
 
 def runner_killed(scene: Scene) -> None:
-    """The guard ends everything, the nodes included."""
+    """The guard kills everything, including the nodes."""
 
     def kill_runner() -> None:
         scene.expect("nodes before", len(scene.processes()) > 5, True)
@@ -231,7 +230,7 @@ def runner_killed(scene: Scene) -> None:
 
 
 def not_launched(scene: Scene) -> None:
-    """A node that cannot be started fails the set-up at once: roslaunch goes on without it."""
+    """A node that cannot start fails the set-up at once, although roslaunch continues."""
     scene.finish(1)
     reason = scene.run.reason("fixture-broken")
     scene.expect(f"`cannot launch node` in {reason!r}", "cannot launch node" in reason, True)
@@ -239,7 +238,7 @@ def not_launched(scene: Scene) -> None:
 
 
 def bag_kept(scene: Scene) -> None:
-    """The bag of the test that failed is attached; that of the other one is not."""
+    """Only the bag of the failed test is attached."""
     scene.finish(1)
     scene.expect("verdicts", list(scene.run.verdicts().values()), ["passed", "failed"])
     (bag,) = bags(scene)
@@ -249,7 +248,7 @@ def bag_kept(scene: Scene) -> None:
 
 
 def bag_of_collapse(scene: Scene) -> None:
-    """A test that collapsed has its bag, too: what led to it is in there."""
+    """A collapsed test has its bag, too, which shows the cause."""
     scene.kill("rover/odometer")
     scene.finish(1)
     scene.expect("verdicts", list(scene.run.verdicts().values()), ["collapsed", "failed"])
@@ -258,12 +257,12 @@ def bag_of_collapse(scene: Scene) -> None:
 
 
 def bags(scene: Scene) -> list[Path]:
-    """The bags that were kept."""
+    """The attached bags."""
     return list((scene.run.journal.parent / "attachments").rglob("*.bag"))
 
 
 def silent(scene: Scene) -> None:
-    """A node that hangs lives, but its topic is silent: the probe tells."""
+    """A hung node is alive, but its topic is silent: the probe detects it."""
     scene.kill("wheel.py", signal.SIGSTOP)
     scene.finish(1)
     (reason,) = scene.run.reasons()

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Runs the suites of example 06 side by side, as a user does, and kills a node of one.
+"""Runs the suites of example 06 in parallel, as a user does, and kills a node of one.
 
     check_example_06.py RTF LEFT RIGHT
 
-No packet may leave the machine. Two suites that share a domain prove that they would
-hear each other otherwise, and that others would hear them.
+No packet may leave the machine. A run with a shared domain proves that without isolation
+the suites hear each other and other machines hear them.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from processes import kill, running, shared_memory, variable
 from run import Event, Run, expect, expect_in, is_a
 
 OWN = ("ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE")
-"""What rtf gives each suite: its domain, and discovery on this machine only."""
+"""The isolation of each suite: its domain, and discovery on this machine only."""
 
 
 def main() -> int:
-    """Runs all and tells the first thing that is not as it should be."""
+    """Runs all; exits at the first difference."""
     network.move_in()
     arguments = [str(Path(argument).resolve()) for argument in sys.argv[1:]]
     before = shared_memory()
@@ -43,33 +43,33 @@ def main() -> int:
 
 
 def apart(directory: Path, rtf: str, left: str, right: str) -> None:
-    """Side by side, neither hears the other, and nobody outside hears them."""
+    """In parallel, neither suite hears the other, and no packet leaves the machine."""
     run = Run(rtf, left, directory / "apart", "--jobs", "2", right)
     expect("exit code", run.wait(), 0)
     verdicts = outcomes(run)
     expect("tests", len(verdicts), 8)
     expect("verdicts", {verdict for _, _, verdict in verdicts}, {"passed"})
-    expect("suites side by side", side_by_side(run), True)
+    expect("suites in parallel", side_by_side(run), True)
     logs = run.journal.parent / "logs"
     logged = [any((logs / f"{suite}.ros").glob("python*.log")) for suite in ("left", "right")]
-    expect("what nodes log is with the results", logged, [True, True])
+    expect("the nodes' logs are in the results", logged, [True, True])
     expect("nodes left", running("joint.py"), [])
 
 
 def together(directory: Path, rtf: str, left: str, right: str) -> None:
-    """In one domain, with the default discovery, they hear each other, and others them."""
+    """In one domain with default discovery, they hear each other, and packets leave."""
     before = network.packets()
     os.environ.update(zip(OWN, ("99", "SUBNET"), strict=True))
     only = ["--set", "seconds=8", "--filter", "name(AloneTest)", "--jobs", "2", right]
     run = Run(rtf, left, directory / "together", *only)
     expect("exit code in one domain", run.wait(), 1)
     heard = [each for each in outcomes(run) if each[2] == "failed"]
-    expect("who is not alone, at least one", len(heard) > 0, True)
-    expect("packets that left, more than none", network.packets() - before > 0, True)
+    expect("arms that are not alone, at least one", len(heard) > 0, True)
+    expect("packets that left, at least one", network.packets() - before > 0, True)
 
 
 def killed(directory: Path, rtf: str, left: str, right: str) -> None:
-    """A node of the left suite is killed: its test collapses, and nothing of the right one."""
+    """A node of the left suite is killed: its test collapses, and the right suite is unaffected."""
     run = Run(rtf, left, directory / "killed", "--jobs", "2", right)
     try:
         run.wait_for(lambda event: is_running(run, event))
@@ -85,11 +85,11 @@ def killed(directory: Path, rtf: str, left: str, right: str) -> None:
     expect("passed", sum(verdict == "passed" for _, _, verdict in verdicts), 7)
     told = (event["text"] for event in run.events("output"))
     cleaned = any("removed /dev/shm/fastdds_" in text for text in told)
-    expect("what the dead node left is removed", cleaned, True)
+    expect("shared memory of the dead node is removed", cleaned, True)
 
 
 def is_running(run: Run, event: Event) -> bool:
-    """Whether the left suite's test of topics has begun its run."""
+    """Whether the left suite's TopicTest has reached the phase `run`."""
     if not (is_a(event, "test-phase") and event["phase"] == "run"):
         return False
     return names(run)[event["test"]] == ("left", "TopicTest")
@@ -103,14 +103,14 @@ def names(run: Run) -> dict[int, tuple[str, str]]:
 
 
 def outcomes(run: Run) -> list[tuple[str, str, str]]:
-    """Suite, name and verdict of each test that has ended."""
+    """Suite, name and verdict of each finished test."""
     known = names(run)
     finished = run.events("test-finished")
     return [(*known[event["test"]], event["verdict"]) for event in finished]
 
 
 def side_by_side(run: Run) -> bool:
-    """Whether both suites began before one had ended."""
+    """Whether both suites started before one finished."""
     kinds = [event["type"] for event in run.events()]
     order = [kind for kind in kinds if kind in {"suite-started", "suite-finished"}]
     return order[:2] == ["suite-started", "suite-started"]

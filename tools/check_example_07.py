@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Runs example 07 as a user does, and once more while its simulator is killed.
+"""Runs example 07 as a user does, and a second time while its simulator is killed.
 
     check_example_07.py RTF DIRECTORY
 
-All levels, side by side as far as they may: they share one robot, so they take
-turns. Then the stress level for a time, and the system level, in the middle of
-which the process that steps the physics gets a SIGKILL.
+First all levels with `--jobs`; they share one robot, so they run one after the other. Then
+the stress level for a limited time, and the system level, during which the simulator gets a
+SIGKILL.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ SOAK = 10.0
 
 
 def main() -> int:
-    """Runs all and tells the first thing that is not as it should be."""
+    """Runs all; exits at the first difference."""
     rtf, example = sys.argv[1], Path(sys.argv[2]).resolve()
     rtf = str(Path(rtf).resolve())
     with tempfile.TemporaryDirectory() as directory:
@@ -35,7 +35,7 @@ def main() -> int:
 
 
 def all_levels(rtf: str, example: Path, directory: Path) -> None:
-    """Everything passes; no two levels have the arm at the same time."""
+    """All tests pass; no two levels use the arm at the same time."""
     run = Run(rtf, str(example), directory, "--jobs", "4")
     expect("exit code", run.wait(), 0)
     expect("verdicts", set(run.verdicts().values()), {"passed"})
@@ -52,7 +52,7 @@ def all_levels(rtf: str, example: Path, directory: Path) -> None:
 
 
 def in_ci(rtf: str, example: Path, directory: Path) -> None:
-    """The profile leaves the stress level out, and writes a report."""
+    """The profile excludes the stress level and writes a report."""
     report = example / "junit.xml"
     run = Run(rtf, str(example), directory, "--profile", "ci")
     expect("exit code", run.wait(), 0)
@@ -63,20 +63,20 @@ def in_ci(rtf: str, example: Path, directory: Path) -> None:
 
 
 def repeated(rtf: str, example: Path, directory: Path) -> None:
-    """Rounds of one suite fill the time, on one start of the simulator."""
+    """Rounds of one suite fill the time with one start of the simulator."""
     suite = str(example / "integration.xml")
     run = Run(rtf, suite, directory, "--for", f"{SOAK:.0f}s", "--until-fail")
     expect("exit code", run.wait(), 0)
     events = list(run.events())
     (rounds,) = [event["repetitions"] for event in events if is_a(event, "test-repeated")]
-    expect("rounds, more than one", rounds > 1, True)
+    expect("rounds, at least two", rounds > 1, True)
     expect("starts", sum(is_a(event, "fixture-ready") for event in events), 1)
-    expect("time is over", events[-1]["at"] >= SOAK * 1e6, True)
+    expect("time is up", events[-1]["at"] >= SOAK * 1e6, True)
     expect("arms left", arms(), [])
 
 
 def simulator_killed(rtf: str, example: Path, directory: Path) -> None:
-    """The task begins anew on a new simulator, and the run is green."""
+    """The task is rerun on a new simulator, and the run is green."""
     run = Run(rtf, str(example / "system.xml"), directory)
     run.disturb(lambda: kill(arms()), once="message")
     expect("exit code", run.wait(), 0)
@@ -86,7 +86,7 @@ def simulator_killed(rtf: str, example: Path, directory: Path) -> None:
 
 
 def arms() -> list[int]:
-    """The simulators of this lesson that run: those whose port `rtf` has chosen."""
+    """The running simulators of this lesson, whose port `rtf` chose."""
     return select(
         lambda _, words, variables: (
             "../01-simulated-arm/simulator.py" in words

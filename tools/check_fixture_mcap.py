@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Records tests with the fixture `mcap` and reads the files as others do.
+"""Records tests with the fixture `mcap` and reads the files with the library `mcap`.
 
     check_fixture_mcap.py RTF
 
-The Python that runs this has the library `mcap`.
+Needs a Python with the library `mcap`.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ SUITE = """<suite name="arm" parallel="2">
 
 
 def main() -> int:
-    """Runs the suite with each way of keeping."""
+    """Runs the suite with each setting for keeping recordings."""
     rtf = str(Path(sys.argv[1]).resolve())
     kept = {"": ["bad", "bad"], "--keep always": ["bad", "bad", "good"], "--keep never": []}
     for param, names in kept.items():
@@ -58,7 +58,7 @@ def main() -> int:
 
 
 def run(rtf: str, directory: Path, param: str) -> list[tuple[str, Path]]:
-    """Runs the suite: the tests that have a recording, and the files."""
+    """Runs the suite; returns the tests with a recording, and the files."""
     (directory / "Ramp.py").write_text(TEST)
     (directory / "s.xml").write_text(SUITE.format(param=param))
     ran = subprocess.run(
@@ -75,8 +75,8 @@ def run(rtf: str, directory: Path, param: str) -> list[tuple[str, Path]]:
 
 
 def look_into(file: Path) -> None:
-    """Each channel holds the whole series, in order."""
-    from mcap.reader import make_reader  # noqa: PLC0415 - this file is checked without it
+    """Each channel contains the complete series, in order."""
+    from mcap.reader import make_reader  # noqa: PLC0415 - the linters run without it
 
     series: dict[str, list[Any]] = {}
     times: list[int] = []
@@ -88,10 +88,10 @@ def look_into(file: Path) -> None:
             if channel.topic == "/wrist":
                 taken.append(message.log_time)
     values = [sample["value"] for sample in series["/joint 1"]]
-    expect("joint 1 is whole", values == [step / 512 for step in range(500)], True)
-    expect("current is whole", series["/current"] == [{"value": 0.5, "unit": "A"}] * 500, True)
+    expect("joint 1 is complete", values == [step / 512 for step in range(500)], True)
+    expect("current is complete", series["/current"] == [{"value": 0.5, "unit": "A"}] * 500, True)
     wrist = [{"value": step / 256, "unit": "rad"} for step in range(500)]
-    expect("wrist is whole", series["/wrist"] == wrist, True)
+    expect("wrist is complete", series["/wrist"] == wrist, True)
     steps = [(at - taken[0]) // 10**6 for at in taken]
     expect("wrist has its own times", steps, [10 * step for step in range(500)])
     expect("log", series["/log"][0], {"kind": "report", "text": "at the end"})

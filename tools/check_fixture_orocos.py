@@ -3,9 +3,9 @@
 
     check_fixture_orocos.py RTF DIRECTORY
 
-The program in the place of the deployer is built here: RTT is in no registry
-of packages. Its components are real CORBA objects, served by omniORB and named
-in omniNames; they have the interface that RTT has published.
+There are no packages of RTT, so this script builds a substitute for the deployer. Its
+components are real CORBA objects with RTT's published interface, served by omniORB and
+registered in omniNames.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from processes import kill, running
 from run import Run, expect, expect_in
 
 SECONDS = "--set=seconds=20"
-"""How long the first test runs: time enough to disturb it."""
+"""How long the first test runs, in seconds: long enough to disturb it."""
 
 DEPLOYER = "deployer-corba"
 
 
 def main() -> int:
-    """Runs all and tells the first thing that is not as it should be."""
+    """Runs all; exits at the first difference."""
     rtf, sources = (Path(argument).resolve() for argument in sys.argv[1:])
     with tempfile.TemporaryDirectory() as directory:
         home = Path(directory)
@@ -45,7 +45,7 @@ def main() -> int:
 
 
 def checks(rtf: str, sources: Path, home: Path) -> None:
-    """What the fixture does with a deployer that is there."""
+    """The fixture's behaviour if there is a deployer."""
     suite = str(sources / "suite.xml")
     undisturbed(rtf, str(sources / "prompt.xml"), home / "prompt")
     undisturbed(rtf, suite, home / "undisturbed")
@@ -54,7 +54,7 @@ def checks(rtf: str, sources: Path, home: Path) -> None:
     collapses(Run(rtf, suite, home / "fatal", SECONDS), signal.SIGUSR1, fatal)
     exception = ["arm is in state Exception"]
     collapses(Run(rtf, suite, home / "exception", SECONDS), signal.SIGUSR2, exception)
-    # Whoever notices it first tells it.
+    # The reason depends on which check detects it first.
     killed = [f"{DEPLOYER} was killed by SIGKILL", "does not answer: CORBA exception"]
     collapses(Run(rtf, suite, home / "killed", SECONDS), signal.SIGKILL, killed)
     hangs = ["does not answer: CORBA exception TRANSIENT: 127.0.0.1:"]
@@ -63,7 +63,7 @@ def checks(rtf: str, sources: Path, home: Path) -> None:
 
 
 def build(sources: Path, directory: Path) -> None:
-    """Builds what stands in for both deployers."""
+    """Builds the substitute for both deployers."""
     directory.mkdir()
     subprocess.run(
         ["omniidl", "-bcxx", str(sources / "TaskContext.idl")], cwd=directory, check=True
@@ -76,7 +76,7 @@ def build(sources: Path, directory: Path) -> None:
 
 
 def missing(rtf: str, suite: str, directory: Path) -> None:
-    """Where there is no deployer, the reason says so."""
+    """Without a deployer, the reason says so."""
     if found := shutil.which("deployer-gnulinux"):
         raise SystemExit(f"{found} is on PATH: this check needs a PATH without it")
     run = Run(rtf, suite, directory)
@@ -85,14 +85,14 @@ def missing(rtf: str, suite: str, directory: Path) -> None:
 
 
 def undisturbed(rtf: str, suite: str, directory: Path) -> None:
-    """Everything passes."""
+    """All tests pass."""
     run = Run(rtf, suite, directory)
     expect("exit code", run.wait(), 0)
     expect("verdicts", set(run.verdicts().values()), {"passed"})
 
 
 def collapses(run: Run, number: signal.Signals, reasons: list[str]) -> None:
-    """A signal to the deployer: the test is `collapsed`, the next one has another deployer."""
+    """After a signal to the deployer, the test is `collapsed`; the next has a new deployer."""
     run.collapses(lambda: kill(running(DEPLOYER), number))
     expect(f"exit code after {number.name}", run.wait(), 1)
     told = run.reason()
@@ -102,7 +102,7 @@ def collapses(run: Run, number: signal.Signals, reasons: list[str]) -> None:
 
 
 def never_there(rtf: str, suite: str, directory: Path) -> None:
-    """A component that the script does not load: what was answered last is told."""
+    """If the script does not load a component, the reason has the last reply."""
     run = Run(rtf, suite, directory, "--set=second=elbow", "--set=timeout=1")
     expect("exit code", run.wait(), 1)
     expect_in("CORBA exception NotFound", broken(run))
@@ -110,7 +110,7 @@ def never_there(rtf: str, suite: str, directory: Path) -> None:
 
 
 def broken(run: Run) -> str:
-    """Why the fixture could not be set up."""
+    """The reason of the failed set-up."""
     return run.reason("fixture-broken")
 
 

@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
-"""Runs the fixture `ros2launch` while what it launched is killed, stopped and missing.
+"""Runs the fixture `ros2launch` while its nodes are killed, stopped and missing.
 
     check_fixture_ros2launch.py RTF SUITE
 
-The nodes are real ones. The `ros2` command stands in for the real one, which is
-in no registry of packages: it starts them, and says and does what was recorded
-of the real one.
+The nodes are real. There are no packages of the `ros2` command, so a substitute starts
+them and reproduces the recorded behaviour of the real command.
 """
 
 from __future__ import annotations
@@ -21,11 +20,11 @@ from processes import kill, running, shared_memory
 from run import Run, expect, expect_in
 
 SECONDS = "--set=seconds=15"
-"""How long the first test listens: time enough to disturb it."""
+"""How long the first test listens, in seconds: long enough to disturb it."""
 
 
 def main() -> int:
-    """Runs all and tells the first thing that is not as it should be."""
+    """Runs all; exits at the first difference."""
     rtf, suite = (str(Path(argument).resolve()) for argument in sys.argv[1:])
     before = shared_memory()
     with tempfile.TemporaryDirectory() as directory:
@@ -45,7 +44,7 @@ def main() -> int:
 
 
 def without_ros2(rtf: str, suite: str, directory: Path) -> None:
-    """Where ROS 2 is missing, the reason says so and how to get it."""
+    """Without ROS 2, the reason says so and how to install it."""
     if found := shutil.which("ros2"):
         raise SystemExit(f"{found} is on PATH: this check needs a PATH without it")
     run = Run(rtf, suite, directory)
@@ -56,7 +55,7 @@ def without_ros2(rtf: str, suite: str, directory: Path) -> None:
 
 
 def undisturbed(rtf: str, suite: str, directory: Path) -> None:
-    """Everything passes, also with a process that does its work and ends."""
+    """All tests pass, also with a process that exits successfully."""
     run = Run(rtf, suite, directory)
     expect("exit code", run.wait(), 0)
     expect("verdicts", set(run.verdicts().values()), {"passed"})
@@ -64,7 +63,7 @@ def undisturbed(rtf: str, suite: str, directory: Path) -> None:
 
 
 def collapses(rtf: str, suite: str, directory: Path, number: signal.Signals, why: str) -> None:
-    """A signal to the talker: the test is `collapsed`, the next one has another talker."""
+    """After a signal to the talker, the test is `collapsed`; the next has a new talker."""
     run = Run(rtf, suite, directory, SECONDS)
     run.collapses(lambda: kill(running("talker.py"), number))
     expect(f"exit code after {number.name}", run.wait(), 1)
@@ -75,7 +74,7 @@ def collapses(rtf: str, suite: str, directory: Path, number: signal.Signals, why
 
 
 def launch_killed(rtf: str, suite: str, directory: Path) -> None:
-    """A SIGKILL to launch itself leaves its nodes behind: they are ended, too."""
+    """A SIGKILL to launch itself leaves its nodes behind: rtf kills them."""
     run = Run(rtf, suite, directory, SECONDS)
     run.collapses(lambda: kill(running("ros2")))
     expect("exit code", run.wait(), 1)
@@ -85,12 +84,12 @@ def launch_killed(rtf: str, suite: str, directory: Path) -> None:
 
 
 def dies_early(rtf: str, suite: str, directory: Path) -> None:
-    """A node that dies before it is ready fails the set-up at once; its last words are shown."""
+    """A node that dies before it is ready fails the set-up at once; its last output is shown."""
     run = Run(rtf, suite, directory, "--set=rate=fast")
     expect("exit code", run.wait(), 1)
     expect_in("talker-1 died, exit code 1", run.reason("fixture-broken"))
     told = "could not convert string to float: 'fast'" in run.output.read_text()
-    expect("last words are told", told, True)
+    expect("last output is reported", told, True)
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Runs YARP's fixtures while parts hang or do not start, and two of them side by side.
+"""Runs YARP's fixtures while parts hang or do not start, and two of them in parallel.
 
     check_fixture_yarp.py RTF DIRECTORY
 
-All programs are YARP's own. What happens when they are killed is in check_example_03.py.
+All programs are YARP's own. check_example_03.py kills them.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ HEAD = "/icubSim/head/state:o"
 
 
 def main() -> int:
-    """Runs all and tells the first thing that is not as it should be."""
+    """Runs all; exits at the first difference."""
     rtf, suites = (Path(argument).resolve() for argument in sys.argv[1:])
     network.move_in()
     with tempfile.TemporaryDirectory() as name, network.quiet("YARP's fixtures"):
@@ -41,7 +41,7 @@ def main() -> int:
 
 
 def hangs(lesson: Lesson, suite: str, program: str, expected: str) -> None:
-    """A process that is there, but does not answer, is a collapse that says so."""
+    """A process that exists but does not answer is a collapse with that reason."""
     run = lesson.start(f"{suite}.xml", f"{suite}-hangs")
     run.disturb(lambda: kill(lesson.processes(program), signal.SIGSTOP))
     expect("exit code", run.wait(), 1)
@@ -51,7 +51,7 @@ def hangs(lesson: Lesson, suite: str, program: str, expected: str) -> None:
 
 
 def does_not_start(lesson: Lesson, application: str, expected: str) -> None:
-    """What the manager cannot start makes the set-up fail, and not only after its time-outs."""
+    """A module that the manager cannot start fails the set-up without waiting for its time-outs."""
     run = lesson.start("application.xml", application, f"--set=application={application}")
     expect("exit code", run.wait(), 1)
     expect("skipped", len(list(run.events("test-skipped"))), 1)
@@ -60,20 +60,20 @@ def does_not_start(lesson: Lesson, application: str, expected: str) -> None:
 
 
 def side_by_side(lesson: Lesson) -> None:
-    """Two suites with the same application, in one network, each in a namespace of its own."""
-    run = lesson.start("left.xml", "side by side", "--jobs", "2", str(lesson.example / "right.xml"))
+    """Two suites with the same application in one network, in separate YARP namespaces."""
+    run = lesson.start("left.xml", "in parallel", "--jobs", "2", str(lesson.example / "right.xml"))
     expect("exit code", run.wait(), 0)
     expect("verdicts", run.attempts(), ["passed", "passed"])
     lesson.nothing_left()
 
 
 def recorded(lesson: Lesson) -> None:
-    """What went through a port during a test that failed is kept with it, and only that."""
+    """The data of a port during a failed test is attached to that test, and nothing else."""
     run = lesson.start("recorder.xml", "recorder")
     expect("exit code", run.wait(), 1)
     expect("verdicts", run.verdicts(), {"bad": "failed", "good": "passed"})
     (kept,) = run.events("attached")
-    expect("test that it belongs to", run.name(kept), "bad")
+    expect("test with the recording", run.name(kept), "bad")
     with tarfile.open(run.journal.parent / kept["attachment"]["path"]) as archive:
         names = {Path(name).name for name in archive.getnames()}
         expect("files", {"data.log", "info.log"} <= names, True)
@@ -86,7 +86,7 @@ def recorded(lesson: Lesson) -> None:
 
 
 def as_in_yarp(lesson: Lesson) -> None:
-    """`--fixture head.xml` is where YARP's own plug-in finds it: in a context of its data."""
+    """`--fixture head.xml` is found as by YARP's own plug-in: in a context of YARP's data."""
     data = lesson.example.parent / "data"
     os.environ["YARP_DATA_DIRS"] = f"{os.environ['YARP_DATA_DIRS']}:{data}"
     run = lesson.start("predecessor.xml", "predecessor")
@@ -96,7 +96,7 @@ def as_in_yarp(lesson: Lesson) -> None:
 
 
 def is_installed(lesson: Lesson) -> None:
-    """What YARP lists is there; all that it does not list is named."""
+    """Items that YARP lists are found; all others are named."""
     run = lesson.start("plugins.xml", "plugins")
     expect("exit code", run.wait(), 0)
     absent = "--set=monitor=remote_controlboard"

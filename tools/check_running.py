@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Runs every command of docs/running.md as it stands there, in a directory that has its names.
+"""Runs every command of docs/running.md in a directory with the page's suites.
 
     check_running.py RTF
 
-None may be refused: a test that fails (exit code 1) is one that the page needs.
-`rtf watch` is left out, since it does not end.
+Exit code 1 is allowed, because the page needs a failing test; other errors are not.
+`rtf watch` is skipped, because it does not end.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pathlib import Path
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "running.md"
 
 BLOCK = re.compile(r"^```(sh|toml)\n(.*?)^```$", re.M | re.S)
-# What stands for a time or a run that only the reader has.
+# Substitutes for times and runs that only the reader has.
 INSTEAD = {"--for 8h": "--for 1s", "2026-11-21T10-22-13Z-4f7b": "latest"}
 
 LUA = "TestCase = {}\nfunction TestCase.run() end\n"
@@ -45,13 +45,13 @@ class GripTest(rtf.TestCase):
 
 
 def main() -> None:
-    """Runs them, each after those before it."""
+    """Runs the commands in order."""
     rtf = Path(sys.argv[1]).resolve()
     blocks = BLOCK.findall(PAGE.read_text())
     commands = [line for kind, text in blocks if kind == "sh" for line in text.splitlines()]
     commands = [line for line in commands if not line.startswith("rtf watch ")]
     if len(commands) < 15:
-        raise SystemExit(f"{PAGE.name} has only {len(commands)} commands: was its form changed?")
+        raise SystemExit(f"{PAGE.name} has only {len(commands)} commands: was its format changed?")
     with tempfile.TemporaryDirectory() as name:
         directory = Path(name)
         for place in (directory, directory / "suites", directory / "tests"):
@@ -70,14 +70,14 @@ def main() -> None:
 
 
 def possible(command: str) -> str:
-    """What can be run here."""
+    """The commands that can run here."""
     for text, other in INSTEAD.items():
         command = command.replace(text, other)
     return command
 
 
 def fill(directory: Path) -> None:
-    """Writes the suites of which the page speaks, and their plug-ins."""
+    """Writes the page's suites and their plug-ins."""
     directory.mkdir(exist_ok=True)
     for name in ("EncoderTest.lua", "JointLimitTest.lua"):
         (directory / name).write_text(LUA)
@@ -87,9 +87,9 @@ def fill(directory: Path) -> None:
 
 
 def call(directory: Path, rtf: Path, command: list[str]) -> None:
-    """Runs a command that may say that a test failed, and nothing worse."""
+    """Runs a command, which may exit with 0 or 1."""
     print(f"{PAGE.name}: {command[-1] if command[0] == 'bash' else ' '.join(command)}", flush=True)
-    # Nobody else has the page's robot.
+    # Locks of other runs must not block this one.
     own = {"PATH": f"{rtf.parent}:{os.environ['PATH']}", "RTF_LOCKS": str(directory / "locks")}
     ran = subprocess.run(
         command, cwd=directory, env=os.environ | own, capture_output=True, text=True, check=False

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Counts the instructions of the hot paths and compares them with benches/counts.json.
 
-    tools/counts.py PROGRAM            compare; exit code 1 when one has grown too much
+    tools/counts.py PROGRAM            compare; exit code 1 if one has grown too much
     tools/counts.py PROGRAM --record   write the file
 
-PROGRAM is `rtf-counts`, an optimised build. Callgrind counts what the program does
-and nothing of the machine around it, so that a slower path is seen where times are
-of no use. The counts depend on the compiler and, a little, on the C library: they
-are compared closely when both are those of the record, and coarsely otherwise.
+PROGRAM is `rtf-counts`, an optimized build. Callgrind's counts do not depend on other load,
+so a slower path is visible even on a busy machine. The counts depend on the compiler and,
+slightly, on the C library: the tolerance is small if both are those of the record, and
+large otherwise.
 """
 
 from __future__ import annotations
@@ -26,20 +26,20 @@ from typing import NoReturn
 RECORD = Path(__file__).resolve().parent.parent / "benches/counts.json"
 WORKS = ("plan", "stream", "protocol")
 COUNT = re.compile(r"^==\d+== Collected : (\d+)", re.M)
-# More than this is a regression: with the tools of the record, and with others.
+# A larger increase is a regression: with the tools of the record, and with others.
 SAME_TOOLS = 0.03
 OTHER_TOOLS = 0.25
-# A path that got cheaper by more than this should be recorded anew.
+# A path that became cheaper by more than this should be recorded.
 CHEAPER = 0.10
 
 
 def fail(problem: str) -> NoReturn:
-    """Says what is wrong, and ends."""
+    """Prints an error and exits."""
     sys.exit(f"error: {problem}")
 
 
 def tools() -> dict[str, str]:
-    """What the counts depend on."""
+    """The compiler and C library, on which the counts depend."""
     rustc = subprocess.run(["rustc", "--version"], capture_output=True, text=True, check=True)
     name, version = platform.libc_ver()
     library = f"{name} {version}"
@@ -47,18 +47,18 @@ def tools() -> dict[str, str]:
 
 
 def count(program: Path, work: str) -> int:
-    """The instructions of one work."""
+    """The instructions of one workload."""
     with tempfile.TemporaryDirectory() as directory:
         command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null"]
         command += [str(program), work, directory]
-        # The same environment, address layout and locale for everybody.
+        # A fixed environment, address layout and locale.
         environment = {"PATH": os.environ["PATH"], "LC_ALL": "C"}
         try:
             done = subprocess.run(
                 command, capture_output=True, text=True, env=environment, check=False
             )
         except FileNotFoundError:
-            fail("valgrind is not there\nhint: as root: apt-get install valgrind")
+            fail("valgrind is missing\nhint: as root: apt-get install valgrind")
     found = COUNT.search(done.stderr)
     if done.returncode != 0 or found is None:
         fail(f"`{' '.join(command)}` ended with exit code {done.returncode}:\n{done.stderr}")
@@ -66,7 +66,7 @@ def count(program: Path, work: str) -> int:
 
 
 def compare(counts: dict[str, int], present: dict[str, str]) -> bool:
-    """Prints a line for each work; whether all are within the tolerance."""
+    """Prints a line per workload; returns whether all are within the tolerance."""
     record = json.loads(RECORD.read_text(encoding="utf-8"))
     is_same = record["tools"] == present
     tolerance = SAME_TOOLS if is_same else OTHER_TOOLS
@@ -97,7 +97,7 @@ def main() -> int:
     arguments = parser.parse_args()
     program = arguments.program.resolve()
     if not program.is_file():
-        fail(f"`{program}` is not there\nhint: make build")
+        fail(f"`{program}` is missing\nhint: make build")
     counts = {work: count(program, work) for work in WORKS}
     present = tools()
     if arguments.record:
@@ -107,7 +107,7 @@ def main() -> int:
             print(f"{work:10} {counted:>14,} instructions")
         return 0
     if not compare(counts, present):
-        print("hint: if that has to be, `make counts` records the present counts")
+        print("hint: if this is intended, `make counts` records the new counts")
         return 1
     return 0
 

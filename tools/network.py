@@ -1,7 +1,7 @@
-"""A network in which a check sees every packet that would leave the machine.
+"""A network in which a check can count the packets that would leave the machine.
 
-The check runs in a network namespace with a second interface, to which the default
-route leads. Nobody listens behind it; what is sent there is counted by the kernel.
+The check runs in a network namespace with a second interface for the default route. No
+process listens there, and the kernel counts the packets.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from pathlib import Path
 from run import expect
 
 OUTSIDE = "out"
-"""The interface that leads out of the namespace."""
+"""The interface of the default route."""
 INSIDE = "RTF_CHECK_INSIDE"
 
 SETTLE = f"""
 set -e
 ip link set lo up
 ip link add {OUTSIDE} type veth peer name far
-# Without IPv6 addresses, which say hello by themselves.
+# Without IPv6 addresses, which send packets by themselves.
 ip link set {OUTSIDE} addrgenmode none
 ip link set far addrgenmode none
 ip addr add 10.99.0.1/24 dev {OUTSIDE}
@@ -35,11 +35,11 @@ exec "$@"
 
 
 def move_in() -> None:
-    """Go on in such a network: this program is started again there, with its arguments."""
+    """Restarts this program in such a network, with its arguments."""
     if os.environ.pop(INSIDE, "") == str(os.getpid()):
         stray_packet_is_seen()
         return
-    # unshare and the shell become this program without a new process.
+    # unshare and the shell execute this program in the same process.
     os.environ[INSIDE] = str(os.getpid())
     unshare = ["unshare", "--net", *(["--map-root-user"] if os.geteuid() else [])]
     command = [*unshare, "sh", "-c", SETTLE, "sh", sys.executable, *sys.argv]
@@ -47,7 +47,7 @@ def move_in() -> None:
 
 
 def packets() -> int:
-    """How many packets have left by the interface that leads out."""
+    """How many packets were sent to the outside interface."""
     for line in Path("/proc/net/dev").read_text().splitlines():
         interface, _, numbers = line.partition(":")
         if interface.strip() == OUTSIDE:
@@ -56,7 +56,7 @@ def packets() -> int:
 
 
 def stray_packet_is_seen() -> None:
-    """One datagram to a multicast group, as discovery sends it: else counting proves nothing."""
+    """Proves that packets are counted, with a multicast datagram as discovery sends it."""
     before = packets()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stray:
         stray.sendto(b"is anybody there?", ("239.255.0.1", 7400))
@@ -65,7 +65,7 @@ def stray_packet_is_seen() -> None:
 
 @contextlib.contextmanager
 def quiet(what: str) -> Iterator[None]:
-    """A time in which no packet may leave."""
+    """A context in which no packet may leave."""
     before = packets()
     yield
     expect(f"{what}: packets that left", packets() - before, 0)

@@ -1,4 +1,4 @@
-"""What a page of the guide shows: files, of which some are suites, and commands.
+"""The files, suites and commands in a page of the guide.
 
 A code block whose first line is a comment with a file name is that file.
 """
@@ -22,7 +22,7 @@ _COMMANDS = re.compile(r"^```sh\n(.*?)^```$", re.M | re.S)
 
 
 def write_files(page: Path, directory: Path) -> list[Path]:
-    """Writes the files that a page shows, and returns those that are suites."""
+    """Writes the files of a page, and returns the suites."""
     suites = []
     shown = set()
     for text, name in _FILE.findall(page.read_text()):
@@ -33,14 +33,14 @@ def write_files(page: Path, directory: Path) -> list[Path]:
         if "<suite " in text:
             suites.append(directory / name)
     if not suites:
-        raise SystemExit(f"{page}: no block is a suite: was the page's form changed?")
+        raise SystemExit(f"{page}: no block is a suite: was the page's format changed?")
     return suites
 
 
 def run_fixture_page(rtf: str, fixture: str, directory: Path, lesson: Path | None = None) -> None:
-    """Runs the commands and suites of a fixture's page, these beside the files of a lesson.
+    """Runs the commands and suites of a fixture's page, the suites next to a lesson's files.
 
-    Tests may fail, for pages show that, too; that they run, and the fixtures hold, is the page's.
+    Tests may fail, because pages show failures, too; fixtures must not collapse.
     """
     page = TOP / "docs" / "fixtures" / f"{fixture}.md"
     if lesson is None:

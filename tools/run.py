@@ -1,4 +1,4 @@
-"""A run of rtf that a check judges by its exit code, its journal and what it printed."""
+"""Runs rtf and checks the exit code, the journal and the output."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 Event = dict[str, Any]
 
 RUN_SECS = 120
-"""A run takes some ten seconds; a machine that does other things gets time."""
+"""A run takes some ten seconds; a busy machine needs more."""
 
 
 class Run:
@@ -32,7 +32,7 @@ class Run:
             )
 
     def wait(self) -> int:
-        """The exit code; what rtf printed goes to the output."""
+        """Waits for the exit code and prints rtf's output."""
         try:
             return self.process.wait(RUN_SECS)
         finally:
@@ -40,7 +40,7 @@ class Run:
             print(self.output.read_text(errors="replace"), flush=True)
 
     def stop(self) -> None:
-        """Ends the run if it has not ended."""
+        """Terminates the run if it is still active."""
         if self.process.poll() is None:
             self.process.terminate()
             self.process.wait()
@@ -48,9 +48,9 @@ class Run:
     def disturb(
         self, disturbance: Callable[[], None], test: str = "", *, once: str = "test-phase"
     ) -> None:
-        """Waits until a test runs, or anything that is told `once`, and does something to it.
+        """Waits until a test runs, or for an event of the kind `once`, and calls `disturbance`.
 
-        `test` is its name; without, any will do. If that goes wrong the run is ended.
+        `test` is the test's name; by default, any test. The run is terminated on an error.
         """
         try:
             self.wait_for(
@@ -66,7 +66,7 @@ class Run:
             raise
 
     def collapses(self, disturbance: Callable[[], None], test: str = "") -> float:
-        """The same, and waits for a collapse; how many seconds that took."""
+        """The same, then waits for a collapse; returns the seconds until then."""
         disturbed = 0.0
 
         def disturb() -> None:
@@ -79,16 +79,16 @@ class Run:
         return time.monotonic() - disturbed
 
     def wait_for(self, condition: Callable[[Event], bool]) -> None:
-        """Waits until an event of the run fulfils the condition."""
+        """Waits for an event that meets the condition."""
         deadline = time.monotonic() + RUN_SECS
         while not any(condition(event) for event in self.events()):
             if self.process.poll() is not None or time.monotonic() > deadline:
                 self.wait()
-                raise SystemExit("the run ended, or hangs, before what was waited for")
+                raise SystemExit("the run ended or hangs before the expected event")
             time.sleep(0.02)
 
     def events(self, kind: str = "") -> Iterator[Event]:
-        """What is in the journal, or those of a kind; its last line may still be half written."""
+        """The events in the journal, or those of a kind, without an incomplete last line."""
         if self.journal.exists():
             for line in self.journal.read_text().splitlines(keepends=True):
                 if line.endswith("\n"):
@@ -97,7 +97,7 @@ class Run:
                         yield event
 
     def name(self, event: Event) -> str:
-        """The name of the test that an event is about."""
+        """The name of an event's test."""
         names = {each["test"]: each["name"] for each in self.events("test-planned")}
         return str(names[event["test"]])
 
@@ -110,7 +110,7 @@ class Run:
         return [event["verdict"] for event in self.events("test-finished")]
 
     def reasons(self, kind: str = "fixture-collapsed") -> list[str]:
-        """Why fixtures collapsed, or whatever else has a reason."""
+        """The reasons of collapses or of other events."""
         return [str(event["reason"]) for event in self.events(kind)]
 
     def reason(self, kind: str = "fixture-collapsed") -> str:
@@ -125,12 +125,12 @@ def is_a(event: Event, kind: str) -> bool:
 
 
 def expect(what: str, got: object, expected: object) -> None:
-    """Ends with a message if something is not as expected."""
+    """Exits with a message if a value is not as expected."""
     if got != expected:
         raise SystemExit(f"{what}: got {got}, expected {expected}")
     print(f"ok: {what}: {got}", flush=True)
 
 
-def expect_in(text: str, told: str) -> None:
-    """Ends with a message if a text does not stand in what was told."""
-    expect(f"`{text}` in {told!r}", text in told, True)
+def expect_in(text: str, message: str) -> None:
+    """Exits with a message if a text is not part of another."""
+    expect(f"`{text}` in {message!r}", text in message, True)
