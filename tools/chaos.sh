@@ -7,4 +7,4 @@
 export RTF_CHAOS_SUITES=3000 RTF_CHAOS_RUNS=1000 RTF_CHAOS_ROUNDS=50
 cargo test --workspace --test e2e -- \
   --nocapture chaos guard::a_runner_killed_at_any_moment \
-  side_by_side::twenty_suites side_by_side::a_runner_killed_at_any_moment
+  parallel_suites::twenty_suites parallel_suites::a_runner_killed_at_any_moment

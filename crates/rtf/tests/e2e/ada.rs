@@ -1,5 +1,5 @@
-//! Plug-ins in Ada: `sdk/ada/tests` and its example. What they have in common
-//! with other languages is in `conformance.rs`.
+//! Plug-ins in Ada: `sdk/ada/tests` and its example. `conformance.rs` has the tests for all
+//! languages.
 
 use std::path::PathBuf;
 

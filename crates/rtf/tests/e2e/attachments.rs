@@ -1,11 +1,11 @@
-//! Files that the runner copies itself, since the host of a test did not.
+//! Attachments that the runner copies because the host of a test did not.
 
 use std::fs::File;
 use std::process::Command;
 
 use rtf_model::{AttemptRecord, Verdict};
 
-use crate::modes::{FORKED, SHARED};
+use crate::host_modes::{FORKED, SHARED};
 use crate::support::{Folder, nothing_left};
 
 /// Attaches what its parameter names, as a raw client of the protocol; tells of it before

@@ -1,5 +1,5 @@
-//! What is wrong with an input is told with its place, what was expected and a
-//! way out; the exit code is 2, and nothing is started.
+//! Invalid input: the error names the place, the expected input and a solution; the exit code
+//! is 2, and nothing is started.
 
 use insta::assert_snapshot;
 

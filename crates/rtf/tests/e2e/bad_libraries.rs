@@ -1,4 +1,4 @@
-//! Shared libraries that are no plug-ins, or cannot be loaded.
+//! Shared libraries that are not plug-ins, or cannot be loaded.
 
 use std::process::Command;
 

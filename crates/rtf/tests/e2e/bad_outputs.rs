@@ -1,7 +1,6 @@
-//! Folders and reports that cannot be written are told before anything is started.
+//! Directories and reports that cannot be written are reported before anything is started.
 //!
-//! The paths lie below a file: whoever runs these tests, `root` included, can
-//! write nothing there.
+//! The paths are below a regular file, where no user, not even `root`, can write.
 
 use insta::assert_snapshot;
 

@@ -1,5 +1,4 @@
-//! Plug-ins that cannot be found or loaded, and hosts that are not there, are
-//! told before anything is started.
+//! Missing or broken plug-ins and hosts are reported before anything is started.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Suites that are XML, and say what nobody understands.
+//! Suites that are XML with invalid elements, attributes or values.
 
 use insta::assert_snapshot;
 

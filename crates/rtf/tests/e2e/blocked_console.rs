@@ -1,5 +1,5 @@
-//! Nobody reads what a run shows (a pager, Ctrl-S, a slow connection): verdicts, hooks and
-//! the journal do not wait for that.
+//! Nothing reads the console (a pager, Ctrl-S, a slow connection): verdicts, hooks and the
+//! journal do not wait for it.
 
 use std::io::Read as _;
 use std::process::ExitStatus;

@@ -1,8 +1,8 @@
-//! Fixtures of many suites are killed at random moments: in set-up, while a
-//! test runs, in tear-down; tests have hosts in every mode.
+//! Fixtures of many suites are killed at random moments, during set-up, tests and tear-down, in
+//! every host mode.
 //!
-//! `RTF_CHAOS_SUITES` says how many suites (`make chaos` runs more), and
-//! `RTF_CHAOS_SEED` repeats a run's random numbers, which are printed.
+//! `RTF_CHAOS_SUITES` sets the number of suites (`make chaos` runs more), and `RTF_CHAOS_SEED`
+//! repeats the random numbers of a run, which prints its seed.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use rtf_model::{Record, Verdict};
 
-use crate::modes::{FORKED, Mode, PROCESS, SHARED};
+use crate::host_modes::{FORKED, Mode, PROCESS, SHARED};
 use crate::support::{Folder, Random, kill, nothing_left, number};
 
 const SUITES: u64 = 200;

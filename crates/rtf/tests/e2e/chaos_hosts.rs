@@ -1,8 +1,8 @@
-//! Hosts die in every step and at random moments, in every mode: the test that ran is to
-//! blame and no other, what passed ran to its end, and each test ran once.
+//! Hosts die in every step and at random moments, in every mode: only the running test is blamed,
+//! every passed test was complete, and each test ran once.
 //!
-//! `RTF_CHAOS_SUITES` says how much of it (`make chaos` runs more), and
-//! `RTF_CHAOS_SEED` repeats a run's random numbers, which are printed.
+//! `RTF_CHAOS_SUITES` sets the number of rounds (`make chaos` runs more), and `RTF_CHAOS_SEED`
+//! repeats the random numbers of a run, which prints its seed.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use rtf_model::{AttemptRecord, EventKind, ExitStatus, Phase, Verdict};
 
-use crate::modes::{MODES, Mode, SHARED};
+use crate::host_modes::{MODES, Mode, SHARED};
 use crate::support::{Folder, Journal, Random, build_cpp, kill, nothing_left, number, root};
 
 /// As the C++ plug-in `Chaos`, in the other languages.

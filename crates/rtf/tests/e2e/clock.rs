@@ -1,4 +1,4 @@
-//! Tests that follow a simulator's clock, which a fixture writes.
+//! Tests that follow simulated time, which a fixture writes.
 
 use rtf_model::{EventKind, TestId, Verdict};
 

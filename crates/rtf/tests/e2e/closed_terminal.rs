@@ -1,5 +1,5 @@
-//! The terminal is closed while `rtf run` writes to it: that is the signal SIGHUP, and
-//! nobody reads any more, which is no failure of `rtf`.
+//! The terminal is closed while `rtf run` writes to it: SIGHUP and a broken pipe are not errors
+//! of `rtf`.
 
 use std::process::Command;
 

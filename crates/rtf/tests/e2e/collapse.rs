@@ -2,7 +2,7 @@
 
 use rtf_model::{EventKind, TestId, Verdict};
 
-use crate::modes::MODES;
+use crate::host_modes::MODES;
 use crate::support::{Folder, nothing_left};
 
 const TEST: &str = "import rtf\nclass T(rtf.TestCase):\n    def run(self):\n        open(self.param, 'w').close()\n        self.sleep(60 if self.param == 'go' else 0)\n";

@@ -1,4 +1,4 @@
-//! Every scenario of `conformance/` in every language, through the real hosts.
+//! Every scenario of `conformance/` in every language, with the real hosts.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use rtf_model::{
 use serde_json::{Value, json};
 
 use crate::clock::SIMULATOR;
-use crate::modes::{FORKED, Mode, PROCESS, SHARED};
+use crate::host_modes::{FORKED, Mode, PROCESS, SHARED};
 use crate::support::{Folder, Journal, build_ada, build_cpp, nothing_left, root};
 
 struct Language {

@@ -1,4 +1,4 @@
-//! A fixture plug-in in C++, with a watchdog thread of its own.
+//! A fixture plug-in in C++ with a watchdog thread.
 
 use std::path::PathBuf;
 

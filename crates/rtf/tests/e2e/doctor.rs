@@ -1,4 +1,4 @@
-//! `rtf doctor`: what is missing, on a machine whose `PATH` is made here.
+//! `rtf doctor` lists missing programs, with a `PATH` made by the tests.
 
 use std::os::unix::fs::PermissionsExt;
 use std::process::Stdio;

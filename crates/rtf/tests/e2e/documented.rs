@@ -1,5 +1,5 @@
-//! What the code has is in the documents: variables, options, exit codes,
-//! elements and attributes; and what the documents link to is there.
+//! The documentation covers all variables, options, exit codes, elements and attributes of the
+//! code, and its links are valid.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

@@ -1,9 +1,9 @@
-//! A test forks, and its child goes on as if it were the test: only the process that was
-//! asked decides what came of the test.
+//! A test forks, and its child continues as if it were the test: only the original process
+//! decides the verdict.
 
 use rtf_model::{AttemptRecord, Verdict};
 
-use crate::modes::{FORKED, MODES, Mode, SHARED};
+use crate::host_modes::{FORKED, MODES, Mode, SHARED};
 use crate::support::{Folder, Journal, build_cpp, nothing_left, root};
 
 /// What the parent does, and the verdict over the test.

@@ -1,4 +1,4 @@
-//! The guard: whoever is killed, the robot is parked once and nothing is left.
+//! The guard: whichever process is killed, the robot is parked once and no process is left.
 
 use std::os::unix::process::CommandExt;
 use std::process::{Command, Stdio};
@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use rtf_model::{EventKind, HookId, Phase, Source, TestId, Verdict};
 
-use crate::modes::{MODES, Mode};
+use crate::host_modes::{MODES, Mode};
 use crate::support::{Folder, Journal, Random, Running, nothing_left, number, send, wait_until};
 
 /// A simulator that prints all the time, and a daemon that detaches itself twice.

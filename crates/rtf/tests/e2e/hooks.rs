@@ -1,4 +1,4 @@
-//! Hooks that park the robot: with real processes.
+//! Hooks that park the robot, with real processes.
 
 use rtf_model::{TestId, Trigger, Verdict};
 

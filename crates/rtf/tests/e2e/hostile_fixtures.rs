@@ -1,5 +1,5 @@
-//! Fixtures that do what no fixture should. Those that ignore their signal are
-//! in `process_fixture`, those whose tear-down hangs in `collapse` and `signals`.
+//! Misbehaving fixtures. `process_fixture` has those that ignore their signal, `collapse` and
+//! `signals` those whose tear-down hangs.
 
 use rtf_model::{EventKind, FixtureId, Record, Source, TestId, Verdict};
 

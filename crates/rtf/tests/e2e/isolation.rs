@@ -1,4 +1,4 @@
-//! Networks and ports of a suite's own, with real namespaces.
+//! Private networks and ports of suites, with real namespaces.
 
 use std::fs::File;
 use std::os::unix::fs::MetadataExt;

@@ -1,4 +1,4 @@
-//! Locks: what there is only once is used by one suite at a time.
+//! Locks: one suite at a time uses an exclusive resource.
 
 use std::process::{Output, Stdio};
 use std::time::Duration;

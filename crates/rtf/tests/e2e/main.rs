@@ -1,5 +1,5 @@
-//! End to end: suites and plug-ins in a temporary folder, the real runner and
-//! the real hosts → exit code, output, journal.
+//! End to end: suites and plug-ins in a temporary directory, the real runner and the real hosts →
+//! exit code, output, journal.
 
 #![expect(clippy::expect_used, reason = "a helper that cannot go on fails its test")]
 #![expect(clippy::print_stdout, reason = "a seed has to be seen")]
@@ -7,8 +7,9 @@
 mod support;
 
 mod ada;
-mod attached;
+mod attached_fixtures;
 mod attachments;
+mod bad_command_lines;
 mod bad_input;
 mod bad_libraries;
 mod bad_outputs;
@@ -17,55 +18,54 @@ mod bad_suites;
 mod blocked_console;
 mod chaos;
 mod chaos_hosts;
-mod choosing;
+mod ci_formats;
 mod clock;
 mod closed_terminal;
-mod code_hosts;
 mod collapse;
-mod command_lines;
+mod collapse_at_test_end;
 mod conformance;
 mod cpp_fixture;
-mod damaged;
+mod damaged_journals;
 mod doctor;
 mod documented;
-mod everything_at_once;
 mod forked_children;
-mod forks;
+mod forked_hosts;
 mod guard;
 mod hooks;
+mod host_modes;
 mod hostile_fixtures;
-mod inputs;
 mod isolation;
-mod killed;
-mod last_moment;
+mod killed_runner;
 mod locks;
+mod lost_results;
 mod merge;
 mod middleware;
-mod modes;
 #[path = "../../../rtf-report/tests/reports/mutate.rs"]
 mod mutate;
-mod notices;
 mod output_before_crash;
-mod parallel;
-mod predecessor;
+mod parallel_suites;
+mod parallel_tests;
+mod predecessor_defects;
 mod predecessor_scripts;
 mod process_fixture;
 mod profile_mistakes;
 mod profiles;
-mod python_ends;
+mod python_exit;
 mod remote;
-mod repeating;
+mod repetition;
 mod reports;
 mod rerun;
 mod resources;
-mod shared;
-mod side_by_side;
+mod run_inputs;
+mod scarce_resources;
+mod selection;
+mod shared_hosts;
 mod signals;
-mod stopped;
+mod stopped_runner;
+mod test_notifications;
 mod testrunner;
-mod testrunner_truth;
-mod unprivileged;
-mod vanished;
+mod testrunner_defects;
+mod unprivileged_isolation;
 mod verbs;
 mod watch;
 mod web;

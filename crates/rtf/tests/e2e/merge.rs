@@ -1,4 +1,4 @@
-//! `rtf merge`: the parts of a run, made by real runs, are the run.
+//! `rtf merge` combines the parts of a run, made by real runs.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What a suite's processes find in their environment of ports and middleware.
+//! Environment variables for ports and middleware in a suite's processes.
 
 use crate::isolation::prepared;
 use crate::support::Folder;

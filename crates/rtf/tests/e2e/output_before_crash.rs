@@ -1,8 +1,8 @@
-//! What a test printed before its process was lost is in its result.
+//! The result of a crashed test has the output that the test printed before.
 
 use rtf_model::Verdict;
 
-use crate::modes::MODES;
+use crate::host_modes::MODES;
 use crate::support::{Folder, build_cpp, root};
 
 #[test]

@@ -1,6 +1,5 @@
-//! Scripts that were written for robot-testing-framework 1.x and 2.x run
-//! unchanged: the same test in each language, through each name under which
-//! its functions could be called.
+//! Scripts for robot-testing-framework 1.x and 2.x run unchanged: the same test in each language,
+//! with each name of its functions.
 
 use rtf_model::{MessageKind, Record, Verdict};
 

@@ -1,4 +1,4 @@
-//! What is wrong with an `rtf.toml`, or missing in it, is told at its place.
+//! Errors in `rtf.toml`, with file, line and column.
 
 use insta::assert_snapshot;
 

@@ -1,4 +1,4 @@
-//! `rtf.toml`: which of its values hold, and where it is found.
+//! `rtf.toml`: the precedence of its values, and the search for it.
 
 use insta::assert_snapshot;
 use rtf_model::{MessageKind, Record, Verdict};

@@ -1,5 +1,5 @@
-//! `host="user@machine"`: fixtures on another machine, which is this one behind
-//! a real sshd.
+//! `host="user@machine"`: fixtures on another machine, for which a real sshd on this machine
+//! stands in.
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};

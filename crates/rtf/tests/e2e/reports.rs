@@ -1,4 +1,4 @@
-//! Past runs: what the run said is said again, from its journal.
+//! Reports of past runs, made from their journals.
 
 use std::io::Read;
 use std::process::Stdio;

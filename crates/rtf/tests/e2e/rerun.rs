@@ -1,4 +1,4 @@
-//! Failed tests that are run again because a browser asks `rtf serve` to.
+//! Failed tests that `rtf serve` reruns for a browser.
 
 use rtf_model::Verdict;
 use serde_json::{Value, json};

@@ -1,4 +1,4 @@
-//! Descriptors and memory: what the runner keeps, and what tests, fixtures and hooks get.
+//! Descriptors and memory: the runner's reserve, and the limits of tests, fixtures and hooks.
 
 use std::process::{Command, Stdio};
 

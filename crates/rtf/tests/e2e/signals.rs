@@ -1,4 +1,4 @@
-//! Ctrl-C: once tears down, twice kills, and nothing is left.
+//! Ctrl-C: the first tears down, the second kills, and no process is left.
 
 use std::io::Write as _;
 use std::process::{Command, Stdio};

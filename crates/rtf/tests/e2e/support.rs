@@ -1,4 +1,4 @@
-//! A temporary folder with suites and plug-ins, and the real runner in it.
+//! A temporary directory with suites and plug-ins, and the real runner in it.
 
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,5 @@
-//! The command line of robot-testing-framework 2.x: each option means what it
-//! meant there, and what it wrote is where it was.
+//! The command line of robot-testing-framework 2.x: each option has the same meaning, and writes
+//! the same files.
 
 use insta::assert_snapshot;
 

@@ -1,4 +1,4 @@
-//! The verbs that run nothing: `list`, `check`, `completions`, `man`, `--help`.
+//! Verbs that do not run tests: `list`, `check`, `completions`, `man`, `--help`.
 
 use insta::assert_snapshot;
 

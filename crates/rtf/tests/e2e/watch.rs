@@ -1,4 +1,4 @@
-//! `rtf watch`: real files change, real runs are stopped and started.
+//! `rtf watch` with real files and real runs.
 
 use std::fs::File;
 use std::os::unix::process::CommandExt as _;

@@ -1,4 +1,4 @@
-//! `rtf run --web` and `rtf serve`: real runs in a browser's place.
+//! `rtf run --web` and `rtf serve` with a client instead of a browser.
 
 use std::io::{BufRead, BufReader};
 use std::net::{SocketAddr, TcpListener};

@@ -1,4 +1,4 @@
-//! Browsers, and what pretends to be some, cannot take from a run what it needs.
+//! Browsers and other clients cannot exhaust the resources of a run.
 
 use std::net::TcpStream;
 use std::process::Command;

@@ -1,4 +1,4 @@
-//! Fixtures that are told of each test: what they keep is shown with the test.
+//! Fixtures that are notified of each test: their attachments are shown with the test.
 
 use rtf_model::{EventKind, FixtureId, Source, Verdict};
 

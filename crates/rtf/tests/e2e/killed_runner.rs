@@ -1,4 +1,4 @@
-//! The runner is killed with SIGKILL: what happened until then can be shown.
+//! The runner is killed with SIGKILL: `rtf show` can show the run until then.
 
 use rtf_model::{EventKind, Verdict};
 

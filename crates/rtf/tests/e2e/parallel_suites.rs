@@ -1,12 +1,12 @@
-//! Suites that run at the same time (`--jobs`): each is by itself, and what
-//! ends the run ends all of them in order.
+//! Suites that run in parallel (`--jobs`): they are independent, and a request to end the run
+//! ends all of them in order.
 
 use std::path::Path;
 use std::time::Duration;
 
 use rtf_model::{Event, EventKind, Phase, SuiteId, TestId, Verdict};
 
-use crate::modes::MODES;
+use crate::host_modes::MODES;
 use crate::support::{Folder, Journal, Random, Running, nothing_left, number};
 
 /// A fixture that lives, and tells in a file that it was torn down.

@@ -1,4 +1,4 @@
-//! The ways in which a test can have its host.
+//! The ways in which tests get their hosts.
 
 /// How hosts are started, and how many tests each of them serves.
 #[derive(Clone, Copy, Debug)]

@@ -1,5 +1,5 @@
-//! What happens to a fixture in the instant in which a test ends, above all the last
-//! one: no verdict is green then.
+//! A fixture dies at the moment at which a test ends, especially the last one: no verdict is
+//! green.
 
 use rtf_model::{TestId, Verdict};
 

@@ -1,5 +1,5 @@
-//! Tests that share a host: each verdict, message, byte of output and left
-//! process is still the right test's.
+//! Tests that share a host: each verdict, message, byte of output and leftover process is
+//! attributed to the right test.
 
 use std::collections::BTreeMap;
 

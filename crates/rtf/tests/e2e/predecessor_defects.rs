@@ -1,6 +1,5 @@
-//! The defects of robot-testing-framework 2.x that users suffered from, each
-//! with a test that it does not come back. The numbers are those of the list
-//! in `docs/migrating.md`.
+//! Regression tests for the defects of robot-testing-framework 2.x. The numbers are those in
+//! `docs/migrating.md`.
 
 use rtf_model::{MessageKind, TestId, Verdict};
 

@@ -1,5 +1,5 @@
-//! Few descriptors, idle web clients, a console that nobody reads and a full results disk,
-//! all at once: a fixture that is killed then still parks the robot.
+//! Few descriptors, idle web clients, a blocked console and a full results disk at the same time:
+//! if a fixture is killed, the robot is still parked.
 
 use std::net::{SocketAddr, TcpStream};
 use std::process::{Command, Stdio};

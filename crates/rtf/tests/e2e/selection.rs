@@ -1,4 +1,4 @@
-//! Which tests are run, and in which order.
+//! The selection of tests, and their order.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! Command lines that cannot be right are told with what would be.
+//! Invalid command lines: the error names a valid alternative.
 
 use std::process::Output;
 

@@ -1,4 +1,4 @@
-//! `attach="true"`: what runs already is watched, and neither started nor stopped.
+//! `attach="true"`: running programs are monitored, and neither started nor stopped.
 
 use std::net::TcpStream;
 use std::process::{Child, Command, Stdio};

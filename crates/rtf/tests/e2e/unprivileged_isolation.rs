@@ -1,4 +1,4 @@
-//! Networks of a suite's own without root, and where the system refuses them.
+//! Private networks without root, and on systems that do not allow them.
 
 use std::path::Path;
 use std::process::Command;

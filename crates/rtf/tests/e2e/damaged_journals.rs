@@ -1,4 +1,4 @@
-//! A journal that was damaged after its run: it never reads as that of a green run.
+//! A journal that was damaged after its run never reads as green.
 
 use crate::mutate::{Random, mutate};
 use crate::support::{Finished, Folder};

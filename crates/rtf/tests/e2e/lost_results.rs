@@ -1,5 +1,5 @@
-//! Results that vanish while the run goes on: nobody finds them afterwards, so the
-//! run is not green, and what is known of it is printed.
+//! Results are removed or damaged during the run: the run is not green, and its outcome is
+//! printed.
 
 use crate::support::{Finished, Folder};
 

@@ -1,4 +1,4 @@
-//! Several tests of one suite at once (`<suite parallel="N">`), over the same fixture.
+//! Parallel tests of one suite (`<suite parallel="N">`) with a common fixture.
 
 use rtf_model::{Event, EventKind, Phase, Source, TestId, Trigger, Verdict};
 

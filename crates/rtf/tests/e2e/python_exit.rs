@@ -1,5 +1,5 @@
-//! A forked Python host ends sooner than an executed one, and whatever a
-//! plug-in left to be done at the end is done all the same.
+//! A forked Python host skips most of the interpreter's finalization, but runs everything that a
+//! plug-in registered for the exit.
 
 use rtf_model::{EventKind, Output, Source, Verdict};
 

@@ -1,5 +1,5 @@
-//! Where the predecessor's runner lied, ours under its name does not. The
-//! defects' numbers are those of `docs/migrating.md`.
+//! Defects of the predecessor's runner that its replacement does not have. The numbers are those
+//! in `docs/migrating.md`.
 
 use insta::assert_snapshot;
 use rtf_model::EventKind;

@@ -1,4 +1,4 @@
-//! A runner or a guard that was stopped: by a debugger, or by a test.
+//! A runner or a guard that is stopped (SIGSTOP), by a debugger or by a test.
 
 use rtf_model::{EventKind, Phase};
 

@@ -1,4 +1,4 @@
-//! What is given to `rtf run`, and what of it arrives in the plug-ins.
+//! Arguments of `rtf run`, and the parameters and variables that plug-ins get.
 
 use insta::assert_snapshot;
 use rtf_model::{MessageKind, Record, Verdict};

@@ -1,5 +1,4 @@
-//! Hosts that are forked from a server differ from executed ones in nothing
-//! but their price.
+//! Forked hosts behave like executed ones.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! What other programs are told: the event stream, TAP, GitHub, GitLab.
+//! Output for other programs: the event stream, TAP, GitHub, GitLab.
 
 use std::process::{Command, Output, Stdio};
 
