@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Measures speed and memory of rtf beside its peers, and judges them.
+"""Compares speed and memory of rtf with its peers, and judges the results.
 
-The exit code is 1 when a line breaks its limit, 2 when something could not be
-measured. What the lines mean is told in docs/performance.md.
+The exit code is 1 if a line exceeds its limit, 2 if something could not be measured.
+docs/performance.md explains the lines.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def main() -> int:
             return 0
         judgements = list(measure_all(bench, options.only, options.rounds))
     if not judgements:
-        raise MeasuringError(f"no line has a name with `{options.only.pattern}`, see --list")
+        raise MeasuringError(f"no line matches `{options.only.pattern}`, see --list")
     print(about_machine())
     print(table.text(judgements))
     for note in table.notes(judgements):
@@ -64,17 +64,17 @@ def parse() -> argparse.Namespace:
         metavar="PATTERN",
         help="measure the lines whose group or name matches this regular expression",
     )
-    parser.add_argument("--rounds", type=positive, metavar="N", help="instead of each group's own")
+    parser.add_argument("--rounds", type=positive, metavar="N", help="instead of each group's")
     parser.add_argument("--json", type=Path, metavar="FILE", help="also write all numbers as JSON")
-    parser.add_argument("--page", type=Path, metavar="FILE", help="put the table into this page")
-    parser.add_argument("--results", type=Path, metavar="DIR", help="rtf's results while it runs")
-    parser.add_argument("--rtf", type=Path, default=default_rtf(), help="the rtf to be measured")
+    parser.add_argument("--page", type=Path, metavar="FILE", help="update the table in this page")
+    parser.add_argument("--results", type=Path, metavar="DIR", help="directory for rtf's results")
+    parser.add_argument("--rtf", type=Path, default=default_rtf(), help="the rtf to measure")
     parser.add_argument("--list", action="store_true", help="list the lines, measure nothing")
     return parser.parse_args()
 
 
 def positive(value: str) -> int:
-    """A number from 1."""
+    """A positive number."""
     number = int(value)
     if number < 1:
         raise ValueError(value)
@@ -82,62 +82,62 @@ def positive(value: str) -> int:
 
 
 def default_rtf() -> Path:
-    """What `make build` has built."""
+    """The result of `make build`."""
     return TOP / os.environ.get("CARGO_TARGET_DIR", "target") / "release" / "rtf"
 
 
 def print_lines(bench: Bench) -> None:
-    """Says what there is to be measured."""
+    """Prints the names of all lines."""
     for group in all_groups(bench):
         for line in group.lines:
             print(f"{group.name}: {line.what}")
 
 
 def measure_all(bench: Bench, only: re.Pattern[str], rounds: int | None) -> Iterator[Judgement]:
-    """Measures each group of which a line is wanted."""
+    """Measures each group that has a matching line."""
     build(bench)
     for group in all_groups(bench):
         lines = [line for line in group.lines if only.search(f"{group.name}: {line.what}")]
         if lines:
-            with Progress(group) as tell:
+            with Progress(group) as report:
                 others = Others()
-                found = measure(group, lines, rounds or group.rounds, tell)
+                found = measure(group, lines, rounds or group.rounds, report)
                 share = others.share()
             yield from (replace(judge(group, line, found), foreign_share=share) for line in lines)
 
 
 class Progress(contextlib.AbstractContextManager["Progress"]):
-    """A line on stderr that says what is being measured, if somebody watches."""
+    """The progress on stderr: one line that is updated, if stderr is a terminal."""
 
     def __init__(self, group: Group) -> None:
         self.name = group.name
-        self.is_watched = sys.stderr.isatty()
+        self.is_terminal = sys.stderr.isatty()
 
     def __call__(self, what: str) -> None:
-        if self.is_watched:
+        if self.is_terminal:
             print(f"\r\x1b[K{self.name}: {what}", end="", file=sys.stderr, flush=True)
 
     def __enter__(self) -> Progress:
-        """Begins."""
-        if not self.is_watched:
+        """Prints the group's name unless stderr is a terminal."""
+        if not self.is_terminal:
             print(f"measuring {self.name}", file=sys.stderr, flush=True)
         return self
 
     def __exit__(self, *problem: object) -> None:
-        """Leaves nothing behind."""
-        if self.is_watched:
+        """Clears the line."""
+        if self.is_terminal:
             print("\r\x1b[K", end="", file=sys.stderr, flush=True)
 
 
 def about_machine() -> str:
-    """What the numbers depend on."""
+    """The system, the number of cores and the load."""
     busy = os.getloadavg()[2]
     cores = os.cpu_count()
     return f"{platform.system()} {platform.machine()}, {cores} cores, load of 15 minutes {busy:.1f}"
 
 
 if __name__ == "__main__":
-    # So that the temporary directory is removed then, too.
+    # So that the temporary directory is removed.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     try:
         sys.exit(main())

@@ -1,4 +1,4 @@
-"""What is measured: one module for each group of works that take turns.
+"""The measurements: one module per group of works that alternate in each round.
 
 A new line is a `Line` in its group; a new group is a module with a function
 `group(bench)` and an entry here.

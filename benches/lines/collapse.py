@@ -1,8 +1,8 @@
-"""How long it takes from a fixture's death until the running test knows.
+"""The time from a fixture's death until the running test is asked to stop.
 
-The test itself kills the fixture's process and takes the time until it is asked
-to stop, so there is one clock. What the runner needs from its notice to its
-request is in the journal.
+The test itself kills the fixture's process and measures the time, so there is only one
+clock. The runner's share, from detecting the collapse to asking the test, is in the
+journal.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def group(bench: Bench) -> Group:
     works = []
     lines: list[Line] = []
     for kind, fixture in fixtures.items():
-        # A suite for each collapse: within one, restarts wait ever longer.
+        # A suite for each collapse, because the restart delay grows within a suite.
         directory = bench.directory / f"collapse-{kind}"
         directory.mkdir(exist_ok=True)
         for number in range(COUNT):
@@ -60,7 +60,7 @@ def lines_of(kind: str) -> list[Line]:
 
 
 def collapses(bench: Bench, directory: Path) -> Samples:
-    """Runs the suites of a directory; in each the fixture dies."""
+    """Runs the suites of a directory; in each of them, the fixture dies."""
     with suite.Run(bench, directory, codes=(1,)) as run:
         run.expect("test-finished", COUNT, '"verdict":"collapsed"')
         events = run.events()
@@ -71,7 +71,7 @@ def collapses(bench: Bench, directory: Path) -> Samples:
 
 
 def latency(event: dict[str, object]) -> float:
-    """The number that the test has measured."""
+    """The test's measurement, in milliseconds."""
     measurement = event["measurement"]
     value = measurement["value"] if isinstance(measurement, dict) else None
     if not isinstance(value, float):
@@ -80,7 +80,7 @@ def latency(event: dict[str, object]) -> float:
 
 
 def notices(events: list[dict[str, object]]) -> list[float]:
-    """From each `fixture-collapsed` to the `test-stopping` after it."""
+    """Microseconds from each `fixture-collapsed` to the next `test-stopping`."""
     found = []
     since = 0
     for event in events:

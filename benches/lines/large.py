@@ -18,7 +18,7 @@ JUNIT = "rtf report --format junit"
 
 
 def group(bench: Bench) -> Group:
-    """One test runs and fails, it is critical: the rest is skipped."""
+    """The first test is critical and fails; the rest is skipped."""
     critical = '<test name="critical" critical="true">Fails</test>'
     file = suite.write(bench, "large", [critical, *suite.tests("dll", "Trivial", COUNT - 1)])
     works = (
@@ -41,7 +41,7 @@ def group(bench: Bench) -> Group:
 
 
 def check(bench: Bench, file: Path) -> Samples:
-    """Plans, starts nothing but the host that looks at the plug-ins."""
+    """Plans; starts only the host that checks the plug-ins."""
     launched = bench.launch([str(bench.rtf), "check", str(file)])
     return {SECONDS: [launched.seconds], MEMORY: [launched.children[0].rss_mb]}
 
@@ -56,7 +56,7 @@ def run(bench: Bench, file: Path) -> Samples:
 
 
 def junit(bench: Bench, file: Path) -> Samples:
-    """Reads such a run's journal and writes the report."""
+    """Writes the report from the journal of such a run."""
     report = bench.directory / "junit.xml"
     with suite.Run(bench, file, codes=(1,)) as run:
         command = [str(bench.rtf), "report", str(run.directory), "--format", "junit"]

@@ -1,4 +1,4 @@
-"""1000 trivial tests, each in a process of its own or all in one: C++ and Lua."""
+"""1000 trivial tests in C++ and Lua, with a process each or a shared one."""
 
 from __future__ import annotations
 
@@ -22,9 +22,7 @@ LUA_SHARED = "rtf, Lua, shared"
 
 
 def group(bench: Bench) -> Group:
-    """The predecessor runs all tests in its own process: it is the peer of
-    shared hosts.
-    """
+    """The predecessor is the peer of shared hosts, because it runs all tests in its process."""
     no_predecessor = "" if bench.predecessor else f"{PREDECESSOR} is missing"
     works = (
         Work(SPAWN, lambda: a_test(bench.launch(["/bin/true"], COUNT))),
@@ -43,7 +41,7 @@ def group(bench: Bench) -> Group:
     lines = (
         Line(f"{COUNT} C++ tests, own process each", CPP, UNIT, SPAWN, twice),
         Line(f"{COUNT} C++ tests, own process each: goal", CPP, UNIT, SPAWN, at_par),
-        Line(f"{COUNT} C++ tests, beside ctest", CPP, UNIT, CTEST, below_ctest),
+        Line(f"{COUNT} C++ tests, compared with ctest", CPP, UNIT, CTEST, below_ctest),
         Line(f"{COUNT} C++ tests, shared", CPP_SHARED, UNIT, PREDECESSOR_CPP, at_par),
         Line(f"{COUNT} Lua tests, own process each", LUA, UNIT, SPAWN, near_bare),
         Line(f"{COUNT} Lua tests, shared", LUA_SHARED, UNIT, PREDECESSOR_LUA, at_par),
@@ -53,7 +51,7 @@ def group(bench: Bench) -> Group:
 
 
 def a_test(launched: Launched) -> Samples:
-    """The price of one of them."""
+    """The time per test."""
     return {UNIT: [launched.seconds * 1e3 / COUNT]}
 
 
@@ -65,14 +63,14 @@ def rtf(bench: Bench, kind: str, isolation: str = "process") -> Callable[[], Sam
 
 
 def predecessor(bench: Bench, kind: str, plugin: str) -> Callable[[], Samples]:
-    """Runs them with the predecessor, which knows no names of tests."""
+    """Runs them with the predecessor, which does not support names of tests."""
     elements: list[str] = [f'<test type="{kind}">{plugin}</test>'] * COUNT
     file = suite.write(bench, f"predecessor-{kind}", elements)
     return lambda: a_test(suite.run_predecessor(bench, file, COUNT))
 
 
 def ctest(bench: Bench) -> Callable[[], Samples]:
-    """Runs a C++ program as often with ctest, from a file as CMake writes it."""
+    """Runs a C++ program as often with ctest, from a file in CMake's format."""
     directory = bench.directory / "ctest"
     directory.mkdir(exist_ok=True)
     program = bench.directory / "program"

@@ -1,4 +1,4 @@
-"""The page of a run with 10 000 tests and a million events, in a real browser."""
+"""The page of a run with 10 000 tests and a million events, in Chromium."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ SERVED = "page of a past run"
 
 
 def group(bench: Bench) -> Group:
-    """The million is there before the page is opened; the run then goes on."""
+    """The page is opened after a million events, while the run continues."""
     reports = f'<test type="dll" param="{EVENTS}">Reports</test>'
     ticker = f'<test type="python" name="{TICKER}">Ticker</test>'
     rest = suite.tests("dll", "Trivial", TESTS - 2)
@@ -50,7 +50,7 @@ def group(bench: Bench) -> Group:
 
 
 def missing() -> str:
-    """Why the page cannot be looked at here."""
+    """Why the page cannot be measured here; empty if it can."""
     if shutil.which("chromium") or shutil.which("chromium-browser"):
         return ""
     return "Chromium is not installed"
@@ -59,22 +59,22 @@ def missing() -> str:
 def measure_live(bench: Bench, file: Path) -> Samples:
     """Opens the page while the ticker runs."""
     with started(bench, "run", str(file)) as (_, url):
-        found = look(url, TICKER)
+        found = measure_page(url, TICKER)
     return {PAINT: found["paint"], LATE: found["lateness"], FRAME: found["frames"]}
 
 
 def measure_served(bench: Bench) -> Samples:
-    """Opens the page of the run that was measured before."""
+    """Opens the page of the run that `measure_live` created."""
     with started(bench, "serve") as (process, url):
         name = (bench.results / "latest").resolve().name
-        found = look(f"{url.split('#')[0]}#/runs/{name}", "")
+        found = measure_page(f"{url.split('#')[0]}#/runs/{name}", "")
         memory = peak_mb(process.pid)
     return {PAINT: found["paint"], MEMORY: [memory]}
 
 
 @contextmanager
 def started(bench: Bench, verb: str, *rest: str) -> Iterator[tuple[subprocess.Popen[bytes], str]]:
-    """An rtf with a page: its process and its address."""
+    """Starts an rtf with a page: its process and address."""
     command = [str(bench.rtf), verb, "--results", str(bench.results), "--web=127.0.0.1:0", *rest]
     log = bench.directory / "page.log"
     with log.open("wb") as output:
@@ -94,7 +94,7 @@ def started(bench: Bench, verb: str, *rest: str) -> Iterator[tuple[subprocess.Po
 
 
 def await_address(process: subprocess.Popen[bytes], log: Path) -> str:
-    """What rtf prints when its page can be opened."""
+    """Waits until rtf prints the address of its page."""
     while process.poll() is None:
         found = re.search(r"http://\S+(?=\s)", log.read_text(encoding="utf-8", errors="replace"))
         if found is not None:
@@ -102,8 +102,8 @@ def await_address(process: subprocess.Popen[bytes], log: Path) -> str:
     raise MeasuringError(f"rtf ended: {log.read_text(encoding='utf-8', errors='replace')}")
 
 
-def look(url: str, test: str) -> dict[str, list[float]]:
-    """What a browser measures."""
+def measure_page(url: str, test: str) -> dict[str, list[float]]:
+    """Measures the page in a browser."""
     node = run([str(TOP / "tools" / "node.sh")]).strip()
     run([str(TOP / "tools" / "web.sh"), "modules"])
     script = str(TOP / "web" / "tests" / "measure.mjs")
@@ -112,7 +112,7 @@ def look(url: str, test: str) -> dict[str, list[float]]:
 
 
 def run(command: list[str]) -> str:
-    """What a command prints."""
+    """Runs a command; returns its output."""
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise MeasuringError(f"`{' '.join(command)}` failed:\n{done.stderr}")

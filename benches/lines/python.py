@@ -1,7 +1,6 @@
-"""Trivial Python tests, each in a process of its own or all in one.
+"""Trivial Python tests, with a process each or a shared one.
 
-A group of its own: the interpreter's start is dear, so there are fewer tests
-and fewer rounds.
+They are a separate group with fewer rounds, because starting an interpreter takes long.
 """
 
 from __future__ import annotations
@@ -25,9 +24,7 @@ RTF_SHARED = "rtf, Python, shared"
 
 
 def group(bench: Bench) -> Group:
-    """The peers are pytest, whose tests are functions, and the interpreter that
-    does nothing.
-    """
+    """The peers are pytest with functions as tests, and an interpreter that does nothing."""
     missing = "" if bench.pytest else "pytest is not installed"
     bare = [sys.executable, "-c", "pass"]
     works = (
@@ -40,7 +37,7 @@ def group(bench: Bench) -> Group:
     quarter = Limit(0.25, of_ratio=True, required=False)
     lines = (
         Line(f"{COUNT} Python tests, own process each", RTF, UNIT, FORKED, quarter),
-        Line(f"{COUNT} Python tests, own process, beside the interpreter", RTF, UNIT, BARE),
+        Line(f"{COUNT} Python tests, own process, compared with the interpreter", RTF, UNIT, BARE),
         Line(f"{COUNT} Python tests, shared", RTF_SHARED, UNIT, IN_PROCESS, quarter),
     )
     return Group("python", works, lines, rounds=3, warm_up=False)
@@ -71,5 +68,5 @@ def pytest(bench: Bench, *options: str) -> Callable[[], Samples]:
 
 
 def a_test(launched: Launched, count: int = COUNT) -> Samples:
-    """The price of one of them."""
+    """The time per test."""
     return {UNIT: [launched.seconds * 1e3 / count]}

@@ -30,7 +30,7 @@ def group(bench: Bench) -> Group:
 
 
 def rtf(bench: Bench) -> Callable[[], Samples]:
-    """All of them have to be in the journal."""
+    """The journal must have all of them."""
     file = suite.write(bench, "reports", [f'<test type="dll" param="{COUNT}">Reports</test>'])
 
     def work() -> Samples:
@@ -43,7 +43,7 @@ def rtf(bench: Bench) -> Callable[[], Samples]:
 
 
 def predecessor(bench: Bench) -> Callable[[], Samples]:
-    """All of them have to be in the result file."""
+    """The result file must have all of them."""
     elements = [f'<test type="dll" param="{COUNT}">./Predecessor.so</test>']
     file = suite.write(bench, "predecessor-reports", elements)
 

@@ -1,4 +1,4 @@
-"""How long a command takes from its start to its end."""
+"""The duration of commands."""
 
 from __future__ import annotations
 
@@ -31,5 +31,5 @@ def group(bench: Bench) -> Group:
 
 
 def each(launched: Launched) -> Samples:
-    """The times of all of them."""
+    """The duration of each process."""
     return {UNIT: [child.seconds * 1e3 for child in launched.children]}

@@ -1,4 +1,4 @@
-"""What it costs a run that somebody looks at it in a browser."""
+"""How much a browser that shows the run slows it down."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ COUNT = 300
 UNIT = "ms a test"
 END_SECS = 120
 
-ALONE = "rtf run, nobody looks"
+ALONE = "rtf run without a browser"
 WATCHED = "rtf run --web, in a browser"
 
 
 def group(bench: Bench) -> Group:
-    """Tests of some 20 ms, begun when the page is open."""
+    """Tests of 20 ms, which start when the page is open."""
     gate = bench.directory / "gate"
     steps = suite.tests("python", "Steps", COUNT)
     file = suite.write(
@@ -46,7 +46,7 @@ def alone(bench: Bench, file: Path, gate: Path) -> Samples:
 
 
 def watched(bench: Bench, file: Path, gate: Path) -> Samples:
-    """The run begins with the look at it."""
+    """The tests start when the browser has opened the page."""
     gate.unlink(missing_ok=True)
     with page.started(bench, "run", str(file)) as (process, url), browser(url):
         gate.touch()
@@ -56,20 +56,20 @@ def watched(bench: Bench, file: Path, gate: Path) -> Samples:
 
 @contextmanager
 def browser(url: str) -> Iterator[None]:
-    """Somebody who looks."""
+    """A browser that shows the page."""
     node = page.run([str(TOP / "tools" / "node.sh")]).strip()
     page.run([str(TOP / "tools" / "web.sh"), "modules"])
     script = str(TOP / "web" / "tests" / "watch.mjs")
     command = [f"{node}/node", script, url]
     pipe = subprocess.PIPE
-    with subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True) as looking:
-        if looking.stdout is None or looking.stdout.readline() != "open\n":
+    with subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True) as viewer:
+        if viewer.stdout is None or viewer.stdout.readline() != "open\n":
             raise MeasuringError("the browser did not open the page")
         yield
 
 
 def a_test(directory: Path) -> float:
-    """Milliseconds a test, from the gate's end to the end of the last one."""
+    """Milliseconds per test, from the end of the gate to the end of the last test."""
     with (directory / "events.jsonl").open(encoding="utf-8") as journal:
         events = [json.loads(line) for line in journal]
     ends = [event["at"] for event in events if event["type"] == "test-finished"]

@@ -1,4 +1,4 @@
-"""Where a measurement finds its programs, and how it calls them."""
+"""Finds and starts the programs of the measurements."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ LAST_LINES = 20
 
 @dataclass(frozen=True)
 class Child:
-    """A process that has ended."""
+    """An ended process."""
 
     seconds: float
     rss_mb: float
-    """The largest resident set, of it or of one that it waited for."""
+    """The largest resident set of the process or of one that it waited for."""
     status: int
-    """Its wait status."""
+    """The wait status."""
 
 
 @dataclass(frozen=True)
 class Launched:
-    """What the stopwatch says."""
+    """The measurements of `launch`."""
 
     seconds: float
     children: list[Child]
@@ -39,7 +39,7 @@ class Launched:
 
 @dataclass(frozen=True)
 class Predecessor:
-    """What was unpacked of robot-testing-framework 2.x."""
+    """An unpacked robot-testing-framework 2.x."""
 
     runner: Path
     include: Path
@@ -47,7 +47,7 @@ class Predecessor:
 
     @staticmethod
     def find() -> Predecessor | None:
-        """In the directory `RTF_BENCH_PREDECESSOR`, as Debian lays it out."""
+        """Finds it in the directory `RTF_BENCH_PREDECESSOR`, in Debian's layout."""
         directory = os.environ.get("RTF_BENCH_PREDECESSOR")
         if not directory:
             return None
@@ -58,26 +58,26 @@ class Predecessor:
         return Predecessor(runner, header.parents[1], library.parent)
 
     def environment(self) -> Mapping[str, str]:
-        """Where its runner finds its libraries and plug-in loaders."""
+        """The variables with which its runner finds libraries and plug-in loaders."""
         return {"LD_LIBRARY_PATH": str(self.libraries)}
 
 
 @dataclass(frozen=True)
 class Bench:
-    """A directory with everything that was built, and the programs to be measured."""
+    """A directory with the plug-ins and helper programs, and the programs to measure."""
 
     directory: Path
     results: Path
-    """Where rtf keeps its runs."""
+    """rtf's results directory."""
     rtf: Path
     predecessor: Predecessor | None
     ctest: str
     pytest: str
-    """With its plug-in for forks, from `RTF_BENCH_PYTHON`."""
+    """pytest with pytest-forked, from `RTF_BENCH_PYTHON`."""
 
     @staticmethod
     def open(directory: Path, results: Path, rtf: Path) -> Bench:
-        """A bench in an empty directory."""
+        """Creates a bench in an empty directory."""
         if not rtf.exists():
             raise MeasuringError(f"{rtf} is missing: build it with `make build`")
         ctest = shutil.which("ctest") or ""
@@ -91,8 +91,8 @@ class Bench:
         codes: Sequence[int] = (0,),
         settings: Mapping[str, str] | None = None,
     ) -> Launched:
-        """Runs a command that many times under the stopwatch, with these
-        variables, too. Each has to end with one of the codes.
+        """Runs and measures a command `count` times, with additional variables. Each process
+        must exit with one of the codes.
         """
         times = self.directory / "times"
         log = self.directory / "log"
@@ -120,15 +120,15 @@ class Bench:
         return launched
 
     def environment(self) -> Mapping[str, str]:
-        """The user's, without what would change how rtf runs. The interpreter is
-        this one: a shim in front of it would be measured, too.
+        """The user's environment without variables of rtf. Tests use this interpreter,
+        because a shim in front of it would be measured, too.
         """
         kept = {name: value for name, value in os.environ.items() if not name.startswith("RTF_")}
         return {**kept, "RTF_PYTHON": sys.executable, "NO_COLOR": "1"}
 
 
 def parse(times: str, printed: str) -> Launched:
-    """Reads what `launch` wrote."""
+    """Parses the result of `launch`."""
     total, *rest = times.splitlines()
     children = []
     for entry in rest:

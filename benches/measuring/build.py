@@ -1,4 +1,4 @@
-"""Builds the plug-ins and programs that are measured, with -O2 as a distribution does."""
+"""Builds the plug-ins and programs for the measurements, with -O2 as distributions do."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MODULE = ["-fPIC", "-shared"]
 
 
 def build(bench: Bench) -> None:
-    """Puts everything into the bench's directory, a core for each compiler."""
+    """Builds everything into the bench's directory, in parallel."""
     for script in ("Trivial.lua", "Trivial.py", "Ticker.py", "Gate.py", "Steps.py"):
         shutil.copy(SOURCES / script, bench.directory)
     commands = [
@@ -47,7 +47,7 @@ def source(name: str) -> list[str]:
 
 
 def output(bench: Bench, name: str) -> list[str]:
-    """What is to be built."""
+    """The arguments for an output file."""
     return ["-o", str(Path(bench.directory) / name)]
 
 

@@ -1,4 +1,4 @@
-"""From the rounds to a line's numbers and its verdict."""
+"""Computes a line's numbers and verdict from its rounds."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ NOT_MEASURED = "not measured"
 
 @dataclass(frozen=True)
 class Judgement:
-    """What came out for a line."""
+    """The result of a line."""
 
     group: str
     line: Line
     verdict: str
-    """Empty when the line has no limit."""
+    """Empty if the line has no limit."""
     value: float | None = None
     ratios: list[float] | None = None
     """The ratio to the peer in each round."""
     note: str = ""
     foreign_share: float = 0.0
-    """The share of the processors that other programs used meanwhile."""
+    """The share of the processors that other programs used."""
 
     @property
     def ratio(self) -> float | None:
@@ -38,13 +38,13 @@ class Judgement:
 
     @property
     def fails(self) -> bool:
-        """Whether the whole run fails by this line."""
+        """Whether this line fails the run."""
         required = self.line.limit is not None and self.line.limit.required
         return self.verdict == FAILED or (required and self.verdict == NOT_MEASURED)
 
 
 def judge(group: Group, line: Line, rounds: Rounds) -> Judgement:
-    """Judges a line by the rounds in which it was measured."""
+    """Judges a line by its rounds."""
     for name in filter(None, (line.work, line.peer)):
         missing = group.work(name).missing
         if missing:
@@ -60,12 +60,12 @@ def judge(group: Group, line: Line, rounds: Rounds) -> Judgement:
 
 
 def of_ratio(limit: Limit | None) -> bool:
-    """Whether the limit is for the ratio to the peer."""
+    """Whether the limit applies to the ratio to the peer."""
     return limit is not None and limit.of_ratio
 
 
 def verdict(limit: Limit | None, number: float) -> str:
-    """The word for a number at its limit."""
+    """The verdict on a number."""
     if limit is None:
         return ""
     if limit.required:

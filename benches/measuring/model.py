@@ -1,4 +1,4 @@
-"""The vocabulary: works are measured in rounds, lines compare them with a limit."""
+"""The data types: works are measured in rounds, and lines compare them with limits."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 Samples = dict[str, list[float]]
-"""What one round of a work gave: its values, by their unit."""
+"""The values of one round of a work, by unit."""
 
 Statistic = Callable[[Sequence[float]], float]
 
 
 class MeasuringError(Exception):
-    """Something did not do what was to be measured."""
+    """A program is missing or did not do the work to be measured."""
 
 
 @dataclass(frozen=True)
 class Work:
-    """Something that can be measured, again and again."""
+    """A program run that can be measured repeatedly."""
 
     name: str
     run: Callable[[], Samples]
@@ -28,17 +28,17 @@ class Work:
 
 @dataclass(frozen=True)
 class Limit:
-    """What a line has to keep."""
+    """The limit of a line."""
 
     bound: float
     of_ratio: bool = False
-    """The ratio to the peer is limited, not the value."""
+    """Whether the ratio to the peer is limited instead of the value."""
     at_least: bool = False
     required: bool = True
-    """False: a goal that is shown; missing it has no consequence."""
+    """False for a goal, which cannot fail the run."""
 
     def holds(self, number: float) -> bool:
-        """Whether the number is on the right side."""
+        """Whether the number is within the limit."""
         return number >= self.bound if self.at_least else number <= self.bound
 
 
@@ -50,28 +50,28 @@ class Line:
     work: str
     unit: str
     peer: str = ""
-    """The work whose value, in the same unit and the same round, is 1."""
+    """The work to compare with, in the same unit and round."""
     limit: Limit | None = None
     statistic: Statistic = statistics.median
 
 
 @dataclass(frozen=True)
 class Group:
-    """Works that take turns in each round, and the lines drawn from them."""
+    """Works that alternate in each round, and the lines that use them."""
 
     name: str
     works: tuple[Work, ...]
     lines: tuple[Line, ...]
     rounds: int = 7
     warm_up: bool = True
-    """Each work is run once before the first round."""
+    """Whether each work runs once before the first round."""
 
     def work(self, name: str) -> Work:
-        """The work of this name."""
+        """The work with this name."""
         return next(work for work in self.works if work.name == name)
 
 
 def high_percentile(values: Sequence[float]) -> float:
-    """The smallest value that 99 % of the values do not exceed."""
+    """The 99th percentile."""
     ordered = sorted(values)
     return ordered[-(-len(ordered) * 99 // 100) - 1]

@@ -1,7 +1,6 @@
-"""How much of the machine went to others while something was measured.
+"""Measures how much of the processors other programs used during a measurement.
 
-A ratio with much else going on says little: on two cores a busy one takes away
-what lets rtf start the next host ahead.
+Ratios are unreliable on a busy machine: rtf starts hosts ahead on the second core.
 """
 
 from __future__ import annotations
@@ -12,19 +11,19 @@ import time
 from pathlib import Path
 
 NOISY_SHARE = 0.05
-"""From this share of all cores on, a note is due."""
+"""The share of all cores above which a note is printed."""
 
 STAT = Path("/proc/stat")
 
 
 class Others:
-    """Watches from its making on."""
+    """Measures from its creation on."""
 
     def __init__(self) -> None:
         self.start = (time.monotonic(), busy_seconds(), own_seconds())
 
     def share(self) -> float:
-        """The share of all cores that others have used since; 0 where it cannot be told."""
+        """The share of all cores that others have used since; 0 if it is unknown."""
         then, busy, own = self.start
         elapsed = (time.monotonic() - then) * (os.cpu_count() or 1)
         foreign = (busy_seconds() - busy) - (own_seconds() - own)
@@ -32,7 +31,7 @@ class Others:
 
 
 def busy_seconds() -> float:
-    """What all processes have used: the first line of /proc/stat without idle and iowait."""
+    """The time of all processes: the first line of /proc/stat without idle and iowait."""
     if not STAT.exists():
         return 0.0
     fields = STAT.read_text(encoding="ascii").splitlines()[0].split()[1:]
@@ -42,6 +41,6 @@ def busy_seconds() -> float:
 
 
 def own_seconds() -> float:
-    """What this process and all that it has waited for have used."""
+    """The time of this process and its descendants that have ended."""
     usages = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     return sum(usage.ru_utime + usage.ru_stime for usage in usages)

@@ -1,6 +1,4 @@
-"""Writes suites, runs them with rtf or the predecessor, and makes sure that what
-was measured did happen.
-"""
+"""Writes suites, runs them with rtf or the predecessor, and checks the results."""
 
 from __future__ import annotations
 
@@ -18,7 +16,7 @@ TOTAL = re.compile(r"^Number of passed test cases +: (\d+)$", re.M)
 
 
 def write(bench: Bench, name: str, elements: Iterable[str]) -> Path:
-    """A suite with these elements, in the bench's directory."""
+    """Writes a suite with these elements to the bench's directory."""
     path = bench.directory / f"{name}.xml"
     body = "\n".join(f"  {element}" for element in elements)
     path.write_text(f'<suite name="{name}">\n{body}\n</suite>\n', encoding="utf-8")
@@ -26,13 +24,13 @@ def write(bench: Bench, name: str, elements: Iterable[str]) -> Path:
 
 
 def tests(kind: str, plugin: str, count: int, isolation: str = "process") -> list[str]:
-    """That many tests, all of one plug-in."""
+    """The elements of `count` tests with the same plug-in."""
     attributes = f'type="{kind}" isolation="{isolation}"'
     return [f'<test {attributes} name="test-{n:06}">{plugin}</test>' for n in range(count)]
 
 
 class Run:
-    """A run of rtf, whose journal is kept until `close`."""
+    """A finished run of rtf; its directory is removed at the end of the context."""
 
     def __init__(self, bench: Bench, suite: Path, codes: Sequence[int] = (0,)) -> None:
         command = [str(bench.rtf), "run", "--results", str(bench.results), str(suite)]
@@ -40,7 +38,7 @@ class Run:
         self.directory = (bench.results / "latest").resolve()
 
     def __enter__(self) -> Run:
-        """Is there already."""
+        """The run has finished."""
         return self
 
     def __exit__(self, *problem: object) -> None:
@@ -48,18 +46,18 @@ class Run:
         shutil.rmtree(self.directory)
 
     def expect(self, kind: str, count: int, detail: str = "") -> None:
-        """Makes sure that the journal has this many events of a kind."""
+        """Checks that the journal has this many events of a kind."""
         wanted = (f'"type":"{kind}"', detail)
         expect_in(self.directory / "events.jsonl", count, *wanted)
 
     def events(self) -> list[dict[str, object]]:
-        """All of the journal."""
+        """All events of the journal."""
         with (self.directory / "events.jsonl").open(encoding="utf-8") as journal:
             return [json.loads(line) for line in journal]
 
 
 def expect_in(file: Path, count: int, *texts: str) -> None:
-    """Makes sure that this many lines of a file have all of these texts."""
+    """Checks that this many lines of a file contain all of these texts."""
     wanted = [text.encode() for text in texts]
     with file.open("rb") as content:
         found = sum(all(text in line for text in wanted) for line in content)
@@ -68,16 +66,14 @@ def expect_in(file: Path, count: int, *texts: str) -> None:
 
 
 def run_passing(bench: Bench, suite: Path, count: int) -> Launched:
-    """Runs a suite of which this many tests have to pass."""
+    """Runs a suite in which this many tests must pass."""
     with Run(bench, suite) as run:
         run.expect("test-finished", count, '"verdict":"passed"')
         return run.launched
 
 
 def run_predecessor(bench: Bench, suite: Path, count: int) -> Launched:
-    """The same with the predecessor, whose exit code is 0 also when it could not
-    load a single plug-in.
-    """
+    """The same with the predecessor. Its exit code is 0 even if it loaded no plug-in."""
     old = bench.predecessor
     if old is None:
         raise MeasuringError("the predecessor is missing")

@@ -36,7 +36,7 @@ def row(judgement: Judgement) -> list[str]:
 
 
 def number(value: float) -> str:
-    """Three digits that count."""
+    """Formats a number with three significant digits."""
     if abs(value) >= 100:
         return f"{value:,.0f}".replace(",", " ")
     return f"{value:#.3g}".rstrip(".")
@@ -58,20 +58,20 @@ def markdown(judgements: Sequence[Judgement]) -> str:
 
 
 def notes(judgements: Sequence[Judgement]) -> list[str]:
-    """What a reader has to know before believing the table."""
+    """Missing peers and other load during the measurement."""
     found = [judgement.note for judgement in judgements if judgement.note]
     shares = {judgement.group: judgement.foreign_share for judgement in judgements}
     for group, share in shares.items():
         if share >= NOISY_SHARE:
             found.append(
-                f"{group}: other programs used {share:.0%} of the processors meanwhile; "
-                "measure again when they are quiet"
+                f"{group}: other programs used {share:.0%} of the processors; "
+                "repeat the measurement on an idle machine"
             )
     return found
 
 
 def write_page(page: Path, judgements: Sequence[Judgement]) -> None:
-    """Replaces the table in a page, which stands between two comments."""
+    """Replaces the table in a page, which is between two comments."""
     before, begin, rest = page.read_text(encoding="utf-8").partition(BEGIN)
     _, end, after = rest.partition(END)
     if not (begin and end):
@@ -83,12 +83,12 @@ def write_page(page: Path, judgements: Sequence[Judgement]) -> None:
 
 
 def as_json(judgements: Sequence[Judgement]) -> str:
-    """Everything, for other programs."""
+    """All results as JSON."""
     return json.dumps([entry(judgement) for judgement in judgements], indent=2) + "\n"
 
 
 def entry(judgement: Judgement) -> dict[str, object]:
-    """A line as JSON has it."""
+    """The JSON object of a line."""
     line = judgement.line
     result: dict[str, object] = {
         "group": judgement.group,

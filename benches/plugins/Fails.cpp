@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The critical first test of a long suite, of which nothing else shall run.
+// The critical first test of a long suite; the others are skipped.
 #include <rtf/rtf.hpp>
 
 class Fails : public rtf::TestCase

@@ -1,4 +1,4 @@
-"""Holds the tests after it back until a file is there."""
+"""Delays the following tests until a file exists."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import rtf
 
 
 class Gate(rtf.TestCase):
-    """Opens when the file that the parameter names is there."""
+    """Waits for the file in the parameter."""
 
     def run(self) -> None:
         self.wait_until(Path(self.param).exists, 60, "the gate to open")

@@ -1,6 +1,5 @@
-/* Kills the fixture on which it runs and measures how long it takes until it is
- * asked to stop. One process, one clock: nothing has to be matched afterwards.
- * In C, because it must still measure when it was asked to stop.
+/* Kills the fixture and measures the time until the test is asked to stop, with one clock in
+ * one process. It is in C, because it must measure after it was asked to stop.
  * SPDX-License-Identifier: Apache-2.0 */
 #define _GNU_SOURCE
 #include <signal.h>

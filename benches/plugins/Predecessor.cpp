@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The predecessor's plug-in: does nothing, or reports as often as its argument says.
+// A plug-in for the predecessor: does nothing, or reports N times (its argument).
 #include <string>
 
 #include <robottestingframework/TestAssert.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reports as often as its argument says.
+// Reports N times (its argument).
 #include <string>
 
 #include <rtf/rtf.hpp>

@@ -1,4 +1,4 @@
-"""A test as they are: it takes 20 ms, nearly all of them waiting, and reports some things."""
+"""A typical test: it takes 20 ms, mostly waiting, and reports a few messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Says what time it is, ten times a second, until it is stopped."""
+"""Reports the time ten times per second until it is stopped."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import rtf
 
 
 class Ticker(rtf.TestCase):
-    """Whoever reads it knows how late he is."""
+    """The page's delay is the difference to the reported time."""
 
     def run(self) -> None:
         while True:

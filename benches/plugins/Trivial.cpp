@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A test that does nothing: what is left is the price of running it.
+// A test that does nothing, to measure the overhead.
 #include <rtf/rtf.hpp>
 
 class Trivial : public rtf::TestCase

@@ -1,4 +1,4 @@
--- A test that does nothing, for rtf and, by the same names, for the predecessor.
+-- A test that does nothing, for rtf and the predecessor.
 TestCase = TestCase or {}
 
 function TestCase.setup()

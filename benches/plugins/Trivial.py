@@ -4,8 +4,8 @@ import rtf
 
 
 class Trivial(rtf.TestCase):
-    """What is left is the price of running it."""
+    """Only the overhead is measured."""
 
     def run(self) -> None:
-        """Holds."""
+        """One check that holds."""
         self.check(True, "nothing is wrong")

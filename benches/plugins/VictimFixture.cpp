@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fixture plug-in whose host shall die: says who it is.
+// A fixture plug-in whose host is killed; it writes its process id to a file.
 #include <unistd.h>
 
 #include <rtf/FixtureManager.hpp>

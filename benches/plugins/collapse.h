@@ -1,12 +1,11 @@
-/* How the two sides of the collapse measurement find each other: what shall die
- * writes its process id into a file, the test that kills it reads that.
+/* The fixture writes its process id to a file, and the test that kills it reads the file.
  * SPDX-License-Identifier: Apache-2.0 */
 #ifndef COLLAPSE_H
 #define COLLAPSE_H
 
 #include <stdio.h>
 
-/* Returns 0 when it could be written. */
+/* Returns 0 on success. */
 static inline int write_pid(const char *path, long pid)
 {
     FILE *file = fopen(path, "w");
@@ -17,7 +16,7 @@ static inline int write_pid(const char *path, long pid)
     return fclose(file);
 }
 
-/* Returns 0 when there is none. */
+/* Returns 0 if there is none. */
 static inline long read_pid(const char *path)
 {
     long pid = 0;

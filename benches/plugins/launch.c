@@ -1,13 +1,12 @@
-/* The stopwatch of all measurements: starts a command a number of times, one
- * after the other, with posix_spawn, and waits for each.
+/* Measures a command: starts it COUNT times, one after the other, with posix_spawn, and
+ * waits for each process.
  *
  *     launch COUNT RESULT COMMAND [ARGUMENT…]
  *
- * RESULT gets a line with the nanoseconds of the whole loop, then a line for
- * each process: nanoseconds, the largest resident set in KiB, wait status. The
- * set is that of the process or of one that it waited for, whichever is larger.
- * A program as small as this one is needed for that number, since Linux counts
- * what the parent had before the exec.
+ * RESULT gets a line with the nanoseconds of the whole loop, then a line for each process:
+ * nanoseconds, the largest resident set in KiB of the process or of one that it waited for,
+ * wait status. This program must be small, because Linux includes the parent's resident set
+ * before the exec.
  * SPDX-License-Identifier: Apache-2.0 */
 #define _GNU_SOURCE
 #include <errno.h>

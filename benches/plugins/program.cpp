@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// ctest's trivial test: a C++ program. It needs libstdc++, as any test with an
-// assertion does.
+// The trivial test for ctest: a C++ program that needs libstdc++, like any test with an
+// assertion.
 #include <stdexcept>
 
 int main(int argc, char **)

@@ -1,4 +1,4 @@
-/* The program of a `process` fixture: says who it is, and waits for its end.
+/* The program of a `process` fixture: writes its process id and waits for a signal.
  * SPDX-License-Identifier: Apache-2.0 */
 #include <stdio.h>
 #include <unistd.h>

@@ -1,7 +1,7 @@
 //! Hosts die in every step and at random moments, in every mode: only the running test is blamed,
 //! every passed test was complete, and each test ran once.
 //!
-//! `RTF_CHAOS_SUITES` sets the number of rounds (`make chaos` runs more), and `RTF_CHAOS_SEED`
+//! `RTF_CHAOS_SUITES` scales the number of rounds (`make chaos` runs more), and `RTF_CHAOS_SEED`
 //! repeats the random numbers of a run, which prints its seed.
 
 use std::path::{Path, PathBuf};
