@@ -164,8 +164,8 @@ def respawned(scene: Scene) -> None:
     scene.kill("wheel.py")
     scene.finish(0)
     said = " ".join(str(event["message"]["text"]) for event in scene.events("message"))
-    scene.expect("told", "node /rover/wheel was killed by SIGKILL (exit code -9)" in said, True)
-    scene.expect("told", "node /rover/wheel was started again by roslaunch" in said, True)
+    scene.expect("reported", "node /rover/wheel was killed by SIGKILL (exit code -9)" in said, True)
+    scene.expect("reported", "node /rover/wheel was started again by roslaunch" in said, True)
     scene.expect("collapses", scene.run.reasons(), [])
 
 
@@ -242,9 +242,9 @@ def bag_kept(scene: Scene) -> None:
     scene.finish(1)
     scene.expect("verdicts", list(scene.run.verdicts().values()), ["passed", "failed"])
     (bag,) = bags(scene)
-    told = subprocess.run(["rosbag", "info", bag], capture_output=True, text=True, check=True)
+    info = subprocess.run(["rosbag", "info", bag], capture_output=True, text=True, check=True)
     for topic in ("/rover/command", "/rover/speed", "/rover/distance"):
-        scene.expect(f"{topic} in the bag", topic in told.stdout, True)
+        scene.expect(f"{topic} in the bag", topic in info.stdout, True)
 
 
 def bag_of_collapse(scene: Scene) -> None:

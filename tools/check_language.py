@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Finds phrases that no colleague would say, in prose and in comments.
+"""Finds phrases to avoid in Markdown and in comments.
 
     check_language.py FILE…
 
-STYLE: short sentences, active voice, the field's standard term. Each pattern below has
-the term to use instead. Code is only searched in its comments.
+Texts use short sentences, the active voice, and the standard term. Each pattern below has
+an alternative. In source files, only comments and docstrings are searched.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ import re
 import sys
 from pathlib import Path
 
-# A phrase, and what to write instead.
+# Phrases and their alternatives.
 PHRASES = {
-    r"(is|are|was|were|be|been) told\b": "is notified, is reported, is printed",
+    r"(told|tells)\b": "notified, reported, printed",
     r"of (its|their|our|one's) own\b": "separate, dedicated, private, its",
     r"beside\b": "next to, in addition to",
     r"folders?\b": "directory",
@@ -30,19 +30,34 @@ PHRASES = {
     r"(is|are|was) over\b": "has ended, has finished",
     r"anew\b": "again, from the start",
     r"to and fro\b": "back and forth",
-    r"whatever happen(s|ed)\b": "always, in any case",
-    r"(nobody|somebody|whoever)\b": "no process, a user, the caller: name the actor",
-    r"stands? (over|behind|beside)\b": "supervises, follows, is next to",
+    r"whatever\b": "all, regardless of, in any case",
+    r"(no|some|any|every)body\b": "no process, a user, the caller: name the actor",
+    r"(whoever|a person)\b": "a user, the caller: name the actor",
+    r"stands? (over|behind|beside|there|in the)\b": "supervises, follows, is in",
     r"(makes?|made) use of\b": "uses",
     r"it is (so|like this) because\b": "because",
     r"in the middle of\b": "during",
     r"unless told\b": "by default",
     r"does its work\b": "succeeds, works",
+    r"what (is|was) (left|said|printed)\b": "leftover processes, messages, output",
+    r"(is|are|was|were) not there\b": "is missing, does not exist",
+    r"(is|are|was) known of\b": "is known about, unknown",
+    r"knows? (of|nothing)\b": "has, does not know",
+    r"meanwhile\b": "during this time, concurrently",
+    r"side by side\b": "in parallel",
+    r"of today\b": "current",
+    r"by hand\b": "manually",
+    r"the price\b": "the cost",
+    r"(over and over|again and again)\b": "repeatedly",
+    r"an own\b": "a separate, a private",
+    r"(upon|shall)\b": "on, must",
+    r"its turn\b": "when it is scheduled, next",
+    r"as ever\b": "as before",
 }
 PATTERN = re.compile("|".join(rf"(?P<p{i}>\b{p})" for i, p in enumerate(PHRASES)), re.IGNORECASE)
 INSTEAD = list(PHRASES.values())
 
-# Where a comment starts, by the file's suffix; prose has none.
+# The start of a comment, by suffix. Other files are prose.
 COMMENT = {
     ".rs": r"//[/!]?",
     ".ts": r"//|/?\*",
@@ -61,6 +76,7 @@ COMMENT = {
     ".gpr": r"--",
     ".xml": r"<!--",
 }
+QUOTES = '"""'
 FENCE = re.compile(r"^\s*(```|    )")
 CODE = re.compile(r"`[^`]*`|\]\([^)]*\)")
 
@@ -86,10 +102,20 @@ def check(file: Path) -> list[str]:
 
 
 def comments(lines: list[str], marker: str) -> list[tuple[int, str]]:
-    """The comments of a source file, without the code before them."""
+    """The comments of a source file, without the code before them, and docstrings."""
     start = re.compile(rf"(?:^|\s)(?:{marker})\s?(.*)")
-    matches = ((number, start.search(line)) for number, line in enumerate(lines, 1))
-    return [(number, match.group(1)) for number, match in matches if match]
+    texts = []
+    string = ""  # the triple-quoted string that is open: a docstring, a value, or none
+    for number, line in enumerate(lines, 1):
+        match = start.search(line)
+        if string == "docstring":
+            texts.append((number, line))
+        elif match and not string:
+            texts.append((number, match.group(1)))
+        if line.count(QUOTES) == 1:
+            opened = "docstring" if line.lstrip().startswith(QUOTES) else "value"
+            string = "" if string else opened
+    return texts
 
 
 def prose(lines: list[str]) -> list[tuple[int, str]]:

@@ -59,7 +59,7 @@ def stray_packet_is_seen() -> None:
     """Proves that packets are counted, with a multicast datagram as discovery sends it."""
     before = packets()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stray:
-        stray.sendto(b"is anybody there?", ("239.255.0.1", 7400))
+        stray.sendto(b"discovery", ("239.255.0.1", 7400))
     expect("a stray packet is counted", packets() - before >= 1, True)
 
 

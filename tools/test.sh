@@ -137,13 +137,9 @@ sdk_ruby() {
     robot-testing-framework.gemspec
 }
 
-# The texts that have been rewritten; the others follow.
 lint_language() {
-  files README.md CHANGELOG.md 'docs/fixtures/*.md' 'examples/*/README.md' 'crates/rtf-plan/src/*.rs' \
-    docs/{doctor,event-sequence,getting-started,isolation,migrating-others,remote-fixtures}.md \
-    docs/{running,simulation-time,writing-tests}.md \
-    spec/{config,environment,exit-codes,plugin-abi,sdk,suite,testrunner}.md |
-    xargs -d '\n' tools/check_language.py
+  files '*.md' Makefile .ci/run 'tools/*' 'benches/*' 'tests/install/*' 'tests/predecessor/*' 'crates/rtf-plan/src/*.rs' |
+    grep -v -e '\.json$' -e '^tools/check_language.py$' | xargs -d '\n' tools/check_language.py
 }
 
 suites_are_valid() {
