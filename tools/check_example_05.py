@@ -163,9 +163,9 @@ def respawned(scene: Scene) -> None:
     """The wheel dies and roslaunch restarts it: this is reported, and nothing collapses."""
     scene.kill("wheel.py")
     scene.finish(0)
-    said = " ".join(str(event["message"]["text"]) for event in scene.events("message"))
-    scene.expect("reported", "node /rover/wheel was killed by SIGKILL (exit code -9)" in said, True)
-    scene.expect("reported", "node /rover/wheel was started again by roslaunch" in said, True)
+    sent = " ".join(str(event["message"]["text"]) for event in scene.events("message"))
+    scene.expect("reported", "node /rover/wheel was killed by SIGKILL (exit code -9)" in sent, True)
+    scene.expect("reported", "node /rover/wheel was started again by roslaunch" in sent, True)
     scene.expect("collapses", scene.run.reasons(), [])
 
 

@@ -95,8 +95,8 @@ def collapses(run: Run, number: signal.Signals, reasons: list[str]) -> None:
     """After a signal to the deployer, the test is `collapsed`; the next has a new deployer."""
     run.collapses(lambda: kill(running(DEPLOYER), number))
     expect(f"exit code after {number.name}", run.wait(), 1)
-    told = run.reason()
-    expect(f"one of {reasons} in `{told}`", any(each in told for each in reasons), True)
+    reason = run.reason()
+    expect(f"one of {reasons} in `{reason}`", any(each in reason for each in reasons), True)
     expect("verdicts", list(run.verdicts().values()), ["collapsed", "passed"])
     expect("deployers left", running(DEPLOYER), [])
 

@@ -56,7 +56,7 @@ def run_fixture_page(rtf: str, fixture: str, directory: Path, lesson: Path | Non
         run = Run(rtf, str(suite), directory / f"{suite.stem}.run")
         code = run.wait()
         verdicts = set(run.verdicts().values())
-        told = f"{page.name}, {suite.name}: exit code {code}, verdicts {verdicts}"
-        expect(told, code in {0, 1} and set() < verdicts <= {"passed", "failed"}, True)
+        what = f"{page.name}, {suite.name}: exit code {code}, verdicts {verdicts}"
+        expect(what, code in {0, 1} and set() < verdicts <= {"passed", "failed"}, True)
         expect(f"{page.name}: skipped tests", len(list(run.events("test-skipped"))), 0)
         expect(f"{page.name}: collapses", run.reasons(), [])

@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
-# Installs rtf into a temporary folder and uses it as a stranger does: a project
-# outside the checkout is built against the installed CMake package and run by
-# the installed rtf, which has no environment to find the checkout by. Where
-# the kernel lets us, the checkout is hidden from it altogether.
+# Installs rtf into a temporary directory, builds a project outside the checkout against the
+# installed CMake package, and runs it with the installed rtf. No variable leads to the
+# checkout; if the kernel allows it, the checkout is hidden in a mount namespace.
 
 . "$(dirname "$0")/../../tools/env.sh"
 
@@ -23,13 +22,13 @@ for file in bin/rtf libexec/rtf/rtf-host-native libexec/rtf/rtf-host-lua share/m
   [ -s "$prefix/$file" ] || die "$file was not installed"
 done
 
-# The stranger's session: only what a login shell has, and the installed rtf.
+# A session with the environment of a login shell and the installed rtf.
 cat >"$work/session.sh" <<'SESSION'
 set -eux
 cmake -S project -B project/build -DCMAKE_PREFIX_PATH="$PWD/prefix"
 cmake --build project/build
 prefix/bin/rtf --version
-prefix/bin/rtf doctor dll lua python ros2shm # the last one is a fixture that comes with rtf
+prefix/bin/rtf doctor dll lua python ros2shm # ros2shm is a fixture
 status=0
 RTF_PLUGIN_PATH=project/build prefix/bin/rtf run project/suite.xml >output.txt 2>&1 || status=$?
 cat output.txt

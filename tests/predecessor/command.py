@@ -1,8 +1,8 @@
 """Runs robottestingframework-testrunner of 2.x and ours with the same options, and compares.
 
 command.py PREDECESSOR PREFIX: the unpacked packages, and an installed rtf. An outcome is
-`exit code | counts on standard output | the tests in the result file, with what they said`.
-Prints every case with its reason, and fails when one is not as the tables in options.py say.
+`exit code | counts on standard output | the tests in the result file, with their messages`.
+Prints every case with its reason, and fails if one differs from the tables in options.py.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from options import CASES, FILES, REFUSED, Case
 
 NAME = "robottestingframework-testrunner"
 SECONDS = 60
-# How the two introduce a text.
+# The prefixes of messages in both.
 VERBS = re.compile(
     r"^(reports|checks|checking \(false\)|asserts (failure|error) with exception"
     r"|setup\(\) failed!|crashed|interrupted|skipped): "
@@ -30,21 +30,21 @@ VERBS = re.compile(
 
 
 class Runner:
-    """One of the two."""
+    """One of the two programs."""
 
     def __init__(self, prefix: Path) -> None:
-        """Where it is installed."""
+        """The directory with `bin` and `lib`."""
         self.program = prefix / "bin" / NAME
         self.libraries = ":".join(map(str, sorted(prefix.glob("lib/*-linux-*"))))
 
-    def start(self, options: list[str], folder: Path) -> subprocess.Popen[str]:
-        """Starts it in a folder."""
+    def start(self, options: list[str], directory: Path) -> subprocess.Popen[str]:
+        """Starts the program in a directory."""
         environment = os.environ | {"LD_LIBRARY_PATH": self.libraries}
         for name in ("RTF_PLUGIN_PATH", "RTF_RESULTS"):
             environment.pop(name, None)
         return subprocess.Popen(
             [str(self.program), *options],
-            cwd=folder,
+            cwd=directory,
             env=environment,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -54,40 +54,40 @@ class Runner:
         )
 
     def run(self, case: Case) -> str:
-        """The outcome of a case, in a folder of its own."""
+        """The outcome of a case, in a separate directory."""
         with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
-            write_files(folder)
-            process = self.start(case.options, folder)
+            directory = Path(name)
+            write_files(directory)
+            process = self.start(case.options, directory)
             if case.interrupt:
-                wait_for(folder / "started")
+                wait_for(directory / "started")
                 process.send_signal(signal.SIGINT)
-                # Who is interrupted ends; who is not needs to be let go.
+                # A test that was interrupted ends by itself; another one waits for this file.
                 with contextlib.suppress(subprocess.TimeoutExpired):
                     process.wait(1)
-                (folder / "go").touch()
+                (directory / "go").touch()
             stdout, _ = process.communicate(timeout=SECONDS)
             code = "died" if process.returncode < 0 else str(process.returncode)
-            result = folder / case.result
+            result = directory / case.result
             told = outcome(result, case) if result.is_file() else "no file"
         return f"{code} | {counts(stdout)} | {told}"
 
 
-def write_files(folder: Path) -> None:
-    """What the cases run."""
+def write_files(directory: Path) -> None:
+    """Writes the suites and plug-ins of the cases."""
     for name, text in FILES.items():
-        file = folder / name
+        file = directory / name
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text)
-    (folder / "empty").mkdir()
+    (directory / "empty").mkdir()
 
 
 def wait_for(file: Path) -> None:
-    """Until a test has made it."""
+    """Waits until a test has created the file."""
     end = time.monotonic() + SECONDS
     while not file.exists():
         if time.monotonic() > end:
-            raise TimeoutError(f"nobody made {file.name}")
+            raise TimeoutError(f"no test created {file.name}")
         os.sched_yield()
 
 
@@ -135,13 +135,13 @@ def junit(content: str) -> list[str]:
 
 
 def plain(name: str) -> str:
-    """2.x calls a test after its file; ours without the extension, and the second one `#2`."""
+    """The name in 2.x is the file name; ours has no extension, and `#2` for a second test."""
     return re.sub(r"(\.lua|#[0-9]+)$", "", name)
 
 
 def main() -> int:
     """Returns the exit code."""
-    # Shells start what runs in the background with SIGINT ignored, and 2.x leaves it so.
+    # Shells ignore SIGINT in background processes, and 2.x does not change that.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     old, new = (Runner(Path(argument).resolve()) for argument in sys.argv[1:3])
     wrong = 0

@@ -1,7 +1,7 @@
 """Builds one project against robot-testing-framework 2.x and against rtf, and compares verdicts.
 
-compare.py PREDECESSOR PREFIX WORK: the unpacked packages, an installed rtf, and a folder to
-work in. Prints every case with its reason, and fails when one is not as the tables say.
+compare.py PREDECESSOR PREFIX WORK: the unpacked packages, an installed rtf, and a directory to
+work in. Prints every case with its reason, and fails if one differs from the tables.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ HERE = Path(__file__).resolve().parent
 
 
 class Report:
-    """Counts, and shows what is not as expected."""
+    """Counts the cases and prints differences."""
 
     def __init__(self) -> None:
-        """Nothing yet."""
+        """No case has been checked yet."""
         self.cases = 0
         self.wrong = 0
 
@@ -41,7 +41,7 @@ class Report:
 
 
 def compare_rows(report: Report, old: Side, new: Side, rows: list[Row], kind: str) -> None:
-    """The plug-ins with each runner."""
+    """Compares the plug-ins in both runners."""
     for row in rows:
         if row.old != row.new and not row.why:
             raise ValueError(f"a difference without a reason: {row.what}")
@@ -52,7 +52,7 @@ def compare_rows(report: Report, old: Side, new: Side, rows: list[Row], kind: st
 
 
 def compare_embedded(report: Report, old: Side, new: Side) -> None:
-    """A program on the classes with each library."""
+    """Compares a program that uses the classes of both libraries."""
     scenarios = dict.fromkeys(SAME, ("", "")) | DIFFERENT
     for scenario, (why, expected) in scenarios.items():
         lines = difflib.unified_diff(
@@ -65,34 +65,34 @@ def compare_embedded(report: Report, old: Side, new: Side) -> None:
 def load(side: Side, fixture: Path, test: Path) -> tuple[int, str, str, list[str]]:
     """A program that loads a fixture and a test: exit code, output, result.txt and log."""
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
+        directory = Path(name)
         ran = subprocess.run(
             [str(side.build / "legacy_loader"), str(fixture), str(test), "check"],
-            cwd=folder,
-            env=side.environment(folder / "log"),
+            cwd=directory,
+            env=side.environment(directory / "log"),
             capture_output=True,
             text=True,
             check=False,
         )
-        result = folder / "loaded.txt"
+        result = directory / "loaded.txt"
         text = result.read_text() if result.exists() else ""
-        log = folder / "log"
+        log = directory / "log"
         return ran.returncode, ran.stdout, text, log.read_text().split("\n") if log.exists() else []
 
 
 def compare_loaders(report: Report, old: Side, new: Side) -> None:
-    """Each loads its own plug-ins alike, and refuses the other's."""
+    """Each loads its own plug-ins in the same way, and rejects the other's."""
     theirs = load(old, old.build / "plugins/Rig.so", old.build / "plugins/Endings.so")
     ours = load(new, new.build / "plugins/Rig.so", new.build / "plugins/Endings.so")
     report.expect("loaders: exit code", ours[0], theirs[0])
     report.expect("loaders: result.txt", ours[2], theirs[2])
     report.expect("loaders: order of calls", ours[3], theirs[3])
     code, said, _, _ = load(new, new.build / "plugins/Rig.so", new.build / "nowhere.so")
-    report.expect("loaders: what is not there", (code, "nowhere.so" in said), (4, True))
+    report.expect("loaders: a missing plug-in", (code, "nowhere.so" in said), (4, True))
     code, _, _, log = load(old, old.build / "plugins/Rig.so", new.build / "plugins/Endings.so")
-    report.expect("the predecessor refuses our plug-in", (code, log), (4, []))
+    report.expect("the predecessor rejects our plug-in", (code, log), (4, []))
     code, _, _, log = load(new, old.build / "plugins/Rig.so", new.build / "plugins/Endings.so")
-    report.expect("we refuse the predecessor's plug-in", (code, log), (3, []))
+    report.expect("rtf rejects the predecessor's plug-in", (code, log), (3, []))
     ran = subprocess.run(
         [str(new.prefix / "bin/rtf"), "check", str(old.build / "plugins/Endings.so")],
         env=os.environ | {"LD_LIBRARY_PATH": old.environment(Path())["LD_LIBRARY_PATH"]},
@@ -101,11 +101,11 @@ def compare_loaders(report: Report, old: Side, new: Side) -> None:
         check=False,
     )
     words = "was built for robot-testing-framework 2: build it again" in ran.stderr
-    report.expect("rtf says what is to be done with it", (ran.returncode, words), (2, True))
+    report.expect("rtf suggests a rebuild", (ran.returncode, words), (2, True))
 
 
 def ctest(side: Side) -> tuple[list[str], list[bool]]:
-    """What CTest makes of the suites, and whether their results were written."""
+    """CTest's results of the suites, and whether the result files were written."""
     ran = subprocess.run(
         ["ctest"],
         cwd=side.build,

@@ -1,7 +1,7 @@
-"""What a program that runs tests by itself sees differently with rtf, and why.
+"""Differences in the output of a program that runs tests in its own process, with reasons.
 
-The lines are those of a unified diff without context, from the predecessor's to ours. A scenario
-without a reason must print the same with both.
+The lines are those of a unified diff without context, from the predecessor's output to ours. A
+scenario without a reason must print the same with both.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ NOT_RUN = "the suite says which tests it did not run"
 
 DIFFERENT: dict[str, tuple[str, str]] = {
     "test/blank": (
-        "8: a blank in the name made another argument of it",
+        "8: a space in the name created another argument",
         """
 -first test setup 2 first
 -argument <test>

@@ -1,7 +1,7 @@
-"""What the predecessor makes of each case, what rtf makes of it, and why they differ.
+"""The outcome of each case with the predecessor and with rtf, and the reason of a difference.
 
-An outcome is `colour | verdicts | what the plug-ins logged`. Where the predecessor is right both
-are the same, and there is no reason. A number is that of the defect in docs/migrating.md.
+An outcome is `colour | verdicts | log of the plug-ins`. If the predecessor is right, both are the
+same, and there is no reason. A number is that of the defect in docs/migrating.md.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 
 class Row(NamedTuple):
-    """One case. `old` is None for what has no outcome that could be relied on."""
+    """One case. `old` is None if its outcome is not deterministic."""
 
     what: str
     old: str | None
@@ -69,7 +69,7 @@ TESTS = [
         "result",
         f"green | passed | {RAN}",
         f"red | failed | {RAN}",
-        "a failure that was added to the result by hand did not count",
+        "a failure that was added to the result directly did not count",
     ),
     Row(
         "integer",
@@ -112,12 +112,12 @@ TESTS = [
 
 
 def rig(param: str) -> str:
-    """The fixture, with this behind its first argument."""
+    """A fixture with additional arguments."""
     return f"<fixture param='rig {param}'>Rig</fixture>"
 
 
 def test(param: str, attributes: str = "type='dll'") -> str:
-    """The test that ends as told."""
+    """A test that ends in the way of its parameter."""
     return f"<test {attributes} param='{param}'>Endings</test>"
 
 

@@ -1,7 +1,7 @@
-"""What the two runners are called with, and what comes of it.
+"""The command lines for both runners, and their outcomes.
 
-`old` is the outcome with 2.x, `new` that with ours, when it is another, for the reason `why`. A
-number is that of the defect in docs/migrating.md.
+`old` is the outcome with 2.x, `new` that with ours if it differs, and `why` the reason. A number
+is that of the defect in docs/migrating.md.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ TEAR_DOWN = "TestCase.tearDown = function() end\n"
 
 
 def lua(run: str) -> str:
-    """A test that does this."""
+    """A test with this body."""
     return f"{SETUP}TestCase.run = function()\n{run}\nend\n{TEAR_DOWN}"
 
 
@@ -40,7 +40,7 @@ CHECKS = """  robottestingframework.testCheck(true, "closed")
   robottestingframework.testFailIf(false, "unless")
   robottestingframework.testReport("on")"""
 
-# Goes on when it is told to, so that a signal comes while it runs.
+# Waits for a file, so that a signal arrives while it runs.
 WAITS = """  io.open("started", "w"):close()
   repeat local go = io.open("go") until go"""
 
@@ -89,7 +89,7 @@ FILES = {
         + test("Good.lua", "type='lua' param='--a \"b c\" d\"e f\"g'")
         + test("Good.lua", "type='lua' param='one&#10;two'"),
     ),
-    # Which of them comes first is for the file system to say: they are alike.
+    # The same test three times, because the file system determines their order in 2.x.
     "interrupt/1.xml": suite("waits", test("Waits.lua")),
     "interrupt/2.xml": suite("waits", test("Waits.lua")),
 }
@@ -97,7 +97,7 @@ FILES = {
 
 @dataclass(frozen=True)
 class Case:
-    """One call."""
+    """One command line."""
 
     options: list[str]
     old: str
@@ -260,19 +260,19 @@ CASES = [
         ["-t", "Good.lua", "--output-type", "xml"],
         f"{GREEN} | no file",
         REFUSED_BY_US,
-        "7: nor was a type that there is not",
+        "7: an unknown type was no error",
     ),
     Case(
         ["-t", "Named.lua"],
         f"{GREEN} | Other passed: [INFO] on",
         f"{GREEN} | Named passed: [INFO] test name: Other; [INFO] on",
-        "a test is called as its suite or its file says",
+        "a test has the name from its suite or its file",
     ),
     Case(
         ["-t", "NoSetup.lua"],
         f"{RED} | NoSetup failed: [ERROR] ",
         f"{RED} | NoSetup failed: [ERROR] setup returned false",
-        "the reason is told",
+        "the reason is reported",
     ),
 ]
 REFUSED: list[tuple[list[str], str]] = [

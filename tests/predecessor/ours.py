@@ -1,6 +1,6 @@
-"""RTF 1.x plug-ins, and what the predecessor's classes do now that they did not, or not well.
+"""Checks RTF 1.x plug-ins, and improvements of the predecessor's classes.
 
-ours.py PREFIX WORK: an installed rtf, and a folder to work in.
+ours.py PREFIX WORK: an installed rtf, and a directory to work in.
 """
 
 from __future__ import annotations
@@ -31,28 +31,28 @@ def expect(what: str, got: object, expected: object) -> None:
 
 def run(prefix: Path, *words: str) -> tuple[int, list[str], list[dict[str, Any]]]:
     """Runs rtf: exit code, verdicts, and the events."""
-    with tempfile.TemporaryDirectory() as folder:
-        ran = subprocess.run([str(prefix / "bin/rtf"), "run", *words], cwd=folder, check=False)
-        file = Path(folder) / "rtf-results/latest/events.jsonl"
+    with tempfile.TemporaryDirectory() as directory:
+        ran = subprocess.run([str(prefix / "bin/rtf"), "run", *words], cwd=directory, check=False)
+        file = Path(directory) / "rtf-results/latest/events.jsonl"
         events = [json.loads(line) for line in file.read_text().splitlines()]
-        return ran.returncode, journal(Path(folder)), events
+        return ran.returncode, journal(Path(directory)), events
 
 
 def compiled_by_hand(prefix: Path, work: Path) -> Path:
-    """The plug-ins of 1.x, with nothing but the include path told to the compiler."""
-    folder = work / "by-hand"
-    folder.mkdir()
+    """Builds the plug-ins of 1.x with only the include path changed."""
+    directory = work / "by-hand"
+    directory.mkdir()
     compiler = shlex.split(os.environ.get("CXX", "c++"))
     for source in sorted((HERE / "generation1").glob("*.cpp")):
         includes = [f"-I{prefix}/include/rtf1", f"-I{prefix}/include"]
         flags = ["-std=c++11", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-pthread"]
-        library = folder / f"{source.stem}.so"
+        library = directory / f"{source.stem}.so"
         subprocess.run([*compiler, *flags, *includes, str(source), "-o", str(library)], check=True)
-    return folder
+    return directory
 
 
 def first_generation(prefix: Path, plugins: Path) -> None:
-    """Macros with the meaning of 1.x, and a fixture whose watchdog thread reports the collapse."""
+    """Checks the macros of 1.x, and a fixture whose watchdog thread reports a collapse."""
     verdicts = {
         "well": "passed",
         "setup-false": "error",
@@ -102,23 +102,23 @@ def first_generation(prefix: Path, plugins: Path) -> None:
 
 
 def headers(prefix: Path, work: Path) -> None:
-    """Every header without a warning, in every C++ that users have."""
+    """Compiles every header without warnings in each supported version of C++."""
     include = prefix / "include"
-    for folder, others in (("robottestingframework", []), ("rtf1", [f"-I{include}/rtf1"])):
-        source = work / f"{folder}.cpp"
-        top = include if not others else include / folder
-        found = sorted((include / folder).rglob("*.h"))
+    for directory, others in (("robottestingframework", []), ("rtf1", [f"-I{include}/rtf1"])):
+        source = work / f"{directory}.cpp"
+        top = include if not others else include / directory
+        found = sorted((include / directory).rglob("*.h"))
         source.write_text("".join(f"#include <{file.relative_to(top)}>\n" for file in found))
         for standard in (11, 14, 17, 20):
             flags = ["-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-std=c++{standard}"]
             compiler = shlex.split(os.environ.get("CXX", "c++"))
             words = [*compiler, *flags, "-fsyntax-only", *others, f"-I{include}", str(source)]
             ran = subprocess.run(words, capture_output=True, text=True, check=False)
-            expect(f"{len(found)} headers of {folder}, C++{standard}", ran.stderr, "")
+            expect(f"{len(found)} headers of {directory}, C++{standard}", ran.stderr, "")
 
 
 def get(port: int, path: str, host: str = "127.0.0.1") -> tuple[int, str]:
-    """Asks the web listener."""
+    """Sends a request to the web listener."""
     connection = HTTPConnection("127.0.0.1", port, timeout=10)
     connection.request("GET", path, headers={"Host": f"{host}:{port}"})
     answer = connection.getresponse()
@@ -126,14 +126,14 @@ def get(port: int, path: str, host: str = "127.0.0.1") -> tuple[int, str]:
 
 
 def read_once(port: int, request: str) -> str:
-    """What a client gets that reads 255 bytes, and only once."""
+    """The response to a client that reads 255 bytes, and only once."""
     with socket.create_connection(("127.0.0.1", port), 10) as connection:
         connection.sendall(request.encode())
         return connection.recv(255).decode()
 
 
 def web(program: Path) -> None:
-    """Valid JSON whatever tests are called and say, on loopback only."""
+    """Checks for valid JSON with any names and messages of tests, and for loopback only."""
     with subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
         port = int(process.stdout.readline())
@@ -152,7 +152,7 @@ def web(program: Path) -> None:
         ]
         expect("valid JSON", told, expected)
         rest = json.loads(get(port, f"/events?from={news['next']}")[1])
-        expect("only what is new", (news["running"], rest["events"]), (False, []))
+        expect("only new events", (news["running"], rest["events"]), (False, []))
         for request in ("GET /status HTTP/1.0\r\n\r\n", "GET /status\n\n"):
             line = read_once(port, request).splitlines()[-1]
             state = {"name": "a 'suite'", "testStatus": [2]}
@@ -160,7 +160,7 @@ def web(program: Path) -> None:
         html = json.loads(get(port, "/update")[1])
         expect("HTML in one JSON string", html.count("<br>"), 6)
         expect(
-            "what a test says is text",
+            "a test's message is text",
             ("</script>" in html, "&#34;quoted&#34;" in html),
             (False, True),
         )
@@ -174,7 +174,7 @@ def web(program: Path) -> None:
 
 
 def scripts(program: Path, work: Path) -> None:
-    """A program that runs scripts: the runner's hosts do it."""
+    """Checks a program that runs scripts with the runner's hosts."""
     broken = work / "broken.py"
     broken.write_text("def broken(:\n")
     files = [str(HERE / "ours/Good.lua"), str(HERE / "ours/bad.py"), str(broken)]
@@ -191,7 +191,7 @@ def scripts(program: Path, work: Path) -> None:
 
 
 def main() -> None:
-    """Everything."""
+    """Runs all checks."""
     prefix, work = (Path(argument).resolve() for argument in sys.argv[1:3])
     headers(prefix, work)
     first_generation(prefix, compiled_by_hand(prefix, work))

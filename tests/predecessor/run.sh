@@ -1,10 +1,9 @@
 #!/usr/bin/env bash
-# Do projects and plug-ins that were written for the predecessor do the same with
-# rtf? Installs rtf into a temporary folder, and builds tests/predecessor/project
-# against it and against Debian's robot-testing-framework 2.x.
+# Compares rtf with its predecessor: installs rtf into a temporary directory, and builds
+# tests/predecessor/project against it and against Debian's robot-testing-framework 2.x.
 #
 #   tests/predecessor/run.sh compare    verdicts of both, case by case
-#   tests/predecessor/run.sh command    its command line and ours, option by option
+#   tests/predecessor/run.sh command    both command lines, option by option
 #   tests/predecessor/run.sh ours       RTF 1.x, the web page, scripts in programs
 
 . "$(dirname "$0")/../../tools/env.sh"

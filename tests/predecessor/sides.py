@@ -1,4 +1,4 @@
-"""Runs the same thing with the predecessor and with rtf, and says what each made of it."""
+"""Runs a case with the predecessor and with rtf, and returns both outcomes."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ SECONDS = 60
 
 @dataclass(frozen=True)
 class Side:
-    """One of the two: where it is installed, and where the project was built against it."""
+    """One of the two programs: its installation, and the project that was built against it."""
 
     prefix: Path
     build: Path
     is_ours: bool
 
     def environment(self, log: Path) -> dict[str, str]:
-        """What the programs of this side need."""
+        """The environment for the programs of this side."""
         environment = os.environ | {"BENCH_LOG": str(log)}
         environment.pop("RTF_PLUGIN_PATH", None)
         if not self.is_ours:
@@ -32,7 +32,7 @@ class Side:
         return environment
 
     def test(self, param: str) -> str:
-        """The outcome of the plug-in Endings with these parameters, and what it logged."""
+        """The outcome of the plug-in Endings with these parameters, and its log."""
         plugin = str(self.build / "plugins" / "Endings.so")
         options = ["--param", param, "--environment", "--robot simulator"]
         if self.is_ours:
@@ -44,8 +44,8 @@ class Side:
         """The same of a suite; its plug-ins are named `Endings`, `Rig`, `Whole` and `libplain`."""
         for name in ("Endings", "Rig", "Whole", "libplain"):
             elements = elements.replace(f">{name}<", f">{self.build}/plugins/{name}.so<")
-        with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder) / "suite.xml"
+        with tempfile.TemporaryDirectory() as directory:
+            file = Path(directory) / "suite.xml"
             file.write_text(f"<suite name='suite'>{elements}</suite>")
             if self.is_ours:
                 return self._run([self._program("rtf"), "run", str(file)])
@@ -53,10 +53,10 @@ class Side:
             return self._run([program, "--verbose", "--no-output", "--suite", str(file)])
 
     def embedded(self, scenario: str) -> list[str]:
-        """What a program sees that runs tests by itself."""
+        """The output of a program that runs tests in its own process."""
         command = [str(self.build / "embed"), scenario]
-        with tempfile.TemporaryDirectory() as folder:
-            environment = self.environment(Path(folder) / "log")
+        with tempfile.TemporaryDirectory() as directory:
+            environment = self.environment(Path(directory) / "log")
             ran = subprocess.run(
                 command,
                 env=environment,
@@ -73,19 +73,19 @@ class Side:
 
     def _run(self, command: list[str]) -> str:
         with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
-            log = folder / "log"
+            directory = Path(name)
+            log = directory / "log"
             ran = subprocess.run(
                 command,
                 env=self.environment(log),
-                cwd=folder,
+                cwd=directory,
                 capture_output=True,
                 text=True,
                 timeout=SECONDS,
                 errors="replace",
                 check=False,
             )
-            verdicts = journal(folder) if self.is_ours else console(ran.stdout)
+            verdicts = journal(directory) if self.is_ours else console(ran.stdout)
             if ran.returncode < 0:
                 verdicts = ["the runner died"]
             elif ran.returncode > 1:
@@ -96,7 +96,7 @@ class Side:
 
 
 def console(text: str) -> list[str]:
-    """The verdicts in the predecessor's output, as far as it tells failure and error apart."""
+    """The verdicts in the predecessor's output, which has failures and errors."""
     verdicts = []
     first = ""
     for line in re.sub(r"\x1b\[[0-9]*m", "", text).splitlines():
@@ -115,9 +115,9 @@ def console(text: str) -> list[str]:
     return verdicts
 
 
-def journal(folder: Path) -> list[str]:
-    """The verdicts in the newest journal of a folder; none when nothing was started."""
-    file = folder / "rtf-results" / "latest" / "events.jsonl"
+def journal(directory: Path) -> list[str]:
+    """The verdicts in the newest journal of a directory; none if nothing was started."""
+    file = directory / "rtf-results" / "latest" / "events.jsonl"
     if not file.exists():
         return []
     events = [json.loads(line) for line in file.read_text().splitlines()]
@@ -125,18 +125,18 @@ def journal(folder: Path) -> list[str]:
     return verdicts + ["skipped" for event in events if event["type"] == "test-skipped"]
 
 
-def build(project: Path, folder: Path, package: str) -> None:
+def build(project: Path, directory: Path, package: str) -> None:
     """Builds a CMake project against an installed package."""
-    if folder.exists():
-        shutil.rmtree(folder)
+    if directory.exists():
+        shutil.rmtree(directory)
     configure = [
         "cmake",
         "-S",
         str(project),
         "-B",
-        str(folder),
+        str(directory),
         "-DCMAKE_BUILD_TYPE=Debug",
         package,
     ]
     subprocess.run(configure, check=True)
-    subprocess.run(["cmake", "--build", str(folder), "--parallel", "2"], check=True)
+    subprocess.run(["cmake", "--build", str(directory), "--parallel", "2"], check=True)

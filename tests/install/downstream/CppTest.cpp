@@ -1,4 +1,4 @@
-// A project that knows rtf only as it is installed.
+// A project that uses an installed rtf.
 #include <rtf/rtf.hpp>
 
 #include <cmath>

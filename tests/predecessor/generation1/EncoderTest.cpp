@@ -1,4 +1,4 @@
-// A test as users of RTF 1.x have it.
+// A test for RTF 1.x.
 #include <Plugin.h>
 #include <TestAssert.h>
 #include <TestCase.h>

@@ -1,4 +1,4 @@
-// Kills the module that the fixture watches, and is then stopped.
+// Kills the module that the fixture monitors, and is then stopped.
 #include <rtf/TestAssert.h>
 #include <rtf/TestCase.h>
 #include <rtf/dll/Plugin.h>

@@ -1,5 +1,5 @@
-// A fixture as the paper prints it: one header, prepared before its class, and a
-// middleware's manager in private.
+// A fixture as in the paper: one header, PREPARE macro before the class, and private
+// inheritance from a middleware's manager.
 #include <FixtureManager.h>
 
 #include <string>

@@ -1,4 +1,4 @@
-// A test as the paper prints it: one header, prepared before its class, no constructor.
+// A test as in the paper: one header, PREPARE macro before the class, no constructor.
 #include <TestCase.h>
 
 PREPARE_PLUGIN(PaperTest)

@@ -1,5 +1,5 @@
 // A fixture as in the paper: it is also a middleware's manager, whose watchdog
-// thread calls back when a module dies.
+// thread calls it when a module dies.
 #include <FixtureManager.h>
 #include <dll/Plugin.h>
 
@@ -11,7 +11,7 @@
 
 namespace middleware {
 
-// Starts modules and watches them; written by others.
+// Third-party code that starts and monitors modules.
 class Manager
 {
 public:

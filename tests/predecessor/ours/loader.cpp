@@ -1,4 +1,4 @@
-// Loads a test, and prints what it is called.
+// Loads a test and prints its name.
 #include <iostream>
 
 #include <robottestingframework/dll/DllPluginLoader.h>

@@ -1,4 +1,4 @@
-// Runs the scripts that it is given, Lua and Python, from one program.
+// Runs Lua and Python scripts from one program.
 #include <iostream>
 #include <string>
 

@@ -1,4 +1,4 @@
-// Runs a test with the web listener, prints its port, and ends with its input.
+// Runs a test with the web listener, prints its port, and exits when standard input closes.
 #include <iostream>
 #include <string>
 

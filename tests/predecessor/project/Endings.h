@@ -5,7 +5,7 @@
 
 #include <robottestingframework/TestCase.h>
 
-// A test that ends in the way that its first argument names.
+// A test that ends in the way of its first argument.
 class Endings : public robottestingframework::TestCase
 {
 public:

@@ -3,7 +3,7 @@
 #include <robottestingframework/TestCase.h>
 #include <robottestingframework/dll/Plugin.h>
 
-// Nothing but what a test needs, without a set-up.
+// A minimal test without a set-up.
 class Plain : public robottestingframework::TestCase
 {
 public:

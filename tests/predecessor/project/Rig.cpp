@@ -1,4 +1,4 @@
-// A fixture that says what is done with it, and goes wrong as it is told.
+// A fixture that logs its calls, and fails in the way of its argument.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -48,7 +48,7 @@ public:
 private:
     static std::string marks() { return std::getenv("BENCH_LOG"); }
 
-    // Collapses when a test has asked for it.
+    // Collapses at a test's request.
     void watch()
     {
         while (!std::ifstream(marks() + ".go")) {

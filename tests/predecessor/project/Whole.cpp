@@ -1,4 +1,4 @@
-// A test that does its steps in its own way.
+// A test that overrides the order of its steps.
 #include <cstdio>
 #include <cstdlib>
 

@@ -1,5 +1,5 @@
-// A program that runs tests by itself: every class, and what the listeners see.
-// Prints one line for each event, for the scenario that its argument names.
+// A program that runs tests in its own process with all classes. It prints one line for
+// each event that listeners get, for the scenario in its argument.
 #include <cstdio>
 #include <iostream>
 #include <string>
@@ -27,7 +27,7 @@ void line(const std::string &text)
     std::cout << text << std::endl;
 }
 
-// Names the tests and what they said; the framework's own words are not compared.
+// Prints tests and their messages; the framework's own wording is not compared.
 class Trace : public TestListener
 {
 public:
@@ -48,7 +48,7 @@ public:
     void endTestRunner() override { line("end runner"); }
 
 private:
-    // What a suite says is in the framework's words, but for the reason of a collapse.
+    // Messages of a suite are the framework's, except the reason of a collapse.
     static void say(const std::string &kind, const Test *test, TestMessage msg)
     {
         const bool own = test->getName() != "suite" || msg.getDetail() == "the rig fell";

@@ -1,4 +1,4 @@
-// Loads plug-ins itself: a fixture, then a test with a parameter.
+// Loads a fixture, then a test with a parameter.
 #include <cstdio>
 
 #include <robottestingframework/ConsoleListener.h>
