@@ -49,7 +49,7 @@ def apart(directory: Path, rtf: str, left: str, right: str) -> None:
     verdicts = outcomes(run)
     expect("tests", len(verdicts), 8)
     expect("verdicts", {verdict for _, _, verdict in verdicts}, {"passed"})
-    expect("suites in parallel", side_by_side(run), True)
+    expect("suites in parallel", are_parallel(run), True)
     logs = run.journal.parent / "logs"
     logged = [any((logs / f"{suite}.ros").glob("python*.log")) for suite in ("left", "right")]
     expect("the nodes' logs are in the results", logged, [True, True])
@@ -109,7 +109,7 @@ def outcomes(run: Run) -> list[tuple[str, str, str]]:
     return [(*known[event["test"]], event["verdict"]) for event in finished]
 
 
-def side_by_side(run: Run) -> bool:
+def are_parallel(run: Run) -> bool:
     """Whether both suites started before one finished."""
     kinds = [event["type"] for event in run.events()]
     order = [kind for kind in kinds if kind in {"suite-started", "suite-finished"}]

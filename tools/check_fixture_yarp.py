@@ -33,7 +33,7 @@ def main() -> int:
         hangs(lesson, "application", "yarpdev", f"{HEAD} -> /reader is lost: the port {HEAD}")
         does_not_start(lesson, "broken", "Could not find device <noSuchDevice>")
         does_not_start(lesson, "missing", "cannot run no-such-module on localhost")
-        side_by_side(lesson)
+        in_parallel(lesson)
         recorded(lesson)
         as_in_yarp(lesson)
         is_installed(lesson)
@@ -59,7 +59,7 @@ def does_not_start(lesson: Lesson, application: str, expected: str) -> None:
     lesson.nothing_left()
 
 
-def side_by_side(lesson: Lesson) -> None:
+def in_parallel(lesson: Lesson) -> None:
     """Two suites with the same application in one network, in separate YARP namespaces."""
     run = lesson.start("left.xml", "in parallel", "--jobs", "2", str(lesson.example / "right.xml"))
     expect("exit code", run.wait(), 0)
