@@ -113,7 +113,7 @@ def cut_connection(lesson: Lesson, run: Run) -> None:
     """A connection is cut."""
     del lesson
     source, target = CONNECTION.split(" -> ")
-    (join,) = [event["join"] for event in run.events("suite-prepared")]
+    (join,) = [event["join_command"] for event in run.events("suite-prepared")]
     words = [word for word in shlex.split(join) if word != "${SHELL:-sh}"]
     subprocess.run([*words, "yarp", "disconnect", source, target], check=True, timeout=30)
 
