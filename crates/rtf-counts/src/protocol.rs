@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use rtf_engine::host::codec::{self, FromHost};
-use rtf_model::protocol::{Answer, Line, Notification, Plugin, Reply, Request};
+use rtf_model::protocol::{Answer, Notification, Plugin, Reply, Request, RpcMessage};
 use rtf_model::{Location, Message, MessageKind, Outcome, Phase};
 
 const TESTS: u64 = 4000;
@@ -54,5 +54,5 @@ pub fn run() -> Result<(), Box<dyn Error>> {
 }
 
 fn line<T: serde::Serialize>(id: Option<u64>, body: T) -> serde_json::Result<Vec<u8>> {
-    serde_json::to_vec(&Line::new(id, body))
+    serde_json::to_vec(&RpcMessage::new(id, body))
 }

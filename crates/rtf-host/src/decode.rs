@@ -100,7 +100,7 @@ fn refused(id: Option<u64>, code: i32, message: String) -> Incoming {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rtf_model::protocol::{Initialize, Line, Plugin};
+    use rtf_model::protocol::{Initialize, Plugin, RpcMessage};
 
     fn code(line: &str) -> (Option<u64>, i32) {
         match decode(line.as_bytes()) {
@@ -124,7 +124,7 @@ mod tests {
         ];
         for request in requests {
             let id = request.is_answered().then_some(7);
-            let line = serde_json::to_vec(&Line::new(id, request.clone())).unwrap();
+            let line = serde_json::to_vec(&RpcMessage::new(id, request.clone())).unwrap();
             assert_eq!(decode(&line), Incoming::Request { id, request });
         }
     }

@@ -1,7 +1,9 @@
 //! What a host has to be able to do.
 
 use rtf_model::Location;
-use rtf_model::protocol::{Initialize, Initialized, Plugin, Subscription, TestEnds, TestStarts};
+use rtf_model::protocol::{
+    Initialize, Initialized, Plugin, Subscription, TestFinishedParams, TestStartedParams,
+};
 
 use crate::Session;
 
@@ -31,9 +33,9 @@ pub enum Step {
 #[derive(Clone, Copy, Debug)]
 pub enum Told<'a> {
     /// An attempt is about to begin: `testStarted`.
-    Starts(&'a TestStarts),
+    Starts(&'a TestStartedParams),
     /// An attempt was judged: `testFinished`.
-    Ends(&'a TestEnds),
+    Ends(&'a TestFinishedParams),
 }
 
 impl Told<'_> {

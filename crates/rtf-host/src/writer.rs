@@ -4,7 +4,7 @@ use std::os::unix::net::UnixStream;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use rtf_model::Message;
-use rtf_model::protocol::{Line, Notification};
+use rtf_model::protocol::{Notification, RpcMessage};
 use serde::Serialize;
 
 use crate::unix;
@@ -43,7 +43,7 @@ impl Writer {
     pub(crate) fn send<T: Serialize>(&self, id: Option<u64>, body: &T) -> bool {
         let mut line = self.line.lock().unwrap_or_else(PoisonError::into_inner);
         line.clear();
-        if serde_json::to_writer(&mut *line, &Line::new(id, body)).is_err() {
+        if serde_json::to_writer(&mut *line, &RpcMessage::new(id, body)).is_err() {
             return false;
         }
         line.push(b'\n');

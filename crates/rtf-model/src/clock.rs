@@ -1,9 +1,9 @@
-//! What a clock that tests follow shows: the text of its file.
+//! The file format of a clock that tests follow.
 
 use std::time::Duration;
 
-/// The time in the text of a clock's file, since the clock's own zero. None while
-/// it is being written, and when it is no time.
+/// The time in a clock's file, since the clock's zero. `None` while
+/// it is being written, and if it is no valid time.
 #[must_use]
 pub fn parse_clock(text: &str) -> Option<Duration> {
     let number = text.strip_suffix('\n')?.trim();

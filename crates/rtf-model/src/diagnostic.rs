@@ -1,4 +1,4 @@
-//! A problem with what the user wrote, with the places that show it.
+//! A problem in the user's files, with the places that show it.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,35 +7,35 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Severity {
-    /// Accepted, but worth a look.
+    /// Accepted, but probably a mistake.
     Warning,
-    /// Nothing can run until this is mended.
+    /// Nothing can run until it is fixed.
     Error,
 }
 
-/// One problem, in a form that a terminal, a page and an editor can each show.
+/// One problem, in a form that a terminal, a web page and an editor can show.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Diagnostic {
-    /// A stable word for this kind of problem: `unknown-attribute`.
+    /// A stable identifier of this kind of problem: `unknown-attribute`.
     pub code: String,
     /// How bad it is.
     pub severity: Severity,
-    /// What is wrong, in a lower-case fragment without a full stop.
+    /// The problem, as a lower-case fragment without a full stop.
     pub message: String,
-    /// The places that show it, the most important one first; empty when it is
-    /// about no particular place in a file.
+    /// The places that show it, the most important one first; empty if it
+    /// concerns no particular place.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub labels: Vec<Label>,
-    /// Facts that help to understand it (the paths searched, the loader's text).
+    /// Additional facts (the searched paths, the loader's message).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
-    /// What to do about it.
+    /// How to fix it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hint: Option<String>,
 }
 
-/// A range of a file's text that a [`Diagnostic`] points at.
+/// A range in a file that a [`Diagnostic`] points to.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Label {
@@ -49,7 +49,7 @@ pub struct Label {
     pub start: u64,
     /// The end of the range in bytes, not included.
     pub end: u64,
-    /// What there is to say about this place; may be empty.
+    /// A note about this place; may be empty.
     #[serde(default)]
     pub text: String,
 }
@@ -74,7 +74,7 @@ impl Diagnostic {
         Self { severity: Severity::Warning, ..Self::error(code, message) }
     }
 
-    /// Points at a further place.
+    /// Adds a place.
     #[must_use]
     pub fn label(mut self, label: Label) -> Self {
         self.labels.push(label);
@@ -88,7 +88,7 @@ impl Diagnostic {
         self
     }
 
-    /// Says what to do about it.
+    /// Sets the hint.
     #[must_use]
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
         self.hint = Some(hint.into());

@@ -1,7 +1,7 @@
-//! What happens in a run, as one owned and serialisable value per fact.
+//! The events of a run, as owned and serialisable values.
 //!
-//! The legal order of events is checked by [`crate::OrderChecker`] and written
-//! down in `spec/events.md`.
+//! [`crate::OrderChecker`] checks the order of events; `spec/events.md`
+//! describes it.
 
 mod planned;
 mod process;
@@ -19,7 +19,7 @@ use crate::{
     SuitePrepared, TestId, Usage,
 };
 
-/// One fact about a run.
+/// One event of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Event {
@@ -32,7 +32,7 @@ pub struct Event {
     pub kind: EventKind,
 }
 
-/// What happened. Every start has exactly one finish, also on a crash or Ctrl-C.
+/// The kind of an event. Every start has exactly one finish, also after a crash or Ctrl-C.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "type", rename_all = "kebab-case")]
@@ -47,44 +47,44 @@ pub enum EventKind {
     HookPlanned(HookPlanned),
     /// A test of the suite planned last.
     TestPlanned(TestPlanned),
-    /// Something that the user should look at; it does not change a verdict.
+    /// A warning for the user; it does not change a verdict.
     Warning {
-        /// What was noticed.
+        /// The warning.
         diagnostic: Diagnostic,
     },
-    /// A suite waits for a lock that it requires. It has not begun.
+    /// A suite waits for a lock that it requires. It has not started.
     SuiteWaiting {
         /// The suite.
         suite: SuiteId,
         /// The resource's name.
         lock: String,
-        /// Who has it, in words.
+        /// The holder of the lock, as text.
         held_by: String,
     },
-    /// A suite begins.
+    /// A suite starts.
     SuiteStarted {
         /// The suite.
         suite: SuiteId,
     },
-    /// What a suite got for itself. After its start, before anything of it begins.
+    /// The private network, ports and variables of a suite. Directly after its start.
     SuitePrepared(SuitePrepared),
-    /// A fixture is being set up. Ends with `fixture-stopped`.
+    /// A fixture is being set up. `fixture-stopped` is the matching end.
     FixtureStarting {
         /// The fixture.
         fixture: FixtureId,
         /// From 1; each restart counts up.
         attempt: u32,
     },
-    /// A fixture's set-up succeeded; it is watched from now on.
+    /// A fixture's set-up succeeded; it is supervised from now on.
     FixtureReady {
         /// The fixture.
         fixture: FixtureId,
     },
-    /// A fixture that was ready is not there any more.
+    /// A fixture that was ready has failed.
     FixtureCollapsed {
         /// The fixture.
         fixture: FixtureId,
-        /// Why, in the fixture's or the kernel's words.
+        /// The reason, as the fixture or the kernel reports it.
         reason: String,
         /// The last lines that it printed.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -95,14 +95,14 @@ pub enum EventKind {
         /// The fixture.
         fixture: FixtureId,
     },
-    /// The end of what `fixture-starting` began.
+    /// A fixture was torn down, or its set-up failed. Matches `fixture-starting`.
     FixtureStopped {
         /// The fixture.
         fixture: FixtureId,
-        /// What went wrong in its set-up or tear-down.
+        /// The problem in its set-up or tear-down.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         problem: Option<String>,
-        /// The last lines that it printed, when something went wrong.
+        /// The last lines that it printed, if there was a problem.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         log_tail: Vec<String>,
     },
@@ -113,29 +113,29 @@ pub enum EventKind {
         /// The first cause.
         reason: String,
     },
-    /// A test's process is being started. Ends with `test-finished`.
+    /// A test's process is being started. `test-finished` is the matching end.
     TestStarted {
         /// The test.
         test: TestId,
-        /// From 1 to the number of repetitions that the suite asks for.
+        /// From 1 to the number of repetitions in the suite.
         repetition: u32,
-        /// From 1; a rerun of the same repetition counts up.
+        /// From 1; each retry of the same repetition counts up.
         attempt: u32,
     },
-    /// The running test begins a phase.
+    /// The running test enters a phase.
     TestPhase {
         /// The test.
         test: TestId,
-        /// The phase that begins.
+        /// The new phase.
         phase: Phase,
     },
-    /// A plug-in reports something.
+    /// A plug-in reports a message.
     Message {
-        /// Who reports.
+        /// The reporting test, fixture or hook.
         source: Source,
-        /// What is reported.
+        /// The message.
         message: Message,
-        /// The test with whose result it belongs, when a fixture reports it.
+        /// The test whose result it belongs to, when a fixture reports it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         test: Option<TestId>,
     },
@@ -143,7 +143,7 @@ pub enum EventKind {
     Measured {
         /// The test.
         test: TestId,
-        /// The fixture, when it is one that measured.
+        /// The fixture, when a fixture measured it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         fixture: Option<FixtureId>,
         /// The number, its unit and its limits.
@@ -156,112 +156,112 @@ pub enum EventKind {
         /// Some samples of the signal; more may follow.
         samples: Samples,
     },
-    /// A test keeps a file with its result.
+    /// A test attaches a file to its result.
     Attached {
         /// The test.
         test: TestId,
-        /// The fixture, when it is one that keeps the file.
+        /// The fixture, when a fixture attached the file.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         fixture: Option<FixtureId>,
-        /// The file, in the run's folder.
+        /// The file, in the run's directory.
         attachment: Attachment,
     },
-    /// A process printed something.
+    /// A process printed output.
     Output(Output),
-    /// A test takes longer than its `slow` limit. It goes on.
+    /// A test has exceeded its `slow` limit. It continues.
     TestSlow {
         /// The test.
         test: TestId,
     },
-    /// A test was asked to stop. What follows is its grace, then force.
+    /// A test was asked to stop. After a grace period it is killed.
     TestStopping {
         /// The test.
         test: TestId,
         /// Why.
         cause: StopCause,
-        /// The cause in words.
+        /// The cause, as text.
         reason: String,
     },
-    /// Where a process was when it was about to be stopped by force.
+    /// The stacks of a process that is about to be killed.
     StackDumped {
-        /// Whose process it was.
+        /// The owner of the process.
         source: Source,
         /// The stacks of its threads, as the tool or interpreter prints them.
         text: String,
     },
-    /// What a process and all that it started uses, at the end of a test in a
+    /// The resources of a process and its descendants, at the end of a test in a
     /// suite in which tests are repeated.
     ResourcesMeasured {
-        /// A fixture, whose process it is, or the test that a shared host has
+        /// The fixture that owns the process, or the test that a shared host has
         /// just served.
         source: Source,
-        /// What it uses.
+        /// The resources.
         usage: Usage,
-        /// How many tests the shared host has served, this one included.
+        /// Number of tests that the shared host has served, including this one.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         tests_served: Option<u32>,
     },
-    /// Processes that should have ended and did not; they were killed.
+    /// Processes that outlived their owner, and were killed.
     ProcessesLeaked {
-        /// Who started them.
+        /// Their owner.
         source: Source,
         /// The processes.
         processes: Vec<LeakedProcess>,
     },
-    /// The end of what `test-started` began.
+    /// An attempt of a test was judged. Matches `test-started`.
     TestFinished(TestFinished),
-    /// A test (or what is left of its repetitions) that will not be started.
+    /// A test (or the rest of its repetitions) will not be started.
     TestSkipped {
         /// The test.
         test: TestId,
         /// Why.
         reason: String,
     },
-    /// The last word on a test that is repeated until a time is over: no
+    /// A test that is repeated for a given time has finished: no
     /// repetition follows.
     TestRepeated {
         /// The test.
         test: TestId,
-        /// How often it was repeated.
+        /// Number of repetitions.
         repetitions: u32,
     },
-    /// A hook is being run. Ends with `hook-finished`.
+    /// A hook starts. `hook-finished` is the matching end.
     HookStarted {
         /// The hook.
         hook: HookId,
-        /// What called for it.
+        /// The trigger.
         trigger: Trigger,
-        /// The same in words.
+        /// The reason for the trigger, as text.
         reason: String,
-        /// The test that it is about, if there is one.
+        /// The test that triggered it, if there is one.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         test: Option<TestId>,
     },
-    /// The end of what `hook-started` began.
+    /// A hook has finished. Matches `hook-started`.
     HookFinished {
         /// The hook.
         hook: HookId,
-        /// Why the robot may not be in a safe state; nothing when the hook did its work.
+        /// Why the robot may not be in a safe state; missing when the hook succeeded.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         problem: Option<String>,
     },
-    /// The end of what `suite-started` began.
+    /// A suite has finished. Matches `suite-started`.
     SuiteFinished {
         /// The suite.
         suite: SuiteId,
     },
     /// The last event of a run.
     RunFinished {
-        /// The signal or request that cut the run short, in words.
+        /// The signal or request that interrupted the run.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         interrupted: Option<String>,
     },
-    /// The last event of a run whose runner died: written by the guard, which
-    /// stopped what was left. What was open stays open.
+    /// The last event of a run whose runner died. The guard writes it after it has
+    /// killed leftover processes. Open tests, fixtures and hooks stay open.
     RunnerDied {
-        /// How the runner ended.
+        /// How the runner died.
         reason: String,
-        /// What it had started and was still alive.
+        /// Its processes that were still alive.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         leaked: Vec<LeakedProcess>,
     },

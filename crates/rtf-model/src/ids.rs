@@ -1,4 +1,4 @@
-//! Small typed numbers that name the parts of one run.
+//! Typed numeric ids of the parts of a run.
 
 use serde::{Deserialize, Serialize};
 
@@ -59,7 +59,7 @@ impl Micros {
         std::time::Duration::from_micros(self.0)
     }
 
-    /// The time that passed since `earlier`, zero when `earlier` is later.
+    /// The time since `earlier`, zero if `earlier` is later.
     #[must_use]
     pub fn since(self, earlier: Self) -> std::time::Duration {
         std::time::Duration::from_micros(self.0.saturating_sub(earlier.0))

@@ -1,8 +1,8 @@
 //! The vocabulary that every other part of the Robot Testing Framework shares.
 //!
-//! An [`Event`] is the only thing that travels from a run to whoever wants to
-//! know about it; [`Record::apply`] is the only place that counts events;
-//! [`OrderChecker`] says which sequences of events are legal. The
+//! An [`Event`] is the only message from a run to its reporters;
+//! [`Record::apply`] is the only place that counts events;
+//! [`OrderChecker`] checks that a sequence of events is legal. The
 //! [`protocol`] module holds the messages between the runner and the host
 //! processes that load plug-ins.
 //!
@@ -31,22 +31,23 @@ pub use event::{
     RunStarted, Source, StopCause, Stream, SuitePlanned, TestFinished, TestPlanned, Trigger,
 };
 pub use ids::{FixtureId, HookId, Micros, SuiteId, TestId};
-pub use journal::{Checked, Damage, LineCheck, LineChecker, LineSealer, StreamChecker};
+pub use journal::{Damage, EventCheck, LineCheck, LineChecker, LineSealer, StreamChecker};
 pub use manifest::{Manifest, Revision};
 pub use order::{OrderChecker, OrderError};
 pub use prepared::{SuiteNetwork, SuitePort, SuitePrepared, SuiteVariable};
 pub use record::{
-    AttemptRecord, Counts, FixtureLife, FixtureRecord, FixtureState, HookRecord, HookRun,
-    HostRecord, Record, RunState, Series, SuiteRecord, TestRecord, Totals,
+    AttemptCounts, AttemptRecord, FixtureLife, FixtureRecord, FixtureState, HookRecord,
+    HookRunRecord, HostRecord, Record, RunState, SignalSummary, SuiteRecord, TestRecord,
+    TestTotals,
 };
 pub use report::{
     Attachment, Comparison, Location, Measurement, Message, MessageKind, format_number,
     format_rounded,
 };
-pub use samples::{Curve, Samples};
+pub use samples::{Samples, SignalOutline};
 pub use usage::{Growth, Resource, Usage, UsageSeries};
 pub use verdict::{Outcome, Verdict};
 
-/// The version of the event stream that this crate reads and writes. It grows
+/// The version of the event stream that this crate reads and writes. It increases
 /// when a reader of the old version could misunderstand a new stream.
 pub const EVENTS_VERSION: u32 = 1;

@@ -1,16 +1,16 @@
-//! The grammar of an event stream: which event may follow which.
+//! The grammar of an event stream: which event may follow which one.
 
 mod attempts;
-mod beside;
-mod served;
-mod state;
+mod concurrency;
+mod progress;
+mod shared_hosts;
 
 use crate::{Event, EventKind, FixtureId, HookId, Phase, Source, SuiteId, TestId};
-use beside::Beside;
-use served::Served;
-use state::{Bracket, Fixture, FixtureStage, Stage, Test};
+use concurrency::Concurrency;
+use progress::{FixtureProgress, FixtureStage, StreamStage, SuiteStage, TestProgress};
+use shared_hosts::TestsServed;
 
-/// An event that may not come where it came.
+/// An event at an illegal position.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OrderError {
     /// The event's number.
@@ -27,19 +27,19 @@ impl std::fmt::Display for OrderError {
 
 impl std::error::Error for OrderError {}
 
-/// Checks a stream event by event. [`OrderChecker::finish`] then tells whether
-/// everything that began also ended.
+/// Checks a stream event by event. [`OrderChecker::finish`] then checks that
+/// everything that started has also finished.
 #[derive(Clone, Debug, Default)]
 pub struct OrderChecker {
     next_seq: u64,
     last_at: u64,
-    stage: Stage,
-    suites: Vec<Bracket>,
-    fixtures: Vec<Fixture>,
+    stage: StreamStage,
+    suites: Vec<SuiteStage>,
+    fixtures: Vec<FixtureProgress>,
     hooks: Vec<(SuiteId, bool)>,
-    tests: Vec<Test>,
-    beside: Beside,
-    tests_served: Served,
+    tests: Vec<TestProgress>,
+    concurrency: Concurrency,
+    tests_served: TestsServed,
 }
 
 type Rule = Result<(), String>;
@@ -64,7 +64,7 @@ impl OrderChecker {
     /// # Errors
     /// The stream ends with neither `run-finished` nor `runner-died`.
     pub fn finish(&self) -> Result<(), OrderError> {
-        ensure(self.stage == Stage::After, || {
+        ensure(self.stage == StreamStage::After, || {
             "the stream ends with neither run-finished nor runner-died".into()
         })
         .map_err(|rule| OrderError { seq: self.next_seq, rule })
@@ -76,16 +76,18 @@ impl OrderChecker {
         self.next_seq += 1;
         self.last_at = event.at.0;
         let first = matches!(event.kind, EventKind::RunStarted(_));
-        ensure(first == (self.stage == Stage::Before), || {
+        ensure(first == (self.stage == StreamStage::Before), || {
             "run-started comes first and only once".into()
         })?;
-        ensure(self.stage != Stage::After, || "nothing follows run-finished or runner-died".into())
+        ensure(self.stage != StreamStage::After, || {
+            "nothing follows run-finished or runner-died".into()
+        })
     }
 
     fn check_kind(&mut self, kind: &EventKind) -> Rule {
         match kind {
             EventKind::RunStarted(_) => {
-                self.stage = Stage::Planning;
+                self.stage = StreamStage::Planning;
                 Ok(())
             }
             EventKind::SuitePlanned(plan) => self.plan_suite(plan.suite, plan.parallel),
@@ -124,17 +126,17 @@ impl OrderChecker {
                 self.inside(*source)
             }
             EventKind::ResourcesMeasured { source, tests_served, .. } => {
-                self.used(*source, *tests_served)
+                self.resources_measured(*source, *tests_served)
             }
             EventKind::Output(output) => self.inside(output.source),
             EventKind::TestFinished(finished) => self.finish_test(finished.test, finished.rerun),
             EventKind::TestSkipped { test, .. } => self.skip_test(*test),
             EventKind::TestRepeated { test, repetitions } => self.end_test(*test, *repetitions),
-            EventKind::HookStarted { hook, .. } => self.turn_hook(*hook, true),
-            EventKind::HookFinished { hook, .. } => self.turn_hook(*hook, false),
+            EventKind::HookStarted { hook, .. } => self.toggle_hook(*hook, true),
+            EventKind::HookFinished { hook, .. } => self.toggle_hook(*hook, false),
             EventKind::SuiteFinished { suite } => self.finish_suite(*suite),
             EventKind::RunnerDied { .. } => {
-                self.stage = Stage::After;
+                self.stage = StreamStage::After;
                 Ok(())
             }
             EventKind::RunFinished { .. } => self.finish_run(),
@@ -161,18 +163,18 @@ impl OrderChecker {
     }
 
     fn plan_suite(&mut self, suite: SuiteId, parallel: u32) -> Rule {
-        ensure(self.stage == Stage::Planning, || {
-            "plans come before the first suite starts".into()
+        ensure(self.stage == StreamStage::Planning, || {
+            "plans precede the start of the first suite".into()
         })?;
         ensure(suite.index() == self.suites.len(), || format!("suite {suite} out of order"))?;
-        self.suites.push(Bracket::Planned);
-        self.beside.plan(parallel);
+        self.suites.push(SuiteStage::Planned);
+        self.concurrency.plan(parallel);
         Ok(())
     }
 
-    fn planned_last(&self, suite: SuiteId) -> Rule {
-        ensure(self.stage == Stage::Planning, || {
-            "plans come before the first suite starts".into()
+    fn is_current_suite(&self, suite: SuiteId) -> Rule {
+        ensure(self.stage == StreamStage::Planning, || {
+            "plans precede the start of the first suite".into()
         })?;
         ensure(suite.index() + 1 == self.suites.len(), || {
             format!("suite {suite} is not the one planned last")
@@ -180,59 +182,59 @@ impl OrderChecker {
     }
 
     fn plan_fixture(&mut self, fixture: FixtureId, suite: SuiteId) -> Rule {
-        self.planned_last(suite)?;
+        self.is_current_suite(suite)?;
         ensure(fixture.index() == self.fixtures.len(), || {
             format!("fixture {fixture} out of order")
         })?;
         let stage = FixtureStage::Stopped;
-        self.fixtures.push(Fixture { suite, stage, attempt: 0, broken: false });
+        self.fixtures.push(FixtureProgress { suite, stage, attempt: 0, broken: false });
         Ok(())
     }
 
     fn plan_test(&mut self, test: TestId, suite: SuiteId, repetitions: Option<u32>) -> Rule {
-        self.planned_last(suite)?;
+        self.is_current_suite(suite)?;
         ensure(test.index() == self.tests.len(), || format!("test {test} out of order"))?;
-        self.tests.push(Test::new(suite, repetitions));
+        self.tests.push(TestProgress::new(suite, repetitions));
         Ok(())
     }
 
     fn plan_hook(&mut self, hook: HookId, suite: SuiteId) -> Rule {
-        self.planned_last(suite)?;
+        self.is_current_suite(suite)?;
         ensure(hook.index() == self.hooks.len(), || format!("hook {hook} out of order"))?;
         self.hooks.push((suite, false));
         Ok(())
     }
 
-    fn turn_hook(&mut self, hook: HookId, open: bool) -> Rule {
+    fn toggle_hook(&mut self, hook: HookId, open: bool) -> Rule {
         let known = self.hooks.get(hook.index()).copied();
         let (suite, was_open) = known.ok_or_else(|| format!("hook {hook} was not planned"))?;
         self.suite_open(suite)?;
         ensure(was_open != open, || format!("hook {hook} started or finished twice"))?;
         self.hooks[hook.index()].1 = open;
-        self.beside.hook(suite.index(), open);
+        self.concurrency.hook_running(suite.index(), open);
         Ok(())
     }
 
     fn wait(&self, suite: SuiteId) -> Rule {
-        ensure(self.suites.get(suite.index()) == Some(&Bracket::Planned), || {
+        ensure(self.suites.get(suite.index()) == Some(&SuiteStage::Planned), || {
             format!("suite {suite} waits, but was not planned, or has begun")
         })
     }
 
     fn start_suite(&mut self, suite: SuiteId) -> Rule {
-        self.stage = Stage::Running;
+        self.stage = StreamStage::Running;
         let bracket = self.suites.get_mut(suite.index());
-        ensure(bracket.as_deref() == Some(&Bracket::Planned), || {
+        ensure(bracket.as_deref() == Some(&SuiteStage::Planned), || {
             format!("suite {suite} was not planned, or started twice")
         })?;
         if let Some(bracket) = bracket {
-            *bracket = Bracket::Fresh;
+            *bracket = SuiteStage::Fresh;
         }
         Ok(())
     }
 
     fn prepare(&mut self, suite: SuiteId) -> Rule {
-        ensure(self.suites.get(suite.index()) == Some(&Bracket::Fresh), || {
+        ensure(self.suites.get(suite.index()) == Some(&SuiteStage::Fresh), || {
             format!("suite {suite} is prepared once, before anything else of it")
         })?;
         self.suite_open(suite)
@@ -240,15 +242,15 @@ impl OrderChecker {
 
     fn suite_open(&mut self, suite: SuiteId) -> Rule {
         match self.suites.get_mut(suite.index()) {
-            Some(bracket @ (Bracket::Fresh | Bracket::Open)) => {
-                *bracket = Bracket::Open;
+            Some(bracket @ (SuiteStage::Fresh | SuiteStage::Open)) => {
+                *bracket = SuiteStage::Open;
                 Ok(())
             }
             _ => Err(format!("suite {suite} is not running")),
         }
     }
 
-    fn fixture(&mut self, fixture: FixtureId) -> Result<&mut Fixture, String> {
+    fn fixture(&mut self, fixture: FixtureId) -> Result<&mut FixtureProgress, String> {
         let suite = self.fixtures.get(fixture.index()).map(|f| f.suite);
         let suite = suite.ok_or_else(|| format!("fixture {fixture} was not planned"))?;
         self.suite_open(suite)?;
@@ -285,7 +287,7 @@ impl OrderChecker {
         ensure(open, || format!("test {id} is not running"))
     }
 
-    /// What a fixture tells of a test comes while both run.
+    /// A fixture reports about a test only while both run.
     fn inside_both(&mut self, first: Option<Source>, second: Source) -> Rule {
         first.map_or(Ok(()), |first| self.inside(first))?;
         self.inside(second)
@@ -305,15 +307,15 @@ impl OrderChecker {
         }
     }
 
-    fn used(&mut self, source: Source, tests_served: Option<u32>) -> Rule {
+    fn resources_measured(&mut self, source: Source, tests_served: Option<u32>) -> Rule {
         self.inside(source)?;
         match (source, tests_served) {
             (Source::Fixture(_), None) => Ok(()),
             (Source::Test(test), Some(tests_served)) => {
                 let suite = self.test(test)?.suite;
-                self.tests_served.test(suite, tests_served)
+                self.tests_served.record(suite, tests_served)
             }
-            _ => Err("a shared host, and nothing else, tells how many tests it has served".into()),
+            _ => Err("only a shared host reports how many tests it has served".into()),
         }
     }
 
@@ -330,15 +332,15 @@ impl OrderChecker {
         for (index, (_, open)) in self.hooks.iter().enumerate().filter(|(_, h)| h.0 == suite) {
             ensure(!open, || format!("hook {index} still runs"))?;
         }
-        self.suites[suite.index()] = Bracket::Closed;
+        self.suites[suite.index()] = SuiteStage::Closed;
         Ok(())
     }
 
     fn finish_run(&mut self) -> Rule {
         for (index, bracket) in self.suites.iter().enumerate() {
-            ensure(*bracket == Bracket::Closed, || format!("suite {index} did not finish"))?;
+            ensure(*bracket == SuiteStage::Closed, || format!("suite {index} did not finish"))?;
         }
-        self.stage = Stage::After;
-        self.beside.broken().map_or(Ok(()), |rule| Err(rule.clone()))
+        self.stage = StreamStage::After;
+        self.concurrency.violation().map_or(Ok(()), |rule| Err(rule.clone()))
     }
 }

@@ -1,40 +1,40 @@
-//! What a suite got for itself when it started: a network, ports, ids.
+//! The private resources of a suite: a network, ports, middleware ids.
 
 use serde::{Deserialize, Serialize};
 
 use crate::SuiteId;
 
-/// What a suite got for itself.
+/// The private resources of a suite.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SuitePrepared {
     /// The suite.
     pub suite: SuiteId,
-    /// Its own network namespace.
+    /// Its private network namespace.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub network: Option<SuiteNetwork>,
-    /// Its own ports, in the order of their names.
+    /// Its private ports, sorted by name.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ports: Vec<SuitePort>,
-    /// Environment variables that name its own middleware.
+    /// Environment variables that select its private middleware.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub variables: Vec<SuiteVariable>,
-    /// A command for a shell, with which a person joins in while the suite runs.
+    /// A shell command with which a user joins the suite while it runs.
     pub join_command: String,
 }
 
-/// A network namespace with nothing but a loopback interface.
+/// A network namespace that has only a loopback interface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SuiteNetwork {
-    /// A process in it that lives as long as the suite: `/proc/<pid>/ns/net`.
+    /// A process in it that runs as long as the suite: `/proc/<pid>/ns/net`.
     pub pid: i32,
-    /// Whether it came with a user namespace, because the runner is not root.
+    /// Whether it is part of a user namespace, because the runner is not root.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub user_namespace: bool,
 }
 
-/// A TCP port that no other suite has.
+/// A TCP port that no other suite uses.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SuitePort {
@@ -60,7 +60,7 @@ pub struct SuiteVariable {
     pub name: String,
     /// Its value.
     pub value: String,
-    /// Whether it is the user's: it was set before, and was kept.
+    /// Whether the runner inherited it from the user's environment.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub inherited: bool,
 }

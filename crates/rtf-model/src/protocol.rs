@@ -1,8 +1,8 @@
 //! The messages between the runner and a host process.
 //!
 //! JSON-RPC 2.0, one message a line, over the channel that the host inherits.
-//! `spec/protocol.md` is the text for people; these types are the same in code.
-//! Unknown fields are ignored on both sides, unknown methods are refused.
+//! `spec/protocol.md` documents it; these types are the same in code.
+//! Both sides ignore unknown fields and refuse unknown methods.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -14,23 +14,23 @@ use crate::{Attachment, Measurement, Message, Outcome, Phase, Samples, TestId, V
 /// The protocol version of this crate. Runner and host must agree on it.
 pub const PROTOCOL_VERSION: u32 = 1;
 
-/// The environment variable that tells a host where its channel is: `fd:N` on Unix.
+/// The environment variable that names a host's channel: `fd:N` on Unix.
 pub const CHANNEL_VARIABLE: &str = "RTF_CHANNEL";
 
 /// The environment variable that marks every process of a test or fixture.
 pub const SCOPE_VARIABLE: &str = "RTF_SCOPE";
 
-/// The environment variable that says for people whose process it is: `test arm/EncoderTest`.
+/// The environment variable that names a process's owner for display: `test arm/EncoderTest`.
 pub const OWNER_VARIABLE: &str = "RTF_OWNER";
 
 /// The environment variable that holds the suite's environment string.
 pub const ENVIRONMENT_VARIABLE: &str = "RTF_ENVIRONMENT";
 
-/// The environment variable that names the run's folder, in which the journal is.
+/// The environment variable that names the run's directory, which contains the journal.
 pub const RUN_DIR_VARIABLE: &str = "RTF_RUN_DIR";
 
 /// The environment variable that names the file with the simulated time, for tests,
-/// which follow it. Empty or not set: they follow the wall clock.
+/// which follow it. If it is empty or not set, they follow the wall clock.
 pub const CLOCK_VARIABLE: &str = "RTF_CLOCK";
 
 /// The environment variable that names the same file for fixtures, one of which may
@@ -50,29 +50,29 @@ pub const INVALID_PARAMS: i32 = -32602;
 /// JSON-RPC error code: runner and host speak different protocol versions.
 pub const VERSION_MISMATCH: i32 = -32001;
 
-/// What the runner asks of a forking host: one more process. Three descriptors
+/// The runner's request to a fork server: one more process. Three descriptors
 /// come with it: the channel, the standard output, the standard error.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ForkRequest {
-    /// The working folder.
+    /// The working directory.
     pub working_dir: PathBuf,
-    /// Environment variables that only this process has.
+    /// Environment variables of this process only.
     pub env: BTreeMap<String, String>,
 }
 
-/// What a forking host answers.
+/// The answer of a fork server.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum ForkReply {
     /// The id of the new process.
     Pid(i32),
-    /// Why there is none.
+    /// Why there is no new process.
     Error(String),
 }
 
-/// What the runner asks of a host. All but `interrupt` and `dump-stack` are answered.
+/// A request of the runner. The host answers all but `interrupt` and `dump-stack`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "method", content = "params", rename_all = "kebab-case")]
@@ -83,24 +83,24 @@ pub enum Request {
     RunTest(Plugin),
     /// Load a fixture and set it up. Answered with [`Answer`].
     SetUpFixture(Plugin),
-    /// Ask the fixture whether it is still well. Answered with [`Answer`].
+    /// Check that the fixture is still healthy. Answered with [`Answer`].
     CheckFixture {},
-    /// Tell the fixture that an attempt of a test is about to begin. Only for one that
-    /// asked for it in [`Answer::subscriptions`]. Answered with [`Answer`].
-    TestStarted(TestStarts),
-    /// Tell the fixture how an attempt of a test was judged, in the same way.
-    TestFinished(TestEnds),
+    /// Notify the fixture that an attempt of a test is about to start, if it has
+    /// subscribed with [`Answer::subscriptions`]. Answered with [`Answer`].
+    TestStarted(TestStartedParams),
+    /// Notify the fixture of the verdict of an attempt, in the same way.
+    TestFinished(TestFinishedParams),
     /// Tear the fixture down. Answered with [`Answer`].
     TearDownFixture {},
-    /// A notification: stop soon, and say so in the answer.
+    /// A notification: stop soon, and report that in the answer.
     Interrupt {
-        /// Why, in words.
+        /// Why, as text.
         reason: String,
-        /// Which request is to stop; nothing happens when it is another one's turn.
+        /// The request to stop; the host ignores it if another one is running.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         request: Option<u64>,
     },
-    /// A notification: send [`Notification::Stack`] if that can be done.
+    /// A notification: send [`Notification::Stack`] if possible.
     DumpStack {},
 }
 
@@ -120,7 +120,7 @@ pub struct Initialize {
     pub protocol: u32,
     /// The runner's version, for messages.
     pub rtf: String,
-    /// Where a host that answers a signal with a stack dump writes it.
+    /// The file for stack dumps that the host writes on a signal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stack_file: Option<String>,
 }
@@ -133,40 +133,40 @@ pub struct Initialized {
     pub protocol: u32,
     /// The host's name and version, for messages: `python 3.11.7`.
     pub host: String,
-    /// How the runner gets a stack dump from a host that hangs.
+    /// How the runner gets a stack dump of a host that hangs.
     #[serde(default)]
     pub stack: StackSupport,
-    /// Whether it knows [`Plugin::end_marker`].
+    /// Whether it supports [`Plugin::end_marker`].
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub supports_shared: bool,
 }
 
-/// How the runner gets a stack dump from a host that hangs.
+/// How the runner gets a stack dump of a host that hangs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum StackSupport {
-    /// Not from the host: a debugger is attached, where there is one.
+    /// Not from the host: the runner attaches a debugger, if there is one.
     #[default]
     None,
     /// The host answers [`Request::DumpStack`] with [`Notification::Stack`].
     Message,
-    /// The host writes to [`Initialize::stack_file`] when it gets `SIGUSR2`.
+    /// The host writes to [`Initialize::stack_file`] when it receives `SIGUSR2`.
     Signal,
 }
 
-/// The plug-in that a request is about.
+/// The plug-in of a request.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Plugin {
     /// The plug-in's file, absolute.
     pub file: String,
-    /// The name under which the suite knows it.
+    /// Its name in the suite.
     pub name: String,
-    /// The parameter string as the suite has it.
+    /// The parameter string as written in the suite.
     #[serde(default)]
     pub param: String,
-    /// The parameter string, split into arguments; without a program's name.
+    /// The parameter string, split into arguments; without a program name.
     #[serde(default)]
     pub args: Vec<String>,
     /// The suite's environment string.
@@ -175,30 +175,30 @@ pub struct Plugin {
     /// The repetition, from 1.
     #[serde(default)]
     pub repetition: u32,
-    /// Whether this is the host's only request: it ends after the answer.
+    /// Whether this is the host's last request: it exits after the answer.
     #[serde(default)]
     pub is_last: bool,
-    /// For a test whose host may serve further tests: what the host then writes
-    /// to both outputs at the end of this one.
+    /// For a test whose host may serve further tests: the line that the host writes
+    /// to both output streams at the end of this test.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub end_marker: Option<String>,
-    /// A test's folder for what it attaches. The host makes it when it is needed.
+    /// The directory for a test's attachments. The host creates it when it is needed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attachments_dir: Option<String>,
 }
 
-/// What a fixture may be told of each test.
+/// The events of tests that a fixture can subscribe to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Subscription {
-    /// An attempt is about to begin: [`Request::TestStarted`].
+    /// An attempt is about to start: [`Request::TestStarted`].
     TestStarted,
     /// An attempt was judged: [`Request::TestFinished`].
     TestFinished,
 }
 
-/// The attempt of a test that a fixture is told of.
+/// The attempt of a test that a fixture is notified of.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TestAttempt {
@@ -212,49 +212,49 @@ pub struct TestAttempt {
     pub attempt: u32,
 }
 
-/// An attempt of a test is about to begin.
+/// An attempt of a test is about to start.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct TestStarts {
-    /// Which one.
+pub struct TestStartedParams {
+    /// The attempt.
     pub test: TestAttempt,
 }
 
 /// An attempt of a test was judged.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct TestEnds {
-    /// Which one.
+pub struct TestFinishedParams {
+    /// The attempt.
     pub test: TestAttempt,
-    /// The judgement.
+    /// The verdict.
     pub verdict: Verdict,
     /// Why it did not pass.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// The folder for what the fixture attaches. The host makes it when it is needed.
+    /// The directory for the fixture's attachments. The host creates it when it is needed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attachments_dir: Option<String>,
 }
 
-/// The answer to a request that carries out something.
+/// The answer to a request that loads or runs a plug-in.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Answer {
-    /// How it went. For a test, what its first failure or error was.
+    /// The outcome. For a test, its first failure or error decides.
     pub outcome: Outcome,
     /// Why it did not pass.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// After a fixture's set-up: what it wants to be told of each test.
+    /// After a fixture's set-up: the events of tests that it subscribes to.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub subscriptions: Vec<Subscription>,
-    /// The host has written [`Plugin::end_marker`] and takes the next test. Else it
-    /// ends.
+    /// The host has written [`Plugin::end_marker`] and accepts the next test. Otherwise it
+    /// exits.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub continues: bool,
 }
 
-/// What a host tells without being asked.
+/// A notification from a host.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "method", content = "params", rename_all = "kebab-case")]
@@ -262,34 +262,34 @@ pub enum Notification {
     /// A test enters `setup`, `run` or `tear-down`; in a host that several tests
     /// share also `load`.
     Phase {
-        /// The phase that begins.
+        /// The new phase.
         phase: Phase,
     },
-    /// The plug-in reports something.
+    /// The plug-in reports a message.
     Message(Message),
-    /// A test measured a number, or a fixture did for the test of which it is told.
+    /// A test measured a number, or a fixture did for the test that it was notified of.
     Measured(Measurement),
-    /// Some samples of a signal, by a test.
+    /// Samples of a signal, by a test.
     Sampled(Samples),
-    /// A test keeps a file, or a fixture does for the test of which it is told.
+    /// A test attaches a file, or a fixture does for the test that it was notified of.
     Attached(Attachment),
-    /// A fixture is not well any more. May come at any time.
+    /// A fixture has failed. May arrive at any time.
     Collapsed {
-        /// Why, in words.
+        /// Why, as text.
         reason: String,
     },
     /// The stacks of the host's threads.
     Stack {
-        /// As the interpreter prints them.
+        /// The text, as the interpreter prints it.
         text: String,
     },
 }
 
-/// A message as it stands on a line. `id` with `method` is a request, `method`
+/// A JSON-RPC message, one per line. `id` with `method` is a request, `method`
 /// alone a notification, `id` alone an answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Line<T> {
+pub struct RpcMessage<T> {
     /// Always `2.0`.
     pub jsonrpc: String,
     /// The request's number.
@@ -300,8 +300,8 @@ pub struct Line<T> {
     pub body: T,
 }
 
-impl<T> Line<T> {
-    /// A line with or without a number.
+impl<T> RpcMessage<T> {
+    /// A message with or without a number.
     #[must_use]
     pub fn new(id: Option<u64>, body: T) -> Self {
         Self { jsonrpc: "2.0".to_owned(), id, body }
@@ -315,7 +315,7 @@ impl<T> Line<T> {
 pub enum Reply<T> {
     /// The request was carried out.
     Result(T),
-    /// The request could not be understood.
+    /// The request was refused.
     Error(RpcError),
 }
 
@@ -325,6 +325,6 @@ pub enum Reply<T> {
 pub struct RpcError {
     /// One of the codes of this module, or another of JSON-RPC 2.0.
     pub code: i32,
-    /// What is wrong.
+    /// The error message.
     pub message: String,
 }

@@ -1,8 +1,8 @@
-//! What a plug-in reports while it runs.
+//! Reports of a plug-in: messages, measurements, attachments.
 
 use serde::{Deserialize, Serialize};
 
-/// A place in a plug-in's source.
+/// A location in a plug-in's source.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Location {
@@ -23,7 +23,7 @@ impl std::fmt::Display for Location {
     }
 }
 
-/// What a [`Message`] means for the verdict.
+/// The effect of a [`Message`] on the verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -34,7 +34,7 @@ pub enum MessageKind {
     Check,
     /// A check or an assertion did not hold: the robot is wrong.
     Failure,
-    /// The plug-in could not do its work: the bench is wrong.
+    /// The plug-in could not run its checks: the bench is wrong.
     Error,
 }
 
@@ -42,17 +42,17 @@ pub enum MessageKind {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Message {
-    /// What it means for the verdict.
+    /// Its effect on the verdict.
     pub kind: MessageKind,
-    /// The text, possibly of several lines.
+    /// The text; may have several lines.
     pub text: String,
-    /// Where in the plug-in it was written.
+    /// Where in the plug-in it was reported.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub location: Option<Location>,
     /// The numbers behind a near-equality check.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
-    /// Whether going on would be unsafe: the rest of the suite is skipped.
+    /// Whether it is unsafe to continue: the rest of the suite is skipped.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub critical: bool,
 }
@@ -62,29 +62,29 @@ pub struct Message {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Comparison {
-    /// What was expected.
+    /// The expected numbers.
     pub expected: Vec<Option<f64>>,
-    /// What was found.
+    /// The actual numbers.
     pub got: Vec<Option<f64>>,
-    /// The largest absolute difference that is accepted.
+    /// The largest accepted absolute difference.
     pub tolerance: f64,
     /// The index with the largest difference, from 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub worst: Option<u64>,
 }
 
-/// Whether a value is a finite number that keeps those limits that there are.
+/// Whether a value is a finite number within its limits, as far as it has any.
 pub(crate) fn is_within(value: Option<f64>, low: Option<f64>, high: Option<f64>) -> bool {
     value.is_some_and(|value| {
         low.is_none_or(|low| value >= low) && high.is_none_or(|high| value <= high)
     })
 }
 
-/// A number that a test measured, with the limits that it must keep.
+/// A number that a test measured, with its limits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Measurement {
-    /// What was measured.
+    /// Its name.
     pub name: String,
     /// The value; `null` when it is not a finite number, which no limit accepts.
     pub value: Option<f64>,
@@ -110,7 +110,7 @@ impl Measurement {
         is_within(self.value, self.low, self.high)
     }
 
-    /// What is wrong with the value, in words; nothing within the limits.
+    /// Describes a violation of the limits; `None` within the limits.
     #[must_use]
     pub fn problem(&self) -> Option<String> {
         if self.is_within_limits() {
@@ -129,10 +129,10 @@ impl Measurement {
         self.limits_by(format_number)
     }
 
-    /// The value with its unit, and the limits, both as people read them: rounded,
+    /// The value with its unit, and the limits, for display: rounded,
     /// unless the value is outside its limits.
     #[must_use]
-    pub fn for_people(&self) -> (String, String) {
+    pub fn for_display(&self) -> (String, String) {
         match self.value.filter(|_| self.is_within_limits()) {
             Some(value) => (self.with_unit(format_rounded(value)), self.limits_by(format_rounded)),
             None => (self.value_with_unit(), self.limits()),
@@ -162,7 +162,7 @@ impl Measurement {
     }
 }
 
-/// A number as people read it: very large and very small ones with an exponent.
+/// A number for display: very large and very small ones have an exponent.
 #[must_use]
 pub fn format_number(number: f64) -> String {
     match number.abs() {
@@ -171,22 +171,22 @@ pub fn format_number(number: f64) -> String {
     }
 }
 
-/// The same with six significant digits, which hide what binary fractions add
-/// to a decimal one. Not for a number that is compared with a limit it misses.
+/// The same with six significant digits, which hide the rounding errors of
+/// binary fractions. Not for a number next to a limit that it violates.
 #[must_use]
 pub fn format_rounded(number: f64) -> String {
     format_number(format!("{number:.5e}").parse().unwrap_or(number))
 }
 
-/// A file that a test keeps with its result.
+/// A file that a test attaches to its result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Attachment {
-    /// The name under which reports show it.
+    /// Its name in reports.
     pub name: String,
-    /// Where it is: from a host, any path; in an event, relative to the run's folder.
+    /// Its path: from a host, any path; in an event, relative to the run's directory.
     pub path: String,
-    /// Its media type (`image/png`), empty when unknown.
+    /// Its media type (`image/png`), empty if unknown.
     #[serde(default)]
     pub media_type: String,
 }

@@ -1,12 +1,12 @@
-//! A signal over time: what a test sampled, and the curve that is drawn of it.
+//! A signal over time: its samples, and its outline for plots.
 
 use serde::{Deserialize, Serialize};
 
 use crate::report::is_within;
 use crate::{Location, Measurement, format_rounded};
 
-/// Some samples of one signal, in the order in which they were taken, with the
-/// limits that each of them must keep. A host sends a signal in such batches.
+/// A batch of samples of one signal, in the order in which they were taken, with the
+/// limits that each of them must keep. A host sends a signal in batches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Samples {
@@ -30,12 +30,12 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// The times and values that do not keep the limits.
+    /// The times and values of the samples that violate the limits.
     pub fn outside(&self) -> impl Iterator<Item = (f64, Option<f64>)> + '_ {
         self.points.iter().copied().filter(|(_, value)| !is_within(*value, self.low, self.high))
     }
 
-    /// What is wrong with the first sample outside the limits, in words.
+    /// Describes the first violation of the limits.
     #[must_use]
     pub fn problem(&self) -> Option<String> {
         let (at, value) = self.outside().next()?;
@@ -47,7 +47,7 @@ impl Samples {
         })
     }
 
-    /// A value of the signal as if it had been measured alone.
+    /// One value of the signal as a measurement.
     #[must_use]
     pub fn single(&self, value: Option<f64>) -> Measurement {
         Measurement {
@@ -61,13 +61,13 @@ impl Samples {
     }
 }
 
-/// The outline of a signal of any length in bounded memory: of each stretch of
-/// samples the lowest and the highest, so that no peak is lost. Stretches are
-/// as long as each other; when there are too many, pairs of them become one.
+/// The outline of a signal of any length in bounded memory. Of each stretch of
+/// samples, it keeps the lowest and the highest, so that no peak is lost. All stretches
+/// have the same length; when there are too many, pairs of them are merged.
 #[derive(Clone, Debug)]
-pub struct Curve {
+pub struct SignalOutline {
     stretches: Vec<Stretch>,
-    /// How many samples a stretch holds, and how many are in the last one.
+    /// Number of samples in a full stretch, and in the last one.
     length: u64,
     filled: u64,
 }
@@ -79,17 +79,17 @@ struct Stretch {
     high: (f64, f64),
 }
 
-impl Default for Curve {
+impl Default for SignalOutline {
     fn default() -> Self {
         Self { stretches: Vec::new(), length: 1, filled: 0 }
     }
 }
 
-impl Curve {
-    /// No more stretches are kept, and at most twice as many points.
+impl SignalOutline {
+    /// The maximum number of stretches; there are at most twice as many points.
     pub const STRETCHES: usize = 512;
 
-    /// Takes in some more samples; those that are not finite are left out.
+    /// Adds a batch of samples; values that are not finite are left out.
     pub fn extend(&mut self, samples: &Samples) {
         for (at, value) in &samples.points {
             if let Some(value) = value {
@@ -104,7 +104,7 @@ impl Curve {
         }
         match self.stretches.last_mut() {
             Some(last) if self.filled < self.length => {
-                last.take(Stretch { low: point, high: point });
+                last.merge(Stretch { low: point, high: point });
                 self.filled += 1;
             }
             _ => {
@@ -118,7 +118,7 @@ impl Curve {
         let pairs = self.stretches.chunks(2).filter_map(|pair| {
             let (first, rest) = pair.split_first()?;
             let mut whole = *first;
-            rest.iter().for_each(|other| whole.take(*other));
+            rest.iter().for_each(|other| whole.merge(*other));
             Some(whole)
         });
         self.stretches = pairs.collect();
@@ -126,7 +126,7 @@ impl Curve {
         self.filled = self.length;
     }
 
-    /// Times and values to be joined by lines, in the order of the samples.
+    /// The points of the outline: times and values, in the order of the samples.
     #[must_use]
     pub fn points(&self) -> Vec<(f64, f64)> {
         let mut points = Vec::with_capacity(2 * self.stretches.len());
@@ -142,7 +142,7 @@ impl Curve {
 }
 
 impl Stretch {
-    fn take(&mut self, other: Self) {
+    fn merge(&mut self, other: Self) {
         if other.low.1 < self.low.1 {
             self.low = other.low;
         }

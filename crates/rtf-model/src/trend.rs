@@ -1,26 +1,26 @@
 //! Whether a series of numbers rises: the test of Mann (1945) and Kendall
 //! (1975), and the slope of Theil (1950) and Sen (1968), the median of the
-//! slopes between all pairs. Neither supposes anything of the numbers'
-//! distribution, and single numbers that are far out change little. They are
-//! what software ageing is looked for with (Garg, van Moorsel, Vaidyanathan and
+//! slopes between all pairs. Neither assumes anything about the numbers'
+//! distribution, and single outliers change little. Both are used to detect
+//! software ageing (Garg, van Moorsel, Vaidyanathan and
 //! Trivedi, "A methodology for detection and estimation of software aging",
 //! ISSRE 1998).
 
-/// One of a thousand series without a trend seems to rise.
-const SURE: f64 = 3.09;
-/// One of twenty.
+/// False positives: one of a thousand series without a trend.
+const SIGNIFICANT: f64 = 3.09;
+/// False positives: one of twenty.
 const LIKELY: f64 = 1.645;
 
-/// By how much a series rises from one number to the next, if it surely rises,
-/// and its later half does, too: what has come to an end is no trend.
+/// The slope of a series, per step, if it rises significantly and its later half probably
+/// rises, too: growth that has stopped is no trend.
 pub(crate) fn rising(values: &[f64]) -> Option<f64> {
     let later = &values[values.len() / 2..];
-    let rises = score(values) > SURE && score(later) > LIKELY;
+    let rises = score(values) > SIGNIFICANT && score(later) > LIKELY;
     rises.then(|| slope(values)).flatten().filter(|slope| *slope > 0.0)
 }
 
-/// How far, in standard deviations, the number of pairs that rise exceeds that of those
-/// that fall, above what it is without a trend.
+/// The Mann–Kendall score: rising pairs minus falling pairs, in standard deviations of
+/// a series without a trend.
 fn score(values: &[f64]) -> f64 {
     let mut rises = 0_i64;
     for (place, earlier) in values.iter().enumerate() {
@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_score_is_that_of_the_books() {
+    fn the_score_matches_published_values() {
         // All pairs of ten rise: S = 45, Var(S) = 10·9·25/18 = 125.
         let rising: Vec<f64> = (0..10).map(f64::from).collect();
         assert!((score(&rising) - 44.0 / 125.0_f64.sqrt()).abs() < 1e-12);
@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn the_slope_does_not_mind_one_that_is_far_out() {
+    fn an_outlier_does_not_change_the_slope() {
         let mut values: Vec<f64> = (0..21).map(|place| f64::from(place) * 2.0).collect();
         values[20] = 1e9;
         assert!(slope(&values).is_some_and(|slope| (slope - 2.0).abs() < 1e-9));
@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn what_falls_or_stays_does_not_rise() {
+    fn constant_and_falling_series_do_not_rise() {
         assert_eq!(rising(&(0..30).map(|place| -f64::from(place)).collect::<Vec<_>>()), None);
         assert_eq!(rising(&[5.0; 30]), None);
         assert_eq!(rising(&[]), None);

@@ -1,23 +1,23 @@
-//! What processes use, and whether that grows.
+//! The resources that processes use, and whether their use grows.
 
 use serde::{Deserialize, Serialize};
 
 use crate::trend;
 
-/// What a process and everything below it uses at a moment.
+/// The resources that a process and its descendants use at one moment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Usage {
-    /// How many processes there are.
+    /// Number of processes.
     pub processes: u64,
-    /// How many bytes of memory of their own they have: anonymous and shared
-    /// memory that is present, or swapped out. Files that are mapped do not count.
+    /// Private memory in bytes: anonymous and shared
+    /// memory that is resident or swapped out. Mapped files do not count.
     pub memory: u64,
-    /// How many file descriptors they have open.
+    /// Number of open file descriptors.
     pub descriptors: u64,
 }
 
-/// A kind of thing that can be used up.
+/// A kind of resource that can be exhausted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Resource {
     /// [`Usage::memory`]
@@ -42,7 +42,7 @@ impl Resource {
         }
     }
 
-    fn of(self, usage: &Usage) -> u64 {
+    fn used(self, usage: &Usage) -> u64 {
         match self {
             Self::Memory => usage.memory,
             Self::Descriptors => usage.descriptors,
@@ -50,9 +50,9 @@ impl Resource {
         }
     }
 
-    /// What it must have grown by altogether to be worth a word: allocators and
+    /// The smallest total growth that is reported: allocators and
     /// the kernel's counters are not exact.
-    fn least(self) -> f64 {
+    fn reported_growth(self) -> f64 {
         match self {
             Self::Memory => 1024.0 * 1024.0,
             Self::Descriptors | Self::Processes => 2.0,
@@ -60,41 +60,41 @@ impl Resource {
     }
 }
 
-/// Something is used more and more.
+/// A resource whose use keeps growing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Growth {
-    /// What.
+    /// The resource.
     pub resource: Resource,
-    /// By how much from one test to the next: the median of the slopes.
+    /// Growth per test: the median of the slopes.
     pub each: f64,
-    /// How much was used when the growth began to be looked at.
+    /// Use at the first sample of the trend.
     pub from: u64,
-    /// How much was used at last.
+    /// Use at the last sample.
     pub to: u64,
-    /// How many tests lie between the two.
+    /// Number of tests between the two.
     pub tests: u64,
 }
 
-/// What was used at the ends of tests, one after the other. Of many, some are
-/// kept, at equal distances.
+/// Resource use at the end of each test. Of a long series, evenly
+/// spaced samples are kept.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct UsageSeries {
     kept: Vec<Usage>,
-    /// One of so many is kept, as a power of two.
+    /// One of 2^`thinned` samples is kept.
     thinned: u32,
     seen: u64,
 }
 
 impl UsageSeries {
-    /// How many are kept at the most.
-    const MOST: usize = 512;
-    /// How many there must be to speak of growth.
-    const LEAST: usize = 10;
+    /// At most so many samples are kept.
+    const MAX_SAMPLES: usize = 512;
+    /// Growth is reported only of at least so many samples.
+    const MIN_SAMPLES: usize = 10;
 
     pub(crate) fn add(&mut self, usage: Usage) {
         let distance = self.distance();
         if self.seen.is_multiple_of(distance) {
-            if self.kept.len() == Self::MOST {
+            if self.kept.len() == Self::MAX_SAMPLES {
                 let mut place = 0_u32;
                 self.kept.retain(|_| {
                     place += 1;
@@ -109,27 +109,27 @@ impl UsageSeries {
         self.seen += 1;
     }
 
-    /// How many tests lie between two that are kept.
+    /// Number of tests between two samples.
     fn distance(&self) -> u64 {
         1 << self.thinned
     }
 
-    /// How often it was measured.
+    /// Number of measurements.
     #[must_use]
     pub fn seen(&self) -> u64 {
         self.seen
     }
 
-    /// What was used at last.
+    /// The last sample.
     #[must_use]
     pub fn last(&self) -> Option<Usage> {
         self.kept.last().copied()
     }
 
-    /// What grows, after the first fifth, in which caches fill.
+    /// The resources that grow. The first fifth is ignored: caches fill there.
     #[must_use]
     pub fn growth(&self) -> Vec<Growth> {
-        if self.kept.len() < Self::LEAST {
+        if self.kept.len() < Self::MIN_SAMPLES {
             return Vec::new();
         }
         let warm = &self.kept[self.kept.len() / 5..];
@@ -138,16 +138,16 @@ impl UsageSeries {
     }
 
     fn growth_of(&self, resource: Resource, warm: &[Usage]) -> Option<Growth> {
-        let values: Vec<f64> = warm.iter().map(|usage| resource.of(usage) as f64).collect();
+        let values: Vec<f64> = warm.iter().map(|usage| resource.used(usage) as f64).collect();
         let (first, last) = (warm.first()?, warm.last()?);
         let slope = trend::rising(&values)?;
         let steps = values.len() - 1;
-        let enough = slope * steps as f64 >= resource.least();
+        let enough = slope * steps as f64 >= resource.reported_growth();
         enough.then(|| Growth {
             resource,
             each: slope / self.distance() as f64,
-            from: resource.of(first),
-            to: resource.of(last),
+            from: resource.used(first),
+            to: resource.used(last),
             tests: steps as u64 * self.distance(),
         })
     }
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_test_leaks_is_found_with_its_size() {
+    fn a_leak_is_found_with_its_size() {
         let noise = [0, 40_000, 12_000, 28_000, 4_000];
         let leaking = series((0..50).map(|test| 8 * MIB + test * MIB + noise[test as usize % 5]));
         let [growth] = leaking.growth()[..] else { panic!("{:?}", leaking.growth()) };
@@ -188,9 +188,12 @@ mod tests {
     }
 
     #[test]
-    fn of_a_long_run_a_part_is_kept_at_equal_distances() {
+    fn evenly_spaced_samples_of_a_long_run_are_kept() {
         let long = series((0..100_000).map(|test| 8 * MIB + test * 1000));
-        assert!(long.kept.len() <= UsageSeries::MOST && long.kept.len() >= UsageSeries::MOST / 2);
+        assert!(
+            long.kept.len() <= UsageSeries::MAX_SAMPLES
+                && long.kept.len() >= UsageSeries::MAX_SAMPLES / 2
+        );
         assert_eq!(long.seen(), 100_000);
         let [growth] = long.growth()[..] else { panic!("{:?}", long.growth()) };
         assert!((growth.each - 1000.0).abs() < 1e-6, "{growth:?}");

@@ -1,16 +1,16 @@
-//! What can be said of a test when it is over.
+//! Verdicts of tests, and the outcomes that hosts report.
 
 use serde::{Deserialize, Serialize};
 
-/// The judgement of the runner over one attempt of a test.
+/// The runner's judgement of one attempt of a test.
 ///
-/// A failure says that the robot is wrong, an error that the bench is wrong;
+/// A failure means that the robot is wrong, an error that the bench is wrong;
 /// the two are never mixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// The host said at the end of its protocol that everything held.
+    /// The host reported success at the end of its protocol.
     Passed,
     /// The robot is wrong: a check, an assertion or a measurement's limit did not hold.
     Failed,
@@ -56,7 +56,7 @@ impl Verdict {
         }
     }
 
-    /// Whether a run in which this is a test's last word can be green.
+    /// Whether a run with this final verdict can be green.
     #[must_use]
     pub fn is_green(self) -> bool {
         self == Self::Passed
@@ -69,16 +69,16 @@ impl std::fmt::Display for Verdict {
     }
 }
 
-/// What a host says of a request that it carried out.
+/// A host's report on a request that it has carried out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Outcome {
-    /// Everything held.
+    /// Every check held.
     Passed,
     /// A check, an assertion or a measurement's limit did not hold.
     Failed,
-    /// The plug-in could not do its work.
+    /// The bench is wrong: the plug-in could not run its checks.
     Error,
     /// The plug-in stopped early because it was asked to.
     Interrupted,

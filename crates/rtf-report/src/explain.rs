@@ -2,7 +2,8 @@
 //! tell it alike; each paints and indents the lines as it likes.
 
 use rtf_model::{
-    AttemptRecord, Comparison, HookRun, LeakedProcess, Measurement, Message, MessageKind, Series,
+    AttemptRecord, Comparison, HookRunRecord, LeakedProcess, Measurement, Message, MessageKind,
+    SignalSummary,
 };
 
 use crate::{escape, words};
@@ -58,7 +59,7 @@ pub(crate) fn explain(attempt: &AttemptRecord, extent: Extent, sink: Sink<'_>) {
 
 /// Tells why a run of a hook did not do its work: problem, failures, stacks,
 /// processes left behind. What it printed is not told.
-pub(crate) fn hook(run: &HookRun, extent: Extent, sink: Sink<'_>) {
+pub(crate) fn hook(run: &HookRunRecord, extent: Extent, sink: Sink<'_>) {
     let is_told = |problem: &&str| run.messages.iter().any(|message| message.text == *problem);
     if let Some(problem) = run.problem().filter(|problem| !is_told(problem)) {
         block(Tone::Bad, problem, "", sink);
@@ -111,7 +112,7 @@ fn vectors(comparison: &Comparison, sink: Sink<'_>) {
 /// `measured rate = 98.2 Hz, outside ≥ 100 at rate.py:12`.
 pub(crate) fn measurement(measurement: &Measurement) -> String {
     let name = escape::line(&measurement.name);
-    let (value, limits) = measurement.for_people();
+    let (value, limits) = measurement.for_display();
     let mut text = format!("measured {name} = {}", escape::line(&value));
     match (limits.is_empty(), measurement.is_within_limits()) {
         (false, true) => text += &format!(", within {limits}"),
@@ -126,9 +127,9 @@ pub(crate) fn measurement(measurement: &Measurement) -> String {
 
 /// `sampled elbow: 500 samples in 4.99 s, 0.1 … 0.6 rad, mean 0.31 rad at arm.py:12`,
 /// and before the place what was wrong first, and how often.
-pub(crate) fn series(series: &Series) -> String {
+pub(crate) fn series(series: &SignalSummary) -> String {
     let name = escape::line(&series.name);
-    let mut text = format!("sampled {name}: {}", escape::line(&series.in_numbers()));
+    let mut text = format!("sampled {name}: {}", escape::line(&series.summary()));
     if let Some(problem) = &series.problem {
         text += &format!("; {} outside: {}", series.outside, escape::line(problem));
     }

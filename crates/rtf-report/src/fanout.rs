@@ -5,7 +5,7 @@
 //! waits, so that a fixture's collapse is dealt with even while the disk does not answer.
 //! Instead, [`FanoutHandle::backlog`] tells the run how much of one process waits, so that
 //! it reads no more from a plug-in that floods, which cannot fill the memory. Standard
-//! output has a thread of its own: see [`crate::outlet`].
+//! output has a thread of its own: see [`crate::background_writer`].
 //!
 //! A reporter that panics is given no further event; the others go on.
 
@@ -59,7 +59,7 @@ impl FanoutHandle {
 
 /// What is left when all events were reported.
 #[derive(Debug)]
-pub struct Finished {
+pub struct FanoutResult {
     /// The fold over all events.
     pub record: Record,
     /// Reports that could not be written, at most one of each reporter.
@@ -68,7 +68,7 @@ pub struct Finished {
 
 #[derive(Debug)]
 struct Outcome {
-    finished: Finished,
+    finished: FanoutResult,
     /// The first event that came where it may not, where that is checked.
     disorder: Option<String>,
 }
@@ -103,7 +103,7 @@ impl Fanout {
     /// When the thread panicked; in debug builds also when the order of events
     /// broke a rule of [`OrderChecker`].
     #[must_use]
-    pub fn join(self) -> Finished {
+    pub fn join(self) -> FanoutResult {
         drop(self.handle);
         self.thread.thread().unpark();
         let outcome = self.thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
@@ -174,7 +174,7 @@ impl State {
         }
         self.each(|reporter, record| reporter.finish(record));
         let (record, errors) = (take(&mut self.record), take(&mut self.errors));
-        Outcome { finished: Finished { record, errors }, disorder: self.disorder.take() }
+        Outcome { finished: FanoutResult { record, errors }, disorder: self.disorder.take() }
     }
 
     fn report(&mut self, event: &Event) {

@@ -3,7 +3,7 @@
 
 mod place;
 
-use rtf_model::{HookRun, Record, Severity, SuiteRecord, TestRecord, Verdict};
+use rtf_model::{HookRunRecord, Record, Severity, SuiteRecord, TestRecord, Verdict};
 
 pub(crate) use place::{Place, Roots};
 
@@ -61,7 +61,7 @@ pub(crate) fn run_problem(record: &Record) -> Option<String> {
         Some(damage)
     } else if let Some(reason) = record.interrupted() {
         Some(format!("the run was interrupted: {reason}"))
-    } else if let Some(reason) = record.died() {
+    } else if let Some(reason) = record.runner_death() {
         Some(format!("the runner died: {reason}"))
     } else if !record.is_complete() {
         Some("the runner did not reach the end of this run".to_owned())
@@ -106,7 +106,7 @@ fn of_hooks(record: &Record, suite: &SuiteRecord, roots: &Roots<'_>) -> Vec<Find
         .collect()
 }
 
-fn hook_text(run: &HookRun) -> String {
+fn hook_text(run: &HookRunRecord) -> String {
     let mut lines = vec!["the robot may not be in a safe state".to_owned()];
     let sink = &mut |_, line: &str| lines.push(line.to_owned());
     explain::hook(run, EXTENT, sink);

@@ -9,7 +9,7 @@ use std::path::Path;
 use jiff::Timestamp;
 use rtf_model::{Event, EventKind, Micros, Record, SuiteId};
 
-use crate::{ReportError, Reporter, escape, reader_left};
+use crate::{ReportError, Reporter, escape, is_disconnect};
 
 /// Puts what another reporter writes to the same place into sections, one for
 /// each suite.
@@ -48,7 +48,7 @@ impl Sections {
     fn write(&mut self, text: &str) -> Result<(), ReportError> {
         let written = self.out.write_all(text.as_bytes());
         match written {
-            Err(error) if reader_left(&error) => {
+            Err(error) if is_disconnect(&error) => {
                 self.out = Box::new(io::sink());
                 Ok(())
             }
@@ -60,7 +60,7 @@ impl Sections {
 impl Reporter for Sections {
     fn event(&mut self, event: &Event, record: &Record) -> Result<(), ReportError> {
         match event.kind {
-            EventKind::SuiteStarted { suite } if !record.is_side_by_side() => {
+            EventKind::SuiteStarted { suite } if !record.runs_suites_in_parallel() => {
                 self.begin(suite, event.at, record)?;
             }
             _ => {}

@@ -5,33 +5,33 @@ use std::path::{Path, PathBuf};
 
 use rtf_model::{Event, Record};
 
-use crate::{ReportError, Reporter, output_file, reader_left};
+use crate::{ReportError, Reporter, is_disconnect, output_file};
 
 /// Writes a report of a record.
 pub type WriteReport = Box<dyn Fn(&mut dyn Write, &Record) -> io::Result<()> + Send>;
 
 /// Tells something of the record when the run is over.
-pub type Tell = Box<dyn Fn(&Record) -> io::Result<()> + Send>;
+pub type PrintAnnotations = Box<dyn Fn(&Record) -> io::Result<()> + Send>;
 
 /// Tells something on standard error when the run is over.
-pub struct AtTheEnd(Tell);
+pub struct AnnotationReporter(PrintAnnotations);
 
-impl AtTheEnd {
+impl AnnotationReporter {
     /// Calls `tell` at the end.
     #[must_use]
-    pub fn new(tell: Tell) -> Self {
+    pub fn new(tell: PrintAnnotations) -> Self {
         Self(tell)
     }
 }
 
-impl Reporter for AtTheEnd {
+impl Reporter for AnnotationReporter {
     fn event(&mut self, _event: &Event, _record: &Record) -> Result<(), ReportError> {
         Ok(())
     }
 
     fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
         match (self.0)(record) {
-            Err(error) if reader_left(&error) => Ok(()),
+            Err(error) if is_disconnect(&error) => Ok(()),
             told => told.map_err(ReportError::at("annotations", Path::new("standard error"))),
         }
     }

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use crate::{ReportError, reader_left};
+use crate::{ReportError, is_disconnect};
 
 /// So much may wait before it is written, however busy the run is.
 const PAGE: usize = 16 * 1024;
@@ -45,7 +45,7 @@ impl Stream {
     }
 
     fn judge(&mut self, written: std::io::Result<()>) -> Result<(), ReportError> {
-        if written.as_ref().is_err_and(reader_left) {
+        if written.as_ref().is_err_and(is_disconnect) {
             // Whoever read along has seen enough: the run goes on, and its exit
             // code stays about the tests.
             self.out = Box::new(std::io::sink());

@@ -6,14 +6,14 @@ use std::time::Instant;
 use axum::body::Bytes;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use rtf_report::console::Rerun;
+use rtf_report::console::RerunCommand;
 use serde::Serialize;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
 
 use crate::access::Access;
+use crate::capabilities::Capabilities;
 use crate::index::Index;
 use crate::problem::Problem;
-use crate::role::Role;
 use crate::runs::{Run, Runs};
 
 /// How many event streams there may be at the same time.
@@ -27,9 +27,9 @@ pub struct App {
     /// Who may do what.
     pub access: Arc<Access>,
     /// What it can do beside showing runs.
-    pub role: Role,
+    pub role: Capabilities,
     /// Makes what says with which command a test of a run is run again.
-    pub rerun: fn() -> Rerun,
+    pub rerun: fn() -> RerunCommand,
     /// Changes when the journal of that run has grown.
     pub grown: watch::Receiver<u64>,
     /// Turns true when the server ends.

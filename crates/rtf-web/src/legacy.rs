@@ -2,7 +2,7 @@
 
 use axum::extract::State;
 use rtf_model::{Event, EventKind, MessageKind, Record, SuiteRecord, TestRecord, Verdict};
-use rtf_report::run_folder::LATEST;
+use rtf_report::run_dir::LATEST;
 use serde::Serialize;
 
 use crate::app::{App, JsonText};

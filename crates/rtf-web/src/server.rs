@@ -12,16 +12,16 @@ use axum::{Router, middleware};
 use axum_server::tls_rustls::RustlsAcceptor;
 use axum_server::{Handle, Server as HttpServer};
 use hyper_util::rt::TokioTimer;
-use rtf_report::console::Rerun;
+use rtf_report::console::RerunCommand;
 use tokio::sync::{Semaphore, watch};
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::compression::{CompressionLayer, CompressionLevel};
 
 use crate::access::{self, Access, Hosts, Log, Rules, Secret, TokenError, WrongToken};
 use crate::app::App;
+use crate::capabilities::Capabilities;
 use crate::connections::{Limits, Listener, Peer};
-use crate::live::Live;
-use crate::role::Role;
+use crate::journal_notifier::JournalNotifier;
 use crate::runs::Runs;
 use crate::tls::{self, Tls, TlsError};
 use crate::{api, legacy, page};
@@ -96,20 +96,20 @@ impl ServeError {
 }
 
 /// What is served.
-pub struct Served<'a> {
+pub struct Service<'a> {
     /// The results folder.
     pub results: &'a Path,
     /// What this server can do beside showing them.
-    pub role: Role,
+    pub role: Capabilities,
     /// Makes what says with which command a test of a run is run again.
-    pub rerun: fn() -> Rerun,
+    pub rerun: fn() -> RerunCommand,
     /// Reports that somebody sent a wrong token.
     pub wrong_token: Box<dyn Fn(WrongToken) + Send>,
 }
 
 /// A server that has its address.
 #[derive(Debug)]
-pub struct Bound {
+pub struct BoundServer {
     listener: TcpListener,
     address: SocketAddr,
     wanted: SocketAddr,
@@ -134,8 +134,8 @@ pub struct Server {
     thread: JoinHandle<io::Result<()>>,
 }
 
-impl Bound {
-    /// Takes the address. Whoever connects waits until [`Bound::serve`].
+impl BoundServer {
+    /// Takes the address. Whoever connects waits until [`BoundServer::serve`].
     ///
     /// # Errors
     /// The settings do not allow it, or the system does not.
@@ -168,9 +168,9 @@ impl Bound {
     ///
     /// # Errors
     /// The system has no thread to give.
-    pub fn serve(self, tests_served: Served<'_>) -> Result<Server, ServeError> {
+    pub fn serve(self, service: Service<'_>) -> Result<Server, ServeError> {
         let Self { listener, address, wanted, token, tls, hosts, remote, limits } = self;
-        let Served { results, role, rerun, wrong_token } = tests_served;
+        let Service { results, role, rerun, wrong_token } = service;
         let shown = token.text().to_owned();
         let rules = Rules { remote, tls: tls.is_some() };
         let log = Log::start(wrong_token).map_err(ServeError::Start)?;
@@ -210,9 +210,9 @@ impl Bound {
 
 /// Ends a server that another thread waits for.
 #[derive(Debug)]
-pub struct Ender(watch::Sender<bool>);
+pub struct ShutdownHandle(watch::Sender<bool>);
 
-impl Ender {
+impl ShutdownHandle {
     /// Sends what is left to those who listen; the server ends then.
     pub fn end(self) {
         self.0.send_replace(true);
@@ -255,8 +255,8 @@ impl Server {
 
     /// The reporter of the run that is served live.
     #[must_use]
-    pub fn live(&self) -> Live {
-        Live::new(self.grown.clone())
+    pub fn live(&self) -> JournalNotifier {
+        JournalNotifier::new(self.grown.clone())
     }
 
     /// Tells those who ask that the run is over, and the server goes on for this long.
@@ -267,8 +267,8 @@ impl Server {
 
     /// What ends it from another thread.
     #[must_use]
-    pub fn ender(&self) -> Ender {
-        Ender(self.ending.clone())
+    pub fn ender(&self) -> ShutdownHandle {
+        ShutdownHandle(self.ending.clone())
     }
 
     /// Waits until the server ends, which it does not by itself.
@@ -329,7 +329,7 @@ fn serve(listener: TcpListener, limits: Limits, tls: Option<Tls>, app: App) -> i
         .max_blocking_threads(4)
         .on_thread_start(give_way)
         .build()?;
-    let tests_served = runtime.block_on(async {
+    let service = runtime.block_on(async {
         let handle = Handle::new();
         let mut ending = app.ending.clone();
         let parting = handle.clone();
@@ -350,7 +350,7 @@ fn serve(listener: TcpListener, limits: Limits, tls: Option<Tls>, app: App) -> i
         }
     });
     runtime.shutdown_background();
-    tests_served
+    service
 }
 
 /// Lets the threads of the run go first, where the processor is short.

@@ -36,7 +36,7 @@ impl Failure {
     /// has gone (`| head`) has seen enough, which is no failure.
     pub fn unless_reader_left(written: io::Result<()>) -> Result<(), Self> {
         match written {
-            Err(error) if rtf_report::reader_left(&error) => Ok(()),
+            Err(error) if rtf_report::is_disconnect(&error) => Ok(()),
             written => written.map_err(Self::own),
         }
     }

@@ -26,7 +26,7 @@ pub fn of_run(record: &Record) -> ExitCode {
         _ if record.hook_failed() => HOOK_FAILED,
         // Whatever else is known of the run: it may not be all.
         _ if record.is_damaged() => FAILED,
-        _ if record.died().is_some() => RUNNER_DIED,
+        _ if record.runner_death().is_some() => RUNNER_DIED,
         Some(code) => code,
         None if record.is_green() => PASSED,
         None => FAILED,

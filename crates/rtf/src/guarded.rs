@@ -81,7 +81,7 @@ fn close(close: &dyn Fn(&Path, &Record), journal: &Path) -> Option<ExitCode> {
     match journal::read(journal) {
         Ok(stored) => {
             close(journal, &stored.record);
-            stored.record.died().map(|_| exit::of_run(&stored.record))
+            stored.record.runner_death().map(|_| exit::of_run(&stored.record))
         }
         Err(error) => {
             let _ = Failure::own(error).show();

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use rtf_model::protocol::{
-    Initialize, Line, Notification, PROTOCOL_VERSION, Reply, Request, RpcError,
+    Initialize, Notification, PROTOCOL_VERSION, Reply, Request, RpcError, RpcMessage,
 };
 use serde::Deserialize;
 use serde_json::value::RawValue;
@@ -55,7 +55,7 @@ pub fn greeting(stack_file: &Path) -> Result<Vec<u8>, serde_json::Error> {
 /// # Errors
 /// Never for the types of this crate; serde_json has to say so.
 pub fn encode(id: Option<u64>, request: Request) -> Result<Vec<u8>, serde_json::Error> {
-    let mut line = serde_json::to_vec(&Line::new(id, request))?;
+    let mut line = serde_json::to_vec(&RpcMessage::new(id, request))?;
     line.push(b'\n');
     Ok(line)
 }

@@ -21,7 +21,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use rtf_model::protocol::{Request, StackSupport, TestEnds};
+use rtf_model::protocol::{Request, StackSupport, TestFinishedParams};
 use rtf_model::{ExitStatus, Source, Stream};
 use tokio::io::AsyncWriteExt;
 use tokio::sync::mpsc;
@@ -322,7 +322,9 @@ impl Task {
             if let (Some(mark), None) = (&plugin.end_marker, &self.sharing) {
                 self.sharing = Some(Sharing::new(id.unwrap_or_default(), mark));
             }
-        } else if let Request::TestFinished(TestEnds { attachments_dir, .. }) = &mut request {
+        } else if let Request::TestFinished(TestFinishedParams { attachments_dir, .. }) =
+            &mut request
+        {
             let folder = self.shared.run_folder.join(self.attachments_dir());
             *attachments_dir = Some(folder.to_string_lossy().into_owned());
         }

@@ -1,4 +1,4 @@
-//! What a run will do, as its first events say it.
+//! The plan of a run: its first events.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ use crate::{FixtureId, HookId, Manifest, SuiteId, TestId};
 pub struct RunStarted {
     /// The version of this event stream, see [`crate::EVENTS_VERSION`].
     pub version: u32,
-    /// The run's name, which is also its folder's.
+    /// The run's name, which is also the name of its directory.
     pub run: String,
     /// The version of the runner.
     pub rtf: String,
@@ -18,13 +18,13 @@ pub struct RunStarted {
     pub started_at: String,
     /// The command line, program first.
     pub command: Vec<String>,
-    /// The folder in which the command was given.
+    /// The directory in which the command was run.
     pub working_dir: String,
-    /// How many suites are planned.
+    /// Number of planned suites.
     pub suites: u32,
-    /// How many tests are planned.
+    /// Number of planned tests.
     pub tests: u32,
-    /// What was asked for.
+    /// The options of the run.
     #[serde(default)]
     pub manifest: Box<Manifest>,
 }
@@ -49,7 +49,7 @@ pub struct SuitePlanned {
     /// Whether a collapse of a fixture leaves the suite green.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub tolerates_collapse: bool,
-    /// How many of its tests may run at once.
+    /// Maximum number of its tests that run at the same time.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub parallel: u32,
 }
@@ -68,7 +68,7 @@ pub struct FixturePlanned {
     pub plugin_type: String,
 }
 
-/// A hook: what brings the robot into a safe state.
+/// A hook, which brings the robot into a safe state.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HookPlanned {
@@ -78,26 +78,26 @@ pub struct HookPlanned {
     pub suite: SuiteId,
     /// Its name, unique in the suite.
     pub name: String,
-    /// What calls for it.
+    /// Its triggers.
     pub on: Vec<Trigger>,
 }
 
-/// What calls for a hook.
+/// The trigger of a hook.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Trigger {
-    /// A test failed, went wrong, or crashed.
+    /// A test failed, had an error, or crashed.
     Failure,
     /// A fixture collapsed.
     Collapse,
     /// A test, or the suite, reached its limit.
     Timeout,
-    /// The run is cut short: by a signal, or because the runner died.
+    /// The run is interrupted: by a signal, or because the runner died.
     Interrupt,
     /// A fixture will not be started again.
     FixtureBroken,
-    /// The suite ends, whatever happened.
+    /// The suite ends, with any result.
     End,
 }
 
@@ -146,9 +146,9 @@ pub struct TestPlanned {
     pub plugin_type: String,
     /// The plug-in's file.
     pub plugin: String,
-    /// How often it is run; when `timed`, in each round.
+    /// Number of repetitions; when `timed`, in each round.
     pub repetitions: u32,
-    /// Whether it is repeated, round by round, until a time is over.
+    /// Whether it is repeated, round by round, for a given time.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub timed: bool,
     /// The tags given in the suite.

@@ -1,10 +1,10 @@
-//! What is told of the processes of tests, fixtures and hooks.
+//! Events about the processes of tests, fixtures and hooks.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{FixtureId, HookId, TestId};
 
-/// Whose message, output or process it is.
+/// The owner of a message, an output or a process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -17,7 +17,7 @@ pub enum Source {
     Hook(HookId),
 }
 
-/// Which of its outputs a process used.
+/// An output stream of a process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -28,15 +28,15 @@ pub enum Stream {
     Stderr,
 }
 
-/// A piece of what a process printed; joined, the pieces of a stream are its text.
+/// A piece of a process's output; joined, the pieces of a stream are its text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Output {
-    /// Whose process printed it.
+    /// The owner of the process.
     pub source: Source,
-    /// Where to.
+    /// The output stream.
     pub stream: Stream,
-    /// The number of bytes left out just before `text`.
+    /// Number of bytes omitted just before `text`.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub omitted_bytes: u64,
     /// The text; bytes that are not UTF-8 are replaced by U+FFFD.
@@ -53,9 +53,9 @@ fn is_zero(number: &u64) -> bool {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum ExitStatus {
-    /// It returned this exit code.
+    /// It exited with this code.
     Code(i32),
-    /// This signal ended it.
+    /// This signal killed it.
     Signal(i32),
 }
 
@@ -86,7 +86,7 @@ fn signal_name(signal: i32) -> Option<&'static str> {
     }
 }
 
-/// A process that should have ended with its test or fixture and did not.
+/// A process that outlived its test, fixture or hook, and was killed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LeakedProcess {
@@ -94,7 +94,7 @@ pub struct LeakedProcess {
     pub pid: i32,
     /// Its command line.
     pub command: String,
-    /// Who started it, where that is not plain: `test arm/EncoderTest`.
+    /// Its owner, where the event does not name it: `test arm/EncoderTest`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub owner: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! The phases and the end of a test's attempt.
+//! The phases and the result of a test's attempt.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,14 +18,14 @@ pub enum Phase {
     Run,
     /// The plug-in's `tearDown`.
     TearDown,
-    /// The host ends, after it has answered.
+    /// The host exits, after it has answered.
     Exit,
-    /// The attempt is judged, and fixtures are told.
+    /// The attempt is judged, and fixtures are notified.
     Notify,
 }
 
 impl Phase {
-    /// The phase as people say it: `set-up`.
+    /// The phase for display: `set-up`.
     #[must_use]
     pub fn as_str(self) -> &'static str {
         match self {
@@ -54,29 +54,29 @@ pub enum StopCause {
     Timeout,
     /// A fixture collapsed.
     Collapse,
-    /// The user asked for the end of the run.
+    /// The user interrupted the run.
     Interrupt,
-    /// The host broke the protocol.
+    /// The host violated the protocol.
     Protocol,
 }
 
-/// The end of one attempt of a test.
+/// The result of one attempt of a test.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TestFinished {
     /// The test.
     pub test: TestId,
-    /// The judgement.
+    /// The verdict.
     pub verdict: Verdict,
     /// Why it did not pass.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// The phase in which it was decided.
+    /// The phase that decided the verdict.
     pub phase: Phase,
-    /// How the host's process ended, when it was started and its test's own.
+    /// How the host's process exited, if it was started and is not shared.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub exit: Option<ExitStatus>,
-    /// Whether the same repetition will be run again.
+    /// Whether the same repetition will be retried.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub rerun: bool,
 }

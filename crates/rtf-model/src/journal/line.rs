@@ -1,14 +1,14 @@
-//! The check values of a journal's lines: CRC-32C over all events so far, so that
+//! The check value of each line of a journal: CRC-32C over all events so far, so that
 //! a line that was changed, removed, added or moved is detected. Processors have
-//! an instruction for it: it costs little also for short lines.
+//! an instruction for it, so that it is cheap even for short lines.
 //!
 //! The value is the last field of the line's object: `…,"crc":"1a2b3c4d"}`.
 
-/// What stands before a check value.
+/// The bytes before a check value.
 const FIELD: &[u8] = b",\"crc\":\"";
-/// What stands after it.
+/// The bytes after it.
 const CLOSE: &[u8] = b"\"}";
-/// How many hexadecimal digits it has.
+/// Number of hexadecimal digits.
 const DIGITS: usize = 8;
 const HEX: &[u8; 16] = b"0123456789abcdef";
 
@@ -19,16 +19,16 @@ pub struct LineSealer {
 }
 
 impl LineSealer {
-    /// Continues after this line of a journal, with or without its end.
+    /// Continues after this line of a journal, with or without its line break.
     #[must_use]
     pub fn after(line: &[u8]) -> Self {
         let line = line.strip_suffix(b"\n").unwrap_or(line);
         Self { previous: split(line).map_or(0, |(_, stored)| stored) }
     }
 
-    /// What stands in a line instead of the last byte of `object`, a JSON object with
-    /// at least one field: the check value, and the line's end.
-    pub fn end_of(&mut self, object: &[u8]) -> [u8; Self::END] {
+    /// The bytes that replace the last byte of `object`, a JSON object with
+    /// at least one field: the check value and the line break.
+    pub fn line_end(&mut self, object: &[u8]) -> [u8; Self::END] {
         debug_assert!(object.starts_with(b"{") && object.ends_with(b"}"));
         self.previous = check_value(self.previous, object.strip_suffix(b"}").unwrap_or(object));
         let mut end = *b",\"crc\":\"........\"}\n";
@@ -39,23 +39,23 @@ impl LineSealer {
         end
     }
 
-    /// How many bytes [`LineSealer::end_of`] has.
+    /// The length of [`LineSealer::line_end`] in bytes.
     pub const END: usize = FIELD.len() + DIGITS + CLOSE.len() + 1;
 
-    /// Completes the line that starts at `start` of `page` and is the last there.
+    /// Completes the last line of `page`, which starts at `start`.
     pub fn seal(&mut self, page: &mut Vec<u8>, start: usize) {
-        let end = self.end_of(page.get(start..).unwrap_or_default());
+        let end = self.line_end(page.get(start..).unwrap_or_default());
         page.pop();
         page.extend_from_slice(&end);
     }
 }
 
-/// What a line's check value says.
+/// The result of checking a line's check value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineCheck {
-    /// The line is as it was written, and follows the one before it.
+    /// The line is unchanged and follows the previous one.
     Intact,
-    /// The line or the one before it was changed, or something between them is missing.
+    /// The line or the previous one was changed, or lines between them are missing.
     Wrong,
     /// The line has no check value, while others have one.
     Missing,
@@ -68,8 +68,8 @@ pub enum LineCheck {
 pub struct LineChecker {
     /// Whether lines have check values; unknown before the first line.
     checked: Option<bool>,
-    /// The values from which the next line may continue: the one that the last
-    /// line has and the one that it should have. `None`: whatever comes is right.
+    /// The values from which the next line may continue: the stored and the computed
+    /// value of the last line. `None`: any value is accepted.
     previous: Option<[u32; 2]>,
 }
 
@@ -80,7 +80,7 @@ impl Default for LineChecker {
 }
 
 impl LineChecker {
-    /// Checks the next line, without its end.
+    /// Checks the next line, without its line break.
     pub fn check(&mut self, line: &[u8]) -> LineCheck {
         let Some((body, stored)) = split(line) else {
             if *self.checked.get_or_insert(false) {
@@ -89,12 +89,12 @@ impl LineChecker {
             }
             return LineCheck::Unchecked;
         };
-        // The lines before this one had no check value, although they should have.
+        // The lines before this one have lost their check values.
         let is_first_checked = self.checked.replace(true) == Some(false);
         let computed = match self.previous {
-            Some([having, due]) => {
-                let computed = check_value(due, body);
-                if computed == stored { computed } else { check_value(having, body) }
+            Some([stored_before, computed_before]) => {
+                let computed = check_value(computed_before, body);
+                if computed == stored { computed } else { check_value(stored_before, body) }
             }
             None => stored,
         };

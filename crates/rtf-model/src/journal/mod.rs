@@ -1,5 +1,5 @@
-//! What makes a journal trustworthy: a check value on each line, and rules that
-//! a stored stream of events satisfies as a whole. Pure data, as everything in
+//! The integrity of a journal: a check value on each line, and rules that
+//! a stored event stream satisfies. Pure data, as everything in
 //! this crate; `rtf-report` reads and writes the file.
 
 mod line;
@@ -8,19 +8,19 @@ mod stream;
 use std::fmt;
 
 pub use line::{LineCheck, LineChecker, LineSealer};
-pub use stream::{Checked, StreamChecker};
+pub use stream::{EventCheck, StreamChecker};
 
-/// A place in a journal that is damaged, or where something is missing.
+/// A damaged or missing line of a journal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Damage {
     /// The line, from 1.
     pub line: u64,
-    /// What is wrong with it.
+    /// The problem.
     pub problem: String,
 }
 
 impl Damage {
-    /// How many are kept of one journal; a file that is full of them has one story to tell.
+    /// Maximum number of entries that are kept per journal.
     pub const KEPT: usize = 100;
 }
 

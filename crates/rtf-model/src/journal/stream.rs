@@ -1,7 +1,7 @@
-//! What holds for every stored stream of events, and is cheap to check: numbers
-//! without gaps, times that do not go back, as many plans as announced, events
-//! about what is planned, nothing after the end. [`crate::OrderChecker`] has the
-//! other rules; an earlier runner may have obeyed other ones.
+//! Cheap rules that hold for every stored event stream: numbers
+//! without gaps, times that do not decrease, as many plans as announced, events
+//! about planned items, nothing after the end. [`crate::OrderChecker`] has the
+//! other rules, which may differ for earlier runners.
 
 use crate::record::source;
 use crate::{Event, EventKind, Micros, Source, SuiteId};
@@ -10,60 +10,61 @@ use crate::{Event, EventKind, Micros, Source, SuiteId};
 #[derive(Clone, Debug, Default)]
 pub struct StreamChecker {
     next: u64,
-    /// Whether the line before could not be trusted: nobody knows how many
-    /// events it held.
+    /// Whether the previous line cannot be trusted: it may have held any number
+    /// of events.
     is_after_fault: bool,
     last_at: Micros,
-    planned: Planned,
-    /// How many suites and tests the run has, until that was compared.
+    planned: PlannedCounts,
+    /// Number of suites and tests that the run announced, until it is compared.
     announced: Option<(u32, u32)>,
     has_begun: bool,
-    is_over: bool,
+    has_ended: bool,
 }
 
-/// How many of each are planned so far.
+/// Number of planned items so far.
 #[derive(Clone, Debug, Default)]
-struct Planned {
+struct PlannedCounts {
     suites: u32,
     fixtures: u32,
     hooks: u32,
     tests: u32,
 }
 
-/// What was found in an event.
+/// The result of checking an event.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Checked {
-    /// Whether the event counts: it was not there before.
+pub struct EventCheck {
+    /// Whether the event counts: it is not a repetition of an earlier one.
     pub is_new: bool,
-    /// What is wrong.
+    /// The problem.
     pub problem: Option<String>,
 }
 
 impl StreamChecker {
-    /// The number of the next event.
+    /// The expected number of the next event.
     #[must_use]
     pub fn next(&self) -> u64 {
         self.next
     }
 
-    /// A line came that is no event.
+    /// Skips a line that is no event.
     pub fn skip_line(&mut self) {
         self.is_after_fault = true;
     }
 
-    /// Checks the next event. When its line `is_intact`, its number is believed.
-    pub fn check(&mut self, event: &Event, is_intact: bool) -> Checked {
+    /// Checks the next event. If its line `is_intact`, its number is trusted.
+    pub fn check(&mut self, event: &Event, is_intact: bool) -> EventCheck {
         if event.seq < self.next {
-            let problem = format!("event {} stands where event {} should be", event.seq, self.next);
-            return Checked { is_new: false, problem: Some(problem) };
+            let problem =
+                format!("found event {} where event {} is expected", event.seq, self.next);
+            return EventCheck { is_new: false, problem: Some(problem) };
         }
         let gap = (event.seq > self.next && !self.is_after_fault)
-            .then(|| format!("event {} stands where event {} should be", event.seq, self.next));
+            .then(|| format!("found event {} where event {} is expected", event.seq, self.next));
         self.next = if is_intact { event.seq } else { self.next }.saturating_add(1);
         self.is_after_fault = !is_intact;
         let unordered = self.time(event.at, is_intact);
         let unplanned = self.kind(&event.kind);
-        Checked { is_new: true, problem: gap.or(unordered).or(unplanned) }
+        EventCheck { is_new: true, problem: gap.or(unordered).or(unplanned) }
     }
 
     fn time(&mut self, at: Micros, is_intact: bool) -> Option<String> {
@@ -71,19 +72,19 @@ impl StreamChecker {
         if is_intact && !is_earlier {
             self.last_at = at;
         }
-        is_earlier.then(|| "it happened earlier than the event before it".to_owned())
+        is_earlier.then(|| "it is earlier than the previous event".to_owned())
     }
 
     fn kind(&mut self, kind: &EventKind) -> Option<String> {
         let is_start = matches!(kind, EventKind::RunStarted(_));
         if is_start == std::mem::replace(&mut self.has_begun, true) {
             return Some(match is_start {
-                true => "the run begins a second time".to_owned(),
-                false => "the beginning of the run is missing".to_owned(),
+                true => "the run starts a second time".to_owned(),
+                false => "the start of the run is missing".to_owned(),
             });
         }
-        if self.is_over {
-            return Some("it stands after the end of the run".to_owned());
+        if self.has_ended {
+            return Some("it follows the end of the run".to_owned());
         }
         match kind {
             EventKind::RunStarted(run) => {
@@ -109,25 +110,25 @@ impl StreamChecker {
                 self.suite(*suite)
             }
             EventKind::RunFinished { .. } => {
-                self.is_over = true;
+                self.has_ended = true;
                 self.totals()
             }
             EventKind::RunnerDied { .. } => {
-                self.is_over = true;
+                self.has_ended = true;
                 None
             }
-            kind => source::of(kind).and_then(|source| self.source(source)),
+            kind => source::source_of(kind).and_then(|source| self.source(source)),
         }
     }
 
-    /// Compares what is planned with what the beginning of the run announced.
+    /// Compares the planned items with the numbers that `run-started` announced.
     fn totals(&mut self) -> Option<String> {
         let (suites, tests) = self.announced.take()?;
-        let Planned { suites: known_suites, tests: known_tests, .. } = self.planned;
-        let of = |what, known, all| {
-            (known != all).then(|| format!("of {all} {what}, {known} are planned"))
+        let PlannedCounts { suites: known_suites, tests: known_tests, .. } = self.planned;
+        let compare = |what, known, all| {
+            (known != all).then(|| format!("{known} of {all} {what} are planned"))
         };
-        of("suites", known_suites, suites).or_else(|| of("tests", known_tests, tests))
+        compare("suites", known_suites, suites).or_else(|| compare("tests", known_tests, tests))
     }
 
     fn suite(&self, suite: SuiteId) -> Option<String> {
@@ -144,20 +145,20 @@ impl StreamChecker {
 }
 
 fn unplanned(what: &str, id: u32, planned: u32) -> Option<String> {
-    (id >= planned).then(|| format!("it is about {what} {id}, which is not planned"))
+    (id >= planned).then(|| format!("it concerns {what} {id}, which is not planned"))
 }
 
-/// Counts a plan; those of one kind are numbered from 0 without gaps.
+/// Counts a planned item; those of one kind are numbered from 0 without gaps.
 fn count(what: &str, id: u32, planned: &mut u32) -> Option<String> {
-    let due = *planned;
-    *planned = due.saturating_add(1);
-    if id == due {
+    let expected = *planned;
+    *planned = expected.saturating_add(1);
+    if id == expected {
         return None;
     }
-    if crate::record::is_likely_gap(due, id) {
+    if crate::record::is_likely_gap(expected, id) {
         *planned = id.saturating_add(1);
     }
-    Some(format!("{what} {id} is planned where {what} {due} should be"))
+    Some(format!("{what} {id} is planned where {what} {expected} is expected"))
 }
 
 #[cfg(test)]

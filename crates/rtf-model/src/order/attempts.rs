@@ -1,10 +1,10 @@
-//! Tests: which attempt may follow which, and what they are told of.
+//! Tests: which attempt may follow which one, and when an attempt is judged.
 
-use super::{OrderChecker, Rule, Test, ensure};
+use super::{OrderChecker, Rule, TestProgress, ensure};
 use crate::TestId;
 
 impl OrderChecker {
-    pub(super) fn test(&mut self, test: TestId) -> Result<&mut Test, String> {
+    pub(super) fn test(&mut self, test: TestId) -> Result<&mut TestProgress, String> {
         let suite = self.tests.get(test.index()).map(|t| t.suite);
         let suite = suite.ok_or_else(|| format!("test {test} was not planned"))?;
         self.suite_open(suite)?;
@@ -14,7 +14,7 @@ impl OrderChecker {
     pub(super) fn start_test(&mut self, id: TestId, number: (u32, u32)) -> Rule {
         let test = self.test(id)?;
         ensure(!test.open, || format!("test {id} started twice"))?;
-        ensure(!test.over, || format!("test {id} started although it was skipped or is over"))?;
+        ensure(!test.ended, || format!("test {id} started although it was skipped or has ended"))?;
         let follows = match test.last {
             None => number == (1, 1),
             Some((r, a)) if test.rerun => number == (r, a + 1),
@@ -27,7 +27,7 @@ impl OrderChecker {
         test.last = Some(number);
         test.open = true;
         let suite = test.suite.index();
-        self.beside.test(suite, true);
+        self.concurrency.test_running(suite, true);
         Ok(())
     }
 
@@ -37,7 +37,7 @@ impl OrderChecker {
         ensure(!test.judged, || format!("test {id} is judged twice"))?;
         test.judged = true;
         let suite = test.suite.index();
-        self.beside.judged(suite, true);
+        self.concurrency.test_judged(suite, true);
         Ok(())
     }
 
@@ -49,28 +49,28 @@ impl OrderChecker {
         let was_judged = std::mem::take(&mut test.judged);
         let suite = test.suite.index();
         if was_judged {
-            self.beside.judged(suite, false);
+            self.concurrency.test_judged(suite, false);
         }
-        self.beside.test(suite, false);
+        self.concurrency.test_running(suite, false);
         Ok(())
     }
 
     pub(super) fn skip_test(&mut self, id: TestId) -> Rule {
         let test = self.test(id)?;
         ensure(!test.open, || format!("test {id} skipped while it runs"))?;
-        ensure(!test.over, || format!("test {id} skipped twice, or after its end"))?;
-        test.over = true;
+        ensure(!test.ended, || format!("test {id} skipped twice, or after its end"))?;
+        test.ended = true;
         Ok(())
     }
 
     pub(super) fn end_test(&mut self, id: TestId, repetitions: u32) -> Rule {
         let test = self.test(id)?;
-        let ends = test.repetitions.is_none() && !test.open && !test.rerun && !test.over;
+        let ends = test.repetitions.is_none() && !test.open && !test.rerun && !test.ended;
         ensure(ends, || format!("test {id} cannot end here"))?;
         ensure(test.last.is_some_and(|(r, _)| r == repetitions), || {
             format!("test {id} was not repeated {repetitions} times")
         })?;
-        test.over = true;
+        test.ended = true;
         Ok(())
     }
 }

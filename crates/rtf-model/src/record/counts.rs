@@ -1,10 +1,10 @@
-//! How much an attempt reported: known also where what it reported is not kept.
+//! How much an attempt reported; also counted where the reports are not kept.
 
 use crate::{EventKind, MessageKind};
 
 /// How much an attempt reported, whether it was kept or not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct AttemptCounts {
     /// Messages of all kinds.
     pub messages: u64,
     /// Failures and errors among them.
@@ -17,11 +17,11 @@ pub struct Counts {
     pub violations: u64,
     /// Attached files.
     pub attachments: u64,
-    /// Printed bytes, without those that were left out.
+    /// Printed bytes, without omitted ones.
     pub output_bytes: u64,
 }
 
-impl Counts {
+impl AttemptCounts {
     pub(super) fn count(&mut self, kind: &EventKind) {
         match kind {
             EventKind::Message { message, .. } => {
@@ -44,7 +44,7 @@ impl Counts {
     }
 }
 
-impl std::ops::AddAssign for Counts {
+impl std::ops::AddAssign for AttemptCounts {
     fn add_assign(&mut self, other: Self) {
         self.messages += other.messages;
         self.failures += other.failures;
@@ -56,7 +56,7 @@ impl std::ops::AddAssign for Counts {
     }
 }
 
-/// What a lean record counts and does not keep.
+/// Whether a lean record only counts this event.
 pub(super) fn is_detail(kind: &EventKind) -> bool {
     matches!(
         kind,

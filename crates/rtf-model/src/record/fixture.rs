@@ -1,10 +1,10 @@
-//! What is known of one fixture.
+//! The state and history of one fixture.
 
 use crate::{
     EventKind, FixturePlanned, Growth, LeakedProcess, Message, MessageKind, Micros, UsageSeries,
 };
 
-/// Where a fixture is in its life.
+/// The current state of a fixture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FixtureState {
     /// Not started yet.
@@ -12,9 +12,9 @@ pub enum FixtureState {
     Pending,
     /// Being set up.
     Starting,
-    /// Set up and watched.
+    /// Set up and supervised.
     Ready,
-    /// It was ready and is not there any more.
+    /// It was ready and has failed.
     Collapsed,
     /// Being torn down.
     Stopping,
@@ -31,44 +31,44 @@ pub struct FixtureLife {
     pub starting: Micros,
     /// When its set-up succeeded.
     pub ready: Option<Micros>,
-    /// When and why it was not there any more.
+    /// When and why it collapsed.
     pub collapsed: Option<(Micros, String)>,
     /// When its tear-down began.
     pub stopping: Option<Micros>,
     /// When its tear-down ended.
     pub stopped: Option<Micros>,
-    /// What went wrong in its set-up or tear-down.
+    /// The problem in its set-up or tear-down.
     pub problem: Option<String>,
-    /// What it used at the ends of tests that were repeated.
+    /// Its resources at the end of each test, when tests are repeated.
     pub usage: UsageSeries,
 }
 
-/// What is known of one fixture.
+/// The state and history of one fixture.
 #[derive(Clone, Debug)]
 pub struct FixtureRecord {
     /// How it was planned.
     pub plan: FixturePlanned,
-    /// Where it is in its life.
+    /// Its current state.
     pub state: FixtureState,
-    /// How often it was started.
+    /// Number of starts.
     pub starts: u32,
-    /// When it was started last.
+    /// The last start.
     pub started: Option<Micros>,
-    /// When the set-up of its last start succeeded.
+    /// When the last set-up succeeded.
     pub ready: Option<Micros>,
     /// Its lives, the oldest first.
     pub lives: Vec<FixtureLife>,
     /// Its collapses: when, and why.
     pub collapses: Vec<(Micros, String)>,
-    /// The first cause, once it broke.
+    /// The first cause, when it is broken.
     pub broken: Option<String>,
-    /// What went wrong in set-ups and tear-downs: when, and what.
+    /// Problems in set-ups and tear-downs, with their times.
     pub problems: Vec<(Micros, String)>,
-    /// The last lines that it printed before something went wrong last.
+    /// The last lines that it printed before the last problem.
     pub log_tail: Vec<String>,
     /// Its failures and errors.
     pub messages: Vec<Message>,
-    /// Processes of it that had to be killed.
+    /// Its processes that had to be killed.
     pub leaked: Vec<LeakedProcess>,
 }
 
@@ -91,7 +91,7 @@ impl FixtureRecord {
     }
 
     pub(super) fn apply(&mut self, at: Micros, kind: &EventKind) {
-        self.live(at, kind);
+        self.apply_to_life(at, kind);
         match kind {
             EventKind::FixtureStarting { attempt, .. } => {
                 self.starts = *attempt;
@@ -121,7 +121,7 @@ impl FixtureRecord {
                 self.state = FixtureState::Broken;
                 self.broken = Some(reason.clone());
             }
-            EventKind::Message { message, .. } => self.keep(message),
+            EventKind::Message { message, .. } => self.keep_failure(message),
             EventKind::ProcessesLeaked { processes, .. } => {
                 self.leaked.extend_from_slice(processes)
             }
@@ -129,7 +129,7 @@ impl FixtureRecord {
         }
     }
 
-    fn live(&mut self, at: Micros, kind: &EventKind) {
+    fn apply_to_life(&mut self, at: Micros, kind: &EventKind) {
         if let EventKind::FixtureStarting { .. } = kind {
             self.lives.push(FixtureLife { starting: at, ..FixtureLife::default() });
         }
@@ -149,20 +149,20 @@ impl FixtureRecord {
         }
     }
 
-    fn keep(&mut self, message: &Message) {
+    fn keep_failure(&mut self, message: &Message) {
         if matches!(message.kind, MessageKind::Failure | MessageKind::Error) {
             self.messages.push(message.clone());
         }
     }
 
-    /// What it used more and more of, in the life in which it was measured most.
+    /// The resources that grew, in the life with the most measurements.
     #[must_use]
     pub fn growth(&self) -> Vec<Growth> {
         let longest = self.lives.iter().max_by_key(|life| life.usage.seen());
         longest.map(|life| life.usage.growth()).unwrap_or_default()
     }
 
-    /// What speaks against the suite being green, in words.
+    /// The reasons why the suite is not green.
     #[must_use]
     pub fn problems(&self, tolerates_collapse: bool) -> Vec<String> {
         let name = &self.plan.name;

@@ -1,38 +1,38 @@
-//! What is known of one hook.
+//! The runs of one hook.
 
 use std::time::Duration;
 
 use crate::{EventKind, HookPlanned, LeakedProcess, Message, MessageKind, Micros, TestId, Trigger};
 
-/// What is known of one hook.
+/// A hook and its runs.
 #[derive(Clone, Debug)]
 pub struct HookRecord {
     /// How it was planned.
     pub plan: HookPlanned,
-    /// Each time it was run, the oldest first.
-    pub runs: Vec<HookRun>,
+    /// Its runs, the oldest first.
+    pub runs: Vec<HookRunRecord>,
 }
 
 /// One run of a hook.
 #[derive(Clone, Debug)]
-pub struct HookRun {
+pub struct HookRunRecord {
     /// When it started.
     pub started: Micros,
-    /// What called for it.
+    /// Its trigger.
     pub trigger: Trigger,
-    /// The same in words.
+    /// The reason for the trigger, as text.
     pub reason: String,
-    /// The test that it is about, if there is one.
+    /// The test that triggered it, if there is one.
     pub test: Option<TestId>,
-    /// Its end, and why the robot may not be in a safe state.
+    /// When it finished, and why the robot may not be in a safe state.
     pub finished: Option<(Micros, Option<String>)>,
     /// Its failures and errors.
     pub messages: Vec<Message>,
-    /// What it printed.
+    /// Its output.
     pub output: String,
-    /// Where it was before it was stopped by force.
+    /// Stack dumps from before it was killed.
     pub stacks: Vec<String>,
-    /// Processes of it that had to be killed.
+    /// Its processes that had to be killed.
     pub leaked: Vec<LeakedProcess>,
 }
 
@@ -43,14 +43,14 @@ impl HookRecord {
 
     pub(super) fn apply(&mut self, at: Micros, kind: &EventKind) {
         if let EventKind::HookStarted { trigger, reason, test, .. } = kind {
-            self.runs.push(HookRun::new(at, *trigger, reason, *test));
+            self.runs.push(HookRunRecord::new(at, *trigger, reason, *test));
         } else if let Some(run) = self.runs.last_mut() {
             run.apply(at, kind);
         }
     }
 
-    /// Why the robot may not be in a safe state, in words: runs that went wrong
-    /// or did not come to their end.
+    /// Why the robot may not be in a safe state: runs that failed
+    /// or did not finish.
     pub fn problems(&self) -> impl Iterator<Item = String> {
         let name = &self.plan.name;
         self.runs.iter().filter_map(move |run| {
@@ -59,7 +59,7 @@ impl HookRecord {
     }
 }
 
-impl HookRun {
+impl HookRunRecord {
     fn new(started: Micros, trigger: Trigger, reason: &str, test: Option<TestId>) -> Self {
         Self {
             started,
@@ -95,8 +95,8 @@ impl HookRun {
             _ => {}
         }
     }
-    /// Why the robot may not be in a safe state; nothing when the hook did its
-    /// work. A run that has not ended has not done it.
+    /// Why the robot may not be in a safe state; `None` when the hook
+    /// succeeded. A run that has not finished has not succeeded.
     #[must_use]
     pub fn problem(&self) -> Option<&str> {
         match &self.finished {
@@ -105,7 +105,7 @@ impl HookRun {
         }
     }
 
-    /// How long it took, `None` when it did not end.
+    /// Its duration, `None` when it did not finish.
     #[must_use]
     pub fn duration(&self) -> Option<Duration> {
         self.finished.as_ref().map(|(at, _)| at.since(self.started))

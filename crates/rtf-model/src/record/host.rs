@@ -1,26 +1,26 @@
-//! What is known of the hosts that tests share.
+//! Shared hosts: the tests that they served, and the resources that they used.
 
 use std::collections::BTreeMap;
 
 use crate::{Growth, Resource, TestId, Usage, UsageSeries};
 
-/// A host itself may grow by so many bytes from one test to the next: what it made for
-/// a plug-in stays until it ends, since threads that the plug-in left may use it.
-const OWN: f64 = 4096.0;
+/// A host itself may grow by so many bytes per test: its data for a plug-in
+/// stay until it exits, because leftover threads of the plug-in may use them.
+const EXPECTED_GROWTH_BYTES: f64 = 4096.0;
 
-/// A host that served tests one after the other, in a suite in which tests are repeated.
+/// A host that served several tests in turn, in a suite in which tests are repeated.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct HostRecord {
     /// The tests that it served, each once.
     pub tests: Vec<TestId>,
-    /// How many tests it had served when it was measured last; each repetition counts.
+    /// Number of tests served at the last measurement; each repetition counts.
     pub tests_served: u32,
-    /// What it used after each of them.
+    /// Its resources after each of them.
     pub usage: UsageSeries,
 }
 
-/// The host of a suite that lives has served a test.
-pub(super) fn uses(
+/// Records the resources of the current host after it has served a test.
+pub(super) fn record_usage(
     hosts: &mut Vec<HostRecord>,
     test: TestId,
     tests_served: Option<u32>,
@@ -39,8 +39,8 @@ pub(super) fn uses(
     }
 }
 
-/// The hosts that used more and more, and what; of those that served the same
-/// tests, the one that was measured most.
+/// The hosts whose resources grew. Of several hosts that served the same
+/// tests, the one with the most measurements counts.
 pub(super) fn growing(hosts: &[HostRecord]) -> Vec<(&HostRecord, Vec<Growth>)> {
     let mut longest = BTreeMap::<&[TestId], &HostRecord>::new();
     for host in hosts {
@@ -49,10 +49,12 @@ pub(super) fn growing(hosts: &[HostRecord]) -> Vec<(&HostRecord, Vec<Growth>)> {
             *known = host;
         }
     }
-    let is_its_own = |growth: &Growth| growth.resource == Resource::Memory && growth.each < OWN;
+    let is_expected = |growth: &Growth| {
+        growth.resource == Resource::Memory && growth.each < EXPECTED_GROWTH_BYTES
+    };
     let with_growth = longest.into_values().map(|host| {
         let growth = host.usage.growth().into_iter();
-        (host, growth.filter(|growth| !is_its_own(growth)).collect::<Vec<_>>())
+        (host, growth.filter(|growth| !is_expected(growth)).collect::<Vec<_>>())
     });
     with_growth.filter(|(_, growth)| !growth.is_empty()).collect()
 }

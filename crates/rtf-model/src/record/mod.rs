@@ -1,25 +1,25 @@
-//! What is known of a run: the fold over its events.
+//! The state of a run: the fold over its events.
 //!
 //! [`Record::apply`] is the only place that counts. The console's summary, the
-//! JUnit file and every other report read a `Record`; none keeps a state of its own.
+//! JUnit file and every other report read a `Record`; none keeps separate state.
 
 mod counts;
 mod fixture;
-mod gap;
 mod hook;
 mod host;
-mod leaked;
-mod series;
+mod leaked_processes;
+mod missing_plans;
+mod signal;
 pub(crate) mod source;
 mod suite;
 mod test;
 
-pub use counts::Counts;
+pub use counts::AttemptCounts;
 pub use fixture::{FixtureLife, FixtureRecord, FixtureState};
-pub(crate) use gap::is_likely as is_likely_gap;
-pub use hook::{HookRecord, HookRun};
+pub use hook::{HookRecord, HookRunRecord};
 pub use host::HostRecord;
-pub use series::Series;
+pub(crate) use missing_plans::is_likely as is_likely_gap;
+pub use signal::SignalSummary;
 pub use suite::SuiteRecord;
 pub use test::{AttemptRecord, TestRecord};
 
@@ -28,60 +28,60 @@ use crate::{
     TestId, Verdict,
 };
 
-/// How far a run is.
+/// The state of a run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum RunState {
-    /// No `run-finished` was seen: the run goes on, or it was killed.
+    /// There is no `run-finished` yet: the run continues, or it was killed.
     #[default]
     Running,
-    /// The run came to its end.
+    /// The run has finished.
     Finished {
-        /// The signal or request that cut it short, in words.
+        /// The signal or request that interrupted it.
         interrupted: Option<String>,
     },
-    /// The runner died; the guard stopped what was left. The record is incomplete.
+    /// The runner died; the guard killed leftover processes. The record is incomplete.
     Died {
         /// How the runner ended.
         reason: String,
     },
 }
 
-/// How many tests are in which state.
+/// Number of tests by state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Totals {
+pub struct TestTotals {
     /// Tests that were declared.
     pub planned: u32,
-    /// Tests whose last word is not spoken yet and that do not run.
+    /// Tests without a final verdict that are not running.
     pub pending: u32,
-    /// Tests that run now.
+    /// Tests that are running.
     pub running: u32,
     counts: [u32; Verdict::ALL.len()],
 }
 
-impl Totals {
-    /// How many tests ended with this verdict.
+impl TestTotals {
+    /// Number of tests with this final verdict.
     #[must_use]
     pub fn of(&self, verdict: Verdict) -> u32 {
         self.counts[verdict as usize]
     }
 
-    /// How many tests have their last word.
+    /// Number of tests with a final verdict.
     #[must_use]
     pub fn done(&self) -> u32 {
         self.counts.iter().sum()
     }
 }
 
-/// Everything that reports need to know of a run.
+/// Everything that reports need to know about a run.
 #[derive(Clone, Debug, Default)]
 pub struct Record {
-    /// The first event, once it was seen.
+    /// The first event, once it has arrived.
     pub run: Option<RunStarted>,
-    /// Whether the run came to its end.
+    /// The state of the run.
     pub state: RunState,
-    /// When the last event happened.
+    /// The time of the last event.
     pub last_at: Micros,
-    /// How many events were applied.
+    /// Number of applied events.
     pub events: u64,
     /// The suites, by their ids.
     pub suites: Vec<SuiteRecord>,
@@ -91,26 +91,26 @@ pub struct Record {
     pub hooks: Vec<HookRecord>,
     /// The tests, by their ids.
     pub tests: Vec<TestRecord>,
-    /// What was left at the end and had to be killed, when the runner died.
+    /// The processes that the guard killed after the runner had died.
     pub leaked: Vec<crate::LeakedProcess>,
-    /// What the user should look at.
+    /// Warnings for the user.
     pub warnings: Vec<Diagnostic>,
-    /// Where the journal that this was read from is damaged, up to
-    /// [`Damage::KEPT`] places. What it says of the run cannot be trusted.
+    /// Damaged places of the journal that this was read from, up to
+    /// [`Damage::KEPT`]. A record of a damaged journal cannot be trusted.
     pub damages: Vec<Damage>,
     lean: bool,
 }
 
 impl Record {
-    /// A record that counts what tests report, print, measure and attach, and
-    /// keeps none of it: for those who keep the journal at hand.
+    /// A record that counts messages, output, measurements and attachments, and
+    /// keeps none of them: for readers that keep the journal open.
     #[must_use]
     pub fn lean() -> Self {
         Self { lean: true, ..Self::default() }
     }
 
-    /// Takes in the next event. An event about something that was never
-    /// planned is ignored: [`crate::OrderChecker`] is there to complain.
+    /// Applies the next event. An event about something that was never
+    /// planned is ignored: [`crate::OrderChecker`] reports it.
     pub fn apply(&mut self, event: &Event) {
         self.last_at = event.at;
         self.events += 1;
@@ -122,7 +122,7 @@ impl Record {
                 self.state = RunState::Finished { interrupted: interrupted.clone() };
             }
             EventKind::SuitePlanned(plan) => {
-                if gap::fill(&mut self.suites, plan.suite.index(), gap::suite) {
+                if missing_plans::fill(&mut self.suites, plan.suite.index(), missing_plans::suite) {
                     self.suites.push(SuiteRecord::new(plan.clone()));
                 }
             }
@@ -132,9 +132,9 @@ impl Record {
             }
             EventKind::SuiteFinished { suite } => self.suite(*suite, |s| s.finished = Some(at)),
             EventKind::FixturePlanned(plan) => {
-                let missing = |index| gap::fixture(index, plan.suite);
+                let missing = |index| missing_plans::fixture(index, plan.suite);
                 let known = self.fixtures.len() as u32;
-                if gap::fill(&mut self.fixtures, plan.fixture.index(), missing) {
+                if missing_plans::fill(&mut self.fixtures, plan.fixture.index(), missing) {
                     let ids = (known..=plan.fixture.0).map(FixtureId);
                     self.suite(plan.suite, |s| s.fixtures.extend(ids));
                     self.fixtures.push(FixtureRecord::new(plan.clone()));
@@ -145,18 +145,18 @@ impl Record {
                 self.leaked.extend_from_slice(leaked);
             }
             EventKind::HookPlanned(plan) => {
-                let missing = |index| gap::hook(index, plan.suite);
+                let missing = |index| missing_plans::hook(index, plan.suite);
                 let known = self.hooks.len() as u32;
-                if gap::fill(&mut self.hooks, plan.hook.index(), missing) {
+                if missing_plans::fill(&mut self.hooks, plan.hook.index(), missing) {
                     let ids = (known..=plan.hook.0).map(HookId);
                     self.suite(plan.suite, |s| s.hooks.extend(ids));
                     self.hooks.push(HookRecord::new(plan.clone()));
                 }
             }
             EventKind::TestPlanned(plan) => {
-                let missing = |index| gap::test(index, plan.suite);
+                let missing = |index| missing_plans::test(index, plan.suite);
                 let known = self.tests.len() as u32;
-                if gap::fill(&mut self.tests, plan.test.index(), missing) {
+                if missing_plans::fill(&mut self.tests, plan.test.index(), missing) {
                     let ids = (known..=plan.test.0).map(TestId);
                     self.suite(plan.suite, |s| s.tests.extend(ids));
                     self.tests.push(TestRecord::new(plan.clone()));
@@ -164,14 +164,16 @@ impl Record {
             }
             EventKind::ResourcesMeasured { source: Source::Test(test), usage, tests_served } => {
                 if let Some(suite) = self.suite_of(Source::Test(*test)) {
-                    self.suite(suite, |s| host::uses(&mut s.hosts, *test, *tests_served, *usage));
+                    self.suite(suite, |s| {
+                        host::record_usage(&mut s.hosts, *test, *tests_served, *usage)
+                    });
                 }
             }
             kind => self.apply_to_source(at, kind),
         }
     }
 
-    /// The journal that this is read from is damaged.
+    /// Records damage of the journal that this is read from.
     pub fn add_damage(&mut self, damage: Damage) {
         if self.damages.len() < Damage::KEPT {
             self.damages.push(damage);
@@ -185,7 +187,7 @@ impl Record {
     }
 
     fn apply_to_source(&mut self, at: Micros, kind: &EventKind) {
-        match source::of(kind) {
+        match source::source_of(kind) {
             Some(Source::Test(id)) => {
                 if let Some(test) = self.tests.get_mut(id.index()) {
                     test.apply(at, kind, self.lean);
@@ -211,14 +213,14 @@ impl Record {
         }
     }
 
-    /// Whether the run came to its end, by itself or by request. A run that
+    /// Whether the run finished, by itself or by request. A run that
     /// was killed never does.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         matches!(self.state, RunState::Finished { .. })
     }
 
-    /// The signal or request that cut the run short.
+    /// The signal or request that interrupted the run.
     #[must_use]
     pub fn interrupted(&self) -> Option<&str> {
         match &self.state {
@@ -229,56 +231,56 @@ impl Record {
 
     /// How the runner ended, when it died.
     #[must_use]
-    pub fn died(&self) -> Option<&str> {
+    pub fn runner_death(&self) -> Option<&str> {
         match &self.state {
             RunState::Died { reason } => Some(reason),
             RunState::Running | RunState::Finished { .. } => None,
         }
     }
 
-    /// Whether a hook did not do its work: the robot may not be in a safe state.
+    /// Whether a hook failed: the robot may not be in a safe state.
     #[must_use]
     pub fn hook_failed(&self) -> bool {
         self.failed_hooks().next().is_some()
     }
 
-    /// The hooks of which a run did not do its work.
+    /// The hooks of which at least one run failed.
     pub fn failed_hooks(&self) -> impl Iterator<Item = &HookRecord> {
         self.hooks.iter().filter(|hook| hook.problems().next().is_some())
     }
 
-    /// A test's last word. While the run goes on it is `None` for a test that
-    /// is not over; see [`Record::final_verdict`] for a run that will not go on.
+    /// A test's final verdict. While the run continues, it is `None` for a test that
+    /// has not finished; see [`Record::final_verdict`] for a run that has ended.
     #[must_use]
     pub fn verdict(&self, test: TestId) -> Option<Verdict> {
         self.tests.get(test.index()).and_then(TestRecord::verdict)
     }
 
-    /// A test's last word in a run that will not go on: a test that had begun
+    /// A test's final verdict in a run that has ended: a test that had started
     /// was interrupted, one that had not was skipped.
     #[must_use]
     pub fn final_verdict(&self, test: TestId) -> Verdict {
         self.tests.get(test.index()).map_or(Verdict::Skipped, TestRecord::final_verdict)
     }
 
-    /// How many tests are in which state.
+    /// Number of tests by state.
     #[must_use]
-    pub fn totals(&self) -> Totals {
+    pub fn totals(&self) -> TestTotals {
         totals(self.tests.iter())
     }
 
-    /// How many tests of a suite are in which state.
+    /// Number of tests of a suite by state.
     #[must_use]
-    pub fn suite_totals(&self, suite: SuiteId) -> Totals {
+    pub fn suite_totals(&self, suite: SuiteId) -> TestTotals {
         let tests = self.suites.get(suite.index()).map_or(&[][..], |s| &s.tests);
         totals(tests.iter().filter_map(|id| self.tests.get(id.index())))
     }
 
-    /// How the tests ended in a run that will not go on: none is pending or
-    /// runs, see [`Record::final_verdict`].
+    /// Number of tests by final verdict in a run that has ended: none is pending or
+    /// running, see [`Record::final_verdict`].
     #[must_use]
-    pub fn final_totals(&self) -> Totals {
-        let mut totals = Totals::default();
+    pub fn final_totals(&self) -> TestTotals {
+        let mut totals = TestTotals::default();
         for test in &self.tests {
             totals.planned += 1;
             totals.counts[test.final_verdict() as usize] += 1;
@@ -293,14 +295,14 @@ impl Record {
         self.within(test.plan.suite, &test.plan.name)
     }
 
-    /// Whether suites could run side by side, so that an event may be about
-    /// another suite than the one before.
+    /// Whether suites could run in parallel, so that an event may be about
+    /// another suite than the previous one.
     #[must_use]
-    pub fn is_side_by_side(&self) -> bool {
+    pub fn runs_suites_in_parallel(&self) -> bool {
         self.run.as_ref().is_some_and(|run| run.manifest.jobs.is_some_and(|jobs| jobs > 1))
     }
 
-    /// Whose suite it is.
+    /// The suite that a source belongs to.
     #[must_use]
     pub fn suite_of(&self, source: Source) -> Option<SuiteId> {
         match source {
@@ -310,11 +312,11 @@ impl Record {
         }
     }
 
-    /// A fixture's name, with its suite's where suites run side by side.
+    /// A fixture's name, with its suite's where suites run in parallel.
     #[must_use]
     pub fn fixture_name(&self, fixture: FixtureId) -> String {
         match self.fixture(fixture) {
-            Some(fixture) if self.is_side_by_side() => {
+            Some(fixture) if self.runs_suites_in_parallel() => {
                 self.within(fixture.plan.suite, &fixture.plan.name)
             }
             Some(fixture) => fixture.plan.name.clone(),
@@ -336,7 +338,7 @@ impl Record {
         }
     }
 
-    /// What went wrong in a suite beside its tests, in words: fixtures that
+    /// The problems of a suite apart from its tests: fixtures that
     /// collapsed, broke, or could not be torn down, and hooks that failed.
     #[must_use]
     pub fn suite_problems(&self, suite: SuiteId) -> Vec<String> {
@@ -347,7 +349,7 @@ impl Record {
         problems
     }
 
-    /// What went wrong with the fixtures of a suite, in words.
+    /// The problems of a suite's fixtures.
     #[must_use]
     pub fn fixture_problems(&self, suite: SuiteId) -> Vec<String> {
         let Some(suite) = self.suites.get(suite.index()) else { return Vec::new() };
@@ -356,9 +358,9 @@ impl Record {
         fixtures.flat_map(|fixture| fixture.problems(tolerant)).collect()
     }
 
-    /// Whether nothing at all speaks against the robot or the bench: the run
-    /// came to its end, has tests, each of them passed, no fixture or hook failed,
-    /// and what is known of it comes from a journal without damage.
+    /// Whether there is no problem with the robot or the bench: the run
+    /// finished, has tests, each of them passed, no fixture or hook failed,
+    /// and its journal is not damaged.
     #[must_use]
     pub fn is_green(&self) -> bool {
         !self.is_damaged()
@@ -369,7 +371,7 @@ impl Record {
             && self.suites.iter().all(|s| self.suite_problems(s.plan.suite).is_empty())
     }
 
-    /// Whether a test that passed only when it was tried again counts as failed.
+    /// Whether a test that passed only after a retry counts as failed.
     #[must_use]
     pub fn flaky_fails(&self) -> bool {
         self.run.as_ref().is_some_and(|run| run.manifest.flaky_fails)
@@ -382,8 +384,8 @@ impl Record {
     }
 }
 
-fn totals<'a>(tests: impl Iterator<Item = &'a TestRecord>) -> Totals {
-    let mut totals = Totals::default();
+fn totals<'a>(tests: impl Iterator<Item = &'a TestRecord>) -> TestTotals {
+    let mut totals = TestTotals::default();
     for test in tests {
         totals.planned += 1;
         match test.verdict() {

@@ -1,9 +1,9 @@
-//! Whose event an event is.
+//! The test, fixture or hook that an event belongs to.
 
 use crate::{EventKind, Source};
 
-/// Whose event it is, for the events that belong to a test, a fixture or a hook.
-pub(crate) fn of(kind: &EventKind) -> Option<Source> {
+/// The source of an event, for events of a test, a fixture or a hook.
+pub(crate) fn source_of(kind: &EventKind) -> Option<Source> {
     match kind {
         EventKind::FixtureStarting { fixture, .. }
         | EventKind::FixtureReady { fixture }

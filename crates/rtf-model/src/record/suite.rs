@@ -1,9 +1,9 @@
-//! What is known of one suite.
+//! The state of one suite.
 
 use super::host::{self, HostRecord};
 use crate::{FixtureId, Growth, HookId, Micros, SuitePlanned, SuitePrepared, TestId};
 
-/// What is known of one suite.
+/// The state of one suite.
 #[derive(Clone, Debug)]
 pub struct SuiteRecord {
     /// How it was planned.
@@ -14,13 +14,13 @@ pub struct SuiteRecord {
     pub hooks: Vec<HookId>,
     /// Its tests, in the order of the plan.
     pub tests: Vec<TestId>,
-    /// The hosts that its tests shared, the oldest first; known when tests are repeated.
+    /// The shared hosts, the oldest first; recorded when tests are repeated.
     pub hosts: Vec<HostRecord>,
-    /// What it got for itself, if anything.
+    /// Its private network, ports and variables, if it has any.
     pub prepared: Option<SuitePrepared>,
     /// When it started.
     pub started: Option<Micros>,
-    /// When it ended.
+    /// When it finished.
     pub finished: Option<Micros>,
 }
 
@@ -38,8 +38,8 @@ impl SuiteRecord {
         }
     }
 
-    /// The shared hosts that used more and more, and what; of those that served the
-    /// same tests, the one that was measured most.
+    /// The shared hosts whose resources grew. Of several hosts that served the
+    /// same tests, the one with the most measurements counts.
     #[must_use]
     pub fn growing_hosts(&self) -> Vec<(&HostRecord, Vec<Growth>)> {
         host::growing(&self.hosts)

@@ -1,28 +1,28 @@
-//! What is known of one test and of each of its attempts.
+//! The state of one test and of each of its attempts.
 
 use std::time::Duration;
 
-use super::counts::{Counts, is_detail};
-use super::series::Series;
+use super::counts::{AttemptCounts, is_detail};
+use super::signal::SignalSummary;
 use crate::{
     Attachment, EventKind, LeakedProcess, Measurement, Message, MessageKind, Micros, Phase,
     TestFinished, TestPlanned, Verdict,
 };
 
-/// What is known of one test.
+/// The state of one test.
 #[derive(Clone, Debug)]
 pub struct TestRecord {
     /// How it was planned.
     pub plan: TestPlanned,
     /// Its attempts, the oldest first.
     pub attempts: Vec<AttemptRecord>,
-    /// Why it (or what is left of its repetitions) was not started.
+    /// Why it (or the rest of its repetitions) was not started.
     pub skipped: Option<String>,
-    /// Whether it may be repeated again: how often is not known yet.
-    open: bool,
+    /// Whether more repetitions may follow: their number is not known yet.
+    is_open_ended: bool,
 }
 
-/// What is known of one attempt of a test.
+/// The state of one attempt of a test.
 #[derive(Clone, Debug)]
 pub struct AttemptRecord {
     /// The repetition, from 1.
@@ -31,27 +31,27 @@ pub struct AttemptRecord {
     pub attempt: u32,
     /// When it started.
     pub started: Micros,
-    /// The phases it entered, and when.
+    /// The phases that it entered, with their times.
     pub phases: Vec<(Phase, Micros)>,
-    /// Its end: when, and the judgement.
+    /// When it finished, and its result.
     pub finished: Option<(Micros, TestFinished)>,
-    /// What it reported, up to [`AttemptRecord::MESSAGES_KEPT`] of each kind.
+    /// Its messages, up to [`AttemptRecord::MESSAGES_KEPT`] of each kind.
     pub messages: Vec<Message>,
-    /// How many messages were counted and not kept; the journal has them.
+    /// Number of messages that were counted and not kept; the journal has them.
     pub messages_omitted: u64,
-    /// How much there was of everything, kept or not.
-    pub counts: Counts,
-    /// What it measured.
+    /// How much it reported, kept or not.
+    pub counts: AttemptCounts,
+    /// Its measurements.
     pub measurements: Vec<Measurement>,
     /// The signals that it sampled.
-    pub series: Vec<Series>,
-    /// What it attached.
+    pub series: Vec<SignalSummary>,
+    /// Its attachments.
     pub attachments: Vec<Attachment>,
-    /// What it printed; dropped when it passed, the journal has it.
+    /// Its output; dropped when it passed, the journal has it.
     pub output: String,
-    /// Where it was before it was stopped by force.
+    /// Stack dumps from before it was killed.
     pub stacks: Vec<String>,
-    /// Processes of it that had to be killed.
+    /// Its processes that had to be killed.
     pub leaked: Vec<LeakedProcess>,
     /// Whether it took longer than its `slow` limit.
     pub slow: bool,
@@ -61,7 +61,7 @@ pub struct AttemptRecord {
 
 impl TestRecord {
     pub(super) fn new(plan: TestPlanned) -> Self {
-        Self { open: plan.timed, plan, attempts: Vec::new(), skipped: None }
+        Self { is_open_ended: plan.timed, plan, attempts: Vec::new(), skipped: None }
     }
 
     /// `lean`: see [`super::Record::lean`].
@@ -74,7 +74,7 @@ impl TestRecord {
             EventKind::TestSkipped { reason, .. } => self.skipped = Some(reason.clone()),
             EventKind::TestRepeated { repetitions, .. } => {
                 self.plan.repetitions = *repetitions;
-                self.open = false;
+                self.is_open_ended = false;
             }
             kind => {
                 if let Some(attempt) = self.attempts.last_mut() {
@@ -84,13 +84,13 @@ impl TestRecord {
         }
     }
 
-    /// How many repetitions there are; `None` while nobody knows.
+    /// The number of repetitions; `None` while it is not known.
     #[must_use]
     pub fn repetitions(&self) -> Option<u32> {
-        (!self.open).then_some(self.plan.repetitions)
+        (!self.is_open_ended).then_some(self.plan.repetitions)
     }
 
-    /// Whether an attempt runs now.
+    /// Whether an attempt is running.
     #[must_use]
     pub fn is_running(&self) -> bool {
         self.attempts.last().is_some_and(|attempt| attempt.finished.is_none())
@@ -104,8 +104,8 @@ impl TestRecord {
         })
     }
 
-    /// The attempt that explains the verdict: the first that counts and did
-    /// not pass, or else the last.
+    /// The attempt that explains the verdict: the first deciding attempt that did
+    /// not pass, or the last attempt.
     #[must_use]
     pub fn decisive_attempt(&self) -> Option<&AttemptRecord> {
         self.deciding_attempts()
@@ -113,7 +113,7 @@ impl TestRecord {
             .or(self.attempts.last())
     }
 
-    /// The last word, `None` while there is none.
+    /// The final verdict, `None` until it is known.
     #[must_use]
     pub fn verdict(&self) -> Option<Verdict> {
         let failed =
@@ -123,13 +123,13 @@ impl TestRecord {
         }
         let last = self.attempts.last()?;
         let (_, finished) = last.finished.as_ref()?;
-        if finished.rerun || self.open || last.repetition < self.plan.repetitions {
+        if finished.rerun || self.is_open_ended || last.repetition < self.plan.repetitions {
             return None;
         }
         Some(failed().unwrap_or(Verdict::Passed))
     }
 
-    /// The last word when nothing more will come.
+    /// The final verdict in a run that has ended, see [`super::Record::final_verdict`].
     #[must_use]
     pub fn final_verdict(&self) -> Verdict {
         self.verdict().unwrap_or(if self.attempts.is_empty() {
@@ -139,8 +139,8 @@ impl TestRecord {
         })
     }
 
-    /// Whether it passed, but not at the first attempt: one before it failed. (An
-    /// attempt that a collapse ended says nothing of the test.)
+    /// Whether it passed after an earlier attempt had failed. (An
+    /// attempt that ended with a collapse is no evidence against the test.)
     #[must_use]
     pub fn is_flaky(&self) -> bool {
         use Verdict::{Crashed, Error, Failed, TimedOut};
@@ -149,7 +149,7 @@ impl TestRecord {
             && self.attempts.iter().filter_map(AttemptRecord::verdict).any(fails)
     }
 
-    /// Why it did not pass, in words.
+    /// Why it did not pass.
     #[must_use]
     pub fn reason(&self) -> Option<&str> {
         let finished = self.decisive_attempt().and_then(|a| a.finished.as_ref());
@@ -157,7 +157,7 @@ impl TestRecord {
         failed.and_then(|(_, finished)| finished.reason.as_deref()).or(self.skipped.as_deref())
     }
 
-    /// The time spent in all attempts that were judged.
+    /// The total duration of all judged attempts.
     #[must_use]
     pub fn duration(&self) -> Duration {
         self.attempts.iter().filter_map(AttemptRecord::duration).sum()
@@ -165,7 +165,7 @@ impl TestRecord {
 }
 
 impl AttemptRecord {
-    /// How many messages of each kind are kept in memory.
+    /// Maximum number of messages of each kind that are kept in memory.
     pub const MESSAGES_KEPT: u32 = 1000;
 
     fn new(repetition: u32, attempt: u32, started: Micros) -> Self {
@@ -177,7 +177,7 @@ impl AttemptRecord {
             finished: None,
             messages: Vec::new(),
             messages_omitted: 0,
-            counts: Counts::default(),
+            counts: AttemptCounts::default(),
             measurements: Vec::new(),
             series: Vec::new(),
             attachments: Vec::new(),
@@ -195,10 +195,10 @@ impl AttemptRecord {
         match kind {
             _ if self.lean && is_detail(kind) => {}
             EventKind::TestPhase { phase, .. } => self.phases.push((*phase, at)),
-            EventKind::Message { message, .. } => self.keep(message),
+            EventKind::Message { message, .. } => self.keep_message(message),
             EventKind::Measured { measurement, .. } => self.measurements.push(measurement.clone()),
             EventKind::Sampled { samples, .. } => {
-                Series::extend_one_of(&mut self.series, samples);
+                SignalSummary::extend_one_of(&mut self.series, samples);
             }
             EventKind::Attached { attachment, .. } => self.attachments.push(attachment.clone()),
             EventKind::Output(output) => {
@@ -217,7 +217,7 @@ impl AttemptRecord {
         }
     }
 
-    fn keep(&mut self, message: &Message) {
+    fn keep_message(&mut self, message: &Message) {
         let kept = &mut self.kept[match message.kind {
             MessageKind::Report => 0,
             MessageKind::Check => 1,
@@ -241,17 +241,17 @@ impl AttemptRecord {
         self.finished = Some((at, finished.clone()));
     }
 
-    /// The judgement, `None` while it runs.
+    /// The verdict, `None` while it runs.
     #[must_use]
     pub fn verdict(&self) -> Option<Verdict> {
         self.finished.as_ref().map(|(_, finished)| finished.verdict)
     }
 
-    /// How long it took until it was judged, `None` while it runs.
+    /// Its duration until it was judged, `None` while it runs.
     #[must_use]
     pub fn duration(&self) -> Option<Duration> {
-        let noticed = self.phases.iter().find(|(phase, _)| *phase == Phase::Notify);
-        let judged = noticed.map(|(_, at)| *at).or(self.finished.as_ref().map(|(at, _)| *at));
+        let notified = self.phases.iter().find(|(phase, _)| *phase == Phase::Notify);
+        let judged = notified.map(|(_, at)| *at).or(self.finished.as_ref().map(|(at, _)| *at));
         judged.map(|at| at.since(self.started))
     }
 

@@ -170,14 +170,14 @@ fn a_hook_keeps_what_explains_its_failure() {
 }
 
 fn owners(record: &Record) -> Vec<(i32, Option<String>)> {
-    record.left_behind().into_iter().map(|process| (process.pid, process.owner)).collect()
+    record.leaked_processes().into_iter().map(|process| (process.pid, process.owner)).collect()
 }
 
 #[test]
 fn a_run_whose_runner_died_is_over_but_not_complete() {
     let record = record(dying([started(1, 1), finished(Verdict::Passed)]));
     assert!(!record.is_complete() && !record.is_green());
-    assert_eq!(record.died(), Some("signal 9 (SIGKILL)"));
+    assert_eq!(record.runner_death(), Some("signal 9 (SIGKILL)"));
     assert_eq!(record.interrupted(), None);
     assert_eq!(owners(&record), [(7, Some("test suite-0/test-0".to_owned()))]);
     assert!(!record.hook_failed(), "no hook was called for");

@@ -1,6 +1,6 @@
 //! Streams of events: which are legal, and what is known after them.
 
-mod beside;
+mod concurrency;
 mod hooks;
 mod order;
 mod record;

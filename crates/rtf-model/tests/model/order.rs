@@ -319,7 +319,7 @@ fn suites_may_run_side_by_side() {
     let starts = || vec![both(first), both(second)];
     let legal = [
         starts(),
-        // Each is prepared before anything of its own.
+        // Each is prepared before its other events.
         vec![prepared(1), prepared(0)],
         test().to_vec(),
         vec![skipped(1), end(second), end(first)],

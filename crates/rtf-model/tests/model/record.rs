@@ -250,9 +250,9 @@ fn a_measurement_is_rounded_unless_it_is_outside_its_limits() {
         high: Some(high),
         location: None,
     };
-    let shown = measured(14.993_230_922_134_464, 20.0).for_people();
+    let shown = measured(14.993_230_922_134_464, 20.0).for_display();
     assert_eq!(shown, ("14.9932 deg".to_owned(), "13 … 20".to_owned()));
-    let shown = measured(20.000_000_1, 20.0).for_people();
+    let shown = measured(20.000_000_1, 20.0).for_display();
     assert_eq!(shown, ("20.0000001 deg".to_owned(), "12.999999999999998 … 20".to_owned()));
     assert_eq!(rtf_model::format_rounded(-2.345_678_9e-7), "-2.34568e-7");
     assert_eq!(rtf_model::format_rounded(1e308), "1e308");

@@ -1,7 +1,7 @@
 //! Signals over time: what is counted of them, and the curve that is kept.
 
 use proptest::prelude::*;
-use rtf_model::{Curve, EventKind, Phase, Record, Samples, Series};
+use rtf_model::{EventKind, Phase, Record, Samples, SignalOutline, SignalSummary};
 
 use crate::support::{SUITE, TEST, run_started, stream, suite, test};
 
@@ -51,7 +51,7 @@ fn a_record_keeps_a_signal_in_numbers() {
     assert_eq!((series.count, series.outside, series.span), (4, 2, (0.0, 2.0)));
     assert_eq!((series.min, series.mean, series.max), (Some(-0.5), Some(0.5), Some(1.5)));
     assert_eq!(series.last, Some(-0.5));
-    assert_eq!(series.in_numbers(), "4 samples in 2 s, -0.5 … 1.5 rad, mean 0.5 rad");
+    assert_eq!(series.summary(), "4 samples in 2 s, -0.5 … 1.5 rad, mean 0.5 rad");
     let problem = series.problem.as_deref();
     assert_eq!(problem, Some("`elbow` is 1.5 rad at 0.5 s, its limits are ≤ 1"));
     assert_eq!((attempt.counts.samples, attempt.counts.violations), (4, 2));
@@ -70,25 +70,25 @@ proptest! {
         let points: Vec<_> =
             values.iter().enumerate().map(|(n, value)| (n as f64, Some(*value))).collect();
         let all = elbow(Some(900.0), &points);
-        let (mut curve, mut at_once) = (Curve::default(), Curve::default());
+        let (mut curve, mut at_once) = (SignalOutline::default(), SignalOutline::default());
         at_once.extend(&all);
         let mut batches = points.chunks(size).map(|part| elbow(Some(900.0), part));
         let first = batches.next().unwrap();
-        let mut series = Series::new(&first);
+        let mut series = SignalSummary::new(&first);
         curve.extend(&first);
         for batch in batches {
             series.extend(&batch);
             curve.extend(&batch);
         }
-        prop_assert_eq!(&series, &Series::new(&all));
+        prop_assert_eq!(&series, &SignalSummary::new(&all));
         let drawn = curve.points();
         prop_assert_eq!(&drawn, &at_once.points());
-        prop_assert!(drawn.len() <= 2 * Curve::STRETCHES);
+        prop_assert!(drawn.len() <= 2 * SignalOutline::STRETCHES);
         prop_assert!(drawn.windows(2).all(|pair| pair[0].0 < pair[1].0));
         for extreme in [series.min, series.max] {
             prop_assert!(drawn.iter().any(|(_, value)| Some(*value) == extreme));
         }
-        if values.len() <= Curve::STRETCHES {
+        if values.len() <= SignalOutline::STRETCHES {
             prop_assert_eq!(drawn.len(), values.len());
         }
     }

@@ -1,7 +1,7 @@
 //! What is told of hooks: each when it ends, and at the end of the run those
 //! after which the robot may not be in a safe state.
 
-use rtf_model::{HookId, HookRun, Record};
+use rtf_model::{HookId, HookRunRecord, Record};
 
 use super::live::{self, EXTENT};
 use super::page::Page;
@@ -28,11 +28,16 @@ pub(super) fn finished(page: &mut Page, options: &ConsoleOptions, record: &Recor
 }
 
 /// `arm/park (collapse)`.
-fn title(record: &Record, id: HookId, run: &HookRun) -> String {
+fn title(record: &Record, id: HookId, run: &HookRunRecord) -> String {
     format!("{} ({})", escape::line(&record.full_hook_name(id)), run.trigger)
 }
 
-fn failed(page: &mut Page, options: &ConsoleOptions, record: &Record, which: (HookId, &HookRun)) {
+fn failed(
+    page: &mut Page,
+    options: &ConsoleOptions,
+    record: &Record,
+    which: (HookId, &HookRunRecord),
+) {
     let (id, run) = which;
     let sink = &mut |tone, line: &str| page.detail(tone, line);
     explain::hook(run, EXTENT, sink);

@@ -142,7 +142,7 @@ impl Live<'_> {
         if !suite.plan.file.is_empty() {
             line += &format!("  {}", style::paint(DIM, &escape::line(&suite.plan.file)));
         }
-        if self.record.is_side_by_side() {
+        if self.record.runs_suites_in_parallel() {
             // What follows is not only this suite's: it is no heading.
             return page.remark((DIM, "begin"), &line);
         }
@@ -152,7 +152,7 @@ impl Live<'_> {
     /// The end of a suite, where it is not where another one begins.
     fn suite_over(&self, page: &mut Page, id: SuiteId) {
         let Some(suite) = self.record.suites.get(id.index()) else { return };
-        if self.record.is_side_by_side() {
+        if self.record.runs_suites_in_parallel() {
             let took = suite.started.zip(suite.finished).map(|(start, end)| end.since(start));
             let time = words::time(took.unwrap_or_default());
             page.entry((DIM, "end"), &time, &format!("suite {}", escape::line(&suite.plan.name)));
@@ -164,7 +164,7 @@ impl Live<'_> {
         let all = self.options.verbosity == Verbosity::Verbose;
         let kept = prepared.variables.iter().any(|variable| variable.inherited);
         let suite = match self.record.suites.get(prepared.suite.index()) {
-            Some(suite) if self.record.is_side_by_side() => {
+            Some(suite) if self.record.runs_suites_in_parallel() => {
                 format!("suite {}", escape::line(&suite.plan.name))
             }
             _ => "the suite".to_owned(),
@@ -181,7 +181,8 @@ impl Live<'_> {
             page.detail(Tone::Dim, &how);
         }
         if kept && !all {
-            let whose = if self.record.is_side_by_side() { suite + ": " } else { String::new() };
+            let whose =
+                if self.record.runs_suites_in_parallel() { suite + ": " } else { String::new() };
             page.remark((LOUD, "kept"), &(whose + &prepared::kept(prepared)));
         }
     }

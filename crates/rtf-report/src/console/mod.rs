@@ -2,7 +2,7 @@
 //!
 //! The lines go to standard output: they are what `rtf run` is asked for. The
 //! progress bar goes to standard error, and only to a terminal. While a run goes on,
-//! both are written by the thread of an [`Outlet`]; when it cannot write as fast as
+//! both are written by the thread of an [`BackgroundWriter`]; when it cannot write as fast as
 //! messages come, the console leaves out detail, and says how much.
 
 mod hooks;
@@ -22,10 +22,10 @@ use rtf_model::{Event, Micros, Record};
 
 pub(crate) use progress::{Bar, BarState};
 
-pub use options::{ConsoleOptions, Rerun, Verbosity, rerun_suite};
+pub use options::{ConsoleOptions, RerunCommand, Verbosity, rerun_suite};
 
-use crate::outlet::Outlet;
-use crate::{ReportError, Reporter, reader_left, words};
+use crate::background_writer::BackgroundWriter;
+use crate::{ReportError, Reporter, is_disconnect, words};
 use page::Page;
 use progress::Progress;
 use verbose::Verbose;
@@ -41,7 +41,7 @@ pub struct Console {
     options: ConsoleOptions,
     out: Box<dyn Write + Send>,
     /// Where `out` leads to, when that is a thread of its own.
-    outlet: Option<Outlet>,
+    outlet: Option<BackgroundWriter>,
     bar: Bar,
     page: Page,
     written: Micros,
@@ -61,7 +61,7 @@ impl Console {
 
     /// Writes to an outlet of standard output, for a run that must not wait.
     #[must_use]
-    pub fn over(outlet: &Outlet, options: ConsoleOptions) -> Self {
+    pub fn over(outlet: &BackgroundWriter, options: ConsoleOptions) -> Self {
         let out: Box<dyn Write + Send> = Box::new(outlet.clone());
         let choice = anstream::AutoStream::choice(&std::io::stdout());
         let out = Box::new(anstream::AutoStream::new(out, choice));
@@ -101,7 +101,7 @@ impl Console {
     }
 
     fn judge(&mut self, written: std::io::Result<()>) -> Result<(), ReportError> {
-        if written.as_ref().is_err_and(reader_left) {
+        if written.as_ref().is_err_and(is_disconnect) {
             // Whoever read along (`head`, a pager) has seen enough: the run goes
             // on, and its exit code stays about the tests.
             self.out = Box::new(std::io::sink());
@@ -119,7 +119,7 @@ impl Console {
 
     /// Shows an event in all detail, unless too much waits to be written.
     fn show_verbose(&mut self, event: &Event, record: &Record) {
-        if self.outlet.as_ref().is_some_and(Outlet::is_full)
+        if self.outlet.as_ref().is_some_and(BackgroundWriter::is_full)
             && let Some(lines) = self.verbose.skip(event)
         {
             self.left_out += lines;

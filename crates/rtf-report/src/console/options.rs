@@ -19,7 +19,7 @@ pub enum Verbosity {
 }
 
 /// Returns the command that runs a test again, `None` when there is none.
-pub type Rerun = Box<dyn Fn(&Record, TestId) -> Option<String> + Send>;
+pub type RerunCommand = Box<dyn Fn(&Record, TestId) -> Option<String> + Send>;
 
 /// How the console behaves.
 pub struct ConsoleOptions {
@@ -31,7 +31,7 @@ pub struct ConsoleOptions {
     /// Whether a progress bar is shown where standard error is a terminal.
     pub progress: bool,
     /// Which command runs a failed test again.
-    pub rerun: Rerun,
+    pub rerun: RerunCommand,
 }
 
 impl ConsoleOptions {

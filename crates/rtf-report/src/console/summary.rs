@@ -202,7 +202,7 @@ fn grow(page: &mut Page, title: &str, growing: Vec<Growing>) {
 
 /// Everything that had to be killed, whoever left it.
 fn killed(page: &mut Page, record: &Record) {
-    let left = record.left_behind();
+    let left = record.leaked_processes();
     if left.is_empty() {
         return;
     }
@@ -246,7 +246,7 @@ fn outcome(record: &Record) -> (Style, String) {
     }
     let word = if record.is_damaged() {
         "DAMAGED (the journal cannot be trusted)".to_owned()
-    } else if let Some(reason) = record.died() {
+    } else if let Some(reason) = record.runner_death() {
         format!("INCOMPLETE (the runner died: {})", escape::line(reason))
     } else if !record.is_complete() {
         "INCOMPLETE (the runner did not reach the end)".to_owned()

@@ -3,7 +3,7 @@
 //! those who follow it.
 
 use rtf_model::{
-    Checked, Damage, EVENTS_VERSION, Event, EventKind, LineCheck, LineChecker, Record, RunState,
+    Damage, EVENTS_VERSION, Event, EventCheck, EventKind, LineCheck, LineChecker, Record, RunState,
     StreamChecker,
 };
 
@@ -55,7 +55,7 @@ impl JournalLines {
         {
             return Err(NewerVersion { found: run.version });
         }
-        let Checked { is_new, problem } = self.stream.check(&event, is_trusted);
+        let EventCheck { is_new, problem } = self.stream.check(&event, is_trusted);
         if let Some(problem) = problem.or_else(|| wrong(check)) {
             self.damage(record, problem);
         }

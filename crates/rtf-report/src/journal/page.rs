@@ -43,7 +43,7 @@ impl Page {
             }
         };
         let line = &mut self.bytes[self.used..];
-        let end = self.sealer.end_of(&line[..length]);
+        let end = self.sealer.line_end(&line[..length]);
         line[length - 1..][..end.len()].copy_from_slice(&end);
         self.used += length - 1 + end.len();
         Ok(())

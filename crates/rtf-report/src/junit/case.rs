@@ -161,7 +161,7 @@ fn properties(case: &mut TestCase, test: &TestRecord) {
     let series = test.deciding_attempts().flat_map(|attempt| &attempt.series);
     for series in series.take(MEASUREMENTS) {
         let name = text(&format!("series.{}", series.name));
-        case.add_property((name, text(&series.in_numbers())));
+        case.add_property((name, text(&series.summary())));
     }
 }
 

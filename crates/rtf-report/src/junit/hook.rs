@@ -1,7 +1,7 @@
 //! A run of a hook as a JUnit case.
 
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus};
-use rtf_model::{HookRecord, HookRun, Record};
+use rtf_model::{HookRecord, HookRunRecord, Record};
 
 use super::{text, time};
 use crate::explain::{self, Extent};
@@ -20,7 +20,7 @@ pub(super) fn of(record: &Record, hook: &HookRecord) -> impl Iterator<Item = Tes
     })
 }
 
-fn case(record: &Record, hook: &HookRecord, (name, run): (String, &HookRun)) -> TestCase {
+fn case(record: &Record, hook: &HookRecord, (name, run): (String, &HookRunRecord)) -> TestCase {
     let mut case = TestCase::new(text(&name), status(run));
     let suite = record.suites.get(hook.plan.suite.index()).map_or("", |s| &s.plan.name);
     case.set_classname(text(suite));
@@ -37,7 +37,7 @@ fn case(record: &Record, hook: &HookRecord, (name, run): (String, &HookRun)) -> 
     case
 }
 
-fn status(run: &HookRun) -> TestCaseStatus {
+fn status(run: &HookRunRecord) -> TestCaseStatus {
     let Some(problem) = run.problem() else { return TestCaseStatus::success() };
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
     status.set_message(text(problem.lines().next().unwrap_or_default()));

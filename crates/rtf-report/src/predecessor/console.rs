@@ -8,8 +8,8 @@ use rtf_model::{Event, EventKind, Output, Record};
 
 use super::lines::{self, Line, Word};
 use super::summary;
-use crate::outlet::Outlet;
-use crate::{ReportError, Reporter, escape, reader_left};
+use crate::background_writer::BackgroundWriter;
+use crate::{ReportError, Reporter, escape, is_disconnect};
 
 /// Lines are written at the latest when so many bytes wait.
 const PAGE: usize = 16 * 1024;
@@ -30,7 +30,7 @@ pub struct Console {
     options: ConsoleOptions,
     out: Box<dyn Write + Send>,
     /// Where `out` leads to, when that is a thread of its own.
-    outlet: Option<Outlet>,
+    outlet: Option<BackgroundWriter>,
     /// How many lines were left out, and not told of.
     left_out: usize,
     page: String,
@@ -47,7 +47,7 @@ impl Console {
 
     /// Writes to an outlet of standard output, for a run that must not wait.
     #[must_use]
-    pub fn over(outlet: &Outlet, options: ConsoleOptions) -> Self {
+    pub fn over(outlet: &BackgroundWriter, options: ConsoleOptions) -> Self {
         let out: Box<dyn Write + Send> = Box::new(outlet.clone());
         let choice = anstream::AutoStream::choice(&std::io::stdout());
         let out = Box::new(anstream::AutoStream::new(out, choice));
@@ -63,7 +63,7 @@ impl Console {
 
     /// Whether detail is left out now, because too much waits to be written.
     fn leaves_out(&mut self, lines: usize) -> bool {
-        let is_full = self.outlet.as_ref().is_some_and(Outlet::is_full);
+        let is_full = self.outlet.as_ref().is_some_and(BackgroundWriter::is_full);
         if is_full {
             self.left_out += lines;
         } else {
@@ -130,7 +130,7 @@ impl Console {
     }
 
     fn judge(&mut self, written: std::io::Result<()>) -> Result<(), ReportError> {
-        if written.as_ref().is_err_and(reader_left) {
+        if written.as_ref().is_err_and(is_disconnect) {
             // Who read along has seen enough; the exit code stays about the tests.
             self.out = Box::new(std::io::sink());
             return Ok(());

@@ -1,6 +1,6 @@
 //! What the text report tells of a hook.
 
-use rtf_model::{HookRecord, HookRun, Record, Trigger};
+use rtf_model::{HookRecord, HookRunRecord, Record, Trigger};
 
 use super::lines::Lines;
 use crate::explain::{self, Extent};
@@ -18,7 +18,7 @@ pub(super) fn show(lines: &mut Lines, record: &Record, hook: &HookRecord) {
     }
 }
 
-fn show_run(lines: &mut Lines, record: &Record, (number, run): (usize, &HookRun)) {
+fn show_run(lines: &mut Lines, record: &Record, (number, run): (usize, &HookRunRecord)) {
     let how = match (run.problem().is_some(), run.duration()) {
         (_, None) => "it did not end".to_owned(),
         (false, Some(took)) => format!("done after {}", words::time(took)),

@@ -129,12 +129,12 @@ fn result(lines: &mut Lines, record: &Record) {
     if let Some(reason) = record.interrupted() {
         lines.fact(0, "interrupted", reason);
     }
-    if let Some(reason) = record.died() {
+    if let Some(reason) = record.runner_death() {
         lines.fact(0, "incomplete: the runner died", reason);
     } else if !record.is_complete() {
         lines.at(0, "incomplete: the runner did not reach the end of this run");
     }
-    let left = record.left_behind();
+    let left = record.leaked_processes();
     if !left.is_empty() {
         lines.at(0, "left behind and killed:");
         left.iter().for_each(|process| lines.at(2, &explain::process(process)));

@@ -128,7 +128,7 @@ fn what_the_guard_adds_to_a_torn_journal_is_read() {
     );
     let stored = read(whole.to_owned() + &end).unwrap();
     assert!(!stored.torn && stored.record.damages.is_empty(), "{:?}", stored.record.damages);
-    assert_eq!(stored.record.died(), Some("signal 9 (SIGKILL)"));
+    assert_eq!(stored.record.runner_death(), Some("signal 9 (SIGKILL)"));
     assert!(!stored.record.is_complete() && !stored.record.is_green());
     assert_eq!(stored.record.final_verdict(TestId(1)), Verdict::Interrupted);
 }

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a helper that cannot go on fails its test")]
 
+mod background_writer;
 mod console;
 mod fanout;
 mod hosts;
@@ -11,7 +12,6 @@ mod logs;
 mod merge;
 mod mutate;
 mod mutations;
-mod outlet;
 mod predecessor;
 mod streams;
 mod support;

@@ -94,7 +94,7 @@ proptest! {
         let apart: BTreeMap<_, _> = parts.iter().flat_map(|events| facts(&record(events))).collect();
         let merged = merged(parts).unwrap();
         prop_assert_eq!(facts(&merged), apart);
-        prop_assert_eq!(merged.died().is_some(), killed);
+        prop_assert_eq!(merged.runner_death().is_some(), killed);
         prop_assert!(!(killed && merged.is_green()));
     }
 }

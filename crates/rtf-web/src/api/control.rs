@@ -14,9 +14,9 @@ use super::asked::At;
 use super::parts::entry;
 use super::problems::ChangeProblems;
 use crate::app::{App, JsonText};
+use crate::capabilities::{Capabilities, FinishedRun, RerunRejected, RunControl, RunStarter};
 use crate::index::Index;
 use crate::problem::Problem;
-use crate::role::{Control, NotStarted, Past, Role, Starter};
 use crate::runs::{Run, Runs};
 
 /// The request was passed on; what comes of it is seen in the events.
@@ -45,14 +45,14 @@ fn accepted<T: Serialize>(body: &T) -> Answer {
 async fn act(
     app: App,
     run: String,
-    act: impl FnOnce(&dyn Control, &Index) -> Result<(), Problem> + Send + 'static,
+    act: impl FnOnce(&dyn RunControl, &Index) -> Result<(), Problem> + Send + 'static,
 ) -> Answer {
     let role = app.role.clone();
     app.with_run(run, move |run| {
         let control = match &role {
-            Role::Makes(own, control) if *own == run.name => control,
-            Role::Makes(..) => return Err(foreign()),
-            Role::Shows(_) => {
+            Capabilities::Runner(own, control) if *own == run.name => control,
+            Capabilities::Runner(..) => return Err(foreign()),
+            Capabilities::Viewer(_) => {
                 return Err(Problem::conflict("only the whole run can be stopped here")
                     .hint("`rtf run --web` stops tests and suites of its run, one by one"));
             }
@@ -80,8 +80,8 @@ fn over() -> Problem {
 #[utoipa::path(post, path = "/runs/{run}/stop", tag = "control", params(("run" = String, Path)),
     responses((status = 202, body = Accepted), ChangeProblems))]
 pub async fn stop_run(State(app): State<App>, At(run): At<String>) -> Answer {
-    let Role::Shows(starter) = app.role.clone() else {
-        let stop = |control: &dyn Control, _: &Index| {
+    let Capabilities::Viewer(starter) = app.role.clone() else {
+        let stop = |control: &dyn RunControl, _: &Index| {
             control.stop_run();
             Ok(())
         };
@@ -133,14 +133,16 @@ pub async fn skip_suite(State(app): State<App>, At((run, suite)): At<(String, u3
 pub async fn rerun(State(app): State<App>, At(run): At<String>) -> Answer {
     let (role, runs) = (app.role.clone(), app.runs.clone());
     app.with_run(run, move |run| match role {
-        Role::Shows(starter) => start(run, &runs, &*starter),
-        Role::Makes(..) => Err(Problem::conflict("this server makes one run, and no other")
-            .hint("`rtf serve` runs failed tests again")),
+        Capabilities::Viewer(starter) => start(run, &runs, &*starter),
+        Capabilities::Runner(..) => {
+            Err(Problem::conflict("this server makes one run, and no other")
+                .hint("`rtf serve` runs failed tests again"))
+        }
     })
     .await
 }
 
-fn start(run: &Run, runs: &Runs, starter: &dyn Starter) -> Answer {
+fn start(run: &Run, runs: &Runs, starter: &dyn RunStarter) -> Answer {
     let folder = {
         let index = run.read()?;
         if !index.state().is_over() {
@@ -153,9 +155,9 @@ fn start(run: &Run, runs: &Runs, starter: &dyn Starter) -> Answer {
     if let Some(other) = runs.current() {
         return Err(Problem::conflict(format!("the run `{other}` goes on")));
     }
-    let past = Past { name: &run.name, folder: Path::new(&folder) };
+    let past = FinishedRun { name: &run.name, folder: Path::new(&folder) };
     let name = starter
         .rerun_failed(&past)
-        .map_err(|NotStarted { reason, hint }| Problem { hint, ..Problem::conflict(reason) })?;
+        .map_err(|RerunRejected { reason, hint }| Problem { hint, ..Problem::conflict(reason) })?;
     accepted(&Started { accepted: true, run: name })
 }

@@ -2,7 +2,7 @@
 //! are drawn. The samples themselves are in the journal.
 
 use axum::extract::State;
-use rtf_model::{Curve, EventKind, Samples, Series, Source, TestId};
+use rtf_model::{EventKind, Samples, SignalOutline, SignalSummary, Source, TestId};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
@@ -54,7 +54,7 @@ pub async fn series(
     let page = Page { after: None, limit: None };
     let part = Part { source: Source::Test(TestId(test)), number, kind: "sampled", page };
     app.with_run(run, move |run| {
-        let mut all: Vec<(Series, Curve)> = Vec::new();
+        let mut all: Vec<(SignalSummary, SignalOutline)> = Vec::new();
         part.each(run, |event| {
             let EventKind::Sampled { samples, .. } = event.kind else { return };
             match all.iter_mut().find(|(series, _)| series.name == samples.name) {
@@ -63,7 +63,8 @@ pub async fn series(
                     curve.extend(&window.of(samples));
                 }
                 None => {
-                    let (series, mut curve) = (Series::new(&samples), Curve::default());
+                    let (series, mut curve) =
+                        (SignalSummary::new(&samples), SignalOutline::default());
                     curve.extend(&window.of(samples));
                     all.push((series, curve));
                 }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use rtf_report::journal;
-use rtf_report::run_folder::{JOURNAL, LATEST};
+use rtf_report::run_dir::{JOURNAL, LATEST};
 
 pub use filter::{RunFilter, RunResult};
 pub use list::Listing;

@@ -2,7 +2,7 @@
 
 use crate::client::{ask, get};
 use crate::world::{STARTED, World, Writer, settings};
-use rtf_web::{Bound, ServeError};
+use rtf_web::{BoundServer, ServeError};
 
 const STOP: &str = "/api/v1/runs/own/stop";
 
@@ -147,7 +147,7 @@ fn every_answer_has_its_headers() {
 #[test]
 fn beyond_this_machine_nothing_is_read_without_the_token() {
     let remote = "0.0.0.0:0".parse().unwrap();
-    let refused = Bound::new(&rtf_web::Settings { address: remote, ..settings() });
+    let refused = BoundServer::new(&rtf_web::Settings { address: remote, ..settings() });
     let error = refused.expect_err("it is not allowed");
     assert!(matches!(error, ServeError::Remote(_)) && error.hint().is_some(), "{error}");
 }
@@ -160,7 +160,7 @@ fn a_token_may_come_from_a_file() {
     let mode = std::os::unix::fs::PermissionsExt::from_mode;
     std::fs::set_permissions(&path, mode(0o640)).unwrap();
     let open = rtf_web::Settings { token_file: Some(path.clone()), ..settings() };
-    let refused = Bound::new(&open).expect_err("others can read it");
+    let refused = BoundServer::new(&open).expect_err("others can read it");
     assert!(refused.to_string().contains("can be read by other users"), "{refused}");
     assert!(refused.hint().is_some_and(|hint| hint.contains("chmod 600")));
     std::fs::set_permissions(&path, mode(0o600)).unwrap();

@@ -92,7 +92,7 @@ fn a_certificate_that_is_none_is_told_before_anything_starts() {
     let path = temp.path().join("cert.pem");
     std::fs::write(&path, "not a certificate").unwrap();
     let tls = Some((path.clone(), path));
-    let error = rtf_web::Bound::new(&Settings { tls, ..settings() }).expect_err("an error");
+    let error = rtf_web::BoundServer::new(&Settings { tls, ..settings() }).expect_err("an error");
     let text = format!("{error}: {:?}", std::error::Error::source(&error));
     assert!(text.contains("cert.pem") || text.contains("cannot be used"), "{text}");
 }

@@ -10,12 +10,12 @@ use rtf_model::{
     Verdict,
 };
 use rtf_report::Reporter;
-use rtf_report::console::Rerun;
+use rtf_report::console::RerunCommand;
 use rtf_report::journal::Journal;
 use rtf_report::logs::Logs;
 use rtf_web::{
-    Bound, Control, Limits, Live, NotStarted, Past, Role, Served, Server, Settings, Starter,
-    WrongToken,
+    BoundServer, Capabilities, FinishedRun, JournalNotifier, Limits, RerunRejected, RunControl,
+    RunStarter, Server, Service, Settings, WrongToken,
 };
 
 use crate::client::{self, Answer};
@@ -27,7 +27,7 @@ pub const TEST: TestId = TestId(0);
 #[derive(Debug, Default)]
 pub struct Asked(pub Mutex<Vec<String>>, pub Mutex<Vec<(IpAddr, u64)>>);
 
-impl Control for Asked {
+impl RunControl for Asked {
     fn stop_run(&self) {
         self.0.lock().unwrap().push("stop".to_owned());
     }
@@ -44,12 +44,14 @@ impl Control for Asked {
 /// Starts what is called so; anything else is refused.
 pub const STARTED: &str = "anew";
 
-impl Starter for Asked {
-    fn rerun_failed(&self, run: &Past<'_>) -> Result<String, NotStarted> {
+impl RunStarter for Asked {
+    fn rerun_failed(&self, run: &FinishedRun<'_>) -> Result<String, RerunRejected> {
         self.0.lock().unwrap().push(format!("rerun {} in {}", run.name, run.folder.display()));
         match run.name {
             "own" => Ok(STARTED.to_owned()),
-            _ => Err(NotStarted { reason: "nothing failed".into(), hint: Some("so what".into()) }),
+            _ => {
+                Err(RerunRejected { reason: "nothing failed".into(), hint: Some("so what".into()) })
+            }
         }
     }
 
@@ -68,7 +70,7 @@ pub struct Writer {
     pub folder: PathBuf,
     journal: Journal,
     logs: Logs,
-    live: Option<Live>,
+    live: Option<JournalNotifier>,
     record: Record,
 }
 
@@ -217,13 +219,14 @@ pub struct World {
     pub asked: Arc<Asked>,
 }
 
-fn served<'a>(results: &'a Path, role: Role, asked: &Arc<Asked>) -> Served<'a> {
+fn served<'a>(results: &'a Path, role: Capabilities, asked: &Arc<Asked>) -> Service<'a> {
     let asked = asked.clone();
     let wrong_token = Box::new(move |wrong: WrongToken| {
         asked.1.lock().unwrap().push((wrong.client, wrong.count));
     });
-    let rerun: fn() -> Rerun = || Box::new(|_, test| Some(format!("rtf run suite.xml::{test}")));
-    Served { results, role, rerun, wrong_token }
+    let rerun: fn() -> RerunCommand =
+        || Box::new(|_, test| Some(format!("rtf run suite.xml::{test}")));
+    Service { results, role, rerun, wrong_token }
 }
 
 pub fn settings() -> Settings {
@@ -247,8 +250,8 @@ impl World {
         let temp = tempfile::tempdir().unwrap();
         let mut writer = Writer::new(temp.path(), "own");
         let asked = Arc::new(Asked::default());
-        let role = Role::Makes("own".to_owned(), asked.clone());
-        let bound = Bound::new(settings).unwrap();
+        let role = Capabilities::Runner("own".to_owned(), asked.clone());
+        let bound = BoundServer::new(settings).unwrap();
         let server = bound.serve(served(temp.path(), role, &asked)).unwrap();
         writer.live = Some(server.live());
         (Self { temp, server, asked }, writer)
@@ -259,8 +262,8 @@ impl World {
         let temp = tempfile::tempdir().unwrap();
         let writer = Writer::new(temp.path(), "own");
         let asked = Arc::new(Asked::default());
-        let bound = Bound::new(&settings()).unwrap();
-        let role = Role::Shows(asked.clone());
+        let bound = BoundServer::new(&settings()).unwrap();
+        let role = Capabilities::Viewer(asked.clone());
         let server = bound.serve(served(temp.path(), role, &asked)).unwrap();
         (Self { temp, server, asked }, writer)
     }

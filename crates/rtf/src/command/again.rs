@@ -3,11 +3,11 @@
 use std::sync::OnceLock;
 
 use rtf_model::{Record, TestId};
-use rtf_report::console::{Rerun, rerun_suite};
+use rtf_report::console::{RerunCommand, rerun_suite};
 
 /// Names the suite or the plug-in; a plug-in with what it was given on the
 /// command line, without which it would be another test.
-pub fn command() -> Rerun {
+pub fn command() -> RerunCommand {
     let options = OnceLock::new();
     Box::new(move |record, test| {
         let mut command = rerun_suite(record, test)?;

@@ -10,9 +10,9 @@ use rtf_engine::locks::LockOptions;
 use rtf_engine::run::{Forks, RunOptions, Sink, execute};
 use rtf_engine::signal::{self, Signals};
 use rtf_model::{EVENTS_VERSION, Event, Manifest, RunStarted, Source};
-use rtf_report::outlet::Outlet;
-use rtf_report::run_folder::RunFolder;
-use rtf_report::{Fanout, FanoutHandle, Finished, Reporter};
+use rtf_report::background_writer::BackgroundWriter;
+use rtf_report::run_dir::RunDir;
+use rtf_report::{Fanout, FanoutHandle, FanoutResult, Reporter};
 use tokio::runtime::Runtime;
 
 use super::planning::Planned;
@@ -26,7 +26,7 @@ pub struct Job<'a> {
     /// The plan.
     pub planned: &'a Planned,
     /// Where the run is kept.
-    pub folder: &'a RunFolder,
+    pub folder: &'a RunDir,
     /// Which hosts are forked.
     pub forks: Forks,
     /// What may be asked of it while it goes on.
@@ -38,7 +38,7 @@ pub struct Job<'a> {
     /// How many suites run at the same time at the most.
     pub jobs: NonZeroU16,
     /// Where standard output is written.
-    pub outlet: &'a Outlet,
+    pub outlet: &'a BackgroundWriter,
 }
 
 impl Job<'_> {
@@ -100,7 +100,7 @@ impl Job<'_> {
 
     /// Waits until everything is reported. The run is over, so a signal ends only the wait
     /// for whoever reads standard output.
-    async fn reported(&self, fanout: Fanout) -> std::io::Result<Finished> {
+    async fn reported(&self, fanout: Fanout) -> std::io::Result<FanoutResult> {
         let mut signals = Signals::install()?;
         let mut joined = tokio::task::spawn_blocking(|| fanout.join());
         let joined = tokio::select! {

@@ -12,7 +12,7 @@ use rtf_report::console::{Console, ConsoleOptions};
 use rtf_report::journal::{self, Journal};
 use rtf_report::logs::Logs;
 use rtf_report::merge::{self, Header, Part, Problem};
-use rtf_report::run_folder::{self, RunFolder};
+use rtf_report::run_dir::{self, RunDir};
 use rtf_report::{ReportError, Reporter};
 
 use super::show::{find, unreadable};
@@ -43,7 +43,7 @@ pub fn run(args: &MergeArgs) -> Outcome {
         parts.push(Part { name: run.clone(), events });
     }
     let merged = merge::merge(parts, args.partial).map_err(|problems| refused(&problems))?;
-    let folder = run_folder::create(&args.results.results).map_err(|error| {
+    let folder = run_dir::create(&args.results.results).map_err(|error| {
         Failure::input(error).hint("choose another folder with `--results DIR`".to_owned())
     })?;
     for file in &attached {
@@ -99,7 +99,7 @@ fn refused(problems: &[Problem]) -> Failure {
 }
 
 impl Attached {
-    fn copy(&self, into: &RunFolder) -> Result<(), Failure> {
+    fn copy(&self, into: &RunDir) -> Result<(), Failure> {
         let Some(from) = self.file() else {
             let what = self.folder.join(&self.from);
             let mut err = anstream::stderr().lock();
@@ -125,7 +125,7 @@ impl Attached {
 }
 
 /// Writes the journal, makes the logs of it, and shows it.
-fn write(events: &[Event], folder: &RunFolder) -> Result<Record, ReportError> {
+fn write(events: &[Event], folder: &RunDir) -> Result<Record, ReportError> {
     let mut journal = Journal::create(&folder.journal())?;
     let mut logs = Logs::new(&folder.path);
     let mut console = Console::stdout(ConsoleOptions {

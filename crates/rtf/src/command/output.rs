@@ -4,14 +4,14 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use rtf_model::Record;
+use rtf_report::background_writer::BackgroundWriter;
 use rtf_report::console::{Console, ConsoleOptions, Verbosity};
 use rtf_report::event_stream::EventStream;
 use rtf_report::gitlab::Sections;
 use rtf_report::junit::{self, JunitFile};
-use rtf_report::outlet::Outlet;
 use rtf_report::tap::{self, TapStream};
 use rtf_report::text::{self, TextFile};
-use rtf_report::{AtTheEnd, FailureNotice, ReportError, Reporter, code_quality, github};
+use rtf_report::{AnnotationReporter, FailureNotice, ReportError, Reporter, code_quality, github};
 
 use super::again;
 use crate::cli::{Annotations, Format, RunArgs, Shown};
@@ -69,12 +69,12 @@ pub fn write(
 }
 
 /// Standard output, which a run does not wait for.
-pub fn outlet() -> Result<Outlet, Failure> {
-    Outlet::new(Box::new(io::stdout())).map_err(Failure::own)
+pub fn outlet() -> Result<BackgroundWriter, Failure> {
+    BackgroundWriter::new(Box::new(io::stdout())).map_err(Failure::own)
 }
 
 /// What goes to standard output, and to the code host.
-pub fn shown(args: &RunArgs, folder: &Path, outlet: &Outlet) -> Vec<Box<dyn Reporter>> {
+pub fn shown(args: &RunArgs, folder: &Path, outlet: &BackgroundWriter) -> Vec<Box<dyn Reporter>> {
     let host = host(args.annotations);
     let main: Box<dyn Reporter> = match args.format {
         Shown::Json => Box::new(EventStream::new(Box::new(outlet.for_stream()))),
@@ -95,7 +95,9 @@ pub fn shown(args: &RunArgs, folder: &Path, outlet: &Outlet) -> Vec<Box<dyn Repo
     }
     if host == Annotations::Github {
         // GitHub reads both outputs; one of them may be data.
-        shown.push(Box::new(AtTheEnd::new(Box::new(|record| annotate(&mut io::stderr(), record)))));
+        shown.push(Box::new(AnnotationReporter::new(Box::new(|record| {
+            annotate(&mut io::stderr(), record)
+        }))));
     }
     shown
 }
@@ -120,7 +122,7 @@ pub fn close(args: &RunArgs, journal: &Path, record: &Record) -> io::Result<()> 
             writeln!(out, "\n{}", text.lines().next_back().unwrap_or_default())?;
         }
         Shown::Tap => {
-            let reason = record.died().unwrap_or("the runner died");
+            let reason = record.runner_death().unwrap_or("the runner died");
             writeln!(out, "\nBail out! {}", rtf_report::escape::line(reason))?;
         }
     }

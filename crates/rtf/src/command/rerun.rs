@@ -10,7 +10,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 
 use rtf_model::{Event, EventKind};
-use rtf_web::{NotStarted, Past};
+use rtf_web::{FinishedRun, RerunRejected};
 use rustix::process::{Pid, WaitId, WaitIdOptions};
 use tokio::sync::watch;
 
@@ -47,7 +47,7 @@ struct State {
     ending: Option<i32>,
 }
 
-type Told = Result<String, NotStarted>;
+type Told = Result<String, RerunRejected>;
 
 impl Reruns {
     /// Of the runs in `results`, which is absolute.
@@ -73,8 +73,8 @@ impl Reruns {
     }
 }
 
-impl rtf_web::Starter for Reruns {
-    fn rerun_failed(&self, run: &Past<'_>) -> Told {
+impl rtf_web::RunStarter for Reruns {
+    fn rerun_failed(&self, run: &FinishedRun<'_>) -> Told {
         if !run.folder.is_dir() {
             return Err(not(format!("the folder `{}` of this run has gone", run.folder.display())));
         }
@@ -205,7 +205,7 @@ fn name_of(events: &mut impl BufRead) -> Option<String> {
 }
 
 /// What a run that was not started said, as an error and its hint.
-fn why(said: &mut File) -> io::Result<NotStarted> {
+fn why(said: &mut File) -> io::Result<RerunRejected> {
     said.rewind()?;
     let mut bytes = Vec::new();
     said.take(TOLD).read_to_end(&mut bytes)?;
@@ -216,9 +216,9 @@ fn why(said: &mut File) -> io::Result<NotStarted> {
     let reason = reason.strip_prefix("error: ").unwrap_or(&reason);
     let reason = if reason.is_empty() { "`rtf run` ended without a word" } else { reason };
     let hint = hints.first().and_then(|hint| hint.strip_prefix("hint: "));
-    Ok(NotStarted { reason: reason.to_owned(), hint: hint.map(str::to_owned) })
+    Ok(RerunRejected { reason: reason.to_owned(), hint: hint.map(str::to_owned) })
 }
 
-fn not(reason: impl Into<String>) -> NotStarted {
-    NotStarted { reason: reason.into(), hint: None }
+fn not(reason: impl Into<String>) -> RerunRejected {
+    RerunRejected { reason: reason.into(), hint: None }
 }

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use rtf_engine::guard::Link;
 use rtf_engine::locks::LockOptions;
 use rtf_report::Reporter;
+use rtf_report::background_writer::BackgroundWriter;
 use rtf_report::journal::Journal;
 use rtf_report::logs::Logs;
-use rtf_report::outlet::Outlet;
-use rtf_report::run_folder::{self, RunFolder};
-use rtf_web::{Live, Role, Server};
+use rtf_report::run_dir::{self, RunDir};
+use rtf_web::{Capabilities, JournalNotifier, Server};
 
 use super::job::Job;
 use super::web::{self, Asks};
@@ -29,12 +29,12 @@ pub fn run(args: &RunArgs, guard: Link) -> Outcome {
         return Err(Failure::input(what).hint("give `--web`, too".to_owned()));
     }
     let web = args.web.web.map(|address| web::bind(address, &args.web.access)).transpose()?;
-    let folder = run_folder::create(&args.results.results).map_err(|error| {
+    let folder = run_dir::create(&args.results.results).map_err(|error| {
         Failure::input(error).hint("choose another folder with `--results DIR`".to_owned())
     })?;
     let journal = Journal::create(&folder.journal()).map_err(Failure::input)?;
     let asks = Arc::new(Asks::new(args.shutdown_timeout));
-    let role = Role::Makes(folder.name.clone(), asks.clone());
+    let role = Capabilities::Runner(folder.name.clone(), asks.clone());
     let web = web.map(|bound| web::serve(bound, &args.results.results, role)).transpose()?;
     let live = web.as_ref().map(Server::live);
     let outlet = output::outlet()?;
@@ -56,9 +56,9 @@ pub fn run(args: &RunArgs, guard: Link) -> Outcome {
 
 fn reporters(
     journal: Journal,
-    live: Option<Live>,
+    live: Option<JournalNotifier>,
     args: &RunArgs,
-    (folder, outlet): (&RunFolder, &Outlet),
+    (folder, outlet): (&RunDir, &BackgroundWriter),
 ) -> Result<Vec<Box<dyn Reporter>>, Failure> {
     let logs = Logs::new(&folder.path);
     let mut reporters: Vec<Box<dyn Reporter>> = vec![Box::new(journal), Box::new(logs)];

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use rtf_engine::signal::Signals;
-use rtf_web::{Ender, Role};
+use rtf_web::{Capabilities, ShutdownHandle};
 
 use super::Outcome;
 use super::rerun::Reruns;
@@ -31,7 +31,7 @@ pub fn run(args: &ServeArgs) -> Outcome {
         let _inside = runtime.enter();
         Signals::install().map_err(Failure::own)?
     };
-    let server = serve(bound, results, Role::Shows(reruns.clone()))?;
+    let server = serve(bound, results, Capabilities::Viewer(reruns.clone()))?;
     let ender = server.ender();
     let ending = std::thread::Builder::new().name("signals".into());
     let ending = ending.spawn(move || runtime.block_on(end(signals, &reruns, ender)));
@@ -44,7 +44,7 @@ pub fn run(args: &ServeArgs) -> Outcome {
 
 /// Waits for a signal, and ends the run that was started, then the server; the
 /// exit code.
-async fn end(mut signals: Signals, reruns: &Reruns, ender: Ender) -> u8 {
+async fn end(mut signals: Signals, reruns: &Reruns, ender: ShutdownHandle) -> u8 {
     let (number, _) = signals.next().await;
     let mut waits = reruns.end(number);
     while let Some(name) = waits {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use rtf_model::{Damage, Record};
 use rtf_report::console::{Console, ConsoleOptions, Verbosity};
 use rtf_report::journal::{self, JournalError};
-use rtf_report::run_folder;
+use rtf_report::run_dir;
 
 use super::{Outcome, again};
 use crate::cli::{ResultsArgs, ShowArgs};
@@ -29,7 +29,7 @@ pub fn run(args: &ShowArgs) -> Outcome {
 /// The journal of a run, in the run's own folder: what leads through `latest`
 /// today leads elsewhere tomorrow.
 pub fn find(results: &ResultsArgs, run: &str) -> Result<PathBuf, Failure> {
-    let journal = run_folder::resolve(&results.results, run).map_err(|error| {
+    let journal = run_dir::resolve(&results.results, run).map_err(|error| {
         let hint = error.hint();
         Failure::input(error).hint(hint)
     })?;

@@ -8,8 +8,8 @@ use std::time::Duration;
 use rtf_engine::run::{Control, Stop, StopLevel};
 use rtf_engine::signal::Signals;
 use rtf_model::{SuiteId, TestId};
-use rtf_report::console::Rerun;
-use rtf_web::{Bound, Limits, Role, Served, Server, Settings, WrongToken};
+use rtf_report::console::RerunCommand;
+use rtf_web::{BoundServer, Capabilities, Limits, Server, Service, Settings, WrongToken};
 use tokio::sync::watch;
 
 use crate::cli::WebAccessArgs;
@@ -44,7 +44,7 @@ impl Asks {
     }
 }
 
-impl rtf_web::Control for Asks {
+impl rtf_web::RunControl for Asks {
     fn stop_run(&self) {
         self.stops.send_if_modified(|stop| {
             // A signal that came before asks for as much, or for more.
@@ -69,7 +69,7 @@ impl rtf_web::Control for Asks {
 }
 
 /// Takes the address, before anything is started.
-pub fn bind(address: SocketAddr, args: &WebAccessArgs) -> Result<Bound, Failure> {
+pub fn bind(address: SocketAddr, args: &WebAccessArgs) -> Result<BoundServer, Failure> {
     let settings = Settings {
         address,
         allow_remote: args.web_allow_remote,
@@ -78,20 +78,21 @@ pub fn bind(address: SocketAddr, args: &WebAccessArgs) -> Result<Bound, Failure>
         hosts: args.web_hosts.clone(),
         limits: Limits::default(),
     };
-    Bound::new(&settings).map_err(failed)
+    BoundServer::new(&settings).map_err(failed)
 }
 
 /// Takes a port of this machine alone, or the next one that is free.
-pub fn bind_loopback(port: u16) -> Result<Bound, Failure> {
+pub fn bind_loopback(port: u16) -> Result<BoundServer, Failure> {
     let address = SocketAddr::from((std::net::Ipv4Addr::LOCALHOST, port));
     bind(address, &WebAccessArgs::default())
 }
 
 /// Serves, and says where.
-pub fn serve(bound: Bound, results: &Path, role: Role) -> Result<Server, Failure> {
+pub fn serve(bound: BoundServer, results: &Path, role: Capabilities) -> Result<Server, Failure> {
     let server = {
-        let (rerun, wrong_token) = (super::again::command as fn() -> Rerun, Box::new(report));
-        bound.serve(Served { results, role, rerun, wrong_token }).map_err(failed)?
+        let (rerun, wrong_token) =
+            (super::again::command as fn() -> RerunCommand, Box::new(report));
+        bound.serve(Service { results, role, rerun, wrong_token }).map_err(failed)?
     };
     let mut err = anstream::stderr().lock();
     Failure::unless_reader_left(tell(&mut err, &server))?;

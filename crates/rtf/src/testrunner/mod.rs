@@ -24,8 +24,8 @@ use rtf_report::journal::Journal;
 use rtf_report::junit::JunitFile;
 use rtf_report::logs::Logs;
 use rtf_report::predecessor::{Console, ConsoleOptions, ResultFile};
-use rtf_report::{Reporter, run_folder};
-use rtf_web::{Role, Server};
+use rtf_report::{Reporter, run_dir};
+use rtf_web::{Capabilities, Server};
 
 use crate::command::Outcome;
 use crate::command::job::Job;
@@ -121,7 +121,7 @@ fn perform(args: &Args, results: &Results, guard: Link) -> Outcome {
     let web = args.web_reporter.then(|| web::bind_loopback(args.web_port)).transpose();
     let web =
         web.map_err(|failure| failure.hint("choose another port with `--web-port N`".to_owned()))?;
-    let folder = run_folder::create(&results.folder).map_err(|error| {
+    let folder = run_dir::create(&results.folder).map_err(|error| {
         Failure::input(error)
             .hint("choose another folder with the variable `RTF_RESULTS`".to_owned())
     })?;
@@ -130,7 +130,7 @@ fn perform(args: &Args, results: &Results, guard: Link) -> Outcome {
         Box::new(Logs::new(&folder.path)),
     ];
     let asks = Arc::new(Asks::new(SHUTDOWN));
-    let role = Role::Makes(folder.name.clone(), asks.clone());
+    let role = Capabilities::Runner(folder.name.clone(), asks.clone());
     let web = web.map(|bound| web::serve(bound, &results.folder, role)).transpose()?;
     reporters.extend(web.as_ref().map(|web| Box::new(web.live()) as Box<dyn Reporter>));
     reporters.extend(result_file(args, &folder.journal())?);

@@ -184,7 +184,7 @@ fn a_part_that_was_killed_makes_the_run_incomplete() {
     let record = folder.journal().record;
     let wanted = [("s/first", Verdict::Passed), ("s/second", Verdict::Interrupted)];
     assert_eq!(verdicts(&record), wanted.map(|(name, verdict)| (name.to_owned(), verdict)).into());
-    let died = record.died().expect("a runner that died");
+    let died = record.runner_death().expect("a runner that died");
     assert_eq!(died, format!("signal 9 (SIGKILL) in {second}"));
     assert!(nothing_left(&folder));
 }

@@ -133,7 +133,7 @@ fn a_killed_runner_leaves_nothing_and_every_robot_is_parked_once() {
     assert!(nothing_left(&folder));
     let record = folder.journal().record;
     assert!(record.hooks.iter().all(|hook| hook.runs.len() == 1), "{:?}", record.hooks);
-    assert_eq!(record.died(), Some("signal 9 (SIGKILL)"));
+    assert_eq!(record.runner_death(), Some("signal 9 (SIGKILL)"));
 }
 
 #[test]

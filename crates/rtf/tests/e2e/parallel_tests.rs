@@ -207,7 +207,7 @@ fn when_the_runner_is_killed_both_are_stopped_before_the_robot_is_parked() {
     assert_eq!(lines(&folder, "parked"), ["interrupt:"]);
     assert!(nothing_left(&folder));
     let record = folder.journal().record;
-    assert_eq!(record.died(), Some("signal 9 (SIGKILL)"));
+    assert_eq!(record.runner_death(), Some("signal 9 (SIGKILL)"));
     assert_eq!(record.final_totals().of(Verdict::Interrupted), 2);
     assert_eq!(record.final_totals().of(Verdict::Skipped), 1);
 }

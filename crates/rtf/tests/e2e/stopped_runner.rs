@@ -31,7 +31,7 @@ fn a_runner_that_stays_stopped_is_taken_over_and_the_robot_is_parked() {
     assert!(finished.stderr.starts_with(told), "{}", finished.stderr);
     assert!(finished.stderr.contains("  hook park: parked\n"), "{}", finished.stderr);
     assert_eq!(folder.read("parked"), "interrupt\n");
-    assert!(folder.journal().record.died().is_some());
+    assert!(folder.journal().record.runner_death().is_some());
     assert_eq!(folder.rtf(&["show", "latest"]).code, Some(5));
     assert!(nothing_left(&folder));
 }

@@ -84,8 +84,8 @@ fn a_lost_plan_is_named() {
     let mut events = stream();
     events.remove(3);
     let found = problems(&renumbered(events));
-    assert_eq!(found[0], "of 2 tests, 1 are planned");
-    assert_eq!(found[1], "it is about test 1, which is not planned");
+    assert_eq!(found[0], "1 of 2 tests are planned");
+    assert_eq!(found[1], "it concerns test 1, which is not planned");
 }
 
 #[test]
@@ -95,8 +95,8 @@ fn an_event_that_comes_twice_counts_once() {
     assert!(checker.check(&events[0], true).is_new);
     let again = checker.check(&events[0], true);
     assert!(!again.is_new);
-    assert_eq!(again.problem.as_deref(), Some("event 0 stands where event 1 should be"));
-    assert_eq!(checker.check(&events[1], true), Checked { is_new: true, problem: None });
+    assert_eq!(again.problem.as_deref(), Some("found event 0 where event 1 is expected"));
+    assert_eq!(checker.check(&events[1], true), EventCheck { is_new: true, problem: None });
 }
 
 /// A number that a fault changed does not hide the events after it.
@@ -120,8 +120,8 @@ fn what_follows_the_end_and_what_goes_back_in_time_is_noticed() {
         at: Micros(50),
         kind: EventKind::SuiteFinished { suite: SuiteId(0) },
     });
-    assert_eq!(problems(&events), ["it stands after the end of the run"]);
+    assert_eq!(problems(&events), ["it follows the end of the run"]);
     let mut events = stream();
     events[6].at = Micros(0);
-    assert_eq!(problems(&events), ["it happened earlier than the event before it"]);
+    assert_eq!(problems(&events), ["it is earlier than the previous event"]);
 }

@@ -81,7 +81,7 @@ impl Hook {
 }
 
 impl HookRun {
-    fn of(run: &rtf_model::HookRun, number: usize) -> Self {
+    fn of(run: &rtf_model::HookRunRecord, number: usize) -> Self {
         let finished = run.finished.as_ref();
         Self {
             number,

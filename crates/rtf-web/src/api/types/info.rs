@@ -98,8 +98,8 @@ fn by_verdict() -> Object {
     all.build()
 }
 
-impl From<&rtf_model::Totals> for Totals {
-    fn from(totals: &rtf_model::Totals) -> Self {
+impl From<&rtf_model::TestTotals> for Totals {
+    fn from(totals: &rtf_model::TestTotals) -> Self {
         Self {
             planned: totals.planned,
             pending: totals.pending,
@@ -149,7 +149,7 @@ impl RunInfo {
             command: started.map(|run| run.command.clone()).unwrap_or_default(),
             working_dir: started.map(|run| run.working_dir.clone()).unwrap_or_default(),
             interrupted: record.interrupted().map(str::to_owned),
-            died: record.died().map(str::to_owned),
+            died: record.runner_death().map(str::to_owned),
             green: state.is_over().then(|| record.is_green()),
             seq: index.next_seq(),
             last_at: record.last_at.0,
@@ -181,7 +181,7 @@ impl RunInfo {
             profile: None,
             robots: Vec::new(),
             bytes: 0,
-            totals: Totals::from(&rtf_model::Totals::default()),
+            totals: Totals::from(&rtf_model::TestTotals::default()),
             problems: Vec::new(),
             damages: Vec::new(),
         }

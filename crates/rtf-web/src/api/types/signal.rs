@@ -1,6 +1,6 @@
 //! A signal that a test sampled.
 
-use rtf_model::{Curve, Series};
+use rtf_model::{SignalOutline, SignalSummary};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -51,9 +51,9 @@ pub struct Signal {
 
 impl Signal {
     /// The view of a signal and of its curve.
-    pub fn of(series: Series, curve: &Curve) -> Self {
+    pub fn of(series: SignalSummary, curve: &SignalOutline) -> Self {
         let (times, values) = curve.points().into_iter().unzip();
-        let Series { name, unit, low, high, count, min, mean, max, last, .. } = series;
+        let SignalSummary { name, unit, low, high, count, min, mean, max, last, .. } = series;
         let (outside, problem) = (series.outside, series.problem);
         Self { name, unit, low, high, count, min, mean, max, last, outside, problem, times, values }
     }

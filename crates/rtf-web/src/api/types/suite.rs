@@ -119,7 +119,7 @@ impl Suite {
 
 /// The totals of a suite in a run that will not go on.
 fn settled(suite: &SuiteRecord, record: &Record) -> Totals {
-    let mut totals = Totals::from(&rtf_model::Totals::default());
+    let mut totals = Totals::from(&rtf_model::TestTotals::default());
     for test in suite.tests.iter().filter_map(|id| record.tests.get(id.index())) {
         totals.planned += 1;
         totals.done += 1;

@@ -179,7 +179,7 @@ impl Test {
         let plan = &test.plan;
         let verdict = if over { Some(test.final_verdict()) } else { test.verdict() };
         let running = test.attempts.last().filter(|_| verdict.is_none() && test.is_running());
-        let mut counts = rtf_model::Counts::default();
+        let mut counts = rtf_model::AttemptCounts::default();
         test.attempts.iter().for_each(|attempt| counts += attempt.counts);
         Self {
             id: plan.test.0,
@@ -240,8 +240,8 @@ impl Attempt {
     }
 }
 
-impl From<rtf_model::Counts> for Counts {
-    fn from(counts: rtf_model::Counts) -> Self {
+impl From<rtf_model::AttemptCounts> for Counts {
+    fn from(counts: rtf_model::AttemptCounts) -> Self {
         Self {
             messages: counts.messages,
             failures: counts.failures,

@@ -2,7 +2,7 @@
 //! and how it was judged. The next attempt waits until they have heard it; hooks do
 //! not: a robot is not parked later because something is being recorded.
 
-use rtf_model::protocol::{Request, Subscription, TestEnds, TestStarts};
+use rtf_model::protocol::{Request, Subscription, TestFinishedParams, TestStartedParams};
 use rtf_model::{EventKind, Phase};
 
 use super::{Context, SuiteMachine};
@@ -15,7 +15,7 @@ impl SuiteMachine<'_> {
         while let Some(test) = self.turns.tell_next() {
             let about = (Subscription::TestStarted, test.id);
             if self.fixtures.any_hears(about.0) {
-                let told = Request::TestStarted(TestStarts { test });
+                let told = Request::TestStarted(TestStartedParams { test });
                 self.fixtures.tell(about, &told, cx);
             }
         }
@@ -34,7 +34,7 @@ impl SuiteMachine<'_> {
             let about = (Subscription::TestFinished, test.id);
             if self.fixtures.any_hears(about.0) {
                 cx.emit(EventKind::TestPhase { test: test.id, phase: Phase::Notify });
-                let ends = TestEnds { test, verdict, reason, attachments_dir: None };
+                let ends = TestFinishedParams { test, verdict, reason, attachments_dir: None };
                 self.fixtures.tell(about, &Request::TestFinished(ends), cx);
             }
         }

@@ -2,7 +2,7 @@
 //!
 //! Whoever reads there (a pager, a terminal after Ctrl-S, a slow connection) may stop for as
 //! long as they like: neither the run nor its journal waits for that. What waits to be
-//! written is kept in memory; [`Outlet::is_full`] tells a reporter to leave out detail.
+//! written is kept in memory; [`BackgroundWriter::is_full`] tells a reporter to leave out detail.
 
 use std::io::{self, ErrorKind, Write};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -20,7 +20,7 @@ const STREAM_LIMIT: usize = 4 * 1024 * 1024;
 /// A place that is written to by a thread of its own. Cheap to clone; what is written through
 /// one handle keeps its order. [`Write::flush`] waits until everything is written.
 #[derive(Clone, Debug)]
-pub struct Outlet {
+pub struct BackgroundWriter {
     shared: Arc<Shared>,
     /// How many bytes may wait before [`Write::write`] does.
     limit: usize,
@@ -71,7 +71,7 @@ impl Shared {
     }
 }
 
-impl Outlet {
+impl BackgroundWriter {
     /// A place for lines that people read. It never waits.
     ///
     /// # Errors
@@ -109,7 +109,7 @@ impl Outlet {
     }
 }
 
-impl Write for Outlet {
+impl Write for BackgroundWriter {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let waiting = &self.shared.waiting;
         let is_full = |state: &State| {

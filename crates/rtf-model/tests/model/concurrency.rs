@@ -1,4 +1,4 @@
-//! What may run beside what in a suite.
+//! Which tests and hooks of a suite may run at the same time.
 
 use rtf_model::{EventKind, HookId, Phase, SuiteId, TestFinished, TestId, Trigger, Verdict};
 
@@ -43,30 +43,33 @@ fn as_many_tests_run_at_once_as_the_suite_says() {
     let two = || vec![start(0), start(1), finish(1), start(2), finish(0), finish(2)];
     assert_eq!(all(2, two()), Ok(()));
     let error = all(1, two()).unwrap_err();
-    assert_eq!(error, "event 14: 2 tests of suite 0 run at once, of 1 at most");
+    assert_eq!(error, "event 14: 2 tests of suite 0 run at the same time, at most 1 may");
     let three = vec![start(0), start(1), start(2), finish(1), finish(0), finish(2)];
     let error = all(2, three).unwrap_err();
-    assert!(error.ends_with("3 tests of suite 0 run at once, of 2 at most"), "{error}");
+    assert!(error.ends_with("3 tests of suite 0 run at the same time, at most 2 may"), "{error}");
 }
 
 #[test]
-fn no_test_runs_beside_a_hook() {
+fn no_test_runs_next_to_a_hook() {
     let rest = || [start(1), finish(1), start(2), finish(2)];
     let after = [start(0), finish(0), park(true), park(false)];
     assert_eq!(all(2, after.into_iter().chain(rest()).collect()), Ok(()));
-    for beside in [
+    for other in [
         [start(0), park(true), park(false), finish(0)],
         [park(true), start(0), finish(0), park(false)],
         [park(true), start(0), park(false), finish(0)],
     ] {
-        let error = all(2, beside.into_iter().chain(rest()).collect()).unwrap_err();
-        assert!(error.ends_with("a hook of suite 0 runs beside a test or another hook"), "{error}");
+        let error = all(2, other.into_iter().chain(rest()).collect()).unwrap_err();
+        assert!(
+            error.ends_with("a hook of suite 0 runs next to a test or another hook"),
+            "{error}"
+        );
     }
 }
 
-/// The robot is parked while fixtures are told how a test ended.
+/// The robot is parked while fixtures are notified of a verdict.
 #[test]
-fn a_hook_runs_beside_a_test_that_is_judged() {
+fn a_hook_runs_next_to_a_test_that_is_judged() {
     let judged = || EventKind::TestPhase { test: TestId(0), phase: Phase::Notify };
     let rest = || [start(1), finish(1), start(2), finish(2)];
     for body in [
@@ -81,7 +84,10 @@ fn a_hook_runs_beside_a_test_that_is_judged() {
         vec![start(0), start(1), judged(), park(true), park(false), finish(0), finish(1)],
     ] {
         let error = all(2, body.into_iter().chain([start(2), finish(2)]).collect()).unwrap_err();
-        assert!(error.ends_with("a hook of suite 0 runs beside a test or another hook"), "{error}");
+        assert!(
+            error.ends_with("a hook of suite 0 runs next to a test or another hook"),
+            "{error}"
+        );
     }
     let error = all(1, vec![start(0), judged(), judged()]).unwrap_err();
     assert_eq!(error, "event 9: test 0 is judged twice");

@@ -8,7 +8,7 @@ const INPUT_OUTPUT: i32 = 5;
 /// Whether whoever read along has gone: the other end of a pipe is closed
 /// (`| head`, a pager), or the terminal is. That is no failure.
 #[must_use]
-pub fn reader_left(error: &io::Error) -> bool {
+pub fn is_disconnect(error: &io::Error) -> bool {
     error.kind() == io::ErrorKind::BrokenPipe
         || (error.raw_os_error() == Some(INPUT_OUTPUT) && writes_to_device())
 }

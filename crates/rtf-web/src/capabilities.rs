@@ -7,7 +7,7 @@ use std::sync::Arc;
 use rtf_model::{SuiteId, TestId};
 
 /// What a person may ask of the run that this process makes.
-pub trait Control: Send + Sync {
+pub trait RunControl: Send + Sync {
     /// End the run as SIGINT does.
     fn stop_run(&self);
     /// Stop a test that runs.
@@ -17,13 +17,13 @@ pub trait Control: Send + Sync {
 }
 
 /// What starts runs of the results folder again, one at a time.
-pub trait Starter: Send + Sync {
+pub trait RunStarter: Send + Sync {
     /// Starts the failed tests of a run again; the name of the new run. Takes
     /// until its journal is there.
     ///
     /// # Errors
     /// Why it was not started.
-    fn rerun_failed(&self, run: &Past<'_>) -> Result<String, NotStarted>;
+    fn rerun_failed(&self, run: &FinishedRun<'_>) -> Result<String, RerunRejected>;
 
     /// The name of the run that was started and still goes on.
     fn started(&self) -> Option<String>;
@@ -34,7 +34,7 @@ pub trait Starter: Send + Sync {
 
 /// A run of the results folder that is over.
 #[derive(Clone, Copy, Debug)]
-pub struct Past<'a> {
+pub struct FinishedRun<'a> {
     /// Its name.
     pub name: &'a str,
     /// The folder in which its command was given.
@@ -43,7 +43,7 @@ pub struct Past<'a> {
 
 /// Why a run was not started.
 #[derive(Debug)]
-pub struct NotStarted {
+pub struct RerunRejected {
     /// Why, in words.
     pub reason: String,
     /// What to do about it.
@@ -52,20 +52,20 @@ pub struct NotStarted {
 
 /// What a server can do beside showing runs.
 #[derive(Clone)]
-pub enum Role {
+pub enum Capabilities {
     /// It is a part of the process that makes this run.
-    Makes(String, Arc<dyn Control>),
+    Runner(String, Arc<dyn RunControl>),
     /// It shows what others made, and starts some of it again.
-    Shows(Arc<dyn Starter>),
+    Viewer(Arc<dyn RunStarter>),
 }
 
-impl Role {
+impl Capabilities {
     /// The run that this process makes.
     #[must_use]
     pub fn own(&self) -> Option<&str> {
         match self {
-            Self::Makes(run, _) => Some(run),
-            Self::Shows(_) => None,
+            Self::Runner(run, _) => Some(run),
+            Self::Viewer(_) => None,
         }
     }
 
@@ -73,8 +73,8 @@ impl Role {
     #[must_use]
     pub fn controlled(&self) -> Option<String> {
         match self {
-            Self::Makes(run, _) => Some(run.clone()),
-            Self::Shows(starter) => starter.started(),
+            Self::Runner(run, _) => Some(run.clone()),
+            Self::Viewer(starter) => starter.started(),
         }
     }
 }

@@ -1,9 +1,9 @@
-//! How far everything in a stream is.
+//! The progress of the run, its suites, fixtures and tests in an event stream.
 
 use crate::SuiteId;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Stage {
+pub(super) enum StreamStage {
     #[default]
     Before,
     Planning,
@@ -12,7 +12,7 @@ pub(super) enum Stage {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Bracket {
+pub(super) enum SuiteStage {
     Planned,
     /// Started, and nothing of the suite has happened yet.
     Fresh,
@@ -30,7 +30,7 @@ pub(super) enum FixtureStage {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Fixture {
+pub(super) struct FixtureProgress {
     pub suite: SuiteId,
     pub stage: FixtureStage,
     pub attempt: u32,
@@ -38,29 +38,29 @@ pub(super) struct Fixture {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Test {
+pub(super) struct TestProgress {
     pub suite: SuiteId,
-    /// How many at the most; none when it is repeated until a time is over.
+    /// At most so many; `None` when it is repeated for a time.
     pub repetitions: Option<u32>,
     pub open: bool,
-    /// Whether it is judged already, and open because fixtures are told.
+    /// It is judged, and open because fixtures are still being notified.
     pub judged: bool,
     pub last: Option<(u32, u32)>,
-    /// Whether the last attempt's end announced another one.
+    /// The last attempt announced another one when it finished.
     pub rerun: bool,
-    /// Skipped, or told to be repeated no more.
-    pub over: bool,
+    /// It was skipped, or will not be repeated.
+    pub ended: bool,
 }
 
-impl Test {
+impl TestProgress {
     pub fn new(suite: SuiteId, repetitions: Option<u32>) -> Self {
-        let (open, judged, rerun, over) = (false, false, false, false);
-        Self { suite, repetitions, open, judged, last: None, rerun, over }
+        let (open, judged, rerun, ended) = (false, false, false, false);
+        Self { suite, repetitions, open, judged, last: None, rerun, ended }
     }
 
-    /// Whether its last word is spoken.
+    /// Whether its verdict is final.
     pub fn is_decided(&self) -> bool {
         let all_done = self.last.is_some_and(|(r, _)| Some(r) == self.repetitions);
-        self.over || (all_done && !self.rerun)
+        self.ended || (all_done && !self.rerun)
     }
 }

@@ -1,22 +1,22 @@
-//! Stand-ins for plans whose events were lost with a damaged line of a journal,
-//! so that what is known of later suites, fixtures and tests keeps its place.
+//! Placeholders for plans whose events were lost with damaged lines of a journal,
+//! so that later suites, fixtures and tests keep their ids.
 
 use super::{FixtureRecord, HookRecord, SuiteRecord, TestRecord};
 use crate::{
     FixtureId, FixturePlanned, HookId, HookPlanned, SuiteId, SuitePlanned, TestId, TestPlanned,
 };
 
-/// A gap larger than this is not believed: the number itself is damaged.
+/// In a larger gap, the number itself is taken to be damaged.
 const LARGEST: usize = 1000;
 
-/// Whether entries between the number that is due and the one that came may have
+/// Whether the plans between the expected and the actual number may have
 /// been lost.
-pub(crate) fn is_likely(due: u32, came: u32) -> bool {
-    came.checked_sub(due).is_some_and(|missing| missing as usize <= LARGEST)
+pub(crate) fn is_likely(expected: u32, actual: u32) -> bool {
+    actual.checked_sub(expected).is_some_and(|missing| missing as usize <= LARGEST)
 }
 
-/// Makes `list` as long as `index` says; false when the entry that is to come
-/// has no place in it.
+/// Extends `list` to `index` entries; false when the next entry
+/// does not fit there.
 pub(super) fn fill<T>(list: &mut Vec<T>, index: usize, missing: impl Fn(u32) -> T) -> bool {
     if index < list.len() || index - list.len() > LARGEST {
         return false;

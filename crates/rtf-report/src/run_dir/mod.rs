@@ -28,7 +28,7 @@ const NEXT_NAME: Duration = Duration::from_micros(16);
 
 /// The folder of one run.
 #[derive(Clone, Debug)]
-pub struct RunFolder {
+pub struct RunDir {
     /// Where it is, below the results folder as that was given.
     pub path: PathBuf,
     /// Its name, which is the run's: `2026-11-21T06-30-12Z-1f3a`.
@@ -37,7 +37,7 @@ pub struct RunFolder {
     pub started_at: String,
 }
 
-impl RunFolder {
+impl RunDir {
     /// The path of the journal.
     #[must_use]
     pub fn journal(&self) -> PathBuf {
@@ -48,18 +48,18 @@ impl RunFolder {
     ///
     /// # Errors
     /// The folder cannot be made.
-    pub fn attachments(&self) -> Result<PathBuf, RunFolderError> {
+    pub fn attachments(&self) -> Result<PathBuf, RunDirError> {
         let path = self.path.join("attachments");
         match fs::create_dir_all(&path) {
             Ok(()) => Ok(path),
-            Err(source) => Err(RunFolderError::Create { path, source }),
+            Err(source) => Err(RunDirError::Create { path, source }),
         }
     }
 }
 
 /// The folder of a run cannot be made.
 #[derive(Debug, thiserror::Error)]
-pub enum RunFolderError {
+pub enum RunDirError {
     /// A folder cannot be made or written to.
     #[error("cannot create the results folder `{}`", path.display())]
     Create {
@@ -85,10 +85,10 @@ pub enum RunFolderError {
 ///
 /// # Errors
 /// Nothing can be written there. Nothing was started yet.
-pub fn create(results: &Path) -> Result<RunFolder, RunFolderError> {
+pub fn create(results: &Path) -> Result<RunDir, RunDirError> {
     let failed = |path: &Path| {
         let path = path.to_owned();
-        |source| RunFolderError::Create { path, source }
+        |source| RunDirError::Create { path, source }
     };
     fs::create_dir_all(results).map_err(failed(results))?;
     let mut tried = 0;
@@ -111,7 +111,7 @@ pub fn create(results: &Path) -> Result<RunFolder, RunFolderError> {
         return Err(error);
     }
     let started_at = now.strftime("%Y-%m-%dT%H:%M:%S%.3f%:z").to_string();
-    Ok(RunFolder { path, name, started_at })
+    Ok(RunDir { path, name, started_at })
 }
 
 /// Names sort by time: the last four digits are the fraction of the second, in
@@ -123,10 +123,10 @@ fn name(now: &Zoned) -> String {
 }
 
 /// Replaces the link at once: it never leads nowhere while runs come and go.
-fn point_latest(results: &Path, name: &str) -> Result<(), RunFolderError> {
+fn point_latest(results: &Path, name: &str) -> Result<(), RunDirError> {
     let link = results.join(LATEST);
     let beside = results.join(format!(".{LATEST}-{name}"));
-    let replaced = match symlink_folder(name, &beside) {
+    let replaced = match symlink_dir(name, &beside) {
         // File systems of USB sticks and some shares have no links; `latest`
         // is then found by the names, which sort by time.
         Err(error) if cannot_link(&error) => return Ok(()),
@@ -135,7 +135,7 @@ fn point_latest(results: &Path, name: &str) -> Result<(), RunFolderError> {
     replaced.map_err(|source| {
         // The first error is the one to tell; the leftover may not even exist.
         drop(fs::remove_file(&beside));
-        RunFolderError::Latest { path: link, source }
+        RunDirError::Latest { path: link, source }
     })
 }
 
@@ -144,12 +144,12 @@ fn cannot_link(error: &io::Error) -> bool {
 }
 
 #[cfg(unix)]
-fn symlink_folder(target: &str, link: &Path) -> io::Result<()> {
+fn symlink_dir(target: &str, link: &Path) -> io::Result<()> {
     std::os::unix::fs::symlink(target, link)
 }
 
 #[cfg(windows)]
-fn symlink_folder(target: &str, link: &Path) -> io::Result<()> {
+fn symlink_dir(target: &str, link: &Path) -> io::Result<()> {
     std::os::windows::fs::symlink_dir(target, link)
 }
 
@@ -197,7 +197,7 @@ mod tests {
         let file = folder.path().join("results");
         fs::write(&file, "").unwrap();
         let error = create(&file).unwrap_err();
-        assert!(matches!(error, RunFolderError::Create { .. }), "{error}");
+        assert!(matches!(error, RunDirError::Create { .. }), "{error}");
     }
 
     #[test]
@@ -205,7 +205,7 @@ mod tests {
         let results = tempfile::tempdir().unwrap();
         fs::create_dir_all(results.path().join("latest/mine")).unwrap();
         let error = create(results.path()).unwrap_err();
-        assert!(matches!(error, RunFolderError::Latest { .. }), "{error}");
+        assert!(matches!(error, RunDirError::Latest { .. }), "{error}");
         assert!(results.path().join("latest/mine").is_dir());
         assert_eq!(fs::read_dir(results.path()).unwrap().count(), 1, "nothing else is left");
     }

@@ -6,8 +6,8 @@ use std::sync::mpsc::{self, Receiver};
 use crate::support::*;
 use rtf_model::{EventKind, Record};
 use rtf_report::Reporter;
+use rtf_report::background_writer::BackgroundWriter;
 use rtf_report::console::{Console, ConsoleOptions, Verbosity};
-use rtf_report::outlet::Outlet;
 
 /// Paper that takes nothing before it is told to.
 struct Blocked {
@@ -36,7 +36,8 @@ fn options(verbosity: Verbosity) -> ConsoleOptions {
 fn a_console_that_nobody_reads_leaves_out_detail_and_says_how_much() {
     let (open, blocked) = mpsc::channel();
     let paper = Paper::default();
-    let outlet = Outlet::new(Box::new(Blocked { open: blocked, paper: paper.clone() })).unwrap();
+    let outlet =
+        BackgroundWriter::new(Box::new(Blocked { open: blocked, paper: paper.clone() })).unwrap();
     let mut console = Console::over(&outlet, options(Verbosity::Verbose));
     let mut record = Record::default();
     let mut flooded = false;
@@ -70,7 +71,7 @@ fn a_reader_that_is_given_up_is_not_waited_for() {
     let (open, blocked) = mpsc::channel();
     let paper = Paper::default();
     let mut outlet =
-        Outlet::new(Box::new(Blocked { open: blocked, paper: paper.clone() })).unwrap();
+        BackgroundWriter::new(Box::new(Blocked { open: blocked, paper: paper.clone() })).unwrap();
     outlet.write_all(b"never read").unwrap();
     let waiting = std::thread::spawn({
         let mut outlet = outlet.clone();
@@ -87,7 +88,8 @@ fn a_reader_that_is_given_up_is_not_waited_for() {
 fn a_stream_is_written_whole() {
     let (open, blocked) = mpsc::channel();
     let paper = Paper::default();
-    let outlet = Outlet::new(Box::new(Blocked { open: blocked, paper: paper.clone() })).unwrap();
+    let outlet =
+        BackgroundWriter::new(Box::new(Blocked { open: blocked, paper: paper.clone() })).unwrap();
     let mut stream = outlet.for_stream();
     let writer = std::thread::spawn(move || {
         (0..1000).for_each(|_| stream.write_all(&[b'x'; 16 * 1024]).unwrap());

@@ -8,11 +8,11 @@ use tokio::sync::watch;
 
 /// Tells the server that the journal has grown.
 #[derive(Clone, Debug)]
-pub struct Live {
+pub struct JournalNotifier {
     grown: watch::Sender<u64>,
 }
 
-impl Live {
+impl JournalNotifier {
     pub(crate) fn new(grown: watch::Sender<u64>) -> Self {
         Self { grown }
     }
@@ -23,7 +23,7 @@ impl Live {
     }
 }
 
-impl Reporter for Live {
+impl Reporter for JournalNotifier {
     fn event(&mut self, event: &Event, record: &Record) -> Result<(), ReportError> {
         // While so much happens that the queue is never empty, the journal is
         // flushed soon after the ends of tests.

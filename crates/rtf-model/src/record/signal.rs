@@ -1,26 +1,26 @@
-//! What is known of a signal that an attempt sampled: never its samples.
+//! Statistics of a signal that an attempt sampled.
 
 use crate::{Location, Samples, format_rounded};
 
-/// A signal that an attempt sampled, in numbers. The samples are in the journal.
+/// Statistics of a signal that an attempt sampled. The samples are in the journal.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Series {
+pub struct SignalSummary {
     /// The signal.
     pub name: String,
     /// Its unit, empty for a pure number.
     pub unit: String,
-    /// The smallest accepted value, as it was last told.
+    /// The smallest accepted value, as last reported.
     pub low: Option<f64>,
-    /// The largest accepted value, as it was last told.
+    /// The largest accepted value, as last reported.
     pub high: Option<f64>,
     /// Where in the plug-in it was first sampled.
     pub location: Option<Location>,
-    /// How many samples there are.
+    /// Number of samples.
     pub count: u64,
-    /// The times of the first and of the last one, in seconds since the test's
+    /// The times of the first and the last sample, in seconds since the test's
     /// set-up began.
     pub span: (f64, f64),
-    /// The smallest value that is a finite number, as are the next three.
+    /// The smallest finite value. The next three are finite, too.
     pub min: Option<f64>,
     /// The mean value.
     pub mean: Option<f64>,
@@ -28,16 +28,16 @@ pub struct Series {
     pub max: Option<f64>,
     /// The last value.
     pub last: Option<f64>,
-    /// How many samples are outside their limits.
+    /// Number of samples outside the limits.
     pub outside: u64,
-    /// What is wrong with the first of them, in words.
+    /// Describes the first of them.
     pub problem: Option<String>,
-    /// How many samples are finite numbers.
+    /// Number of finite samples.
     finite: u64,
 }
 
-impl Series {
-    /// A signal of which these are the first samples.
+impl SignalSummary {
+    /// Starts with the first samples of a signal.
     #[must_use]
     pub fn new(samples: &Samples) -> Self {
         let first = samples.points.first().map_or(0.0, |(at, _)| *at);
@@ -61,7 +61,7 @@ impl Series {
         series
     }
 
-    /// Takes in some more samples.
+    /// Adds a batch of samples.
     pub fn extend(&mut self, samples: &Samples) {
         self.unit.clone_from(&samples.unit);
         (self.low, self.high) = (samples.low, samples.high);
@@ -75,7 +75,7 @@ impl Series {
             let Some(value) = *value else { continue };
             self.finite += 1;
             let mean = self.mean.unwrap_or(value);
-            // Neither a sum nor a difference, which values of ±1e308 would overflow.
+            // A sum or a difference of values near ±1e308 would overflow.
             let count = self.finite as f64;
             self.mean = Some(mean + (value / count - mean / count));
             self.min = Some(self.min.map_or(value, |min| min.min(value)));
@@ -84,7 +84,7 @@ impl Series {
         }
     }
 
-    /// Takes in samples of any signal.
+    /// Adds a batch to the signal of its name.
     pub(super) fn extend_one_of(all: &mut Vec<Self>, samples: &Samples) {
         match all.iter_mut().find(|series| series.name == samples.name) {
             Some(series) => series.extend(samples),
@@ -92,10 +92,10 @@ impl Series {
         }
     }
 
-    /// The series in numbers, as people read them:
+    /// One line of text:
     /// `500 samples in 4.99 s, 0.1 … 0.6 rad, mean 0.31 rad`.
     #[must_use]
-    pub fn in_numbers(&self) -> String {
+    pub fn summary(&self) -> String {
         let seconds = format_rounded(self.span.1 - self.span.0);
         let samples = if self.count == 1 { "sample" } else { "samples" };
         let mut text = format!("{} {samples} in {seconds} s", self.count);

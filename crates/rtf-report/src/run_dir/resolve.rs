@@ -95,7 +95,7 @@ fn names(results: &Path) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run_folder::create;
+    use crate::run_dir::create;
 
     fn run(results: &Path, name: &str) -> PathBuf {
         let folder = results.join(name);
