@@ -2,9 +2,9 @@
 
 use std::error::Error;
 
-use rtf_engine::host::codec::{self, FromHost};
 use rtf_model::protocol::{Answer, Notification, Plugin, Reply, Request, RpcMessage};
 use rtf_model::{Location, Message, MessageKind, Outcome, Phase};
+use rtf_process::codec::{self, HostMessage};
 
 const TESTS: u64 = 4000;
 
@@ -44,9 +44,9 @@ pub fn run() -> Result<(), Box<dyn Error>> {
         ];
         for line in &lines {
             match codec::decode(line)? {
-                FromHost::Told(_) => understood += 1,
-                FromHost::Answered(id, _) if id == number => understood += 1,
-                FromHost::Answered(..) => {}
+                HostMessage::Notification(_) => understood += 1,
+                HostMessage::Reply(id, _) if id == number => understood += 1,
+                HostMessage::Reply(..) => {}
             }
         }
     }

@@ -2,12 +2,10 @@
 //!
 //! [`verify`] checks whether the plug-ins of a plan can be loaded. [`run`] runs
 //! the plan: a state machine without I/O or clock, with one task around it.
-//! [`host`] starts processes, talks to them, and ends them; [`isolate`] gives a
-//! suite its private network, ports and ids; [`guard`] takes over when the runner
-//! dies.
+//! [`isolate`] gives a suite its private network, ports and ids; [`guard`] takes over
+//! when the runner dies.
 
 pub mod guard;
-pub mod host;
 pub mod isolate;
 pub mod locks;
 pub mod run;

@@ -10,8 +10,8 @@ use tokio::sync::watch;
 use tokio::time::Instant;
 
 use crate::guard::{BEAT, Link, Requests};
-use crate::host::tree;
 use crate::run::{Stop, StopLevel};
+use rtf_process::tree;
 
 /// The signals that end a run, by number and name.
 const ENDING: [(i32, &str); 3] = [(2, "SIGINT"), (15, "SIGTERM"), (1, "SIGHUP")];

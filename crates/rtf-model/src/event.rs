@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub use self::planned::{
     FixturePlanned, HookPlanned, RunStarted, SuitePlanned, TestPlanned, Trigger,
 };
-pub use self::process::{ExitStatus, LeakedProcess, Output, Source, Stream};
+pub use self::process::{ExitStatus, LeakedProcess, Output, Source, Stream, signal_name};
 pub use self::test::{Phase, StopCause, TestFinished};
 use crate::{
     Attachment, Diagnostic, FixtureId, HookId, Measurement, Message, Micros, Samples, SuiteId,

@@ -29,6 +29,7 @@ pub use diagnostic::{Diagnostic, Label, Severity};
 pub use event::{
     Event, EventKind, ExitStatus, FixturePlanned, HookPlanned, LeakedProcess, Output, Phase,
     RunStarted, Source, StopCause, Stream, SuitePlanned, TestFinished, TestPlanned, Trigger,
+    signal_name,
 };
 pub use ids::{FixtureId, HookId, Micros, SuiteId, TestId};
 pub use journal::{Damage, EventCheck, LineCheck, LineChecker, LineSealer, StreamChecker};

@@ -11,9 +11,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use rtf_engine::run::Forks;
 use rtf_plan::select::Shard;
 use rtf_plan::suite::parse_duration;
+use rtf_process::fork_server::ForkMode;
 
 pub use doctor::{DoctorArgs, DoctorFormat};
 pub use formats::{Annotations, Format, Shown, parse_report};
@@ -353,7 +353,7 @@ pub struct RunArgs {
     /// second test on), `always`, or `never`
     #[arg(long, value_name = "WHEN", default_value = "auto", env = "RTF_FORK")]
     #[arg(value_parser = forks_parser(), hide_possible_values = true)]
-    pub fork: Forks,
+    pub fork: ForkMode,
 
     #[command(flatten)]
     pub web: WebRunArgs,

@@ -16,16 +16,16 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, FromArgMatches};
 use cli::{Cli, Color, Command, ConfigVerb};
-use rtf_engine::guard::{self, gate};
-use rtf_engine::isolate;
+use rtf_engine::guard;
+use rtf_process::{network, start_gate};
 
 fn main() -> ExitCode {
     // Before anything else: these processes must have one thread only.
     match std::env::args_os().nth(1) {
-        Some(first) if first == isolate::HOLD => {
-            return if isolate::hold().is_ok() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+        Some(first) if first == network::HOLD_ARGUMENT => {
+            return if network::hold().is_ok() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
         }
-        Some(first) if first == gate::WAIT => return wait_at_gate(),
+        Some(first) if first == start_gate::WAIT_ARGUMENT => return wait_at_gate(),
         _ => {}
     }
     // Without it, such a write would end the process without a word.
@@ -65,7 +65,7 @@ fn main() -> ExitCode {
 fn wait_at_gate() -> ExitCode {
     let mut command = std::env::args_os().skip(2).peekable();
     let program = command.peek().map(|program| program.to_string_lossy().into_owned());
-    let (code, error) = gate::wait(command);
+    let (code, error) = start_gate::wait(command);
     anstream::eprintln!("`{}` cannot be executed: {error}", program.unwrap_or_default());
     ExitCode::from(u8::try_from(code).unwrap_or(exit::BROKEN))
 }

@@ -12,7 +12,7 @@ use super::closing::{self, Ended, Happened, Told};
 use super::duties::{Duties, Duty, Held, RunFiles, State, only_test};
 use super::hook::{self, Why};
 use super::unix::Signals;
-use crate::host::{prepare_process, tree};
+use rtf_process::{prepare_process, tree};
 
 /// Processes that were killed are waited for this long. One that hangs in the
 /// kernel (a device that does not answer) is named, and left.
@@ -73,9 +73,9 @@ pub fn finish(duties: Duties, reason: String, mut signals: Signals, forked: Inst
     }
     // The namespaces' holders are not what a suite left: they are rtf's own.
     for (_, holder) in duties.held.values().filter_map(|held| held.network.as_ref()) {
-        tree::end_own(*holder);
+        tree::kill_child(*holder);
     }
-    tree::add(&mut left, tree::clear(SWEEP_LIMIT));
+    tree::add_new(&mut left, tree::kill_until_none_is_left(SWEEP_LIMIT));
     duties.held.values().for_each(Held::clear_locks);
     let end = EventKind::RunnerDied { reason: reason.clone(), leaked: left.clone() };
     happened.push(Happened { at: Instant::now(), kind: end });

@@ -9,11 +9,12 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use super::closing::Happened;
 use super::duties::Streams;
 use super::hook::{Process, RUN};
-use super::note::{Hook, Kept};
+use super::note::Hook;
 use super::unix::{self, Signals};
-use crate::host::codec::{self, FromHost};
-use crate::host::tree;
 use crate::run::machine::HOOK_KILLED;
+use rtf_process::codec::{self, HostMessage};
+use rtf_process::task::ProcessStream;
+use rtf_process::tree;
 
 /// How long a hook that was asked to stop may take.
 const TERM_GRACE: Duration = Duration::from_secs(1);
@@ -95,7 +96,7 @@ impl Attendant<'_> {
     fn limit_passed(&mut self) {
         self.note(format!("it did not end within {:?}", self.hook.limit));
         match self.force {
-            0 => tree::signal_group(self.process.pid, libc::SIGTERM),
+            0 => rtf_process::signal_group(self.process.pid, libc::SIGTERM),
             _ => tree::kill_tree(self.process.pid),
         }
         self.force += 1;
@@ -139,18 +140,18 @@ impl Attendant<'_> {
         any
     }
 
-    fn closed(&mut self, kind: Kept) {
-        if kind == Kept::Channel && !self.line.is_empty() {
+    fn closed(&mut self, kind: ProcessStream) {
+        if kind == ProcessStream::Channel && !self.line.is_empty() {
             let line = std::mem::take(&mut self.line);
             self.understand(&line);
         }
     }
 
-    fn take(&mut self, kind: Kept, bytes: &[u8]) {
+    fn take(&mut self, kind: ProcessStream, bytes: &[u8]) {
         let stream = match kind {
-            Kept::Stdout => Stream::Stdout,
-            Kept::Stderr => Stream::Stderr,
-            Kept::Channel => return self.heard(bytes),
+            ProcessStream::Stdout => Stream::Stdout,
+            ProcessStream::Stderr => Stream::Stderr,
+            ProcessStream::Channel => return self.heard(bytes),
         };
         let printed = &mut self.printed[stream as usize];
         let room = KEPT.saturating_sub(printed.bytes.len()).min(bytes.len());
@@ -174,7 +175,7 @@ impl Attendant<'_> {
 
     fn understand(&mut self, line: &[u8]) {
         match codec::decode(line) {
-            Ok(FromHost::Told(Notification::Message(message))) => {
+            Ok(HostMessage::Notification(Notification::Message(message))) => {
                 if matches!(message.kind, MessageKind::Failure | MessageKind::Error) {
                     self.note(message.text.clone());
                 }
@@ -184,21 +185,21 @@ impl Attendant<'_> {
                     test: None,
                 });
             }
-            Ok(FromHost::Told(Notification::Measured(measured)))
+            Ok(HostMessage::Notification(Notification::Measured(measured)))
                 if !measured.is_within_limits() =>
             {
                 self.note(format!("`{}` is out of its limits", measured.name));
             }
-            Ok(FromHost::Told(Notification::Sampled(samples))) => {
+            Ok(HostMessage::Notification(Notification::Sampled(samples))) => {
                 samples.problem().into_iter().for_each(|problem| self.note(problem));
             }
-            Ok(FromHost::Answered(RUN, Reply::Result(value))) => {
+            Ok(HostMessage::Reply(RUN, Reply::Result(value))) => {
                 match serde_json::from_value::<Answer>(value) {
                     Ok(answer) => self.answer = Some(answer),
                     Err(error) => self.note(format!("its host broke the protocol: {error}")),
                 }
             }
-            Ok(FromHost::Answered(RUN, Reply::Error(error))) => {
+            Ok(HostMessage::Reply(RUN, Reply::Error(error))) => {
                 self.note(format!("its host refused: {}", error.message));
             }
             Ok(_) => {}

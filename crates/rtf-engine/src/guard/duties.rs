@@ -8,13 +8,14 @@ use std::time::{Duration, Instant};
 
 use rtf_model::{HookId, SuiteId, TestId};
 
-use crate::isolate::Namespaces;
 use crate::locks;
+use rtf_process::namespaces::Namespaces;
+use rtf_process::task::ProcessStream;
 
-use super::note::{Hook, HookBegins, Kept, Note};
+use super::note::{Hook, HookBegins, Note};
 
 /// Ends of a process's streams.
-pub type Streams = Vec<(Kept, OwnedFd)>;
+pub type Streams = Vec<(ProcessStream, OwnedFd)>;
 
 /// All that the runner has told and not taken back.
 #[derive(Debug, Default)]
@@ -223,7 +224,7 @@ impl Duties {
     }
 }
 
-fn announced(names: Vec<Kept>, received: &mut VecDeque<OwnedFd>) -> Streams {
+fn announced(names: Vec<ProcessStream>, received: &mut VecDeque<OwnedFd>) -> Streams {
     names.into_iter().map_while(|name| Some((name, received.pop_front()?))).collect()
 }
 

@@ -14,12 +14,12 @@ use rtf_model::{EventKind, TestId, Trigger};
 use super::attend::{Attended, attend};
 use super::closing::Happened;
 use super::duties::{Begun, State, Streams};
-use super::gate;
-use super::note::{Hook, HookBegins, Kept};
+use super::note::{Hook, HookBegins};
 use super::unix::Signals;
-use crate::host::{codec, resources, tree};
-use crate::isolate::Namespaces;
 use crate::run::machine::HOOK_NOT_RUN;
+use rtf_process::namespaces::Namespaces;
+use rtf_process::task::ProcessStream;
+use rtf_process::{codec, resources, start_gate, tree};
 
 /// The number of `run-test` on a hook's channel.
 pub(super) const RUN: u64 = 2;
@@ -128,9 +128,9 @@ fn find(hook: &Hook, begun: Begun) -> Found {
 fn ask(hook: &Hook, streams: &Streams) {
     let asked = match &hook.plugin {
         Some(plugin) => codec::encode(Some(RUN), Request::RunTest(plugin.clone())),
-        None => Ok(gate::GO.to_vec()),
+        None => Ok(start_gate::GO.to_vec()),
     };
-    let channel = streams.iter().find(|(kind, _)| *kind == Kept::Channel);
+    let channel = streams.iter().find(|(kind, _)| *kind == ProcessStream::Channel);
     if let (Ok(line), Some((_, channel))) = (asked, channel) {
         // It may have ended meanwhile.
         let _ = rustix::io::write(channel, &line);
@@ -165,15 +165,15 @@ fn start(hook: &Hook, begins: &HookBegins, why: &Why<'_>) -> io::Result<Process>
         lines.extend(codec::encode(Some(RUN), Request::RunTest(plugin.clone()))?);
         io::Write::write_all(&mut &ours, &lines)?;
         command.env(CHANNEL_VARIABLE, tree::inheritable(&host)?);
-        streams.push((Kept::Channel, ours.into()));
+        streams.push((ProcessStream::Channel, ours.into()));
         theirs = Some(host);
     }
     resources::limit_descriptors_of(&mut command);
     let child = command.spawn();
     drop(theirs);
     let mut child = child?;
-    streams.extend(child.stdout.take().map(|end| (Kept::Stdout, end.into())));
-    streams.extend(child.stderr.take().map(|end| (Kept::Stderr, end.into())));
+    streams.extend(child.stdout.take().map(|end| (ProcessStream::Stdout, end.into())));
+    streams.extend(child.stderr.take().map(|end| (ProcessStream::Stderr, end.into())));
     let pid = i32::try_from(child.id()).map_err(io::Error::other)?;
     Ok(Process { pid, streams, limit: Instant::now() + hook.limit, adopted: false })
 }

@@ -11,10 +11,12 @@ use rtf_model::{HookId, Source, SuiteId, TestId};
 use rustix::net::SendFlags;
 use tokio::sync::Notify;
 
-use super::note::{Hook, HookBegins, Kept, Note};
-use super::queue::{DESCRIPTORS, Queue};
+use super::note::{Hook, HookBegins, Note};
+use super::queue::Queue;
 use crate::isolate::Prepared;
 use rtf_plan::plan::SuitePlan;
+use rtf_process::descriptor_passing::MAX_DESCRIPTORS;
+use rtf_process::task::ProcessStream;
 
 /// How often the runner shows that it is alive.
 pub const BEAT: Duration = Duration::from_secs(1);
@@ -91,18 +93,18 @@ impl Link {
     /// network, while nobody else gets its numbers.
     pub fn suite_begins(&self, prepared: &Prepared<'_>) {
         let suite = &*prepared.plan;
-        if let Some((namespaces, holder)) = prepared.held() {
-            let descriptors: Vec<_> = namespaces.descriptors().collect();
-            self.suite_holds(suite.id, &descriptors, Some(holder));
+        if let Some(held) = prepared.held_network() {
+            let descriptors: Vec<_> = held.network().namespaces().descriptors().collect();
+            self.suite_holds(suite.id, &descriptors, Some(held.pid));
         }
         let locks: Vec<_> = prepared.locks().collect();
-        for some in locks.chunks(DESCRIPTORS) {
+        for some in locks.chunks(MAX_DESCRIPTORS) {
             self.suite_holds(suite.id, some, None);
         }
         if !suite.hooks.is_empty() {
             self.hooked.fetch_add(1, Ordering::Relaxed);
             let leases: Vec<_> = prepared.leases().collect();
-            for some in leases.chunks(DESCRIPTORS) {
+            for some in leases.chunks(MAX_DESCRIPTORS) {
                 self.suite_holds(suite.id, some, None);
             }
             let hooks = suite.hooks.iter().map(|hook| Hook::of(suite, hook)).collect();
@@ -117,7 +119,7 @@ impl Link {
 
     /// A suite is over.
     pub fn suite_ends(&self, prepared: &Prepared<'_>) {
-        let holds = prepared.held().is_some() || prepared.locks().next().is_some();
+        let holds = prepared.held_network().is_some() || prepared.locks().next().is_some();
         let has_hooks = !prepared.plan.hooks.is_empty();
         if has_hooks || holds {
             self.tell(&Note::SuiteEnds { suite: prepared.plan.id });
@@ -148,7 +150,12 @@ impl Link {
 
     /// A process was started. The streams of a hook's or fixture's process are
     /// kept by the guard, too, so that it can go on without the runner.
-    pub fn process_started(&self, source: Source, pid: i32, streams: &[(Kept, BorrowedFd<'_>)]) {
+    pub fn process_started(
+        &self,
+        source: Source,
+        pid: i32,
+        streams: &[(ProcessStream, BorrowedFd<'_>)],
+    ) {
         let (names, descriptors): (Vec<_>, Vec<_>) = streams.iter().copied().unzip();
         let note = match source {
             Source::Test(_) => return,

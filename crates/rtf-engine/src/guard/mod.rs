@@ -20,7 +20,6 @@ mod after;
 mod attend;
 mod closing;
 mod duties;
-pub mod gate;
 mod hook;
 mod link;
 mod note;
@@ -34,11 +33,11 @@ use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
-use crate::host::resources;
+use rtf_process::resources;
 
 pub use after::{Died, Parked};
 pub use link::{BEAT, Link};
-pub use note::{HookBegins, Kept};
+pub use note::HookBegins;
 pub use requests::{Requests, WINDOW};
 pub use unix::survive_file_size_limit;
 pub use watch::{Ended, Guard};

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use rtf_model::protocol::{ENVIRONMENT_VARIABLE, OWNER_VARIABLE, Plugin};
 use rtf_model::{EventKind, HookId, SuiteId, TestId, Trigger};
+use rtf_process::task::ProcessStream;
 use serde::{Deserialize, Serialize};
 
 use rtf_plan::plan::{HookBody, HookPlan, SuitePlan};
@@ -75,7 +76,7 @@ pub enum Note {
         /// Its process.
         pid: i32,
         /// Which descriptors come with this line, in this order.
-        streams: Vec<Kept>,
+        streams: Vec<ProcessStream>,
     },
     /// The hook is over.
     HookEnds {
@@ -89,7 +90,7 @@ pub enum Note {
         /// Its process.
         pid: i32,
         /// Which descriptors come with this line, in this order.
-        streams: Vec<Kept>,
+        streams: Vec<ProcessStream>,
     },
     /// A fixture's process has ended.
     FixtureEnds {
@@ -124,18 +125,6 @@ impl HookBegins {
             test: self.test,
         }
     }
-}
-
-/// An end of a process's stream that the guard keeps, too.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Kept {
-    /// Standard output, to be read.
-    Stdout,
-    /// Standard error, to be read.
-    Stderr,
-    /// The host's channel.
-    Channel,
 }
 
 /// A hook as the guard needs it to run it.

@@ -2,20 +2,18 @@
 //! was stopped, or the machine is busy) gets them later; the run never waits.
 
 use std::collections::VecDeque;
-use std::io::{self, IoSlice};
-use std::mem::MaybeUninit;
+use std::io;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::io::Errno;
-use rustix::net::{SendAncillaryBuffer, SendAncillaryMessage, SendFlags, sendmsg};
+use rustix::net::SendFlags;
 
 use super::note::Note;
+use rtf_process::descriptor_passing;
 
-/// How many descriptors go with one line at the most.
-pub const DESCRIPTORS: usize = 3;
 /// How many bytes of notes may wait.
 const BYTES: usize = 4 << 20;
 /// How many descriptors may wait with them.
@@ -138,19 +136,12 @@ fn line_of(note: &Note) -> io::Result<Vec<u8>> {
     Ok(line)
 }
 
-/// How much was written; `None` when there is no room. Descriptors go with the
-/// first byte.
+/// Returns the number of bytes written; `None` if there is no room.
 fn send(socket: &UnixStream, line: &[u8], fds: &[BorrowedFd<'_>]) -> io::Result<Option<usize>> {
-    let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(DESCRIPTORS))];
-    let mut beside = SendAncillaryBuffer::new(&mut space);
-    if !fds.is_empty() {
-        beside.push(SendAncillaryMessage::ScmRights(fds));
-    }
-    let flags = SendFlags::NOSIGNAL | SendFlags::DONTWAIT;
-    match sendmsg(socket, &[IoSlice::new(line)], &mut beside, flags) {
+    match descriptor_passing::send(socket.as_fd(), line, fds, SendFlags::DONTWAIT) {
         Ok(written) => Ok(Some(written)),
-        // Too many descriptors are on their way.
-        Err(Errno::AGAIN | Errno::INTR | Errno::TOOMANYREFS | Errno::NOBUFS) => Ok(None),
+        // Too many passed descriptors have not been received yet.
+        Err(Errno::AGAIN | Errno::TOOMANYREFS | Errno::NOBUFS) => Ok(None),
         Err(error) => Err(error.into()),
     }
 }

@@ -1,22 +1,19 @@
 //! The guard while the runner lives: it passes signals on, listens, and waits.
 
 use std::collections::VecDeque;
-use std::io::IoSliceMut;
-use std::mem::MaybeUninit;
 use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
 use rtf_model::{ExitStatus, LeakedProcess};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use rustix::net::{RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, recv, recvmsg};
+use rustix::net::{RecvFlags, recv};
 
 use super::after::{self, Died};
 use super::duties::Duties;
 use super::note::Note;
-use super::queue::DESCRIPTORS;
 use super::unix::{self, Signals};
-use crate::host::{cgroup, tree};
+use rtf_process::{cgroup, descriptor_passing, tree};
 
 /// The exit code of a Rust program that panicked.
 const PANICKED: i32 = 101;
@@ -170,7 +167,7 @@ impl Guard {
         } else {
             return;
         };
-        tree::signal(self.runner, libc::SIGKILL);
+        rtf_process::signal_process(self.runner, libc::SIGKILL);
         self.killed = Some((why, Instant::now() + KILL_LIMIT));
     }
 
@@ -194,9 +191,9 @@ impl Guard {
             // The end of a child. And a run that supervises a robot is not stopped halfway.
             libc::SIGCHLD | libc::SIGTSTP => {}
             _ => {
-                tree::signal(self.runner, signal);
+                rtf_process::signal_process(self.runner, signal);
                 // One that was stopped shall act upon it.
-                tree::signal(self.runner, libc::SIGCONT);
+                rtf_process::signal_process(self.runner, libc::SIGCONT);
             }
         }
         if self.signals.kill() && self.kill_at.is_none() {
@@ -223,7 +220,9 @@ impl Guard {
             ExitStatus::Signal(_) => (None, status.to_string()),
         };
         match code {
-            Some(code) => Ended::ByItself { code, left: tree::clear(after::SWEEP_LIMIT) },
+            Some(code) => {
+                Ended::ByItself { code, left: tree::kill_until_none_is_left(after::SWEEP_LIMIT) }
+            }
             None => Ended::Died(after::finish(duties, reason, self.signals, self.forked)),
         }
     }
@@ -288,21 +287,16 @@ impl Link {
         let mut bytes = vec![0; READ_BYTES];
         let mut any = false;
         while let Some(socket) = &self.socket {
-            let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(DESCRIPTORS))];
-            let mut beside = RecvAncillaryBuffer::new(&mut space);
-            let flags = RecvFlags::DONTWAIT | RecvFlags::CMSG_CLOEXEC;
-            let mut room = [IoSliceMut::new(&mut bytes)];
-            let read = match recvmsg(socket.as_fd(), &mut room, &mut beside, flags) {
-                Ok(message) => message.bytes,
+            let socket = socket.as_fd();
+            let read = match descriptor_passing::receive(socket, &mut bytes, RecvFlags::DONTWAIT) {
+                Ok((read, descriptors)) => {
+                    self.received.extend(descriptors);
+                    read
+                }
                 Err(rustix::io::Errno::AGAIN) => break,
                 Err(rustix::io::Errno::INTR) => continue,
                 Err(_) => 0,
             };
-            for message in beside.drain() {
-                if let RecvAncillaryMessage::ScmRights(descriptors) = message {
-                    self.received.extend(descriptors);
-                }
-            }
             if read == 0 {
                 self.socket = None;
             }

@@ -2,7 +2,6 @@
 //! ids for its middleware. `spec/suite.md`, "Isolation", says what a user sees.
 //!
 //! - [`Prepared`]: all of it, for one suite; given back with its end.
-//! - [`Network`]: a network namespace and the process that holds it ([`hold`]).
 //! - `lease`: numbers that no other run on this machine has.
 //! - `middleware`: the environment variables.
 //! - `fill`: puts what was given into the texts of a plan.
@@ -10,45 +9,32 @@
 //! Why it is like this: `docs/decisions/0009-isolation.md`.
 
 mod fill;
-mod holder;
 mod lease;
 mod middleware;
-mod namespaces;
-mod network;
-mod pass;
 #[cfg(test)]
 mod tests;
-mod unix;
 
 use std::borrow::Cow;
 use std::os::fd::{AsFd, BorrowedFd};
 use std::path::Path;
-use std::sync::Arc;
 
 use rtf_model::{SuiteNetwork, SuitePort, SuitePrepared, SuiteVariable};
 
-pub use holder::hold;
-pub use namespaces::Namespaces;
-pub use network::{Network, connect};
-
-use crate::host::spawner::Spawner;
 use crate::locks::Lock;
 use lease::{Lease, LeaseError};
-use network::Holder;
 use rtf_plan::plan::{OwnMiddleware, Preparation, SuitePlan};
+use rtf_process::network::{HeldNetwork, Network, NetworkError};
+use rtf_process::spawner::Spawner;
 
 /// Whether a suite could have a network of its own here; else why not.
 ///
 /// # Errors
 /// What the system refuses.
 pub async fn network_is_possible(spawner: &Spawner) -> Result<(), String> {
-    let holder = Holder::start(spawner).await.map_err(|error| error.to_string())?;
-    holder.end().await;
+    let network = HeldNetwork::start(spawner).await.map_err(|error| error.to_string())?;
+    network.end().await;
     Ok(())
 }
-
-/// The first argument of a process of this program that holds a namespace.
-pub const HOLD: &str = "--hold-network";
 
 /// Why a suite cannot have what it needs.
 #[derive(Debug, thiserror::Error)]
@@ -56,7 +42,7 @@ enum RefusedError {
     #[error("cannot lease a number: {0}")]
     Lease(#[from] LeaseError),
     #[error("no network of its own: {0}")]
-    Network(#[from] network::NetworkError),
+    Network(#[from] NetworkError),
 }
 
 /// A suite with all that it got for itself.
@@ -64,7 +50,7 @@ enum RefusedError {
 pub struct Prepared<'p> {
     /// The plan, in which everything is filled in.
     pub plan: Cow<'p, SuitePlan>,
-    holder: Option<Holder>,
+    network: Option<HeldNetwork>,
     leases: Vec<Lease>,
     locks: Vec<Lock>,
 }
@@ -79,8 +65,8 @@ impl<'p> Prepared<'p> {
         folder: &Path,
         spawner: &Spawner,
     ) -> Self {
-        let (plan, leases, holder) = (Cow::Borrowed(plan), Vec::new(), None);
-        let mut prepared = Self { plan, holder, leases, locks: Vec::new() };
+        let (plan, leases, network) = (Cow::Borrowed(plan), Vec::new(), None);
+        let mut prepared = Self { plan, network, leases, locks: Vec::new() };
         match locks {
             Ok(locks) => prepared.locks = locks,
             Err(held) => {
@@ -130,9 +116,12 @@ impl<'p> Prepared<'p> {
             self.leases.push(domain);
         }
         if wanted.network {
-            self.holder = Some(Holder::start(spawner).await?);
+            self.network = Some(HeldNetwork::start(spawner).await?);
         }
-        let network = self.holder.as_ref().map(Holder::told);
+        let network = self
+            .network
+            .as_ref()
+            .map(|held| SuiteNetwork { pid: held.pid, user_namespace: held.has_user_namespace });
         let join = join(network, &ports, &variables);
         Ok(Some(SuitePrepared { suite: plan.id, network, ports, variables, join_command: join }))
     }
@@ -140,14 +129,13 @@ impl<'p> Prepared<'p> {
     /// The network of its processes.
     #[must_use]
     pub fn network(&self) -> Option<Network> {
-        self.holder.as_ref().map(Holder::network)
+        self.network.as_ref().map(|held| held.network().clone())
     }
 
     /// The namespaces, and the process that holds them.
     #[must_use]
-    pub fn held(&self) -> Option<(Arc<Namespaces>, i32)> {
-        let holder = self.holder.as_ref()?;
-        Some((holder.network().namespaces().clone(), holder.told().pid))
+    pub fn held_network(&self) -> Option<&HeldNetwork> {
+        self.network.as_ref()
     }
 
     /// What keeps others from what it requires.
@@ -164,11 +152,11 @@ impl<'p> Prepared<'p> {
     pub async fn give_back(self, spawner: &Spawner) {
         // Nothing of the suite is left that could use what is locked.
         self.locks.into_iter().for_each(Lock::release);
-        if let Some(holder) = self.holder {
-            let network = holder.network();
-            holder.end().await;
+        if let Some(held) = self.network {
+            let namespaces = held.network().namespaces().clone();
+            held.end().await;
             // Its fork servers are in the namespace, too.
-            spawner.finish(Some(network)).await;
+            spawner.stop_fork_servers(Some(namespaces)).await;
         }
     }
 }

@@ -11,8 +11,8 @@ use rtf_model::{Diagnostic, EventKind};
 use tokio::time::Instant;
 
 use super::Owner;
-use crate::host::tree;
 use crate::run::Events;
+use rtf_process::tree;
 
 /// How long they may take to end when they are asked to.
 const GRACE: Duration = Duration::from_secs(5);
@@ -34,12 +34,12 @@ pub async fn stop(owner: &Owner, events: &Events) {
         let end = Instant::now() + limit;
         let mut signalled = Vec::new();
         loop {
-            let alive = tree::of_scopes(&owner.scope);
+            let alive = tree::find_by_scope(&owner.scope);
             let new: Vec<_> = alive.iter().filter(|left| !signalled.contains(&left.pid)).collect();
-            new.iter().for_each(|left| tree::signal(left.pid, signal));
+            new.iter().for_each(|left| rtf_process::signal_process(left.pid, signal));
             signalled.extend(new.into_iter().map(|left| left.pid));
             let over = alive.is_empty() || Instant::now() >= end;
-            tree::add(&mut known, alive);
+            tree::add_new(&mut known, alive);
             if over {
                 break;
             }

@@ -4,34 +4,14 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use rtf_model::parse_clock;
 use rtf_model::protocol::{CLOCK_FILE_VARIABLE, CLOCK_VARIABLE};
-use rtf_model::{Source, parse_clock};
+use rtf_process::spawn_request::ProcessRole;
 
 use rtf_plan::plan::SuitePlan;
 
 /// How often it is looked at.
 const EVERY: Duration = Duration::from_millis(10);
-
-/// What a process is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
-    /// Runs a test.
-    Test,
-    /// Is a fixture.
-    Fixture,
-    /// Is a hook.
-    Hook,
-}
-
-impl From<Source> for Role {
-    fn from(source: Source) -> Self {
-        match source {
-            Source::Test(_) => Self::Test,
-            Source::Fixture(_) => Self::Fixture,
-            Source::Hook(_) => Self::Hook,
-        }
-    }
-}
 
 /// The clock of a suite; the wall clock if it has no file.
 #[derive(Debug)]
@@ -67,13 +47,13 @@ impl Clock {
 
     /// What a process is told of it. A hook has to come to its end whatever the
     /// clock does, and so has a fixture, but that may be the one that makes it go.
-    pub fn variables(&self, role: Role) -> Vec<(String, String)> {
+    pub fn variables(&self, role: ProcessRole) -> Vec<(String, String)> {
         let file = self.file.as_ref().map(|file| file.to_string_lossy().into_owned());
         let mut variables = Vec::new();
-        if role == Role::Fixture {
+        if role == ProcessRole::Fixture {
             variables.extend(file.clone().map(|file| (CLOCK_FILE_VARIABLE, file)));
         }
-        match file.filter(|_| role == Role::Test) {
+        match file.filter(|_| role == ProcessRole::Test) {
             Some(file) => variables.push((CLOCK_VARIABLE, file)),
             None if self.inherited => variables.push((CLOCK_VARIABLE, String::new())),
             None => {}

@@ -1,18 +1,18 @@
 //! Runs a plan.
 //!
 //! [`machine`] decides, without I/O or clock; [`suite_task`] connects it with
-//! the processes of [`crate::host`], the probes and the clock. A collapse
+//! the processes of [`rtf_process`] and the clock. A collapse
 //! interrupts a test in `machine/suite.rs`, `fixture_changed`.
 
 mod clock;
+mod context;
 mod control;
 mod deadlines;
 mod events;
 mod fail_limit;
-mod http;
 mod lineup;
 pub mod machine;
-pub mod probe;
+mod probes;
 pub mod suite_task;
 
 use std::num::NonZeroUsize;
@@ -27,7 +27,7 @@ use rtf_model::{
 };
 use tokio::sync::watch;
 
-pub use clock::Role;
+pub use context::RunContext;
 pub use control::{Control, Controls};
 pub use events::{Events, Sink};
 use fail_limit::FailLimit;
@@ -35,14 +35,14 @@ use lineup::Lineup;
 pub use machine::{Stop, StopLevel};
 
 use crate::guard::Link;
-use crate::host::cgroup::Cgroups;
-pub use crate::host::fork::Forks;
-use crate::host::spawner::Spawner;
-use crate::host::task::Shared;
-use crate::host::{prepare_process, tree};
 use crate::isolate::Prepared;
 use crate::locks::{self, LockOptions};
 use rtf_plan::plan::{FixtureBody, FixturePlan, Plan, SuitePlan, TestPlan};
+use rtf_process::cgroup::Cgroups;
+use rtf_process::fork_server::ForkMode;
+use rtf_process::spawner::Spawner;
+use rtf_process::task::TaskContext;
+use rtf_process::{prepare_process, tree};
 
 /// What a run needs beside its plan.
 #[derive(Debug)]
@@ -51,14 +51,14 @@ pub struct RunOptions {
     pub started: RunStarted,
     /// What the user should look at, found while the plan was made.
     pub warnings: Vec<Diagnostic>,
-    /// The run's folder, for attachments.
-    pub folder: PathBuf,
+    /// The run's directory, for attachments.
+    pub run_dir: PathBuf,
     /// The run's journal, which the guard closes when the runner dies.
     pub journal: PathBuf,
     /// The way to the guard.
     pub guard: Arc<Link>,
     /// When hosts are forked.
-    pub forks: Forks,
+    pub fork_mode: ForkMode,
     /// After how many tests that did not pass the rest is skipped.
     pub max_fail: Option<u32>,
     /// For how long tests are repeated; none repeats as often as is planned.
@@ -82,15 +82,17 @@ pub async fn execute(
     stops: watch::Receiver<Option<Stop>>,
 ) -> std::io::Result<()> {
     prepare_process()?;
-    let scratch = scratch_folder()?;
-    let shared = Arc::new(Shared {
-        spawner: Spawner::start(options.forks)?,
+    let scratch = create_scratch_dir()?;
+    let context = RunContext {
+        tasks: Arc::new(TaskContext {
+            spawner: Spawner::start(options.fork_mode)?,
+            run_dir: options.run_dir,
+            cgroups: Cgroups::create(),
+        }),
         sink: sink.clone(),
-        run_folder: options.folder,
-        scratch: scratch.clone(),
+        scratch_dir: scratch.clone(),
         guard: options.guard.clone(),
-        cgroups: Cgroups::get(),
-    });
+    };
     let events = Events::new(options.started.run.clone(), sink);
     options.guard.run_begins(&options.journal, scratch.clone(), events.start());
     events.emit(EventKind::RunStarted(options.started));
@@ -103,13 +105,13 @@ pub async fn execute(
     let (stopped, controls) = (stops.clone(), options.controls);
     let fails = FailLimit::new(options.max_fail);
     let asked = suite_task::Asked { stops: stopped, controls, fails, until: None };
-    let (shared, events, locks, time) = (&shared, &events, &options.locks, options.time);
-    let all = AllSuites { shared, events, locks, asked, time };
+    let (context, events, locks, time) = (&context, &events, &options.locks, options.time);
+    let all = AllSuites { context, events, locks, asked, time };
     tokio::select! {
         () = all.run(&plan.suites, options.jobs) => {}
         () = warn_when_guard_missed(&options.guard, events) => {}
     }
-    shared.spawner.finish(None).await;
+    context.tasks.spawner.stop_fork_servers(None).await;
     let left = tree::sweep_all();
     if !left.is_empty() {
         let mut diagnostic = Diagnostic::warning(
@@ -141,7 +143,7 @@ async fn warn_when_guard_missed(guard: &Link, events: &Events) {
 
 /// What all suites of a run have in common.
 struct AllSuites<'a> {
-    shared: &'a Arc<Shared>,
+    context: &'a RunContext,
     events: &'a Events,
     locks: &'a LockOptions,
     asked: suite_task::Asked,
@@ -165,25 +167,26 @@ impl AllSuites<'_> {
     /// One suite from its locks until it has given everything back; it is the
     /// first of so many turns.
     async fn one<'p>(&self, suite: &'p SuitePlan, turns: u32) -> &'p SuitePlan {
-        let Self { shared, events, locks, asked, time } = self;
+        let Self { context, events, locks, asked, time } = self;
         let (mut stops, mut controls) = (asked.stops.clone(), asked.controls.clone());
         let locks = locks::wait(suite, locks, events, (&mut stops, &mut controls)).await;
         let run = events.run_token();
-        let prepared = Prepared::get(suite, locks, run, &shared.run_folder, &shared.spawner).await;
-        shared.guard.suite_begins(&prepared);
+        let TaskContext { spawner, run_dir, .. } = &*context.tasks;
+        let prepared = Prepared::get(suite, locks, run, run_dir, spawner).await;
+        context.guard.suite_begins(&prepared);
         // Suites that come one after the other share the time.
         let now = events.now();
         let until = time.map(|time| now + time.saturating_sub(now) / turns);
         let asked = suite_task::Asked { until, ..asked.clone() };
-        suite_task::run_suite(&prepared, shared, events, asked).await;
-        shared.guard.suite_ends(&prepared);
-        prepared.give_back(&shared.spawner).await;
+        suite_task::run_suite(&prepared, context, events, asked).await;
+        context.guard.suite_ends(&prepared);
+        prepared.give_back(spawner).await;
         suite
     }
 }
 
 /// A folder of this process for files that live as long as a process does.
-fn scratch_folder() -> std::io::Result<PathBuf> {
+fn create_scratch_dir() -> std::io::Result<PathBuf> {
     let path = std::env::temp_dir().join(format!(
         "rtf-{}-{}",
         std::process::id(),

@@ -2,7 +2,6 @@
 //! brings the inputs.
 
 use std::collections::{HashMap, HashSet};
-use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_model::protocol::{ENVIRONMENT_VARIABLE, RUN_DIR_VARIABLE};
@@ -10,20 +9,26 @@ use rtf_model::{EventKind, ExitStatus, Source, TestId};
 use tokio::sync::{mpsc, watch};
 use tokio::time::Instant;
 
-use super::clock::{Clock, Role};
+use super::clock::Clock;
+use super::context::{RunContext, attachments_dir};
 use super::control::{Controls, Unseen};
 use super::deadlines::Deadlines;
 use super::events::Events;
 use super::fail_limit::FailLimit;
 use super::machine::{Effect, HostId, HostInput, Input, Program, Start, Stop, SuiteMachine};
-use crate::guard::{HookBegins, gate};
-use crate::host::attached::{self, Attached};
-use crate::host::launch::Launch;
-use crate::host::remote;
-use crate::host::spawner::{SpawnRequest, Streams};
-use crate::host::task::{self, Job, Next, Order, Shared};
-use crate::isolate::{Network, Prepared};
+use super::probes;
+use crate::guard::HookBegins;
+use crate::isolate::Prepared;
 use rtf_plan::plan::{Leaks, ProcessPlan, SuitePlan, TestPlan};
+use rtf_process::launch::Launch;
+use rtf_process::network::Network;
+use rtf_process::spawn_request::{ProcessRole, SpawnRequest, Streams};
+use rtf_process::spawner::Spawner;
+use rtf_process::ssh::{self, RemoteCommand};
+use rtf_process::start_gate;
+use rtf_process::task::{
+    Assignment, AttachedJob, EventSender, ProcessCommand, ProcessJob, run_process, watch_attached,
+};
 
 /// How many inputs may wait; then processes wait.
 const INPUTS: usize = 1024;
@@ -48,7 +53,7 @@ pub struct Asked {
 /// Runs a suite to its end.
 pub async fn run_suite(
     prepared: &Prepared<'_>,
-    shared: &Arc<Shared>,
+    context: &RunContext,
     events: &Events,
     asked: Asked,
 ) {
@@ -57,12 +62,12 @@ pub async fn run_suite(
     let mut task = SuiteTask {
         plan,
         network: prepared.network(),
-        shared,
+        context,
         events,
         inputs,
         machine: SuiteMachine::new(plan, asked.fails.clone()).until(asked.until),
         effects: Vec::new(),
-        orders: HashMap::new(),
+        commands: HashMap::new(),
         leaving: HashSet::new(),
         unanswered: Vec::new(),
         spares: Vec::new(),
@@ -70,7 +75,7 @@ pub async fn run_suite(
         scopes: 0,
         repeats: asked.until.is_some() || plan.repeats(),
         deadlines: Deadlines::default(),
-        clock: Clock::of(plan, &shared.scratch),
+        clock: Clock::of(plan, &context.scratch_dir),
         over: false,
     };
     task.run(queue, asked).await;
@@ -79,15 +84,26 @@ pub async fn run_suite(
     }
 }
 
+/// The source of a process, and the queue of commands of its task.
+type ProcessHandle = (Source, mpsc::UnboundedSender<ProcessCommand>);
+
+fn role_of(source: Source) -> ProcessRole {
+    match source {
+        Source::Test(_) => ProcessRole::Test,
+        Source::Fixture(_) => ProcessRole::Fixture,
+        Source::Hook(_) => ProcessRole::Hook,
+    }
+}
+
 struct SuiteTask<'a> {
     plan: &'a SuitePlan,
     network: Option<Network>,
-    shared: &'a Arc<Shared>,
+    context: &'a RunContext,
     events: &'a Events,
-    inputs: task::Inputs,
+    inputs: EventSender,
     machine: SuiteMachine<'a>,
     effects: Vec<Effect>,
-    orders: HashMap<HostId, mpsc::UnboundedSender<Order>>,
+    commands: HashMap<HostId, ProcessHandle>,
     /// Those that will be known by another id.
     leaving: HashSet<HostId>,
     /// Inputs for orders whose process has no task any more.
@@ -180,10 +196,14 @@ impl SuiteTask<'_> {
         let now = self.events.now();
         match &input {
             Exited(..) | SpawnFailed(_) | Unbegun(_) => {
-                self.orders.remove(&host);
+                self.commands.remove(&host);
                 self.deadlines.forget(host, now, self.plan);
             }
-            Throttled(source) => self.deadlines.pause(host, *source, now),
+            Throttled => {
+                if let Some((source, _)) = self.commands.get(&host) {
+                    self.deadlines.pause(host, *source, now);
+                }
+            }
             Resumed => self.deadlines.resume(host, now, self.plan),
             Released => self.leave(host),
             _ => {}
@@ -196,7 +216,7 @@ impl SuiteTask<'_> {
     fn leave(&mut self, host: HostId) {
         if !self.leaving.insert(host) {
             self.leaving.remove(&host);
-            self.orders.remove(&host);
+            self.commands.remove(&host);
         }
     }
 
@@ -222,33 +242,42 @@ impl SuiteTask<'_> {
             Effect::ClearDeadline(deadline) => self.deadlines.clear(deadline),
             Effect::Spawn { host, source, start } => self.spawn(host, source, start),
             Effect::Join { host, on, source, request, plugin } => {
-                let owner = format!("test {}/{}", self.plan.name, plugin.name);
-                let next = Next { host, source, owner, request, plugin };
-                let orders = self.orders.get(&on).cloned();
-                match orders.filter(|orders| !orders.is_closed()) {
-                    Some(orders) => {
-                        let _ = orders.send(Order::ServeNext(next));
-                        self.orders.insert(host, orders);
+                let leak_owner = format!("test {}/{}", self.plan.name, plugin.name);
+                let owner = self.context.process_owner(source);
+                let attachments_dir = attachments_dir(source, host);
+                let assignment =
+                    Assignment { host, owner, attachments_dir, leak_owner, request, plugin };
+                let commands = self.commands.get(&on).map(|(_, commands)| commands.clone());
+                match commands.filter(|commands| !commands.is_closed()) {
+                    Some(commands) => {
+                        let _ = commands.send(ProcessCommand::Assign(assignment));
+                        self.commands.insert(host, (source, commands));
                     }
                     None => self.unanswered.push((host, HostInput::Unbegun(UNKNOWN))),
                 }
                 self.leave(on);
             }
             Effect::SpawnAhead(starts) => self.spawn_ahead(starts),
-            Effect::Send(host, id, request) => self.order(host, Order::Send(id, request)),
-            Effect::CloseChannel(host) => self.order(host, Order::CloseChannel),
-            Effect::TakeStack(host, support) => self.order(host, Order::TakeStack(support)),
-            Effect::Signal(host, signal) => self.order(host, Order::Signal(signal)),
+            Effect::Send(host, id, request) => {
+                self.command(host, ProcessCommand::Send(id, request))
+            }
+            Effect::CloseChannel(host) => self.command(host, ProcessCommand::CloseChannel),
+            Effect::TakeStack(host, support) => {
+                self.command(host, ProcessCommand::TakeStack(support))
+            }
+            Effect::Signal(host, signal) => self.command(host, ProcessCommand::Signal(signal)),
             Effect::KillTree(host) => self.kill(host),
-            Effect::WatchAlive(host) => self.order(host, Order::WatchAlive),
-            Effect::LookAlive(host, probes) => self.order(host, Order::LookAlive(probes)),
+            Effect::WatchAlive(host) => self.command(host, ProcessCommand::WatchAlive),
+            Effect::LookAlive(host, probes) => {
+                self.command(host, ProcessCommand::CheckAlive(probes))
+            }
             Effect::Done => self.over = true,
         }
     }
 
     /// What the guard must know of tests and hooks, should the runner die.
     fn tell_guard(&mut self, kind: &EventKind) {
-        let guard = &self.shared.guard;
+        let guard = &self.context.guard;
         match kind {
             EventKind::TestStarted { test, .. } => {
                 let name = self.test(*test).map_or("", |plan| &plan.name);
@@ -265,20 +294,20 @@ impl SuiteTask<'_> {
         }
     }
 
-    fn order(&mut self, host: HostId, order: Order) {
-        if order.stops() {
+    fn command(&mut self, host: HostId, command: ProcessCommand) {
+        if command.stops() {
             self.deadlines.stop(host, self.events.now(), self.plan);
         }
-        if let Some(orders) = self.orders.get(&host) {
-            // A task that has ended has told so; its input is on the way.
-            let _ = orders.send(order);
+        if let Some((_, commands)) = self.commands.get(&host) {
+            // A task that has ended has reported it; the event is in the queue.
+            let _ = commands.send(command);
         }
     }
 
     /// Kills a process; one without a task has ended.
     fn kill(&mut self, host: HostId) {
-        let orders = self.orders.get(&host);
-        if orders.is_none_or(|orders| orders.send(Order::KillTree).is_err()) {
+        let commands = self.commands.get(&host);
+        if commands.is_none_or(|(_, commands)| commands.send(ProcessCommand::KillTree).is_err()) {
             self.unanswered.push((host, HostInput::Exited(UNKNOWN, Vec::new())));
         }
     }
@@ -290,25 +319,35 @@ impl SuiteTask<'_> {
             Program::Process(plan) => process = Some(plan.clone()),
             Program::Attached(plan) => attached = Some(plan.clone()),
         }
-        let request = self.request(start, source.into());
-        let (orders, queue) = mpsc::unbounded_channel();
-        self.orders.insert(host, orders);
+        let request = self.request(start, role_of(source));
+        let (commands, queue) = mpsc::unbounded_channel();
+        self.commands.insert(host, (source, commands));
         let launch = match self.spares.iter().position(|spare| spare.request == request) {
             Some(place) => self.spares.remove(place),
             None => self.launch(request),
         };
         if let Some(plan) = attached {
-            let attached = Attached { host, plan, launch };
-            let watch = attached::run(attached, self.shared.clone(), queue, self.inputs.clone());
+            let probes = probes::convert(&plan.ready, &plan.alive, self.network.clone());
+            let (job, spawner) = (AttachedJob { host, probes, launch }, self.spawner().clone());
+            let watch = watch_attached(job, spawner, queue, self.inputs.clone());
             return drop(tokio::spawn(watch));
         }
         if let Some(called) = self.called.take_if(|_| matches!(source, Source::Hook(_))) {
-            self.shared.guard.hook_begins(HookBegins { scope: launch.scope.clone(), ..called });
+            self.context.guard.hook_begins(HookBegins { scope: launch.scope.clone(), ..called });
         }
-        let grouped = self.is_grouped(source);
-        let measured = self.is_measured(source, process.as_deref());
-        let job = Job { host, source, launch, grouped, measured, process };
-        tokio::spawn(task::run(job, self.shared.clone(), queue, self.inputs.clone()));
+        let job = ProcessJob {
+            host,
+            owner: self.context.process_owner(source),
+            launch,
+            attachments_dir: attachments_dir(source, host),
+            is_grouped: self.is_grouped(source),
+            is_measured: self.is_measured(source, process.as_deref()),
+            probes: process.map(|process| {
+                probes::convert(&process.ready, &process.alive, self.network.clone())
+            }),
+        };
+        let tasks = self.context.tasks.clone();
+        tokio::spawn(run_process(job, tasks, queue, self.inputs.clone()));
     }
 
     fn test(&self, test: TestId) -> Option<&TestPlan> {
@@ -339,12 +378,12 @@ impl SuiteTask<'_> {
     fn spawn_ahead(&mut self, starts: Vec<Start>) {
         let mut before = std::mem::take(&mut self.spares);
         for start in starts {
-            let request = self.request(start, Role::Test);
+            let request = self.request(start, ProcessRole::Test);
             let spare = match before.iter().position(|spare| spare.request == request) {
                 Some(place) => before.remove(place),
                 None => {
                     let mut launch = self.launch(request);
-                    launch.start_ahead(&self.shared.spawner);
+                    launch.start_ahead(self.spawner());
                     launch
                 }
             };
@@ -356,12 +395,12 @@ impl SuiteTask<'_> {
     }
 
     /// What is to be started; as a fork only if it may be one.
-    fn request(&self, start: Start, role: Role) -> SpawnRequest {
-        let mut forks = false;
-        let run_folder = self.shared.run_folder.to_string_lossy().into_owned();
+    fn request(&self, start: Start, role: ProcessRole) -> SpawnRequest {
+        let mut can_fork = false;
+        let run_dir = self.context.tasks.run_dir.to_string_lossy().into_owned();
         let mut env = vec![
             (ENVIRONMENT_VARIABLE.to_owned(), self.plan.environment.clone()),
-            (RUN_DIR_VARIABLE.to_owned(), run_folder),
+            (RUN_DIR_VARIABLE.to_owned(), run_dir),
         ];
         env.extend(start.env);
         if !matches!(&start.what, Program::Process(plan) if plan.remote.is_some()) {
@@ -371,25 +410,44 @@ impl SuiteTask<'_> {
             Program::Host(plan) => {
                 // Last: the plan has put what the suite says into it already.
                 env.extend_from_slice(&plan.env);
-                forks = plan.forks && role == Role::Test;
+                can_fork = plan.forks && role == ProcessRole::Test;
                 (plan.command.clone(), Some(Vec::new()))
             }
             Program::Process(plan) => match &plan.remote {
                 None => (plan.command.clone(), None),
-                Some(remote) => (remote::command(&plan, remote, &env), Some(Vec::new())),
+                Some(remote) => {
+                    let remote = RemoteCommand {
+                        host: &remote.host,
+                        ssh: &remote.ssh,
+                        command: &plan.command,
+                        stop_signal: plan.stop_signal,
+                        stop_grace: plan.stop_grace,
+                    };
+                    (ssh::command(remote, &env), Some(Vec::new()))
+                }
             },
             Program::Attached(_) => (Vec::new(), None),
-            Program::Command(command) => (gate::behind(&command), Some(Vec::new())),
+            Program::Command(command) => (start_gate::behind(&command), Some(Vec::new())),
         };
-        let folder = Some(start.folder);
-        let (streams, network) = (Streams::Both, self.network.clone());
-        let role = Some(role);
-        SpawnRequest { command, env, folder, channel, streams, forks, network, role }
+        SpawnRequest {
+            command,
+            env,
+            working_dir: Some(start.folder),
+            channel,
+            streams: Streams::Both,
+            can_fork,
+            namespaces: self.network.as_ref().map(|network| network.namespaces().clone()),
+            role: Some(role),
+        }
     }
 
     fn launch(&mut self, request: SpawnRequest) -> Launch {
         self.scopes += 1;
         let scope = format!("{}.{}.{}", self.events.run_token(), self.plan.id, self.scopes);
-        Launch::new(request, scope, &self.shared.scratch)
+        Launch::new(request, scope, &self.context.scratch_dir)
+    }
+
+    fn spawner(&self) -> &Spawner {
+        &self.context.tasks.spawner
     }
 }

@@ -71,8 +71,9 @@ impl std::fmt::Display for ExitStatus {
     }
 }
 
-/// The name of a signal on Linux.
-fn signal_name(signal: i32) -> Option<&'static str> {
+/// Returns the name of a signal on Linux: `SIGTERM`.
+#[must_use]
+pub fn signal_name(signal: i32) -> Option<&'static str> {
     const NAMES: [&str; 15] = [
         "SIGHUP", "SIGINT", "SIGQUIT", "SIGILL", "SIGTRAP", "SIGABRT", "SIGBUS", "SIGFPE",
         "SIGKILL", "SIGUSR1", "SIGSEGV", "SIGUSR2", "SIGPIPE", "SIGALRM", "SIGTERM",

@@ -37,7 +37,6 @@ pub(crate) use env::is_reserved;
 pub use param_string::split_param;
 pub use root::parse;
 pub use settings::{SuiteSettings, shared_settings};
-pub use signal::signal_name;
 pub use source::{SourceMap, SourceText, Span, Spanned};
 pub use source_file::{MAX_SUITE_BYTES, UnreadableFile, is_suite_file, read_source};
 pub use types::*;

@@ -16,12 +16,6 @@ pub(super) fn names() -> impl Iterator<Item = String> {
     SIGNALS.iter().map(|(name, _)| format!("SIG{name}"))
 }
 
-/// Returns the name of a signal without `SIG`.
-#[must_use]
-pub fn signal_name(number: i32) -> Option<&'static str> {
-    SIGNALS.iter().find(|(_, known)| *known == number).map(|(name, _)| *name)
-}
-
 /// Parses `SIGINT`, `INT` or `2`.
 pub(super) fn number(text: &str) -> Option<i32> {
     if let Ok(number) = text.parse::<i32>() {

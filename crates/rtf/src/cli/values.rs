@@ -6,7 +6,7 @@ use std::num::NonZeroU16;
 
 use clap::builder::{PossibleValuesParser, Resettable, TypedValueParser};
 use clap::{Arg, Command};
-use rtf_engine::run::Forks;
+use rtf_process::fork_server::ForkMode;
 
 /// A variable that is set to nothing is one that is not set.
 pub fn unset_when_empty(command: Command) -> Command {
@@ -23,16 +23,16 @@ pub fn jobs_parser() -> impl TypedValueParser<Value = NonZeroU16> {
     clap::value_parser!(u16).range(1..).try_map(NonZeroU16::try_from)
 }
 
-pub fn forks_parser() -> impl TypedValueParser<Value = Forks> {
+pub fn forks_parser() -> impl TypedValueParser<Value = ForkMode> {
     PossibleValuesParser::new(["auto", "always", "never"]).map(|name| forks(&name))
 }
 
 /// `auto`, `always` or `never`.
-pub fn forks(word: &str) -> Forks {
+pub fn forks(word: &str) -> ForkMode {
     match word {
-        "always" => Forks::Always,
-        "never" => Forks::Never,
-        _ => Forks::Auto,
+        "always" => ForkMode::Always,
+        "never" => ForkMode::Never,
+        _ => ForkMode::Auto,
     }
 }
 

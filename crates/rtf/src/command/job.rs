@@ -7,9 +7,10 @@ use std::time::Duration;
 
 use rtf_engine::guard::Link;
 use rtf_engine::locks::LockOptions;
-use rtf_engine::run::{Forks, RunOptions, Sink, execute};
+use rtf_engine::run::{RunOptions, Sink, execute};
 use rtf_engine::signal::{self, Signals};
 use rtf_model::{EVENTS_VERSION, Event, Manifest, RunStarted, Source};
+use rtf_process::fork_server::ForkMode;
 use rtf_report::background_writer::BackgroundWriter;
 use rtf_report::run_dir::RunDir;
 use rtf_report::{Fanout, FanoutHandle, FanoutResult, Reporter};
@@ -28,7 +29,7 @@ pub struct Job<'a> {
     /// Where the run is kept.
     pub folder: &'a RunDir,
     /// Which hosts are forked.
-    pub forks: Forks,
+    pub forks: ForkMode,
     /// What may be asked of it while it goes on.
     pub asks: &'a Asks,
     /// After how many tests that have not passed the rest is skipped.
@@ -76,9 +77,9 @@ impl Job<'_> {
             started: self.started(),
             warnings: self.planned.warnings.clone(),
             journal: self.folder.journal().canonicalize()?,
-            folder: self.folder.path.canonicalize()?,
+            run_dir: self.folder.path.canonicalize()?,
             guard: guard.clone(),
-            forks: self.forks,
+            fork_mode: self.forks,
             max_fail: self.max_fail,
             controls: controls.subscribe(),
             locks: self.locks.clone(),

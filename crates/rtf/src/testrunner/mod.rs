@@ -17,9 +17,9 @@ use clap::Parser as _;
 use clap::error::ErrorKind;
 use rtf_engine::guard::Link;
 use rtf_engine::locks::LockOptions;
-use rtf_engine::run::Forks;
 use rtf_model::Record;
 use rtf_plan::plan::{Compatibility, Options, RunnerEnvironment};
+use rtf_process::fork_server::ForkMode;
 use rtf_report::journal::Journal;
 use rtf_report::junit::JunitFile;
 use rtf_report::logs::Logs;
@@ -139,7 +139,7 @@ fn perform(args: &Args, results: &Results, guard: Link) -> Outcome {
     let job = Job {
         planned: &planned,
         folder: &folder,
-        forks: Forks::default(),
+        forks: ForkMode::default(),
         asks: &asks,
         max_fail: None,
         locks: LockOptions { folder: locks::folder(), limit: None },

@@ -122,7 +122,7 @@ fn a_daemon_without_a_trace_is_found() {
     let folder = Folder::new();
     folder.file("T.lua", "TestCase = {}\nfunction TestCase.run() os.execute('setsid env -i sleep 1000 >/dev/null 2>&1 &') end\n");
     folder.file("s.xml", "<suite name='s'><test leaks='fail'>T.lua</test></suite>");
-    let groups = rtf_engine::host::cgroup::Cgroups::get();
+    let groups = rtf_process::cgroup::Cgroups::create();
     let finished = folder.rtf(&["run", "s.xml"]);
     let record = folder.journal().record;
     if groups.is_some() {

@@ -4,14 +4,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use rtf_model::protocol::{Notification, OWNER_VARIABLE, Plugin, Reply, Request, StackSupport};
-use rtf_model::{Attachment, EventKind, ExitStatus, LeakedProcess, Source, Stream, TestId, Usage};
+use rtf_model::protocol::{OWNER_VARIABLE, Plugin, Request, StackSupport};
+use rtf_model::{EventKind, Source, TestId};
 
 use rtf_plan::plan::{AttachedPlan, HostPlan, ProcessPlan, SuitePlan};
 
-/// One process that the machine asked for. Never used twice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct HostId(pub u64);
+pub use rtf_process::probe::ProbeSelection as Probes;
+pub use rtf_process::task::{HostId, ProcessEvent as HostInput};
 
 /// What happened.
 #[derive(Debug)]
@@ -30,56 +29,6 @@ pub enum Input {
     StopTest(TestId, String),
     /// The rest of the suite is to be skipped: by whom.
     Skip(String),
-}
-
-/// What happened to a process.
-#[derive(Debug)]
-pub enum HostInput {
-    /// It could not be started.
-    SpawnFailed(String),
-    /// It told something.
-    Told(Notification),
-    /// It attached a file, which was copied into the run's folder (or not).
-    Attached(Result<Attachment, String>),
-    /// It answered a request.
-    Answered(u64, Reply<serde_json::Value>),
-    /// It wrote something that is not a message of the protocol.
-    Garbage(String),
-    /// It tells more than can be reported, so it is not read for a while: the clock of the
-    /// test is paused.
-    Throttled(Source),
-    /// It is read again.
-    Resumed,
-    /// It printed something.
-    Printed(Stream, Vec<u8>),
-    /// All probes that are asked from outside hold: a process fixture is ready.
-    ProbesHold,
-    /// A probe does not hold yet, which set-up waits for: why. Told again when
-    /// the reason is another one.
-    ProbeWaits(String),
-    /// A probe of a process fixture does not hold any more.
-    ProbeFailed(String),
-    /// What it and all that it started uses at the end of a test.
-    Uses {
-        /// What it uses.
-        usage: Usage,
-        /// How many tests it has served, when it is one that tests share.
-        tests_served: Option<u32>,
-    },
-    /// It lives, its probes hold, and it has told nothing that was not delivered.
-    Lives,
-    /// It is dying; its end follows.
-    Dies,
-    /// The stacks of its threads, or why there are none.
-    StackTaken(String),
-    /// The test is over: everything that it printed was delivered, and nothing of
-    /// it is left. Its host lives and takes the next one. Nothing follows.
-    Released,
-    /// Its host had served tests before and ended before it began.
-    Unbegun(ExitStatus),
-    /// It ended, everything that it printed was delivered, and what it left
-    /// behind was killed. Nothing follows.
-    Exited(ExitStatus, Vec<LeakedProcess>),
 }
 
 /// How quickly a suite must end.
@@ -184,15 +133,6 @@ pub enum Program {
     Attached(Arc<AttachedPlan>),
     /// A command, without a channel.
     Command(Vec<String>),
-}
-
-/// Which probes are asked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Probes {
-    /// All of them.
-    All,
-    /// Those that are answered without starting a program.
-    Quick,
 }
 
 /// What is to be done.

@@ -2,11 +2,11 @@
 
 use std::process::{Command, Stdio};
 
-use rtf_engine::host::cgroup::Cgroups;
-use rtf_engine::host::spawner::Spawner;
 use rtf_engine::isolate;
-use rtf_engine::run::Forks;
 use rtf_plan::plan::{HostPlan, LocatedHost, RunnerEnvironment, find_in_path, installed_hosts};
+use rtf_process::cgroup::Cgroups;
+use rtf_process::fork_server::ForkMode;
+use rtf_process::spawner::Spawner;
 
 use super::{Finding, Missing, Part};
 
@@ -100,7 +100,7 @@ fn stacks(surroundings: &RunnerEnvironment) -> Finding {
 }
 
 fn cgroups() -> Finding {
-    let found = match Cgroups::get() {
+    let found = match Cgroups::create() {
         Some(_) => Ok("control groups of version 2 can be made".to_owned()),
         None => Err("control groups of version 2 cannot be made".to_owned()),
     };
@@ -115,7 +115,7 @@ fn network() -> Finding {
         let mut builder = tokio::runtime::Builder::new_current_thread();
         let runtime = builder.enable_all().build().map_err(|error| error.to_string())?;
         runtime.block_on(async {
-            let spawner = Spawner::start(Forks::Never).map_err(|error| error.to_string())?;
+            let spawner = Spawner::start(ForkMode::Never).map_err(|error| error.to_string())?;
             isolate::network_is_possible(&spawner).await
         })
     };

@@ -19,7 +19,6 @@ use rtf_model::{
 
 pub use answers::{parse_answer, parse_initialized};
 
-use crate::host::codec::INITIALIZE;
 use crate::run::machine::capture::Capture;
 use crate::run::machine::io::{
     Deadline, Effect, HostId, HostInput, Program, Start, TestTimer, environment,
@@ -27,6 +26,7 @@ use crate::run::machine::io::{
 use crate::run::machine::judge::{Evidence, judge, leak_of};
 use crate::run::machine::suite::Context;
 use rtf_plan::plan::{SuitePlan, TestPlan};
+use rtf_process::codec::INITIALIZE;
 use stopwatch::Stopwatch;
 
 /// The number of the first `run-test` on a host's channel.
@@ -228,7 +228,7 @@ impl<'p> TestRun<'p> {
                     tests_served,
                 });
             }
-            HostInput::Throttled(_) => self.pause_clock(true),
+            HostInput::Throttled => self.pause_clock(true),
             HostInput::Resumed => self.pause_clock(false),
             HostInput::Unbegun(_)
             | HostInput::ProbesHold

@@ -11,9 +11,9 @@ use rtf_model::{
 };
 
 use super::world::{SECOND, World, hook, suite};
-use crate::host::codec::INITIALIZE;
 use crate::run::machine::{HostInput, Input, StopLevel};
 use rtf_plan::plan::{AfterCollapse, Retries, SuitePlan};
+use rtf_process::codec::INITIALIZE;
 
 /// What becomes of a shared host that has nothing to do; false when it is not its turn.
 fn act_idle(world: &mut World<'_>, choice: u8) -> bool {

@@ -4,9 +4,9 @@ use rtf_model::protocol::{Reply, Request};
 use rtf_model::{ExitStatus, Phase, Source, TestId, Usage, Verdict};
 
 use super::world::{World, suite};
-use crate::host::codec::INITIALIZE;
 use crate::run::machine::{HostId, HostInput, Input, StopLevel};
 use rtf_plan::plan::SuitePlan;
+use rtf_process::codec::INITIALIZE;
 
 impl World<'_> {
     /// A host that has answered goes on to the test that it was asked for, or waits.

@@ -1,0 +1,63 @@
+//! The resources of a run that its suites share.
+
+use std::os::fd::BorrowedFd;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use rtf_model::Source;
+use rtf_process::task::{HostId, ProcessOwner, ProcessStream, TaskContext};
+
+use super::events::Sink;
+use crate::guard::Link;
+
+/// The resources of a run that its suites share.
+#[derive(Debug)]
+pub struct RunContext {
+    /// The resources of the processes' tasks.
+    pub tasks: Arc<TaskContext>,
+    /// The receiver of events.
+    pub sink: Arc<dyn Sink>,
+    /// A directory for files that are removed at the end of the run.
+    pub scratch_dir: PathBuf,
+    /// The connection to the guard.
+    pub guard: Arc<Link>,
+}
+
+impl RunContext {
+    /// Returns the owner of a process that belongs to this test, fixture or hook.
+    pub(super) fn process_owner(&self, source: Source) -> Arc<dyn ProcessOwner> {
+        let (sink, guard) = (self.sink.clone(), self.guard.clone());
+        Arc::new(SourceOwner { source, sink, guard })
+    }
+}
+
+/// The directory for attachments of a process, relative to the run's.
+pub(super) fn attachments_dir(source: Source, host: HostId) -> String {
+    match source {
+        Source::Test(id) => format!("attachments/{id}/{}", host.0),
+        Source::Fixture(id) => format!("attachments/fixture-{id}/{}", host.0),
+        Source::Hook(id) => format!("attachments/hook-{id}/{}", host.0),
+    }
+}
+
+/// Notifies the guard of a process, and reports its backlog.
+#[derive(Debug)]
+struct SourceOwner {
+    source: Source,
+    sink: Arc<dyn Sink>,
+    guard: Arc<Link>,
+}
+
+impl ProcessOwner for SourceOwner {
+    fn process_started(&self, pid: i32, streams: &[(ProcessStream, BorrowedFd<'_>)]) {
+        self.guard.process_started(self.source, pid, streams);
+    }
+
+    fn process_ended(&self, pid: i32) {
+        self.guard.process_ended(self.source, pid);
+    }
+
+    fn backlog(&self) -> usize {
+        self.sink.backlog(self.source)
+    }
+}

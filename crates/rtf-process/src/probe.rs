@@ -1,0 +1,293 @@
+//! Probes: whether a fixture answers on TCP or HTTP, has written a file, or satisfies a
+//! command.
+
+use std::collections::BTreeMap;
+use std::os::unix::fs::MetadataExt as _;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use rtf_model::ExitStatus;
+use tokio::io::AsyncReadExt;
+use tokio::time::{Instant, timeout};
+use url::Url;
+
+use crate::http;
+use crate::network::{Network, connect};
+use crate::spawn_request::{SpawnRequest, Streams};
+use crate::spawner::Spawner;
+use crate::tree;
+
+/// How long another program may take to accept a connection.
+const ADDRESS_IN_USE_LIMIT: Duration = Duration::from_millis(200);
+/// The longest reason printed by a command, in bytes.
+const MAX_REASON_BYTES: u64 = 4096;
+
+/// The probes of a process.
+#[derive(Clone, Debug, Default)]
+pub struct Probes {
+    /// Each must pass once before the process is ready.
+    pub ready: Vec<Probe>,
+    /// All must pass while it is ready.
+    pub alive: Vec<Probe>,
+    /// The network namespace of the process; the runner's when `None`.
+    pub network: Option<Network>,
+}
+
+/// A probe.
+#[derive(Clone, Debug)]
+pub struct Probe {
+    /// The kind, with its value.
+    pub kind: ProbeKind,
+    /// The interval.
+    pub interval: Duration,
+    /// The limit for one evaluation.
+    pub timeout: Duration,
+}
+
+/// The condition of a probe.
+#[derive(Clone, Debug)]
+pub enum ProbeKind {
+    /// `host:port` accepts a TCP connection.
+    Tcp(String),
+    /// An HTTP GET of the URL returns a 2xx status.
+    Http(String),
+    /// The program exits with code 0.
+    Command(Vec<String>),
+    /// The file exists.
+    File(PathBuf),
+    /// The program exits with code 0; otherwise its output is the reason.
+    ExplainingCommand {
+        /// The program and its arguments.
+        command: Vec<String>,
+        /// The probed object, for messages: "ros-topic `/chatter`".
+        subject: String,
+    },
+}
+
+/// Which probes a check evaluates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProbeSelection {
+    /// All of them.
+    All,
+    /// Those that start no program.
+    Quick,
+}
+
+impl ProbeSelection {
+    pub(crate) fn of(self, probes: &[Probe]) -> Vec<Probe> {
+        let is_selected = |probe: &&Probe| match probe.kind {
+            ProbeKind::Tcp(_) | ProbeKind::Http(_) | ProbeKind::File(_) => true,
+            ProbeKind::Command(_) | ProbeKind::ExplainingCommand { .. } => self == Self::All,
+        };
+        probes.iter().filter(is_selected).cloned().collect()
+    }
+}
+
+/// Returns a TCP or HTTP address of a `ready` probe on which another program answers
+/// before the process was started.
+pub(crate) async fn address_in_use(probes: Option<&Probes>) -> Option<String> {
+    let Probes { ready, network, .. } = probes?;
+    for probe in ready {
+        let address = match &probe.kind {
+            ProbeKind::Tcp(address) => address.clone(),
+            ProbeKind::Http(url) => http::address(&Url::parse(url).ok()?)?,
+            _ => continue,
+        };
+        let connection = timeout(ADDRESS_IN_USE_LIMIT, connect(network.as_ref(), &address)).await;
+        if matches!(connection, Ok(Ok(_))) {
+            return Some(address);
+        }
+    }
+    None
+}
+
+/// Evaluates the probes of a process.
+#[derive(Debug)]
+pub(crate) struct Prober {
+    pub spawner: Spawner,
+    /// The request of the probed process: commands get its working directory, environment
+    /// and namespaces.
+    pub template: SpawnRequest,
+    pub network: Option<Network>,
+}
+
+impl Prober {
+    /// Evaluates each of these probes once.
+    ///
+    /// # Errors
+    /// Why one does not pass.
+    pub async fn check_all(&self, probes: &[Probe]) -> Result<(), String> {
+        for probe in probes {
+            self.check(probe, &FileVersions::default()).await?;
+        }
+        Ok(())
+    }
+
+    /// Polls these probes until one fails; returns the reason.
+    pub async fn wait_for_failure(&self, probes: &[Probe]) -> String {
+        let mut due: Vec<_> = probes.iter().map(|probe| Instant::now() + probe.interval).collect();
+        loop {
+            let next = (0..probes.len()).min_by_key(|index| due[*index]);
+            let Some(next) = next else {
+                return std::future::pending().await;
+            };
+            tokio::time::sleep_until(due[next]).await;
+            if let Err(reason) = self.check(&probes[next], &FileVersions::default()).await {
+                return reason;
+            }
+            due[next] = Instant::now() + probes[next].interval;
+        }
+    }
+
+    /// Evaluates a probe once. A file must have changed since `before`.
+    ///
+    /// # Errors
+    /// Why it does not pass.
+    pub async fn check(&self, probe: &Probe, before: &FileVersions) -> Result<(), String> {
+        let network = self.network.as_ref();
+        let result = async {
+            match &probe.kind {
+                ProbeKind::Tcp(address) => match connect(network, address).await {
+                    Ok(_) => Ok(()),
+                    Err(error) => Err(format!("no TCP connection to {address}: {error}")),
+                },
+                ProbeKind::Http(url) => check_http(network, url).await,
+                ProbeKind::File(path) => before.check(path),
+                ProbeKind::Command(command) => self.check_command(command).await,
+                ProbeKind::ExplainingCommand { command, subject } => {
+                    self.check_explaining_command(command, subject).await
+                }
+            }
+        };
+        match timeout(probe.timeout, result).await {
+            Ok(result) => result,
+            Err(_) => Err(format!("{} did not answer within {:?}", subject(probe), probe.timeout)),
+        }
+    }
+
+    async fn check_command(&self, command: &[String]) -> Result<(), String> {
+        let shown = shown(command);
+        match self.run(command, Streams::None).await {
+            Ok((ExitStatus::Code(0), _)) => Ok(()),
+            Ok((status, _)) => Err(format!("`{shown}` ended with {status}")),
+            Err(error) => Err(format!("`{shown}` cannot run: {error}")),
+        }
+    }
+
+    async fn check_explaining_command(
+        &self,
+        command: &[String],
+        subject: &str,
+    ) -> Result<(), String> {
+        match self.run(command, Streams::StdoutOnly).await {
+            Ok((ExitStatus::Code(0), _)) => Ok(()),
+            Ok((_, reason)) if !reason.is_empty() => Err(reason),
+            Ok((status, _)) => Err(format!("the program that asks {subject} ended with {status}")),
+            Err(error) => Err(format!("{subject} cannot be asked: {error}")),
+        }
+    }
+
+    /// Runs a program; returns its exit status and, if captured, its output.
+    async fn run(
+        &self,
+        command: &[String],
+        streams: Streams,
+    ) -> std::io::Result<(ExitStatus, String)> {
+        let request = SpawnRequest {
+            command: command.to_vec(),
+            streams,
+            channel: None,
+            can_fork: false,
+            ..self.template.clone()
+        };
+        let mut process = self.spawner.spawn(request).await?;
+        let guard = KillOnDrop(process.pid);
+        let mut printed = Vec::new();
+        if let Some(stdout) = process.stdout.take() {
+            stdout.take(MAX_REASON_BYTES).read_to_end(&mut printed).await?;
+        }
+        let status = process.end.wait().await?;
+        std::mem::forget(guard);
+        Ok((status, String::from_utf8_lossy(&printed).trim().to_owned()))
+    }
+}
+
+fn subject(probe: &Probe) -> String {
+    match &probe.kind {
+        ProbeKind::Tcp(address) => address.clone(),
+        ProbeKind::Http(url) => url.clone(),
+        ProbeKind::File(path) => path.display().to_string(),
+        ProbeKind::Command(command) => format!("`{}`", shown(command)),
+        ProbeKind::ExplainingCommand { subject, .. } => subject.clone(),
+    }
+}
+
+async fn check_http(network: Option<&Network>, url: &str) -> Result<(), String> {
+    let status = http::get(network, url).await;
+    let status = status.map_err(|error| format!("no answer from {url}: {error}"))?;
+    if status.is_success() { Ok(()) } else { Err(format!("{url} answers {status}")) }
+}
+
+/// The versions of probed files before a process was started: an unchanged file is left
+/// over from an earlier start. Compares no times with a clock, which may be set, and may
+/// differ from the file system's.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FileVersions(BTreeMap<PathBuf, FileVersion>);
+
+/// The properties that change when a file is written or replaced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct FileVersion {
+    inode: u64,
+    size: u64,
+    written: (i64, i64),
+    changed: (i64, i64),
+}
+
+impl FileVersions {
+    /// Reads the versions of the files of `ready` probes.
+    pub fn now(probes: Option<&Probes>) -> Self {
+        let probes = probes.into_iter().flat_map(|probes| &probes.ready);
+        let paths = probes.filter_map(|probe| match &probe.kind {
+            ProbeKind::File(path) => Some(path),
+            _ => None,
+        });
+        Self(paths.filter_map(|path| Some((path.clone(), version(path).ok()?))).collect())
+    }
+
+    fn check(&self, path: &Path) -> Result<(), String> {
+        let shown = path.display();
+        let now = version(path).map_err(|error| format!("no file {shown}: {error}"))?;
+        if self.0.get(path) == Some(&now) {
+            return Err(format!("{shown} is from before the start"));
+        }
+        Ok(())
+    }
+}
+
+fn version(path: &Path) -> std::io::Result<FileVersion> {
+    let file = std::fs::metadata(path)?;
+    Ok(FileVersion {
+        inode: file.ino(),
+        size: file.size(),
+        written: (file.mtime(), file.mtime_nsec()),
+        changed: (file.ctime(), file.ctime_nsec()),
+    })
+}
+
+/// A command as in the suite: the plan has made its program absolute.
+fn shown(command: &[String]) -> String {
+    let mut words: Vec<&str> = command.iter().map(String::as_str).collect();
+    if let Some(program) = words.first_mut() {
+        *program = program.rsplit('/').next().unwrap_or(program);
+    }
+    shell_words::join(words)
+}
+
+/// Kills a command's tree when its probe times out.
+struct KillOnDrop(i32);
+
+impl Drop for KillOnDrop {
+    fn drop(&mut self) {
+        tree::kill_tree(self.0);
+    }
+}

@@ -1,0 +1,102 @@
+//! Stores the files that a process attaches in the run's directory.
+
+use rtf_model::Attachment;
+use tokio::sync::mpsc;
+
+use super::file_copy::{self, FileCopy};
+use super::{ProcessCommand, ProcessEvent, ProcessTask};
+
+impl ProcessTask {
+    /// Returns a directory of the run as an absolute path.
+    pub(super) fn absolute(&self, dir: &str) -> String {
+        self.context.run_dir.join(dir).to_string_lossy().into_owned()
+    }
+
+    /// Reports an attachment with its path relative to the run's directory, and copies the
+    /// file if the host did not. The process's later messages and its deadlines wait for
+    /// the copy.
+    pub(super) async fn store_attachment(&mut self, attachment: Attachment) {
+        let relative = &self.job.attachments_dir;
+        let dir = self.context.run_dir.join(relative);
+        let working_dir = self.job.launch.request.working_dir.clone().unwrap_or_default();
+        let source = working_dir.join(&attachment.path);
+        let is_copied = source.parent() == Some(dir.as_path());
+        let name = match (is_copied, source.file_name()) {
+            (true, Some(name)) => name.to_string_lossy().into_owned(),
+            _ => attachment.name.chars().map(replace_unsafe).collect(),
+        };
+        let reported_path = attachment.path.clone();
+        let attachment = Attachment { path: format!("{relative}/{name}"), ..attachment };
+        let started = if is_copied {
+            file_copy::open(&source).map(|_| None)
+        } else {
+            let from = (reported_path.as_str(), source);
+            FileCopy::start(attachment.clone(), from, dir.join(&name)).map(Some)
+        };
+        match started {
+            Ok(None) => self.report_attachment(attachment, &reported_path, Ok(())).await,
+            Ok(Some(copy)) => {
+                self.copy = Some(copy);
+                self.report(ProcessEvent::Throttled).await;
+            }
+            Err(error) => self.report_attachment(attachment, &reported_path, Err(error)).await,
+        }
+    }
+
+    /// Reports the copied attachment, and delivers the messages held back.
+    pub(super) async fn copy_finished(&mut self, result: std::io::Result<()>) {
+        let Some(copy) = self.copy.take() else { return };
+        if !self.throttle.is_throttled {
+            self.report(ProcessEvent::Resumed).await;
+        }
+        self.report_attachment(copy.attachment.clone(), &copy.reported_path, result).await;
+        self.deliver().await;
+    }
+
+    async fn report_attachment(
+        &mut self,
+        attachment: Attachment,
+        reported_path: &str,
+        result: std::io::Result<()>,
+    ) {
+        let result = result
+            .map(|()| attachment)
+            .map_err(|error| format!("`{reported_path}` cannot be attached: {error}"));
+        self.report(ProcessEvent::Attached(result)).await;
+    }
+
+    /// Abandons the current copy: the process is being stopped.
+    pub(super) async fn abandon_copy(&mut self) {
+        let why = "it was not copied before the process was stopped";
+        self.copy_finished(Err(std::io::Error::other(why))).await;
+    }
+
+    /// The process has ended: waits for the copies, unless it is stopped.
+    pub(super) async fn finish_copies(
+        &mut self,
+        commands: &mut mpsc::UnboundedReceiver<ProcessCommand>,
+    ) {
+        while let Some(copy) = &mut self.copy {
+            tokio::select! {
+                biased;
+                Some(command) = commands.recv() => match command {
+                    // It is refused later, because the process has ended.
+                    ProcessCommand::Assign(assignment) => self.assign(assignment),
+                    command => self.throttle.is_stopping |= command.stops(),
+                },
+                result = copy.wait() => self.copy_finished(result).await,
+            }
+            if self.throttle.is_stopping {
+                self.abandon_copy().await;
+            }
+        }
+    }
+}
+
+fn replace_unsafe(character: char) -> char {
+    if character.is_alphanumeric() || matches!(character, '.' | '-' | '_') {
+        character
+    } else {
+        '_'
+    }
+}

@@ -1,0 +1,62 @@
+//! The events that a process's task reports.
+
+use rtf_model::protocol::{Notification, Reply};
+use rtf_model::{Attachment, ExitStatus, LeakedProcess, Stream, Usage};
+use tokio::sync::mpsc;
+
+/// The id of a process, and of each assignment of a shared host. Never used twice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct HostId(pub u64);
+
+/// The queue of events of all processes of one owner.
+pub type EventSender = mpsc::Sender<(HostId, ProcessEvent)>;
+
+/// An event of a process.
+#[derive(Debug)]
+pub enum ProcessEvent {
+    /// It could not be started.
+    SpawnFailed(String),
+    /// It sent a notification.
+    Told(Notification),
+    /// It attached a file; the result of copying it into the run's directory.
+    Attached(Result<Attachment, String>),
+    /// It replied to a request.
+    Answered(u64, Reply<serde_json::Value>),
+    /// It violated the protocol.
+    Garbage(String),
+    /// Its channel is not read for a while, because too much of its output waits to be
+    /// reported: its deadlines are paused.
+    Throttled,
+    /// Its channel is read again.
+    Resumed,
+    /// It printed to an output.
+    Printed(Stream, Vec<u8>),
+    /// All `ready` probes have passed.
+    ProbesHold,
+    /// A `ready` probe does not pass yet; sent once for each reason.
+    ProbeWaits(String),
+    /// An `alive` probe failed.
+    ProbeFailed(String),
+    /// The resources that it and everything below it use.
+    Uses {
+        /// The usage.
+        usage: Usage,
+        /// The number of tests served, for a shared host.
+        tests_served: Option<u32>,
+    },
+    /// It is alive, its probes pass, and all its earlier messages were delivered.
+    Lives,
+    /// It is dying; its end follows.
+    Dies,
+    /// The stacks of its threads, or why there are none.
+    StackTaken(String),
+    /// Its assignment has finished, and all its output was delivered. The host continues
+    /// with the next one. The last event of this id.
+    Released,
+    /// Its host served earlier assignments and ended before this one began. The last event
+    /// of this id.
+    Unbegun(ExitStatus),
+    /// It ended, all its output was delivered, and its leftover processes were killed. The
+    /// last event of this id.
+    Exited(ExitStatus, Vec<LeakedProcess>),
+}
