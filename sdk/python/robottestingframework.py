@@ -1,7 +1,7 @@
-"""What tests written for robot-testing-framework 2.x call.
+"""The functions for tests that were written for robot-testing-framework 2.x.
 
-Such a test has it without an ``import``, as it had there, but may import it,
-also from other files. The functions tell the runner about the test that runs.
+As there, such a test has the module without an ``import``, but may import it, also from
+other files.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ __all__ = [
 
 
 def setName(name: object) -> None:  # noqa: N802 - the predecessor's spelling, here and below
-    """Tell what the test calls itself; the name that the suite gives it stays."""
+    """Report the test's own name; its name in the suite does not change."""
     session = _session.current()
     if str(name) != session.task.name:
         session.message("report", f"test name: {name}")
 
 
 def testReport(text: object) -> None:  # noqa: N802
-    """Tell the user something; it does not change the verdict."""
+    """Report information; it does not change the verdict."""
     _session.current().message("report", str(text))
 
 
 def testCheck(condition: object, text: object) -> None:  # noqa: N802
-    """Check that `condition` holds, and go on either way."""
+    """Check that `condition` holds, and continue in either case."""
     if condition:
         _session.current().message("check", str(text))
     else:
@@ -52,13 +52,13 @@ def testFailIf(condition: object, text: object) -> None:  # noqa: N802
 
 
 def assertFail(text: object) -> NoReturn:  # noqa: N802
-    """Say that the robot is wrong, and end this step."""
+    """Report a failure (the robot is wrong) and end this step."""
     _session.current().failure(str(text))
     raise AssertionEnded(str(text))
 
 
 def assertError(text: object) -> NoReturn:  # noqa: N802
-    """Say that the bench is wrong, and end this step."""
+    """Report an error (the bench is wrong) and end this step."""
     _session.current().error(str(text))
     raise AssertionEnded(str(text))
 
@@ -68,6 +68,6 @@ def getEnvironment() -> str:  # noqa: N802
     return _session.current().task.environment
 
 
-# They only look like tests of pytest's.
+# pytest must not collect them.
 for _function in (testReport, testCheck, testFailIf):
     _function.__dict__["__test__"] = False

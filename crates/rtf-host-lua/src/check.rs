@@ -1,4 +1,4 @@
-//! `--check FILE…`: what can be said of a plug-in without running it.
+//! `--check FILE…`: compiles a plug-in without running it.
 
 use std::path::Path;
 
@@ -21,8 +21,8 @@ pub(crate) fn check(file: &Path) -> CheckedFile {
     }
 }
 
-/// What the file holds, judged by lines that begin with one of the two tables.
-/// A file without such a line may still fill them when it runs.
+/// The kinds of plug-in in a file: from lines that begin with one of the two tables.
+/// A file without such a line may still fill the tables when it runs.
 fn kinds(text: &str) -> Option<Vec<String>> {
     let defines = |table: &str| {
         text.lines().any(|line| {

@@ -1,4 +1,4 @@
-//! The time that a plug-in follows: the simulator's, if its suite has a clock.
+//! The time for a plug-in: the simulator's, if its suite has a clock.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -9,14 +9,14 @@ use rtf_model::protocol::CLOCK_VARIABLE;
 /// A clock.
 #[derive(Debug)]
 pub(crate) enum Clock {
-    /// The wall clock, from a moment on.
+    /// The wall clock, from this time on.
     Wall(Instant),
-    /// A file that shows a simulator's time.
+    /// A file with a simulator's time.
     Simulated(PathBuf),
 }
 
 impl Clock {
-    /// The one that the runner has chosen.
+    /// The clock that the runner has chosen.
     pub(crate) fn new() -> Self {
         match std::env::var_os(CLOCK_VARIABLE) {
             Some(file) if !file.is_empty() => Self::Simulated(file.into()),
@@ -29,7 +29,7 @@ impl Clock {
         matches!(self, Self::Simulated(_))
     }
 
-    /// What it shows, in seconds; nothing while it is being written.
+    /// Its time in seconds; `None` while the file is being written.
     pub(crate) fn seconds(&self) -> Option<f64> {
         match self {
             Self::Wall(start) => Some(start.elapsed().as_secs_f64()),

@@ -1,17 +1,19 @@
-//! Loads a plug-in into a Lua state of its own and calls its functions.
+//! Loads a plug-in into a separate Lua state and calls its functions.
 
 use std::path::Path;
 
 use mlua::{Function, IntoLua, Lua, MultiValue, Table, Value};
-use rtf_host::{HostPlugin, LoadError, Reaction, Role, Session, Step, StepEnd, Told};
+use rtf_host::{
+    HostPlugin, LoadError, PluginKind, Reaction, Session, Step, StepEnd, TestNotification,
+};
 use rtf_model::Location;
 use rtf_model::protocol::{
     Initialized, PROTOCOL_VERSION, Plugin, StackSupport, Subscription, TestAttempt,
 };
 
-use crate::source::{Files, Style};
-use crate::state::State;
-use crate::{sdk, source, watch};
+use crate::source::{CompiledFiles, Style};
+use crate::state::PluginState;
+use crate::{interruption, sdk, source};
 
 /// The functions of a fixture; it has at least one of them.
 const FIXTURE: [&str; 5] = ["setup", "check", "testStarted", "testFinished", "tearDown"];
@@ -19,15 +21,15 @@ const FIXTURE: [&str; 5] = ["setup", "check", "testStarted", "testFinished", "te
 /// The Lua host with at most one plug-in.
 pub(crate) struct LuaHost {
     session: Session,
-    /// A state that was made before there was a plug-in for it.
-    ready: Option<State>,
-    files: Files,
+    /// A state that was prepared before there was a plug-in for it.
+    ready: Option<PluginState>,
+    files: CompiledFiles,
     loaded: Option<Loaded>,
 }
 
 struct Loaded {
     lua: Lua,
-    /// `guard.call`: calls a function and tells how it ended.
+    /// `guard.call`: calls a function and returns how it ended.
     call: Function,
     table: Table,
     style: Style,
@@ -36,30 +38,30 @@ struct Loaded {
 }
 
 impl LuaHost {
-    pub(crate) fn new(session: Session, ready: Option<State>) -> Self {
-        Self { session, ready, files: Files::default(), loaded: None }
+    pub(crate) fn new(session: Session, ready: Option<PluginState>) -> Self {
+        Self { session, ready, files: CompiledFiles::default(), loaded: None }
     }
 }
 
 impl HostPlugin for LuaHost {
     fn describe(&self) -> Initialized {
-        let host = format!("lua {}", watch::lua_release());
+        let host = format!("lua {}", interruption::lua_release());
         let stack = StackSupport::Message;
         Initialized { protocol: PROTOCOL_VERSION, host, stack, supports_shared: true }
     }
 
     fn idle(&mut self) {
         if self.ready.is_none() {
-            // What is wrong is told when there is a plug-in.
-            self.ready = State::new().ok();
+            // `load` reports an error.
+            self.ready = PluginState::new().ok();
         }
     }
 
-    fn load(&mut self, role: Role, plugin: &Plugin) -> Result<(), LoadError> {
-        let state = self.ready.take().map_or_else(State::new, Ok);
-        let state = state.and_then(|state| state.dedicate(&self.session, plugin));
+    fn load(&mut self, kind: PluginKind, plugin: &Plugin) -> Result<(), LoadError> {
+        let state = self.ready.take().map_or_else(PluginState::new, Ok);
+        let state = state.and_then(|state| state.assign(&self.session, plugin));
         let (lua, call) = state.map_err(unexpected)?;
-        watch::look_at(&lua);
+        interruption::set_state(&lua);
         let compiled = match plugin.is_last {
             true => source::compile(&lua, Path::new(&plugin.file), &plugin.file)?,
             false => self.files.compile(&lua, &plugin.file)?,
@@ -72,10 +74,10 @@ impl HostPlugin for LuaHost {
             }
             StepEnd::Broken(message, location) => return Err(LoadError { message, location }),
         }
-        let table = table(&lua, role, &plugin.file)?;
+        let table = table(&lua, kind, &plugin.file)?;
         if compiled.style == Style::Predecessor && table.metatable().is_none() {
-            // The plug-in made a table of its own.
-            sdk::lend_predecessor(&lua, &table).map_err(unexpected)?;
+            // The plug-in has replaced the table.
+            sdk::inherit_predecessor(&lua, &table).map_err(unexpected)?;
         }
         let (style, args, param) = (compiled.style, plugin.args.clone(), plugin.param.clone());
         self.loaded = Some(Loaded { lua, call, table, style, args, param });
@@ -86,8 +88,8 @@ impl HostPlugin for LuaHost {
         let Some(loaded) = &self.loaded else { return StepEnd::Stopped };
         let end =
             loaded.step(step).unwrap_or_else(|error| StepEnd::Broken(error.to_string(), None));
-        // What was printed belongs before the answer.
-        watch::flush_output();
+        // The output belongs before the answer.
+        interruption::flush_output();
         end
     }
 
@@ -101,38 +103,33 @@ impl HostPlugin for LuaHost {
         started.into_iter().chain(finished).collect()
     }
 
-    fn tell(&mut self, told: Told<'_>) -> StepEnd {
+    fn notify(&mut self, notification: TestNotification<'_>) -> StepEnd {
         let Some(loaded) = &self.loaded else { return StepEnd::Stopped };
-        let end =
-            loaded.tell(told).unwrap_or_else(|error| StepEnd::Broken(error.to_string(), None));
-        watch::flush_output();
+        let end = loaded
+            .notify(notification)
+            .unwrap_or_else(|error| StepEnd::Broken(error.to_string(), None));
+        interruption::flush_output();
         end
     }
 
     fn unload(&mut self) -> StepEnd {
-        watch::forget_state();
+        interruption::clear_state();
         self.loaded = None;
         StepEnd::Done
     }
 
     fn stack_dumper(&self) -> Option<Reaction> {
-        Some(Box::new(|_| watch::ask_for_stack()))
+        Some(Box::new(|_| interruption::request_stack()))
     }
 
     fn stopper(&self) -> Option<Reaction> {
-        Some(Box::new(watch::insist))
+        Some(Box::new(interruption::stop_later))
     }
 }
 
 impl Loaded {
     fn step(&self, step: Step) -> mlua::Result<StepEnd> {
-        let name = match step {
-            Step::Setup => "setup",
-            Step::Run => "run",
-            Step::Check => "check",
-            Step::TearDown => "tearDown",
-        };
-        let function: Value = self.table.get(name)?;
+        let function: Value = self.table.get(step.name())?;
         if function.is_nil() {
             return Ok(StepEnd::Done);
         }
@@ -151,23 +148,21 @@ impl Loaded {
             ));
         }
         let end = ended(result);
-        // Only a set-up and a check are asked whether they succeeded.
-        let asks = matches!(step, Step::Setup | Step::Check);
-        Ok(if end == StepEnd::Refused && !asks { StepEnd::Done } else { end })
+        // Only `setup` and `check` can return false.
+        let can_refuse = matches!(step, Step::Setup | Step::Check);
+        Ok(if end == StepEnd::Refused && !can_refuse { StepEnd::Done } else { end })
     }
-}
 
-impl Loaded {
     /// Calls `testStarted(test)` or `testFinished(test, verdict, reason)`.
-    fn tell(&self, told: Told<'_>) -> mlua::Result<StepEnd> {
-        let function: Value = self.table.get(told.name())?;
+    fn notify(&self, notification: TestNotification<'_>) -> mlua::Result<StepEnd> {
+        let function: Value = self.table.get(notification.name())?;
         if function.is_nil() {
             return Ok(StepEnd::Done);
         }
         let mut args = MultiValue::from_iter([function]);
-        match told {
-            Told::Starts(starts) => args.push_back(self.test(&starts.test)?),
-            Told::Ends(ends) => {
+        match notification {
+            TestNotification::Started(starts) => args.push_back(self.test(&starts.test)?),
+            TestNotification::Finished(ends) => {
                 args.push_back(self.test(&ends.test)?);
                 args.push_back(ends.verdict.as_str().into_lua(&self.lua)?);
                 args.push_back(ends.reason.as_deref().unwrap_or_default().into_lua(&self.lua)?);
@@ -186,18 +181,19 @@ impl Loaded {
     }
 }
 
-/// Finds the plug-in's table and looks whether there is something to do in it.
-fn table(lua: &Lua, role: Role, file: &str) -> Result<Table, LoadError> {
+/// Finds the plug-in's table and checks that it has a function to call.
+fn table(lua: &Lua, kind: PluginKind, file: &str) -> Result<Table, LoadError> {
     let failed = |message: String| LoadError { message, location: None };
     let global = |name: &str| lua.globals().get::<Value>(name).map_err(unexpected);
-    let (name, other, functions) = match role {
-        Role::Test => ("TestCase", "FixtureManager", &["run"][..]),
-        Role::Fixture => ("FixtureManager", "TestCase", &FIXTURE[..]),
+    let (name, other, functions) = match kind {
+        PluginKind::Test => ("TestCase", "FixtureManager", &["run"][..]),
+        PluginKind::Fixture => ("FixtureManager", "TestCase", &FIXTURE[..]),
     };
     let value = global(name)?;
     let Some(table) = value.as_table() else {
-        let kind = value.type_name();
-        return Err(failed(format!("`{name}` of `{file}` is no table of functions, but: {kind}")));
+        let type_name = value.type_name();
+        let message = format!("`{name}` of `{file}` is no table of functions, but: {type_name}");
+        return Err(failed(message));
     };
     for function in functions {
         if !table.get::<Value>(*function).map_err(unexpected)?.is_nil() {
@@ -209,11 +205,11 @@ fn table(lua: &Lua, role: Role, file: &str) -> Result<Table, LoadError> {
     Err(failed(format!("`{file}` defines no function `{name}.{}`{hint}", functions[0])))
 }
 
-/// What `guard.call` returns: `done, value`, `stopped`, or
+/// The results of `guard.call`: `done, value`, `stopped`, or
 /// `broken, text, file, line`.
 type Called = mlua::Result<(String, Value, Value, Value)>;
 
-/// The predecessor took that for a refusal.
+/// For the predecessor, this was a failure.
 fn returned_nothing(called: &Called) -> bool {
     matches!(called, Ok((word, Value::Nil, ..)) if word == "done")
 }
@@ -235,7 +231,7 @@ fn ended(result: Called) -> StepEnd {
     }
 }
 
-/// An error of Lua itself (no memory) while the host prepares a state.
+/// An error of Lua itself (out of memory) while the host prepares a state.
 fn unexpected(error: mlua::Error) -> LoadError {
     LoadError { message: error.to_string(), location: None }
 }

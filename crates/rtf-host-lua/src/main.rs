@@ -1,9 +1,10 @@
 //! The host of Lua plug-ins: an embedded Lua 5.4 that exports Lua's symbols,
 //! so that C modules load, and the table `rtf` of `sdk/lua`.
 //!
-//! It speaks the protocol through `rtf-host`; what is here is Lua's part:
-//! a state with the SDK ([`state`]), finding modules ([`search`]), loading and calling a plug-in ([`host`]),
-//! what a plug-in may call ([`sdk`], of parts in Lua: [`part`]), and reaching code that hangs ([`watch`]).
+//! `rtf-host` implements the protocol. This program adds a Lua state with the SDK
+//! ([`state`]), Lua's search paths ([`search_path`]), loading and calling a plug-in
+//! ([`host`]), the functions of the SDK ([`sdk`], with code in Lua: [`chunk`]), and the
+//! interruption of code that hangs ([`interruption`]).
 //!
 //! The program starts as a C program does, without Rust's start-up code: its
 //! signal handler would swallow a `SIGSEGV` that a plug-in sends or raises.
@@ -11,38 +12,39 @@
 #![expect(unsafe_code, reason = "the program's entry point is C's")]
 
 mod check;
+mod chunk;
 mod clock;
 mod host;
-mod part;
+mod interruption;
 mod sdk;
-mod search;
+mod search_path;
 mod source;
 mod state;
-mod watch;
 
 use std::ffi::{c_char, c_int};
 
-use rtf_host::{Host, Session, serve};
+use rtf_host::{HostProgram, Session, serve};
 
-use crate::state::State;
+use crate::state::PluginState;
 
-const HOST: Host<Option<State>> = Host { check: check::check, prepare, serve: serve_plugins };
+const HOST: HostProgram<Option<PluginState>> =
+    HostProgram { check: check::check, prepare, serve: serve_plugins };
 
 /// The entry point.
 #[unsafe(no_mangle)]
 extern "C" fn main(argc: c_int, argv: *const *const c_char) -> c_int {
-    // SAFETY: what the system calls this with.
+    // SAFETY: these are the system's arguments of `main`.
     unsafe { HOST.main(argc, argv) }
 }
 
-/// What is wrong is told when there is a plug-in.
-fn prepare() -> Option<State> {
-    // The first one compiles the SDK. What that leaves in the memory, forks would copy.
-    drop(State::new());
-    State::new().ok()
+/// Prepares a state for the forks. `load` reports an error.
+fn prepare() -> Option<PluginState> {
+    // The first one compiles the SDK, and would leave garbage that forks copy.
+    drop(PluginState::new());
+    PluginState::new().ok()
 }
 
-fn serve_plugins(session: &Session, ready: Option<State>) -> std::io::Result<()> {
-    watch::start(session);
+fn serve_plugins(session: &Session, ready: Option<PluginState>) -> std::io::Result<()> {
+    interruption::start(session);
     serve(session, host::LuaHost::new(session.clone(), ready))
 }

@@ -1,6 +1,5 @@
-//! What a plug-in may call: the table `rtf`, made of the Lua code of `sdk/lua`
-//! and of the few functions that only the host can offer; and the tables of
-//! the predecessor.
+//! The table `rtf` for plug-ins: the Lua code in `sdk/lua` and the functions of the host
+//! that it calls; and the tables of the predecessor.
 
 use std::ffi::CStr;
 use std::path::Path;
@@ -11,8 +10,8 @@ use rtf_host::{Sample, Session};
 use rtf_model::protocol::Plugin;
 use rtf_model::{Attachment, Comparison, Location, Measurement, Message, MessageKind};
 
+use crate::chunk::SdkChunk;
 use crate::clock::Clock;
-use crate::part::Part;
 
 /// The name in Lua's registry of the value that unwinds a step.
 pub(crate) const STOP: &CStr = c"rtf.stop";
@@ -20,24 +19,24 @@ pub(crate) const STOP: &CStr = c"rtf.stop";
 /// No sleep is longer: more seconds than any clock can add.
 const LONGEST: Duration = Duration::from_secs(1 << 40);
 
-// What was printed before a crash must not be lost with the buffer.
-static LINES: Part = Part::new("io.stdout:setvbuf('line')");
-static TEXT: Part = Part::new(include_str!("../../../sdk/lua/src/text.lua"));
-static NEAR: Part = Part::new(include_str!("../../../sdk/lua/src/near.lua"));
-static GUARD: Part = Part::new(include_str!("../../../sdk/lua/src/guard.lua"));
-static RTF: Part = Part::new(include_str!("../../../sdk/lua/src/rtf.lua"));
-static PREDECESSOR: Part = Part::new(include_str!("../../../sdk/lua/src/predecessor.lua"));
+// A crash must not lose printed lines with the buffer.
+static LINES: SdkChunk = SdkChunk::new("io.stdout:setvbuf('line')");
+static TEXT: SdkChunk = SdkChunk::new(include_str!("../../../sdk/lua/src/text.lua"));
+static NEAR: SdkChunk = SdkChunk::new(include_str!("../../../sdk/lua/src/near.lua"));
+static GUARD: SdkChunk = SdkChunk::new(include_str!("../../../sdk/lua/src/guard.lua"));
+static RTF: SdkChunk = SdkChunk::new(include_str!("../../../sdk/lua/src/rtf.lua"));
+static PREDECESSOR: SdkChunk = SdkChunk::new(include_str!("../../../sdk/lua/src/predecessor.lua"));
 
-/// What is installed in a state, before there is a plug-in or a runner.
-pub(crate) struct Installed {
-    /// Calls a function of the plug-in and tells how it ended.
+/// The SDK in a state that has no plug-in yet.
+pub(crate) struct InstalledSdk {
+    /// Calls a function of the plug-in and returns how it ended.
     pub(crate) call: Function,
-    /// What only the host can do, and what it knows of the plug-in.
+    /// The host's functions, and the plug-in's name and parameters.
     host: Table,
 }
 
 /// Installs the table `rtf`.
-pub(crate) fn install(lua: &Lua) -> mlua::Result<Installed> {
+pub(crate) fn install(lua: &Lua) -> mlua::Result<InstalledSdk> {
     LINES.run::<()>(lua, ())?;
     let stop = stop_value(lua)?;
     let text: Table = TEXT.run(lua, ())?;
@@ -50,39 +49,32 @@ pub(crate) fn install(lua: &Lua) -> mlua::Result<Installed> {
     for name in ["robottestingframework", "RTF"] {
         lua.globals().set(name, &predecessor)?;
     }
-    // For those who write `local rtf = require("rtf")`.
+    // For `local rtf = require("rtf")`.
     let package: Table = lua.globals().get("package")?;
     package.get::<Table>("loaded")?.set("rtf", rtf)?;
-    Ok(Installed { call: guard.get("call")?, host })
+    Ok(InstalledSdk { call: guard.get("call")?, host })
 }
 
-impl Installed {
-    /// Says for which plug-in the state is, and to whom it speaks.
-    pub(crate) fn dedicate(
-        &self,
-        lua: &Lua,
-        session: &Session,
-        plugin: &Plugin,
-    ) -> mlua::Result<()> {
+impl InstalledSdk {
+    /// Assigns the state to a plug-in and its session.
+    pub(crate) fn assign(&self, lua: &Lua, session: &Session, plugin: &Plugin) -> mlua::Result<()> {
         lua.set_app_data(session.clone());
         self.host.set("plugin", about(lua, plugin)?)
     }
 }
 
-/// Lets a plug-in find the predecessor's functions in its table `TestCase`,
-/// among its own.
-pub(crate) fn lend_predecessor(lua: &Lua, table: &Table) -> mlua::Result<()> {
+/// Makes the predecessor's functions available in a plug-in's table `TestCase`.
+pub(crate) fn inherit_predecessor(lua: &Lua, table: &Table) -> mlua::Result<()> {
     let meta = lua.create_table()?;
     meta.set("__index", lua.globals().get::<Table>("robottestingframework")?)?;
     table.set_metatable(Some(meta))
 }
 
-/// A value of which there is only one, and which says what it is to a plug-in
-/// that catches it.
+/// The unique value that unwinds a step. Its text is for plug-ins that catch it.
 fn stop_value(lua: &Lua) -> mlua::Result<Table> {
     let meta = lua.create_table()?;
     meta.set("__name", "rtf.stop")?;
-    meta.set("__tostring", lua.create_function(|_, ()| Ok("this step of the plug-in is over"))?)?;
+    meta.set("__tostring", lua.create_function(|_, ()| Ok("this step of the plug-in has ended"))?)?;
     let stop = lua.create_table()?;
     stop.set_metatable(Some(meta))?;
     lua.set_named_registry_value(&STOP.to_string_lossy(), &stop)?;
@@ -109,7 +101,7 @@ fn functions(lua: &Lua) -> mlua::Result<Table> {
         Ok(())
     })?;
     add(lua, &host, "measure", |session, measured: Measured| Ok(session.measure(measured.0)))?;
-    add(lua, &host, "sample", |session, sampled: Sampled| Ok(sampled.tell(session)))?;
+    add(lua, &host, "sample", |session, sampled: Sampled| Ok(sampled.send(session)))?;
     add(
         lua,
         &host,
@@ -147,7 +139,7 @@ where
     host.set(name, function)
 }
 
-/// Returns what is wrong with the file, if anything.
+/// Attaches a file; returns the problem, if there is one.
 fn attach(
     session: &Session,
     path: &LuaString,
@@ -160,12 +152,12 @@ fn attach(
         return Some(format!("there is no file `{}` to attach", full.display()));
     }
     let own_name = || full.file_name().map(|name| name.to_string_lossy().into_owned());
-    let kept = session.attach(Attachment {
+    let attached = session.attach(Attachment {
         name: name.map(LuaString::to_string_lossy).or_else(own_name).unwrap_or_default(),
         path: full.to_string_lossy().into_owned(),
         media_type: media_type.map(LuaString::to_string_lossy).unwrap_or_default(),
     });
-    kept.err().map(|error| format!("`{}` cannot be attached: {error}", full.display()))
+    attached.err().map(|error| format!("`{}` cannot be attached: {error}", full.display()))
 }
 
 /// `kind, text, file, line, comparison, critical`
@@ -187,7 +179,7 @@ impl mlua::FromLuaMulti for Reported {
             kind,
             text: text.to_string_lossy(),
             location: location(file.as_ref(), line),
-            comparison: comparison.map(|numbers| compared(&numbers)).transpose()?,
+            comparison: comparison.map(|numbers| comparison_of(&numbers)).transpose()?,
             critical: critical.unwrap_or(false),
         }))
     }
@@ -239,7 +231,7 @@ impl mlua::FromLuaMulti for Sampled {
 }
 
 impl Sampled {
-    fn tell(&self, session: &Session) -> bool {
+    fn send(&self, session: &Session) -> bool {
         let (value, low, high, time) = self.numbers;
         let file = self.place.0.as_ref().map(LuaString::to_string_lossy);
         session.sample(&Sample {
@@ -254,7 +246,7 @@ impl Sampled {
     }
 }
 
-fn compared(numbers: &Table) -> mlua::Result<Comparison> {
+fn comparison_of(numbers: &Table) -> mlua::Result<Comparison> {
     let all = |name| -> mlua::Result<Vec<Option<f64>>> {
         Ok(numbers.get::<Vec<f64>>(name)?.into_iter().map(finite).collect())
     };
@@ -270,12 +262,12 @@ fn location(file: Option<&LuaString>, line: Option<u32>) -> Option<Location> {
     Some(Location { file: file?.to_string_lossy(), line: line.unwrap_or(0) })
 }
 
-/// JSON carries no other numbers.
+/// JSON has only finite numbers.
 fn finite(number: f64) -> Option<f64> {
     number.is_finite().then_some(number)
 }
 
-/// A text of Lua, also one that is not UTF-8; `None` for any other value.
+/// A Lua string, even if it is not UTF-8; `None` for any other value.
 pub(crate) fn text_of(value: &Value) -> Option<String> {
     value.as_string().map(LuaString::to_string_lossy)
 }

@@ -1,4 +1,4 @@
-//! Reads a plug-in's file, compiles it, and tells for whom it was written.
+//! Reads and compiles a plug-in's file, and detects its API style.
 
 mod style;
 
@@ -12,46 +12,45 @@ use rtf_model::Location;
 
 pub(crate) use style::Style;
 
-/// A chunk's name that is shorter than any file's, so that Lua's messages
-/// begin with something that can be told from a path with colons in it.
+/// A chunk name that Lua's messages can be split after: a path may contain colons.
 const NAMELESS: &str = "=?";
 
-/// A file that was compiled, but not run.
-pub(crate) struct Compiled {
+/// A compiled file.
+pub(crate) struct CompiledFile {
     pub(crate) chunk: Function,
     pub(crate) style: Style,
 }
 
-/// Files that were compiled: those of tests that share a host come again.
+/// A cache of compiled files, for tests that share a host.
 #[derive(Default)]
-pub(crate) struct Files(HashMap<String, Known>);
+pub(crate) struct CompiledFiles(HashMap<String, CachedFile>);
 
-struct Known {
+struct CachedFile {
     source: Vec<u8>,
     code: Vec<u8>,
     style: Style,
 }
 
-impl Files {
-    /// Compiles a file like [`compile`], unless this one, as it is now, was before.
-    pub(crate) fn compile(&mut self, lua: &Lua, name: &str) -> Result<Compiled, LoadError> {
+impl CompiledFiles {
+    /// Compiles a file like [`compile`], unless the cache has the same content.
+    pub(crate) fn compile(&mut self, lua: &Lua, name: &str) -> Result<CompiledFile, LoadError> {
         let source = read(Path::new(name), name)?;
         if let Some(known) = self.0.get(name).filter(|known| known.source == source) {
             let chunk = lua.load(known.code.as_slice()).set_mode(ChunkMode::Binary);
             let chunk = chunk
                 .into_function()
                 .map_err(|error| LoadError { message: error.to_string(), location: None })?;
-            return Ok(Compiled { chunk, style: known.style });
+            return Ok(CompiledFile { chunk, style: known.style });
         }
         let compiled = compile_source(lua, &source, name)?;
         let (code, style) = (compiled.chunk.dump(false), compiled.style);
-        self.0.insert(name.to_owned(), Known { source, code, style });
+        self.0.insert(name.to_owned(), CachedFile { source, code, style });
         Ok(compiled)
     }
 }
 
-/// Compiles a file without running it. Its functions know it by `name`.
-pub(crate) fn compile(lua: &Lua, file: &Path, name: &str) -> Result<Compiled, LoadError> {
+/// Compiles a file without running it. `name` is its name in tracebacks.
+pub(crate) fn compile(lua: &Lua, file: &Path, name: &str) -> Result<CompiledFile, LoadError> {
     compile_source(lua, &read(file, name)?, name)
 }
 
@@ -60,23 +59,23 @@ fn read(file: &Path, name: &str) -> Result<Vec<u8>, LoadError> {
         message: format!("`{name}` cannot be read: {error}"),
         location: None,
     })?;
-    Ok(code(source))
+    Ok(strip_prefixes(source))
 }
 
-fn compile_source(lua: &Lua, source: &[u8], name: &str) -> Result<Compiled, LoadError> {
+fn compile_source(lua: &Lua, source: &[u8], name: &str) -> Result<CompiledFile, LoadError> {
     let load = |chunk_name: &str| lua.load(source).set_name(chunk_name).into_function();
     let chunk = load(&format!("@{name}")).map_err(|error| {
-        // Compiled once more under a name that is easy to take off.
-        let message = load(NAMELESS).err().map_or_else(|| error.to_string(), text);
+        // Compiled again under a name that is easy to remove.
+        let message = load(NAMELESS).err().map_or_else(|| error.to_string(), message_of);
         let (line, message) = split(&message);
         LoadError { message, location: Some(Location { file: name.to_owned(), line }) }
     })?;
-    Ok(Compiled { chunk, style: Style::of(&String::from_utf8_lossy(source)) })
+    Ok(CompiledFile { chunk, style: Style::of(&String::from_utf8_lossy(source)) })
 }
 
-/// Takes off what is allowed before the code: a byte order mark and a first
-/// line for the shell (`#!/usr/bin/lua`), whose line stays.
-fn code(source: Vec<u8>) -> Vec<u8> {
+/// Removes a byte order mark and a first line for the shell (`#!/usr/bin/lua`), but not
+/// its line break.
+fn strip_prefixes(source: Vec<u8>) -> Vec<u8> {
     let source = source.strip_prefix(b"\xEF\xBB\xBF").map_or(source.clone(), <[u8]>::to_vec);
     if source.first() != Some(&b'#') {
         return source;
@@ -85,7 +84,7 @@ fn code(source: Vec<u8>) -> Vec<u8> {
     source[end..].to_vec()
 }
 
-fn text(error: Error) -> String {
+fn message_of(error: Error) -> String {
     match error {
         Error::SyntaxError { message, .. } => message,
         error => error.to_string(),

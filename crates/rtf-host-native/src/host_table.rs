@@ -1,4 +1,4 @@
-//! The functions that a plug-in gets from its host.
+//! The table of functions that a plug-in gets from its host.
 #![expect(unsafe_code, reason = "called by foreign code with its pointers")]
 
 use std::ffi::{CStr, c_char, c_int, c_void};
@@ -14,8 +14,8 @@ use crate::abi::{
     rtf_sample, rtf_text,
 };
 
-/// What the functions work on: one for each loaded plug-in, kept until the
-/// process ends, because the plug-in's threads may still use it.
+/// The context of the functions: one per plug-in, never freed, because the plug-in's
+/// threads may still use it.
 #[derive(Debug)]
 struct Context {
     session: Session,
@@ -46,7 +46,7 @@ pub(crate) fn for_plugin(session: &Session, plugin: &Plugin) -> &'static rtf_hos
 }
 
 unsafe extern "C" fn message(context: *mut c_void, message: *const rtf_message) {
-    // SAFETY: all pointers are as spec/plugin-abi.md says.
+    // SAFETY: the pointers are valid by spec/plugin-abi.md.
     unsafe {
         let message = &*message;
         let kind = match message.kind {
@@ -54,7 +54,7 @@ unsafe extern "C" fn message(context: *mut c_void, message: *const rtf_message) 
             RTF_MESSAGE_CHECK => MessageKind::Check,
             RTF_MESSAGE_FAILURE => MessageKind::Failure,
             RTF_MESSAGE_ERROR => MessageKind::Error,
-            // A kind that this host does not know must not look harmless.
+            // An unknown kind must not look harmless.
             _ => MessageKind::Error,
         };
         self::context(context).session.message(Message {
@@ -68,7 +68,7 @@ unsafe extern "C" fn message(context: *mut c_void, message: *const rtf_message) 
 }
 
 unsafe extern "C" fn measure(context: *mut c_void, measurement: *const rtf_measurement) -> c_int {
-    // SAFETY: all pointers are as spec/plugin-abi.md says.
+    // SAFETY: the pointers are valid by spec/plugin-abi.md.
     unsafe {
         let measurement = &*measurement;
         let holds = self::context(context).session.measure(Measurement {
@@ -84,7 +84,7 @@ unsafe extern "C" fn measure(context: *mut c_void, measurement: *const rtf_measu
 }
 
 unsafe extern "C" fn sample(context: *mut c_void, sample: *const rtf_sample) -> c_int {
-    // SAFETY: all pointers are as spec/plugin-abi.md says.
+    // SAFETY: the pointers are valid by spec/plugin-abi.md.
     unsafe {
         let sample = &*sample;
         let place = location(sample.file, sample.line);
@@ -102,7 +102,7 @@ unsafe extern "C" fn sample(context: *mut c_void, sample: *const rtf_sample) -> 
 }
 
 unsafe extern "C" fn attach(context: *mut c_void, attachment: *const rtf_attachment) {
-    // SAFETY: all pointers are as spec/plugin-abi.md says.
+    // SAFETY: the pointers are valid by spec/plugin-abi.md.
     unsafe {
         let attachment = &*attachment;
         let path = text(attachment.path);
@@ -123,39 +123,39 @@ unsafe extern "C" fn attach(context: *mut c_void, attachment: *const rtf_attachm
 }
 
 unsafe extern "C" fn collapsed(context: *mut c_void, reason: rtf_text) {
-    // SAFETY: all pointers are as spec/plugin-abi.md says.
+    // SAFETY: the pointers are valid by spec/plugin-abi.md.
     unsafe { self::context(context).session.collapsed(&text(reason)) }
 }
 
 unsafe extern "C" fn interrupted(context: *mut c_void) -> c_int {
-    // SAFETY: the context is the one that was given out.
+    // SAFETY: the context is that of the table.
     c_int::from(unsafe { self::context(context) }.session.interrupted())
 }
 
 unsafe extern "C" fn wait(context: *mut c_void, seconds: f64) -> c_int {
     let at_least_zero = if seconds > 0.0 { seconds } else { 0.0 };
     let duration = Duration::try_from_secs_f64(at_least_zero).unwrap_or(Duration::MAX);
-    // SAFETY: the context is the one that was given out.
+    // SAFETY: the context is that of the table.
     c_int::from(unsafe { self::context(context) }.session.wait(duration))
 }
 
 unsafe extern "C" fn name(context: *mut c_void) -> rtf_text {
-    // SAFETY: the context is the one that was given out.
+    // SAFETY: the context is that of the table.
     lend(&unsafe { self::context(context) }.plugin.name)
 }
 
 unsafe extern "C" fn param(context: *mut c_void) -> rtf_text {
-    // SAFETY: the context is the one that was given out.
+    // SAFETY: the context is that of the table.
     lend(&unsafe { self::context(context) }.plugin.param)
 }
 
 unsafe extern "C" fn environment(context: *mut c_void) -> rtf_text {
-    // SAFETY: the context is the one that was given out.
+    // SAFETY: the context is that of the table.
     lend(&unsafe { self::context(context) }.plugin.environment)
 }
 
 unsafe extern "C" fn repetition(context: *mut c_void) -> u32 {
-    // SAFETY: the context is the one that was given out.
+    // SAFETY: the context is that of the table.
     unsafe { self::context(context) }.plugin.repetition.max(1)
 }
 
@@ -199,7 +199,7 @@ unsafe fn comparison(numbers: &rtf_comparison) -> Comparison {
     let (expected, got) = unsafe {
         (list(numbers.expected, numbers.expected_count), list(numbers.got, numbers.got_count))
     };
-    // JSON carries finite numbers only. A tolerance without limit accepts any.
+    // JSON has only finite numbers. An infinite tolerance accepts any value.
     let tolerance = if numbers.tolerance.is_nan() { 0.0 } else { numbers.tolerance };
     let tolerance = tolerance.clamp(f64::MIN, f64::MAX);
     Comparison { expected, got, tolerance, worst: u64::try_from(numbers.worst).ok() }

@@ -1,4 +1,4 @@
-//! From a file to a plug-in's table, or to what is wrong with the file.
+//! Loads a plug-in's library and checks its table.
 #![expect(unsafe_code, reason = "loading foreign code")]
 
 use std::error::Error;
@@ -6,21 +6,21 @@ use std::mem::offset_of;
 use std::path::Path;
 
 use libloading::os::unix::{Library, RTLD_LAZY, RTLD_LOCAL, RTLD_NOW};
-use rtf_host::{CheckedFile, Role};
+use rtf_host::{CheckedFile, PluginKind};
 
 use crate::abi::{RTF_ABI_MAJOR, RTF_KIND_FIXTURE, RTF_KIND_TEST, rtf_plugin_table};
 
 /// The one symbol that a plug-in exports.
 const SYMBOL: &str = "rtf_plugin";
 
-/// What plug-ins of the predecessor export instead.
+/// The symbols of plug-ins that were built for the predecessor.
 const OLD_SYMBOLS: [&str; 2] =
     ["robottestingframework_dll_factory", "robottestingframework_fixture_factory"];
 
 /// Why a file is not a plug-in that this host can run.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum LibraryError {
-    /// The loader refused it.
+    /// The loader rejected it.
     #[error("cannot be loaded: {0}")]
     Load(String),
     /// It exports no plug-in.
@@ -52,18 +52,18 @@ pub(crate) enum LibraryError {
         /// The smallest size of this version.
         wanted: usize,
     },
-    /// Neither a test nor a fixture.
+    /// It is neither a test nor a fixture.
     #[error("its kind is {0}, neither a test nor a fixture")]
     Kind(i32),
     /// A function is missing without which it is no plug-in.
     #[error("its table has no `{0}` function")]
     Incomplete(&'static str),
-    /// It is used as what it is not.
+    /// A test is used as a fixture, or the reverse.
     #[error("is a {found}, not a {wanted}")]
-    WrongRole {
-        /// What it is.
+    WrongKind {
+        /// The plug-in's kind.
         found: &'static str,
-        /// As what it was to be loaded.
+        /// The kind that the suite needs.
         wanted: &'static str,
     },
 }
@@ -73,21 +73,20 @@ pub(crate) enum LibraryError {
 pub(crate) struct Table(pub(crate) &'static rtf_plugin_table);
 
 impl Table {
-    /// Loads a file and looks at its table. None of the plug-in's functions is
-    /// called, but what the loader runs by itself (constructors of static
-    /// objects) does run.
+    /// Loads a file and checks its table. Calls none of the plug-in's functions, but the
+    /// loader runs constructors of static objects.
     pub(crate) fn load(file: &Path) -> Result<Self, LibraryError> {
         let file = if file.components().count() == 1 {
             Path::new(".").join(file)
         } else {
             file.to_owned()
         };
-        // SAFETY: loading a library runs its initialisers. Whoever names a
-        // plug-in wants it run; a crash in it is seen by the runner.
+        // SAFETY: loading a library runs its initialisers, as the user wants; the runner
+        // detects a crash.
         let library = unsafe { Library::open(Some(&file), RTLD_NOW | RTLD_LOCAL) };
         let library = library.map_err(|error| LibraryError::Load(cause(&error, &file)))?;
-        // Threads and thread-local destructors of the plug-in may outlive any
-        // use of it, so that it stays until the process ends.
+        // Never unloaded: the plug-in's threads and thread-local destructors may outlive
+        // its last use.
         let library = std::mem::ManuallyDrop::new(library);
         // SAFETY: the type is that of every symbol of this name.
         let symbol =
@@ -116,8 +115,8 @@ impl Table {
         if found < wanted {
             return Err(LibraryError::Size { found, wanted });
         }
-        // SAFETY: it has as many bytes as it says, and stays, by spec/plugin-abi.md.
-        let table = unsafe { whole(table, found) };
+        // SAFETY: by spec/plugin-abi.md, it has `size` bytes and is never freed.
+        let table = unsafe { complete(table, found) };
         if table.create.is_none() {
             return Err(LibraryError::Incomplete("create"));
         }
@@ -128,39 +127,38 @@ impl Table {
         }
     }
 
-    /// What the plug-in is.
-    pub(crate) fn role(self) -> Role {
-        if self.0.kind == RTF_KIND_FIXTURE { Role::Fixture } else { Role::Test }
+    pub(crate) fn kind(self) -> PluginKind {
+        if self.0.kind == RTF_KIND_FIXTURE { PluginKind::Fixture } else { PluginKind::Test }
     }
 
-    /// The same, when it is what it is used as.
-    pub(crate) fn used_as(self, role: Role) -> Result<Self, LibraryError> {
-        if self.role() == role {
+    /// The table, if the plug-in is of this kind.
+    pub(crate) fn require(self, kind: PluginKind) -> Result<Self, LibraryError> {
+        if self.kind() == kind {
             Ok(self)
         } else {
-            Err(LibraryError::WrongRole { found: word(self.role()), wanted: word(role) })
+            Err(LibraryError::WrongKind { found: word(self.kind()), wanted: word(kind) })
         }
     }
 }
 
-/// Says of a file whether it can be loaded, for `--check`.
+/// Checks whether a file can be loaded, for `--check`.
 pub(crate) fn check(file: &Path) -> CheckedFile {
     match Table::load(file) {
-        Ok(table) => CheckedFile::good(file, Some(vec![word(table.role()).to_owned()])),
+        Ok(table) => CheckedFile::good(file, Some(vec![word(table.kind()).to_owned()])),
         Err(error) => CheckedFile::bad(file, error.to_string(), None),
     }
 }
 
-/// When the functions that a library calls are looked up.
+/// When the loader resolves the functions that a library calls.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Lookup {
-    /// As they are called, which is the least work for one process.
+    /// With the first call, which is the least work for one process.
     Lazy,
-    /// At once: forks of this process need not look for them any more.
+    /// At once, for all forks of this process.
     Now,
 }
 
-/// Loads a library that plug-ins are likely to need, if it is there.
+/// Loads a library that plug-ins are likely to need, if it is installed.
 pub(crate) fn preload(name: &str, lookup: Lookup) {
     let lookup = match lookup {
         Lookup::Lazy => RTLD_LAZY,
@@ -171,12 +169,12 @@ pub(crate) fn preload(name: &str, lookup: Lookup) {
     std::mem::forget(library);
 }
 
-/// The table with all fields that this host knows: those that an older plug-in
-/// does not have are null.
+/// The table with all fields of this host's version: those that an older plug-in does not
+/// have are null.
 ///
 /// # Safety
-/// `table` has `size` bytes, which stay until the process ends.
-unsafe fn whole(table: *const rtf_plugin_table, size: usize) -> &'static rtf_plugin_table {
+/// `table` has `size` bytes, which are never freed.
+unsafe fn complete(table: *const rtf_plugin_table, size: usize) -> &'static rtf_plugin_table {
     if size >= size_of::<rtf_plugin_table>() {
         // SAFETY: the caller's promise.
         return unsafe { &*table };
@@ -189,17 +187,16 @@ unsafe fn whole(table: *const rtf_plugin_table, size: usize) -> &'static rtf_plu
     }
 }
 
-fn word(role: Role) -> &'static str {
-    match role {
-        Role::Test => "test",
-        Role::Fixture => "fixture",
+fn word(kind: PluginKind) -> &'static str {
+    match kind {
+        PluginKind::Test => "test",
+        PluginKind::Fixture => "fixture",
     }
 }
 
-/// The loader's own words, which name the missing library or symbol. The file
-/// is named beside them already.
+/// The loader's message, which names the missing library or symbol, without the file's name.
 fn cause(error: &libloading::Error, file: &Path) -> String {
-    let words = error.source().map_or_else(|| error.to_string(), ToString::to_string);
+    let message = error.source().map_or_else(|| error.to_string(), ToString::to_string);
     let own = format!("{}: ", file.display());
-    words.strip_prefix(&own).map(str::to_owned).unwrap_or(words)
+    message.strip_prefix(&own).map(str::to_owned).unwrap_or(message)
 }

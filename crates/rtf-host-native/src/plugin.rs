@@ -1,10 +1,10 @@
-//! The loaded plug-in, as the shared part of all hosts wants to call it.
+//! Calls the functions in a loaded plug-in's table.
 #![expect(unsafe_code, reason = "calling foreign code")]
 
 use std::ffi::{CString, NulError, c_char, c_int, c_void};
 use std::path::Path;
 
-use rtf_host::{HostPlugin, LoadError, Role, Session, Step, StepEnd, Told};
+use rtf_host::{HostPlugin, LoadError, PluginKind, Session, Step, StepEnd, TestNotification};
 use rtf_model::protocol::{
     Initialized, PROTOCOL_VERSION, Plugin, StackSupport, Subscription, TestAttempt,
 };
@@ -33,13 +33,13 @@ impl NativeHost {
     }
 }
 
-/// Nearly every plug-in is in C++, and loading its library takes longer
-/// than all the rest. A plug-in that does without does not see it.
-const LIKELY: &str = "libstdc++.so.6";
+/// Nearly every plug-in needs it, and loading it takes longer than everything else. It is
+/// loaded with local symbols, so that other plug-ins do not notice it.
+const CPP_RUNTIME: &str = "libstdc++.so.6";
 
-/// What is done once for all forks.
+/// Prepares a fork server.
 pub(crate) fn prepare() {
-    library::preload(LIKELY, Lookup::Now);
+    library::preload(CPP_RUNTIME, Lookup::Now);
 }
 
 impl HostPlugin for NativeHost {
@@ -50,18 +50,18 @@ impl HostPlugin for NativeHost {
     }
 
     fn idle(&mut self) {
-        // A fork has it already.
-        library::preload(LIKELY, Lookup::Lazy);
+        // Forks inherit it from their server.
+        library::preload(CPP_RUNTIME, Lookup::Lazy);
     }
 
-    fn load(&mut self, role: Role, plugin: &Plugin) -> Result<(), LoadError> {
+    fn load(&mut self, kind: PluginKind, plugin: &Plugin) -> Result<(), LoadError> {
         let failed = |message: String| LoadError { message, location: None };
-        let table = Table::load(Path::new(&plugin.file)).and_then(|table| table.used_as(role));
+        let table = Table::load(Path::new(&plugin.file)).and_then(|table| table.require(kind));
         let table = table.map_err(|error| failed(format!("`{}` {error}", plugin.file)))?.0;
         let args = arguments(plugin)
             .map_err(|_| failed("an argument holds a zero byte, which C cannot".to_owned()))?;
         let host = host_table::for_plugin(&self.session, plugin);
-        // SAFETY: the table was examined; the host's table stays for ever.
+        // SAFETY: the table was examined; the host's table is never freed.
         let this = table.create.map_or(std::ptr::null_mut(), |create| unsafe { create(host) });
         if this.is_null() {
             return Err(failed(format!("`{}` could not be created", plugin.file)));
@@ -81,8 +81,8 @@ impl HostPlugin for NativeHost {
         started.into_iter().chain(finished).collect()
     }
 
-    fn tell(&mut self, told: Told<'_>) -> StepEnd {
-        self.loaded.as_mut().map_or(StepEnd::Stopped, |loaded| loaded.tell(told))
+    fn notify(&mut self, notification: TestNotification<'_>) -> StepEnd {
+        self.loaded.as_mut().map_or(StepEnd::Stopped, |loaded| loaded.notify(notification))
     }
 
     fn unload(&mut self) -> StepEnd {
@@ -115,10 +115,10 @@ impl Loaded {
         end_of(code.unwrap_or(RTF_DONE))
     }
 
-    fn tell(&mut self, told: Told<'_>) -> StepEnd {
-        let (function, test, verdict, reason) = match told {
-            Told::Starts(starts) => (self.table.test_started, &starts.test, "", ""),
-            Told::Ends(ends) => {
+    fn notify(&mut self, notification: TestNotification<'_>) -> StepEnd {
+        let (function, test, verdict, reason) = match notification {
+            TestNotification::Started(starts) => (self.table.test_started, &starts.test, "", ""),
+            TestNotification::Finished(ends) => {
                 let reason = ends.reason.as_deref().unwrap_or_default();
                 (self.table.test_finished, &ends.test, ends.verdict.as_str(), reason)
             }
@@ -135,9 +135,7 @@ fn end_of(code: i32) -> StepEnd {
         RTF_DONE => StepEnd::Done,
         RTF_REFUSED => StepEnd::Refused,
         RTF_STOPPED => StepEnd::Stopped,
-        other => {
-            StepEnd::Broken(format!("the plug-in returned {other}, which means nothing"), None)
-        }
+        other => StepEnd::Broken(format!("the plug-in returned unknown status {other}"), None),
     }
 }
 
@@ -155,8 +153,8 @@ fn test_of(test: &TestAttempt, verdict: &str, reason: &str) -> rtf_test {
     }
 }
 
-/// The arguments as `main` gets them: the name, the arguments, a null. They
-/// stay until the process ends, for the plug-in may keep pointers to them.
+/// The arguments as `main` gets them: the name, the arguments, a null. They are never
+/// freed, because the plug-in may keep pointers to them.
 fn arguments(plugin: &Plugin) -> Result<Vec<*mut c_char>, NulError> {
     let texts = std::iter::once(&plugin.name).chain(&plugin.args);
     let texts: Vec<CString> =

@@ -1,4 +1,4 @@
-//! From a line of the channel to a request, or to what is wrong with it.
+//! Decodes a line of the channel into a request or an error.
 
 use std::borrow::Cow;
 
@@ -12,27 +12,27 @@ const PARSE_ERROR: i32 = -32700;
 /// JSON-RPC error code: the line is JSON, but no request.
 pub(crate) const INVALID_REQUEST: i32 = -32600;
 
-/// A line, read.
+/// A decoded line.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Incoming {
     /// A request, or a notification when it has no number.
     Request {
         /// The request's number.
         id: Option<u64>,
-        /// What is asked.
+        /// The request.
         request: Request,
     },
-    /// Something that cannot be carried out.
+    /// A line that the host cannot carry out.
     Refused {
-        /// The number, as far as there is one.
+        /// The number, if there is one.
         id: Option<u64>,
-        /// What is wrong.
+        /// The reason.
         error: RpcError,
     },
 }
 
 impl Incoming {
-    /// Its number.
+    /// The request's number.
     pub(crate) fn id(&self) -> Option<u64> {
         match self {
             Self::Request { id, .. } | Self::Refused { id, .. } => *id,
@@ -57,7 +57,7 @@ struct Interrupt {
     request: Option<u64>,
 }
 
-/// Reads a line without its end.
+/// Decodes a line without its end.
 pub(crate) fn decode(line: &[u8]) -> Incoming {
     let envelope: Envelope<'_> = match serde_json::from_slice(line) {
         Ok(envelope) => envelope,
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_carried_out_is_refused_with_its_code() {
+    fn invalid_lines_are_refused_with_their_codes() {
         assert_eq!(code(r#"{"id":4,"method":"paint-test","params":{}}"#), (Some(4), -32601));
         assert_eq!(code(r#"{"id":5,"method":"run-test","params":{"file":3}}"#), (Some(5), -32602));
         assert_eq!(code(r#"{"id":6,"method":"run-test"}"#), (Some(6), -32602));

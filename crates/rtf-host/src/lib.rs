@@ -1,32 +1,30 @@
-//! The protocol between the runner and a host process, from the host's side.
+//! The host's side of the protocol between the runner and a host process.
 //!
 //! A host is a small program that loads plug-ins of one kind. It implements
-//! [`HostPlugin`] and is a [`Host`], whose `serve` calls [`serve()`], which does
-//! everything that `spec/protocol.md` asks of every host alike: it answers
-//! requests in order, announces phases, applies the rule that *the first
-//! failure or error decides*, hears a request to stop while the plug-in runs,
-//! and ends with the runner. [`check()`] is the other way in: `--check FILE…`.
+//! [`HostPlugin`] and is a [`HostProgram`], whose `serve` calls [`serve()`]. That function
+//! does everything that `spec/protocol.md` requires of every host: it answers
+//! requests in order, announces phases, reads stop requests while the plug-in runs,
+//! and ends with the runner. [`check()`] implements `--check FILE…`.
 //!
-//! What this crate does not know is any language: loading and calling a
-//! plug-in is the host's.
+//! This crate knows no language: the host loads and calls the plug-in.
 
 mod check;
 mod decode;
-mod fork;
+mod fork_server;
+mod outcome;
 mod plugin;
 mod program;
 mod reader;
 mod sampling;
 mod serve;
 mod session;
-mod sharing;
+mod shared_host;
 mod unix;
-mod verdict;
 mod writer;
 
 pub use check::{CheckedFile, check, files_to_check};
-pub use plugin::{HostPlugin, LoadError, Reaction, Role, Step, StepEnd, Told};
-pub use program::Host;
+pub use plugin::{HostPlugin, LoadError, PluginKind, Reaction, Step, StepEnd, TestNotification};
+pub use program::HostProgram;
 pub use sampling::Sample;
 pub use serve::serve;
 pub use session::{OpenError, Session};

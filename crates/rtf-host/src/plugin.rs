@@ -1,4 +1,4 @@
-//! What a host has to be able to do.
+//! The functions that each kind of host implements.
 
 use rtf_model::Location;
 use rtf_model::protocol::{
@@ -7,12 +7,12 @@ use rtf_model::protocol::{
 
 use crate::Session;
 
-/// As what a plug-in is loaded.
+/// Whether a plug-in is loaded as a test or as a fixture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
-    /// As a test: `setup`, `run`, `tearDown`.
+pub enum PluginKind {
+    /// `setup`, `run`, `tearDown`.
     Test,
-    /// As a fixture: `setup`, `check` as often as the runner asks, `tearDown`.
+    /// `setup`, `check` as often as the runner asks, `tearDown`.
     Fixture,
 }
 
@@ -23,59 +23,70 @@ pub enum Step {
     Setup,
     /// `run` of a test.
     Run,
-    /// `check` of a fixture. A plug-in that has none is well.
+    /// `check` of a fixture. A plug-in without it is healthy.
     Check,
     /// `tearDown`.
     TearDown,
 }
 
-/// What a fixture is told of a test.
-#[derive(Clone, Copy, Debug)]
-pub enum Told<'a> {
-    /// An attempt is about to begin: `testStarted`.
-    Starts(&'a TestStartedParams),
-    /// An attempt was judged: `testFinished`.
-    Ends(&'a TestFinishedParams),
-}
-
-impl Told<'_> {
+impl Step {
     /// The function's name, as plug-ins spell it.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
-            Self::Starts(_) => "testStarted",
-            Self::Ends(_) => "testFinished",
+            Self::Setup => "setup",
+            Self::Run => "run",
+            Self::Check => "check",
+            Self::TearDown => "tearDown",
         }
     }
 }
 
-/// How a function of the plug-in ended. What it reported meanwhile has gone
-/// through the [`Session`], which knows about failures and errors by itself.
+/// A notification to a fixture about a test.
+#[derive(Clone, Copy, Debug)]
+pub enum TestNotification<'a> {
+    /// An attempt is about to start: `testStarted`.
+    Started(&'a TestStarts),
+    /// An attempt has a verdict: `testFinished`.
+    Finished(&'a TestEnds),
+}
+
+impl TestNotification<'_> {
+    /// The function's name, as plug-ins spell it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Started(_) => "testStarted",
+            Self::Finished(_) => "testFinished",
+        }
+    }
+}
+
+/// How a function of the plug-in ended. The [`Session`] already has the messages that the
+/// function reported.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum StepEnd {
     /// It returned.
     Done,
     /// It returned false.
     Refused,
-    /// An assertion or an error that it reported stopped it, or it unwound
-    /// because it was asked to stop.
+    /// An assertion or an error that it reported, or a stop request, ended it.
     Stopped,
-    /// It ended in a way that is not the SDK's: an exception, with its type
-    /// and text, and the place where it came from if that is known.
+    /// An exception that is not the SDK's ended it: type and text, and the location if known.
     Broken(String, Option<Location>),
 }
 
 /// Why a plug-in could not be loaded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LoadError {
-    /// What is wrong, with the loader's or interpreter's own words.
+    /// The loader's or interpreter's message.
     pub message: String,
-    /// Where, when it is a place in the plug-in's source.
+    /// The location in the plug-in's source, if there is one.
     pub location: Option<Location>,
 }
 
-/// What a host does at once when the runner tells it something. Called on the
-/// thread that reads the channel, while the plug-in runs on another.
+/// A host's immediate reaction to a notification of the runner. Called on the thread that
+/// reads the channel, while the plug-in runs on another.
 pub type Reaction = Box<dyn Fn(&Session) + Send>;
 
 /// A host. All functions are called on the thread that called [`crate::serve()`].
@@ -86,41 +97,40 @@ pub trait HostPlugin {
     /// Called once, with the runner's first request, before anything is loaded.
     fn prepare(&mut self, _initialize: &Initialize) {}
 
-    /// Called when the runner has started the host before there is a plug-in for
-    /// it: time to get ready for the likely one.
+    /// Called when the runner has started the host before there is a plug-in for it, so
+    /// that the host can prepare for the most likely plug-in.
     fn idle(&mut self) {}
 
     /// Loads a plug-in. At most one is loaded at a time.
     ///
     /// # Errors
     /// The plug-in cannot be loaded; nothing is loaded then.
-    fn load(&mut self, role: Role, plugin: &Plugin) -> Result<(), LoadError>;
+    fn load(&mut self, kind: PluginKind, plugin: &Plugin) -> Result<(), LoadError>;
 
     /// Calls a function of the loaded plug-in.
     fn step(&mut self, step: Step) -> StepEnd;
 
-    /// What the loaded fixture, which is set up, wants to be told of each test.
+    /// The notifications that the loaded fixture subscribes to.
     fn subscriptions(&self) -> Vec<Subscription> {
         Vec::new()
     }
 
-    /// Tells the loaded fixture of a test.
-    fn tell(&mut self, _told: Told<'_>) -> StepEnd {
+    /// Notifies the loaded fixture of a test.
+    fn notify(&mut self, _notification: TestNotification<'_>) -> StepEnd {
         StepEnd::Done
     }
 
-    /// Forgets the loaded plug-in after its `tearDown`.
+    /// Unloads the plug-in after its `tearDown`.
     fn unload(&mut self) -> StepEnd {
         StepEnd::Done
     }
 
-    /// What to do when the runner sends `dump-stack`: tell where the plug-in is,
-    /// by [`Session::stack`].
+    /// The reaction to `dump-stack`: send the plug-in's stack with [`Session::stack`].
     fn stack_dumper(&self) -> Option<Reaction> {
         None
     }
 
-    /// What to do when the plug-in was asked to stop and may not notice.
+    /// The reaction to `interrupt`, for plug-ins that do not poll for it.
     fn stopper(&self) -> Option<Reaction> {
         None
     }

@@ -1,4 +1,4 @@
-//! The program of a host: what it was started for, and how it ends.
+//! The program of a host: `--check`, a fork server, or one session with the runner.
 
 use std::error::Error;
 use std::ffi::{CStr, OsStr, OsString, c_char, c_int};
@@ -6,27 +6,27 @@ use std::io::Write;
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 
-use crate::fork::ForkServer;
+use crate::fork_server::ForkServer;
 use crate::{CheckedFile, Session, check, files_to_check, unix};
 
-/// The exit code of a host that could not do its work.
-const BROKEN: c_int = 2;
+/// The exit code after an error of the host itself.
+const EXIT_ERROR: c_int = 2;
 
-/// What one kind of plug-ins needs of its host.
+/// The functions of a host's program.
 #[derive(Clone, Copy, Debug)]
-pub struct Host<P> {
-    /// Says of a file whether it can be loaded.
+pub struct HostProgram<P> {
+    /// Checks whether a file can be loaded.
     pub check: fn(&Path) -> CheckedFile,
-    /// Makes what most plug-ins need, before a server forks its first host.
+    /// Prepares what most plug-ins need, before a server forks its first host.
     /// The process has one thread and must have one afterwards.
     pub prepare: fn() -> P,
-    /// Serves a runner to the end of the session, with what was prepared, if it
-    /// was.
+    /// Serves a runner to the end of the session, with what `prepare` returned (or the
+    /// default, if the process was not forked).
     pub serve: fn(&Session, P) -> std::io::Result<()>,
 }
 
-impl<P: Default> Host<P> {
-    /// Does what the program was started for; its exit code.
+impl<P: Default> HostProgram<P> {
+    /// Runs the program and returns its exit code.
     ///
     /// The program starts as a C program does, without Rust's start-up code,
     /// which would leave signal handlers and a second signal stack in a process
@@ -46,8 +46,8 @@ impl<P: Default> Host<P> {
         match self.run(args.collect()) {
             Ok(()) => 0,
             Err(error) => {
-                say(&*error);
-                BROKEN
+                print_error(&*error);
+                EXIT_ERROR
             }
         }
     }
@@ -75,13 +75,12 @@ impl<P: Default> Host<P> {
 }
 
 /// Prints the error with its causes. The runner shows it as the host's output.
-fn say(error: &dyn Error) {
+fn print_error(error: &dyn Error) {
     let mut text = format!("error: {error}\n");
     let mut cause = error.source();
     while let Some(error) = cause {
         text.push_str(&format!("caused by: {error}\n"));
         cause = error.source();
     }
-    // When even this cannot be written, the exit code is left.
     drop(std::io::stderr().write_all(text.as_bytes()));
 }

@@ -1,5 +1,5 @@
-//! Reading the channel: at first on the main thread, and on the one thread
-//! that a host adds as soon as there is a plug-in that may have to be stopped.
+//! Reads the channel: first on the main thread, and on the host's only other thread as
+//! soon as there is a plug-in that the runner may want to stop.
 
 use std::io::{BufRead, BufReader, Read};
 use std::os::unix::net::UnixStream;
@@ -19,9 +19,8 @@ const BUFFER_BYTES: usize = 1024;
 
 /// The channel's receiving side.
 ///
-/// Its memory is allocated on the main thread: a second thread that allocates
-/// costs the process a second heap, which takes longer than all that a small
-/// test does.
+/// Its memory is allocated on the main thread: a second thread that allocates gets
+/// a second heap, which takes longer than everything that a small test does.
 pub(crate) struct Reader {
     session: Session,
     input: BufReader<Channel>,
@@ -45,8 +44,8 @@ impl Reader {
         }
     }
 
-    /// The next request that is for the main thread, `None` at the end of the
-    /// channel. What has to be heard at once is carried out here.
+    /// The next request for the main thread, `None` at the end of the channel. Handles
+    /// notifications of the runner itself.
     pub(crate) fn next(&mut self) -> Option<Incoming> {
         loop {
             self.line.clear();
@@ -58,9 +57,9 @@ impl Reader {
             match decode(self.line.trim_ascii_end()) {
                 Incoming::Request { request: Request::Interrupt { reason, request }, .. } => {
                     if self.session.request_stop(&reason, request)
-                        && let Some(insist) = &self.stopper
+                        && let Some(stop) = &self.stopper
                     {
-                        insist(&self.session);
+                        stop(&self.session);
                     }
                 }
                 Incoming::Request { request: Request::DumpStack {}, .. } => {
@@ -73,12 +72,12 @@ impl Reader {
         }
     }
 
-    /// Whether all that has been received was read.
+    /// Whether everything that was received has been handled.
     pub(crate) fn is_drained(&self) -> bool {
         self.input.buffer().is_empty()
     }
 
-    /// Goes on reading on a thread of its own, which ends with the channel.
+    /// Continues on a dedicated thread, which ends with the channel.
     pub(crate) fn spawn(mut self) -> std::io::Result<()> {
         let read = move || {
             while let Some(incoming) = self.next() {
@@ -90,7 +89,7 @@ impl Reader {
     }
 }
 
-/// The channel, shared with whoever writes.
+/// The channel, shared with the writer.
 struct Channel(Arc<UnixStream>);
 
 impl Read for Channel {

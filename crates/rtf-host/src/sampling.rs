@@ -1,21 +1,20 @@
-//! Samples of signals, which are sent in batches: a test may take thousands of
-//! them in a second.
+//! Batches of samples: a test may take thousands of samples per second.
 
 use std::time::{Duration, Instant};
 
 use rtf_model::protocol::Notification;
 use rtf_model::{Location, Samples};
+use rustix::process::{Pid, getpid};
 
 use crate::writer::Writer;
 
-/// A batch is sent when it has so many samples.
-const COUNT: usize = 256;
+/// A batch of this size is sent.
+const BATCH_SAMPLES: usize = 256;
 
-/// A sample waits no longer for the next ones. Who takes no more and does
-/// something else for long is behind by the last batch.
-const AGE: Duration = Duration::from_millis(100);
+/// A batch whose oldest sample has this age is sent with the next sample.
+const BATCH_AGE: Duration = Duration::from_millis(100);
 
-/// A sample of a signal, as a plug-in gives it.
+/// A sample of a signal, as a plug-in takes it.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<'a> {
     /// The signal.
@@ -28,42 +27,58 @@ pub struct Sample<'a> {
     pub low: Option<f64>,
     /// The largest accepted value.
     pub high: Option<f64>,
-    /// When, in seconds since the test's set-up began; now unless told.
+    /// The time in seconds since the test's set-up began; `None` is the current time.
     pub time: Option<f64>,
     /// The source file, and the line in it.
     pub place: Option<(&'a str, u32)>,
 }
 
-/// The samples that were not sent yet.
-#[derive(Debug, Default)]
+/// The samples that are not sent yet.
+#[derive(Debug)]
 pub(crate) struct Sampling {
-    /// When the test's set-up began: times count from then.
+    /// The process that took the samples: a child that the plug-in forks inherits them.
+    process: Pid,
+    /// Start of the test's set-up: times count from then.
     began: Option<Instant>,
     /// One for each signal, in the order of their first samples.
     batches: Vec<Samples>,
-    /// When the oldest sample was taken.
-    since: Option<Instant>,
+    /// The time of the oldest sample.
+    oldest: Option<Instant>,
     is_due: bool,
     /// Whether a sample of this test was outside its limits.
     has_failed: bool,
 }
 
+impl Default for Sampling {
+    fn default() -> Self {
+        Self {
+            process: getpid(),
+            began: None,
+            batches: Vec::new(),
+            oldest: None,
+            is_due: false,
+            has_failed: false,
+        }
+    }
+}
+
 impl Sampling {
-    /// The set-up of a test begins.
+    /// Starts the time of a test: its set-up begins.
     pub(crate) fn begin(&mut self) {
         (self.began, self.has_failed) = (Some(Instant::now()), false);
     }
 
-    /// Takes a sample; what is wrong with it, in words.
-    pub(crate) fn take(&mut self, sample: &Sample<'_>) -> Option<String> {
+    /// Adds a sample, and returns whether it is within its limits.
+    pub(crate) fn add(&mut self, sample: &Sample<'_>) -> bool {
+        self.drop_inherited();
         let now = Instant::now();
-        let since = *self.since.get_or_insert(now);
+        let oldest = *self.oldest.get_or_insert(now);
         let time = sample.time.filter(|time| time.is_finite());
         let point = (
             time.unwrap_or_else(|| self.seconds(now)),
             Some(sample.value).filter(|value| value.is_finite()),
         );
-        // The last one of that name: with other limits it is another batch.
+        // The last one with that name: other limits need another batch.
         let batch = self.batches.iter_mut().rev().find(|batch| batch.name == sample.name);
         let count = match batch.filter(|batch| sample.fits(batch)) {
             Some(batch) => {
@@ -75,39 +90,52 @@ impl Sampling {
                 1
             }
         };
-        self.is_due |= count >= COUNT || self.batches.len() >= COUNT || now - since >= AGE;
-        // Nearly all hold: only for the others there is something to be written.
-        let problem = if sample.holds() { None } else { sample.batch(point).problem() };
-        // The first one that does not decides the verdict: it must not get lost.
-        if problem.is_some() && !self.has_failed {
+        let is_full = count >= BATCH_SAMPLES || self.batches.len() >= BATCH_SAMPLES;
+        self.is_due |= is_full || now - oldest >= BATCH_AGE;
+        let is_within = sample.is_within_limits();
+        // The first violation may decide the verdict: a crash must not lose it.
+        if !is_within && !self.has_failed {
             (self.is_due, self.has_failed) = (true, true);
         }
-        problem
+        is_within
     }
 
-    /// Microseconds are enough, and shorter to write.
+    /// Seconds since the set-up began, to the microsecond.
     fn seconds(&self, now: Instant) -> f64 {
-        let since = self.began.map_or(Duration::ZERO, |began| now - began);
-        since.as_micros() as f64 / 1e6
+        let elapsed = self.began.map_or(Duration::ZERO, |began| now - began);
+        elapsed.as_micros() as f64 / 1e6
     }
 
-    /// Sends all of them if it is time to.
+    /// Forgets samples of the parent process, which sends them itself.
+    fn drop_inherited(&mut self) {
+        let process = getpid();
+        if process != self.process {
+            (self.process, self.oldest, self.is_due) = (process, None, false);
+            self.batches.clear();
+        }
+    }
+
+    /// Sends all batches if one is due.
     pub(crate) fn send_due(&mut self, writer: &Writer) {
         if self.is_due {
             self.send(writer);
         }
     }
 
-    /// Sends all of them if they would grow too old in this time.
+    /// Sends all batches if they would become too old during this wait.
     pub(crate) fn send_before(&mut self, wait: Duration, writer: &Writer) {
-        if self.since.is_some_and(|since| since.elapsed().saturating_add(wait) >= AGE) {
+        if self.oldest.is_some_and(|oldest| oldest.elapsed().saturating_add(wait) >= BATCH_AGE) {
             self.send(writer);
         }
     }
 
-    /// Sends all of them.
+    /// Sends all batches.
     pub(crate) fn send(&mut self, writer: &Writer) {
-        (self.since, self.is_due) = (None, false);
+        if self.batches.is_empty() {
+            return;
+        }
+        self.drop_inherited();
+        (self.oldest, self.is_due) = (None, false);
         for batch in self.batches.drain(..) {
             writer.notify(&Notification::Sampled(batch));
         }
@@ -131,8 +159,7 @@ impl Sample<'_> {
         }
     }
 
-    /// Whether a value keeps the limits.
-    fn holds(&self) -> bool {
+    fn is_within_limits(&self) -> bool {
         self.value.is_finite()
             && self.low.is_none_or(|low| self.value >= low)
             && self.high.is_none_or(|high| self.value <= high)

@@ -1,19 +1,18 @@
-//! The host's work: one request after the other, in order.
+//! Carries out the runner's requests in order.
 
 use rtf_model::protocol::{
-    Answer, Initialize, PROTOCOL_VERSION, Plugin, Request, RpcError, VERSION_MISMATCH,
+    Initialize, PROTOCOL_VERSION, Plugin, Request, RpcError, VERSION_MISMATCH,
 };
 use rtf_model::{Message, MessageKind, Outcome, Phase};
 use rustix::process::Pid;
 
 use crate::decode::{INVALID_REQUEST, Incoming};
 use crate::reader::Reader;
-use crate::sharing::Sharing;
-use crate::{HostPlugin, Role, Session, Step, StepEnd, Told, unix};
+use crate::shared_host::SharedHost;
+use crate::{HostPlugin, PluginKind, Session, Step, StepEnd, TestNotification, unix};
 
-/// Serves the runner until it has got its last answer or has closed the
-/// channel. The caller then ends the process the ordinary way, so that what
-/// the plug-in left for the end of the process is done.
+/// Serves the runner until its last answer or the end of the channel. The caller then
+/// ends the process with `exit`, so that the plug-in's exit handlers run.
 ///
 /// While a plug-in is loaded, the end of the channel ends the process at once.
 ///
@@ -23,14 +22,14 @@ pub fn serve(session: &Session, host: impl HostPlugin) -> std::io::Result<()> {
     let reader = Reader::new(session, host.stack_dumper(), host.stopper());
     let process = rustix::process::getpid();
     let mut server =
-        Server { session, host, process, initialized: false, loaded: None, sharing: None };
+        Server { session, host, process, initialized: false, loaded: None, shared: None };
     let Some((reader, first)) = server.before_plugins(reader) else {
         return Ok(());
     };
     reader.spawn()?;
     let mut incoming = Some(first);
     while let Some(next) = incoming {
-        if server.take(next) {
+        if server.handle(next) {
             break;
         }
         incoming = session.next();
@@ -41,17 +40,17 @@ pub fn serve(session: &Session, host: impl HostPlugin) -> std::io::Result<()> {
 struct Server<'a, H> {
     session: &'a Session,
     host: H,
-    /// The process that serves: a plug-in may fork.
+    /// The process that serves the runner: a plug-in may fork.
     process: Pid,
     initialized: bool,
-    loaded: Option<Role>,
-    /// Once a test came that may leave the host to the next one.
-    sharing: Option<Sharing>,
+    loaded: Option<PluginKind>,
+    /// Set by the first test that may share the host with the next one.
+    shared: Option<SharedHost>,
 }
 
 impl<H: HostPlugin> Server<'_, H> {
-    /// Serves, on this thread alone, what needs no plug-in. Gives back the first
-    /// request that does, and the reader that is to go on beside it.
+    /// Carries out requests that need no plug-in, on this thread alone. Returns the first
+    /// one that does, and the reader for a second thread.
     fn before_plugins(&mut self, mut reader: Reader) -> Option<(Reader, Incoming)> {
         loop {
             let incoming = reader.next()?;
@@ -59,18 +58,18 @@ impl<H: HostPlugin> Server<'_, H> {
             if self.initialized && matches!(incoming, Incoming::Request { .. }) {
                 return Some((reader, incoming));
             }
-            self.take(incoming);
+            self.handle(incoming);
             if self.initialized && reader.is_drained() {
                 self.host.idle();
             }
         }
     }
 
-    /// Deals with what came in; true when it was the last request.
-    fn take(&mut self, incoming: Incoming) -> bool {
+    /// Handles a line; true if it was the last request.
+    fn handle(&mut self, incoming: Incoming) -> bool {
         match incoming {
             Incoming::Refused { id, error } => {
-                self.session.pass();
+                self.session.skip();
                 self.session.refuse(id, error);
                 false
             }
@@ -78,20 +77,20 @@ impl<H: HostPlugin> Server<'_, H> {
         }
     }
 
-    /// Carries out a request; true when it was the last one.
+    /// Carries out a request; true if it was the last one.
     fn carry_out(&mut self, id: Option<u64>, request: Request) -> bool {
         if let Request::Initialize(initialize) = request {
-            self.session.pass();
+            self.session.skip();
             self.initialize(id, &initialize);
             return false;
         }
         if !self.initialized {
-            self.session.pass();
+            self.session.skip();
             let message = "the first request must be `initialize`".to_owned();
             self.session.refuse(id, RpcError { code: INVALID_REQUEST, message });
             return false;
         }
-        let (mut last, mut shared) = (false, None);
+        let (mut last, mut end_marker) = (false, None);
         let sets_up = matches!(request, Request::SetUpFixture(_));
         match request {
             Request::RunTest(plugin) => {
@@ -100,41 +99,42 @@ impl<H: HostPlugin> Server<'_, H> {
                     self.begin_shared();
                 }
                 self.run_test(&plugin);
-                shared = plugin.end_marker;
+                end_marker = plugin.end_marker;
             }
             Request::SetUpFixture(plugin) => self.set_up_fixture(&plugin),
             Request::CheckFixture {} => self.check_fixture(),
-            Request::TestStarted(starts) => self.tell(Told::Starts(&starts)),
+            Request::TestStarted(starts) => self.notify(TestNotification::Started(&starts)),
             Request::TestFinished(ends) => {
-                self.session.keep_in(ends.attachments_dir.as_ref().map(Into::into));
-                self.tell(Told::Ends(&ends));
-                self.session.keep_in(None);
+                self.session.set_attachments_dir(ends.attachments_dir.as_deref());
+                self.notify(TestNotification::Finished(&ends));
+                self.session.set_attachments_dir(None);
             }
             Request::TearDownFixture {} => self.tear_down_fixture(),
-            // Heard by the thread that reads the channel, and by nobody else.
+            // Handled by the reader.
             Request::Initialize(_) | Request::Interrupt { .. } | Request::DumpStack {} => {}
         }
-        // The answer may make the runner close the channel at once. Only a
-        // fixture that is still up makes that a reason to end the hard way.
-        self.session.engage(self.loaded.is_some());
+        // The runner may close the channel as soon as it has the answer. That ends the
+        // process at once only if a fixture is still set up.
+        self.session.set_has_plugin(self.loaded.is_some());
         let mut answer = self.session.conclude();
         if sets_up && answer.outcome == Outcome::Passed {
             answer.subscriptions = self.host.subscriptions();
         }
-        if let (Some(mark), false) = (shared, last) {
+        if let (Some(marker), false) = (end_marker, last) {
             let passed = answer.outcome == Outcome::Passed;
-            answer.continues = passed && self.sharing.as_ref().is_some_and(|ours| ours.stay(&mark));
+            answer.continues =
+                passed && self.shared.as_ref().is_some_and(|shared| shared.end_test(&marker));
             last = !answer.continues;
         }
-        self.answer(id, answer);
+        self.session.answer(id, answer);
         last
     }
 
-    /// Whatever comes from now on belongs to this test.
+    /// From now on, everything that the host sends belongs to this test.
     fn begin_shared(&mut self) {
-        if self.sharing.is_none() {
+        if self.shared.is_none() {
             // Without it, the host ends after the test.
-            self.sharing = Sharing::begin().ok();
+            self.shared = SharedHost::begin().ok();
         }
         self.session.phase(Phase::Load);
     }
@@ -153,76 +153,65 @@ impl<H: HostPlugin> Server<'_, H> {
         self.session.answer(id, self.host.describe());
     }
 
-    /// Sends the answer. A reason that does not fit on a line was sent as a
-    /// message before; what is left here names it.
-    fn answer(&self, id: Option<u64>, answer: Answer) {
-        if !self.session.answer(id, &answer) {
-            let reason = answer.reason.map(|reason| reason.chars().take(10_000).collect());
-            self.session.answer(id, Answer { reason, ..answer });
-        }
-    }
-
     fn run_test(&mut self, plugin: &Plugin) {
-        self.session.keep_in(plugin.attachments_dir.as_ref().map(Into::into));
-        if !self.load(Role::Test, plugin) {
+        self.session.set_attachments_dir(plugin.attachments_dir.as_deref());
+        if !self.load(PluginKind::Test, plugin) {
             return;
         }
         self.session.phase(Phase::Setup);
-        self.step(Step::Setup, true);
-        if self.session.judge(|judge| judge.all_holds()) {
+        self.step(Step::Setup);
+        if self.session.has_passed() {
             self.session.phase(Phase::Run);
-            self.step(Step::Run, false);
+            self.step(Step::Run);
         }
         self.session.phase(Phase::TearDown);
         self.tear_down();
     }
 
     fn set_up_fixture(&mut self, plugin: &Plugin) {
-        if self.load(Role::Fixture, plugin) {
-            self.step(Step::Setup, true);
+        if self.load(PluginKind::Fixture, plugin) {
+            self.step(Step::Setup);
         }
     }
 
     fn check_fixture(&mut self) {
         if self.has_fixture() {
-            self.step(Step::Check, false);
+            self.step(Step::Check);
         }
     }
 
-    fn tell(&mut self, told: Told<'_>) {
+    fn notify(&mut self, notification: TestNotification<'_>) {
         if self.has_fixture() {
-            self.session.judge(|judge| judge.failures_are_errors = false);
-            let end = self.host.tell(told);
-            self.judge_end(end, told.name());
+            let end = self.host.notify(notification);
+            self.record_end(end, notification.name(), Outcome::Failed);
         }
     }
 
     fn has_fixture(&self) -> bool {
         if self.loaded.is_none() {
-            self.session.judge(|judge| judge.note(Outcome::Error, "no fixture is set up"));
+            self.session.record(Outcome::Error, "no fixture is set up");
         }
         self.loaded.is_some()
     }
 
-    /// A fixture that could not be loaded has nothing to tear down.
+    /// A fixture that could not be loaded is not torn down.
     fn tear_down_fixture(&mut self) {
         if self.loaded.is_some() {
             self.tear_down();
         }
     }
 
-    fn load(&mut self, role: Role, plugin: &Plugin) -> bool {
+    fn load(&mut self, kind: PluginKind, plugin: &Plugin) -> bool {
         if self.loaded.is_some() {
-            let reason = "a fixture is still set up in this host";
-            self.session.judge(|judge| judge.note(Outcome::Error, reason));
+            self.session.record(Outcome::Error, "a fixture is still set up in this host");
             return false;
         }
-        self.session.engage(true);
-        let loaded = self.host.load(role, plugin);
-        unix::end_forked_child(self.process);
+        self.session.set_has_plugin(true);
+        let loaded = self.host.load(kind, plugin);
+        self.end_forked_child();
         match loaded {
             Ok(()) => {
-                self.loaded = Some(role);
+                self.loaded = Some(kind);
                 true
             }
             Err(error) => {
@@ -234,45 +223,47 @@ impl<H: HostPlugin> Server<'_, H> {
 
     fn tear_down(&mut self) {
         self.session.clear_stop();
-        self.step(Step::TearDown, true);
+        self.step(Step::TearDown);
         let end = self.host.unload();
-        self.judge_end(end, "unloading");
+        self.record_end(end, "unloading", Outcome::Error);
         self.loaded = None;
     }
 
-    fn step(&mut self, step: Step, failures_are_errors: bool) {
-        self.session.judge(|judge| judge.failures_are_errors = failures_are_errors);
+    fn step(&mut self, step: Step) {
+        let refused = match step {
+            Step::Setup | Step::TearDown => Outcome::Error,
+            Step::Run | Step::Check => Outcome::Failed,
+        };
         let end = self.host.step(step);
-        self.judge_end(end, name(step));
+        self.record_end(end, step.name(), refused);
     }
 
-    fn judge_end(&self, end: StepEnd, what: &str) {
-        unix::end_forked_child(self.process);
+    fn record_end(&self, end: StepEnd, step: &str, refused: Outcome) {
+        self.end_forked_child();
         match end {
             StepEnd::Done => {}
-            StepEnd::Refused => {
-                self.session.judge(|judge| judge.note_failure(&format!("{what} returned false")));
+            StepEnd::Refused => self.session.record(refused, &format!("{step} returned false")),
+            // Decides only if the plug-in reported nothing: it must not pass.
+            StepEnd::Stopped => {
+                let reason = format!("{step} stopped without a reason");
+                self.session.record(Outcome::Error, &reason);
             }
-            // Whatever stopped it was reported; a host that forgot must not pass.
-            StepEnd::Stopped => self.session.judge(|judge| {
-                judge.note(Outcome::Error, &format!("{what} stopped without a reason"));
-            }),
             StepEnd::Broken(text, location) => self.error(text, location),
+        }
+    }
+
+    /// Ends a child that the plug-in forked and that returned from the plug-in's function:
+    /// the parent serves the runner.
+    fn end_forked_child(&self) {
+        if rustix::process::getpid() != self.process {
+            unix::flush_output();
+            self.session.flush();
+            unix::exit_now(0);
         }
     }
 
     fn error(&self, text: String, location: Option<rtf_model::Location>) {
         let kind = MessageKind::Error;
         self.session.message(Message { kind, text, location, comparison: None, critical: false });
-    }
-}
-
-/// The function's name, as plug-ins spell it.
-fn name(step: Step) -> &'static str {
-    match step {
-        Step::Setup => "setup",
-        Step::Run => "run",
-        Step::Check => "check",
-        Step::TearDown => "tearDown",
     }
 }

@@ -1,4 +1,4 @@
-//! The host's end of the channel, shared by its threads.
+//! The host's end of the channel, which its threads share.
 
 use std::collections::VecDeque;
 use std::os::unix::net::UnixStream;
@@ -12,9 +12,9 @@ use rtf_model::{Attachment, Measurement, Message, MessageKind, Outcome, Phase};
 use serde::Serialize;
 
 use crate::decode::Incoming;
+use crate::outcome::RequestOutcome;
 use crate::sampling::{Sample, Sampling};
 use crate::unix;
-use crate::verdict::Judge;
 use crate::writer::Writer;
 
 /// Why there is no channel to the runner.
@@ -45,32 +45,32 @@ pub struct Session(Arc<Shared>);
 struct Shared {
     channel: Arc<UnixStream>,
     writer: Writer,
-    /// Taken before the state, never after it.
+    /// Lock order: before the state.
     sampling: Mutex<Sampling>,
-    state: Mutex<State>,
+    state: Mutex<SessionState>,
     changed: Condvar,
     stop: AtomicBool,
 }
 
 #[derive(Debug, Default)]
-struct State {
+struct SessionState {
     incoming: VecDeque<Incoming>,
     closed: bool,
-    /// A plug-in is loaded: without the runner nobody would stop it.
-    engaged: bool,
-    /// A request is being carried out.
+    /// A plug-in is loaded: without the runner, no process could stop it.
+    has_plugin: bool,
+    /// Whether the host carries out a request.
     busy: bool,
-    /// The number of the one that was taken last.
+    /// The number of the last request that began.
     request: Option<u64>,
     stop_reason: Option<String>,
-    /// Where the copies of attached files go, and how many there are.
+    /// The directory for copies of attached files, and how many were attached.
     attachments_dir: Option<PathBuf>,
     attached: u64,
-    judge: Judge,
+    outcome: RequestOutcome,
 }
 
 impl Session {
-    /// Opens the channel that the runner left, and removes its traces from the
+    /// Opens the channel that the runner left, and removes its variable from the
     /// environment. Call it first, while the process has one thread.
     ///
     /// # Errors
@@ -100,47 +100,51 @@ impl Session {
         }))
     }
 
-    /// Sends a message of the plug-in. A failure or an error counts for the
-    /// request that is being carried out.
+    /// Sends a message of the plug-in. A failure or an error is a problem of the present
+    /// request.
     pub fn message(&self, message: Message) {
-        if !matches!(message.kind, MessageKind::Report | MessageKind::Check) {
-            self.note(|judge| judge.note_message(&message));
+        match message.kind {
+            MessageKind::Report | MessageKind::Check => {}
+            MessageKind::Failure => self.record_reported(Outcome::Failed),
+            MessageKind::Error => self.record_reported(Outcome::Error),
         }
         self.notify(&Notification::Message(message));
     }
 
-    /// Sends a measurement and tells whether it is within its limits; outside
-    /// them it counts as a failure.
+    /// Sends a measurement and returns whether it is within its limits; outside
+    /// them it is a failure.
     pub fn measure(&self, measurement: Measurement) -> bool {
-        let holds = measurement.is_within_limits();
-        if !holds {
-            self.note(|judge| judge.note_measurement(&measurement));
+        let is_within = measurement.is_within_limits();
+        if !is_within {
+            self.record_reported(Outcome::Failed);
         }
         self.notify(&Notification::Measured(measurement));
-        holds
+        is_within
     }
 
-    /// Takes a sample and tells whether it is within its limits; outside them it
-    /// counts as a failure. It is sent with others, at the latest before the next
-    /// other message, before a wait, and at the end of the request.
+    /// Takes a sample and returns whether it is within its limits; outside them it
+    /// is a failure. It is sent in a batch: at the latest before the next other message,
+    /// before a wait, and before the answer.
     pub fn sample(&self, sample: &Sample<'_>) -> bool {
         let mut sampling = self.sampling();
-        let problem = sampling.take(sample);
-        let holds = problem.is_none();
-        problem.into_iter().for_each(|text| self.note(|judge| judge.note_failure(&text)));
+        let is_within = sampling.add(sample);
+        if !is_within {
+            self.record_reported(Outcome::Failed);
+        }
         sampling.send_due(&self.0.writer);
-        holds
+        is_within
     }
 
-    /// Keeps a copy of a file with the test's result. Afterwards the plug-in may
-    /// change or remove the file.
+    /// Copies a file into the test's results. Afterwards the plug-in may change or remove
+    /// the file.
     ///
     /// # Errors
     /// It cannot be copied.
     pub fn attach(&self, mut attachment: Attachment) -> std::io::Result<()> {
-        let mut source = unix::open_regular(Path::new(&attachment.path))?;
-        // Without such a folder the runner copies the file, as soon as it can.
-        if let Some(copy) = self.place_for_copy(&attachment.name) {
+        let path = Path::new(&attachment.path);
+        let mut source = unix::open_regular(path)?;
+        // Without a directory, the runner copies the file as soon as it can.
+        if let Some(copy) = self.next_copy(&attachment.name, path) {
             std::fs::create_dir_all(copy.parent().unwrap_or(&copy))?;
             std::io::copy(&mut source, &mut std::fs::File::create(&copy)?)?;
             attachment.path = copy.to_string_lossy().into_owned();
@@ -149,22 +153,26 @@ impl Session {
         Ok(())
     }
 
-    /// Where the next attached file goes: `3-plot.png`.
-    fn place_for_copy(&self, name: &str) -> Option<PathBuf> {
+    /// The path for the copy of an attached file: `3-plot.png`. A name without an
+    /// extension gets that of the file.
+    fn next_copy(&self, name: &str, file: &Path) -> Option<PathBuf> {
         let safe = |c: char| if c.is_alphanumeric() || ".-_".contains(c) { c } else { '_' };
+        let extension = Path::new(name).extension().is_none().then(|| file.extension()).flatten();
+        let extension = extension.map(|own| format!(".{}", own.to_string_lossy()));
+        let name: String =
+            name.chars().chain(extension.iter().flat_map(|own| own.chars())).map(safe).collect();
         let mut state = self.state();
         state.attached += 1;
         let number = state.attached;
-        let name: String = name.chars().map(safe).collect();
-        state.attachments_dir.as_ref().map(|folder| folder.join(format!("{number}-{name}")))
+        state.attachments_dir.as_ref().map(|dir| dir.join(format!("{number}-{name}")))
     }
 
-    /// Says where the copies of attached files go.
-    pub(crate) fn keep_in(&self, folder: Option<PathBuf>) {
-        self.state().attachments_dir = folder;
+    /// Sets the directory for copies of attached files.
+    pub(crate) fn set_attachments_dir(&self, dir: Option<&str>) {
+        self.state().attachments_dir = dir.map(PathBuf::from);
     }
 
-    /// Reports that the fixture is not well any more.
+    /// Reports that the fixture collapsed.
     pub fn collapsed(&self, reason: &str) {
         self.notify(&Notification::Collapsed { reason: reason.to_owned() });
     }
@@ -180,12 +188,12 @@ impl Session {
         self.0.stop.load(Ordering::Acquire)
     }
 
-    /// Sleeps. True at once when the plug-in is asked to stop.
+    /// Sleeps. Returns true as soon as the plug-in is asked to stop.
     #[must_use]
     pub fn wait(&self, duration: Duration) -> bool {
         self.sampling().send_before(duration, &self.0.writer);
         let state = self.state();
-        let waiting = |state: &mut State| state.stop_reason.is_none();
+        let waiting = |state: &mut SessionState| state.stop_reason.is_none();
         let (state, _) = self
             .0
             .changed
@@ -199,16 +207,16 @@ impl Session {
         Arc::clone(&self.0.channel)
     }
 
-    /// Takes a request that came in.
+    /// Queues a request that was read.
     pub(crate) fn push(&self, incoming: Incoming) {
         self.state().incoming.push_back(incoming);
         self.0.changed.notify_all();
     }
 
-    /// Asks the plug-in to stop; whether there is one. If not, the runner's
-    /// request crossed the answer. With a number, only that request is meant.
+    /// Asks the plug-in to stop, and returns whether one runs. If not, the runner's
+    /// notification crossed the answer. A number limits the stop to that request.
     pub(crate) fn request_stop(&self, reason: &str, request: Option<u64>) -> bool {
-        // Whoever has it just now is about to send.
+        // A thread that holds the lock is about to send.
         if let Ok(mut sampling) = self.0.sampling.try_lock() {
             sampling.send(&self.0.writer);
         }
@@ -219,7 +227,7 @@ impl Session {
             (Some(_), false) => state.incoming.front().is_some_and(|next| next.id() == request),
         };
         if is_asked {
-            state.judge.note(Outcome::Interrupted, reason);
+            state.outcome.record(Outcome::Interrupted, reason);
             state.stop_reason.get_or_insert_with(|| reason.to_owned());
             self.0.stop.store(true, Ordering::Release);
             self.0.changed.notify_all();
@@ -227,17 +235,17 @@ impl Session {
         is_asked
     }
 
-    /// The runner is gone. A plug-in that it cannot stop any more ends here.
+    /// The runner is gone: ends the process if a plug-in is loaded.
     pub(crate) fn close(&self) {
         let mut state = self.state();
-        if state.engaged {
-            unix::end_now();
+        if state.has_plugin {
+            unix::exit_now(1);
         }
         state.closed = true;
         self.0.changed.notify_all();
     }
 
-    /// A request that was read on the main thread is about to be carried out.
+    /// Begins a request that was read on the main thread.
     pub(crate) fn begin(&self, incoming: &Incoming) {
         let mut state = self.state();
         (state.busy, state.request) = (true, incoming.id());
@@ -258,12 +266,12 @@ impl Session {
         }
     }
 
-    /// A plug-in is about to be loaded, or has been forgotten.
-    pub(crate) fn engage(&self, engaged: bool) {
-        self.state().engaged = engaged;
+    /// Records whether a plug-in is loaded, or about to be.
+    pub(crate) fn set_has_plugin(&self, has_plugin: bool) {
+        self.state().has_plugin = has_plugin;
     }
 
-    /// A test enters a phase, or begins.
+    /// Announces a phase of the test.
     pub(crate) fn phase(&self, phase: Phase) {
         self.notify(&Notification::Phase { phase });
         if phase == Phase::Setup {
@@ -271,48 +279,53 @@ impl Session {
         }
     }
 
-    /// Looks at, or changes, what is known about the present request.
-    pub(crate) fn judge<T>(&self, look: impl FnOnce(&mut Judge) -> T) -> T {
-        look(&mut self.state().judge)
+    /// Whether the present request has no problem so far.
+    pub(crate) fn has_passed(&self) -> bool {
+        self.state().outcome.has_passed()
     }
 
-    /// Lets something count for the present request, if there is one: a fixture's
-    /// threads report also between requests.
-    fn note(&self, note: impl FnOnce(&mut Judge)) {
+    /// Records a problem of the present request that no message reports.
+    pub(crate) fn record(&self, outcome: Outcome, reason: &str) {
+        self.state().outcome.record(outcome, reason);
+    }
+
+    /// Records that the runner gets a problem of the present request, if there is one:
+    /// threads of a fixture also report between requests.
+    fn record_reported(&self, outcome: Outcome) {
         let mut state = self.state();
         if state.busy {
-            note(&mut state.judge);
+            state.outcome.record_reported(outcome);
         }
     }
 
-    /// Takes the request to stop as heard: what follows (a tear-down that parks
-    /// the robot) may sleep and wait again, until the runner asks once more.
+    /// Resets the stop request, so that a tear-down that parks the robot can wait until
+    /// the runner asks again.
     pub(crate) fn clear_stop(&self) {
         let mut state = self.state();
         state.stop_reason = None;
         self.0.stop.store(false, Ordering::Release);
     }
 
-    /// Ends the present request: what was found out about it.
+    /// Ends the present request and returns its answer.
     pub(crate) fn conclude(&self) -> Answer {
         let mut state = self.state();
         state.busy = false;
         state.stop_reason = None;
         self.0.stop.store(false, Ordering::Release);
-        state.judge.answer()
+        state.outcome.take_answer()
     }
 
-    /// Ends a request that was not about a plug-in; a request to stop that is
-    /// meant for the next one stays.
-    pub(crate) fn pass(&self) {
+    /// Ends a request that concerned no plug-in. A stop request for the next one stays.
+    pub(crate) fn skip(&self) {
         self.state().busy = false;
     }
 
-    /// Answers a request. A notification that should have been a request is
-    /// carried out all the same, but nobody waits for an answer.
-    pub(crate) fn answer<T: Serialize>(&self, id: Option<u64>, result: T) -> bool {
-        self.sampling().send(&self.0.writer);
-        id.is_none() || self.0.writer.send(id, &Reply::Result(result))
+    /// Answers a request. A request without a number gets no answer.
+    pub(crate) fn answer<T: Serialize>(&self, id: Option<u64>, result: T) {
+        self.flush();
+        if id.is_some() {
+            self.0.writer.send(id, &Reply::Result(result));
+        }
     }
 
     /// Refuses a request.
@@ -320,9 +333,14 @@ impl Session {
         self.0.writer.send(id, &Reply::<()>::Error(error));
     }
 
-    /// What was sampled before comes before.
-    fn notify(&self, notification: &Notification) {
+    /// Sends all samples.
+    pub(crate) fn flush(&self) {
         self.sampling().send(&self.0.writer);
+    }
+
+    /// Sends a notification, after the samples that were taken before.
+    fn notify(&self, notification: &Notification) {
+        self.flush();
         self.0.writer.notify(notification);
     }
 
@@ -330,7 +348,7 @@ impl Session {
         self.0.sampling.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
+    fn state(&self) -> MutexGuard<'_, SessionState> {
         self.0.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -1,6 +1,7 @@
-//! What the host asks of the operating system.
+//! Calls to the operating system.
 #![expect(unsafe_code, reason = "inherited descriptors and C functions that have no safe form")]
 
+use std::ffi::c_int;
 use std::fs::File;
 use std::io;
 use std::os::fd::{BorrowedFd, FromRawFd, RawFd};
@@ -10,19 +11,16 @@ use std::path::Path;
 
 use rustix::io::FdFlags;
 use rustix::net::SendFlags;
-use rustix::process::Pid;
 
 /// Takes over a descriptor that the runner left open for this process, and
-/// keeps it from the programs that the plug-in starts.
+/// closes it in programs that the plug-in starts.
 pub(crate) fn take_channel(fd: RawFd) -> std::io::Result<UnixStream> {
-    // SAFETY: the descriptor is only looked at here; when it is not open, the
-    // call says so and nothing takes ownership.
+    // SAFETY: if the descriptor is not open, the call fails, and nothing takes ownership.
     let borrowed = unsafe { BorrowedFd::borrow_raw(fd) };
     let flags = rustix::io::fcntl_getfd(borrowed)?;
     rustix::io::fcntl_setfd(borrowed, flags | FdFlags::CLOEXEC)?;
     rustix::io::ioctl_fionbio(borrowed, false)?;
-    // SAFETY: it is open, and RTF_CHANNEL gives it to this process; the
-    // variable is removed, so that nobody takes it twice.
+    // SAFETY: it is open, and RTF_CHANNEL, which is removed, gives it to this process.
     Ok(unsafe { UnixStream::from_raw_fd(fd) })
 }
 
@@ -39,14 +37,14 @@ pub(crate) fn restore_sigpipe() {
     unsafe { libc::signal(libc::SIGPIPE, libc::SIG_DFL) };
 }
 
-/// What a thread does.
+/// A thread's function.
 pub(crate) type Body = Box<dyn FnOnce() + Send>;
 
 /// Starts a thread that no signal reaches. A plug-in that blocks a signal and
 /// waits for it in its own threads would otherwise be killed through ours.
 ///
 /// The standard library's threads allocate when they start, and the second
-/// thread that allocates gets a heap of its own: too dear for a host.
+/// thread that allocates gets a separate heap, which is too slow for a host.
 pub(crate) fn spawn_thread(stack_bytes: usize, body: Body) -> std::io::Result<()> {
     let argument = Box::into_raw(Box::new(body));
     // SAFETY: every set and attribute is initialised before it is used;
@@ -92,51 +90,41 @@ unsafe extern "C" {
     static stdout: *mut libc::FILE;
 }
 
-/// Lets C write its standard output line by line, although it is no terminal: what a
-/// plug-in printed before its process is lost must arrive. C++'s streams go through it.
+/// Makes C's standard output line-buffered, so that a crash does not lose printed lines.
+/// C++'s streams use it.
 pub(crate) fn buffer_output_by_lines() {
     // SAFETY: nothing was written to the stream yet, and the process has one thread.
     unsafe { libc::setvbuf(stdout, std::ptr::null_mut(), libc::_IOLBF, 0) };
 }
 
-/// Opens a regular file. Of anything else it says what it is, without waiting for whoever
-/// may be at the other end.
+/// Opens a regular file. The error for anything else names its type; opening a FIFO does
+/// not wait for its other end.
 pub(crate) fn open_regular(path: &Path) -> io::Result<File> {
     let flags = libc::O_NONBLOCK | libc::O_NOCTTY;
     let file = File::options().read(true).custom_flags(flags).open(path)?;
     let kind = file.metadata()?.file_type();
-    let what = match () {
+    let file_type = match () {
         () if kind.is_file() => return Ok(file),
         () if kind.is_dir() => "a directory",
         () if kind.is_fifo() => "a FIFO",
         () => "a device or a socket",
     };
-    Err(io::Error::other(format!("it is {what}, not a file")))
+    Err(io::Error::other(format!("it is {file_type}, not a file")))
 }
 
-/// Writes what C's buffers still hold.
+/// Flushes C's streams.
 pub(crate) fn flush_output() {
     // SAFETY: null means all output streams; they are locked while written.
     unsafe { libc::fflush(std::ptr::null_mut()) };
 }
 
-/// Ends a child that the plug-in forked and that came back from the plug-in: its parent
-/// serves the runner. Returns in the process that was given.
-pub(crate) fn end_forked_child(host: Pid) {
-    if rustix::process::getpid() != host {
-        flush_output();
-        // SAFETY: ends the process.
-        unsafe { libc::_exit(0) };
-    }
-}
-
 /// Ends the process at once: no destructors, no handlers, no flushing.
-pub(crate) fn end_now() -> ! {
+pub(crate) fn exit_now(code: c_int) -> ! {
     // SAFETY: ends the process.
-    unsafe { libc::_exit(1) }
+    unsafe { libc::_exit(code) }
 }
 
-/// Sends all bytes. A channel that is closed is an error here, not a signal.
+/// Sends all bytes. A closed channel is an error, not a signal.
 pub(crate) fn send_all(channel: &UnixStream, mut bytes: &[u8]) -> rustix::io::Result<()> {
     while !bytes.is_empty() {
         let sent =
@@ -146,10 +134,10 @@ pub(crate) fn send_all(channel: &UnixStream, mut bytes: &[u8]) -> rustix::io::Re
     Ok(())
 }
 
-/// The standard output under a number of its own; what is written to number 1
-/// from now on goes to the standard error.
+/// Returns the standard output under another number. From then on, number 1 is the
+/// standard error.
 pub(crate) fn divert_stdout() -> std::io::Result<std::fs::File> {
-    let kept = rustix::io::fcntl_dupfd_cloexec(rustix::stdio::stdout(), 3)?;
+    let output = rustix::io::fcntl_dupfd_cloexec(rustix::stdio::stdout(), 3)?;
     rustix::stdio::dup2_stdout(rustix::stdio::stderr())?;
-    Ok(kept.into())
+    Ok(output.into())
 }

@@ -1,4 +1,4 @@
-//! Lines that leave the host: each complete, in one piece, before the call returns.
+//! Writes lines to the channel, each complete before the call returns.
 
 use std::os::unix::net::UnixStream;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -12,8 +12,8 @@ use crate::unix;
 /// The longest line that the runner accepts, its end included.
 pub(crate) const LINE_LIMIT: usize = 16 * 1024 * 1024;
 
-/// The channel's sending side. Nothing is held back: a process that crashes
-/// right after a report has reported it.
+/// The channel's sending side. It has no buffer, so that a crash right after a report
+/// does not lose it.
 #[derive(Debug)]
 pub(crate) struct Writer {
     channel: Arc<UnixStream>,
@@ -25,8 +25,8 @@ impl Writer {
         Self { channel, line: Mutex::new(Vec::with_capacity(512)) }
     }
 
-    /// Sends a notification. A message that is too long for a line is sent in
-    /// several, for its text must not be cut.
+    /// Sends a notification. A message that is too long for a line is sent in several
+    /// parts.
     pub(crate) fn notify(&self, notification: &Notification) {
         if self.send(None, notification) {
             return;
@@ -38,8 +38,8 @@ impl Writer {
         }
     }
 
-    /// Sends a line; false when it would be too long and was not sent. Without
-    /// a runner there is nothing to do any more, so that the process ends.
+    /// Sends a line; false if it is too long and was not sent. Without a runner, ends the
+    /// process.
     pub(crate) fn send<T: Serialize>(&self, id: Option<u64>, body: &T) -> bool {
         let mut line = self.line.lock().unwrap_or_else(PoisonError::into_inner);
         line.clear();
@@ -49,7 +49,7 @@ impl Writer {
         line.push(b'\n');
         let fits = line.len() <= LINE_LIMIT;
         if fits && unix::send_all(&self.channel, &line).is_err() {
-            unix::end_now();
+            unix::exit_now(1);
         }
         if line.capacity() > 64 * 1024 {
             *line = Vec::with_capacity(512);
@@ -58,7 +58,7 @@ impl Writer {
     }
 }
 
-/// The two halves of a message's text, as messages of their own.
+/// The two halves of a message's text, as separate messages.
 fn halves(message: &Message) -> Vec<Message> {
     let text = &message.text;
     let middle = (text.len() / 2..text.len()).find(|&at| text.is_char_boundary(at)).unwrap_or(0);

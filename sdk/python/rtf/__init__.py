@@ -10,7 +10,7 @@ A plug-in is a file with one class that derives from :class:`TestCase` or from
             position = arm.read(joint=3)
             self.check_near(position, 0.5, 0.01, "joint 3")
 
-``import rtf`` is cheap and never touches the process; what talks to the runner
+``import rtf`` is cheap and does not change the process; the connection to the runner
 is in :mod:`rtf.host`.
 """
 

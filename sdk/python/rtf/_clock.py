@@ -1,11 +1,11 @@
-"""The time that a plug-in follows: the simulator's, if its suite has a clock."""
+"""The time for a plug-in: the simulator's, if its suite has a clock."""
 
 from __future__ import annotations
 
 import os
 import time
 
-# Set by the runner for tests of such a suite: a file with seconds.
+# Names a file with the simulated time in seconds.
 _VARIABLE = "RTF_CLOCK"
 
 
@@ -14,45 +14,45 @@ def is_simulated() -> bool:
     return bool(os.environ.get(_VARIABLE))
 
 
-def _shown() -> float | None:
+def _read() -> float | None:
     path = os.environ.get(_VARIABLE)
     if not path:
         return time.monotonic()
     try:
         with open(path, encoding="ascii", errors="replace") as file:
             text = file.read()
-        # Without its end it is still being written.
+        # Without a line end, it is still being written.
         return float(text) if text.endswith("\n") else None
     except (OSError, ValueError):
         return None
 
 
 class _Latest:
-    """What the clock showed last, for when it shows nothing."""
+    """The last time, for when the file is being written."""
 
     seconds = 0.0
 
 
 def now() -> float:
-    """Seconds of the time that is followed, since a moment that does not matter."""
-    shown = _shown()
-    if shown is not None:
-        _Latest.seconds = shown
+    """Seconds since an arbitrary time."""
+    seconds = _read()
+    if seconds is not None:
+        _Latest.seconds = seconds
     return _Latest.seconds
 
 
 class Stopwatch:
-    """Measures how far the time goes on. What it jumps back is no time."""
+    """Measures the elapsed time, without jumps back."""
 
     def __init__(self) -> None:
-        self._before = _shown()
+        self._before = _read()
         self._passed = 0.0
 
     def passed(self) -> float:
-        """Seconds since it was made."""
-        shown = _shown()
-        if shown is not None:
+        """Seconds since the stopwatch was created."""
+        seconds = _read()
+        if seconds is not None:
             if self._before is not None:
-                self._passed += max(0.0, shown - self._before)
-            self._before = shown
+                self._passed += max(0.0, seconds - self._before)
+            self._before = seconds
         return self._passed

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from rtf import _session
-from rtf._keeper import Keeper
+from rtf._plugin import Plugin
 
 
 class Test:
-    """An attempt of a test, of which a fixture is told."""
+    """An attempt of a test."""
 
-    __test__ = False  # pytest shall not collect what only has the name
+    __test__ = False  # pytest must not collect it
 
     def __init__(self, number: int, name: str, repetition: int, attempt: int) -> None:
         """Name the attempt."""
@@ -19,32 +19,32 @@ class Test:
         self.attempt = attempt
 
 
-class FixtureManager(Keeper):
-    """A fixture: what has to run while tests do, such as a simulator or a driver.
+class FixtureManager(Plugin):
+    """A fixture: it runs while tests run, for example a simulator or a driver.
 
     The runner calls `setup` before the tests, `check` before each test and
-    while tests run, and `tearDown` at the end, whatever happened. One that has
-    a `testStarted` or a `testFinished` is told of each test.
+    while tests run, and always `tearDown` at the end. A fixture with `testStarted` or
+    `testFinished` is notified of each test.
     """
 
     def setup(self, args: list[str]) -> bool | None:
-        """Bring the fixture up. `False` or an exception means that it failed."""
+        """Start the fixture. `False` or an exception means that it failed."""
 
     def check(self) -> bool | None:
-        """Look whether the fixture is well. `False` or an exception means that it collapsed."""
+        """Check the fixture. `False` or an exception means that it collapsed."""
 
     def testStarted(self, test: Test) -> bool | None:
-        """Hear that a test is about to begin. `False` or an exception: the fixture collapsed."""
+        """Called before a test starts. `False` or an exception: the fixture collapsed."""
 
     def testFinished(self, test: Test, verdict: str, reason: str) -> bool | None:
-        """Hear how a test was judged: `passed`, `failed`, `error`, `crashed`, `timed-out`.
+        """Called after a test with its verdict: `passed`, `failed`, `error`, `crashed` and so on.
 
-        What the fixture reports, measures and attaches here belongs to that test.
+        Reports, measurements and attachments of this function belong to that test.
         """
 
     def tearDown(self) -> None:
-        """Bring the fixture down, also after a `setup` that failed."""
+        """Stop the fixture, also after a failed `setup`."""
 
     def collapsed(self, reason: object) -> None:
-        """Tell at once, from any thread, that the fixture is not well any more."""
+        """Report from any thread that the fixture collapsed."""
         _session.current().notify("collapsed", {"reason": str(reason)})

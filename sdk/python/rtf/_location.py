@@ -1,4 +1,4 @@
-"""Where in the plug-in something was written."""
+"""Locations in the plug-in's source."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from types import TracebackType
 
 
-# Beside all modules whose names begin with `rtf.`.
+# In addition to all modules whose names begin with `rtf.`.
 _OURS = frozenset({"rtf", "robottestingframework"})
 
 
@@ -20,17 +20,17 @@ class Location:
     __slots__ = ("file", "line")
 
     def __init__(self, file: str, line: int) -> None:
-        """Name the place; lines count from 1."""
+        """Lines count from 1."""
         self.file = file
         self.line = line
 
     def as_json(self) -> dict[str, object]:
-        """Return the form that the protocol gives it."""
+        """Return it as the protocol's `location`."""
         return {"file": self.file, "line": self.line}
 
 
 def caller() -> Location | None:
-    """Return the innermost place outside this package: the plug-in's own line."""
+    """Return the innermost line outside this package: the plug-in's line."""
     frame = sys._getframe(1)
     while frame is not None:
         if not _is_ours(frame.f_globals):
@@ -42,7 +42,7 @@ def caller() -> Location | None:
 
 
 def of_exception(trace: TracebackType | None, file: str) -> Location | None:
-    """Return the innermost line of `file` in a traceback, or else its innermost line."""
+    """Return the innermost line of `file` in a traceback, otherwise the innermost line."""
     in_file = None
     last = None
     while trace is not None:

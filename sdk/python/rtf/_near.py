@@ -11,18 +11,17 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-# Above this many numbers a comparison is told in words only: a line of the
-# protocol has an upper limit, and nobody reads a million numbers.
-_NUMBERS_SENT = 100_000
+# Above this many numbers only the text is sent: a line of the protocol has a limit.
+_MAX_NUMBERS = 100_000
 
 
 class Comparison:
-    """What was expected and what was found, as numbers."""
+    """Actual and expected numbers."""
 
     __slots__ = ("angle", "expected", "got", "scalar", "tolerance")
 
     def __init__(self, got: Any, expected: Any, tolerance: float, *, angle: bool) -> None:
-        """Take numbers, sequences of numbers, or anything with ``tolist``, nested or not."""
+        """Accept numbers, (nested) sequences of numbers, or anything with ``tolist``."""
         self.scalar = _is_number(got) and _is_number(expected)
         self.got = _numbers(got)
         self.expected = _numbers(expected)
@@ -32,7 +31,7 @@ class Comparison:
             raise ValueError(f"the tolerance {tolerance!r} is not a finite number from 0")
 
     def worst(self) -> int | None:
-        """Return the index with the largest difference; what is not finite is worst of all."""
+        """Return the index with the largest difference; non-finite numbers come first."""
         if len(self.got) != len(self.expected) or not self.got:
             return None
         differences = [self._difference(index) for index in range(len(self.got))]
@@ -42,7 +41,7 @@ class Comparison:
         return max(range(len(differences)), key=differences.__getitem__)
 
     def problem(self) -> str | None:
-        """Say what is wrong, in words; ``None`` when both are near."""
+        """Describe the problem; ``None`` if both are near."""
         if len(self.got) != len(self.expected):
             return f"got {len(self.got)} values, expected {len(self.expected)}"
         worst = self.worst()
@@ -61,8 +60,8 @@ class Comparison:
         return text if self.scalar else f"{text} at index {worst}"
 
     def as_json(self) -> dict[str, object] | None:
-        """Return the form that the protocol gives it, unless it is too long for a message."""
-        if len(self.got) + len(self.expected) > _NUMBERS_SENT:
+        """Return the protocol's `comparison`, unless it is too long for a message."""
+        if len(self.got) + len(self.expected) > _MAX_NUMBERS:
             return None
         fields: dict[str, object] = {
             "expected": self.expected,

@@ -1,8 +1,11 @@
-"""What tests and fixtures have in common."""
+"""The base class of tests and fixtures."""
 
 from __future__ import annotations
 
-from rtf import _clock, _session, _text
+import math
+import os
+
+from rtf import _attachment, _clock, _session, _text
 from rtf._stop import AssertionEnded, Interrupted
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
@@ -14,16 +17,16 @@ _POLL_SECONDS = 0.01
 
 
 class Plugin:
-    """The part of the interface that tests and fixtures share."""
+    """The functions that tests and fixtures share."""
 
     @property
     def name(self) -> str:
-        """The name under which the suite knows this plug-in."""
+        """The plug-in's name in the suite."""
         return _session.current().task.name
 
     @property
     def param(self) -> str:
-        """The parameter string as it stands in the suite."""
+        """The plug-in's parameter string in the suite."""
         return _session.current().task.param
 
     @property
@@ -33,20 +36,20 @@ class Plugin:
 
     @property
     def repetition(self) -> int:
-        """The repetition that runs, from 1."""
+        """The present repetition, from 1."""
         return _session.current().task.repetition
 
     def report(self, text: object) -> None:
-        """Tell the user something; it does not change the verdict."""
+        """Report information; it does not change the verdict."""
         _session.current().message("report", str(text))
 
     def fail(self, text: object) -> NoReturn:
-        """Say that the robot is wrong, and end this step."""
+        """Report a failure (the robot is wrong) and end this step."""
         _session.current().failure(str(text))
         raise AssertionEnded(str(text))
 
     def error(self, text: object) -> NoReturn:
-        """Say that the bench is wrong (no network, no calibration file), and end this step."""
+        """Report an error (the bench is wrong: no network, no calibration) and end this step."""
         _session.current().error(str(text))
         raise AssertionEnded(str(text))
 
@@ -57,14 +60,11 @@ class Plugin:
         _session.current().message("check", str(text))
 
     def now(self) -> float:
-        """Seconds since a moment that does not matter, by the clock that the suite has."""
+        """Seconds since an arbitrary time, by the suite's clock."""
         return _clock.now()
 
     def sleep(self, seconds: float) -> None:
-        """Sleep, but wake at once when the runner asks to stop; then this step ends.
-
-        In a test of a suite with a clock these are seconds of simulated time.
-        """
+        """Sleep by the suite's clock. A stop request ends the sleep and this step."""
         if not _clock.is_simulated():
             self._pause(seconds)
             return
@@ -78,15 +78,14 @@ class Plugin:
         """Sleep by the wall clock."""
         session = _session.current()
         session.sampling.send_before(seconds)
-        judge = session.judge
-        if judge.wait_for_stop(seconds):
-            raise Interrupted(judge.stop_reason())
+        if session.request.wait_for_stop(seconds):
+            raise Interrupted(session.request.stop_reason())
 
     def wait_until(self, condition: Callable[[], object], timeout: float, what: object) -> bool:
-        """Wait until `condition()` is true, asking every 10 ms for `timeout` seconds.
+        """Wait until `condition()` is true, polling every 10 ms for `timeout` seconds.
 
-        When the time is over this is a failed assertion, which tells `what`
-        was waited for and the last value. The time is the one of `now`.
+        After the timeout, the assertion fails with `what` and the last value. The time is
+        that of `now`.
         """
         watch = _clock.Stopwatch()
         while True:
@@ -103,5 +102,47 @@ class Plugin:
             self._pause(min(_POLL_SECONDS, left))
 
     def interrupted(self) -> bool:
-        """Whether the runner has asked to stop; a loop that runs long should look at it."""
-        return _session.current().judge.stop_requested()
+        """Whether the runner has asked to stop; long loops should poll this."""
+        return _session.current().request.stop_requested()
+
+    def measure(
+        self,
+        name: str,
+        value: float,
+        unit: str = "",
+        low: float | None = None,
+        high: float | None = None,
+    ) -> bool:
+        """Record a number; outside its limits it is a failure.
+
+        A value that is not a finite number is outside any limits. A fixture measures in
+        its `testFinished`.
+        """
+        number = float(value)
+        limits = [limit_of(name, limit) for limit in (low, high)]
+        return _session.current().measured(name, number, unit, limits[0], limits[1])
+
+    def attach(
+        self,
+        path: str | os.PathLike[str],
+        name: str | None = None,
+        media_type: str | None = None,
+    ) -> None:
+        """Add a copy of a complete file to the results."""
+        full = os.path.abspath(os.fspath(path))
+        _attachment.check(full)
+        name = name or os.path.basename(full)
+        session = _session.current()
+        if session.task.attachments_dir:
+            full = _attachment.copy(full, name, session.task.attachments_dir)
+        params: dict[str, object] = {"name": name, "path": full, "media_type": media_type or ""}
+        session.notify("attached", params)
+
+
+def limit_of(name: str, limit: float | None) -> float | None:
+    """Return a limit of a measurement or signal as a number."""
+    if limit is None:
+        return None
+    if math.isnan(limit):
+        raise ValueError(f"a limit of `{name}` is not a number")
+    return float(limit)

@@ -1,4 +1,4 @@
-"""Samples of signals, which are sent in batches: a test may take thousands in a second."""
+"""Batches of samples: a test may take thousands of samples per second."""
 
 from __future__ import annotations
 
@@ -16,27 +16,26 @@ if TYPE_CHECKING:
     # Name, unit, lower and upper limit.
     Signal = tuple[str, str, Union[float, None], Union[float, None]]
 
-# A batch is sent when it has so many samples.
-COUNT = 256
+# A batch of this size is sent.
+BATCH_SAMPLES = 256
 
-# A sample waits no longer for the next ones. Who takes no more and does something
-# else for long is behind by the last batch.
-AGE_SECONDS = 0.1
+# A batch whose oldest sample has this age is sent with the next sample.
+BATCH_AGE_SECONDS = 0.1
 
 
 class Batch:
-    """Samples of one signal under the same limits."""
+    """Samples of one signal with the same limits."""
 
     __slots__ = ("place", "points", "signal")
 
     def __init__(self, signal: Signal) -> None:
-        """Start without any, where the plug-in takes the first one."""
+        """Start an empty batch at the plug-in's present line."""
         self.signal = signal
         self.place = _location.caller()
         self.points: list[tuple[float, float]] = []
 
     def as_json(self) -> dict[str, object]:
-        """Return the form that the protocol gives it."""
+        """Return the parameters of `sampled`."""
         name, unit, low, high = self.signal
         place = self.place.as_json() if self.place is not None else None
         fields = {"low": low, "high": high, "location": place}
@@ -45,52 +44,55 @@ class Batch:
 
 
 class Sampling:
-    """The samples of a test that were not sent yet."""
+    """The samples of a test that are not sent yet."""
 
     def __init__(self, notify: Notify) -> None:
-        """Start without any; `notify` tells the runner."""
+        """Start without samples; `notify` sends a notification to the runner."""
         self._notify = notify
         self._began: float | None = None
-        self._since = 0.0
+        self._oldest = 0.0
+        self._has_failed = False
         self._batches: list[Batch] = []
-        # The batch that takes the next samples of a signal, by its name.
+        # The batch for the next samples of a signal, by its name.
         self._open: dict[str, Batch] = {}
         self.renew_lock()
 
     def renew_lock(self) -> None:
-        """Forget who held the lock: a forked child has not got that thread."""
-        # A signal may come while it is held, and what handles it may tell something.
+        """Replace the lock in a forked child: another thread of the parent may hold it."""
+        # Reentrant, because a signal handler may send a message while it is held.
         self._lock = threading.RLock()
 
     def begin(self) -> None:
-        """Count times from now on: the test's set-up begins."""
+        """Start the time of a test: its set-up begins."""
         self._began = time.monotonic()
 
-    def take(self, signal: Signal, value: float, at: float | None) -> float:
-        """Keep a sample, send what is due, and return the sample's time."""
+    def add(self, signal: Signal, value: float, at: float | None, *, is_within: bool) -> None:
+        """Add a sample, and send the batches that are due."""
         now = time.monotonic()
         if at is None:
             at = 0.0 if self._began is None else round(now - self._began, 6)
         with self._lock:
             if not self._batches:
-                self._since = now
+                self._oldest = now
             batch = self._open.get(signal[0])
             if batch is None or batch.signal != signal:
                 batch = self._open[signal[0]] = Batch(signal)
                 self._batches.append(batch)
             batch.points.append((at, value))
-            full = len(batch.points) >= COUNT or len(self._batches) >= COUNT
-            if full or now - self._since >= AGE_SECONDS:
+            full = len(batch.points) >= BATCH_SAMPLES or len(self._batches) >= BATCH_SAMPLES
+            # The first violation may decide the verdict: a crash must not lose it.
+            first_failed = not is_within and not self._has_failed
+            self._has_failed |= first_failed
+            if full or first_failed or now - self._oldest >= BATCH_AGE_SECONDS:
                 self.send()
-        return at
 
     def send_before(self, seconds: float) -> None:
-        """Send all that would grow too old in this time."""
-        if self._batches and time.monotonic() - self._since + seconds >= AGE_SECONDS:
+        """Send all batches if they would become too old in this time."""
+        if self._batches and time.monotonic() - self._oldest + seconds >= BATCH_AGE_SECONDS:
             self.send()
 
     def send(self) -> None:
-        """Send all."""
+        """Send all batches."""
         if self._batches:
             with self._lock:
                 self._open.clear()

@@ -1,7 +1,7 @@
-"""What one plug-in tells the runner, and what went wrong first.
+"""The session of one plug-in with the runner.
 
-The host makes a session for the plug-in it loads; the plug-in's methods write
-to it from any thread. Without a host there is none, and they raise.
+The host creates a session for each plug-in that it loads; the plug-in's methods use it
+from any thread. Without a host there is no session, and they raise an error.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import math
 import os
 import threading
 
-from rtf import _location, _text
+from rtf import _location
 from rtf._sampling import Sampling
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
@@ -21,53 +21,49 @@ if TYPE_CHECKING:
     from rtf._sampling import Notify, Signal
 
     class Announce(Protocol):
-        """Tells the runner of a phase; held back, it comes with what is told next."""
+        """Announces a phase to the runner; `held` delays it until the next line."""
 
         def __call__(self, phase: str, *, held: bool = False) -> None:
-            """Tell it."""
+            """Announce it."""
 
 
-class Judge:
-    """What is known about one request of the runner: the first problem decides.
+class RequestState:
+    """The state of one request of the runner.
 
-    It exists from the moment the request is read, so that a request to stop
-    which comes before the plug-in was loaded is not lost.
+    It exists from the moment the request is read, so that a stop request that arrives
+    before the plug-in is loaded is not lost.
     """
 
     def __init__(self) -> None:
-        """Start with nothing known."""
-        # Only while `run` of a test is carried out does a failure speak
-        # against the robot; everywhere else it speaks against the bench.
-        self.failures_are_errors = True
-        self._lock = threading.Lock()
-        self._first: tuple[str, str] | None = None
+        """Start without a problem and without a stop request."""
+        # The outcome of the first problem, and its reason if no message reports it.
+        self._first: tuple[str, str | None] | None = None
         self._stop = threading.Event()
         self._stop_reason = ""
-        self._insists = False
+        self._is_signal_announced = False
 
-    def note(self, outcome: str, reason: str) -> None:
-        """Keep the first problem; later ones are told but decide nothing."""
-        with self._lock:
-            if self._first is None:
-                self._first = (outcome, reason)
+    def record(self, outcome: str, reason: str | None = None) -> None:
+        """Record a problem; only the first one counts."""
+        if self._first is None:
+            self._first = (outcome, reason)
 
-    def note_failure(self, reason: str) -> None:
-        """Keep what does not hold."""
-        self.note("error" if self.failures_are_errors else "failed", reason)
+    def has_passed(self) -> bool:
+        """Whether there is no problem so far."""
+        return self._first is None
 
-    def first(self) -> tuple[str, str] | None:
-        """Return outcome and reason of the first problem."""
-        with self._lock:
-            return self._first
+    def answer(self) -> dict[str, object]:
+        """Return the answer to the request."""
+        outcome, reason = self._first or ("passed", None)
+        return {"outcome": outcome} if reason is None else {"outcome": outcome, "reason": reason}
 
     def request_stop(self, reason: str) -> None:
-        """Ask the plug-in to stop; this counts as a problem."""
-        self.note("interrupted", reason)
+        """Ask the plug-in to stop; this is a problem."""
+        self.record("interrupted", reason)
         self._stop_reason = reason
         self._stop.set()
 
     def clear_stop(self) -> None:
-        """Let a tear-down sleep and wait again, until the runner asks once more."""
+        """Reset the request, so that a tear-down can wait until the runner asks again."""
         self._stop.clear()
 
     def stop_requested(self) -> bool:
@@ -75,17 +71,17 @@ class Judge:
         return self._stop.is_set()
 
     def wait_for_stop(self, seconds: float) -> bool:
-        """Wait for a request to stop, but not longer than `seconds`."""
+        """Wait for a stop request, for at most `seconds`."""
         return self._stop.wait(seconds)
 
-    def insist(self) -> None:
-        """Announce the signal that ends a plug-in which does not look at the request."""
-        self._insists = True
+    def announce_signal(self) -> None:
+        """Announce the signal that ends a plug-in that does not poll the request."""
+        self._is_signal_announced = True
 
-    def take_insistence(self) -> bool:
-        """Whether a signal that came was announced; each is announced once."""
-        insists, self._insists = self._insists, False
-        return insists
+    def take_announced_signal(self) -> bool:
+        """Whether the signal that arrived was announced; each is announced once."""
+        announced, self._is_signal_announced = self._is_signal_announced, False
+        return announced
 
     def stop_reason(self) -> str:
         """Return why the plug-in is asked to stop."""
@@ -93,7 +89,7 @@ class Judge:
 
 
 class Task:
-    """What the runner asks to be done with a plug-in."""
+    """The parameters of a plug-in."""
 
     def __init__(self, params: dict[str, object]) -> None:
         """Read the parameters of `run-test` or `set-up-fixture`."""
@@ -111,8 +107,8 @@ class Task:
         self.repetition = repetition
         self.last = params.get("is_last", False) is True
         self.attachments_dir = _text_of(params, "attachments_dir", "")
-        # What tells the test's output from the next one's, if its host may go on.
-        self.shared = _text_of(params, "end_marker", "")
+        # Ends the test's output in a host that continues with the next test.
+        self.end_marker = _text_of(params, "end_marker", "")
 
 
 def _text_of(params: dict[str, object], name: str, default: str | None = None) -> str:
@@ -123,28 +119,30 @@ def _text_of(params: dict[str, object], name: str, default: str | None = None) -
 
 
 class Session:
-    """The link between one plug-in and the runner."""
+    """The connection between one plug-in and the runner."""
 
-    def __init__(self, task: Task, judge: Judge, notify: Notify, announce: Announce) -> None:
-        """Serve `task`; `notify` tells the runner something, `announce` what is done now."""
+    def __init__(
+        self, task: Task, request: RequestState, notify: Notify, announce: Announce
+    ) -> None:
+        """Serve `task`; `notify` and `announce` send lines to the runner."""
         self.task = task
-        self.judge = judge
+        self.request = request
         self.sampling = Sampling(notify)
         self._notify = notify
         self._announce = announce
 
     def notify(self, method: str, params: dict[str, object]) -> None:
-        """Tell the runner something, after what was sampled before."""
+        """Send a notification, after the samples that were taken before."""
         self.sampling.send()
         self._notify(method, params)
 
     def announce(self, phase: str, *, held: bool = False) -> None:
-        """Tell the runner what is done now, after what was sampled before."""
+        """Announce a phase, after the samples that were taken before."""
         self.sampling.send()
         self._announce(phase, held=held)
 
     def message(self, kind: str, text: str, **more: object) -> None:
-        """Send a message of the plug-in with the place it was written at."""
+        """Send a message of the plug-in with its location."""
         params: dict[str, object] = {"kind": kind, "text": text}
         place = more.pop("location", None) or _location.caller()
         if isinstance(place, _location.Location):
@@ -153,55 +151,46 @@ class Session:
         self.notify("message", params)
 
     def failure(self, text: str, **more: object) -> None:
-        """Send a failure and keep it if it is the first problem."""
-        self.judge.note_failure(text)
+        """Send a failure."""
+        self.request.record("failed")
         self.message("failure", text, **more)
 
     def measured(
         self, name: str, value: float, unit: str, low: float | None, high: float | None
     ) -> bool:
-        """Send a measurement; one outside its limits is a problem like a failed check."""
+        """Send a measurement, and return whether it is within its limits."""
         fields = {"name": name, "value": value, "unit": unit, "low": low, "high": high}
         params: dict[str, object] = {k: v for k, v in fields.items() if v is not None}
         place = _location.caller()
         if place is not None:
             params["location"] = place.as_json()
-        good = _holds(value, low, high)
-        if not good:
-            self.judge.note_failure(_text.violation(name, value, unit, (low, high)))
         self.notify("measured", params)
-        return good
+        return self._is_within(value, low, high)
 
     def sampled(self, signal: Signal, value: float, at: float | None) -> bool:
-        """Keep a sample; one outside its limits is a problem like a failed check."""
-        at = self.sampling.take(signal, value, at)
-        name, unit, low, high = signal
-        good = _holds(value, low, high)
-        if not good:
-            decides = self.judge.first() is None
-            what = f"{name} at {_text.number(at)} s"
-            self.judge.note_failure(_text.violation(what, value, unit, (low, high)))
-            if decides:
-                # It must not get lost.
-                self.sampling.send()
-        return good
+        """Add a sample, and return whether it is within its limits."""
+        is_within = self._is_within(value, *signal[2:])
+        self.sampling.add(signal, value, at, is_within=is_within)
+        return is_within
 
-    def error(self, reason: str, text: str | None = None, **more: object) -> None:
-        """Send an error and keep it if it is the first problem."""
-        self.judge.note("error", reason)
-        self.message("error", text or reason, **more)
+    def error(self, text: str, **more: object) -> None:
+        """Send an error."""
+        self.request.record("error")
+        self.message("error", text, **more)
 
-
-def _holds(value: float, low: float | None, high: float | None) -> bool:
-    within = (low is None or value >= low) and (high is None or value <= high)
-    return within and math.isfinite(value)
+    def _is_within(self, value: float, low: float | None, high: float | None) -> bool:
+        is_within = (low is None or value >= low) and (high is None or value <= high)
+        if not (is_within and math.isfinite(value)):
+            self.request.record("failed")
+            return False
+        return True
 
 
 _current: Session | None = None
 
 
 def _before_fork() -> None:
-    """Leave a child that the plug-in forks no samples, which it would send again."""
+    """Send all samples, so that a forked child does not send them again."""
     if _current is not None:
         _current.sampling.send()
 
@@ -215,7 +204,7 @@ os.register_at_fork(before=_before_fork, after_in_child=_after_fork_in_child)
 
 
 def enter(session: Session | None) -> None:
-    """Make `session` the one that plug-ins talk to; a process has one at a time."""
+    """Make `session` the present one; a process has one at a time."""
     global _current  # noqa: PLW0603 - a plug-in finds it from any thread and any constructor
     _current = session
 

@@ -1,27 +1,26 @@
-"""What ends a step of a plug-in early.
+"""Exceptions that end a step of a plug-in.
 
-All but `Error` derive from ``BaseException``: an ``except Exception`` around a
-robot's driver must not swallow a failed assertion or a request to stop. Whoever
-catches ``BaseException`` gains nothing either, since what went wrong first was
-recorded before anything was raised.
+All but `Error` derive from ``BaseException``: an ``except Exception`` around a robot's
+driver must not swallow a failed assertion or a stop request. Catching ``BaseException``
+does not make a test pass: the problem was recorded before the exception was raised.
 """
 
 from __future__ import annotations
 
 
 class StepEnded(BaseException):
-    """The step is over; the session knows why."""
+    """Ends the step; the session has recorded the reason."""
 
 
 class Error(Exception):
-    """Raised by a plug-in's code, or by its modules: what `self.error` is, with this text.
+    """Has the same effect as `self.error`, for code without access to `self`.
 
-    Unlike other exceptions it is told without its type and without a traceback.
+    Unlike other exceptions, it is reported without its type and without a traceback.
     """
 
 
 class AssertionEnded(StepEnded):
-    """An assertion did not hold, or the plug-in said ``fail`` or ``error``."""
+    """An assertion failed, or the plug-in called ``fail`` or ``error``."""
 
 
 class Interrupted(StepEnded):

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from rtf import _clock, _session
-from rtf._keeper import Keeper
 from rtf._near import Comparison
+from rtf._plugin import Plugin, limit_of
 from rtf._stop import AssertionEnded
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
@@ -15,27 +15,27 @@ if TYPE_CHECKING:
     from typing import Any, Callable
 
 
-class TestCase(Keeper):
-    """A test: derive from it and write `run`, and `setup` and `tearDown` where needed.
+class TestCase(Plugin):
+    """A test: derive from it, and write `run`, and `setup` and `tearDown` where needed.
 
-    The first failure or error decides the verdict. A failure says that the
+    The first failure or error decides the verdict. A failure means that the
     robot is wrong, an error that the bench is; a problem in `setup` or in
     `tearDown` is always an error.
     """
 
-    __test__ = False  # pytest shall not collect what only looks like a test of its own
+    __test__ = False  # pytest must not collect it
 
     def setup(self, args: list[str]) -> bool | None:
-        """Prepare the test. `False` means that it cannot be run."""
+        """Prepare the test. `False` means that it cannot run."""
 
     def run(self) -> None:
-        """Do the test."""
+        """Run the test."""
         raise NotImplementedError(f"{type(self).__name__} has no `run`")
 
     def tearDown(self) -> None:
-        """Put back what the test changed. Called whatever happened before."""
+        """Restore the initial state. Always called."""
 
-    def sample(  # noqa: PLR0913, PLR0917 - what `measure` takes, and the time
+    def sample(  # noqa: PLR0913, PLR0917 - the arguments of `measure`, and the time
         self,
         name: str,
         value: float,
@@ -44,11 +44,11 @@ class TestCase(Keeper):
         high: float | None = None,
         time: float | None = None,
     ) -> bool:
-        """Take a sample of a signal; outside its limits it is a failure, and the test goes on.
+        """Take a sample of a signal; outside its limits it is a failure, and the test continues.
 
-        `time` counts in seconds from the beginning of the set-up; now unless told.
+        `time` is in seconds since the set-up began; the default is the current time.
         """
-        signal = (name, unit, _limit(name, low), _limit(name, high))
+        signal = (name, unit, limit_of(name, low), limit_of(name, high))
         if time is not None and not math.isfinite(time):
             raise ValueError(f"the time of a sample of `{name}` is not finite")
         at = None if time is None else float(time)
@@ -64,9 +64,9 @@ class TestCase(Keeper):
         low: float | None = None,
         high: float | None = None,
     ) -> bool:
-        """Sample what `read()` returns at `rate` Hz; whether all are within the limits.
+        """Sample the result of `read()` at `rate` Hz; return whether all are within the limits.
 
-        What a reading that takes too long misses is left out.
+        A slow `read()` skips samples.
         """
         if not rate > 0:
             raise ValueError(f"the rate of `{name}` is not above 0 Hz")
@@ -74,13 +74,13 @@ class TestCase(Keeper):
         while tick < seconds * rate - 1e-9:
             self.sleep(max(0.0, tick / rate - watch.passed()))
             good = self.sample(name, read(), unit, low, high) and good
-            # Each tick has its own deadline, so that delays do not add up.
+            # Each tick has a separate deadline, so that delays do not accumulate.
             tick = max(tick + 1, math.ceil(watch.passed() * rate))
         self.sleep(max(0.0, seconds - watch.passed()))
         return good
 
     def check(self, condition: object, text: object) -> bool:
-        """Check that `condition` holds, and go on either way."""
+        """Check that `condition` holds, and continue in either case."""
         if condition:
             _session.current().message("check", str(text))
             return True
@@ -88,10 +88,7 @@ class TestCase(Keeper):
         return False
 
     def require_critical(self, condition: object, text: object) -> None:
-        """Assert something without which it is unsafe to go on.
-
-        If it does not hold this test ends, and the rest of the suite is skipped.
-        """
+        """Assert that it is safe to continue: if not, the rest of the suite is skipped."""
         if not condition:
             _session.current().failure(str(text), critical=True)
             raise AssertionEnded(str(text))
@@ -99,7 +96,7 @@ class TestCase(Keeper):
 
     def check_near(self, got: Any, expected: Any, tolerance: float, what: object) -> bool:
         """Check that two numbers, vectors or arrays differ by at most `tolerance` anywhere."""
-        return _tell(Comparison(got, expected, tolerance, angle=False), str(what))
+        return _send(Comparison(got, expected, tolerance, angle=False), str(what))
 
     def require_near(self, got: Any, expected: Any, tolerance: float, what: object) -> None:
         """Assert what `check_near` checks."""
@@ -108,7 +105,7 @@ class TestCase(Keeper):
 
     def check_angle_near(self, got: Any, expected: Any, tolerance: float, what: object) -> bool:
         """Check angles in radians: 3.1 and -3.1 are 0.083 apart."""
-        return _tell(Comparison(got, expected, tolerance, angle=True), str(what))
+        return _send(Comparison(got, expected, tolerance, angle=True), str(what))
 
     def require_angle_near(self, got: Any, expected: Any, tolerance: float, what: object) -> None:
         """Assert what `check_angle_near` checks."""
@@ -116,15 +113,7 @@ class TestCase(Keeper):
             raise AssertionEnded(str(what))
 
 
-def _limit(name: str, limit: float | None) -> float | None:
-    if limit is None:
-        return None
-    if math.isnan(limit):
-        raise ValueError(f"a limit of `{name}` is not a number")
-    return float(limit)
-
-
-def _tell(comparison: Comparison, what: str) -> bool:
+def _send(comparison: Comparison, what: str) -> bool:
     session = _session.current()
     problem = comparison.problem()
     if problem is None:

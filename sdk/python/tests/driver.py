@@ -1,4 +1,4 @@
-"""Plays the runner: starts the real host over a socket pair and keeps what it says."""
+"""Plays the runner: starts the real host over a socket pair and records its lines."""
 
 from __future__ import annotations
 
@@ -11,26 +11,25 @@ from pathlib import Path
 from typing import Any
 
 PACKAGE = Path(__file__).resolve().parent.parent
-# Far beyond what any of these tests takes: it ends a host that hangs, so that
-# the test fails instead of hanging too.
+# Ends a host that hangs, so that the test fails. No test takes nearly as long.
 LIMIT_SECONDS = 60
 
 
 class Host:
     """A host process and the runner's end of its channel."""
 
-    def __init__(self, folder: Path, stack_file: Path | None = None) -> None:
+    def __init__(self, directory: Path, stack_file: Path | None = None) -> None:
         ours, theirs = socket.socketpair()
         ours.settimeout(LIMIT_SECONDS)
         self.channel = ours
         self._lines = ours.makefile("rb")
         environment = {**os.environ, "PYTHONPATH": str(PACKAGE)}
-        # What the host does must not depend on how the tests are run.
+        # The host must behave the same however the tests are run.
         environment.pop("PYTHONUNBUFFERED", None)
         environment["RTF_CHANNEL"] = f"fd:{theirs.fileno()}"
         self.process = subprocess.Popen(
             [sys.executable, "-m", "rtf.host"],
-            cwd=folder,
+            cwd=directory,
             env=environment,
             pass_fds=[theirs.fileno()],
             stdout=subprocess.PIPE,
@@ -87,6 +86,11 @@ class Host:
         """Return kind and text of all messages so far."""
         return [(message["kind"], message["text"]) for message in self.of("message")]
 
+    def problem(self) -> tuple[str, str] | None:
+        """Return kind and first line of the first failure or error so far."""
+        problems = [one for one in self.texts() if one[0] in {"failure", "error"}]
+        return (problems[0][0], problems[0][1].partition("\n")[0]) if problems else None
+
     def end(self) -> tuple[int, str, str]:
         """Wait for the end of the process: exit code, output, errors."""
         while self.read() is not None:
@@ -96,27 +100,28 @@ class Host:
 
 
 class Ran:
-    """What a test left behind."""
+    """The results of a test."""
 
     def __init__(self, host: Host, answer: dict[str, Any] | None) -> None:
         self.code, self.output, self.errors = host.end()
         self.result = answer["result"] if answer else None
         self.host = host
         self.texts = host.texts()
+        self.problem = host.problem()
         self.phases = [phase["phase"] for phase in host.of("phase")]
 
 
-def plugin(folder: Path, body: str, name: str = "plugin.py") -> dict[str, Any]:
+def plugin(directory: Path, body: str, name: str = "plugin.py") -> dict[str, Any]:
     """Write a plug-in and return the parameters of a request about it."""
-    file = folder / name
+    file = directory / name
     file.write_text("import rtf\n" + body, encoding="utf-8")
     return {"file": str(file), "name": "Arm", "args": ["--rate", "100"], "is_last": True}
 
 
-def run(folder: Path, body: str, **more: Any) -> Ran:
+def run(directory: Path, body: str, **more: Any) -> Ran:
     """Run a test to its end."""
-    host = Host(folder)
-    host.send("run-test", {**plugin(folder, body), **more}, number=2)
+    host = Host(directory)
+    host.send("run-test", {**plugin(directory, body), **more}, number=2)
     answer = None
     while (message := host.read()) is not None:
         if message.get("id") == 2:
@@ -125,6 +130,6 @@ def run(folder: Path, body: str, **more: Any) -> Ran:
 
 
 def arm(run_body: str, more: str = "") -> str:
-    """Return the text of a test with this `run`; lines of the body are indented here."""
+    """Return the source of a test whose `run` has these lines."""
     lines = "".join(f"        {line}\n" for line in run_body.splitlines())
     return f"class Arm(rtf.TestCase):\n    def run(self):\n{lines}{more}"

@@ -36,16 +36,16 @@ def test_a_fixture_is_set_up_checked_and_torn_down(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("line", "reason"),
+    ("line", "result", "problem"),
     [
-        ("return False", "setup returned false"),
-        ("self.require(False, 'license')", "license"),
-        ("self.error('no license')", "no license"),
-        ("raise OSError('no port')", "OSError: no port"),
+        ("return False", {"outcome": "error", "reason": "setup returned false"}, None),
+        ("self.require(False, 'license')", {"outcome": "failed"}, ("failure", "license")),
+        ("self.error('no license')", {"outcome": "error"}, ("error", "no license")),
+        ("raise OSError('no port')", {"outcome": "error"}, ("error", "OSError: no port")),
     ],
 )
 def test_a_fixture_that_cannot_be_set_up_is_torn_down(
-    tmp_path: Path, line: str, reason: str
+    tmp_path: Path, line: str, result: dict[str, str], problem: tuple[str, str] | None
 ) -> None:
     host = Host(tmp_path)
     body = (
@@ -53,12 +53,13 @@ def test_a_fixture_that_cannot_be_set_up_is_torn_down(
         "    def tearDown(self):\n        self.report('down')\n"
     )
     answer = host.ask("set-up-fixture", plugin(tmp_path, body))
-    assert answer["result"] == {"outcome": "error", "reason": reason}
+    assert answer["result"] == result
+    assert host.problem() == problem
     assert host.ask("tear-down-fixture", {})["result"] == {"outcome": "passed"}
     assert host.texts()[-1] == ("report", "down")
 
 
-def test_a_collapse_is_told_from_a_thread_while_nothing_is_asked(tmp_path: Path) -> None:
+def test_a_thread_reports_a_collapse_between_requests(tmp_path: Path) -> None:
     host = Host(tmp_path)
     body = (
         "import threading\n"
@@ -71,13 +72,13 @@ def test_a_collapse_is_told_from_a_thread_while_nothing_is_asked(tmp_path: Path)
     assert host.wait_for("collapsed") == {"reason": "the bus is silent"}
 
 
-def test_a_fixture_without_check_is_well(tmp_path: Path) -> None:
+def test_a_fixture_without_check_is_healthy(tmp_path: Path) -> None:
     host = Host(tmp_path)
     host.ask("set-up-fixture", plugin(tmp_path, "class Simulator(rtf.FixtureManager): pass\n"))
     assert host.ask("check-fixture", {})["result"] == {"outcome": "passed"}
 
 
-def test_a_fixture_that_is_not_there_cannot_be_checked(tmp_path: Path) -> None:
+def test_a_missing_fixture_cannot_be_checked(tmp_path: Path) -> None:
     host = Host(tmp_path)
     answer = host.ask("check-fixture", {})
     assert answer["result"] == {"outcome": "error", "reason": "no fixture is set up"}
@@ -118,27 +119,27 @@ class Recorder(rtf.FixtureManager):
 """
 
 
-def test_a_fixture_is_told_of_each_test(tmp_path: Path) -> None:
+def test_a_fixture_is_notified_of_each_test(tmp_path: Path) -> None:
     host = Host(tmp_path)
     answer = host.ask("set-up-fixture", plugin(tmp_path, RECORDER))
     wanted = ["test-started", "test-finished"]
     assert answer["result"] == {"outcome": "passed", "subscriptions": wanted}
     test = {"id": 3, "name": "Move", "repetition": 2, "attempt": 1}
     assert host.ask("test-started", {"test": test})["result"] == {"outcome": "passed"}
-    folder = str(tmp_path / "kept")
-    ends = {"test": test, "verdict": "failed", "reason": "too far", "attachments_dir": folder}
+    directory = str(tmp_path / "kept")
+    ends = {"test": test, "verdict": "failed", "reason": "too far", "attachments_dir": directory}
     assert host.ask("test-finished", ends)["result"] == {"outcome": "passed"}
     assert host.texts() == [("report", "3 Move 2.1"), ("report", "Move failed: too far")]
     assert host.of("measured")[0]["name"] == "size"
     kept = host.of("attached")[0]
-    assert kept["path"] == f"{folder}/1-run.txt"
+    assert kept["path"] == f"{directory}/1-run.txt"
     assert "class Recorder" in Path(kept["path"]).read_text()
     refused = {"test": {**test, "name": "refused"}}
     answer = host.ask("test-started", refused)
     assert answer["result"] == {"outcome": "failed", "reason": "testStarted returned false"}
 
 
-def test_a_fixture_that_hears_nothing_asks_for_nothing(tmp_path: Path) -> None:
+def test_a_fixture_subscribes_to_what_it_implements(tmp_path: Path) -> None:
     host = Host(tmp_path)
     body = (
         "class Base(rtf.FixtureManager):\n    def testFinished(self, test, verdict, reason):\n"

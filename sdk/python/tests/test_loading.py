@@ -29,17 +29,17 @@ from driver import PACKAGE, Host, arm, plugin, run
 def test_a_file_that_is_no_test_is_an_error(tmp_path: Path, body: str, reason: str) -> None:
     ran = run(tmp_path, body)
     expected = reason.replace("FILE", str(tmp_path / "plugin.py"))
-    assert ran.result == {"outcome": "error", "reason": expected}
-    assert ran.host.of("message")[0]["kind"] == "error"
+    assert ran.result == {"outcome": "error"}
+    assert ran.problem == ("error", expected)
 
 
-def test_a_file_that_is_not_there_is_an_error(tmp_path: Path) -> None:
+def test_a_missing_file_is_an_error(tmp_path: Path) -> None:
     host = Host(tmp_path)
-    answer = host.ask("run-test", {"file": str(tmp_path / "gone.py"), "name": "Gone"})
-    assert answer["result"]["reason"].startswith("FileNotFoundError: ")
+    host.ask("run-test", {"file": str(tmp_path / "gone.py"), "name": "Gone"})
+    assert host.texts()[0][1].startswith("FileNotFoundError: ")
 
 
-def test_a_syntax_error_is_told_with_its_line(tmp_path: Path) -> None:
+def test_a_syntax_error_is_reported_with_its_line(tmp_path: Path) -> None:
     ran = run(tmp_path, "x = 1\ndef broken(:\n")
     assert ran.host.of("message")[0]["location"]["line"] == 3
 

@@ -49,7 +49,7 @@ def test_a_failure_before_the_request_to_stop_decides(tmp_path: Path) -> None:
     host.send("run-test", plugin(tmp_path, body), number=2)
     host.wait_for("message")
     host.send("interrupt", {"reason": "Ctrl-C"})
-    assert host.answer()["result"] == {"outcome": "failed", "reason": "reached"}
+    assert host.answer()["result"] == {"outcome": "failed"}
 
 
 def test_a_request_to_stop_that_comes_before_the_test_is_loaded_is_not_lost(

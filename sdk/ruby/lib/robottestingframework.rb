@@ -3,25 +3,24 @@
 require "rtf/session"
 require "rtf/stop"
 
-# What tests written for robot-testing-framework 2.x call. Such a test has it
-# without a `require`, as it had there. The functions tell the runner about the
-# test that runs.
+# The functions for tests that were written for robot-testing-framework 2.x. As there, such a
+# test has the module without a `require`.
 module RobotTestingFramework
   module_function
 
-  # Tells what the test calls itself; the name that the suite gives it stays.
+  # Reports the test's own name; its name in the suite does not change.
   def setName(name)
     session = RTF::Session.current
     session.message("report", "test name: #{name}") unless name.to_s == session.task.name
   end
 
-  # Tells the user something; it does not change the verdict.
+  # Reports information; it does not change the verdict.
   def testReport(text)
     RTF::Session.current.message("report", text)
     nil
   end
 
-  # Checks that `condition` holds, and goes on either way.
+  # Checks that `condition` holds, and continues in either case.
   def testCheck(condition, text)
     session = RTF::Session.current
     condition ? session.message("check", text) : session.failure(text)
@@ -34,13 +33,13 @@ module RobotTestingFramework
     nil
   end
 
-  # Says that the robot is wrong, and ends this step.
+  # Reports a failure (the robot is wrong) and ends this step.
   def assertFail(text)
     RTF::Session.current.failure(text)
     raise RTF::AssertionEnded, text.to_s
   end
 
-  # Says that the bench is wrong, and ends this step.
+  # Reports an error (the bench is wrong) and ends this step.
   def assertError(text)
     RTF::Session.current.error(text)
     raise RTF::AssertionEnded, text.to_s

@@ -13,7 +13,7 @@
 #       end
 #     end
 #
-# It is cheap to require and never touches the process; what talks to the
+# It is cheap to require and does not change the process; the connection to the
 # runner is in rtf/host.
 module RTF
 end

@@ -74,7 +74,13 @@ class Host
     of("message").map { |message| message.values_at("kind", "text") }
   end
 
-  # Sends nothing more, as a runner that has gone.
+  # Kind and first line of the first failure or error so far.
+  def problem
+    kind, text = texts.find { |one, _| %w[failure error].include?(one) }
+    [kind, text&.lines(chomp: true)&.first]
+  end
+
+  # Sends nothing more, like a runner that is gone.
   def close
     @channel.close_write
   end
@@ -87,7 +93,7 @@ class Host
     [status, output]
   end
 
-  # A test that failed leaves a process that nobody else would end.
+  # Ends the process of a failed test.
   def kill
     Process.kill(:KILL, @pid)
     Process.wait(@pid)
@@ -96,25 +102,25 @@ class Host
   end
 end
 
-# What the tests share: a folder, hosts, and plug-ins in it.
+# The base of all tests: a directory, hosts, and plug-ins in it.
 class HostTest < Minitest::Test
   def setup
-    @folder = Dir.mktmpdir
+    @directory = Dir.mktmpdir
     @hosts = []
   end
 
   def teardown
     @hosts.each(&:kill)
-    FileUtils.rm_rf(@folder)
+    FileUtils.rm_rf(@directory)
   end
 
   def host
-    Host.new(@folder).tap { |host| @hosts << host }
+    Host.new(@directory).tap { |host| @hosts << host }
   end
 
   # Writes a plug-in and returns the parameters of a request about it.
   def plugin(body, name: "plugin.rb", **more)
-    file = File.join(@folder, name)
+    file = File.join(@directory, name)
     File.write(file, body)
     { file: file, name: "Arm", param: "--rate 100", args: ["--rate", "100"],
       environment: "--robot sim", repetition: 3, is_last: true, **more }

@@ -25,17 +25,19 @@ class FixturesTest < HostTest
     assert_equal ([["report", "--rate"]] * 3) + [%w[report down]], host.texts
   end
 
-  def test_a_collapse_is_told_from_any_thread
+  def test_a_thread_reports_a_collapse
     host, = set_up("def setup(_) = Thread.new { collapsed(:fell) }")
     assert_equal({ "reason" => "fell" }, host.of("collapsed").first || host.wait_for("collapsed"))
     assert_equal "passed", host.ask("tear-down-fixture", {})["result"]["outcome"]
   end
 
-  def test_a_set_up_that_fails_is_an_error_and_can_be_torn_down
-    { "false" => "setup returned false", 'raise "no sim"' => "RuntimeError: no sim",
-      'error("no sim")' => "no sim", 'require(false, "up")' => "up" }.each do |line, reason|
+  def test_a_fixture_that_cannot_be_set_up_is_torn_down
+    { "false" => nil, 'raise "no sim"' => "RuntimeError: no sim",
+      'error("no sim")' => "no sim", 'require(false, "up")' => "up" }.each do |line, problem|
       host, result = set_up("def setup(_) = #{line}\ndef tear_down = report(\"down\")")
-      assert_equal({ "outcome" => "error", "reason" => reason }, result, line)
+      refute_equal "passed", result["outcome"], line
+      assert_equal problem ? nil : "setup returned false", result["reason"], line
+      assert_equal problem, host.problem.last
       host.ask("tear-down-fixture", {})
       assert_equal %w[report down], host.texts.last, line
     end
@@ -50,26 +52,26 @@ class FixturesTest < HostTest
     end
   RUBY
 
-  def test_a_fixture_is_told_of_each_test
+  def test_a_fixture_is_notified_of_each_test
     host, result = set_up(RECORDER)
     assert_equal %w[test-started test-finished], result["subscriptions"]
     test = { "id" => 3, "name" => "Move", "repetition" => 2, "attempt" => 1 }
     assert_equal({ "outcome" => "passed" }, host.ask("test-started", { test: test })["result"])
     ends = { test: test, verdict: "failed", reason: "far",
-             attachments_dir: File.join(@folder, "k") }
+             attachments_dir: File.join(@directory, "k") }
     assert_equal({ "outcome" => "passed" }, host.ask("test-finished", ends)["result"])
     assert_equal [["report", "3 Move 2.1 failed: far"]], host.texts
     assert_equal 3.5, host.of("measured").first["value"]
-    assert_equal "#{@folder}/k/1-run.txt", host.of("attached").first["path"]
+    assert_equal "#{@directory}/k/1-run.txt", host.of("attached").first["path"]
     refused = host.ask("test-started", { test: test.merge("name" => "refused") })["result"]
     assert_equal "test_started returned false", refused["reason"]
   end
 
-  def test_a_fixture_that_hears_nothing_asks_for_nothing
+  def test_a_fixture_without_notification_methods_does_not_subscribe
     assert_nil set_up("def check = true").last["subscriptions"]
   end
 
-  def test_what_is_not_up_cannot_be_checked
+  def test_a_missing_fixture_cannot_be_checked
     host = self.host
     assert_equal "no fixture is set up", host.ask("check-fixture", {})["result"]["reason"]
     assert_equal "passed", host.ask("tear-down-fixture", {})["result"]["outcome"]

@@ -3,7 +3,7 @@
 require "open3"
 require_relative "driver"
 
-# Which files are plug-ins, and what is said of those that are not.
+# Loading and checking of files.
 class LoadingTest < HostTest
   BAD = {
     "X = 1" => "`FILE` has no class that derives from RTF::TestCase",
@@ -19,20 +19,20 @@ class LoadingTest < HostTest
   def test_a_file_that_is_no_test_is_an_error
     BAD.each do |body, reason|
       result, host, = run_plugin("require \"rtf\"\n#{body}\n")
-      expected = reason.sub("FILE", File.join(@folder, "plugin.rb"))
-      assert_equal({ "outcome" => "error", "reason" => expected }, result, body)
-      assert_equal "error", host.of("message").first["kind"]
+      expected = reason.sub("FILE", File.join(@directory, "plugin.rb"))
+      assert_equal({ "outcome" => "error" }, result, body)
+      assert_equal ["error", expected], host.problem, body
     end
   end
 
-  def test_a_syntax_error_is_told_with_its_line
-    result, host, = run_plugin("x = 1\ndef broken(:\n")
-    assert_match(/\ASyntaxError: .*syntax error/m, result["reason"])
+  def test_a_syntax_error_is_reported_with_its_line
+    _, host, = run_plugin("x = 1\ndef broken(:\n")
+    assert_match(/\ASyntaxError: .*syntax error/m, host.texts.first.last)
     assert_equal 2, host.of("message").first["location"]["line"]
   end
 
   def test_bases_in_the_file_and_required_classes_do_not_count
-    File.write(File.join(@folder, "bases.rb"),
+    File.write(File.join(@directory, "bases.rb"),
                "require \"rtf\"\nclass Other < RTF::TestCase; end\n")
     body = "require \"bases\"\nclass Base < Other\n  def run = report(self.class)\nend\n" \
            "class Arm < Base; end\ndef helper = 1\n"
@@ -84,7 +84,7 @@ class LoadingTest < HostTest
 
   def command(*arguments)
     environment = { "RUBYLIB" => Host::LIBRARY, "RTF_CHANNEL" => nil }
-    Open3.capture3(environment, *Host::COMMAND, *arguments, chdir: @folder)
+    Open3.capture3(environment, *Host::COMMAND, *arguments, chdir: @directory)
   end
 
   CHECKED = {
@@ -100,7 +100,7 @@ class LoadingTest < HostTest
   }.freeze
 
   def test_files_are_checked_without_running_them
-    CHECKED.each { |name, (text, _)| File.write(File.join(@folder, name), text) if text }
+    CHECKED.each { |name, (text, _)| File.write(File.join(@directory, name), text) if text }
     output, _, status = command("--check", *CHECKED.keys)
     assert_predicate status, :success?
     CHECKED.zip(output.lines.map { |line| JSON.parse(line) }) do |(name, (_, expected)), found|

@@ -47,7 +47,7 @@ class SharingTest < HostTest
     status, = Process.wait2(host.pid)
     assert_equal host.pid, status
   ensure
-    Process.kill(:KILL, Integer(File.read(File.join(@folder, "pid"))))
+    Process.kill(:KILL, Integer(File.read(File.join(@directory, "pid"))))
   end
 
   def test_a_child_that_has_ended_is_not_left

@@ -2,7 +2,7 @@
 
 require_relative "driver"
 
-# Which outcome follows from what a test does.
+# The outcome of a test.
 class VerdictsTest < HostTest
   TEAR_DOWN = "  def tear_down = report(\"torn down\")\n"
 
@@ -15,27 +15,26 @@ class VerdictsTest < HostTest
   end
 
   ENDS = {
-    'check(false, "closed")' => ["failed", "closed", true],
-    'check(nil, "closed")' => ["failed", "closed", true],
-    'require(nil, "calibrated")' => ["failed", "calibrated", false],
-    'require_critical(false, "stop pressed")' => ["failed", "stop pressed", false],
-    'fail("50% too fast, %s %d")' => ["failed", "50% too fast, %s %d", false],
+    'check(false, "closed")' => ["failure", "closed", true],
+    'check(nil, "closed")' => ["failure", "closed", true],
+    'require(nil, "calibrated")' => ["failure", "calibrated", false],
+    'require_critical(false, "stop pressed")' => ["failure", "stop pressed", false],
+    'fail("50% too fast, %s %d")' => ["failure", "50% too fast, %s %d", false],
     'error("no encoder")' => ["error", "no encoder", false],
-    'measure("rate", 87.5, "Hz", low: 95, high: 105)' =>
-      ["failed", "rate: 87.5 Hz is outside 95 … 105", true],
-    'begin; require(false, "caught"); rescue Exception; end' => ["failed", "caught", true],
+    'begin; require(false, "caught"); rescue Exception; end' => ["failure", "caught", true],
     'begin; fail("through"); rescue => problem; report(problem); end' =>
-      ["failed", "through", false],
+      ["failure", "through", false],
     "wait_until(0.02, \"the door\") { 0.5 > 1 }" =>
-      ["failed", "the door: not within 0.02 s (last value: false)", false],
-    'Thread.new { fail("in a thread") }.join' => ["failed", "in a thread", false]
+      ["failure", "the door: not within 0.02 s (last value: false)", false],
+    'Thread.new { fail("in a thread") }.join' => ["failure", "in a thread", false]
   }.freeze
 
-  def test_the_first_problem_decides_and_the_tear_down_runs
-    ENDS.each do |line, (outcome, reason, goes_on)|
+  def test_a_problem_is_reported_and_the_test_torn_down
+    ENDS.each do |line, (kind, text, continues)|
       result, host, = run_body("#{line}; report(\"on\"); check(false, \"later\")", TEAR_DOWN)
-      assert_equal({ "outcome" => outcome, "reason" => reason }, result, line)
-      assert_equal goes_on, host.texts.include?(%w[report on]), line
+      assert_equal({ "outcome" => kind == "error" ? "error" : "failed" }, result, line)
+      assert_equal [kind, text], host.problem, line
+      assert_equal continues, host.texts.include?(%w[report on]), line
       assert_equal ["report", "torn down"], host.texts.last, line
     end
   end
@@ -50,10 +49,10 @@ class VerdictsTest < HostTest
     'Thread.new { raise "no bus" }; sleep(0.2)' => "RuntimeError: no bus"
   }.freeze
 
-  def test_what_is_raised_is_an_error_with_class_text_place_and_backtrace
+  def test_an_exception_is_an_error_with_class_text_location_and_backtrace
     RAISED.each do |line, reason|
       result, host, = run_body(line, TEAR_DOWN)
-      assert_equal({ "outcome" => "error", "reason" => reason }, result, line)
+      assert_equal({ "outcome" => "error" }, result, line)
       message = host.of("message").find { |one| one["kind"] == "error" }
       assert_match(/\A#{Regexp.escape(reason)}\n  from .*plugin\.rb:\d/, message["text"], line)
       assert_equal 4, message["location"]["line"], line
@@ -61,7 +60,7 @@ class VerdictsTest < HostTest
     end
   end
 
-  def test_a_thread_whose_exception_is_dealt_with_is_no_error
+  def test_a_handled_exception_of_a_thread_is_no_error
     body = "thread = Thread.new { Thread.current.report_on_exception = false; raise \"x\" }\n" \
            "begin; thread.join; rescue RuntimeError => problem; report(problem.message); end"
     result, host, = run_body(body)
@@ -69,13 +68,19 @@ class VerdictsTest < HostTest
     assert_equal [%w[report x]], host.texts
   end
 
-  def test_a_problem_in_setup_or_tear_down_speaks_against_the_bench
-    { "def setup(args) = false" => "setup returned false",
-      'def setup(args) = check(false, "plugged in")' => "plugged in",
-      'def tear_down = require(false, "parked")' => "parked" }.each do |method, reason|
+  def test_a_problem_in_setup_or_tear_down_does_not_pass
+    { "def setup(args) = false" => { "outcome" => "error", "reason" => "setup returned false" },
+      'def setup(args) = check(false, "plugged in")' => { "outcome" => "failed" },
+      'def tear_down = require(false, "parked")' => { "outcome" => "failed" } }.each do |method, expected|
       result, = run_body("", "  #{method}\n")
-      assert_equal({ "outcome" => "error", "reason" => reason }, result, method)
+      assert_equal expected, result, method
     end
+  end
+
+  def test_a_measurement_outside_its_limits_does_not_pass
+    result, host, = run_body('measure("rate", 87.5, "Hz", low: 95, high: 105); report("on")')
+    assert_equal({ "outcome" => "failed" }, result)
+    assert_equal [%w[report on]], host.texts
   end
 
   def test_both_spellings_of_the_tear_down_are_called
@@ -83,7 +88,7 @@ class VerdictsTest < HostTest
     assert_equal [%w[report down]], host.texts
   end
 
-  def test_exit_gets_through
+  def test_exit_ends_the_process
     result, _, status, = run_body('check(false, "wrong"); exit(0)')
     assert_nil result
     assert_equal 0, status.exitstatus

@@ -1,8 +1,8 @@
-//! Tells plug-ins that were written for robot-testing-framework 1.x and 2.x.
+//! Detects plug-ins that were written for robot-testing-framework 1.x and 2.x.
 //!
-//! Both styles fill in the table `TestCase`. What differs is what `setup` gets
-//! and what its result means, so this must be known before it is called. The
-//! names that the code uses tell it.
+//! Both styles fill in the table `TestCase`, but `setup` has other arguments and results,
+//! so the host must know the style before it calls `setup`. It follows from the names in
+//! the code.
 
 /// The predecessor's tables.
 const TABLES: [&str; 2] = ["robottestingframework", "RTF"];
@@ -19,18 +19,18 @@ const FUNCTIONS: [&str; 8] = [
     "getEnvironment",
 ];
 
-/// For whom a plug-in was written.
+/// The API that a plug-in was written for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Style {
-    /// For the table `rtf`.
+    /// The table `rtf`.
     Present,
-    /// For the predecessor.
+    /// The predecessor's functions.
     Predecessor,
 }
 
 impl Style {
-    /// Judges by the code's names: a file that uses one of the predecessor's
-    /// tables or functions, and nowhere our table `rtf`, is the predecessor's.
+    /// A file that uses one of the predecessor's tables or functions, but never the table
+    /// `rtf`, has the predecessor's style.
     pub(crate) fn of(source: &str) -> Self {
         let mut before = "";
         let mut predecessor = false;
@@ -47,7 +47,7 @@ impl Style {
     }
 }
 
-/// Names and signs of Lua code; comments and texts are left out.
+/// Names and other characters of Lua code, without comments and strings.
 struct Tokens<'a>(&'a str);
 
 impl<'a> Iterator for Tokens<'a> {
@@ -75,7 +75,7 @@ impl<'a> Iterator for Tokens<'a> {
     }
 }
 
-/// What follows a text in quotes, whose first quote is taken off.
+/// The rest after a quoted string; `text` starts behind the opening quote.
 fn after_text(text: &str, quote: char) -> &str {
     let mut escaped = false;
     for (index, character) in text.char_indices() {
@@ -89,7 +89,7 @@ fn after_text(text: &str, quote: char) -> &str {
     ""
 }
 
-/// What follows `[[…]]` or `[==[…]==]`, if the code begins with such a text.
+/// The rest after `[[…]]` or `[==[…]==]`, if the code begins with one.
 fn after_long_bracket(code: &str) -> Option<&str> {
     let level = code.strip_prefix('[')?.find(|c| c != '=')?;
     let open = "=".repeat(level);
@@ -103,7 +103,7 @@ mod tests {
     use super::Style;
 
     #[test]
-    fn the_names_in_the_code_tell_the_style() {
+    fn the_style_follows_from_the_names_in_the_code() {
         let predecessors = [
             "TestCase.run = function() robottestingframework.testReport('rtf') end",
             "TestCase.run = function() TestCase.testCheck(true, 'fine') end",

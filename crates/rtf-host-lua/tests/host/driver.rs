@@ -126,7 +126,17 @@ impl Host {
         self.all("message").iter().map(text).collect()
     }
 
-    /// The runner goes away.
+    /// The first line of the first failure or error so far.
+    pub(crate) fn problem(&self) -> Option<String> {
+        let texts = self.texts();
+        let problem = |text: &str| {
+            text.strip_prefix("failure: ").or(text.strip_prefix("error: ")).map(str::to_owned)
+        };
+        let first = texts.iter().find_map(|text| problem(text))?;
+        first.lines().next().map(str::to_owned)
+    }
+
+    /// Closes the channel, like a runner that is gone.
     pub(crate) fn hang_up(&self) {
         self.channel.shutdown(Shutdown::Write).unwrap();
     }
@@ -142,7 +152,7 @@ impl Host {
 
 impl Drop for Host {
     fn drop(&mut self) {
-        // A test that failed leaves a process that nobody else would end.
+        // Ends the process of a failed test.
         drop(self.process.kill());
         drop(self.process.wait());
     }

@@ -30,18 +30,18 @@ fn a_fixture_is_set_up_checked_and_torn_down() {
 #[test]
 fn a_fixture_that_cannot_be_set_up_is_torn_down() {
     let cases = [
-        ("return false", "setup returned false"),
-        ("rtf.require(false, 'license')", "license"),
-        ("rtf.error('no license')", "no license"),
+        ("return false", json!({"outcome": "error", "reason": "setup returned false"})),
+        ("rtf.require(false, 'license')", json!({"outcome": "failed"})),
+        ("rtf.error('no license')", json!({"outcome": "error"})),
     ];
-    for (line, reason) in cases {
+    for (line, expected) in cases {
         let mut host = Host::start();
         let tear_down = "function FixtureManager.tearDown() rtf.report('down') end";
         host.start_plugin(
             "set-up-fixture",
             &format!("function FixtureManager.setup() {line} end\n{tear_down}"),
         );
-        assert_eq!(host.answer(), json!({"outcome": "error", "reason": reason}));
+        assert_eq!(host.answer(), expected, "{line}");
         assert_eq!(host.ask("tear-down-fixture"), json!({"outcome": "passed"}));
         assert_eq!(host.texts().last().unwrap(), "report: down");
     }

@@ -22,7 +22,8 @@ fn a_file_that_is_no_test_is_an_error() {
         let (answer, host) = run(source);
         let file = host.folder.path().join("plugin.lua");
         let reason = reason.replace("FILE", &file.to_string_lossy());
-        assert_eq!(answer, json!({"outcome": "error", "reason": reason}));
+        assert_eq!(answer, json!({"outcome": "error"}));
+        assert_eq!(host.problem().unwrap(), reason);
         assert!(host.all("phase").is_empty());
     }
 }

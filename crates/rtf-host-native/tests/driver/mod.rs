@@ -87,6 +87,15 @@ pub struct Ran {
 }
 
 impl Ran {
+    /// The first failure or error.
+    pub fn problem(&self) -> String {
+        let texts = self.texts();
+        let problem = |text: &String| {
+            text.strip_prefix("failure: ").or(text.strip_prefix("error: ")).map(str::to_owned)
+        };
+        texts.iter().find_map(problem).unwrap_or_default()
+    }
+
     /// The texts of all messages, each with its kind.
     pub fn texts(&self) -> Vec<String> {
         let messages = self.notifications.iter().filter(|(method, _)| method == "message");

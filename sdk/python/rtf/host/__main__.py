@@ -3,16 +3,16 @@
 import os
 import sys
 
-# `-m` puts the working folder first, and there a `json.py` of the user's would
-# take the place of the library's. The plug-in's own folder is put in when it
-# is loaded, after the host has imported what it needs.
+# `-m` puts the working directory first, where a user's `json.py` would replace the
+# library's. The plug-in's directory is added when the plug-in is loaded, after the host's
+# imports.
 if sys.path[:1] == [os.getcwd()]:
     del sys.path[0]
 
 
 def main(arguments: list[str]) -> int:
-    """Do what the command line says and return the exit code."""
-    # Only one of the two is needed, and both take time to import.
+    """Run the command and return the exit code."""
+    # Each import takes time.
     if arguments[:1] == ["--check"]:
         from rtf.host import check  # noqa: PLC0415
 

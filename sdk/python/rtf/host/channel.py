@@ -15,11 +15,9 @@ _READ_BYTES = 65536
 # The longest line that the runner accepts, its end included.
 LINE_LIMIT = 16 * 1024 * 1024
 
-_REASON_LIMIT = 10_000
-
 _PHASE = b'{"jsonrpc": "2.0", "method": "phase", "params": {"phase": "%s"}}\n'
 
-# `json.dumps` would make one for each line.
+# `json.dumps` would create one for each line.
 _ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
 
 
@@ -27,10 +25,10 @@ class Channel:
     """Reads and writes lines; any thread may write."""
 
     def __init__(self, descriptor: int) -> None:
-        """Take over the descriptor, and keep it from the plug-in's children."""
+        """Take over the descriptor, and close it in the plug-in's children."""
         self.descriptor = descriptor
         self._rest = b""
-        # Lines that go with the next one.
+        # Lines that are sent with the next one.
         self._held = b""
         os.set_inheritable(descriptor, False)  # noqa: FBT003 - the library's signature
         self._renew_lock()
@@ -39,7 +37,7 @@ class Channel:
 
     @classmethod
     def from_environment(cls) -> Channel:
-        """Open the channel that the runner named, and take its name away."""
+        """Open the channel that the runner named, and remove the variable."""
         place = os.environ.pop(CHANNEL_VARIABLE, "")
         scheme, _, number = place.partition(":")
         if scheme != "fd" or not number.isdecimal():
@@ -50,7 +48,7 @@ class Channel:
         self._lock = threading.Lock()
 
     def receive(self) -> list[bytes] | None:
-        """Return the lines that came since the last time; `None` when the runner has gone."""
+        """Wait for lines and return them; `None` when the runner is gone."""
         try:
             data = os.read(self.descriptor, _READ_BYTES)
         except ConnectionResetError:
@@ -61,11 +59,11 @@ class Channel:
         return whole
 
     def announce(self, phase: str, *, held: bool = False) -> None:
-        """Tell the runner what is done now; held back when none of it is the plug-in's code."""
+        """Announce a phase; `held` if no code of the plug-in runs in it."""
         self._write(_PHASE % phase.encode(), held=held)
 
     def notify(self, method: str, params: dict[str, object]) -> None:
-        """Tell the runner something. A text that is too long for a line is sent in parts."""
+        """Send a notification. A text that is too long for a line is sent in parts."""
         data = encode({"jsonrpc": "2.0", "method": method, "params": params})
         text = params.get("text")
         if len(data) <= LINE_LIMIT or not isinstance(text, str):
@@ -76,21 +74,16 @@ class Channel:
             self.notify(method, {**params, "text": part})
 
     def answer(self, number: object, result: dict[str, object], *, held: bool = False) -> None:
-        """Answer a request that was carried out; held back when the next one begins at once."""
-        data = encode({"jsonrpc": "2.0", "id": number, "result": result})
-        if len(data) > LINE_LIMIT:
-            # The whole reason was sent as a message before; what is left names it.
-            result = {**result, "reason": str(result.get("reason"))[:_REASON_LIMIT]}
-            data = encode({"jsonrpc": "2.0", "id": number, "result": result})
-        self._write(data, held=held)
+        """Answer a request; `held` if the next one begins immediately."""
+        self._write(encode({"jsonrpc": "2.0", "id": number, "result": result}), held=held)
 
     def refuse(self, number: object, code: int, text: str) -> None:
-        """Answer a request that cannot be carried out."""
+        """Refuse a request."""
         error = {"code": code, "message": text}
         self._write(encode({"jsonrpc": "2.0", "id": number, "error": error}))
 
     def flush(self) -> None:
-        """Send what was held back."""
+        """Send held lines."""
         if self._held:
             self._write(b"")
 
@@ -108,7 +101,7 @@ class Channel:
 
 
 def encode(line: dict[str, object]) -> bytes:
-    """Write one line. JSON has no numbers that are not finite: they become ``null``."""
+    """Encode one line. Non-finite numbers become ``null``."""
     try:
         text = _ENCODER.encode(line)
     except ValueError:
@@ -128,10 +121,10 @@ def _finite(value: object) -> object:
 
 
 def end_without_runner() -> None:
-    """End the process at once: nobody is left to run tests for."""
+    """End the process immediately: the runner is gone."""
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()
-        except (OSError, ValueError):  # whoever read it is gone too
+        except (OSError, ValueError):  # its reader is gone, too
             continue
     os._exit(1)

@@ -1,4 +1,4 @@
-"""Says of files whether they could be loaded, without running them."""
+"""Checks whether files can be loaded, without running them."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ _KINDS = {"TestCase": "test", "FixtureManager": "fixture"}
 
 
 def check_files(files: list[str]) -> None:
-    """Print what is known of each file, one JSON object a line."""
+    """Check each file and print one JSON object per line."""
     for file in files:
         sys.stdout.write(json.dumps(check_file(file)) + "\n")
 
 
 def check_file(file: str) -> dict[str, object]:
-    """Compile one file and tell the outcome."""
+    """Compile one file and return the result."""
     try:
         with open(file, "rb") as stream:
             tree = ast.parse(stream.read(), file)
-        # The compiler finds what the parser lets through: `return` outside a function.
+        # The compiler finds more errors than the parser: `return` outside a function.
         compile(tree, file, "exec", dont_inherit=True)
     except SyntaxError as problem:
         found: dict[str, object] = {"file": file, "ok": False, "message": problem.msg}
@@ -40,11 +40,10 @@ def check_file(file: str) -> dict[str, object]:
 
 
 def _kinds(tree: ast.Module) -> list[str] | None:
-    """Tell tests and fixtures by the bases that classes name, and the predecessor's by their own.
+    """Detect tests and fixtures by the names of base classes (the predecessor's by their own).
 
-    Nothing (`None`) is said of a file whose class derives from one of another
-    file: that can be known only by running it. A file in which no class
-    derives from anything is no plug-in.
+    `None` (unknown) for a file whose class derives from a class of another file. A file in
+    which no class has a base class is no plug-in.
     """
     kind_of = dict(_KINDS)
     found = []

@@ -12,7 +12,7 @@ import os
 import socket
 import sys
 
-from rtf.host.ending import has_foreign_code
+from rtf.host.fork_exit import has_foreign_code
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False

@@ -1,4 +1,4 @@
-"""A host that is started once and forks a host for each test.
+"""A host that starts once and forks a host for each test.
 
 See "Forking hosts" in ``spec/protocol.md``. The server has imported what every
 host imports, and no plug-in.
@@ -14,7 +14,7 @@ import sys
 import threading
 
 from rtf.host.clone import Clone
-from rtf.host.ending import Ending
+from rtf.host.fork_exit import ForkExit
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
@@ -29,15 +29,15 @@ _DESCRIPTOR_BYTES = 4
 _ENV_START = 47
 
 
-class Room:
-    """The server's variable in its initial environment, which ``/proc/PID/environ`` shows."""
+class InitialEnvironment:
+    """The space of the server's variable, which ``/proc/PID/environ`` shows."""
 
     def __init__(self) -> None:
-        """Find it, and make sure that it can be written."""
+        """Find it, and check that it is writable."""
         with open("/proc/self/environ", "rb") as stream:
             environment = stream.read()
         name = f"{SERVER_VARIABLE}=".encode()
-        # Behind a zero byte, or the first one.
+        # After a zero byte, or at the start.
         offset = (b"\0" + environment).index(b"\0" + name)
         self._length = environment.index(b"\0", offset) - offset
         with open("/proc/self/stat", "rb") as stream:
@@ -46,7 +46,7 @@ class Room:
         self._write(environment[offset : offset + self._length])
 
     def write(self, variables: dict[str, str]) -> None:
-        """Show these variables there, as far as there is room for them."""
+        """Write variables there, as long as there is space."""
         shown = b""
         for name, value in variables.items():
             entry = os.fsencode(f"{name}={value}\0")
@@ -70,16 +70,16 @@ class Server:
         place = os.environ.pop(SERVER_VARIABLE).split()[0]
         self._socket = socket.socket(fileno=int(place.removeprefix("fd:")))
         self._socket.set_inheritable(False)
-        self._room = Room()
-        self._told, self._tells = os.pipe()
+        self._environment = InitialEnvironment()
+        self._pid_reader, self._pid_writer = os.pipe()
         self._clone = Clone.prepare(self._socket)
-        self._ending = Ending(self._socket)
-        # Copies share these objects' memory as long as nobody looks at them.
+        self._exit = ForkExit(self._socket)
+        # Forks share the memory of frozen objects, which the collector does not touch.
         gc.collect()
         gc.freeze()
 
     def serve(self) -> int | None:
-        """Serve until the runner goes: `None`. In each fork, return its channel."""
+        """Serve until the runner is gone, and return `None`; in each fork, return its channel."""
         while True:
             packet, descriptors = self._receive()
             if not packet:
@@ -98,15 +98,15 @@ class Server:
                 self._answer({"pid": pid})
 
     def end(self, code: int) -> int:
-        """End a fork; return its exit code when that is the interpreter's to do."""
-        return self._ending.end(code)
+        """End a fork, or return the exit code if the interpreter must end it."""
+        return self._exit.end(code)
 
     def _fork(self, descriptors: int) -> int:
-        """Make a process that is the runner's child; 0 in that process."""
+        """Create a child of the runner and return its id; 0 in that process."""
         if descriptors != 3:  # noqa: PLR2004 - channel, standard output, standard error
-            raise ValueError(f"{descriptors} descriptors came, expected 3")
+            raise ValueError(f"got {descriptors} descriptors, expected 3")
         if threading.active_count() != 1 or len(os.listdir("/proc/self/task")) != 1:
-            raise RuntimeError("the interpreter has started threads by itself")
+            raise RuntimeError("the interpreter has started threads")
         if self._clone is not None:
             try:
                 return self._clone.fork()
@@ -128,18 +128,18 @@ class Server:
                 os._exit(1)
             if child == 0:
                 return 0
-            os.write(self._tells, f"{child}\n".encode())
+            os.write(self._pid_writer, f"{child}\n".encode())
             os._exit(0)
         # When it was waited for, its child has changed hands.
         _, status = os.waitpid(between, 0)
         if status != 0:
             raise RuntimeError("there cannot be a further process")
-        return int(os.read(self._told, 64))
+        return int(os.read(self._pid_reader, 64))
 
     def _become_host(self, request: dict[str, Any], descriptors: list[int]) -> int:
         self._socket.close()
-        os.close(self._told)
-        os.close(self._tells)
+        os.close(self._pid_reader)
+        os.close(self._pid_writer)
         channel, output, errors = descriptors
         os.setpgid(0, 0)
         os.dup2(output, 1)
@@ -147,10 +147,10 @@ class Server:
         os.close(output)
         os.close(errors)
         os.chdir(request["working_dir"])
-        # Not `update`: that asks what kind of thing it is given, at the price of fifty pages.
+        # `update` checks the type of its argument, which copies about fifty pages.
         for name, value in request["env"].items():
             os.environ[name] = value
-        self._room.write(request["env"])
+        self._environment.write(request["env"])
         return channel
 
     def _receive(self) -> tuple[bytes, list[int]]:
@@ -162,7 +162,7 @@ class Server:
                 ends = range(0, len(data) - len(data) % _DESCRIPTOR_BYTES, _DESCRIPTOR_BYTES)
                 numbers = [data[at : at + _DESCRIPTOR_BYTES] for at in ends]
                 descriptors += [int.from_bytes(number, sys.byteorder) for number in numbers]
-        # Python sets close-on-exec for none that it is sent.
+        # Python does not set close-on-exec for received descriptors.
         for descriptor in descriptors:
             os.set_inheritable(descriptor, False)  # noqa: FBT003 - the library's signature
         return packet, descriptors

@@ -1,4 +1,4 @@
-"""Loads a plug-in: a file with one class of ours."""
+"""Loads a plug-in: a file with one class that derives from a class of the SDK."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 
 class LoadError(Exception):
-    """The file was read, but is no plug-in."""
+    """The file is no plug-in."""
 
 
 def load(file: str, base: type[_P]) -> _P:
-    """Run the file as a module of its own and make an object of its one class."""
+    """Run the file as a separate module and create an object of its one class."""
     module = _run_file(file)
     found = _classes(module, base)
     if len(found) == 1:
@@ -42,8 +42,8 @@ def load(file: str, base: type[_P]) -> _P:
 
 
 def _run_file(file: str) -> ModuleType:
-    # Not by `importlib`: that leaves a `__pycache__` beside the user's files
-    # and insists on file names that are Python's own.
+    # `importlib` would create a `__pycache__` next to the user's files, and accepts only
+    # file names that are Python identifiers.
     with open(file, "rb", buffering=0) as stream:
         source = stream.read()
     code = _compiled(source, file)
@@ -53,16 +53,16 @@ def _run_file(file: str) -> ModuleType:
         name += "_"
     module = type(sys)(name)
     module.__file__ = file
-    predecessor.lend_module(module, source)
+    predecessor.add_module(module, source)
     sys.modules[name] = module
-    folder = os.path.dirname(os.path.abspath(file))
-    if sys.path[:1] != [folder]:
-        sys.path.insert(0, folder)
-    exec(code, module.__dict__)  # noqa: S102 - running the user's file is what a host is for
+    directory = os.path.dirname(os.path.abspath(file))
+    if sys.path[:1] != [directory]:
+        sys.path.insert(0, directory)
+    exec(code, module.__dict__)  # noqa: S102 - a host runs the user's file
     return module
 
 
-# Of the file that was loaded last: a shared host often loads it again.
+# The last loaded file: a shared host often loads it again.
 _last: list[tuple[str, bytes, CodeType]] = []
 
 
@@ -73,7 +73,7 @@ def _compiled(source: bytes, file: str) -> CodeType:
 
 
 def _classes(module: ModuleType, base: type[_P]) -> list[type[_P]]:
-    """Find the classes that the file itself defines and from which it derives no other."""
+    """Find the classes that the file defines and that are no base class of another one."""
     own = {
         entry
         for entry in vars(module).values()

@@ -1,7 +1,7 @@
-"""Tests that were written for robot-testing-framework 2.x.
+"""Runs tests that were written for robot-testing-framework 2.x.
 
-Such a test is a class with the name ``TestCase`` that derives from none of
-ours. Its functions are those of the module `robottestingframework`.
+Such a test is a class named ``TestCase`` that derives from no class of the SDK. It calls
+the functions of the module `robottestingframework`.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ CLASS_NAME = "TestCase"
 _MODULE_NAMES = ("robottestingframework", "RTF")
 
 
-def lend_module(module: ModuleType, source: bytes) -> None:
-    """Give a file that names the predecessor's module this module, imported or not."""
+def add_module(module: ModuleType, source: bytes) -> None:
+    """Add the predecessor's module to a file that names it, even without an import."""
     names = [name for name in _MODULE_NAMES if name.encode() in source]
     if names:
         import robottestingframework  # noqa: PLC0415 - most plug-ins do not need it
@@ -32,7 +32,7 @@ def lend_module(module: ModuleType, source: bytes) -> None:
 
 
 def find(module: ModuleType) -> type | None:
-    """Return the file's own class ``TestCase``, unless it is one of ours."""
+    """Return the file's class ``TestCase``, unless it derives from a class of the SDK."""
     found = vars(module).get(CLASS_NAME)
     if not isinstance(found, type) or issubclass(found, Plugin):
         return None
@@ -40,32 +40,32 @@ def find(module: ModuleType) -> type | None:
 
 
 class PredecessorTest(TestCase):
-    """Calls such a test as the predecessor did."""
+    """Calls such a test like the predecessor."""
 
     def __init__(self, test: Any) -> None:
-        """Take the object that the plug-in's class made."""
+        """Wrap an object of the plug-in's class."""
         self._test = test
 
     def setup(self, args: list[str]) -> bool | None:
-        """Hand over the parameters in one piece; only what is true is a success."""
+        """Pass the parameters as one string; only a true result is a success."""
         del args
         setup = getattr(self._test, "setup", None)
         if setup is None:
             return True
         session = _session.current()
         done = setup(session.task.param)
-        if done is None and session.judge.first() is None:
+        if done is None and session.request.has_passed():
             session.error("setup returned nothing, it has to return true")
         return done or False
 
     def run(self) -> None:
-        """Do the test."""
-        # Not dropped: the host looks whether it is a coroutine.
+        """Run the test."""
+        # Returned, because the host checks that it is no coroutine.
         result: None = self._test.run()
         return result
 
     def tearDown(self) -> None:
-        """Put back what the test changed."""
+        """Restore the initial state."""
         tear_down = getattr(self._test, "tearDown", None)
         if tear_down is not None:
             tear_down()

@@ -1,7 +1,7 @@
-"""Serves the runner: one thread reads, the main thread carries out what it asks.
+"""Serves the runner: one thread reads requests, the main thread carries them out.
 
 The plug-in runs in the main thread, as in any Python program: signals, GUI
-tool kits and robot middleware count on that.
+toolkits and robot middleware rely on that.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from _thread import start_new_thread
 from queue import SimpleQueue
 
 from rtf import _session
-from rtf._session import Judge, Session, Task
+from rtf._session import RequestState, Session, Task
 from rtf._stop import StepEnded
-from rtf.host import channel, sharing, steps
+from rtf.host import channel, shared_host, steps
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
@@ -33,91 +33,91 @@ METHOD_NOT_FOUND = -32601
 INVALID_PARAMS = -32602
 VERSION_MISMATCH = -32001
 
-# A plug-in that looks at `interrupted()` gets this long to end by itself. Then
-# it gets what Ctrl-C does to a Python program, so that its tear-down still runs.
-_POLITE_SECONDS = 0.5
+# A plug-in that polls `interrupted()` has this time to end by itself. Then it gets SIGINT,
+# as on Ctrl-C, so that its tear-down still runs.
+_STOP_GRACE_SECONDS = 0.5
 
-_BEGINNING_SECONDS = 5
+_THREAD_START_SECONDS = 5
 
 
 class Request:
-    """What the runner waits for an answer to."""
+    """A request of the runner."""
 
     def __init__(self, message: dict[str, object]) -> None:
-        """Take a message that has a number and a method."""
+        """Read a message with a number and a method."""
         self.number = message["id"]
         self.method = message.get("method")
         params = message.get("params", {})
         self.params: dict[str, object] = params if isinstance(params, dict) else {}
-        self.judge = Judge()
+        self.state = RequestState()
         self.done = threading.Event()
 
 
 class Reader:
-    """Reads the channel; requests to stop get through while a plug-in runs."""
+    """Reads the channel, also while a plug-in runs."""
 
     def __init__(self, line: channel.Channel) -> None:
-        """Read `line`, as long as nobody watches it in the thread that asks for requests."""
+        """Read `line`; before `start_thread`, on the thread that calls `next`."""
         self._requests: SimpleQueue[Request | None] = SimpleQueue()
-        # A fixture that is up: without the runner nobody would stop it.
+        # Without the runner, no process would stop a fixture.
         self.fixture_is_up = False
         self._channel = line
         self._open: list[Request] = []
         self._lock = threading.Lock()
-        self._is_watched = False
-        self._is_over = False
-        self._beginning = threading.Lock()
+        self._has_thread = False
+        self._is_last_answered = False
+        self._thread_start = threading.Lock()
 
     def next(self) -> Request | None:
-        """Return the next request; `None` when the runner has gone."""
-        while not self._is_watched and self._requests.empty():
+        """Return the next request; `None` when the runner is gone."""
+        while not self._has_thread and self._requests.empty():
             self._receive()
         return self._requests.get()
 
     def has_next(self) -> bool:
-        """Whether there is a further request already."""
+        """Whether another request has arrived."""
         return not self._requests.empty()
 
-    def watch(self) -> None:
-        """Read in a thread from now on, which does not keep the process alive.
+    def start_thread(self) -> None:
+        """Continue in a thread, which does not keep the process alive.
 
-        It is none of `threading`'s: a plug-in does not find it among its own.
+        It is not a `threading.Thread`: the plug-in does not see it.
         """
-        if not self._is_watched:
-            self._is_watched = True
-            self._beginning.acquire()
+        if not self._has_thread:
+            self._has_thread = True
+            self._thread_start.acquire()
             start_new_thread(self._read, ())
 
-    def settle(self) -> None:
-        """Let the thread begin: an interpreter that ends before that crashes."""
-        # Not for ever: in a copy of this process that the plug-in made there is no thread.
-        if self._beginning.acquire(timeout=_BEGINNING_SECONDS):
-            self._beginning.release()
+    def wait_for_thread(self) -> None:
+        """Wait until the thread runs: an interpreter that ends before that crashes."""
+        # With a time limit: a forked child of the plug-in does not have the thread.
+        if self._thread_start.acquire(timeout=_THREAD_START_SECONDS):
+            self._thread_start.release()
 
     def finish(self, request: Request, *, fixture_is_up: bool, last: bool = False) -> None:
-        """Forget a request that is about to be answered: the runner may go then.
+        """Forget a request before its answer, after which the runner may close the channel.
 
-        With the last one, what has not begun is forgotten, too, and what is still to come.
+        With the last one, forget all requests that have not begun or still arrive.
         """
         request.done.set()
         with self._lock:
             self._open.remove(request)
             if last:
                 self._open.clear()
-                self._is_over = True
+                self._is_last_answered = True
             self.fixture_is_up = fixture_is_up
 
     def _read(self) -> None:
-        self._beginning.release()
+        self._thread_start.release()
         while self._receive():
             pass
 
     def _receive(self) -> bool:
-        """Take what has come; whether there may be more."""
+        """Handle the lines that arrived; whether there may be more."""
         lines = self._channel.receive()
         if lines is not None:
             for line in lines:
-                self._take_line(line)
+                self._handle_line(line)
             return True
         with self._lock:
             if self._open or self.fixture_is_up:
@@ -125,18 +125,18 @@ class Reader:
         self._requests.put(None)
         return False
 
-    def _take_line(self, line: bytes) -> None:
+    def _handle_line(self, line: bytes) -> None:
         try:
             message = json.loads(line)
         except ValueError as problem:
             self._channel.refuse(None, PARSE_ERROR, f"not a JSON text: {problem}")
             return
         if isinstance(message, dict) and isinstance(message.get("method"), str):
-            self._take(message)
+            self._handle(message)
         else:
             self._channel.refuse(None, INVALID_REQUEST, "not a request")
 
-    def _take(self, message: dict[str, object]) -> None:
+    def _handle(self, message: dict[str, object]) -> None:
         if message.get("method") == "interrupt":
             params = message.get("params")
             params = params if isinstance(params, dict) else {}
@@ -144,7 +144,7 @@ class Reader:
         elif message.get("id") is not None:
             request = Request(message)
             with self._lock:
-                if not self._is_over:
+                if not self._is_last_answered:
                     self._open.append(request)
             self._requests.put(request)
 
@@ -152,22 +152,21 @@ class Reader:
         with self._lock:
             waiting = list(self._open)
         if number is not None:
-            # Another one's turn: this one was answered, and the two have crossed.
+            # Crossed the answer to that request, if another one is carried out.
             waiting = waiting[:1] if waiting and waiting[0].number == number else []
         for request in waiting:
-            request.judge.request_stop(reason)
+            request.state.request_stop(reason)
         session = _session.running()
         if session is not None:
-            # It may hang, and be stopped by force.
+            # The plug-in may hang and be killed.
             session.sampling.send()
         if waiting:
-            insist = threading.Thread(target=_insist, args=(waiting[0],), daemon=True)
-            insist.start()
+            threading.Thread(target=_stop_later, args=(waiting[0],), daemon=True).start()
 
 
-def _insist(request: Request) -> None:
-    if not request.done.wait(_POLITE_SECONDS):
-        request.judge.insist()
+def _stop_later(request: Request) -> None:
+    if not request.done.wait(_STOP_GRACE_SECONDS):
+        request.state.announce_signal()
         signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
 
 
@@ -180,10 +179,10 @@ class Host:
         self._is_initialized = False
         self._fixture: FixtureManager | None = None
         self._task: Task | None = None
-        self._sharing: sharing.Sharing | None = None
+        self._shared: shared_host.SharedHost | None = None
 
     def carry_out(self, request: Request, reader: Reader) -> bool:
-        """Do what is asked and answer; whether there may be a further request."""
+        """Carry out a request and answer; whether there may be another one."""
         last = False
         try:
             if request.method == "initialize":
@@ -191,22 +190,22 @@ class Host:
             elif not self._is_initialized:
                 raise _Refused(INVALID_REQUEST, "the first request must be `initialize`")
             else:
-                result, last = self._do(request)
+                result, last = self._dispatch(request)
         except _Refused as refused:
             reader.finish(request, fixture_is_up=self._fixture is not None)
             self._channel.refuse(request.number, refused.code, refused.text)
             return True
         reader.finish(request, fixture_is_up=self._fixture is not None, last=last)
-        # The beginning of the next test tells that this one is over: both in one piece.
+        # Sent with the announcement of the next test.
         held = "continues" in result and reader.has_next()
         self._channel.answer(request.number, result, held=held)
         return not last
 
-    def _do(self, request: Request) -> tuple[steps.Answer, bool]:
+    def _dispatch(self, request: Request) -> tuple[steps.Answer, bool]:
         if request.method == "run-test":
             task = _task(request.params)
             session = self._enter(task, request)
-            if not task.shared:
+            if not task.end_marker:
                 return steps.run_test(session), task.last
             return self._run_shared(session)
         if request.method == "set-up-fixture":
@@ -225,18 +224,18 @@ class Host:
             return steps.check_fixture(session, self._fixture), False
         if request.method != "tear-down-fixture":
             method = str(request.method)
-            return steps.tell_fixture(session, self._fixture, method, request.params), False
+            return steps.notify_fixture(session, self._fixture, method, request.params), False
         fixture, self._fixture = self._fixture, None
         return steps.tear_down_fixture(session, fixture), False
 
     def _run_shared(self, session: Session) -> tuple[steps.Answer, bool]:
         task = session.task
-        if self._sharing is None and not task.last:
-            self._sharing = sharing.Sharing.begin()
+        if self._shared is None and not task.last:
+            self._shared = shared_host.SharedHost.begin()
         session.announce("load")
         answer = steps.run_test(session)
         continues = answer["outcome"] == "passed" and not task.last
-        if continues and self._sharing is not None and self._sharing.stay(task.shared):
+        if continues and self._shared is not None and self._shared.end_test(task.end_marker):
             return {**answer, "continues": True}, False
         return answer, True
 
@@ -260,14 +259,14 @@ class Host:
         return {"protocol": PROTOCOL_VERSION, "host": host, "stack": stack, "supports_shared": True}
 
     def _enter(self, task: Task, request: Request) -> Session:
-        if not task.shared:
+        if not task.end_marker:
             self._channel.flush()
-        session = Session(task, request.judge, self._channel.notify, self._channel.announce)
+        session = Session(task, request.state, self._channel.notify, self._channel.announce)
         _session.enter(session)
         return session
 
 
-class _Refused(Exception):  # noqa: N818 - refusing is what the protocol calls it
+class _Refused(Exception):  # noqa: N818 - the protocol's term
     def __init__(self, code: int, text: str) -> None:
         super().__init__(text)
         self.code = code
@@ -281,26 +280,26 @@ def _task(params: dict[str, object]) -> Task:
         raise _Refused(INVALID_PARAMS, str(problem)) from None
 
 
-def _thread_ended_by(raised: threading.ExceptHookArgs) -> None:
-    """Make an error of what ends a plug-in's thread: nobody else would notice."""
+def _report_thread_exception(raised: threading.ExceptHookArgs) -> None:
+    """Report an exception that ends a thread of the plug-in as an error."""
     session = _session.running()
     problem = raised.exc_value
     if session is not None and problem is not None and not isinstance(problem, StepEnded):
-        steps.record_exception(session, problem)
+        steps.report_exception(session, problem)
 
 
 def prepare() -> None:
-    """Set what all hosts have in common: a fork has it from its server."""
+    """Prepare the process; forks inherit this from their server."""
     faulthandler.enable()
     signal.signal(signal.SIGINT, steps.stop_by_signal)
-    threading.excepthook = _thread_ended_by
+    threading.excepthook = _report_thread_exception
     for stream in (sys.stdout, sys.stderr):
-        # What was printed before a crash must not be lost with the buffer.
+        # A crash must not lose printed lines with the buffer.
         stream.reconfigure(line_buffering=True)  # type: ignore[union-attr]
 
 
 def serve(descriptor: int | None = None) -> int:
-    """Serve the runner, over the channel that its variable names, and return the exit code."""
+    """Serve the runner and return the exit code."""
     try:
         if descriptor is None:
             line = channel.Channel.from_environment()
@@ -317,8 +316,8 @@ def serve(descriptor: int | None = None) -> int:
             if request is None:
                 return 0
             if request.method != "initialize":
-                reader.watch()
+                reader.start_thread()
             if not host.carry_out(request, reader):
                 return 0
     finally:
-        reader.settle()
+        reader.wait_for_thread()

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 Answer = dict[str, object]
 
-# The session whose plug-in's code the main thread carries out right now, if
-# any. Only the main thread and its signal handler look at it.
+# The session whose plug-in the main thread runs, if any. Only the main thread and its
+# signal handler use it.
 _interruptible: list[Session] = []
 
 
@@ -36,11 +36,9 @@ def run_test(session: Session) -> Answer:
         session.sampling.begin()
         if has_setup:
             _step(session, lambda: test.setup(session.task.args), "setup")
-        if session.judge.first() is None:
+        if session.request.has_passed():
             session.announce("run")
-            session.judge.failures_are_errors = False
             _step(session, test.run, "run")
-            session.judge.failures_are_errors = True
         has_tear_down = _has_own(test, "tearDown")
         session.announce("tear-down", held=not has_tear_down)
         if has_tear_down:
@@ -49,45 +47,43 @@ def run_test(session: Session) -> Answer:
 
 
 def _has_own(test: TestCase, step: str) -> bool:
-    """Whether there is code of the plug-in to be called: without, two lines need one write."""
+    """Whether the plug-in implements a step: otherwise two lines are sent in one write."""
     return getattr(type(test), step) is not getattr(TestCase, step) or step in vars(test)
 
 
 def set_up_fixture(
     session: Session, present: FixtureManager | None
 ) -> tuple[FixtureManager | None, Answer]:
-    """Load a fixture and set it up. It is returned if it was loaded, well or not."""
+    """Load a fixture and set it up. Return the fixture if it was loaded."""
     if present is not None:
-        session.judge.note("error", "a fixture is still set up in this host")
+        session.request.record("error", "a fixture is still set up in this host")
         return present, _answer(session)
     fixture = _load(session, FixtureManager)
     if fixture is not None:
         _step(session, lambda: fixture.setup(session.task.args), "setup")
     answer = _answer(session)
-    notices = _notices(fixture) if fixture is not None else []
-    if notices and answer["outcome"] == "passed":
-        answer["subscriptions"] = notices
+    subscriptions = _subscriptions(fixture) if fixture is not None else []
+    if subscriptions and answer["outcome"] == "passed":
+        answer["subscriptions"] = subscriptions
     return fixture, answer
 
 
 def check_fixture(session: Session, fixture: FixtureManager | None) -> Answer:
-    """Ask a fixture whether it is well."""
-    session.judge.failures_are_errors = False
+    """Call a fixture's `check`."""
     if fixture is None:
-        session.judge.note("error", "no fixture is set up")
+        session.request.record("error", "no fixture is set up")
     else:
         _step(session, fixture.check, "check")
     return _answer(session)
 
 
-def tell_fixture(
+def notify_fixture(
     session: Session, fixture: FixtureManager | None, method: str, params: dict[str, object]
 ) -> Answer:
-    """Tell a fixture that a test is about to begin, or how it was judged."""
-    session.judge.failures_are_errors = False
+    """Notify a fixture that a test is about to start, or of its verdict."""
     test = _test_of(params)
     if fixture is None:
-        session.judge.note("error", "no fixture is set up")
+        session.request.record("error", "no fixture is set up")
     elif method == "test-started":
         _step(session, lambda: fixture.testStarted(test), "testStarted")
     else:
@@ -97,25 +93,21 @@ def tell_fixture(
 
 
 def _test_of(params: dict[str, object]) -> Test:
-    told = params.get("test")
-    fields = told if isinstance(told, dict) else {}
+    test = params.get("test")
+    fields = test if isinstance(test, dict) else {}
     numbers = [int(fields.get(name, 0)) for name in ("id", "repetition", "attempt")]
     return Test(numbers[0], str(fields.get("name", "")), numbers[1], numbers[2])
 
 
-def _notices(fixture: FixtureManager) -> list[str]:
-    """Return what a fixture wants to be told of tests: that for which it has a function."""
+def _subscriptions(fixture: FixtureManager) -> list[str]:
+    """Return the notifications for which a fixture has a function."""
     own, base = type(fixture), FixtureManager
-    notices = []
-    if own.testStarted is not base.testStarted:
-        notices.append("test-started")
-    if own.testFinished is not base.testFinished:
-        notices.append("test-finished")
-    return notices
+    functions = {"test-started": "testStarted", "test-finished": "testFinished"}
+    return [n for n, f in functions.items() if getattr(own, f) is not getattr(base, f)]
 
 
 def tear_down_fixture(session: Session, fixture: FixtureManager | None) -> Answer:
-    """Tear a fixture down. One that could not be loaded has nothing to tear down."""
+    """Tear a fixture down, if it was loaded."""
     if fixture is not None:
         _tear_down(session, fixture)
     return _answer(session)
@@ -127,25 +119,24 @@ def _load(session: Session, base: type[load._P]) -> load._P | None:
     return loaded[0] if loaded else None
 
 
-def _step(session: Session, function: Callable[[], object], what: str) -> bool:
-    """Carry out a step and look at what it returns; whether all is well so far."""
+def _step(session: Session, function: Callable[[], object], step: str) -> None:
+    """Carry out a step and check its result."""
     results: list[object] = []
     _guard(session, lambda: results.append(function()))
-    if results and what != "run" and _is_false(results[0]):
-        session.judge.note_failure(f"{what} returned false")
+    if results and step != "run" and _is_false(results[0]):
+        session.request.record("error" if step == "setup" else "failed", f"{step} returned false")
     if results and (hasattr(results[0], "__await__") or hasattr(results[0], "__next__")):
-        # Nothing of such a function has run: it must not look like a success.
-        session.error(f"{what} is a coroutine or a generator, which nobody runs")
-    return session.judge.first() is None
+        # The function has not run: this must not be a success.
+        session.error(f"{step} is a coroutine or a generator, which nobody runs")
 
 
 def _tear_down(session: Session, plugin: TestCase | FixtureManager) -> None:
-    session.judge.clear_stop()
+    session.request.clear_stop()
     _guard(session, plugin.tearDown)
 
 
 def _guard(session: Session, function: Callable[[], object]) -> None:
-    """Call into the plug-in and record what it raises. Only `SystemExit` gets through."""
+    """Call the plug-in and report its exception. Only `SystemExit` propagates."""
     process = os.getpid()
     try:
         try:
@@ -156,24 +147,24 @@ def _guard(session: Session, function: Callable[[], object]) -> None:
     except StepEnded:
         pass  # recorded before it was raised
     except SystemExit:
-        raise  # the plug-in ends its process, and the runner shall see that
+        raise  # the plug-in ends its process
     except load.LoadError as problem:
         session.error(str(problem))
     except BaseException as problem:  # noqa: BLE001 - also KeyboardInterrupt and the plug-in's own
-        # Ctrl-C in place of our handler's exception: a library set its own.
-        if not (isinstance(problem, KeyboardInterrupt) and session.judge.stop_requested()):
-            record_exception(session, problem)
+        # A library that replaced the signal handler raises KeyboardInterrupt.
+        if not (isinstance(problem, KeyboardInterrupt) and session.request.stop_requested()):
+            report_exception(session, problem)
     if os.getpid() != process:
-        # A forked child came back from the plug-in; its parent serves the runner.
+        # A forked child returned from the plug-in; its parent serves the runner.
         _flush_output()
         session.sampling.send()
         os._exit(0)
 
 
-def record_exception(session: Session, problem: BaseException) -> None:
-    """Make an error of an exception, with its type, its text and where it came from.
+def report_exception(session: Session, problem: BaseException) -> None:
+    """Report an exception as an error, with its type, text, location and traceback.
 
-    The text of an `rtf.Error` says it all.
+    An `rtf.Error` is reported by its text alone.
     """
     place = _location.of_exception(problem.__traceback__, session.task.file)
     if isinstance(problem, Error):
@@ -188,11 +179,11 @@ def record_exception(session: Session, problem: BaseException) -> None:
     trace = _location.without_host(problem.__traceback__)
     lines = traceback.format_exception(type(problem), problem, trace)
     text = f"{reason}\n{''.join(lines).rstrip()}" if trace else reason
-    session.error(reason, text, location=place)
+    session.error(text, location=place)
 
 
 def _is_false(result: object) -> bool:
-    """Whether it is `False` or what numpy has in its place."""
+    """Whether it is `False` or numpy's `False_`."""
     return type(result).__name__ in {"bool", "bool_"} and not result
 
 
@@ -204,17 +195,13 @@ def _flush_output() -> None:
 def _answer(session: Session) -> Answer:
     _flush_output()
     session.sampling.send()
-    problem = session.judge.first()
-    if problem is None:
-        return {"outcome": "passed"}
-    outcome, reason = problem
-    return {"outcome": outcome, "reason": reason}
+    return session.request.answer()
 
 
 def stop_by_signal(number: int, frame: FrameType | None) -> None:
-    """Handle SIGINT: end the plug-in's function if it was sent because of a request to stop."""
+    """Handle SIGINT: end the plug-in's function if the host sent the signal."""
     session = _session.running()
-    if session is None or not session.judge.take_insistence():
+    if session is None or not session.request.take_announced_signal():
         signal.default_int_handler(number, frame)
-    elif _interruptible and session.judge.stop_requested():
-        raise Interrupted(session.judge.stop_reason())
+    elif _interruptible and session.request.stop_requested():
+        raise Interrupted(session.request.stop_reason())

@@ -1,9 +1,9 @@
 # frozen_string_literal: true
 
 module RTF
-  # The time that a plug-in follows: the simulator's, if its suite has a clock.
+  # The time for a plug-in: the simulator's, if its suite has a clock.
   module Clock
-    # Set by the runner for tests of such a suite: a file with seconds.
+    # Names a file with the simulated time in seconds.
     VARIABLE = "RTF_CLOCK"
     private_constant :VARIABLE
 
@@ -13,13 +13,13 @@ module RTF
         !ENV.fetch(VARIABLE, "").empty?
       end
 
-      # Seconds of the time that is followed, since a moment that does not matter.
+      # Seconds since an arbitrary time.
       def now
-        @latest = shown || @latest || 0.0
+        @latest = read || @latest || 0.0
       end
 
-      # What the clock shows; nothing while it is being written.
-      def shown
+      # The clock's time; nil while the file is being written.
+      def read
         return Process.clock_gettime(Process::CLOCK_MONOTONIC) unless simulated?
 
         text = File.read(ENV.fetch(VARIABLE))
@@ -29,20 +29,20 @@ module RTF
       end
     end
 
-    # Measures how far the time goes on. What it jumps back is no time.
+    # Measures the elapsed time, without jumps back.
     class Stopwatch
       def initialize
-        @before = Clock.shown
+        @before = Clock.read
         @passed = 0.0
       end
 
-      # Seconds since it was made.
+      # Seconds since the stopwatch was created.
       def passed
-        shown = Clock.shown
-        return @passed unless shown
+        seconds = Clock.read
+        return @passed unless seconds
 
-        @passed += [0.0, shown - @before].max if @before
-        @before = shown
+        @passed += [0.0, seconds - @before].max if @before
+        @before = seconds
         @passed
       end
     end

@@ -3,16 +3,14 @@
 module RTF
   # The host process of Ruby plug-ins: `ruby -e 'require "rtf/host"; RTF::Host.main' --`.
   #
-  # It speaks the protocol of spec/protocol.md and runs in the interpreter that
-  # the user calls `ruby`, so that what can be required in their shell can be
-  # required in their plug-ins.
+  # It implements spec/protocol.md and runs in the user's `ruby`, so that plug-ins can
+  # require the same libraries as the user's shell.
   module Host
     module_function
 
     # Serves the runner, or checks files with `--check FILE…`. Ends the process
-    # only when that went wrong.
+    # only after an error.
     def main(arguments = ARGV)
-      # Only one of the two is needed.
       if arguments.first == "--check"
         require "rtf/host/check"
         Check.files(arguments.drop(1))

@@ -1,19 +1,19 @@
 # frozen_string_literal: true
 
 module RTF
-  # Where in the plug-in something was written.
+  # Locations in the plug-in's source.
   module Location
-    # The SDK's own folder: what lies there is never the plug-in's line.
-    FOLDER = "#{File.expand_path("..", __dir__)}/".freeze
+    # The SDK's directory: its lines are never the plug-in's.
+    DIRECTORY = "#{File.expand_path("..", __dir__)}/".freeze
 
     module_function
 
-    # The innermost place outside the SDK: the plug-in's own line.
+    # The innermost line outside the SDK: the plug-in's line.
     def caller_place
       place_of(Kernel.caller_locations(1).find { |frame| foreign?(frame) })
     end
 
-    # The innermost line of `file` in an exception's backtrace, or else the
+    # The innermost line of `file` in an exception's backtrace, otherwise the
     # innermost line outside the SDK.
     def of_exception(problem, file)
       if problem.is_a?(SyntaxError) && (found = problem.message.match(/\A(.+?):(\d+):/))
@@ -27,7 +27,7 @@ module RTF
     # The lines of the backtrace of an exception or a thread that are neither the
     # SDK's nor the interpreter's own.
     def backtrace(of)
-      (of.backtrace || []).reject { |line| line.start_with?(FOLDER, "<internal:", "-e:") }
+      (of.backtrace || []).reject { |line| line.start_with?(DIRECTORY, "<internal:", "-e:") }
     end
 
     def place_of(frame)
@@ -36,7 +36,7 @@ module RTF
 
     def foreign?(frame)
       path = frame.path
-      path && !path.start_with?(FOLDER) && !path.start_with?("<internal:") && path != "-e"
+      path && !path.start_with?(DIRECTORY) && !path.start_with?("<internal:") && path != "-e"
     end
   end
 end

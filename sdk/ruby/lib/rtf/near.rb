@@ -3,14 +3,13 @@
 require "rtf/text"
 
 module RTF
-  # What was expected and what was found, as numbers.
+  # Actual and expected numbers.
   class Comparison
-    # Above this many numbers a comparison is told in words only: a line of the
-    # protocol has an upper limit, and nobody reads a million numbers.
-    NUMBERS_SENT = 100_000
+    # Above this many numbers only the text is sent: a line of the protocol has a limit.
+    MAX_NUMBERS = 100_000
     TURN = 2 * Math::PI
 
-    # Takes numbers, arrays of numbers, or anything with `to_a`, nested or not.
+    # Accepts numbers, (nested) arrays of numbers, or anything with `to_a`.
     def initialize(got, expected, tolerance, angle: false)
       @scalar = got.is_a?(Numeric) && expected.is_a?(Numeric)
       @got = numbers(got)
@@ -22,7 +21,7 @@ module RTF
       raise ArgumentError, "the tolerance #{tolerance} is not a finite number from 0"
     end
 
-    # What is wrong, in words; nil when both are near.
+    # Describes the problem; nil if both are near.
     def problem
       return "got #{@got.length} values, expected #{@expected.length}" unless same_length?
 
@@ -36,9 +35,9 @@ module RTF
       @scalar ? text : "#{text} at index #{index}"
     end
 
-    # The form that the protocol gives it, unless it is too long for a message.
+    # The protocol's `comparison`, unless it is too long for a message.
     def to_h
-      return if @got.length + @expected.length > NUMBERS_SENT
+      return if @got.length + @expected.length > MAX_NUMBERS
 
       fields = { expected: @expected, got: @got, tolerance: @tolerance }
       fields[:worst] = worst if !@scalar && same_length? && !@got.empty?
@@ -51,7 +50,7 @@ module RTF
       @got.length == @expected.length
     end
 
-    # The index with the largest difference; what is not finite is worst of all.
+    # The index with the largest difference; non-finite numbers come first.
     def worst
       @got.each_index.find { |index| !difference(index).finite? } ||
         @got.each_index.max_by { |index| [difference(index), -index] }

@@ -1,12 +1,14 @@
 # frozen_string_literal: true
 
+require "rtf/attachment"
 require "rtf/clock"
+require "rtf/sampling"
 require "rtf/session"
 require "rtf/stop"
 require "rtf/text"
 
 module RTF
-  # What tests and fixtures have in common.
+  # The base class of tests and fixtures.
   class Plugin
     POLL_SECONDS = 0.01
     private_constant :POLL_SECONDS
@@ -14,7 +16,7 @@ module RTF
     @derived = []
 
     class << self
-      # The classes that derive from ours, each with the file that says so.
+      # All derived classes, each with its file.
       def derived
         Plugin.instance_variable_get(:@derived)
       end
@@ -26,12 +28,12 @@ module RTF
       end
     end
 
-    # The name under which the suite knows this plug-in.
+    # The plug-in's name in the suite.
     def name
       Session.current.task.name
     end
 
-    # The parameter string as it stands in the suite.
+    # The plug-in's parameter string in the suite.
     def param
       Session.current.task.param
     end
@@ -41,17 +43,17 @@ module RTF
       Session.current.task.environment
     end
 
-    # The repetition that runs, from 1.
+    # The present repetition, from 1.
     def repetition
       Session.current.task.repetition
     end
 
-    # Tells the user something; it does not change the verdict.
+    # Reports information; it does not change the verdict.
     def report(text)
       Session.current.message("report", text)
     end
 
-    # Says that the robot is wrong, and ends this step. With a class or an
+    # Reports a failure (the robot is wrong) and ends this step. With a class or an
     # exception it is Ruby's own `fail`.
     def fail(text = nil, *more, **options)
       ruby = text.nil? || text.is_a?(Exception) || text.is_a?(Class) || more.any?
@@ -60,7 +62,7 @@ module RTF
       Kernel.raise AssertionEnded, text.to_s
     end
 
-    # Says that the bench is wrong (no network, no calibration file), and ends this step.
+    # Reports an error (the bench is wrong (no network, no calibration file), and ends this step.
     def error(text)
       Session.current.error(text)
       raise AssertionEnded, text.to_s
@@ -76,13 +78,12 @@ module RTF
       Session.current.message("check", text.first)
     end
 
-    # Seconds since a moment that does not matter, by the clock that the suite has.
+    # Seconds since an arbitrary time, by the suite's clock.
     def now
       Clock.now
     end
 
-    # Sleeps, but wakes at once when the runner asks to stop; then this step ends.
-    # In a test of a suite with a clock these are seconds of simulated time.
+    # Sleeps by the suite's clock. A stop request ends the sleep and this step.
     def sleep(seconds = Float::MAX)
       return pause(seconds) unless Clock.simulated?
 
@@ -94,10 +95,10 @@ module RTF
       pause(0)
     end
 
-    # Waits until the block is true, asking every 10 ms for `timeout` seconds.
+    # Waits until the block is true, polling every 10 ms for `timeout` seconds.
     #
-    # When the time is over this is a failed assertion, which tells `what` was
-    # waited for and the last value. The time is the one of `now`.
+    # After the timeout, the assertion fails with `what` and the last value. The time is
+    # that of `now`.
     def wait_until(timeout, what)
       watch = Clock::Stopwatch.new
       loop do
@@ -114,18 +115,37 @@ module RTF
       end
     end
 
-    # Whether the runner has asked to stop; a loop that runs long should look at it.
+    # Whether the runner has asked to stop; long loops should poll this.
     def interrupted?
-      Session.current.judge.stop_requested?
+      Session.current.request.stop_requested?
     end
 
     # Prepares the plug-in. False or an exception means that this failed.
     def setup(_args); end
 
-    # Puts back what the plug-in changed. Called whatever happened before. Those
-    # who write it as the other languages do get the same.
+    # Restores the initial state. Always called. The spelling of the other languages works,
+    # too.
     def tear_down
       tearDown if respond_to?(:tearDown, true)
+    end
+
+    # Records a number; outside its limits it is a failure. A value that is not a finite
+    # number is outside any limits. A fixture measures in its `test_finished`.
+    def measure(name, value, unit = "", low: nil, high: nil)
+      signal = Sampling::Signal.with(name, unit, low: low, high: high)
+      Session.current.measured(signal, Float(value))
+    end
+
+    # Adds a copy of a complete file to the results.
+    def attach(path, name: nil, media_type: nil)
+      full = File.expand_path(path)
+      Attachment.check(full)
+      name = Text.utf8(name || File.basename(full))
+      session = Session.current
+      directory = session.task.attachments_dir
+      full = Attachment.copy(full, name, directory) unless directory.empty?
+      params = { name: name, path: Text.utf8(full), media_type: Text.utf8(media_type) }
+      session.notify("attached", params)
     end
 
     private
@@ -134,8 +154,8 @@ module RTF
     def pause(seconds)
       session = Session.current
       session.sampling.send_before(seconds)
-      judge = session.judge
-      raise Interrupted, judge.stop_reason if judge.wait_for_stop(seconds)
+      request = session.request
+      raise Interrupted, request.stop_reason if request.wait_for_stop(seconds)
     end
   end
 end

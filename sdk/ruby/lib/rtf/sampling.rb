@@ -1,20 +1,20 @@
 # frozen_string_literal: true
 
 require "rtf/location"
+require "rtf/text"
 
 module RTF
-  # Samples of signals, which are sent in batches: a test may take thousands of
-  # them in a second.
+  # Batches of samples: a test may take thousands of samples per second.
   class Sampling
-    # A batch is sent when it has so many samples.
-    COUNT = 256
-    # A sample waits no longer for the next ones. Who takes no more and does
-    # something else for long is behind by the last batch.
-    AGE_SECONDS = 0.1
+    # A batch of this size is sent.
+    BATCH_SAMPLES = 256
+    # A batch whose oldest sample has this age is sent with the next sample.
+    BATCH_AGE_SECONDS = 0.1
 
     # A signal, and the limits of its samples.
     Signal = Struct.new(:name, :unit, :low, :high) do
-      def self.of(name, unit, low: nil, high: nil)
+      def self.with(name, unit, low: nil, high: nil)
+        name, unit = [name, unit].map { |text| Text.utf8(text) }
         low, high = [low, high].map { |limit| limit && Float(limit) }
         if [low, high].compact.any?(&:nan?)
           raise ArgumentError, "a limit of `#{name}` is not a number"
@@ -23,59 +23,72 @@ module RTF
         new(name, unit, low, high)
       end
 
-      def hold?(value)
+      # Whether a value is within the limits.
+      def accept?(value)
         value.finite? && (low.nil? || value >= low) && (high.nil? || value <= high)
       end
     end
 
-    # `tell` sends a message to the runner.
-    def initialize(&tell)
-      @tell = tell
-      @lock = Mutex.new
-      @batches = []
-      # The batch that takes the next samples of a signal, by its name.
-      @open = {}
+    # `notify` sends a notification to the runner.
+    def initialize(&notify)
+      @notify = notify
+      @has_failed = false
+      clear
     end
 
-    # Times count from now on: the test's set-up begins.
+    # Starts the time of a test: its set-up begins.
     def begin
       @began = now
     end
 
-    # Keeps a sample, sends what is due, and returns the sample's time.
-    def take(signal, value, at)
+    # Adds a sample, and sends the batches that are due.
+    def add(signal, value, at, accepted:)
       taken = now
       at ||= @began ? (taken - @began).round(6) : 0.0
+      # The first violation may decide the verdict: a crash must not lose it.
+      first_failed = !accepted && !@has_failed
+      @has_failed ||= first_failed
       safely do
-        @since = taken if @batches.empty?
+        @oldest = taken if @batches.empty?
         points = points_of(signal)
         points << [at, value]
-        full = points.length >= COUNT || @batches.length >= COUNT
-        send_all if full || taken - @since >= AGE_SECONDS
+        full = points.length >= BATCH_SAMPLES || @batches.length >= BATCH_SAMPLES
+        send_all if full || first_failed || taken - @oldest >= BATCH_AGE_SECONDS
       end
-      at
     end
 
-    # Sends all that would grow too old in this time.
+    # Sends all batches if they would become too old in this time.
     def send_before(seconds)
-      safely { send_all if @batches.any? && now - @since + seconds >= AGE_SECONDS }
+      safely { send_all if @batches.any? && now - @oldest + seconds >= BATCH_AGE_SECONDS }
     end
 
-    # Sends what there is.
+    # Sends all batches.
     def send_pending
       safely { send_all } if @batches.any?
     end
 
     private
 
-    # Whatever is raised into the thread meanwhile.
+    def clear
+      @process = Process.pid
+      @lock = Mutex.new
+      @batches = []
+      # The batch for the next samples of a signal, by its name.
+      @open = {}
+    end
+
+    # Without exceptions of other threads. A forked child forgets the samples of its
+    # parent, which sends them itself.
     def safely(&block)
-      Thread.handle_interrupt(Object => :never) { @lock.synchronize(&block) }
+      Thread.handle_interrupt(Object => :never) do
+        clear unless Process.pid == @process
+        @lock.synchronize(&block)
+      end
     end
 
     def points_of(signal)
-      params, of = @open[signal.name]
-      return params[:points] if of == signal
+      params, limits = @open[signal.name]
+      return params[:points] if limits == signal
 
       params = signal.to_h.merge(location: Location.caller_place).compact.merge(points: [])
       @open[signal.name] = [params, signal]
@@ -85,7 +98,7 @@ module RTF
 
     def send_all
       @open.clear
-      @tell.call("sampled", @batches.shift) until @batches.empty?
+      @notify.call("sampled", @batches.shift) until @batches.empty?
     end
 
     def now

@@ -1,16 +1,16 @@
 # frozen_string_literal: true
 
-require "rtf/judge"
 require "rtf/location"
+require "rtf/request_state"
 require "rtf/sampling"
 require "rtf/text"
 
 module RTF
-  # What the runner asks to be done with a plug-in.
+  # The parameters of a plug-in.
   class Task
-    attr_reader :file, :name, :param, :environment, :args, :repetition, :shared
+    attr_reader :file, :name, :param, :environment, :args, :repetition, :end_marker
 
-    # Where copies of attached files go: of a test, or while a fixture is told of one.
+    # The directory for copies of attached files.
     attr_accessor :attachments_dir
 
     # Reads the parameters of `run-test` or `set-up-fixture`.
@@ -23,7 +23,7 @@ module RTF
       @args = params.fetch("args", [])
       @repetition = params.fetch("repetition", 0)
       @last = params["is_last"] == true
-      @shared = text(params, "end_marker", "")
+      @end_marker = text(params, "end_marker", "")
       strings = @args.is_a?(Array) && @args.all?(String)
       raise TypeError, "`args` is not a list of texts" unless strings
       raise TypeError, "`repetition` is not a whole number" unless @repetition.is_a?(Integer)
@@ -43,15 +43,14 @@ module RTF
     end
   end
 
-  # The link between one plug-in and the runner: what it tells, from any thread,
-  # and what went wrong first.
+  # The connection between one plug-in and the runner, for any thread.
   class Session
-    attr_reader :task, :judge, :sampling
+    attr_reader :task, :request, :sampling
 
     @current = nil
 
     class << self
-      # Makes `session` the one that plug-ins talk to; a process has one at a time.
+      # Makes `session` the present one; a process has one at a time.
       def enter(session)
         @current = session
       end
@@ -68,61 +67,53 @@ module RTF
       end
     end
 
-    # Serves `task`; `channel` tells the runner.
-    def initialize(task, judge, channel)
+    # Serves `task`; `channel` leads to the runner.
+    def initialize(task, request, channel)
       @task = task
-      @judge = judge
+      @request = request
       @channel = channel
       @sampling = Sampling.new { |method, params| channel.notify(method, params) }
     end
 
-    # Tells the runner something, after what was sampled before.
+    # Sends a notification, after the samples that were taken before.
     def notify(method, params)
       @sampling.send_pending
       @channel.notify(method, params)
     end
 
-    # Sends a message of the plug-in with the place it was written at.
+    # Sends a message of the plug-in with its location.
     def message(kind, text, location: Location.caller_place, **more)
       params = { kind: kind, text: Text.utf8(text) }
       params[:location] = location if location
       notify("message", params.merge(more.compact))
     end
 
-    # Sends a failure and keeps it if it is the first problem.
+    # Sends a failure.
     def failure(text, **more)
-      text = Text.utf8(text)
-      @judge.note_failure(text)
+      @request.record("failed")
       message("failure", text, **more)
     end
 
-    # Sends an error and keeps it if it is the first problem.
-    def error(reason, text: reason, **more)
-      @judge.note("error", Text.utf8(reason))
+    # Sends an error.
+    def error(text, **more)
+      @request.record("error")
       message("error", text, **more)
     end
 
-    # Sends a measurement; one outside its limits is a problem like a failed check.
-    def measured(name, value, unit, low, high)
-      params = { name: name, value: value, unit: unit, low: low, high: high,
-                 location: Location.caller_place }
-      good = value.finite? && (low.nil? || value >= low) && (high.nil? || value <= high)
-      @judge.note_failure(Text.violation(name, value, unit, low, high)) unless good
+    # Sends a measurement, and returns whether it is within its limits.
+    def measured(signal, value)
+      @request.record("failed") unless signal.accept?(value)
+      params = signal.to_h.merge(value: value, location: Location.caller_place)
       notify("measured", params.compact)
-      good
+      signal.accept?(value)
     end
 
-    # Keeps a sample; one outside its limits is a problem like a failed check.
+    # Adds a sample, and returns whether it is within its limits.
     def sampled(signal, value, at)
-      at = @sampling.take(signal, value, at)
-      return true if signal.hold?(value)
-
-      decides = @judge.first.nil?
-      what = "#{signal.name} at #{Text.number(at)} s"
-      @judge.note_failure(Text.violation(what, value, signal.unit, signal.low, signal.high))
-      # It must not get lost.
-      @sampling.send_pending if decides
-      false
+      accepted = signal.accept?(value)
+      @request.record("failed") unless accepted
+      @sampling.add(signal, value, at, accepted: accepted)
+      accepted
     end
   end
 end

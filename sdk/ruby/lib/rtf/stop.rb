@@ -1,16 +1,15 @@
 # frozen_string_literal: true
 
 module RTF
-  # What ends a step of a plug-in early.
+  # Ends a step of a plug-in.
   #
-  # These are no StandardErrors: a `rescue => error` around a robot's driver must
-  # not swallow a failed assertion or a request to stop. Whoever rescues
-  # Exception gains nothing either, since what went wrong first was recorded
-  # before anything was raised.
+  # No StandardError: a `rescue => error` around a robot's driver must not swallow a
+  # failed assertion or a stop request. Rescuing Exception does not make a test pass:
+  # the problem was recorded before the exception was raised.
   class StepEnded < Exception # rubocop:disable Lint/InheritException
   end
 
-  # An assertion did not hold, or the plug-in said `fail` or `error`.
+  # An assertion failed, or the plug-in called `fail` or `error`.
   class AssertionEnded < StepEnded
   end
 

@@ -1,6 +1,5 @@
 # frozen_string_literal: true
 
-require "rtf/keeper"
 require "rtf/near"
 require "rtf/plugin"
 
@@ -8,29 +7,27 @@ module RTF
   # A test: derive from it and write `run`, and `setup` and `tear_down` where
   # needed.
   #
-  # The first failure or error decides the verdict. A failure says that the
+  # The first failure or error decides the verdict. A failure means that the
   # robot is wrong, an error that the bench is; a problem in `setup` or in
   # `tear_down` is always an error.
   class TestCase < Plugin
-    include Keeper
-
-    # Does the test.
+    # Runs the test.
     def run
       raise NotImplementedError, "#{self.class} has no `run`"
     end
 
     # Takes a sample of a signal; outside its limits it is a failure, and the test
-    # goes on. `time` counts in seconds from the beginning of the set-up; now unless told.
+    # continues. `time` is in seconds since the set-up began; the default is the current time.
     def sample(name, value, unit = "", time: nil, **limits)
-      signal = Sampling::Signal.of(Text.utf8(name), Text.utf8(unit), **limits)
+      signal = Sampling::Signal.with(name, unit, **limits)
       time &&= Float(time)
       raise ArgumentError, "the time of `#{name}` is not finite" unless (time || 0).finite?
 
       Session.current.sampled(signal, Float(value), time)
     end
 
-    # Samples what the block returns at `rate` Hz; whether all are within the
-    # limits. What a reading that takes too long misses is left out.
+    # Samples the block's result at `rate` Hz; returns whether all are within the
+    # limits. A slow block skips samples.
     def sample_for(name, seconds, rate, unit = "", **limits)
       raise ArgumentError, "the rate of `#{name}` is not above 0 Hz" unless rate.positive?
 
@@ -40,14 +37,14 @@ module RTF
       while tick < (seconds * rate) - 1e-9
         sleep([tick.fdiv(rate) - watch.passed, 0].max)
         good &= sample(name, yield, unit, **limits)
-        # Each tick has its own deadline, so that delays do not add up.
+        # Each tick has a separate deadline, so that delays do not accumulate.
         tick = [tick + 1, (watch.passed * rate).ceil].max
       end
       sleep([seconds - watch.passed, 0].max)
       good
     end
 
-    # Checks that `condition` holds, and goes on either way.
+    # Checks that `condition` holds, and continues in either case.
     def check(condition, text)
       if condition
         Session.current.message("check", text)
@@ -57,8 +54,7 @@ module RTF
       condition ? true : false
     end
 
-    # Asserts something without which it is unsafe to go on: if it does not hold
-    # this test ends, and the rest of the suite is skipped.
+    # Asserts that it is safe to continue: if not, the rest of the suite is skipped.
     def require_critical(condition, text)
       unless condition
         Session.current.failure(text, critical: true)
@@ -69,7 +65,7 @@ module RTF
 
     # Checks that two numbers, vectors or matrices differ by at most `tolerance` anywhere.
     def check_near(got, expected, tolerance, what)
-      tell(Comparison.new(got, expected, tolerance), what)
+      send_comparison(Comparison.new(got, expected, tolerance), what)
     end
 
     # Asserts what `check_near` checks.
@@ -79,7 +75,7 @@ module RTF
 
     # Checks angles in radians: 3.1 and -3.1 are 0.083 apart.
     def check_angle_near(got, expected, tolerance, what)
-      tell(Comparison.new(got, expected, tolerance, angle: true), what)
+      send_comparison(Comparison.new(got, expected, tolerance, angle: true), what)
     end
 
     # Asserts what `check_angle_near` checks.
@@ -89,7 +85,7 @@ module RTF
 
     private
 
-    def tell(comparison, what)
+    def send_comparison(comparison, what)
       problem = comparison.problem
       numbers = comparison.to_h
       if problem

@@ -1,11 +1,11 @@
 # frozen_string_literal: true
 
 module RTF
-  # How values are written in messages: alike in all languages that have an SDK.
+  # Formats values in messages: the same in all SDKs (see conformance/texts.json).
   module Text
     module_function
 
-    # As C's %.6g, so that all SDKs print the same.
+    # Like C's %.6g.
     def number(value)
       return "nan" if value.nan?
       return value.negative? ? "-inf" : "inf" if value.infinite?
@@ -13,7 +13,7 @@ module RTF
       format("%.6g", value)
     end
 
-    # The last value of a condition that never came true.
+    # The last value of a condition.
     def value(thing)
       case thing
       when nil then "nil"
@@ -22,24 +22,7 @@ module RTF
       end
     end
 
-    # A measurement outside its limits: `rate: 87.5 Hz is outside 95 … 105`.
-    def violation(name, measured, unit, low, high)
-      return "#{name}: not a finite number" unless measured.finite?
-
-      text = "#{name}: #{exact(measured)} #{unit}".rstrip
-      return "#{text} is outside #{exact(low)} … #{exact(high)}" if low && high
-      return "#{text} is outside ≥ #{exact(low)}" if low
-      return "#{text} is outside ≤ #{exact(high)}" if high
-
-      text
-    end
-
-    # With all digits: a value just outside a limit looks different from it.
-    def exact(value)
-      value.to_s.delete_suffix(".0")
-    end
-
-    # Any object's text in UTF-8, which is what the protocol carries.
+    # Any object's text in UTF-8, the protocol's encoding.
     def utf8(thing)
       text = thing.to_s
       case text.encoding

@@ -12,9 +12,8 @@ module RTF
       READ_BYTES = 65_536
       # The longest line that the runner accepts, its end included.
       LINE_LIMIT = 16 * 1024 * 1024
-      REASON_LIMIT = 10_000
 
-      # Opens the channel that the runner named, and takes its name away.
+      # Opens the channel that the runner named, and removes the variable.
       def self.from_environment
         place = ENV.delete(VARIABLE).to_s
         number = place[/\Afd:(\d+)\z/, 1]
@@ -23,7 +22,7 @@ module RTF
         new(Integer(number, 10))
       end
 
-      # Takes over the descriptor, and keeps it from the plug-in's children.
+      # Takes over the descriptor, and closes it in the plug-in's children.
       def initialize(descriptor)
         @stream = IO.for_fd(descriptor, "r+b", autoclose: false)
         @stream.close_on_exec = true
@@ -31,7 +30,7 @@ module RTF
         @lock = Mutex.new
       end
 
-      # Yields each line until the runner has gone.
+      # Yields each line until the runner is gone.
       def each_line(&block)
         rest = +""
         loop do
@@ -43,7 +42,7 @@ module RTF
         nil
       end
 
-      # Tells the runner something. A text that is too long for a line is sent in parts.
+      # Sends a notification. A text that is too long for a line is sent in parts.
       def notify(method, params)
         data = encode(method: method, params: params)
         text = params[:text]
@@ -55,34 +54,29 @@ module RTF
         end
       end
 
-      # Answers a request that was carried out.
+      # Answers a request.
       def answer(number, result)
-        data = encode(id: number, result: result)
-        if data.bytesize > LINE_LIMIT
-          # The whole reason was sent as a message before; what is left names it.
-          data = encode(id: number, result: result.merge(reason: result[:reason][...REASON_LIMIT]))
-        end
-        write(data)
+        write(encode(id: number, result: result))
       end
 
-      # Answers a request that cannot be carried out.
+      # Refuses a request.
       def refuse(number, code, text)
         write(encode(id: number, error: { code: code, message: text }))
       end
 
-      # Ends the process at once: nobody is left to run tests for.
+      # Ends the process immediately: the runner is gone.
       def self.end_without_runner
         [$stdout, $stderr].each do |stream|
           stream.flush
         rescue SystemCallError, IOError
-          next # whoever read it is gone too
+          next # its reader is gone, too
         end
         exit!(1)
       end
 
       private
 
-      # JSON has no numbers that are not finite: they become null.
+      # Encodes one line. Non-finite numbers become null.
       def encode(fields)
         line = { jsonrpc: "2.0", **fields }
         "#{JSON.generate(line)}\n"
@@ -100,8 +94,7 @@ module RTF
         end
       end
 
-      # A line that was begun is written to its end, whatever is raised into
-      # the thread meanwhile.
+      # Writes a complete line, without exceptions of other threads.
       def write(data)
         Thread.handle_interrupt(Object => :never) do
           @lock.synchronize { @stream.write(data) }

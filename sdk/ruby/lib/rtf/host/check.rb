@@ -5,20 +5,20 @@ require "ripper"
 
 module RTF
   module Host
-    # Says of files whether they could be loaded, without running them.
+    # Checks whether files can be loaded, without running them.
     module Check
       KINDS = { "TestCase" => "test", "FixtureManager" => "fixture" }.freeze
       CLASS_NAME = "TestCase"
 
       module_function
 
-      # Prints what is known of each file, one JSON object a line.
+      # Checks each file and prints one JSON object per line.
       def files(names)
         $stdout.sync = true
         names.each { |name| puts JSON.generate(file(name)) }
       end
 
-      # Compiles one file and tells the outcome.
+      # Compiles one file and returns the result.
       def file(name)
         source = File.read(name, encoding: Encoding::UTF_8)
         RubyVM::InstructionSequence.compile(source, name, name)
@@ -39,12 +39,9 @@ module RTF
         { file: name, ok: false, message: message, line: line&.to_i }.compact
       end
 
-      # Tells tests and fixtures by the classes from which classes derive, and the
-      # predecessor's by their own name.
-      #
-      # Nothing (nil) is said of a file whose class derives from one of another
-      # file: that can be known only by running it. A file in which no class
-      # derives from anything is no plug-in.
+      # Detects tests and fixtures by the names of base classes (the predecessor's by their
+      # own). Nil (unknown) for a file whose class derives from a class of another file. A
+      # file in which no class has a base class is no plug-in.
       def kinds(tree)
         kind_of = KINDS.dup
         found = []

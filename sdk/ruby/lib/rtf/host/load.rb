@@ -5,9 +5,9 @@ require "rtf/host/predecessor"
 
 module RTF
   module Host
-    # Loads a plug-in: a file with one class of ours.
+    # Loads a plug-in: a file with one class that derives from a class of the SDK.
     module Load
-      # The file was read, but is no plug-in.
+      # The file is no plug-in.
       class NoPlugin < LoadError
       end
 
@@ -15,12 +15,12 @@ module RTF
 
       module_function
 
-      # Runs the file and makes an object of its one class.
+      # Runs the file and creates an object of its one class.
       def load(file, base)
         forget_previous(file)
-        folder = File.dirname(File.expand_path(file))
-        $LOAD_PATH.unshift(folder) unless $LOAD_PATH.first == folder
-        Predecessor.lend_module
+        directory = File.dirname(File.expand_path(file))
+        $LOAD_PATH.unshift(directory) unless $LOAD_PATH.first == directory
+        Predecessor.add_module
         Kernel.load(file)
         found = classes(file, base)
         return found.first.new if found.length == 1
@@ -44,14 +44,14 @@ module RTF
         raise NoPlugin, message
       end
 
-      # The classes that the file itself defines and from which it derives no other.
+      # The classes that the file defines and that are no base class of another one.
       def classes(file, base)
         own = Plugin.derived.select { |one, path| path == file && one < base }.map(&:first)
         own.reject { |one| own.any? { |other| other < one } }.sort_by(&:to_s)
       end
 
-      # A plug-in before this one in the same process leaves no class behind
-      # that this one would reopen, and no function that it would call.
+      # Removes the previous plug-in's classes and functions, which this one could reopen or
+      # call.
       def forget_previous(file)
         forget_constants(@previous) if @previous
         forget_functions(@previous) if @previous

@@ -5,17 +5,17 @@ require "rtf/test_case"
 
 module RTF
   module Host
-    # Calls a test that was written for robot-testing-framework 2.x as that did.
+    # Runs a test that was written for robot-testing-framework 2.x.
     #
-    # Such a test is a class with the name `TestCase` that derives from none of
-    # ours. Its functions are those of the module RobotTestingFramework.
+    # Such a test is a class named `TestCase` that derives from no class of the SDK. It calls
+    # the functions of the module RobotTestingFramework.
     class Predecessor < TestCase
       CLASS_NAME = :TestCase
 
       class << self
-        # The module's other names: the one in the predecessor's own guide, and
-        # the one that it had before version 2, which is ours too.
-        def lend_module
+        # Adds the module's other names: the one in the predecessor's guide, and the one
+        # before version 2, which is also the SDK's.
+        def add_module
           RobotTestingFramework.singleton_methods(false).each do |name|
             RTF.define_singleton_method(name) do |*arguments|
               RobotTestingFramework.public_send(name, *arguments)
@@ -24,7 +24,7 @@ module RTF
           Object.class_eval { private def robottestingframework = RobotTestingFramework }
         end
 
-        # The file's own class `TestCase`, unless it is one of ours.
+        # The file's class `TestCase`, unless it derives from a class of the SDK.
         def find(file)
           return unless Object.const_defined?(CLASS_NAME, false)
 
@@ -34,19 +34,19 @@ module RTF
         end
       end
 
-      # Takes the object that the plug-in's class made.
+      # Wraps an object of the plug-in's class.
       def initialize(test)
         super()
         @test = test
       end
 
-      # Hands over the parameters in one piece; only what is true is a success.
+      # Passes the parameters as one string; only a true result is a success.
       def setup(_args)
         return true unless @test.respond_to?(:setup)
 
         session = Session.current
         done = @test.setup(session.task.param)
-        if done.nil? && session.judge.first.nil?
+        if done.nil? && session.request.passed?
           session.error("setup returned nothing, it has to return true")
         end
         done || false

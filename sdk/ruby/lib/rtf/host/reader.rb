@@ -2,34 +2,33 @@
 
 require "json"
 
-require "rtf/judge"
+require "rtf/request_state"
 
 module RTF
   module Host
-    # What the runner waits for an answer to.
+    # A request of the runner.
     class Request
-      attr_reader :number, :method, :params, :judge
+      attr_reader :number, :method, :params, :state
 
-      # Takes a message that has a number and a method.
+      # Reads a message with a number and a method.
       def initialize(message)
         @number = message["id"]
         @method = message["method"]
         params = message["params"]
         @params = params.is_a?(Hash) ? params : {}
-        @judge = Judge.new
+        @state = RequestState.new
       end
     end
 
-    # Reads the channel; requests to stop, and for stacks, get through while a
-    # plug-in runs.
+    # Reads the channel, also while a plug-in runs.
     class Reader
       PARSE_ERROR = -32_700
       INVALID_REQUEST = -32_600
-      # A plug-in that looks at `interrupted?` gets this long to end by itself.
-      # Then Interrupted is raised in it, so that its tear-down still runs.
-      POLITE_SECONDS = 0.5
-      # A plug-in may rescue that: it comes again after this time.
-      AGAIN_SECONDS = 0.1
+      # A plug-in that polls `interrupted?` has this time to end by itself. Then Interrupted
+      # is raised in it, so that its tear-down still runs.
+      STOP_GRACE_SECONDS = 0.5
+      # A plug-in may rescue that: the interval at which it is raised again.
+      STOP_INTERVAL_SECONDS = 0.1
 
       # Starts reading in a thread that does not keep the process alive.
       def initialize(channel)
@@ -43,16 +42,16 @@ module RTF
         Threads.start("rtf channel") { read }
       end
 
-      # The next request; nil when the runner has gone.
+      # The next request; nil when the runner is gone.
       def next
         @requests.pop
       end
 
-      # Forgets a request that is about to be answered: the runner may go then.
-      # It may not while a fixture is up, which nobody else would stop. After the
-      # last one, requests that have not started, or that still arrive, are ignored.
+      # Forgets a request before its answer, after which the runner may close the channel,
+      # unless a fixture is set up, which no other process would stop. After the last
+      # one, requests that have not started, or that still arrive, are ignored.
       def finish(request, fixture_up:, last: false)
-        request.judge.finish
+        request.state.finish
         @lock.synchronize do
           @open.delete(request)
           @open.clear if last
@@ -64,13 +63,13 @@ module RTF
       private
 
       def read
-        @channel.each_line { |line| take(line) }
+        @channel.each_line { |line| handle(line) }
         busy = @lock.synchronize { @open.any? || @fixture_up }
         Channel.end_without_runner if busy
         @requests.push(nil)
       end
 
-      def take(line)
+      def handle(line)
         message = JSON.parse(line)
         return dispatch(message) if message.is_a?(Hash) && message["method"].is_a?(String)
 
@@ -99,20 +98,20 @@ module RTF
 
       def interrupt(reason:, number:)
         waiting = @lock.synchronize { @open.dup }
-        # Another one's turn: this one was answered, and the two have crossed.
+        # Crossed the answer to that request, if another one is carried out.
         waiting = waiting.take(1).select { |request| request.number == number } if number
-        waiting.each { |request| request.judge.request_stop(reason.to_s) }
-        # It may hang, and be stopped by force.
+        waiting.each { |request| request.state.request_stop(reason.to_s) }
+        # The plug-in may hang and be killed.
         Session.running&.sampling&.send_pending
         first = waiting.first
-        Threads.start("rtf stop") { insist(first.judge) } if first
+        Threads.start("rtf stop") { stop(first.state) } if first
       end
 
-      def insist(judge)
-        seconds = POLITE_SECONDS
-        until judge.wait_for_end(seconds)
-          judge.insist
-          seconds = AGAIN_SECONDS
+      def stop(request)
+        seconds = STOP_GRACE_SECONDS
+        until request.wait_for_end(seconds)
+          request.stop
+          seconds = STOP_INTERVAL_SECONDS
         end
       end
     end

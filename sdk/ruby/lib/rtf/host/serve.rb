@@ -34,7 +34,7 @@ module RTF
           warn "error: this is a host, which `rtf` starts by itself: #{problem.message}"
           return 2
         end
-        # What was printed before a crash must not be lost with the buffer.
+        # A crash must not lose printed lines with the buffer.
         [$stdout, $stderr].each { |stream| stream.sync = true }
         Threads.watch
         new(channel).run
@@ -44,10 +44,10 @@ module RTF
       def initialize(channel)
         @channel = channel
         @initialized = false
-        @sharing = nil
+        @shared = nil
       end
 
-      # Carries out requests until the last one, or until the runner has gone.
+      # Carries out requests until the last one, or until the runner is gone.
       def run
         reader = Reader.new(@channel)
         loop do
@@ -58,7 +58,7 @@ module RTF
 
       private
 
-      # Does what is asked and answers; whether there may be a further request.
+      # Carries out a request and answers; whether there may be another one.
       def carry_out(request, reader)
         result, last = result_of(request)
         reader.finish(request, fixture_up: !@fixture.nil?, last: last)
@@ -71,7 +71,7 @@ module RTF
       end
 
       def result_of(request)
-        return greet(request.params) if request.method == "initialize"
+        return initialize_host(request.params) if request.method == "initialize"
         unless @initialized
           raise Refused.new(INVALID_REQUEST, "the first request must be `initialize`")
         end
@@ -80,13 +80,13 @@ module RTF
         when "run-test" then run_test(request)
         when "set-up-fixture" then set_up_fixture(request)
         when "check-fixture" then Steps.check_fixture(enter(@task, request), @fixture)
-        when "test-started", "test-finished" then tell_fixture(request)
+        when "test-started", "test-finished" then notify_fixture(request)
         when "tear-down-fixture" then tear_down_fixture(request)
         else raise Refused.new(METHOD_NOT_FOUND, "unknown method `#{request.method}`")
         end
       end
 
-      def greet(params)
+      def initialize_host(params)
         unless params["protocol"] == PROTOCOL_VERSION
           raise Refused.new(VERSION_MISMATCH,
                             "rtf #{params["rtf"]} speaks version #{params["protocol"]} of the " \
@@ -100,17 +100,17 @@ module RTF
       def run_test(request)
         task = task(request)
         session = enter(task, request)
-        task.shared.empty? ? [Steps.run_test(session), task.last?] : run_shared(session)
+        task.end_marker.empty? ? [Steps.run_test(session), task.last?] : run_shared(session)
       end
 
-      # One of several tests in this process: whether it was the last one, this host says.
+      # Runs one of several tests in this process; also returns whether it was the last one.
       def run_shared(session)
         task = session.task
-        require "rtf/host/sharing"
-        @sharing ||= Sharing.begin unless task.last?
+        require "rtf/host/shared_host"
+        @shared ||= SharedHost.begin unless task.last?
         Steps.phase(session, "load")
         answer = Steps.run_test(session)
-        continues = answer[:outcome] == "passed" && !task.last? && @sharing&.stay(task.shared)
+        continues = answer[:outcome] == "passed" && !task.last? && @shared&.end_test(task.end_marker)
         continues ? [answer.merge(continues: true), false] : [answer, true]
       end
 
@@ -120,10 +120,10 @@ module RTF
         answer
       end
 
-      def tell_fixture(request)
+      def notify_fixture(request)
         session = enter(@task, request)
         session.task.attachments_dir = request.params["attachments_dir"].to_s
-        Steps.tell_fixture(session, @fixture, request.method, request.params)
+        Steps.notify_fixture(session, @fixture, request.method, request.params)
       ensure
         session.task.attachments_dir = "" if session
       end
@@ -142,7 +142,7 @@ module RTF
 
       def enter(task, request)
         task ||= Task.new({ "file" => "", "name" => "" })
-        Session.new(task, request.judge, @channel).tap { |session| Session.enter(session) }
+        Session.new(task, request.state, @channel).tap { |session| Session.enter(session) }
       end
     end
   end

@@ -15,11 +15,10 @@ module RTF
         if test
           phase(session, "setup")
           session.sampling.begin
-          if step(session, "setup") { test.setup(session.task.args) }
+          step(session, "setup") { test.setup(session.task.args) }
+          if session.request.passed?
             phase(session, "run")
-            session.judge.failures_are_errors = false
             step(session, "run") { test.run }
-            session.judge.failures_are_errors = true
           end
           phase(session, "tear-down")
           tear_down(session, test)
@@ -27,64 +26,62 @@ module RTF
         answer(session)
       end
 
-      # Loads a fixture and sets it up. It is returned if it was loaded, well or not.
+      # Loads a fixture and sets it up. Returns the fixture if it was loaded.
       def set_up_fixture(session, present)
         if present
-          session.judge.note("error", "a fixture is still set up in this host")
+          session.request.record("error", "a fixture is still set up in this host")
           return [present, answer(session)]
         end
         fixture = load(session, FixtureManager)
         step(session, "setup") { fixture.setup(session.task.args) } if fixture
         answer = answer(session)
-        notices = fixture && answer[:outcome] == "passed" ? notices(fixture) : []
-        answer[:subscriptions] = notices if notices.any?
+        wanted = fixture && session.request.passed? ? subscriptions(fixture) : []
+        answer[:subscriptions] = wanted if wanted.any?
         [fixture, answer]
       end
 
-      # What a fixture wants to be told of tests: that for which it has a method.
-      def notices(fixture)
+      # The notifications for which a fixture has a method.
+      def subscriptions(fixture)
         own = ->(name) { fixture.method(name).owner != FixtureManager }
         [*("test-started" if own[:test_started]), *("test-finished" if own[:test_finished])]
       end
 
-      # Tells a fixture that a test is about to begin, or how it was judged.
-      def tell_fixture(session, fixture, method, params)
-        session.judge.failures_are_errors = false
+      # Notifies a fixture that a test is about to start, or of its verdict.
+      def notify_fixture(session, fixture, method, params)
         test = Test.new(*(params["test"] || {}).values_at("id", "name", "repetition", "attempt"))
         if fixture.nil?
-          session.judge.note("error", "no fixture is set up")
+          session.request.record("error", "no fixture is set up")
         elsif method == "test-started"
           step(session, "test_started") { fixture.test_started(test) }
         else
-          ending = [params["verdict"], params["reason"].to_s]
-          step(session, "test_finished") { fixture.test_finished(test, *ending) }
+          verdict = [params["verdict"], params["reason"].to_s]
+          step(session, "test_finished") { fixture.test_finished(test, *verdict) }
         end
         answer(session)
       end
 
-      # Asks a fixture whether it is well.
+      # Calls a fixture's `check`.
       def check_fixture(session, fixture)
-        session.judge.failures_are_errors = false
         if fixture
           step(session, "check") { fixture.check }
         else
-          session.judge.note("error", "no fixture is set up")
+          session.request.record("error", "no fixture is set up")
         end
         answer(session)
       end
 
-      # Tears a fixture down. One that could not be loaded has nothing to tear down.
+      # Tears a fixture down, if it was loaded.
       def tear_down_fixture(session, fixture)
         tear_down(session, fixture) if fixture
         answer(session)
       end
 
-      # Makes an error of an exception, with its class, its text and where it came from.
-      def record(session, problem)
+      # Reports an exception as an error, with its class, text, location and backtrace.
+      def report(session, problem)
         reason = "#{problem.class}: #{Text.utf8(problem.message)}"
         place = Location.of_exception(problem, session.task.file)
         lines = Location.backtrace(problem).map { |line| "  from #{Text.utf8(line)}" }
-        session.error(reason, text: [reason, *lines].join("\n"), location: place)
+        session.error([reason, *lines].join("\n"), location: place)
       end
 
       def phase(session, name)
@@ -95,42 +92,44 @@ module RTF
         guard(session) { Load.load(session.task.file, base) }
       end
 
-      # Carries out a step and looks at what it returns; whether all is well so far.
-      def step(session, what, &block)
+      # Carries out a step and checks its result.
+      def step(session, name, &block)
         result = guard(session, &block)
-        session.judge.note_failure("#{what} returned false") if result == false && what != "run"
-        session.judge.first.nil?
+        return unless result == false && name != "run"
+
+        outcome = name == "setup" ? "error" : "failed"
+        session.request.record(outcome, "#{name} returned false")
       end
 
       def tear_down(session, plugin)
-        session.judge.clear_stop
+        session.request.clear_stop
         guard(session) { plugin.tear_down }
       end
 
-      # Calls into the plug-in and records what it raises. Only SystemExit gets
-      # through: the plug-in ends its process, and the runner shall see that.
+      # Calls the plug-in and reports its exception. Only SystemExit propagates: the plug-in
+      # ends its process.
       def guard(session, &block)
         process = Process.pid
         result = call(session, &block)
         return result if Process.pid == process
 
-        # A forked child came back from the plug-in; its parent serves the runner.
+        # A forked child returned from the plug-in; its parent serves the runner.
         flush_output
         session.sampling.send_pending
         exit!(0)
       end
 
       def call(session, &block)
-        session.judge.enter_plugin(&block)
+        session.request.enter_plugin(&block)
       rescue SystemExit
         raise
       rescue StepEnded
         nil # recorded before it was raised
       rescue LoadError => problem
-        problem.is_a?(Load::NoPlugin) ? session.error(problem.message) : record(session, problem)
+        problem.is_a?(Load::NoPlugin) ? session.error(problem.message) : report(session, problem)
         nil
       rescue Exception => problem # rubocop:disable Lint/RescueException
-        record(session, problem)
+        report(session, problem)
         nil
       end
 
@@ -141,8 +140,7 @@ module RTF
       def answer(session)
         flush_output
         session.sampling.send_pending
-        outcome, reason = session.judge.first
-        outcome ? { outcome: outcome, reason: reason } : { outcome: "passed" }
+        session.request.answer
       end
     end
   end

@@ -6,14 +6,13 @@ require "rtf/stop"
 
 module RTF
   module Host
-    # The threads of the process: the host's own, and the plug-in's.
+    # The threads of the host and of the plug-in.
     module Threads
       OWN = :rtf_host
       private_constant :OWN
 
-      # Notes what ends a plug-in's thread. Ruby prints of such threads that
-      # they ended; who wants to deal with it elsewhere (by `join`) turns off
-      # `report_on_exception`, and then it is not ours either.
+      # Reports exceptions that end a thread of the plug-in, unless the plug-in has disabled
+      # Ruby's report with `report_on_exception`, to handle them itself.
       module Watched
         %i[new start fork].each do |name|
           define_method(name) do |*arguments, &block|
@@ -25,19 +24,19 @@ module RTF
 
       module_function
 
-      # From now on an exception that ends a plug-in's thread is an error.
+      # From now on, an exception that ends a thread of the plug-in is an error.
       def watch
         Thread.singleton_class.prepend(Watched)
       end
 
-      # A thread of the host's own.
+      # Starts a thread of the host.
       def start(name)
         thread = Thread.new do
           Thread.current[OWN] = true
           yield
         end
         thread.name = name
-        # Heard also while the plug-in computes.
+        # Runs also while the plug-in computes.
         thread.priority = 3
         thread
       end
@@ -50,20 +49,20 @@ module RTF
         rescue StepEnded, SystemExit
           raise
         rescue Exception => problem # rubocop:disable Lint/RescueException
-          Threads.note(problem)
+          Threads.report(problem)
           raise
         end
       end
 
-      def note(problem)
+      def report(problem)
         session = Session.running
         thread = Thread.current
         return if session.nil? || thread[OWN] || !thread.report_on_exception
 
-        Steps.record(session, problem)
+        Steps.report(session, problem)
       end
 
-      # The stacks of all threads but the host's own, the main one first.
+      # The stacks of all threads of the plug-in, the main one first.
       def stacks(main)
         threads = Thread.list.reject { |thread| thread[OWN] }
         threads.sort_by { |thread| thread == main ? 0 : 1 }.map do |thread|

@@ -9,19 +9,18 @@ import sys
 _SET_CHILD_SUBREAPER = 36
 
 
-class Sharing:
-    """What tells one test from the next."""
+class SharedHost:
+    """Separates the output and the processes of one test from those of the next."""
 
     def __init__(self, outputs: list[int]) -> None:
-        """Keep the outputs as the runner gave them, whatever a plug-in makes of its own."""
+        """Take copies of the runner's outputs: a plug-in may redirect its own."""
         self._outputs = outputs
 
     @classmethod
-    def begin(cls) -> Sharing | None:
-        """Prepare for several tests; `None` when this interpreter cannot have them.
+    def begin(cls) -> SharedHost | None:
+        """Prepare for several tests; `None` if this interpreter does not support it.
 
-        What a test's process leaves must come here and not to the runner, so that
-        it is known whose it is.
+        Leftover processes of a test become children of this process, not of the runner.
         """
         try:
             import ctypes  # noqa: PLC0415 - not every interpreter has it
@@ -32,23 +31,23 @@ class Sharing:
         except (ImportError, OSError, AttributeError):
             return None
 
-    def stay(self, mark: str) -> bool:
-        """End what the test has printed, if the next one may begin."""
+    def end_test(self, end_marker: str) -> bool:
+        """Whether the next test may begin; if so, end the present test's output."""
         if _has_children():
             return False
         for name in [name for name in sys.modules if name.startswith("rtf_plugin_")]:
-            # The file was run as a module; the next one may have the same name.
+            # The next plug-in may have the same name.
             del sys.modules[name]
         try:
             for output in self._outputs:
-                _write(output, mark.encode())
+                _write(output, end_marker.encode())
         except OSError:
             return False
         return True
 
 
 def _has_children() -> bool:
-    """Whether there are processes that the test left; those that have ended are taken in."""
+    """Whether the test left processes behind. Reaps those that have ended."""
     try:
         while os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG) is not None:
             pass
@@ -62,7 +61,7 @@ def _write(output: int, data: bytes) -> None:
         try:
             data = data[os.write(output, data) :]
         except BlockingIOError:
-            # A plug-in may have made it non-blocking; the runner reads.
-            import time  # noqa: PLC0415 - hardly ever needed
+            # A plug-in may have made it non-blocking. The runner reads it.
+            import time  # noqa: PLC0415 - rarely needed
 
             time.sleep(0.001)

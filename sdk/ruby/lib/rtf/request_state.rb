@@ -3,22 +3,18 @@
 require "rtf/stop"
 
 module RTF
-  # What is known about one request of the runner: the first problem decides.
+  # The state of one request of the runner.
   #
-  # It exists from the moment the request is read, so that a request to stop
-  # which comes before the plug-in was loaded is not lost.
-  class Judge
-    # Nobody waits longer without looking again: more than some clocks can take.
+  # It exists from the moment the request is read, so that a stop request that arrives
+  # before the plug-in is loaded is not lost.
+  class RequestState
+    # Longer waits are repeated: some clocks cannot take them.
     LONGEST_SECONDS = 3600
     private_constant :LONGEST_SECONDS
 
-    # Only while `run` of a test is carried out does a failure speak against the
-    # robot; everywhere else it speaks against the bench.
-    attr_accessor :failures_are_errors
     attr_reader :stop_reason
 
     def initialize
-      @failures_are_errors = true
       @lock = Mutex.new
       @changed = ConditionVariable.new
       @stop = false
@@ -27,23 +23,24 @@ module RTF
       @done = false
     end
 
-    # Keeps the first problem; later ones are told but decide nothing.
-    def note(outcome, reason)
-      @lock.synchronize { @first = [outcome, reason] if @first.nil? }
+    # Records a problem; only the first one counts. With a reason if no message reports it.
+    def record(outcome, reason = nil)
+      @lock.synchronize { @answer ||= { outcome: outcome, reason: reason }.compact }
     end
 
-    def note_failure(reason)
-      note(@failures_are_errors ? "error" : "failed", reason)
+    # Whether there is no problem so far.
+    def passed?
+      @lock.synchronize { @answer.nil? }
     end
 
-    # Outcome and reason of the first problem.
-    def first
-      @lock.synchronize { @first }
+    # The answer to the request.
+    def answer
+      @lock.synchronize { @answer || { outcome: "passed" } }
     end
 
-    # Asks the plug-in to stop; this counts as a problem.
+    # Asks the plug-in to stop; this is a problem.
     def request_stop(reason)
-      note("interrupted", reason)
+      record("interrupted", reason)
       @lock.synchronize do
         @stop_reason = reason
         @stop = true
@@ -51,7 +48,7 @@ module RTF
       end
     end
 
-    # Lets a tear-down sleep and wait again, until the runner asks once more.
+    # Resets the request, so that a tear-down can wait until the runner asks again.
     def clear_stop
       @lock.synchronize { @stop = false }
     end
@@ -60,7 +57,7 @@ module RTF
       @stop
     end
 
-    # The request is answered: nobody has to be stopped any more.
+    # The request is answered: nothing has to be stopped any more.
     def finish
       @lock.synchronize do
         @done = true
@@ -68,18 +65,17 @@ module RTF
       end
     end
 
-    # Waits for a request to stop, but not longer than `seconds`.
+    # Waits for a stop request, for at most `seconds`.
     def wait_for_stop(seconds)
       wait(seconds) { @stop }
     end
 
-    # Waits for the end of the request, but not longer than `seconds`.
+    # Waits for the end of the request, for at most `seconds`.
     def wait_for_end(seconds)
       wait(seconds) { @done }
     end
 
-    # Lets the calling thread carry out the plug-in's code, which `insist` may
-    # end. Outside of it a late insistence hurts nobody.
+    # Runs the plug-in's code in the calling thread. Only here can `stop` raise an exception.
     def enter_plugin(&block)
       Thread.handle_interrupt(Interrupted => :never) do
         @lock.synchronize { @inside = Thread.current }
@@ -87,25 +83,25 @@ module RTF
           Thread.handle_interrupt(Interrupted => :immediate, &block)
         ensure
           @lock.synchronize { @inside = nil }
-          forget_insistence
+          discard_interrupt
         end
       end
     end
 
     # Ends the plug-in's code if it was asked to stop and still runs.
-    def insist
+    def stop
       @lock.synchronize { @inside.raise(Interrupted, @stop_reason) if @inside && @stop }
     end
 
     private
 
-    # One that was raised while the plug-in's code was being left.
-    def forget_insistence
+    # Discards an exception that was raised as the plug-in's code returned.
+    def discard_interrupt
       return unless Thread.pending_interrupt?(Interrupted)
 
       Thread.handle_interrupt(Interrupted => :immediate) { Thread.pass }
     rescue Interrupted
-      # That is what it was waited for.
+      # Expected.
     end
 
     def wait(seconds)

@@ -1,5 +1,5 @@
-//! A host that is started once and forks a host for each request: see
-//! "Forking hosts" in `spec/protocol.md`.
+//! A host that starts once and forks a host for each request: see "Forking hosts" in
+//! `spec/protocol.md`.
 
 mod unix;
 
@@ -11,10 +11,10 @@ use rtf_model::protocol::{FORK_SERVER_VARIABLE, ForkReply, ForkRequest};
 use self::unix::{Forked, Room};
 use crate::session::Session;
 
-/// The longest request.
+/// The size limit of a request.
 const PACKET_BYTES: usize = 64 * 1024;
 
-/// Why a process cannot be a server of forks.
+/// Why a process cannot be a fork server.
 #[derive(Debug, thiserror::Error)]
 pub enum ForkError {
     /// The variable does not name a descriptor.
@@ -25,7 +25,7 @@ pub enum ForkError {
     System(#[from] std::io::Error),
 }
 
-/// A process that serves forks, before its first one.
+/// A fork server before its first fork.
 #[derive(Debug)]
 pub(crate) struct ForkServer {
     socket: OwnedFd,
@@ -34,8 +34,8 @@ pub(crate) struct ForkServer {
 }
 
 impl ForkServer {
-    /// The server that this process was started as, if it was. Called while
-    /// the process has one thread.
+    /// The server, if the runner started this process as one. Called while the process has
+    /// one thread.
     pub(crate) fn open() -> Result<Option<Self>, ForkError> {
         let Some((value, room)) = Room::take(FORK_SERVER_VARIABLE) else { return Ok(None) };
         let fd = value.split_whitespace().next().and_then(|word| word.strip_prefix("fd:"));
@@ -44,8 +44,8 @@ impl ForkServer {
         Ok(Some(Self { socket, room, thread: unix::MainThread::examine()? }))
     }
 
-    /// Serves until the runner closes the socket: `None`. In each process that
-    /// was forked it returns the session with the runner.
+    /// Serves until the runner closes the socket, and returns `None`. In each forked
+    /// process it returns the session with the runner.
     pub(crate) fn serve(self) -> Result<Option<Session>, ForkError> {
         let mut packet = vec![0; PACKET_BYTES];
         unix::rehearse();
@@ -54,7 +54,7 @@ impl ForkServer {
             if length == 0 {
                 return Ok(None);
             }
-            let reply = match understand(&packet[..length], descriptors) {
+            let reply = match parse(&packet[..length], descriptors) {
                 Ok((request, [channel, stdout, stderr])) => match self.thread.fork() {
                     Ok(Forked::Child) => {
                         drop(self.socket);
@@ -72,11 +72,8 @@ impl ForkServer {
     }
 }
 
-fn understand(
-    packet: &[u8],
-    descriptors: Vec<OwnedFd>,
-) -> Result<(ForkRequest, [OwnedFd; 3]), String> {
+fn parse(packet: &[u8], descriptors: Vec<OwnedFd>) -> Result<(ForkRequest, [OwnedFd; 3]), String> {
     let request = serde_json::from_slice(packet).map_err(|error| error.to_string())?;
-    let wanted = |got: Vec<OwnedFd>| format!("{} descriptors came, expected 3", got.len());
-    Ok((request, descriptors.try_into().map_err(wanted)?))
+    let mismatch = |got: Vec<OwnedFd>| format!("got {} descriptors, expected 3", got.len());
+    Ok((request, descriptors.try_into().map_err(mismatch)?))
 }

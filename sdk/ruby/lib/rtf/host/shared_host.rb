@@ -2,17 +2,15 @@
 
 module RTF
   module Host
-    # What tells one test from the next in a host that several share: see "Shared
+    # Separates the output and the processes of one test from those of the next: see "Shared
     # hosts" in spec/protocol.md.
-    class Sharing
+    class SharedHost
       # `prctl`'s number for: orphans below this process become its children.
       SET_CHILD_SUBREAPER = 36
       private_constant :SET_CHILD_SUBREAPER
 
-      # Prepares for several tests; nil when this interpreter cannot have them.
-      #
-      # What a test's process leaves must come here and not to the runner, so that
-      # it is known whose it is.
+      # Prepares for several tests; nil if this interpreter does not support it. Leftover
+      # processes of a test become children of this process, not of the runner.
       def self.begin
         require "fiddle" # not every interpreter has it
         number = Fiddle::TYPE_LONG
@@ -25,7 +23,7 @@ module RTF
         nil
       end
 
-      # Keeps the outputs as the runner gave them, whatever a plug-in makes of its own.
+      # Takes copies of the runner's outputs: a plug-in may redirect its own.
       def initialize(outputs)
         @outputs = outputs.each do |output|
           output.binmode
@@ -33,11 +31,11 @@ module RTF
         end
       end
 
-      # Ends what the test has printed, if the next one may begin.
-      def stay(mark)
+      # Whether the next test may begin; if so, ends the present test's output.
+      def end_test(end_marker)
         return false if children?
 
-        @outputs.each { |output| output.write(mark) }
+        @outputs.each { |output| output.write(end_marker) }
         true
       rescue SystemCallError
         false
@@ -45,7 +43,7 @@ module RTF
 
       private
 
-      # Whether there are processes that the test left; those that have ended are taken in.
+      # Whether the test left processes behind. Reaps those that have ended.
       def children?
         nil while Process.wait(-1, Process::WNOHANG)
         true

@@ -1,11 +1,10 @@
-"""Ends a forked host without taking down what its server had made.
+"""Ends a forked host faster than the interpreter does.
 
-An interpreter that ends takes down all that it has, piece by piece. In a fork
-most of that is its server's, and to touch it is to copy it: that took longer
-than anything else in a short test. Nobody can notice it either. What came
-since the fork, the plug-in's above all, ends here as Python ends it: exit
-functions, then modules and what they hold, then what is still to be written.
-Whenever there is more than that, the interpreter ends the long way.
+The interpreter finalizes all objects. In a fork most of them are the server's, and each
+finalized page is copied, which takes longer than everything else in a short test. This
+module finalizes only what came after the fork, in Python's order: exit functions, modules
+and their contents, buffered output. If anything else might need finalizing (threads,
+native code, finalizers), the interpreter ends the process as usual.
 """
 
 from __future__ import annotations
@@ -18,38 +17,38 @@ import threading
 import weakref
 from types import GeneratorType
 
-# Python's own modules in machine code, which do nothing at the end of a process.
-_OWN_FOLDER = "lib-dynload"
+# Python's extension modules, which do nothing at the end of a process.
+_OWN_DIRECTORY = "lib-dynload"
 
 _STATUS_BYTES = 8192
 
 
-class Ending:
-    """What a server knows of itself before it forks."""
+class ForkExit:
+    """The state of a server before it forks."""
 
     def __init__(self, socket: object) -> None:
-        """Look at what all forks have in common; the socket is the server's."""
+        """Record the state that all forks share; `socket` is the server's."""
         self._modules = frozenset(sys.modules)
         self._streams = (sys.stdout, sys.stderr)
         self._code_size = _code_size()
         self._is_plain = not has_foreign_code() and not _has_finalizers({id(socket)})
 
     def end(self, code: int) -> int:
-        """End the process, unless that is the interpreter's to do: then return the exit code."""
-        if code == 0 and self._is_plain and self._take_down():
+        """End the process, or return the exit code if the interpreter must end it."""
+        if code == 0 and self._is_plain and self._finalize():
             os._exit(0)
         return code
 
-    def _take_down(self) -> bool:
-        """Whether nothing is left whose end anybody could notice."""
-        # What was called by `ctypes` may have left anything.
+    def _finalize(self) -> bool:
+        """Finalize what came after the fork; whether nothing else needs to be finalized."""
+        # Calls through `ctypes` may have any effect.
         if threading.active_count() > 1 or "ctypes" in sys.modules:
             return False
         try:
             atexit._run_exitfuncs()
-        except BaseException:  # noqa: BLE001 - it was printed, and changes no exit code
+        except BaseException:  # noqa: BLE001 - it was printed, and does not change the exit code
             return False
-        self._end_modules()
+        self._finalize_modules()
         if threading.active_count() > 1 or _code_size() != self._code_size:
             return False
         if (sys.stdout, sys.stderr) != self._streams or _are_finalizers_left():
@@ -61,10 +60,10 @@ class Ending:
             return False
         return True
 
-    def _end_modules(self) -> None:
-        """Take down the modules that came, in the interpreter's order."""
-        came = [name for name in sys.modules if name not in self._modules]
-        modules = [weakref.ref(sys.modules.pop(name)) for name in came]
+    def _finalize_modules(self) -> None:
+        """Finalize the new modules, in the interpreter's order."""
+        new = [name for name in sys.modules if name not in self._modules]
+        modules = [weakref.ref(sys.modules.pop(name)) for name in new]
         gc.collect()
         for reference in reversed(modules):
             module = reference()
@@ -74,7 +73,7 @@ class Ending:
 
 
 def _clear(names: dict[str, object]) -> None:
-    """Let go of what a module holds; names with one underscore are the first to go."""
+    """Clear a module; names with one underscore first, like the interpreter."""
     for is_private in (True, False):
         for name in list(names):
             if (name[:1] == "_" and name[1:2] != "_") == is_private and name != "__builtins__":
@@ -82,7 +81,7 @@ def _clear(names: dict[str, object]) -> None:
 
 
 def _code_size() -> bytes:
-    """How much machine code the process has: more, when a library was loaded."""
+    """Return the size of the loaded libraries."""
     status = os.open("/proc/self/status", os.O_RDONLY | os.O_CLOEXEC)
     try:
         return os.read(status, _STATUS_BYTES).partition(b"VmLib:")[2].partition(b"\n")[0]
@@ -91,13 +90,13 @@ def _code_size() -> bytes:
 
 
 def has_foreign_code() -> bool:
-    """Whether there is a module in machine code that did not come with the interpreter."""
+    """Whether an extension module is loaded that is not the interpreter's."""
     files = [getattr(module, "__file__", None) or "" for module in list(sys.modules.values())]
-    return any(file.endswith(".so") and _OWN_FOLDER not in file.split("/") for file in files)
+    return any(file.endswith(".so") and _OWN_DIRECTORY not in file.split("/") for file in files)
 
 
 def _has_finalizers(own: set[int]) -> bool:
-    """Whether something that was made before the first fork does something at its end."""
+    """Whether an object from before the first fork has a finalizer."""
     for stream in (sys.stdin, sys.stdout, sys.stderr):
         own = own | {id(stream), id(stream.buffer), id(getattr(stream.buffer, "raw", None))}
     return any(
@@ -108,9 +107,9 @@ def _has_finalizers(own: set[int]) -> bool:
 
 
 def _are_finalizers_left() -> bool:
-    """Whether something that came since the fork, and is still there, does something at its end.
+    """Whether an object or a class from after the fork has a finalizer.
 
-    A class is enough: the collector does not know of all that is made from one.
+    The collector does not track all instances of a class.
     """
     left = gc.get_objects()
     kinds = set(map(type, left))

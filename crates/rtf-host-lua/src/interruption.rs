@@ -1,11 +1,9 @@
-//! Reaches Lua code that does not come back by itself.
+//! Interrupts Lua code that runs: to send its stack, or to stop it.
 //!
-//! Another thread must not touch a Lua state. What Lua allows is what its own
-//! interpreter does on Ctrl-C: a signal handler *on the thread that runs Lua*
-//! sets a hook, and Lua calls the hook before its next instruction. There the
-//! stack is sent, or the stop is raised. Code that hangs inside a C function,
-//! or in a coroutine that was made before, is not reached: a debugger is, and
-//! after the grace the runner's force.
+//! Another thread must not touch a Lua state. As in Lua's own interpreter on Ctrl-C, a
+//! signal handler *on the thread that runs Lua* sets a hook, and Lua calls the hook before
+//! its next instruction. This does not work for code that hangs inside a C function or in
+//! a coroutine that was created before: the runner kills such a test.
 #![expect(unsafe_code, reason = "a signal handler and a hook speak to Lua through its C interface")]
 
 use std::ffi::{CStr, c_char, c_int};
@@ -19,23 +17,22 @@ use rtf_host::Session;
 
 use crate::sdk;
 
-/// A plug-in that looks at `rtf.interrupted()` gets this long to end by itself
-/// before an error ends what it does.
-const POLITE: Duration = Duration::from_millis(500);
+/// A plug-in that polls `rtf.interrupted()` has this time to end by itself, before an error
+/// ends its function.
+const STOP_GRACE: Duration = Duration::from_millis(500);
 
-/// A plug-in may catch that error: it comes again after this time.
-const AGAIN: Duration = Duration::from_millis(100);
+/// A plug-in may catch that error: the interval at which it is raised again.
+const STOP_INTERVAL: Duration = Duration::from_millis(100);
 
-/// Ignored by whoever does not expect it, and restarted system calls make it
-/// invisible to C modules.
+/// Ignored by default; C modules do not notice it, because system calls are restarted.
 const SIGNAL: c_int = libc::SIGURG;
 
 static STATE: AtomicPtr<ffi::lua_State> = AtomicPtr::new(ptr::null_mut());
 static WANTS_STACK: AtomicBool = AtomicBool::new(false);
 static WANTS_STOP: AtomicBool = AtomicBool::new(false);
-static WATCH: OnceLock<Watch> = OnceLock::new();
+static TARGET: OnceLock<Target> = OnceLock::new();
 
-struct Watch {
+struct Target {
     session: Session,
     lua_thread: libc::pthread_t,
 }
@@ -45,13 +42,12 @@ unsafe extern "C" {
     static lua_ident: c_char;
 }
 
-/// Makes the calling thread the one that runs Lua.
+/// Registers the calling thread as the one that runs Lua.
 pub(crate) fn start(session: &Session) {
     // SAFETY: returns the calling thread's own id.
     let lua_thread = unsafe { libc::pthread_self() };
-    WATCH.get_or_init(|| Watch { session: session.clone(), lua_thread });
-    // SAFETY: an all-zero sigaction is a valid one, and the handler does only
-    // what may be done in a signal handler.
+    TARGET.get_or_init(|| Target { session: session.clone(), lua_thread });
+    // SAFETY: an all-zero sigaction is valid, and the handler is async-signal-safe.
     unsafe {
         let mut action: libc::sigaction = std::mem::zeroed();
         action.sa_sigaction = on_signal as extern "C" fn(c_int) as libc::sighandler_t;
@@ -60,25 +56,25 @@ pub(crate) fn start(session: &Session) {
     }
 }
 
-/// Makes a state the one that is watched from now on.
-pub(crate) fn look_at(lua: &Lua) {
-    // SAFETY: only the pointer is taken, nothing is done with the state.
+/// Sets the state that can be interrupted.
+pub(crate) fn set_state(lua: &Lua) {
+    // SAFETY: stores the pointer, and does nothing with the state.
     let state = unsafe { lua.exec_raw::<()>((), |state| STATE.store(state, Ordering::Release)) };
     debug_assert!(state.is_ok(), "taking a pointer cannot fail");
 }
 
-/// The state is about to be closed.
-pub(crate) fn forget_state() {
+/// Called before the state is closed.
+pub(crate) fn clear_state() {
     STATE.store(ptr::null_mut(), Ordering::Release);
 }
 
 /// Sends the stack of the code that runs, before its next instruction.
-pub(crate) fn ask_for_stack() {
+pub(crate) fn request_stack() {
     WANTS_STACK.store(true, Ordering::Release);
     interrupt_lua();
 }
 
-/// Writes what C's buffers still hold: Lua prints through them.
+/// Flushes C's streams, to which Lua prints.
 pub(crate) fn flush_output() {
     // SAFETY: null means all output streams; they are locked while written.
     unsafe { libc::fflush(ptr::null_mut()) };
@@ -91,29 +87,28 @@ pub(crate) fn lua_release() -> String {
     ident.split_whitespace().nth(2).unwrap_or("5.4").to_owned()
 }
 
-/// The plug-in was asked to stop: ends what it does when it does not. Called on
-/// the thread that reads the channel, which no signal reaches; nor does one reach
-/// the thread that this starts.
-pub(crate) fn insist(session: &Session) {
+/// Ends the plug-in's function if it does not end by itself after a stop request. Called on
+/// the thread that reads the channel, which blocks all signals, as does the new thread.
+pub(crate) fn stop_later(session: &Session) {
     let session = session.clone();
-    let insist = move || {
-        std::thread::sleep(POLITE);
+    let stop = move || {
+        std::thread::sleep(STOP_GRACE);
         while session.interrupted() {
             WANTS_STOP.store(true, Ordering::Release);
             interrupt_lua();
-            std::thread::sleep(AGAIN);
+            std::thread::sleep(STOP_INTERVAL);
         }
         WANTS_STOP.store(false, Ordering::Release);
     };
-    let thread = std::thread::Builder::new().name("rtf-insist".to_owned()).stack_size(64 * 1024);
-    // Without the thread, the runner's force ends the plug-in.
-    drop(thread.spawn(insist));
+    let thread = std::thread::Builder::new().name("rtf-stop".to_owned()).stack_size(64 * 1024);
+    // Without the thread, the runner kills the plug-in.
+    drop(thread.spawn(stop));
 }
 
 fn interrupt_lua() {
-    if let Some(watch) = WATCH.get() {
-        // SAFETY: the main thread, which lives as long as the process.
-        unsafe { libc::pthread_kill(watch.lua_thread, SIGNAL) };
+    if let Some(target) = TARGET.get() {
+        // SAFETY: the main thread exists as long as the process.
+        unsafe { libc::pthread_kill(target.lua_thread, SIGNAL) };
     }
 }
 
@@ -122,7 +117,7 @@ extern "C" fn on_signal(_signal: c_int) {
     if !state.is_null() {
         let events = ffi::LUA_MASKCALL | ffi::LUA_MASKRET | ffi::LUA_MASKCOUNT;
         // SAFETY: Lua lets a signal handler set a hook on the thread that runs
-        // the state; the state is forgotten before it is closed.
+        // the state; the pointer is cleared before the state is closed.
         unsafe { ffi::lua_sethook(state, Some(hook), events, 1) };
     }
 }
@@ -133,13 +128,13 @@ extern "C" fn on_signal(_signal: c_int) {
 unsafe extern "C-unwind" fn hook(state: *mut ffi::lua_State, _event: *mut ffi::lua_Debug) {
     // SAFETY: Lua calls a hook with a valid state and 20 free stack slots.
     unsafe { ffi::lua_sethook(state, None, 0, 0) };
-    let Some(watch) = WATCH.get() else { return };
+    let Some(target) = TARGET.get() else { return };
     if WANTS_STACK.swap(false, Ordering::AcqRel) {
-        // SAFETY: as above; nothing that was pushed stays.
+        // SAFETY: as above; it leaves the Lua stack unchanged.
         let text = unsafe { traceback(state) };
-        watch.session.stack(text);
+        target.session.stack(text);
     }
-    if watch.session.interrupted() && WANTS_STOP.swap(false, Ordering::AcqRel) {
+    if target.session.interrupted() && WANTS_STOP.swap(false, Ordering::AcqRel) {
         // SAFETY: as above; `lua_error` does not return, and no value here
         // needs to be dropped.
         unsafe {

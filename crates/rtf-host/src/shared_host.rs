@@ -8,33 +8,32 @@ use rustix::process::{WaitId, WaitIdOptions};
 
 use crate::unix;
 
-/// What tells one test from the next.
+/// Separates the output and the processes of one test from those of the next.
 #[derive(Debug)]
-pub(crate) struct Sharing {
-    /// The outputs as the runner gave them, whatever a plug-in makes of its own.
+pub(crate) struct SharedHost {
+    /// The outputs as the runner opened them, even if a plug-in redirects its own.
     outputs: [OwnedFd; 2],
 }
 
-impl Sharing {
+impl SharedHost {
     /// Called before the first plug-in is loaded.
     pub(crate) fn begin() -> io::Result<Self> {
         let stdout = rustix::io::fcntl_dupfd_cloexec(rustix::stdio::stdout(), 3)?;
         let stderr = rustix::io::fcntl_dupfd_cloexec(rustix::stdio::stderr(), 3)?;
-        // What a test's process leaves comes here and not to the runner, so that
-        // it is known whose it is.
+        // Leftover processes of a test become children of this process, not of the runner.
         rustix::process::set_child_subreaper(Some(rustix::process::getpid()))?;
         Ok(Self { outputs: [stdout, stderr] })
     }
 
-    /// Ends what the test has printed, if the next one may begin.
-    pub(crate) fn stay(&self, mark: &str) -> bool {
+    /// Whether the next test may begin; if so, ends the present test's output.
+    pub(crate) fn end_test(&self, end_marker: &str) -> bool {
         unix::flush_output();
-        !has_children() && self.outputs.iter().all(|output| write(output, mark.as_bytes()).is_ok())
+        let write = |output| write(output, end_marker.as_bytes()).is_ok();
+        !has_children() && self.outputs.iter().all(write)
     }
 }
 
-/// Whether there are processes that the test left. Those that have ended are
-/// taken in.
+/// Whether the test left processes behind. Reaps those that have ended.
 fn has_children() -> bool {
     let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG;
     loop {
@@ -51,7 +50,7 @@ fn write(output: &OwnedFd, mut bytes: &[u8]) -> io::Result<()> {
         match rustix::io::write(output, bytes) {
             Ok(written) => bytes = &bytes[written..],
             Err(Errno::INTR) => {}
-            // A plug-in may have made it non-blocking; the runner reads.
+            // A plug-in may have made it non-blocking. The runner reads it.
             Err(Errno::AGAIN) => std::thread::sleep(std::time::Duration::from_millis(1)),
             Err(error) => return Err(error.into()),
         }

@@ -1,20 +1,19 @@
-//! Where `require` looks: beside the plug-in, where Lua looks by itself
-//! (`LUA_PATH`, `/usr/local`), and where distributions install modules.
+//! The search path of `require`: the plug-in's directory, Lua's defaults (`LUA_PATH`,
+//! `/usr/local`), and the directories in which distributions install modules.
 
 use std::path::Path;
 
 use mlua::{Lua, Table};
 
-/// Prepends the plug-in's folder to the search paths and appends the folders
-/// of distributions.
+/// Prepends the plug-in's directory to the search paths, and appends the directories of
+/// distributions.
 pub(crate) fn extend(lua: &Lua, file: &Path) -> mlua::Result<()> {
     let package: Table = lua.globals().get("package")?;
-    let folder = file.parent().map(|folder| folder.to_string_lossy().into_owned());
+    let dir = file.parent().map(|dir| dir.to_string_lossy().into_owned());
     // A search path cannot express these two characters.
-    let folder = folder.filter(|folder| !folder.contains([';', '?']));
+    let dir = dir.filter(|dir| !dir.contains([';', '?']));
     let own = |patterns: &[&str]| -> Vec<String> {
-        let folder = folder.iter();
-        folder.flat_map(|f| patterns.iter().map(move |p| format!("{f}/{p}"))).collect()
+        dir.iter().flat_map(|d| patterns.iter().map(move |p| format!("{d}/{p}"))).collect()
     };
     add(
         &package,
@@ -40,12 +39,11 @@ fn add(package: &Table, name: &str, first: &[String], last: &[String]) -> mlua::
     package.set(name, entries.join(";"))
 }
 
-fn system(folder: &str, patterns: &[&str]) -> Vec<String> {
-    patterns.iter().map(|pattern| format!("/usr/{folder}/lua/5.4/{pattern}")).collect()
+fn system(dir: &str, patterns: &[&str]) -> Vec<String> {
+    patterns.iter().map(|pattern| format!("/usr/{dir}/lua/5.4/{pattern}")).collect()
 }
 
-/// The folder under which Debian and its descendants keep libraries of an
-/// architecture.
+/// The directory in which Debian and its derivatives install an architecture's libraries.
 fn triplet() -> &'static str {
     match std::env::consts::ARCH {
         "aarch64" => "aarch64-linux-gnu",

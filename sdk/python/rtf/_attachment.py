@@ -1,0 +1,44 @@
+"""Copies attached files into the results."""
+
+from __future__ import annotations
+
+import os
+import stat
+
+_CHUNK_BYTES = 1 << 20
+
+
+def check(path: str) -> None:
+    """Raise an error that says why a path cannot be attached: only files can."""
+    try:
+        mode = os.stat(path).st_mode
+    except FileNotFoundError:
+        raise FileNotFoundError(f"there is no file `{path}` to attach") from None
+    if stat.S_ISREG(mode):
+        return
+    types = {stat.S_IFDIR: "a directory", stat.S_IFIFO: "a FIFO"}
+    file_type = types.get(stat.S_IFMT(mode), "a device or a socket")
+    raise OSError(f"`{path}` cannot be attached: it is {file_type}, not a file")
+
+
+def copy(path: str, name: str, directory: str) -> str:
+    """Copy a file into `directory` under a unique name, and return the copy's path.
+
+    A `name` without an extension gets that of the file.
+    """
+    os.makedirs(directory, exist_ok=True)
+    if not os.path.splitext(name)[1]:
+        name += os.path.splitext(path)[1]
+    safe = "".join(c if c.isalnum() or c in ".-_" else "_" for c in name)
+    number = 1
+    while True:
+        target = os.path.join(directory, f"{number}-{safe}")
+        try:
+            output = open(target, "xb")  # noqa: SIM115 - closed below, in any case
+        except FileExistsError:
+            number += 1
+            continue
+        with output, open(path, "rb") as source:
+            while chunk := source.read(_CHUNK_BYTES):
+                output.write(chunk)
+        return target
