@@ -46,9 +46,9 @@ impl Step {
 #[derive(Clone, Copy, Debug)]
 pub enum TestNotification<'a> {
     /// An attempt is about to start: `testStarted`.
-    Started(&'a TestStarts),
+    Started(&'a TestStartedParams),
     /// An attempt has a verdict: `testFinished`.
-    Finished(&'a TestEnds),
+    Finished(&'a TestFinishedParams),
 }
 
 impl TestNotification<'_> {

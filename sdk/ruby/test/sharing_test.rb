@@ -74,8 +74,8 @@ class SharingTest < HostTest
     nil until host.wait_for("phase")["phase"] == "run"
     host.send("interrupt", { reason: "late", request: 2 })
     assert_equal({ "outcome" => "passed", "continues" => true }, host.answer["result"])
-    host.send("run-test", plugin(arm("sleep"), name: "three.rb", is_last: false, end_marker: MARK),
-              4)
+    third = plugin(arm("sleep"), name: "three.rb", is_last: false, end_marker: MARK)
+    host.send("run-test", third, 4)
     nil until host.wait_for("phase")["phase"] == "run"
     host.send("interrupt", { reason: "in time", request: 4 })
     assert_equal "interrupted", host.answer["result"]["outcome"]

@@ -69,11 +69,10 @@ class VerdictsTest < HostTest
   end
 
   def test_a_problem_in_setup_or_tear_down_does_not_pass
-    { "def setup(args) = false" => { "outcome" => "error", "reason" => "setup returned false" },
-      'def setup(args) = check(false, "plugged in")' => { "outcome" => "failed" },
-      'def tear_down = require(false, "parked")' => { "outcome" => "failed" } }.each do |method, expected|
+    ["def setup(args) = false", 'def setup(args) = check(false, "plugged in")',
+     'def tear_down = require(false, "parked")'].each do |method|
       result, = run_body("", "  #{method}\n")
-      assert_equal expected, result, method
+      refute_equal "passed", result["outcome"], method
     end
   end
 

@@ -25,17 +25,17 @@ module RTF
 
     # Records a problem; only the first one counts. With a reason if no message reports it.
     def record(outcome, reason = nil)
-      @lock.synchronize { @answer ||= { outcome: outcome, reason: reason }.compact }
+      @lock.synchronize { @first = { outcome: outcome, reason: reason }.compact if @first.nil? }
     end
 
     # Whether there is no problem so far.
     def passed?
-      @lock.synchronize { @answer.nil? }
+      @lock.synchronize { @first.nil? }
     end
 
     # The answer to the request.
     def answer
-      @lock.synchronize { @answer || { outcome: "passed" } }
+      @lock.synchronize { @first || { outcome: "passed" } }
     end
 
     # Asks the plug-in to stop; this is a problem.

@@ -110,7 +110,7 @@ module RTF
         @shared ||= SharedHost.begin unless task.last?
         Steps.phase(session, "load")
         answer = Steps.run_test(session)
-        continues = answer[:outcome] == "passed" && !task.last? && @shared&.end_test(task.end_marker)
+        continues = session.request.passed? && !task.last? && @shared&.end_test(task.end_marker)
         continues ? [answer.merge(continues: true), false] : [answer, true]
       end
 
