@@ -1,32 +1,32 @@
 ---@meta
--- What a plug-in of the Robot Testing Framework may call, for the Lua language
--- server: name this folder in `workspace.library`. It is never loaded by a
--- plug-in: the host brings `rtf` with it.
+-- The functions for plug-ins of the Robot Testing Framework, for the Lua language
+-- server: add this directory to `workspace.library`. Plug-ins do not load this file: the
+-- host provides `rtf`.
 
 ---A number, a vector, or a matrix row by row.
 ---@alias rtf.Numbers number | number[] | number[][]
 
 ---Fill in the functions of your test: `function TestCase.run() … end`.
 ---@class rtf.TestCase
----@field setup? fun(args: string[]): boolean? Prepares the test; only `false` fails.
----@field run fun() Does the test.
----@field tearDown? fun() Puts back what the test changed. Called whatever happened before.
+---@field setup? fun(args: string[]): boolean? Prepares the test; only `false` means that it failed.
+---@field run fun() Runs the test.
+---@field tearDown? fun() Restores the initial state. Always called.
 TestCase = {}
 
 ---Fill in the functions of your fixture: `function FixtureManager.setup(args) … end`.
 ---@class rtf.FixtureManager
----@field setup? fun(args: string[]): boolean? Brings the fixture up; only `false` fails.
----@field check? fun(): boolean? Whether it is well; `false` means that it collapsed.
----@field tearDown? fun() Brings it down, also after a set-up that failed.
+---@field setup? fun(args: string[]): boolean? Starts the fixture; only `false` means that it failed.
+---@field check? fun(): boolean? Checks the fixture; `false` means that it collapsed.
+---@field tearDown? fun() Stops the fixture, also after a failed set-up.
 FixtureManager = {}
 
 rtf = {}
 
----Tells the user something; it does not change the verdict.
+---Reports information; it does not change the verdict.
 ---@param text any
 function rtf.report(text) end
 
----Checks that the condition holds, and goes on either way.
+---Checks that the condition holds, and continues in either case.
 ---@param condition any
 ---@param text any
 ---@return boolean holds
@@ -37,17 +37,16 @@ function rtf.check(condition, text) end
 ---@param text any
 function rtf.require(condition, text) end
 
----Asserts something without which it is unsafe to go on: if it does not hold,
----the rest of the suite is skipped.
+---Asserts that it is safe to continue: if not, the rest of the suite is skipped.
 ---@param condition any
 ---@param text any
 function rtf.require_critical(condition, text) end
 
----Says that the robot is wrong, and ends the step.
+---Reports a failure (the robot is wrong) and ends the step.
 ---@param text any
 function rtf.fail(text) end
 
----Says that the bench is wrong (no network, no calibration file), and ends the step.
+---Reports an error (the bench is wrong: no network, no calibration) and ends the step.
 ---@param text any
 function rtf.error(text) end
 
@@ -81,15 +80,15 @@ function rtf.check_angle_near(got, expected, tolerance, what) end
 ---@param what any
 function rtf.require_angle_near(got, expected, tolerance, what) end
 
----Waits until the condition is true, asking every 10 ms. When the time is over
----this is a failed assertion, which tells the last value.
+---Waits until the condition is true, polling every 10 ms. After the timeout, the
+---assertion fails with `what` and the last value.
 ---@param condition fun(): any
 ---@param timeout number Seconds.
 ---@param what any
 ---@return true
 function rtf.wait_until(condition, timeout, what) end
 
----Keeps a number with the result; outside its limits it is a failure.
+---Records a number; outside its limits it is a failure.
 ---@param name string
 ---@param value number
 ---@param unit? string
@@ -104,12 +103,12 @@ function rtf.measure(name, value, unit, low, high) end
 ---@param unit? string
 ---@param low? number
 ---@param high? number
----@param time? number Seconds since the test's set-up began; now unless told.
+---@param time? number Seconds since the test's set-up began; the default is the current time.
 ---@return boolean within
 function rtf.sample(name, value, unit, low, high, time) end
 
----Samples what `read` returns, for `seconds` at `rate` Hz. What a reading that
----takes too long misses is left out.
+---Samples the result of `read` for `seconds` at `rate` Hz. A slow `read` skips
+---samples.
 ---@param name string
 ---@param seconds number
 ---@param rate number
@@ -117,37 +116,36 @@ function rtf.sample(name, value, unit, low, high, time) end
 ---@param unit? string
 ---@param low? number
 ---@param high? number
----@return boolean within Whether all were.
+---@return boolean within Whether all samples were.
 function rtf.sample_for(name, seconds, rate, read, unit, low, high) end
 
----Keeps a copy of a file with the result. Write it to its end before; it may go
----afterwards.
+---Adds a copy of a complete file to the results. The file may be deleted afterwards.
 ---@param path string
----@param name? string The file's own name unless told.
+---@param name? string The default is the file's name.
 ---@param media_type? string
 function rtf.attach(path, name, media_type) end
 
----Seconds since a moment that does not matter, by the clock that the suite has.
+---Seconds since an arbitrary time, by the suite's clock.
 ---@return number
 function rtf.now() end
 
----Sleeps, in a suite with a clock by that one, but wakes at once when the runner asks to stop; then the step ends.
+---Sleeps by the suite's clock. A stop request ends the sleep and the step.
 ---@param seconds number
 function rtf.sleep(seconds) end
 
----Whether the runner has asked to stop; a loop that runs long should look at it.
+---Whether the runner has asked to stop; long loops should poll this.
 ---@return boolean
 function rtf.interrupted() end
 
----Tells at once that the fixture is not well any more.
+---Reports that the fixture collapsed.
 ---@param reason any
 function rtf.collapsed(reason) end
 
----The name under which the suite knows this plug-in.
+---The plug-in's name in the suite.
 ---@return string
 function rtf.name() end
 
----The parameter string as it stands in the suite.
+---The plug-in's parameter string in the suite.
 ---@return string
 function rtf.param() end
 
@@ -155,7 +153,7 @@ function rtf.param() end
 ---@return string
 function rtf.environment() end
 
----The repetition that runs, from 1.
+---The present repetition, from 1.
 ---@return integer
 function rtf.repetition() end
 

@@ -42,7 +42,7 @@ private package RobotTestingFramework.ABI is
       Size       : Interfaces.C.size_t;
       Kind       : Interfaces.Integer_32;
       Critical   : Interfaces.Integer_32;
-      Words      : Text;
+      Content      : Text;
       File       : Address;
       Line       : Interfaces.Unsigned_32;
       Comparison : Address;

@@ -61,7 +61,7 @@ package body RobotTestingFramework.Asserter is
       raise Assertion_Ended with Message;
    end Error;
 
-   --  Tells how near they are; an assertion ends the step.
+   --  Reports the comparison; a failed assertion ends the step.
    procedure Compare
      (Numbers_Are : Near.Comparison;
       What        : String;
@@ -71,108 +71,104 @@ package body RobotTestingFramework.Asserter is
    is
       Holds : Boolean;
    begin
-      Near.Tell (Numbers_Are, What, File, Line, Holds);
+      Near.Report (Numbers_Are, What, File, Line, Holds);
       if Assert and then not Holds then
          raise Assertion_Ended with What;
       end if;
    end Compare;
 
-   --  One number is a vector of one, which is told apart in the message.
-   function Scalar
-     (Got, Expected, Tolerance : Long_Float; Angle : Boolean) return Near.Comparison is
-     ((Count          => 1,
-       Expected_Count => 1,
-       Got            => (1 => Got),
-       Expected       => (1 => Expected),
-       Tolerance      => Tolerance,
-       Angle          => Angle,
-       Scalar         => True));
+   generic
+      Angle, Assert : Boolean;
+   procedure Compare_Numbers
+     (Got, Expected, Tolerance : Long_Float; What, File : String; Line : Natural);
 
-   function Vector
-     (Got, Expected : Numbers; Tolerance : Long_Float; Angle : Boolean) return Near.Comparison is
-     ((Count          => Got'Length,
-       Expected_Count => Expected'Length,
-       Got            => Near.Numbers (Got),
-       Expected       => Near.Numbers (Expected),
-       Tolerance      => Tolerance,
-       Angle          => Angle,
-       Scalar         => False));
+   procedure Compare_Numbers
+     (Got, Expected, Tolerance : Long_Float; What, File : String; Line : Natural) is
+   begin
+      Compare
+        ((Count          => 1,
+          Expected_Count => 1,
+          Got            => (1 => Got),
+          Expected       => (1 => Expected),
+          Tolerance      => Tolerance,
+          Angle          => Angle,
+          Scalar         => True), What, File, Line, Assert);
+   end Compare_Numbers;
+
+   generic
+      Angle, Assert : Boolean;
+   procedure Compare_Vectors
+     (Got, Expected : Numbers; Tolerance : Long_Float; What, File : String; Line : Natural);
+
+   procedure Compare_Vectors
+     (Got, Expected : Numbers; Tolerance : Long_Float; What, File : String; Line : Natural) is
+   begin
+      Compare
+        ((Count          => Got'Length,
+          Expected_Count => Expected'Length,
+          Got            => Near.Numbers (Got),
+          Expected       => Near.Numbers (Expected),
+          Tolerance      => Tolerance,
+          Angle          => Angle,
+          Scalar         => False), What, File, Line, Assert);
+   end Compare_Vectors;
+
+   procedure Check_Numbers is new Compare_Numbers (Angle => False, Assert => False);
+   procedure Require_Numbers is new Compare_Numbers (Angle => False, Assert => True);
+   procedure Check_Angles is new Compare_Numbers (Angle => True, Assert => False);
+   procedure Require_Angles is new Compare_Numbers (Angle => True, Assert => True);
+   procedure Check_Vectors is new Compare_Vectors (Angle => False, Assert => False);
+   procedure Require_Vectors is new Compare_Vectors (Angle => False, Assert => True);
+   procedure Check_Angle_Vectors is new Compare_Vectors (Angle => True, Assert => False);
+   procedure Require_Angle_Vectors is new Compare_Vectors (Angle => True, Assert => True);
 
    procedure Check_Near
      (Got, Expected, Tolerance : Long_Float;
       What                     : String;
       File                     : String  := Source.File;
-      Line                     : Natural := Source.Line) is
-   begin
-      Compare (Scalar (Got, Expected, Tolerance, False), What, File, Line, Assert => False);
-   end Check_Near;
-
+      Line                     : Natural := Source.Line) renames Check_Numbers;
    procedure Check_Near
      (Got, Expected : Numbers;
       Tolerance     : Long_Float;
       What          : String;
       File          : String  := Source.File;
-      Line          : Natural := Source.Line) is
-   begin
-      Compare (Vector (Got, Expected, Tolerance, False), What, File, Line, Assert => False);
-   end Check_Near;
+      Line          : Natural := Source.Line) renames Check_Vectors;
 
    procedure Require_Near
      (Got, Expected, Tolerance : Long_Float;
       What                     : String;
       File                     : String  := Source.File;
-      Line                     : Natural := Source.Line) is
-   begin
-      Compare (Scalar (Got, Expected, Tolerance, False), What, File, Line, Assert => True);
-   end Require_Near;
-
+      Line                     : Natural := Source.Line) renames Require_Numbers;
    procedure Require_Near
      (Got, Expected : Numbers;
       Tolerance     : Long_Float;
       What          : String;
       File          : String  := Source.File;
-      Line          : Natural := Source.Line) is
-   begin
-      Compare (Vector (Got, Expected, Tolerance, False), What, File, Line, Assert => True);
-   end Require_Near;
+      Line          : Natural := Source.Line) renames Require_Vectors;
 
    procedure Check_Angle_Near
      (Got, Expected, Tolerance : Long_Float;
       What                     : String;
       File                     : String  := Source.File;
-      Line                     : Natural := Source.Line) is
-   begin
-      Compare (Scalar (Got, Expected, Tolerance, True), What, File, Line, Assert => False);
-   end Check_Angle_Near;
-
+      Line                     : Natural := Source.Line) renames Check_Angles;
    procedure Check_Angle_Near
      (Got, Expected : Numbers;
       Tolerance     : Long_Float;
       What          : String;
       File          : String  := Source.File;
-      Line          : Natural := Source.Line) is
-   begin
-      Compare (Vector (Got, Expected, Tolerance, True), What, File, Line, Assert => False);
-   end Check_Angle_Near;
+      Line          : Natural := Source.Line) renames Check_Angle_Vectors;
 
    procedure Require_Angle_Near
      (Got, Expected, Tolerance : Long_Float;
       What                     : String;
       File                     : String  := Source.File;
-      Line                     : Natural := Source.Line) is
-   begin
-      Compare (Scalar (Got, Expected, Tolerance, True), What, File, Line, Assert => True);
-   end Require_Angle_Near;
-
+      Line                     : Natural := Source.Line) renames Require_Angles;
    procedure Require_Angle_Near
      (Got, Expected : Numbers;
       Tolerance     : Long_Float;
       What          : String;
       File          : String  := Source.File;
-      Line          : Natural := Source.Line) is
-   begin
-      Compare (Vector (Got, Expected, Tolerance, True), What, File, Line, Assert => True);
-   end Require_Angle_Near;
+      Line          : Natural := Source.Line) renames Require_Angle_Vectors;
 
    procedure TestFailIf
      (Condition : Boolean;

@@ -1,8 +1,8 @@
 --  SPDX-License-Identifier: Apache-2.0
---  What a plug-in finds out. The place that goes with a message is the caller's.
+--  Checks and assertions. The location in a message is the caller's.
 --
---  All may be called from any task; those that end a step do so by an exception
---  and belong into the task that runs the step.
+--  All may be called from any task. Those that end a step raise an exception, and must be
+--  called in the task that runs the step.
 
 with GNAT.Source_Info;
 
@@ -10,11 +10,11 @@ package RobotTestingFramework.Asserter is
 
    package Source renames GNAT.Source_Info;
 
-   --  Tells the user something; it does not change the verdict.
+   --  Reports information; it does not change the verdict.
    procedure Report
      (Message : String; File : String := Source.File; Line : Natural := Source.Line);
 
-   --  Checks that the condition holds, and goes on either way.
+   --  Checks that the condition holds, and continues in either case.
    procedure Check
      (Condition : Boolean;
       Message   : String;
@@ -28,20 +28,19 @@ package RobotTestingFramework.Asserter is
       File      : String  := Source.File;
       Line      : Natural := Source.Line);
 
-   --  Asserts something without which it is unsafe to go on: if it does not hold
-   --  this test ends, and the rest of the suite is skipped.
+   --  Asserts that it is safe to continue: if not, the rest of the suite is skipped.
    procedure Require_Critical
      (Condition : Boolean;
       Message   : String;
       File      : String  := Source.File;
       Line      : Natural := Source.Line);
 
-   --  Says that the robot is wrong, and ends this step.
+   --  Reports a failure (the robot is wrong) and ends this step.
    procedure Fail
      (Message : String; File : String := Source.File; Line : Natural := Source.Line)
      with No_Return;
 
-   --  Says that the bench is wrong, and ends this step.
+   --  Reports an error (the bench is wrong) and ends this step.
    procedure Error
      (Message : String; File : String := Source.File; Line : Natural := Source.Line)
      with No_Return;
@@ -100,8 +99,8 @@ package RobotTestingFramework.Asserter is
       File          : String  := Source.File;
       Line          : Natural := Source.Line);
 
-   --  The predecessor's names. Despite theirs, ErrorIf, FailIf and TestFailIf
-   --  are an error or a failure *unless* the condition holds.
+   --  The predecessor's names. Despite their names, ErrorIf, FailIf and TestFailIf
+   --  report an error or a failure *unless* the condition holds.
    procedure TestReport
      (Message : String; File : String := Source.File; Line : Natural := Source.Line)
      renames Report;

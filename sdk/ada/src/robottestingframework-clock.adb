@@ -11,7 +11,7 @@ package body RobotTestingFramework.Clock is
    use type Interfaces.C.Strings.chars_ptr;
    use type System.Address;
 
-   --  Ada.Text_IO would bring its files into each plug-in.
+   --  Ada.Text_IO would add its files to each plug-in.
    function C_Getenv (Name : char_array) return Strings.chars_ptr
      with Import, Convention => C, External_Name => "getenv";
    function C_Open (Path : Strings.chars_ptr; Mode : char_array) return System.Address
@@ -24,7 +24,7 @@ package body RobotTestingFramework.Clock is
 
    Longest : constant := 64;
 
-   --  The file with the time, which the runner names; null for the wall clock.
+   --  The file with the simulated time; null for the wall clock.
    function Path return Strings.chars_ptr is
       Value : constant Strings.chars_ptr := C_Getenv (To_C ("RTF_CLOCK"));
    begin
@@ -36,7 +36,7 @@ package body RobotTestingFramework.Clock is
 
    function Is_Simulated return Boolean is (Path /= Strings.Null_Ptr);
 
-   --  The text of the file, nothing when it cannot be read.
+   --  The text of the file; empty if it cannot be read.
    function Content (Name : Strings.chars_ptr) return String is
       File   : constant System.Address := C_Open (Name, To_C ("rb"));
       Buffer : char_array (1 .. Longest);
@@ -52,8 +52,8 @@ package body RobotTestingFramework.Clock is
       return To_Ada (Buffer (1 .. Count), Trim_Nul => False);
    end Content;
 
-   --  What the clock shows; not known while it is being written.
-   procedure Show (Is_Known : out Boolean; Time : out Duration) is
+   --  The clock's time; unknown while the file is being written.
+   procedure Read_Clock (Is_Known : out Boolean; Time : out Duration) is
    begin
       Is_Known := True;
       if not Is_Simulated then
@@ -72,7 +72,7 @@ package body RobotTestingFramework.Clock is
    exception
       when Constraint_Error =>
          Is_Known := False;
-   end Show;
+   end Read_Clock;
 
    Latest : Duration := 0.0;
 
@@ -80,7 +80,7 @@ package body RobotTestingFramework.Clock is
       Is_Known : Boolean;
       Time     : Duration;
    begin
-      Show (Is_Known, Time);
+      Read_Clock (Is_Known, Time);
       if Is_Known then
          Latest := Time;
       end if;
@@ -90,15 +90,15 @@ package body RobotTestingFramework.Clock is
    function Started return Stopwatch is
       Watch : Stopwatch;
    begin
-      Show (Watch.Is_Known, Watch.Before);
+      Read_Clock (Watch.Is_Known, Watch.Before);
       return Watch;
    end Started;
 
-   procedure Look (Watch : in out Stopwatch; Passed : out Duration) is
+   procedure Read (Watch : in out Stopwatch; Passed : out Duration) is
       Is_Known : Boolean;
       Time     : Duration;
    begin
-      Show (Is_Known, Time);
+      Read_Clock (Is_Known, Time);
       if Is_Known then
          if Watch.Is_Known then
             Watch.Passed := Watch.Passed + Duration'Max (0.0, Time - Watch.Before);
@@ -107,6 +107,6 @@ package body RobotTestingFramework.Clock is
          Watch.Is_Known := True;
       end if;
       Passed := Watch.Passed;
-   end Look;
+   end Read;
 
 end RobotTestingFramework.Clock;

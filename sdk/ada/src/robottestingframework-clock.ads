@@ -1,20 +1,20 @@
 --  SPDX-License-Identifier: Apache-2.0
---  The time that a plug-in follows: the simulator's, if its suite has a clock.
+--  The time for a plug-in: the simulator's, if its suite has a clock.
 
 private package RobotTestingFramework.Clock is
 
    --  Whether the time is a simulator's.
    function Is_Simulated return Boolean;
 
-   --  The time since a moment that does not matter.
+   --  The time since an arbitrary moment.
    function Now return Duration;
 
-   --  Measures how far the time goes on. What it jumps back is no time.
+   --  Measures the elapsed time, without jumps back.
    type Stopwatch is private;
 
    function Started return Stopwatch;
 
-   procedure Look (Watch : in out Stopwatch; Passed : out Duration);
+   procedure Read (Watch : in out Stopwatch; Passed : out Duration);
 
 private
 

@@ -23,14 +23,13 @@ package body RobotTestingFramework.Entry_Point is
    subtype Address is ABI.Address;
    subtype Result is Interfaces.Integer_32;
 
-   --  The plug-in has no object of its own in C: what it gets back is the
-   --  address of this.
+   --  C only gets this address: the plug-in's object is in TestCase or FixtureManager.
    Self_Mark : aliased Integer := 0;
 
-   --  Made when the host asked for the table, and not used yet.
+   --  Created when the host asked for the table, and not used yet.
    Is_Made : Boolean := False;
 
-   --  Makes the test or fixture, unless that was done already.
+   --  Creates the test or fixture, unless it exists.
    procedure Make is
    begin
       if not Is_Made then
@@ -44,8 +43,8 @@ package body RobotTestingFramework.Entry_Point is
       end if;
    end Make;
 
-   --  The line in `arm.adb:12 index check failed`, which the compiler writes.
-   procedure Find_Place (Text : String; Last : out Natural; Line : out Natural) is
+   --  The location in a text of the compiler: `arm.adb:12 index check failed`.
+   procedure Find_Location (Text : String; Last : out Natural; Line : out Natural) is
    begin
       Last := 0;
       Line := 0;
@@ -60,10 +59,10 @@ package body RobotTestingFramework.Entry_Point is
          end if;
          exit when Text (Index) = ' ';
       end loop;
-   end Find_Place;
+   end Find_Location;
 
-   --  Makes an error of an exception: its name, its text, and the addresses from
-   --  which it came, if the binder keeps them (switch -E).
+   --  Reports an exception as an error: its name, its text, and the call addresses, if
+   --  the binder stores them (switch -E).
    procedure Report (Raised : Ada.Exceptions.Exception_Occurrence) is
       Text  : constant String := Ada.Exceptions.Exception_Message (Raised);
       Known : constant String := Ada.Exceptions.Exception_Information (Raised);
@@ -74,16 +73,16 @@ package body RobotTestingFramework.Entry_Point is
       while Trace <= Known'Last and then Known (Trace) /= ASCII.LF loop
          Trace := Trace + 1;
       end loop;
-      Find_Place (Text, Last, Line);
+      Find_Location (Text, Last, Line);
       Host.Send
         (Kind  => ABI.Error,
-         Words => Ada.Exceptions.Exception_Name (Raised) & ": " & Text
+         Content => Ada.Exceptions.Exception_Name (Raised) & ": " & Text
            & (if Trace < Known'Last then Known (Trace .. Known'Last - 1) else ""),
          File  => (if Last = 0 then "" else Text (Text'First .. Last)),
          Line  => Line);
    end Report;
 
-   --  Carries out a step; what it raises becomes an error.
+   --  Calls a step, and reports its exception as an error.
    generic
       with function Step return Boolean;
    function Guarded return Result;
@@ -141,7 +140,7 @@ package body RobotTestingFramework.Entry_Point is
    is
       pragma Unreferenced (Self);
    begin
-      Process.Keep (Count, Arguments);
+      Process.Set_Arguments (Count, Arguments);
       return Guarded_Setup;
    end Set_Up;
 
@@ -167,39 +166,39 @@ package body RobotTestingFramework.Entry_Point is
       return Guarded_Check;
    end Check;
 
-   --  What the fixture is told; for the time of one call.
-   Told : access constant ABI.Test;
+   --  The test of the notification, during one call.
+   Notified : access constant ABI.Test;
 
-   function Told_Test return FixtureManager.Test is
-      Name : constant String := Host.To_Ada (Told.Name);
+   function Notified_Test return FixtureManager.Test is
+      Name : constant String := Host.To_Ada (Notified.Name);
    begin
       return
         (Length     => Name'Length,
-         Id         => Natural (Told.Id),
-         Repetition => Positive (Told.Repetition),
-         Attempt    => Positive (Told.Attempt),
+         Id         => Natural (Notified.Id),
+         Repetition => Positive (Notified.Repetition),
+         Attempt    => Positive (Notified.Attempt),
          Name       => Name);
-   end Told_Test;
+   end Notified_Test;
 
-   function Do_Started return Boolean is (FixtureManager.Current.TestStarted (Told_Test));
+   function Do_Started return Boolean is (FixtureManager.Current.TestStarted (Notified_Test));
    function Guarded_Started is new Guarded (Do_Started);
 
    function Do_Finished return Boolean is
      (FixtureManager.Current.TestFinished
-        (Told_Test, Host.To_Ada (Told.Verdict), Host.To_Ada (Told.Reason)));
+        (Notified_Test, Host.To_Ada (Notified.Verdict), Host.To_Ada (Notified.Reason)));
    function Guarded_Finished is new Guarded (Do_Finished);
 
    function Started (Self : Address; Test : not null access constant ABI.Test) return Result is
       pragma Unreferenced (Self);
    begin
-      Told := Test;
+      Notified := Test;
       return Guarded_Started;
    end Started;
 
    function Finished (Self : Address; Test : not null access constant ABI.Test) return Result is
       pragma Unreferenced (Self);
    begin
-      Told := Test;
+      Notified := Test;
       return Guarded_Finished;
    end Finished;
 
@@ -233,18 +232,17 @@ package body RobotTestingFramework.Entry_Point is
    function C_Signal (Number : Interfaces.C.int; Handle : Handler) return Address
      with Import, Convention => C, External_Name => "signal";
 
-   --  There in plug-ins with tasks, whose runtime needs SIGABRT for itself.
+   --  Exists in plug-ins with tasks, whose runtime needs SIGABRT.
    procedure Abort_Task
      with Import, Convention => C,
           External_Name => "system__task_primitives__operations__abort_task";
    pragma Weak_External (Abort_Task);
 
-   --  Takes back the handlers by which Ada's runtime makes exceptions of faults
-   --  in machine code: a crash stays a crash, with its signal and its core. The
-   --  checks that the compiler writes are not concerned. Linux's numbers: SIGILL,
-   --  SIGBUS, SIGFPE, SIGSEGV and SIGABRT; a pragma Interrupt_State with their
-   --  names would bring the tasking runtime into each plug-in.
-   procedure Let_Crash is
+   --  Removes the handlers that turn signals into exceptions in Ada's runtime, so that a
+   --  crash has its signal and its core. The compiler's checks still raise exceptions.
+   --  The numbers are Linux's SIGILL, SIGBUS, SIGFPE, SIGSEGV and SIGABRT; a pragma
+   --  Interrupt_State with their names would add the tasking runtime to each plug-in.
+   procedure Remove_Handlers is
       Faults : constant array (1 .. 4) of Interfaces.C.int := (4, 7, 8, 11);
       Before : Address;
       pragma Unreferenced (Before);
@@ -255,17 +253,17 @@ package body RobotTestingFramework.Entry_Point is
       if Abort_Task'Address = System.Null_Address then
          Before := C_Signal (6, null);
       end if;
-   end Let_Crash;
+   end Remove_Handlers;
 
    function Plugin return Address
      with Export, Convention => C, External_Name => "rtf_plugin";
 
-   --  What the plug-in is can only be told by making it. If that fails, create()
-   --  tells why: here is nobody yet to tell.
+   --  Creates the test or fixture to find out its kind. An exception is ignored here:
+   --  there is no host yet, and create() reports it.
    function Plugin return Address is
       Is_Fixture : Boolean := False;
    begin
-      Let_Crash;
+      Remove_Handlers;
       begin
          Make;
          Is_Fixture := TestCase.Current = null;
@@ -281,26 +279,26 @@ package body RobotTestingFramework.Entry_Point is
       return Table'Address;
    end Plugin;
 
-   --  An exception that leaves an elaboration goes through the host's own code,
-   --  which ends the process by abort() without a word of it.
-   procedure Tell_And_Abort (Signal : Interfaces.C.int) with Convention => C;
+   --  An exception during elaboration propagates into the host's code, which calls
+   --  abort(): print it before.
+   procedure Print_And_Abort (Signal : Interfaces.C.int) with Convention => C;
 
-   procedure Tell_And_Abort (Signal : Interfaces.C.int) is
+   procedure Print_And_Abort (Signal : Interfaces.C.int) is
       pragma Unreferenced (Signal);
    begin
       GNAT.IO.Put_Line
         (GNAT.IO.Standard_Error,
          "while the plug-in was elaborated: "
          & Ada.Exceptions.Exception_Information (GNAT.Most_Recent_Exception.Occurrence));
-      Let_Crash;
-   end Tell_And_Abort;
+      Remove_Handlers;
+   end Print_And_Abort;
 
    Before : Address;
    pragma Unreferenced (Before);
 
 begin
-   --  This is elaborated before all that depends on TestCase or FixtureManager.
+   --  Elaborated before everything that depends on TestCase or FixtureManager.
    if Abort_Task'Address = System.Null_Address then
-      Before := C_Signal (6, Tell_And_Abort'Access);
+      Before := C_Signal (6, Print_And_Abort'Access);
    end if;
 end RobotTestingFramework.Entry_Point;

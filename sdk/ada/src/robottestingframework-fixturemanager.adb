@@ -15,25 +15,25 @@ package body RobotTestingFramework.FixtureManager is
       return True;
    end Check;
 
-   function TestStarted (Self : in out FixtureManager; Told : Test) return Boolean is
-      pragma Unreferenced (Self, Told);
+   function TestStarted (Self : in out FixtureManager; Subject : Test) return Boolean is
+      pragma Unreferenced (Self, Subject);
    begin
       return True;
    end TestStarted;
 
    function TestFinished
-     (Self : in out FixtureManager; Told : Test; Verdict, Reason : String) return Boolean
+     (Self : in out FixtureManager; Subject : Test; Verdict, Reason : String) return Boolean
    is
-      pragma Unreferenced (Self, Told, Verdict, Reason);
+      pragma Unreferenced (Self, Subject, Verdict, Reason);
    begin
       return True;
    end TestFinished;
 
    procedure Collapsed (Reason : String) is
       Table : constant not null ABI.Host_Access := Host.Table;
-      Said  : aliased constant String           := Reason;
+      Text  : aliased constant String           := Reason;
    begin
-      Table.Collapsed (Table.Context, Host.To_C (Said));
+      Table.Collapsed (Table.Context, Host.To_C (Text));
    end Collapsed;
 
    package body Register is

@@ -1,5 +1,5 @@
 --  SPDX-License-Identifier: Apache-2.0
---  Fixtures: what has to run while tests do, such as a simulator or a driver.
+--  Fixtures: they run while tests run, for example a simulator or a driver.
 
 private with RobotTestingFramework.Registry;
 
@@ -8,7 +8,7 @@ package RobotTestingFramework.FixtureManager is
    --  Each plug-in has a copy of this type. A process may hold several of them.
    pragma Suppress (Duplicated_Tag_Check);
 
-   --  An attempt of a test, of which a fixture is told.
+   --  An attempt of a test.
    type Test (Length : Natural) is record
       Id         : Natural;
       Repetition : Positive;
@@ -19,26 +19,26 @@ package RobotTestingFramework.FixtureManager is
    type FixtureManager is abstract tagged private;
    type FixtureManager_Access is access all FixtureManager'Class;
 
-   --  Brings the fixture up. Parameters is the parameter string as it stands in
-   --  the suite. False means that it failed.
+   --  Starts the fixture. Parameters is the parameter string in the suite. False
+   --  means that it failed.
    function Setup (Self : in out FixtureManager; Parameters : String) return Boolean is abstract;
 
-   --  Looks whether the fixture is well, before each test and while tests run.
-   --  False means that it collapsed.
+   --  Checks the fixture, before each test and while tests run. False means that
+   --  it collapsed.
    function Check (Self : in out FixtureManager) return Boolean;
 
-   --  Hears that a test is about to begin. False: the fixture collapsed.
-   function TestStarted (Self : in out FixtureManager; Told : Test) return Boolean;
+   --  Called before a test starts. False: the fixture collapsed.
+   function TestStarted (Self : in out FixtureManager; Subject : Test) return Boolean;
 
-   --  Hears how a test was judged: `passed`, `failed`, `error`, `crashed`, ... What
-   --  is reported, measured and attached here belongs to that test.
+   --  Called after a test with its verdict: `passed`, `failed`, `error`, `crashed`, ...
+   --  Reports, measurements and attachments of this function belong to that test.
    function TestFinished
-     (Self : in out FixtureManager; Told : Test; Verdict, Reason : String) return Boolean;
+     (Self : in out FixtureManager; Subject : Test; Verdict, Reason : String) return Boolean;
 
-   --  Brings it down, also after a Setup that failed.
+   --  Stops the fixture, also after a failed Setup.
    procedure TearDown (Self : in out FixtureManager) is null;
 
-   --  Tells at once, from any task, that the fixture is not well any more.
+   --  Reports from any task that the fixture collapsed.
    procedure Collapsed (Reason : String);
 
    --  Declares the plug-in's fixture.
@@ -47,7 +47,7 @@ package RobotTestingFramework.FixtureManager is
    package Register is
    private
       procedure Make;
-      Kept : constant Boolean := Registry.Keep (Make'Access);
+      Registered : constant Boolean := Registry.Register (Make'Access);
    end Register;
 
    --  Makes this the plug-in's fixture.

@@ -27,14 +27,14 @@ package body RobotTestingFramework.Host is
 
    procedure Send
      (Kind       : ABI.Message_Kind;
-      Words      : String;
+      Content      : String;
       File       : String;
       Line       : Natural;
       Critical   : Boolean     := False;
       Comparison : ABI.Address := System.Null_Address)
    is
       Host   : constant not null ABI.Host_Access := Table;
-      Said   : aliased constant String           := Words;
+      Text   : aliased constant String           := Content;
       Source : aliased constant String           := File & ASCII.NUL;
    begin
       Host.Message
@@ -42,19 +42,19 @@ package body RobotTestingFramework.Host is
          (Size       => ABI.Message'Size / System.Storage_Unit,
           Kind       => ABI.Message_Kind'Pos (Kind),
           Critical   => Boolean'Pos (Critical),
-          Words      => To_C (Said),
+          Content      => To_C (Text),
           File       => (if File = "" then System.Null_Address else Source'Address),
           Line       => Interfaces.Unsigned_32 (Line),
           Comparison => Comparison));
    end Send;
 
-   function To_C (Words : aliased String) return ABI.Text is
-     ((Data => Words'Address, Length => Words'Length));
+   function To_C (Content : aliased String) return ABI.Text is
+     ((Data => Content'Address, Length => Content'Length));
 
-   function To_Ada (Words : ABI.Text) return String is
-      Bytes : String (1 .. Natural (Words.Length)) with Import, Address => Words.Data;
+   function To_Ada (Content : ABI.Text) return String is
+      Bytes : String (1 .. Natural (Content.Length)) with Import, Address => Content.Data;
    begin
-      return (if Words.Length = 0 then "" else Bytes);
+      return (if Content.Length = 0 then "" else Bytes);
    end To_Ada;
 
    function Print

@@ -1,31 +1,31 @@
 --  SPDX-License-Identifier: Apache-2.0
---  The host process, through the binary interface: from Ada's texts to C's.
+--  The connection to the host process through the binary interface.
 
 with RobotTestingFramework.ABI;
 with System;
 
 private package RobotTestingFramework.Host is
 
-   --  The table of the host, which create() of the plug-in gets.
+   --  Sets the host's table, which create() of the plug-in gets.
    procedure Connect (To : ABI.Host_Access);
 
-   --  Raises Program_Error outside of a plug-in that `rtf run` has started.
+   --  Raises Program_Error in a program that `rtf run` has not started.
    function Table return not null ABI.Host_Access;
 
-   --  Sends a message; an empty file is an unknown place.
+   --  Sends a message; an empty file is an unknown location.
    procedure Send
      (Kind       : ABI.Message_Kind;
-      Words      : String;
+      Content      : String;
       File       : String;
       Line       : Natural;
       Critical   : Boolean     := False;
       Comparison : ABI.Address := System.Null_Address);
 
-   --  Texts as C sees them. They must outlive what is made of them.
-   function To_C (Words : aliased String) return ABI.Text;
-   function To_Ada (Words : ABI.Text) return String;
+   --  Converts texts. The argument must outlive the result.
+   function To_C (Content : aliased String) return ABI.Text;
+   function To_Ada (Content : ABI.Text) return String;
 
-   --  A number as C's %.6g, so that all SDKs print the same.
+   --  A number like C's %.6g, as in all SDKs (see conformance/texts.json).
    function Image (Number : Long_Float) return String;
 
 end RobotTestingFramework.Host;

@@ -8,13 +8,12 @@ with System;
 
 package body RobotTestingFramework.Near is
 
-   --  Above this many numbers a comparison is told in words only: a line of the
-   --  protocol has an upper limit, and nobody reads a million numbers.
-   Numbers_Sent : constant := 100_000;
+   --  Above this many numbers only the text is sent: a line of the protocol has a limit.
+   Max_Numbers : constant := 100_000;
 
    Turn : constant := 2.0 * Ada.Numerics.Pi;
 
-   --  In UTF-8, which is what the host takes.
+   --  In UTF-8, the host's encoding.
    Plus_Minus : constant String := Character'Val (16#C2#) & Character'Val (16#B1#);
 
    function Is_Finite (Number : Long_Float) return Boolean is
@@ -29,7 +28,7 @@ package body RobotTestingFramework.Near is
       return abs (if Compared.Angle then Long_Float'Remainder (Plain, Turn) else Plain);
    end Difference;
 
-   --  The index with the largest difference; what is not finite is worst of all.
+   --  The index with the largest difference; non-finite numbers come first.
    function Worst (Compared : Comparison) return Positive is
       Found : Positive := 1;
    begin
@@ -49,7 +48,7 @@ package body RobotTestingFramework.Near is
       return Padded (Padded'First + 1 .. Padded'Last);
    end Image;
 
-   --  What is wrong, empty when both are near.
+   --  Describes the problem; empty if both are near.
    function Problem (Compared : Comparison) return String is
       Index : Positive;
    begin
@@ -74,7 +73,7 @@ package body RobotTestingFramework.Near is
         & (if Compared.Scalar then "" else " at index " & Image (Index - 1));
    end Problem;
 
-   procedure Tell
+   procedure Report
      (Compared : Comparison;
       What     : String;
       File     : String;
@@ -107,12 +106,12 @@ package body RobotTestingFramework.Near is
       Holds := Wrong = "";
       Host.Send
         (Kind       => (if Holds then ABI.Check else ABI.Failure),
-         Words      => (if Holds then What else What & ": " & Wrong),
+         Content    => (if Holds then What else What & ": " & Wrong),
          File       => File,
          Line       => Line,
          Comparison =>
-           (if Compared.Count + Compared.Expected_Count > Numbers_Sent
+           (if Compared.Count + Compared.Expected_Count > Max_Numbers
             then System.Null_Address else Sent'Address));
-   end Tell;
+   end Report;
 
 end RobotTestingFramework.Near;

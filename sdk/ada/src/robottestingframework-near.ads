@@ -13,8 +13,8 @@ private package RobotTestingFramework.Near is
       Scalar    : Boolean;
    end record;
 
-   --  Tells the host; Holds says whether they are near.
-   procedure Tell
+   --  Reports to the host; Holds is whether they are near.
+   procedure Report
      (Compared : Comparison;
       What     : String;
       File     : String;

@@ -6,24 +6,24 @@ package body RobotTestingFramework.Process is
 
    use Interfaces.C;
 
-   Kept_Count     : Natural        := 0;
-   Kept_Arguments : System.Address := System.Null_Address;
+   Stored_Count     : Natural        := 0;
+   Stored_Arguments : System.Address := System.Null_Address;
 
-   procedure Keep (Count : int; Arguments : System.Address) is
+   procedure Set_Arguments (Count : int; Arguments : System.Address) is
    begin
-      Kept_Count     := (if Count > 1 then Natural (Count) - 1 else 0);
-      Kept_Arguments := Arguments;
-   end Keep;
+      Stored_Count     := (if Count > 1 then Natural (Count) - 1 else 0);
+      Stored_Arguments := Arguments;
+   end Set_Arguments;
 
-   function Argument_Count return Natural is (Kept_Count);
+   function Argument_Count return Natural is (Stored_Count);
 
    function Argument (Number : Positive) return String is
-      Words : array (0 .. Kept_Count) of Strings.chars_ptr
-        with Import, Address => Kept_Arguments;
+      Words : array (0 .. Stored_Count) of Strings.chars_ptr
+        with Import, Address => Stored_Arguments;
    begin
-      if Number > Kept_Count then
+      if Number > Stored_Count then
          raise Constraint_Error
-           with "there is no argument" & Number'Image & ", only" & Kept_Count'Image;
+           with "there is no argument" & Number'Image & ", only" & Stored_Count'Image;
       end if;
       return Strings.Value (Words (Number));
    end Argument;

@@ -6,24 +6,24 @@ package body RobotTestingFramework.Registry is
 
    use type System.Address;
 
-   Kept : Maker;
+   Registered : Maker;
 
    procedure Exported_Create with Import, Convention => C, External_Name => Test_Create_Symbol;
    pragma Weak_External (Exported_Create);
 
-   function Keep (Make : not null Maker) return Boolean is
+   function Register (Make : not null Maker) return Boolean is
    begin
-      if Kept /= null then
+      if Registered /= null then
          raise Program_Error with "a plug-in has one test or fixture, this one has several";
       end if;
-      Kept := Make;
+      Registered := Make;
       return True;
-   end Keep;
+   end Register;
 
    procedure Make is
    begin
-      if Kept /= null then
-         Kept.all;
+      if Registered /= null then
+         Registered.all;
       elsif Exported_Create'Address /= System.Null_Address then
          Exported_Create;
       else

@@ -56,7 +56,7 @@ package body RobotTestingFramework.Session is
       Watch := Clock.Started;
       loop
          Pause (Duration'Min (Poll, Time - Passed));
-         Clock.Look (Watch, Passed);
+         Clock.Read (Watch, Passed);
          exit when Passed >= Time;
       end loop;
    end Sleep;
@@ -72,7 +72,7 @@ package body RobotTestingFramework.Session is
       Left   : Duration;
    begin
       while not Condition loop
-         Clock.Look (Watch, Passed);
+         Clock.Read (Watch, Passed);
          Left := Timeout - Passed;
          if Left <= 0.0 then
             Asserter.Fail
@@ -94,20 +94,20 @@ package body RobotTestingFramework.Session is
       Line      : Natural    := Source.Line)
    is
       Table        : constant not null ABI.Host_Access := Host.Table;
-      Name_Words   : aliased constant String := Name;
-      Unit_Words   : aliased constant String := Unit;
+      Name_Text    : aliased constant String := Name;
+      Unit_Text    : aliased constant String := Unit;
       Lowest       : aliased constant Long_Float := Low;
       Highest      : aliased constant Long_Float := High;
-      Source_Words : aliased constant String := File & ASCII.NUL;
+      Source_Text  : aliased constant String := File & ASCII.NUL;
       Within       : constant Interfaces.C.int := Table.Measure
         (Table.Context,
          (Size  => ABI.Measurement'Size / System.Storage_Unit,
-          Name  => Host.To_C (Name_Words),
+          Name  => Host.To_C (Name_Text),
           Value => Interfaces.C.double (Value),
-          Unit  => Host.To_C (Unit_Words),
+          Unit  => Host.To_C (Unit_Text),
           Low   => (if Low = No_Low then System.Null_Address else Lowest'Address),
           High  => (if High = No_High then System.Null_Address else Highest'Address),
-          File  => Source_Words'Address,
+          File  => Source_Text'Address,
           Line  => Interfaces.Unsigned_32 (Line)));
       pragma Unreferenced (Within);
    begin
@@ -127,12 +127,12 @@ package body RobotTestingFramework.Session is
       Line      : Natural    := Source.Line)
    is
       Table        : constant not null ABI.Host_Access := Host.Table;
-      Name_Words   : aliased constant String := Name;
-      Unit_Words   : aliased constant String := Unit;
+      Name_Text    : aliased constant String := Name;
+      Unit_Text    : aliased constant String := Unit;
       Lowest       : aliased constant Long_Float := Low;
       Highest      : aliased constant Long_Float := High;
       Taken        : aliased constant Long_Float := Time;
-      Source_Words : aliased constant String := File & ASCII.NUL;
+      Source_Text  : aliased constant String := File & ASCII.NUL;
       Within       : Interfaces.C.int;
       pragma Unreferenced (Within);
    begin
@@ -146,13 +146,13 @@ package body RobotTestingFramework.Session is
       Within := Table.Sample
         (Table.Context,
          (Size  => ABI.Sample'Size / System.Storage_Unit,
-          Name  => Host.To_C (Name_Words),
+          Name  => Host.To_C (Name_Text),
           Value => Interfaces.C.double (Value),
-          Unit  => Host.To_C (Unit_Words),
+          Unit  => Host.To_C (Unit_Text),
           Low   => (if Low = No_Low then System.Null_Address else Lowest'Address),
           High  => (if High = No_High then System.Null_Address else Highest'Address),
           Time  => (if Time = Now then System.Null_Address else Taken'Address),
-          File  => Source_Words'Address,
+          File  => Source_Text'Address,
           Line  => Interfaces.Unsigned_32 (Line)));
    end Sample;
 
@@ -173,11 +173,11 @@ package body RobotTestingFramework.Session is
       if not (Rate > 0.0) then
          raise Constraint_Error with "the rate of `" & Name & "` is not above 0 Hz";
       end if;
-      --  Each tick has its own deadline, so that delays do not add up.
+      --  Each tick has a separate deadline, so that delays do not accumulate.
       while Tick < Long_Float (Time) * Rate - 1.0E-9 loop
          Sleep (Duration (Tick / Rate) - Passed);
          Sample (Name, Read, Unit, Low, High, Now, File, Line);
-         Clock.Look (Watch, Passed);
+         Clock.Read (Watch, Passed);
          Tick := Long_Float'Max (Tick + 1.0, Long_Float'Ceiling (Long_Float (Passed) * Rate));
       end loop;
       Sleep (Time - Passed);
@@ -185,16 +185,16 @@ package body RobotTestingFramework.Session is
 
    procedure Attach (Path : String; Name : String := ""; Media_Type : String := "") is
       Table      : constant not null ABI.Host_Access := Host.Table;
-      Path_Words : aliased constant String := Path;
-      Name_Words : aliased constant String := Name;
-      Type_Words : aliased constant String := Media_Type;
+      Path_Text  : aliased constant String := Path;
+      Name_Text  : aliased constant String := Name;
+      Type_Text  : aliased constant String := Media_Type;
    begin
       Table.Attach
         (Table.Context,
          (Size       => ABI.Attachment'Size / System.Storage_Unit,
-          Path       => Host.To_C (Path_Words),
-          Name       => Host.To_C (Name_Words),
-          Media_Type => Host.To_C (Type_Words)));
+          Path       => Host.To_C (Path_Text),
+          Name       => Host.To_C (Name_Text),
+          Media_Type => Host.To_C (Type_Text)));
    end Attach;
 
 end RobotTestingFramework.Session;

@@ -1,6 +1,6 @@
 --  SPDX-License-Identifier: Apache-2.0
---  What the suite says of the plug-in, waiting that ends when the runner asks to
---  stop, and what is kept with the result.
+--  The plug-in's parameters, waiting (which a stop request ends), measurements, samples
+--  and attachments.
 
 with GNAT.Source_Info;
 
@@ -8,10 +8,10 @@ package RobotTestingFramework.Session is
 
    package Source renames GNAT.Source_Info;
 
-   --  The name under which the suite knows this plug-in.
+   --  The plug-in's name in the suite.
    function Name return String;
 
-   --  The parameter string as it stands in the suite, and the words in it.
+   --  The parameter string in the suite, and the words in it.
    function Parameters return String;
    function Argument_Count return Natural;
    function Argument (Number : Positive) return String;
@@ -19,21 +19,20 @@ package RobotTestingFramework.Session is
    --  The suite's environment string.
    function Environment return String;
 
-   --  The repetition that runs, from 1.
+   --  The present repetition, from 1.
    function Repetition return Positive;
 
-   --  Whether the runner has asked to stop; a loop that runs long should look.
+   --  Whether the runner has asked to stop; long loops should poll this.
    function Interrupted return Boolean;
 
-   --  The time since a moment that does not matter, by the clock that the suite has.
+   --  The time since an arbitrary moment, by the suite's clock.
    function Current_Time return Duration;
 
-   --  Sleeps, in a suite with a clock by that one, but wakes at once when the
-   --  runner asks to stop; then this step ends.
+   --  Sleeps by the suite's clock. A stop request ends the sleep and this step.
    procedure Sleep (Time : Duration);
 
-   --  Waits until the condition is true, asking every 10 ms. When the time is
-   --  over this is a failed assertion, which tells what was waited for.
+   --  Waits until the condition is true, polling every 10 ms. After the timeout, the
+   --  assertion fails with What.
    generic
       with function Condition return Boolean;
    procedure Wait_Until
@@ -46,8 +45,8 @@ package RobotTestingFramework.Session is
    No_Low  : constant Long_Float := Long_Float'First;
    No_High : constant Long_Float := Long_Float'Last;
 
-   --  Keeps a number with the result; outside its limits it is a failure, and so
-   --  is a value that is not a finite number.
+   --  Records a number; outside its limits it is a failure, and so is a value that is
+   --  not a finite number.
    procedure Measure
      (Name      : String;
       Value     : Long_Float;
@@ -57,12 +56,12 @@ package RobotTestingFramework.Session is
       File      : String     := Source.File;
       Line      : Natural    := Source.Line);
 
-   --  The present time, where the time of a sample is asked for.
+   --  The current time, as the time of a sample.
    Now : constant Long_Float := Long_Float'First;
 
-   --  Takes a sample of a signal, in a test; outside its limits it is a failure, and
-   --  so is a value that is not a finite number. The time counts in seconds from
-   --  the beginning of the set-up.
+   --  Takes a sample of a signal, in a test; outside its limits it is a failure, and so
+   --  is a value that is not a finite number. The time is in seconds since the set-up
+   --  began.
    procedure Sample
      (Name      : String;
       Value     : Long_Float;
@@ -73,8 +72,7 @@ package RobotTestingFramework.Session is
       File      : String     := Source.File;
       Line      : Natural    := Source.Line);
 
-   --  Samples what Read returns, so many times a second. What a reading that takes
-   --  too long misses is left out.
+   --  Samples the result of Read at this rate in Hz. A slow Read skips samples.
    generic
       with function Read return Long_Float;
    procedure Sample_For
@@ -87,8 +85,7 @@ package RobotTestingFramework.Session is
       File      : String     := Source.File;
       Line      : Natural    := Source.Line);
 
-   --  Keeps a file with the result. It is copied now: write it before, to its
-   --  end. Without a name it is shown under its own.
+   --  Adds a copy of a complete file to the results. The default name is the file's.
    procedure Attach (Path : String; Name : String := ""; Media_Type : String := "");
 
 end RobotTestingFramework.Session;

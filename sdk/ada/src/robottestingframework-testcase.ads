@@ -7,7 +7,7 @@
 --        package Plugin is new RobotTestingFramework.TestCase.Register (Test);
 --     end Move_Test;
 --
---  The first failure or error decides the verdict. A failure says that the robot
+--  The first failure or error decides the verdict. A failure means that the robot
 --  is wrong, an error that the bench is; a problem in Setup or TearDown is always
 --  an error, and so is an exception.
 
@@ -21,14 +21,14 @@ package RobotTestingFramework.TestCase is
    type TestCase is abstract tagged private;
    type TestCase_Access is access all TestCase'Class;
 
-   --  Prepares the test. Parameters is the parameter string as it stands in the
-   --  suite. False means that the test cannot be run.
+   --  Prepares the test. Parameters is the parameter string in the suite. False means
+   --  that the test cannot run.
    function Setup (Self : in out TestCase; Parameters : String) return Boolean;
 
-   --  Does the test.
+   --  Runs the test.
    procedure Run (Self : in out TestCase) is abstract;
 
-   --  Puts back what the test changed. Called whatever happened before.
+   --  Restores the initial state. Always called.
    procedure TearDown (Self : in out TestCase) is null;
 
    --  Declares the plug-in's test.
@@ -37,13 +37,13 @@ package RobotTestingFramework.TestCase is
    package Register is
    private
       procedure Make;
-      Kept : constant Boolean := Registry.Keep (Make'Access);
+      Registered : constant Boolean := Registry.Register (Make'Access);
    end Register;
 
-   --  Makes this the plug-in's test. The name that the suite gives it stays.
+   --  Makes this the plug-in's test. Its name in the suite does not change.
    procedure SetTest (Test : TestCase_Access; Name : String := "Unknown");
 
-   --  Tells what the test calls itself.
+   --  Reports the test's own name.
    procedure SetName (Name : String);
 
    --  The plug-in's test, if it is one.

@@ -2,21 +2,20 @@
 --  Write tests and fixtures for the Robot Testing Framework in Ada.
 --
 --  A test derives from TestCase.TestCase, a fixture from
---  FixtureManager.FixtureManager; what they may call is in Asserter (what they
---  find out) and in Session (what the suite says, waiting, measurements).
+--  FixtureManager.FixtureManager. They call Asserter (checks and assertions) and
+--  Session (parameters, waiting, measurements).
 
 package RobotTestingFramework is
 
-   --  The procedure that makes the plug-in's test, for those who export one
-   --  under this name and call TestCase.SetTest in it. Others instantiate
-   --  TestCase.Register.
+   --  A plug-in that does not instantiate TestCase.Register exports a procedure with
+   --  this name, which calls TestCase.SetTest.
    Test_Create_Symbol : constant String := "robottestingframework_test_create";
 
-   --  An assertion did not hold, which was reported before this was raised. It
-   --  ends a step of the plug-in.
+   --  A failed assertion, which was reported before this is raised. Ends a step of the
+   --  plug-in.
    Assertion_Ended : exception;
 
-   --  The runner asked the plug-in to stop. It ends a step of the plug-in.
+   --  The runner asked the plug-in to stop. Ends a step of the plug-in.
    Stop_Requested : exception;
 
 end RobotTestingFramework;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One call of everything that the SDK offers a test. The native host's tests
-// run it and compare what arrives.
+// Calls every function of the SDK for tests. The native host's tests compare the messages.
 #include <array>
 #include <chrono>
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fixture that collapses from another thread, and whose check fails then.
+// A fixture that reports a collapse from another thread, after which its check fails.
 #include <atomic>
 #include <thread>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fixture that is told of each test, and keeps something with its result.
+// A fixture that is notified of each test, and adds to its results.
 #include <string>
 
 #include <rtf/FixtureManager.hpp>

@@ -1,5 +1,4 @@
--- Calls a function of the plug-in and tells how it ended: whatever it raises
--- stops here.
+-- Calls a function of the plug-in, catches its errors, and returns how it ended.
 local text, stop = ...
 
 -- Taken before the plug-in can replace them.
@@ -8,7 +7,7 @@ local match = string.match
 
 local guard = {}
 
--- The name under which all parts of the SDK are loaded.
+-- The chunk name of the SDK's code.
 local OWN_SOURCE = "=rtf"
 
 -- The innermost line of the plug-in, from `level` of the caller on.
@@ -25,8 +24,7 @@ function guard.location(level)
   return nil, nil
 end
 
--- A message without the position that Lua puts before it: messages of ours
--- have a place of their own.
+-- Removes the position that Lua adds to a message: the location is sent separately.
 local function without_position(message, line)
   local before, rest = match(message, "^.-:(%d+): (.*)$")
   if before and tonumber(before) == line then
@@ -35,7 +33,7 @@ local function without_position(message, line)
   return message
 end
 
--- The lines of a traceback that speak of the plug-in.
+-- The lines of a traceback that belong to the plug-in.
 local function stack()
   local lines = {}
   for line in traceback("", 3):gmatch("[^\n]+") do
@@ -43,7 +41,7 @@ local function stack()
       lines[#lines + 1] = line
     end
   end
-  -- The host's own call, which is the last one.
+  -- The host's call is the last line.
   while lines[#lines] and lines[#lines]:find("'xpcall'", 1, true) do
     lines[#lines] = nil
   end
@@ -70,7 +68,7 @@ function guard.call(called, ...)
   elseif type(result) == "table" then
     return "broken", result.text, result.file, result.line
   end
-  -- The handler itself could not be run: the stack is exhausted.
+  -- The stack is exhausted, so the handler could not run.
   return "broken", tostring(result)
 end
 

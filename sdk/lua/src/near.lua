@@ -1,15 +1,14 @@
 -- Near equality of numbers, vectors and angles.
 --
--- compare(got, expected, tolerance, is_angle) returns a comparison in the form
--- that the protocol gives it (nil when that is too long), and what is wrong in words, or nil.
+-- compare(got, expected, tolerance, is_angle) returns the protocol's `comparison` (nil if
+-- it is too long), and a description of the problem, or nil.
 local text = ...
 
 local HUGE = math.huge
 local TURN = 2 * math.pi
 
--- Above this many numbers a comparison is told in words only: a line of the
--- protocol has an upper limit, and nobody reads a million numbers.
-local NUMBERS_SENT = 100000
+-- Above this many numbers only the text is sent: a line of the protocol has a limit.
+local MAX_NUMBERS = 100000
 
 local near = {}
 
@@ -43,7 +42,7 @@ local function difference(got, expected, is_angle)
   return off
 end
 
--- The index with the largest difference; what is not finite is worst of all.
+-- The index with the largest difference; non-finite numbers come first.
 local function worst(got, expected, is_angle)
   local index, largest
   for i = 1, #got do
@@ -69,7 +68,7 @@ function near.compare(got, expected, tolerance, is_angle)
     tolerance = tolerance + 0.0,
   }
   local count = #comparison.got
-  local sent = count + #comparison.expected <= NUMBERS_SENT and comparison or nil
+  local sent = count + #comparison.expected <= MAX_NUMBERS and comparison or nil
   if count ~= #comparison.expected then
     return sent, ("got %d values, expected %d"):format(count, #comparison.expected)
   end

@@ -1,5 +1,5 @@
--- What plug-ins of robot-testing-framework 1.x and 2.x call: the functions of
--- `robottestingframework`, of `RTF`, and of `TestCase` itself.
+-- The functions for plug-ins of robot-testing-framework 1.x and 2.x, in
+-- `robottestingframework`, `RTF` and `TestCase`.
 local rtf = ...
 
 -- Taken before the plug-in can replace it.
@@ -7,7 +7,7 @@ local name = rtf.name
 
 local predecessor = {}
 
--- The name is the suite's: what the plug-in calls itself is only told.
+-- Only reports the plug-in's own name: the suite's name does not change.
 function predecessor.setName(own)
   own = tostring(own)
   if own ~= name() then
@@ -23,15 +23,14 @@ function predecessor.testCheck(condition, message)
   rtf.check(condition, message)
 end
 
--- The predecessor's sense, whatever the name says: a failure *unless* the
--- condition holds.
+-- Despite its name, a failure *unless* the condition holds, as in the predecessor.
 function predecessor.testFailIf(condition, message)
   if not condition then
     rtf.check(false, message)
   end
 end
 
--- Two texts, as it was called behind `testFailIf`.
+-- Also accepts two texts, as the predecessor's `testFailIf` passed them.
 function predecessor.testFail(what, message)
   rtf.check(false, message == nil and what or ("%s: %s"):format(tostring(what), tostring(message)))
 end

@@ -1,4 +1,4 @@
--- The table `rtf` of a Lua plug-in. `host` holds what only the host can do.
+-- The table `rtf` of a Lua plug-in. `host` contains the host's functions.
 local host, near, text, guard, stop = ...
 
 -- Taken before the plug-in can replace them.
@@ -14,8 +14,8 @@ local function send(kind, message, comparison, critical)
   host.message(kind, tostring(message), file, line, comparison, critical)
 end
 
--- Ends the step. The reason was recorded before, so that a pcall around it in
--- the plug-in does not turn a failure into a pass.
+-- Ends the step. The problem was reported before, so a pcall in the plug-in does not turn
+-- a failure into a pass.
 local function unwind()
   error(stop, 0)
 end
@@ -134,15 +134,14 @@ local function pause(seconds)
   end
 end
 
--- Returns a function that tells how far the time has gone on since. What it
--- jumps back is no time.
+-- Returns a function that returns the elapsed time, without jumps back.
 local function stopwatch()
   local before, passed = host.seconds(), 0
   return function()
-    local shown = host.seconds()
-    if shown then
-      passed = passed + math.max(0, shown - (before or shown))
-      before = shown
+    local seconds = host.seconds()
+    if seconds then
+      passed = passed + math.max(0, seconds - (before or seconds))
+      before = seconds
     end
     return passed
   end
@@ -155,7 +154,7 @@ function rtf.now()
   return latest
 end
 
--- Sleeps by the clock that the suite has.
+-- Sleeps by the suite's clock.
 local function sleep(seconds)
   if not host.is_simulated() then
     pause(seconds)
@@ -179,7 +178,7 @@ function rtf.sample_for(name, seconds, rate, read, unit, low, high)
     sleep(tick / rate - watch())
     local within = sample(name, read(), unit, low, high)
     all_within = within and all_within
-    -- A reading that takes too long leaves out what it missed.
+    -- A slow reading skips samples.
     tick = math.max(tick + 1, math.ceil(watch() * rate))
   end
   sleep(seconds - watch())

@@ -1,7 +1,7 @@
--- How values are written in messages: alike in all languages that have an SDK.
+-- Formats values in messages: the same in all SDKs (see conformance/texts.json).
 local text = {}
 
--- As C's %.6g, so that all SDKs print the same.
+-- Like C's %.6g.
 function text.number(number)
   if number ~= number then
     return "nan"
@@ -9,7 +9,7 @@ function text.number(number)
   return ("%.6g"):format(number)
 end
 
--- The last value of a condition that never came true.
+-- The last value of a condition.
 function text.value(value)
   if math.type(value) == "float" then
     return text.number(value)
@@ -25,8 +25,8 @@ local function by_name(a, b)
   return tostring(a) < tostring(b)
 end
 
--- What was raised with error(): a string is its own text, anything else is
--- named with its type.
+-- Describes a raised value: a string is the text itself, anything else is described with
+-- its type.
 function text.raised(problem)
   if type(problem) == "string" then
     return problem

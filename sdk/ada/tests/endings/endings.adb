@@ -13,7 +13,7 @@ package body Endings is
       Report (Session.Argument (Session.Argument_Count));
    end Tell_Session;
 
-   --  The compiler's own check raises: there is no such place.
+   --  A check of the compiler raises an exception.
    procedure Read_Beyond is
       Joints : constant Numbers := (1.0, 2.0);
       Joint  : constant Natural := Session.Argument_Count + 7;
@@ -21,7 +21,7 @@ package body Endings is
       Report (Joints (Joint)'Image);
    end Read_Beyond;
 
-   --  What a plug-in catches was recorded before.
+   --  The failure was recorded before the plug-in catches the exception.
    procedure Catch is
    begin
       Require (False, "caught");

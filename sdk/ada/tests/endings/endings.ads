@@ -1,4 +1,4 @@
---  A test that ends as its first argument says.
+--  A test that ends in the way that its first argument names.
 
 with RobotTestingFramework.TestCase;
 

@@ -1,4 +1,4 @@
---  Forgets to say which test it is.
+--  Does not register its test.
 
 with RobotTestingFramework.TestCase;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who is told that a fixture collapsed: a suite, or the runner.
+// The recipient of a fixture's collapse: a suite, or the runner.
 #ifndef ROBOTTESTINGFRAMEWORK_FIXTUREEVENTS_H
 #define ROBOTTESTINGFRAMEWORK_FIXTUREEVENTS_H
 

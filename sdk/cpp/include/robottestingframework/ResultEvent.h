@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a collector keeps: one object for each thing that was told.
+// What a collector keeps: one object for each thing that was reported.
 #ifndef ROBOTTESTINGFRAMEWORK_RESULTEVENT_H
 #define ROBOTTESTINGFRAMEWORK_RESULTEVENT_H
 

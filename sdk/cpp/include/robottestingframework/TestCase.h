@@ -22,7 +22,7 @@ class DllPluginLoader;
 class TestCase : public Test
 {
 public:
-    // A test without a name gets that of its plug-in.
+    // A test without a name gets its plug-in's name.
     TestCase(std::string name = "", std::string param = "") : Test(name), param_(param) {}
     ~TestCase() override {}
 
@@ -35,16 +35,16 @@ public:
         return true;
     }
 
-    // Called last, whatever happened before.
+    // Called last, in any case.
     virtual void tearDown() {}
 
     // The test itself.
     virtual void run() = 0;
 
-    // Asks the running test to stop. An own one may end what run() waits for.
+    // Asks the running test to stop. An override may end the wait of run().
     void interrupt() override { interrupted_ = true; }
 
-    // Sets up, runs as often as told, and tears down.
+    // Sets up, runs all repetitions, and tears down.
     void run(TestResult &rsl) override
     {
         begin(rsl);
@@ -65,16 +65,16 @@ public:
         return successful_ && (result == nullptr || !result->hasProblem(this));
     }
 
-    // Makes the test fail without a word.
+    // Makes the test fail without a message.
     void failed() { successful_ = false; }
 
-    // Where the test reports to; null before it is run.
+    // The test's result; null before it runs.
     TestResult *getResult() { return result_; }
 
     void setParam(const std::string param) { param_ = param; }
     std::string getParam() { return param_; }
 
-    // What the suite says of where it runs, for example `--robot simulator`.
+    // The suite's environment string, for example `--robot simulator`.
     void setEnvironment(const std::string environment) { environment_ = environment; }
     std::string getEnvironment() { return environment_; }
 
@@ -111,7 +111,7 @@ private:
         return ended && ready;
     }
 
-    // Runs as often as told, until it fails or is asked to stop.
+    // Runs all repetitions, until one fails or the test is asked to stop.
     template <class IsStopped>
     void repeat(IsStopped is_stopped)
     {

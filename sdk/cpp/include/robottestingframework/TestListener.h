@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is told of a run as it happens. Overrides what it wants to know.
+// What is notified of a run as it happens. Overrides what it wants to know.
 #ifndef ROBOTTESTINGFRAMEWORK_TESTLISTENER_H
 #define ROBOTTESTINGFRAMEWORK_TESTLISTENER_H
 

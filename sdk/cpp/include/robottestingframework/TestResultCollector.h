@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps all that is told of a run, and counts.
+// Keeps all that is reported of a run, and counts.
 #ifndef ROBOTTESTINGFRAMEWORK_TESTRESULTCOLLECTOR_H
 #define ROBOTTESTINGFRAMEWORK_TESTRESULTCOLLECTOR_H
 

@@ -28,7 +28,7 @@ public:
     TestSuite(std::string name) : Test(name) {}
     ~TestSuite() override {}
 
-    // Tests and fixtures stay the caller's.
+    // The caller owns tests and fixtures.
     void addTest(Test *test) { tests_.push_back(test); }
     void removeTest(Test *test)
     {
@@ -43,7 +43,7 @@ public:
         up_ = 0;
     }
 
-    // A fixture without a dispatcher tells this suite of its collapse.
+    // A fixture without a dispatcher reports its collapse to this suite.
     void addFixtureManager(FixtureManager *manager)
     {
         if (manager->getDispatcher() == nullptr) {
@@ -101,11 +101,11 @@ public:
     std::size_t size() const { return tests_.size(); }
 
 protected:
-    // Sets up the fixtures in order. False: one failed, which has been told.
+    // Sets up the fixtures in order. False: one failed, which has been reported.
     virtual bool setup()
     {
         for (FixtureManager *fixture : fixtures_) {
-            ++up_; // a fixture that failed may need its tear-down most
+            ++up_; // a failed fixture may need its tear-down most
             bool ready = false;
             const bool ended = internal::attempt(this, *result_, internal::Phase::tear_down,
                                                  [&] { ready = fixture->setup(); });
@@ -119,7 +119,7 @@ protected:
         return true;
     }
 
-    // Tears down in reverse what was set up, each whatever the others did.
+    // Tears down in reverse order, also after an error in a tear-down.
     virtual void tearDown()
     {
         while (up_ > 0) {
@@ -146,7 +146,7 @@ private:
             run_one(tests_[index]);
             ++index;
         }
-        tell_collapse();
+        report_collapse();
         not_run(index);
     }
 
@@ -160,7 +160,7 @@ private:
         successful_ = successful_ && test->succeeded() && !result_->hasProblem(test);
     }
 
-    // Says so when tests from this one on were not run.
+    // Reports the tests from this one on that were not run.
     void not_run(std::size_t first)
     {
         if (first >= tests_.size()) {
@@ -173,10 +173,10 @@ private:
         result_->addError(this, TestMessage("not run: " + names));
     }
 
-    // Whether the fixtures are well, if need be after another set-up.
+    // Whether the fixtures work, if necessary after another set-up.
     bool fixtures_are_ready()
     {
-        if (!tell_collapse() && all_well()) {
+        if (!report_collapse() && all_well()) {
             return true;
         }
         result_->addReport(this, TestMessage("the fixtures are set up again"));
@@ -198,10 +198,10 @@ private:
                 return false;
             }
         }
-        return !tell_collapse();
+        return !report_collapse();
     }
 
-    // A test during which a fixture collapsed has shown nothing.
+    // A collapse during a test is an error of the test.
     void mark_collapsed(Test *test)
     {
         std::unique_lock<std::mutex> lock(mutex_);
@@ -213,7 +213,7 @@ private:
     }
 
     // Adds the collapse that was reported, if there was one.
-    bool tell_collapse()
+    bool report_collapse()
     {
         std::unique_lock<std::mutex> lock(mutex_);
         if (!collapsed_) {
@@ -232,7 +232,7 @@ private:
         collapsed_ = false;
     }
 
-    // Takes no lock: it may be called from a signal handler.
+    // Without a lock: a signal handler may call it.
     void interrupt_current()
     {
         Test *const test = current_;

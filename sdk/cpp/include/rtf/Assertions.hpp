@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks and assertions for tests and fixtures, with file and line. They may be
-// used in any function of a plug-in. A text is anything that converts to
-// std::string_view. A check goes on whatever it found and tells it as a bool;
-// what REQUIREs, FAIL and ERROR find ends the step.
+// Checks and assertions for tests and fixtures, with file and line, for any function of
+// a plug-in. A text is anything that converts to std::string_view. A check returns its
+// result as a bool, and the step continues; a failed REQUIRE, FAIL and ERROR end the step.
 #ifndef RTF_ASSERTIONS_HPP
 #define RTF_ASSERTIONS_HPP
 
@@ -19,8 +18,8 @@
 // RTF_REQUIRE(condition, text)
 #define RTF_REQUIRE(...) ::rtf::internal::require(RTF_HERE, __VA_ARGS__)
 
-// RTF_REQUIRE_CRITICAL(condition, text): when it does not hold, going on would
-// be unsafe, and the rest of the suite is skipped.
+// RTF_REQUIRE_CRITICAL(condition, text): if it does not hold, it is unsafe to continue,
+// and the rest of the suite is skipped.
 #define RTF_REQUIRE_CRITICAL(...) ::rtf::internal::require_critical(RTF_HERE, __VA_ARGS__)
 
 // RTF_FAIL(text): the robot is wrong.
@@ -43,7 +42,7 @@
     ::rtf::internal::require_near(RTF_HERE, ::rtf::internal::Measure::angle, __VA_ARGS__)
 
 // RTF_REQUIRE_UNTIL(condition, timeout, what): waits until the expression is
-// true, asking every 10 ms.
+// true, polling every 10 ms.
 #define RTF_REQUIRE_UNTIL(condition, timeout, what)                                                \
     ::rtf::internal::wait_until(                                                                   \
         RTF_HERE, [&] { return (condition); }, timeout, what)

@@ -7,16 +7,15 @@
 #include <string_view>
 
 #include <rtf/Declare.hpp>
-#include <rtf/Keeper.hpp>
+#include <rtf/Plugin.hpp>
 
 namespace rtf {
 
-// Takes the news of a collapse to the runner, from any thread.
+// Reports a collapse to the runner, from any thread.
 class FixtureEvents
 {
 public:
-    // The fixture is not well any more: the running test is stopped, and the
-    // fixtures are set up again.
+    // The runner stops the running test and sets up the fixtures again.
     void fixtureCollapsed(std::string_view reason) const
     {
         const rtf_host &host = internal::host();
@@ -24,7 +23,7 @@ public:
     }
 };
 
-// An attempt of a test, of which a fixture is told.
+// An attempt of a test.
 struct Test
 {
     unsigned id;         // its number in the run
@@ -33,22 +32,22 @@ struct Test
     unsigned attempt;    // at this repetition, from 1
 };
 
-class FixtureManager : public Keeper
+class FixtureManager : public Plugin
 {
 public:
-    // Whether the fixture is well. Called before each test, and as often as the
-    // suite says.
+    // Whether the fixture works. Called before each test, and as often as the suite
+    // says.
     virtual bool check() { return true; }
 
-    // A test is about to begin. False: the fixture collapsed.
+    // Called before a test starts. False: the fixture collapsed.
     virtual bool testStarted(const Test &test)
     {
         static_cast<void>(test);
         return true;
     }
 
-    // How a test was judged: "passed", "failed", "error", "crashed", ... What is
-    // reported, measured and attached here belongs to that test.
+    // Called after a test with its verdict: "passed", "failed", "error", "crashed", ...
+    // Reports, measurements and attachments of this function belong to that test.
     virtual bool testFinished(const Test &test, std::string_view verdict, std::string_view reason)
     {
         static_cast<void>(test);

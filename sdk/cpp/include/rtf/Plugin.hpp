@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tests and fixtures have in common.
+// The base class of tests and fixtures.
 #ifndef RTF_PLUGIN_HPP
 #define RTF_PLUGIN_HPP
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include <rtf/Assertions.hpp>
+#include <rtf/internal/Results.hpp>
 
 namespace rtf {
 
 // All functions may be called from any thread. Those that end a step (a failed
-// assertion, a request to stop) do so by an exception and belong on the thread
-// that runs the step.
+// assertion, a stop request) throw an exception, and must be called on the thread that
+// runs the step.
 class Plugin
 {
 public:
@@ -32,7 +34,7 @@ public:
         return true;
     }
 
-    // Called last, whatever happened before.
+    // Called last, in any case.
     virtual void tearDown() {}
 
 protected:
@@ -41,14 +43,14 @@ protected:
         internal::report(here, text);
     }
 
-    // The time since a moment that does not matter, by the clock that the suite has.
+    // The time since an arbitrary moment, by the suite's clock.
     std::chrono::duration<double> now() const { return internal::now(); }
 
-    // Sleeps, in a suite with a clock by that one; ends the step when the plug-in is asked to stop.
+    // Sleeps by the suite's clock. A stop request ends the step.
     void sleep(std::chrono::duration<double> duration) const { internal::sleep(duration); }
 
-    // Waits until condition() is true, asking every 10 ms. When the time is over
-    // this is a failed assertion that tells what was waited for and the last value.
+    // Waits until condition() is true, polling every 10 ms. After the timeout, the
+    // assertion fails with `what` and the last value.
     template <class Condition>
     bool wait_until(Condition &&condition, std::chrono::duration<double> timeout,
                     std::string_view what, Location here = Location::current()) const
@@ -56,10 +58,10 @@ protected:
         return internal::wait_until(here, std::forward<Condition>(condition), timeout, what);
     }
 
-    // Whether the plug-in was asked to stop; a loop that runs long should look.
+    // Whether the plug-in was asked to stop; long loops should poll this.
     bool interrupted() const { return internal::interrupted(); }
 
-    // The name under which the suite knows the plug-in.
+    // The plug-in's name in the suite.
     std::string name() const { return text(internal::host().name); }
 
     // Its parameter string in the suite.
@@ -68,8 +70,25 @@ protected:
     // The suite's environment string.
     std::string environment() const { return text(internal::host().environment); }
 
-    // The repetition, from 1.
+    // The present repetition, from 1.
     unsigned repetition() const { return internal::host().repetition(internal::host().context); }
+
+    // Records a number. Outside its limits it is a failure; the step continues. A fixture
+    // measures in its testFinished.
+    bool measure(std::string_view name, double value, std::string_view unit = "",
+                 std::optional<double> low = std::nullopt,
+                 std::optional<double> high = std::nullopt,
+                 Location here = Location::current()) const
+    {
+        return internal::measure(here, internal::Measurement{name, value, unit, low, high});
+    }
+
+    // Adds a copy of a file to the results. The file may be deleted afterwards.
+    void attach(std::string_view path, std::string_view name = "", std::string_view media_type = "",
+                Location here = Location::current()) const
+    {
+        internal::attach(here, path, name, media_type);
+    }
 
 private:
     static std::string text(rtf_text (*get)(void *))

@@ -9,20 +9,20 @@
 #include <utility>
 
 #include <rtf/Declare.hpp>
-#include <rtf/Keeper.hpp>
+#include <rtf/Plugin.hpp>
 #include <rtf/internal/Sampling.hpp>
 
 namespace rtf {
 
-class TestCase : public Keeper
+class TestCase : public Plugin
 {
 public:
-    // The test. Called when setup succeeded.
+    // Runs the test. Called if setup succeeded.
     virtual void run() = 0;
 
 protected:
     // Takes a sample of a signal. Outside its limits it is a failure; the test
-    // goes on. The time counts from the beginning of the set-up; now unless told.
+    // continues. The time is since the set-up began; the default is the current time.
     bool sample(std::string_view name, double value, std::string_view unit = "",
                 std::optional<double> low = std::nullopt, std::optional<double> high = std::nullopt,
                 std::optional<std::chrono::duration<double>> time = std::nullopt,
@@ -31,8 +31,8 @@ protected:
         return internal::sample(here, internal::Measurement{name, value, unit, low, high}, time);
     }
 
-    // Samples what read() returns at `rate` Hz, and tells whether all are within
-    // the limits. What a reading that takes too long misses is left out.
+    // Samples the result of read() at `rate` Hz, and returns whether all are within
+    // the limits. A slow read() skips samples.
     template <class Read>
     bool
     sample_for(std::string_view name, std::chrono::duration<double> duration, double rate,

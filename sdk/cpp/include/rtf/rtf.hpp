@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole SDK: tests, fixtures and what both may use.
+// The complete SDK.
 #ifndef RTF_RTF_HPP
 #define RTF_RTF_HPP
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a step of a test or a fixture; nothing that it throws goes further.
+// Runs a step of a test or a fixture and reports its exception.
 #ifndef ROBOTTESTINGFRAMEWORK_INTERNAL_ATTEMPT_H
 #define ROBOTTESTINGFRAMEWORK_INTERNAL_ATTEMPT_H
 
@@ -19,7 +19,7 @@
 namespace robottestingframework {
 namespace internal {
 
-// The type of the exception that is being handled.
+// The type of the present exception.
 inline std::string exception_type()
 {
 #if defined(__GNUC__)
@@ -34,7 +34,7 @@ inline std::string exception_type()
     return "unknown type";
 }
 
-// What the exception says that is being handled.
+// The text of the present exception.
 inline TestMessage exception_message()
 {
     try {
@@ -50,8 +50,8 @@ inline TestMessage exception_message()
 
 enum class Phase { test, tear_down };
 
-// Whether the step came to its end. A failed assertion is a failure of the test,
-// but while it is torn down an error.
+// Whether the step returned. A failed assertion is a failure, but an error in the
+// tear-down.
 template <class Step>
 bool attempt(const Test *test, TestResult &result, Phase phase, Step step)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Speaks to the host process that has loaded the plug-in.
+// The connection to the host process that has loaded the plug-in.
 #ifndef ROBOTTESTINGFRAMEWORK_INTERNAL_HOST_H
 #define ROBOTTESTINGFRAMEWORK_INTERNAL_HOST_H
 
@@ -27,20 +27,20 @@ inline std::string from_text(rtf_text text)
     return text.length == 0 ? std::string() : std::string(text.data, text.length);
 }
 
-inline void tell_host(const rtf_host &host, std::int32_t kind, const TestMessage &said)
+inline void send_to_host(const rtf_host &host, std::int32_t kind, const TestMessage &content)
 {
-    const std::string text = text_of(said);
-    const std::string file = said.getSourceFileName();
+    const std::string text = text_of(content);
+    const std::string file = content.getSourceFileName();
     rtf_message message = rtf_message();
     message.size = sizeof message;
     message.kind = kind;
     message.text = to_text(text);
     message.file = file.empty() ? nullptr : file.c_str();
-    message.line = said.getSourceLineNumber();
+    message.line = content.getSourceLineNumber();
     host.message(host.context, &message);
 }
 
-// Takes what a test tells its result to the host.
+// Sends the messages in a test's result to the host.
 class HostListener : public TestListener
 {
 public:
@@ -48,15 +48,15 @@ public:
 
     void addReport(const Test *, TestMessage msg) override
     {
-        tell_host(host_, RTF_MESSAGE_REPORT, msg);
+        send_to_host(host_, RTF_MESSAGE_REPORT, msg);
     }
     void addError(const Test *, TestMessage msg) override
     {
-        tell_host(host_, RTF_MESSAGE_ERROR, msg);
+        send_to_host(host_, RTF_MESSAGE_ERROR, msg);
     }
     void addFailure(const Test *, TestMessage msg) override
     {
-        tell_host(host_, RTF_MESSAGE_FAILURE, msg);
+        send_to_host(host_, RTF_MESSAGE_FAILURE, msg);
     }
 
 private:

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fixture that a host process runs: the functions of the plug-in's table.
+// A fixture that a host process runs, and the suite that is its dispatcher.
 #ifndef ROBOTTESTINGFRAMEWORK_INTERNAL_HOSTEDFIXTURE_H
 #define ROBOTTESTINGFRAMEWORK_INTERNAL_HOSTEDFIXTURE_H
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -10,16 +11,79 @@
 #include <rtf/plugin.h>
 
 #include "../FixtureManager.h"
+#include "../TestResult.h"
+#include "../TestSuite.h"
 #include "Attempt.h"
 #include "Host.h"
-#include "HostedSuite.h"
+#include "PluginTable.h"
 
 namespace robottestingframework {
 namespace internal {
 
+// Sends reports and collapses to the host. It has no tests: the host runs them.
+class HostedSuite : public TestSuite, private TestListener
+{
+public:
+    explicit HostedSuite(const rtf_host &host)
+        : TestSuite(from_text(host.name(host.context))), host_(host)
+    {
+        reports_.addListener(this);
+        result_ = &reports_;
+    }
+
+    void fixtureCollapsed(TestMessage reason) override
+    {
+        const std::string text = text_of(reason);
+        host_.collapsed(host_.context, to_text(text));
+    }
+
+    // The tests run in other processes, which the runner stops after a collapse.
+    void interrupt() override { fixtureCollapsed("the fixture interrupted the suite"); }
+
+    // Exists while the host waits for a step.
+    class Step
+    {
+    public:
+        explicit Step(HostedSuite &suite) : suite_(suite) { suite_.in_step_ = true; }
+        ~Step() { suite_.in_step_ = false; }
+        Step(const Step &) = delete;
+        Step &operator=(const Step &) = delete;
+
+    private:
+        HostedSuite &suite_;
+    };
+
+private:
+    void addReport(const Test *, TestMessage msg) override
+    {
+        send_to_host(host_, RTF_MESSAGE_REPORT, msg);
+    }
+    void addError(const Test *, TestMessage msg) override { problem(RTF_MESSAGE_ERROR, msg); }
+    void addFailure(const Test *, TestMessage msg) override { problem(RTF_MESSAGE_FAILURE, msg); }
+
+    // During a step, it decides the answer; otherwise it would have no effect.
+    void problem(std::int32_t kind, const TestMessage &message)
+    {
+        send_to_host(host_, kind, message);
+        if (!in_step_) {
+            fixtureCollapsed(message);
+        }
+    }
+
+    const rtf_host &host_;
+    std::atomic<bool> in_step_{false};
+    TestResult reports_;
+};
+
 class HostedFixture
 {
 public:
+    template <class T>
+    static HostedFixture *create(const rtf_host &host)
+    {
+        return new HostedFixture(host, std::unique_ptr<FixtureManager>(new T));
+    }
+
     HostedFixture(const rtf_host &host, std::unique_ptr<FixtureManager> fixture)
         : host_(host), suite_(host), fixture_(std::move(fixture))
     {
@@ -27,8 +91,8 @@ public:
         fixture_->setDispatcher(&suite_);
     }
 
-    // A fixture's arguments begin with the first one, not with a name; without
-    // any, it gets one that is empty.
+    // A fixture's arguments do not include a name; without arguments, it gets an empty
+    // one.
     std::int32_t setup(int argc, char **argv)
     {
         nothing_[0] = &empty_;
@@ -59,7 +123,7 @@ private:
         try {
             return step() ? RTF_DONE : RTF_REFUSED;
         } catch (...) {
-            tell_host(host_, RTF_MESSAGE_ERROR, exception_message());
+            send_to_host(host_, RTF_MESSAGE_ERROR, exception_message());
             return RTF_STOPPED;
         }
     }
@@ -67,50 +131,20 @@ private:
     const rtf_host &host_;
     char empty_ = '\0';
     char *nothing_[2];
-    HostedSuite suite_; // outlives the fixture, which may report to its end
+    HostedSuite suite_; // outlives the fixture, whose destructor may report
     std::unique_ptr<FixtureManager> fixture_;
 };
 
 // The table of a plug-in whose fixture is a T.
 template <class T>
-struct FixtureTable
+struct FixtureTable : PluginTable<HostedFixture, T>
 {
-    static void *create(const rtf_host *host)
-    {
-        try {
-            std::unique_ptr<FixtureManager> fixture(new T);
-            return new HostedFixture(*host, std::move(fixture));
-        } catch (...) {
-            tell_host(*host, RTF_MESSAGE_ERROR, exception_message());
-            return nullptr;
-        }
-    }
-
-    static void destroy(void *self) { delete static_cast<HostedFixture *>(self); }
-    static std::int32_t setup(void *self, int argc, char **argv)
-    {
-        return static_cast<HostedFixture *>(self)->setup(argc, argv);
-    }
-    static std::int32_t check(void *self) { return static_cast<HostedFixture *>(self)->check(); }
-    static std::int32_t tear_down(void *self)
-    {
-        return static_cast<HostedFixture *>(self)->tear_down();
-    }
-
     static const rtf_plugin_table *table(const char *name)
     {
-        static rtf_plugin_table table = rtf_plugin_table();
-        table.abi_major = RTF_ABI_MAJOR;
-        table.abi_minor = RTF_ABI_MINOR;
-        table.size = sizeof table;
-        table.kind = RTF_KIND_FIXTURE;
-        table.name = name;
-        table.create = create;
-        table.destroy = destroy;
-        table.setup = setup;
-        table.check = check;
-        table.tear_down = tear_down;
-        return &table;
+        rtf_plugin_table *const table =
+            PluginTable<HostedFixture, T>::table(RTF_KIND_FIXTURE, name);
+        table->check = PluginTable<HostedFixture, T>::check;
+        return table;
     }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A test that a host process runs: the functions of the plug-in's table.
+// A test that a host process runs.
 #ifndef ROBOTTESTINGFRAMEWORK_INTERNAL_HOSTEDTEST_H
 #define ROBOTTESTINGFRAMEWORK_INTERNAL_HOSTEDTEST_H
 
@@ -16,13 +16,14 @@
 #include "../TestResult.h"
 #include "Attempt.h"
 #include "Host.h"
+#include "PluginTable.h"
 #include "Watch.h"
 
 namespace robottestingframework {
 namespace internal {
 
-// Whether T has a run(TestResult &) of its own, which then does all steps. One
-// that T only brings along (`using TestCase::run`) does them just as well.
+// Whether T has a run(TestResult &), which then carries out all steps. One that T
+// inherits (`using TestCase::run`) does so, too.
 template <class T, class = void>
 struct has_own_steps : std::false_type
 {
@@ -37,11 +38,20 @@ struct has_own_steps<T,
 class HostedTest
 {
 public:
+    // Which functions of its own the test's class has.
     struct Own
     {
         bool interrupt;
         bool steps;
     };
+
+    template <class T>
+    static HostedTest *create(const rtf_host &host)
+    {
+        std::unique_ptr<TestCase> test(new T);
+        return new HostedTest(host, std::move(test),
+                              Own{has_own_interrupt<T>::value, has_own_steps<T>::value});
+    }
 
     HostedTest(const rtf_host &host, std::unique_ptr<TestCase> test, Own own)
         : host_(host), listener_(host), test_(std::move(test)), own_(own)
@@ -66,7 +76,7 @@ public:
         arguments_.assign(argv, argv + argc + 1);
         arguments_[0] = &first_[0];
         const bool ready = own_.steps || test_->set_up(argc, arguments_.data());
-        tell_name();
+        report_name();
         return ready ? RTF_DONE : RTF_STOPPED;
     }
 
@@ -78,8 +88,8 @@ public:
         } else {
             test_->repeat([this] { return host_.interrupted(host_.context) != 0; });
         }
-        tell_name();
-        tell_silent_failure();
+        report_name();
+        report_silent_failure();
         return RTF_DONE;
     }
 
@@ -89,13 +99,13 @@ public:
         if (!own_.steps) {
             attempt(test_.get(), result_, Phase::tear_down, [this] { test_->tearDown(); });
         }
-        tell_silent_failure();
+        report_silent_failure();
         return RTF_DONE;
     }
 
 private:
-    // The report knows the test by the suite's name for it.
-    void tell_name()
+    // Reports use the test's name in the suite.
+    void report_name()
     {
         const std::string name = test_->getName();
         if (name != name_) {
@@ -104,8 +114,8 @@ private:
         }
     }
 
-    // A test can fail without a word; the host wants one.
-    void tell_silent_failure()
+    // A test can fail without a message; the host needs one.
+    void report_silent_failure()
     {
         if (!test_->succeeded() && !result_.hasProblem(test_.get())) {
             result_.addFailure(test_.get(), TestMessage("the test called failed()"));
@@ -119,52 +129,20 @@ private:
     std::unique_ptr<TestCase> test_;
     Own own_;
     std::string name_;
-    // What argv points to.
+    // The storage of argv.
     std::string first_;
     std::vector<char *> arguments_;
 };
 
 // The table of a plug-in whose test is a T.
 template <class T>
-struct TestTable
+struct TestTable : PluginTable<HostedTest, T>
 {
-    static void *create(const rtf_host *host)
-    {
-        try {
-            std::unique_ptr<TestCase> test(new T);
-            const HostedTest::Own own{has_own_interrupt<T>::value, has_own_steps<T>::value};
-            return new HostedTest(*host, std::move(test), own);
-        } catch (...) {
-            tell_host(*host, RTF_MESSAGE_ERROR, exception_message());
-            return nullptr;
-        }
-    }
-
-    static void destroy(void *self) { delete static_cast<HostedTest *>(self); }
-    static std::int32_t setup(void *self, int argc, char **argv)
-    {
-        return static_cast<HostedTest *>(self)->setup(argc, argv);
-    }
-    static std::int32_t run(void *self) { return static_cast<HostedTest *>(self)->run(); }
-    static std::int32_t tear_down(void *self)
-    {
-        return static_cast<HostedTest *>(self)->tear_down();
-    }
-
     static const rtf_plugin_table *table(const char *name)
     {
-        static rtf_plugin_table table = rtf_plugin_table();
-        table.abi_major = RTF_ABI_MAJOR;
-        table.abi_minor = RTF_ABI_MINOR;
-        table.size = sizeof table;
-        table.kind = RTF_KIND_TEST;
-        table.name = name;
-        table.create = create;
-        table.destroy = destroy;
-        table.setup = setup;
-        table.run = run;
-        table.tear_down = tear_down;
-        return &table;
+        rtf_plugin_table *const table = PluginTable<HostedTest, T>::table(RTF_KIND_TEST, name);
+        table->run = PluginTable<HostedTest, T>::run;
+        return table;
     }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calls a test's own interrupt() when the host asks the plug-in to stop.
+// Calls a test's interrupt() when the runner asks the plug-in to stop.
 #ifndef ROBOTTESTINGFRAMEWORK_INTERNAL_WATCH_H
 #define ROBOTTESTINGFRAMEWORK_INTERNAL_WATCH_H
 
@@ -15,8 +15,7 @@
 namespace robottestingframework {
 namespace internal {
 
-// Whether T has an interrupt() of its own. One that cannot be named from here
-// (it is private, or overloaded) is its own.
+// Whether T overrides interrupt(). A private or overloaded function is an override.
 template <class T, class = void>
 struct has_own_interrupt : std::true_type
 {
@@ -28,9 +27,8 @@ struct has_own_interrupt<T, typename std::enable_if<std::is_same<
 {
 };
 
-// Waits in a thread of its own, which the host's `wait` keeps until the request
-// comes or the process ends; so the thread is left to itself, and only the test
-// is taken from it.
+// Waits in a dedicated thread. The host's `wait` returns only on a stop request, so the
+// thread is detached, and stop() only takes the test from it.
 class Watch
 {
 public:
@@ -56,7 +54,7 @@ public:
         }).detach();
     }
 
-    // The test's interrupt() is not called any more, and has returned.
+    // From now on, the test's interrupt() is not called and does not run.
     void stop()
     {
         if (shared_) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The time that a plug-in follows: the simulator's, if its suite has a clock.
+// The time for a plug-in: the simulator's, if its suite has a clock.
 #ifndef RTF_INTERNAL_CLOCK_HPP
 #define RTF_INTERNAL_CLOCK_HPP
 
@@ -15,16 +15,15 @@ namespace internal {
 
 using Seconds = std::chrono::duration<double>;
 
-// The file with the time, which the runner names for tests of such a suite; null
-// for the wall clock.
+// The file with the simulated time; null for the wall clock.
 inline const char *clock_file()
 {
     const char *path = std::getenv("RTF_CLOCK");
     return path != nullptr && *path != '\0' ? path : nullptr;
 }
 
-// What the clock shows; nothing while it is being written.
-inline std::optional<Seconds> shown()
+// The clock's time; nothing while the file is being written.
+inline std::optional<Seconds> read_clock()
 {
     const char *path = clock_file();
     if (path == nullptr) {
@@ -42,19 +41,19 @@ inline std::optional<Seconds> shown()
 inline Seconds now()
 {
     static std::atomic<double> latest{0.0};
-    if (const std::optional<Seconds> time = shown()) {
+    if (const std::optional<Seconds> time = read_clock()) {
         latest = time->count();
     }
     return Seconds(latest);
 }
 
-// Measures how far the time goes on. What it jumps back is no time.
+// Measures the elapsed time, without jumps back.
 class Stopwatch
 {
 public:
     Seconds passed()
     {
-        if (const std::optional<Seconds> time = shown()) {
+        if (const std::optional<Seconds> time = read_clock()) {
             if (before_ && *time > *before_) {
                 passed_ += *time - *before_;
             }
@@ -64,7 +63,7 @@ public:
     }
 
 private:
-    std::optional<Seconds> before_ = shown();
+    std::optional<Seconds> before_ = read_clock();
     Seconds passed_{0.0};
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions of a plug-in's table. No exception leaves them.
+// The functions of a plug-in's table. They catch all exceptions.
 #ifndef RTF_INTERNAL_ENTRY_HPP
 #define RTF_INTERNAL_ENTRY_HPP
 
@@ -23,7 +23,7 @@ struct Test;
 
 namespace internal {
 
-// The type of the exception that is being handled, as a person would write it.
+// The name of the present exception's type.
 inline std::string exception_type()
 {
     const std::type_info *type = abi::__cxa_current_exception_type();
@@ -36,13 +36,13 @@ inline std::string exception_type()
     return name ? name.get() : type->name();
 }
 
-// An error that came from no known line.
-inline void stray_error(const std::string &text)
+// Reports an error without a location.
+inline void report_error(const std::string &text)
 {
     send(RTF_MESSAGE_ERROR, text, Location{nullptr, 0});
 }
 
-// Calls a step; what it throws becomes an error.
+// Calls a step, and reports its exception as an error.
 template <class Step>
 int32_t guarded(Step &&step) noexcept
 {
@@ -50,34 +50,34 @@ int32_t guarded(Step &&step) noexcept
         return step() ? RTF_DONE : RTF_REFUSED;
     } catch (const Stop &) {
     } catch (const std::exception &exception) {
-        stray_error(exception_type() + ": " + exception.what());
+        report_error(exception_type() + ": " + exception.what());
     } catch (...) {
-        stray_error("exception of type " + exception_type());
+        report_error("exception of type " + exception_type());
     }
     return RTF_STOPPED;
 }
 
-// Whether a fixture has a testStarted or a testFinished of its own. One that may
-// not be looked at from here is its own.
+// Whether a fixture overrides testStarted or testFinished. A private function is an
+// override.
 template <class T, class = void>
-struct HearsStart : std::true_type
+struct OverridesStarted : std::true_type
 {
 };
 
 template <class T>
-struct HearsStart<T, std::void_t<decltype(&T::testStarted)>>
+struct OverridesStarted<T, std::void_t<decltype(&T::testStarted)>>
     : std::bool_constant<
           !std::is_same_v<decltype(&T::testStarted), bool (FixtureManager::*)(const Test &)>>
 {
 };
 
 template <class T, class = void>
-struct HearsFinish : std::true_type
+struct OverridesFinished : std::true_type
 {
 };
 
 template <class T>
-struct HearsFinish<T, std::void_t<decltype(&T::testFinished)>>
+struct OverridesFinished<T, std::void_t<decltype(&T::testFinished)>>
     : std::bool_constant<!std::is_same_v<decltype(&T::testFinished),
                                          bool (FixtureManager::*)(const Test &, std::string_view,
                                                                   std::string_view)>>
@@ -92,11 +92,11 @@ struct Entry
                   "RTF_PLUGIN needs a class that derives from rtf::TestCase or "
                   "rtf::FixtureManager");
 
-    // Its functions are called through the base, where they are public.
+    // The functions are public in the base class.
     using Base = std::conditional_t<is_fixture, FixtureManager, TestCase>;
 
-    // Only there in a fixture's source.
-    using Told = std::conditional_t<is_fixture, Test, void>;
+    // Declared only in a fixture's source.
+    using Notified = std::conditional_t<is_fixture, Test, void>;
 
     static Base &get(void *self) { return *static_cast<T *>(self); }
 
@@ -143,7 +143,7 @@ struct Entry
         return guarded([&] {
             if constexpr (is_fixture) {
                 return get(self).testStarted(
-                    Told{test->id, from_text(test->name), test->repetition, test->attempt});
+                    Notified{test->id, from_text(test->name), test->repetition, test->attempt});
             }
             return true;
         });
@@ -154,7 +154,7 @@ struct Entry
         return guarded([&] {
             if constexpr (is_fixture) {
                 return get(self).testFinished(
-                    Told{test->id, from_text(test->name), test->repetition, test->attempt},
+                    Notified{test->id, from_text(test->name), test->repetition, test->attempt},
                     from_text(test->verdict), from_text(test->reason));
             }
             return true;
@@ -187,8 +187,8 @@ constexpr rtf_plugin_table table_of(const char *name)
     table.check = Own::is_fixture ? Own::check : nullptr;
     table.tear_down = Own::tear_down;
     if constexpr (Own::is_fixture) {
-        table.test_started = HearsStart<T>::value ? Own::test_started : nullptr;
-        table.test_finished = HearsFinish<T>::value ? Own::test_finished : nullptr;
+        table.test_started = OverridesStarted<T>::value ? Own::test_started : nullptr;
+        table.test_finished = OverridesFinished<T>::value ? Own::test_finished : nullptr;
     }
     return table;
 }

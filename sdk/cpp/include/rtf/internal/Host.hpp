@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host's table of functions, for the plug-in that is loaded.
+// The host's table of functions for the loaded plug-in.
 #ifndef RTF_INTERNAL_HOST_HPP
 #define RTF_INTERNAL_HOST_HPP
 
@@ -13,8 +13,7 @@
 namespace rtf {
 namespace internal {
 
-// One for the process, so that a helper library that uses the SDK reports for
-// the plug-in that calls it.
+// One per process, so that a helper library reports for the plug-in that calls it.
 inline std::atomic<const rtf_host *> current_host{nullptr};
 
 inline const rtf_host &host()

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A place in a plug-in's source, taken where a function is called.
+// A location in a plug-in's source: that of a call.
 #ifndef RTF_INTERNAL_LOCATION_HPP
 #define RTF_INTERNAL_LOCATION_HPP
 
@@ -10,8 +10,8 @@ struct Location
     const char *file;
     unsigned line;
 
-    // As a default argument this is the caller's place. C++20 has
-    // std::source_location for it; the compilers have had it longer.
+    // As a default argument, this is the caller's location, like C++20's
+    // std::source_location.
     static constexpr Location current(const char *file = __builtin_FILE(),
                                       unsigned line = __builtin_LINE())
     {

@@ -11,8 +11,8 @@
 namespace rtf {
 namespace internal {
 
-// Ends a step after a failed assertion, an error, or a request to stop. Not a
-// std::exception: a plug-in that handles those must not swallow it.
+// Ends a step after a failed assertion, an error, or a stop request. Not a
+// std::exception: a plug-in that catches those must not swallow it.
 struct Stop
 {
 };

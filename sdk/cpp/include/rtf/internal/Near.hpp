@@ -34,7 +34,7 @@ void flatten(const T &thing, std::vector<double> &numbers)
     }
 }
 
-// What was found and what was expected, as numbers.
+// Actual and expected numbers.
 struct Numbers
 {
     std::vector<double> got;
@@ -50,7 +50,7 @@ struct Numbers
         return std::fabs(measure == Measure::angle ? std::remainder(plain, full_turn) : plain);
     }
 
-    // The index with the largest difference; what is not finite is worst of all.
+    // The index with the largest difference; non-finite numbers come first.
     std::size_t worst() const
     {
         std::size_t worst = 0;
@@ -65,7 +65,7 @@ struct Numbers
         return worst;
     }
 
-    // What is wrong, empty when both are near.
+    // Describes the problem; empty if both are near.
     std::string problem() const
     {
         if (got.size() != expected.size()) {
@@ -89,9 +89,9 @@ struct Numbers
     }
 };
 
-// Tells the host. Beyond this many numbers in words only: a line of the host
-// protocol has an upper limit, and nobody reads a million numbers.
-inline bool tell(Location here, const Numbers &numbers, std::string_view what)
+// Reports the comparison. With too many numbers for a line of the host protocol, only
+// the text.
+inline bool report_comparison(Location here, const Numbers &numbers, std::string_view what)
 {
     constexpr std::size_t most = 100000;
     rtf_comparison comparison;
@@ -126,7 +126,7 @@ bool check_near(Location here, Measure measure, const Got &got, const Expected &
     numbers.scalar = std::is_arithmetic_v<Got> && std::is_arithmetic_v<Expected>;
     flatten(got, numbers.got);
     flatten(expected, numbers.expected);
-    return tell(here, numbers, what);
+    return report_comparison(here, numbers, what);
 }
 
 template <class Got>

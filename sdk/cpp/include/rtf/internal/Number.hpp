@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How numbers and last values are written: alike in the SDKs of all languages.
+// Formats values in messages: the same in all SDKs (see conformance/texts.json).
 #ifndef RTF_INTERNAL_NUMBER_HPP
 #define RTF_INTERNAL_NUMBER_HPP
 
@@ -22,8 +22,7 @@ inline std::string number(double value)
     return digits;
 }
 
-// The last value of a condition that never came true; empty when its type has
-// no text.
+// The last value of a condition; empty if its type has no text.
 template <class T>
 std::string last_value(const T &value)
 {

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include <rtf/internal/Keep.hpp>
+#include <rtf/internal/Results.hpp>
 #include <rtf/internal/Wait.hpp>
 
 namespace rtf {
@@ -55,7 +55,7 @@ bool sample_for(Location here, Measurement signal, Seconds duration, double rate
     }
     Stopwatch watch;
     bool all_within = true;
-    // Each tick has its own deadline, so that delays do not add up.
+    // Each tick has a separate deadline, so that delays do not accumulate.
     for (double tick = 0; tick < duration.count() * rate - 1e-9;
          tick = std::max(tick + 1, std::ceil(watch.passed().count() * rate))) {
         sleep(Seconds(tick / rate) - watch.passed());

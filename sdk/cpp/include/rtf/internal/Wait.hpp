@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sleeping and waiting that end when the plug-in is asked to stop.
+// Sleeping and waiting; a stop request ends both.
 #ifndef RTF_INTERNAL_WAIT_HPP
 #define RTF_INTERNAL_WAIT_HPP
 
@@ -19,7 +19,7 @@ inline bool interrupted()
     return host().interrupted(host().context) != 0;
 }
 
-// How often a condition, or a simulator's clock, is looked at.
+// The polling interval for conditions and simulators' clocks.
 constexpr Seconds kPoll = std::chrono::milliseconds(10);
 
 // Sleeps by the wall clock.
@@ -42,7 +42,7 @@ inline void sleep(Seconds duration)
     pause(Seconds(0));
 }
 
-// Asks every 10 ms. When the time is over this is a failed assertion.
+// Polls every 10 ms. After the timeout, the assertion fails.
 template <class Condition>
 bool wait_until(Location here, Condition &&condition, Seconds timeout, std::string_view what)
 {

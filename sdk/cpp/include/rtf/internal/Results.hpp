@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a test keeps with its result: numbers and files.
-#ifndef RTF_INTERNAL_KEEP_HPP
-#define RTF_INTERNAL_KEEP_HPP
+// Measurements and attached files.
+#ifndef RTF_INTERNAL_RESULTS_HPP
+#define RTF_INTERNAL_RESULTS_HPP
 
 #include <climits>
 #include <cmath>
