@@ -29,9 +29,7 @@ from driver import arm, run
          "yaw: got 6.5, expected 0 ± 0.1 (off by 0.216815) at index 1"),
     ],
 )  # fmt: skip
-def test_a_failed_comparison_has_its_numbers(
-    tmp_path: Path, call: str, text: str
-) -> None:
+def test_a_failed_comparison_has_its_numbers(tmp_path: Path, call: str, text: str) -> None:
     array = (
         "class Array:\n"
         "    def __init__(self, rows): self.rows = rows\n"

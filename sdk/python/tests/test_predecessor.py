@@ -96,7 +96,9 @@ def test_only_a_class_of_the_file_named_test_case_is_a_test(tmp_path: Path) -> N
         assert "has no class that derives from rtf.TestCase" in ran.texts[0][1]
 
 
-def test_a_test_case_that_derives_from_the_sdk_is_no_test_of_the_predecessor(tmp_path: Path) -> None:
+def test_a_test_case_that_derives_from_the_sdk_is_no_test_of_the_predecessor(
+    tmp_path: Path,
+) -> None:
     body = "class TestCase(rtf.TestCase):\n    def run(self): self.report(self.param)\n"
     ran = old(tmp_path, "import rtf\n" + body)
     assert ran.texts == [("report", '--rate "1 2"')]
