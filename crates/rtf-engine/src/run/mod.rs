@@ -2,7 +2,7 @@
 //!
 //! [`machine`] decides, without I/O or clock; [`suite_task`] connects it with
 //! the processes of [`rtf_process`] and the clock. A collapse
-//! interrupts a test in `machine/suite.rs`, `fixture_changed`.
+//! interrupts a test in `machine/suite/mod.rs`, `on_fixture_failure`.
 
 mod clock;
 mod context;

@@ -1,4 +1,4 @@
-//! What goes into the state machine and what comes out of it.
+//! The inputs and effects of the state machine.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -7,34 +7,34 @@ use std::time::Duration;
 use rtf_model::protocol::{OWNER_VARIABLE, Plugin, Request, StackSupport};
 use rtf_model::{EventKind, Source, TestId};
 
-use rtf_plan::plan::{AttachedPlan, HostPlan, ProcessPlan, SuitePlan};
+use rtf_plan::plan::{AttachedPlan, HostPlan, PluginPlan, ProcessPlan, SuitePlan};
 
 pub use rtf_process::probe::ProbeSelection as Probes;
 pub use rtf_process::task::{HostId, ProcessEvent as HostInput};
 
-/// What happened.
+/// An input.
 #[derive(Debug)]
 pub enum Input {
-    /// Begin. The first input, and given once.
+    /// The suite starts; once. Only `Stop` and `Skip` may come earlier.
     Start,
-    /// Something about a process.
+    /// An event of a process.
     Host(HostId, HostInput),
-    /// A deadline that was set has passed.
+    /// A deadline has passed.
     Deadline(Deadline),
-    /// The clock that the suite follows shows this time.
+    /// A reading of the suite's simulated clock.
     Clock(Duration),
     /// The suite must end early.
     Stop(Stop),
-    /// This test is to be stopped, if it runs: by whom.
+    /// A user stops this test, if it runs; the user's name.
     StopTest(TestId, String),
-    /// The rest of the suite is to be skipped: by whom.
+    /// A user skips the rest of the suite; the user's name.
     Skip(String),
 }
 
 /// How quickly a suite must end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum StopLevel {
-    /// Stop the test, tear down.
+    /// Stop the tests, tear down.
     TearDown,
     /// Kill everything now, without tear-down; hooks run.
     Kill,
@@ -45,72 +45,72 @@ pub enum StopLevel {
 /// A request to end the suite early.
 #[derive(Clone, Debug)]
 pub struct Stop {
-    /// How quickly.
+    /// How quickly the suite must end.
     pub level: StopLevel,
-    /// Why, in words: `SIGINT`.
+    /// The source of the request, such as `SIGINT`.
     pub reason: String,
-    /// How long it may take until it is over, tear-downs and hooks included.
-    /// Then it goes on as with [`StopLevel::Kill`].
+    /// Limit for the end of the suite, tear-downs and hooks included. After that, it
+    /// continues as with [`StopLevel::Kill`].
     pub limit: Duration,
 }
 
-/// A point in time that the machine waits for. Setting it again moves it.
+/// A timer of the machine. Setting it again moves it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Deadline {
-    /// The suite's own limit.
+    /// The suite's `timeout`.
     Suite,
-    /// The limit of its end after a stop request.
+    /// The limit of a stop request.
     Shutdown,
-    /// About a test that runs.
+    /// A timer of a test.
     Test(TestId, TestTimer),
-    /// About the fixture at this place of the suite's plan.
+    /// A timer of a fixture, by its index in the suite's plan.
     Fixture(usize, FixtureTimer),
-    /// The next attempt of this test, which failed.
+    /// The delay of a retry.
     Retry(TestId),
-    /// The limit of the running hook, or of a step of its stop.
+    /// The limit of the running hook, or of a step that stops it.
     Hook,
-    /// The end of a shared host that was killed while it had no test.
+    /// The end of an idle shared host that was killed.
     SharedHost,
 }
 
-/// What is waited for in a test.
+/// A timer of a test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum TestTimer {
-    /// The end of the phase, or of the step of its stop.
+    /// The limit of the phase, or of a step that stops it.
     Limit,
-    /// The moment from which it counts as slow.
+    /// From then on, it counts as slow.
     Slow,
 }
 
-/// What is waited for in a fixture.
+/// A timer of a fixture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum FixtureTimer {
-    /// The end of set-up or tear-down, or of a step of its stop.
+    /// The limit of set-up or tear-down, or of a step that stops it.
     Limit,
-    /// The answer to `check`, and whether its process lives.
+    /// The limit of `check` or an examination.
     Check,
-    /// The answer to `test-started` or `test-finished`.
-    Notice,
-    /// The next `check`.
+    /// The limit of `test-started` or `test-finished`.
+    Notification,
+    /// The interval of `check`.
     CheckDue,
-    /// The next restart.
+    /// The delay of a restart.
     RestartDue,
-    /// The end of its process, which is dying.
+    /// The limit for the end of its dying process.
     Death,
 }
 
 /// How to start a process.
 #[derive(Clone, Debug)]
 pub struct Start {
-    /// What to start.
+    /// The program.
     pub what: Program,
-    /// Environment variables, later ones win.
+    /// Environment variables; later ones win.
     pub env: Vec<(String, String)>,
-    /// Its working folder.
+    /// Its working directory.
     pub folder: PathBuf,
 }
 
-/// The environment variables of a process: the suite's, its own, and whose it is.
+/// The environment of a process: variables of the suite, of the process, and its owner.
 pub(super) fn environment(
     suite: &SuitePlan,
     own: &[(String, String)],
@@ -121,37 +121,52 @@ pub(super) fn environment(
     suite.env.iter().chain(own).cloned().chain([owner]).collect()
 }
 
-/// What to start.
+/// A plug-in as its host needs it.
+pub(super) fn plugin(suite: &SuitePlan, name: &str, plan: &PluginPlan, repetition: u32) -> Plugin {
+    Plugin {
+        file: plan.file.to_string_lossy().into_owned(),
+        name: name.to_owned(),
+        param: plan.param.clone(),
+        args: plan.args.clone(),
+        environment: suite.environment.clone(),
+        repetition,
+        is_last: false,
+        end_marker: None,
+        attachments_dir: None,
+    }
+}
+
+/// A program to start.
 #[derive(Clone, Debug)]
 pub enum Program {
     /// A host with a channel.
     Host(Arc<HostPlan>),
     /// A process fixture, with its probes.
     Process(Arc<ProcessPlan>),
-    /// Nothing: what runs already is watched. It "ends" when its channel is
+    /// Nothing: an attached fixture is only monitored. Monitoring ends when its channel is
     /// closed, or it is signalled or killed.
     Attached(Arc<AttachedPlan>),
     /// A command, without a channel.
     Command(Vec<String>),
 }
 
-/// What is to be done.
+/// An action for the task of the suite.
 #[derive(Debug)]
 pub enum Effect {
     /// Start a process.
     Spawn {
-        /// Its id from now on.
+        /// The id of the new process.
         host: HostId,
-        /// Whose it is.
+        /// Its owner.
         source: Source,
-        /// How.
+        /// How to start it.
         start: Start,
     },
-    /// A host serves a further test, under an id of its own.
+    /// Assign a further test to a shared host.
     Join {
-        /// Its id from the beginning of that test on.
+        /// The host's id from the begin of that test.
         host: HostId,
-        /// Its id until then.
+        /// The host's id until then.
         on: HostId,
         /// The test.
         source: Source,
@@ -160,33 +175,30 @@ pub enum Effect {
         /// The request.
         plugin: Plugin,
     },
-    /// Hosts like these will be needed next, in this order: start them while
-    /// tests run. They are used when a later `Spawn` asks for the same. What was
-    /// started ahead and is not in this list is not needed any more.
+    /// Start these hosts ahead, for later `Spawn`s of the same. Hosts that were started
+    /// ahead and are not in this list are no longer needed.
     SpawnAhead(Vec<Start>),
     /// Send a request or a notification.
     Send(HostId, Option<u64>, Request),
-    /// No request will follow: the host ends when it is done.
+    /// Close the channel: the host ends after the present request.
     CloseChannel(HostId),
-    /// Ask for a stack dump; answered by [`HostInput::StackTaken`] or a
-    /// `stack` notification.
+    /// Take a stack dump. Answered by [`HostInput::StackTaken`] or a `stack` notification.
     TakeStack(HostId, StackSupport),
     /// Send a signal to the process and its group.
     Signal(HostId, i32),
-    /// Kill the process and everything below it.
+    /// Kill the process and all descendants.
     KillTree(HostId),
-    /// Ask the `alive` probes of a process fixture from now on.
+    /// Run the `alive` probes of a fixture periodically from now on.
     WatchAlive(HostId),
-    /// Look whether the process lives and its `alive` probes hold: all of them, or those
-    /// that are answered without starting a program. Answered by [`HostInput::Lives`],
-    /// [`HostInput::Dies`] or [`HostInput::ProbeFailed`], or by its end.
+    /// Check whether the process is alive and its `alive` probes succeed. Answered by
+    /// [`HostInput::Lives`], [`HostInput::Dies`], [`HostInput::ProbeFailed`] or its end.
     LookAlive(HostId, Probes),
-    /// Wait for a moment, in the time of `now`.
+    /// Set a deadline, as a time of the run.
     SetDeadline(Deadline, Duration),
-    /// Do not wait for it any more.
+    /// Clear a deadline.
     ClearDeadline(Deadline),
-    /// Something to report.
+    /// Report an event.
     Emit(EventKind),
-    /// The suite is over. Nothing follows.
+    /// The suite has finished. The last effect.
     Done,
 }

@@ -1,34 +1,32 @@
-//! The verdict over one attempt of a test, from all that was seen of it.
+//! Decides the verdict of one attempt of a test. The first reported failure or error
+//! decides; the host's own reason counts only if nothing was reported.
 
 use rtf_model::protocol::{Answer, RpcError};
 use rtf_model::{ExitStatus, LeakedProcess, Outcome, Phase, StopCause, Verdict};
 
 use rtf_plan::plan::Leaks;
 
-/// A first failure or error, which decides.
+/// A reported failure or error.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Problem {
+pub struct TestProblem {
     pub verdict: Verdict,
     pub reason: String,
     pub phase: Phase,
 }
 
-/// What was seen of an attempt that is over.
 #[derive(Debug, Default)]
 pub struct Evidence {
-    /// Why it was asked to stop, if it was.
     pub stopped: Option<(StopCause, String, Phase)>,
-    /// Its first failure or error.
-    pub first_problem: Option<Problem>,
-    /// What the host answered to `run-test`.
+    pub first_problem: Option<TestProblem>,
+    /// The host's answer to `run-test`.
     pub answer: Option<Result<Answer, RpcError>>,
-    /// How the process ended; `None` when it never started, or lives.
+    /// `None` if the process never started or is still alive.
     pub exit: Option<ExitStatus>,
-    /// Whether its host has gone on to the next test, or waits for one.
+    /// Whether its host stays alive for further tests.
     pub released: bool,
 }
 
-/// The judgement.
+/// Decides verdict, reason, and the phase in which they were decided.
 pub fn judge(evidence: &Evidence, last_phase: Phase) -> (Verdict, Option<String>, Phase) {
     if let Some((cause, reason, phase)) = &evidence.stopped {
         let verdict = match cause {
@@ -55,9 +53,9 @@ fn judge_without_answer(evidence: &Evidence, phase: Phase) -> (Verdict, Option<S
         let reason = problem.map_or("the host could not be started", |p| &p.reason);
         return (Verdict::Error, Some(reason.to_owned()), phase);
     }
-    let how = ended(evidence.exit);
+    let status = status_of(evidence.exit);
     let mut reason =
-        format!("the test's process ended in {phase} with {how} before the test was over");
+        format!("the test's process ended in {phase} with {status} before the test was over");
     if let Some(problem) = &evidence.first_problem {
         reason += &format!("; before that: {}", problem.reason);
     }
@@ -70,47 +68,46 @@ fn judge_answer(
     last_phase: Phase,
 ) -> (Verdict, Option<String>, Phase) {
     let clean = evidence.released || evidence.exit == Some(ExitStatus::Code(0));
-    let problem = evidence.first_problem.clone().or_else(|| from_answer(answer, last_phase));
+    let problem = evidence.first_problem.clone().or_else(|| problem_of(answer, last_phase));
     match problem {
         None if clean => (Verdict::Passed, None, last_phase),
         None => {
-            let how = ended(evidence.exit);
-            let reason = format!("the test's process ended with {how} after the test was over");
+            let status = status_of(evidence.exit);
+            let reason = format!("the test's process ended with {status} after the test was over");
             (Verdict::Crashed, Some(reason), Phase::Exit)
         }
         Some(mut problem) => {
             if !clean {
-                let how = ended(evidence.exit);
-                problem.reason += &format!("; then the test's process ended with {how}");
+                let status = status_of(evidence.exit);
+                problem.reason += &format!("; then the test's process ended with {status}");
             }
             (problem.verdict, Some(problem.reason), problem.phase)
         }
     }
 }
 
-/// The host's own word, when no message told of a problem.
-fn from_answer(answer: &Answer, phase: Phase) -> Option<Problem> {
+fn problem_of(answer: &Answer, phase: Phase) -> Option<TestProblem> {
     let (verdict, default) = match answer.outcome {
         Outcome::Passed => return None,
-        Outcome::Failed => (Verdict::Failed, "the host says that the test failed"),
-        Outcome::Error => (Verdict::Error, "the host says that the test went wrong"),
-        Outcome::Interrupted => (Verdict::Error, "the test stopped although it was not asked to"),
+        Outcome::Failed => (Verdict::Failed, "the test failed without a reason"),
+        Outcome::Error => (Verdict::Error, "the test ended in an error without a reason"),
+        Outcome::Interrupted => (Verdict::Error, "the test stopped without a request"),
     };
     let reason = answer.reason.clone().unwrap_or_else(|| default.to_owned());
-    Some(Problem { verdict, reason, phase })
+    Some(TestProblem { verdict, reason, phase })
 }
 
-fn ended(exit: Option<ExitStatus>) -> String {
+fn status_of(exit: Option<ExitStatus>) -> String {
     exit.map_or_else(|| "an unknown status".to_owned(), |status| status.to_string())
 }
 
-/// What is said of a test that passed and left processes behind, if that counts.
-pub fn leak_of(leaks: Leaks, left: &[LeakedProcess]) -> Option<String> {
-    match (leaks, left) {
+/// Why leaked processes make a passed test an error, if its plan says so.
+pub fn leak_problem(policy: Leaks, leaked: &[LeakedProcess]) -> Option<String> {
+    match (policy, leaked) {
         (Leaks::Report, _) | (_, []) => None,
         (Leaks::Fail, [one]) => Some(format!("it left a process behind: {}", one.command)),
         (Leaks::Fail, [first, ..]) => {
-            Some(format!("it left {} processes behind, first: {}", left.len(), first.command))
+            Some(format!("it left {} processes behind, first: {}", leaked.len(), first.command))
         }
     }
 }
@@ -125,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn only_an_answer_and_a_clean_end_pass() {
+    fn a_pass_needs_an_answer_and_a_clean_exit() {
         let passed = answered(Outcome::Passed, ExitStatus::Code(0));
         assert_eq!(judge(&passed, Phase::Exit).0, Verdict::Passed);
         let crashed = answered(Outcome::Passed, ExitStatus::Signal(11));
@@ -135,18 +132,41 @@ mod tests {
     }
 
     #[test]
-    fn a_host_that_hides_a_failure_is_not_believed() {
+    fn a_reported_failure_decides_even_if_the_host_answers_passed() {
         let mut evidence = answered(Outcome::Passed, ExitStatus::Code(0));
         let reason = "the gripper is open".to_owned();
-        evidence.first_problem =
-            Some(Problem { verdict: Verdict::Failed, reason: reason.clone(), phase: Phase::Run });
+        evidence.first_problem = Some(TestProblem {
+            verdict: Verdict::Failed,
+            reason: reason.clone(),
+            phase: Phase::Run,
+        });
         assert_eq!(judge(&evidence, Phase::Exit), (Verdict::Failed, Some(reason), Phase::Run));
     }
 
     #[test]
-    fn a_stop_decides_whatever_the_host_answers() {
+    fn a_stop_decides_before_the_answer() {
         let mut evidence = answered(Outcome::Passed, ExitStatus::Code(0));
         evidence.stopped = Some((StopCause::Collapse, "gone".to_owned(), Phase::Run));
         assert_eq!(judge(&evidence, Phase::Exit).0, Verdict::Collapsed);
+    }
+
+    #[test]
+    fn the_first_reported_problem_decides_over_the_hosts_reason() {
+        let mut evidence = answered(Outcome::Failed, ExitStatus::Code(0));
+        let verdict = |evidence: &Evidence| judge(evidence, Phase::Exit);
+        let reason = |text: &str| Some(text.to_owned());
+        let none = reason("the test failed without a reason");
+        assert_eq!(verdict(&evidence), (Verdict::Failed, none, Phase::Exit));
+        if let Some(Ok(answer)) = &mut evidence.answer {
+            answer.reason = reason("set-up returned false");
+        }
+        assert_eq!(verdict(&evidence).1, reason("set-up returned false"));
+        evidence.first_problem = Some(TestProblem {
+            verdict: Verdict::Error,
+            reason: "no connection".to_owned(),
+            phase: Phase::Setup,
+        });
+        let first = (Verdict::Error, reason("no connection"), Phase::Setup);
+        assert_eq!(verdict(&evidence), first);
     }
 }

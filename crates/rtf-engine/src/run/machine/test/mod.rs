@@ -1,235 +1,143 @@
-//! One attempt of a test: its phases and limits, up to its end. How it is
-//! stopped is in [`stop`], how it gets its host in [`sharing`], what its plug-in
-//! tells in [`telling`], how it waits for fixtures in [`looking`].
+//! One attempt of a test, from its start to the end of its process.
 
-mod answers;
-mod looking;
-pub mod sharing;
+pub mod host;
+mod notifications;
 mod stop;
 mod stopwatch;
-mod telling;
+mod verdict;
 
 use std::time::Duration;
 
 use rtf_model::protocol::{Reply, StackSupport};
-use rtf_model::{
-    EventKind, ExitStatus, LeakedProcess, Phase, Source, StopCause, Stream, TestFinished, TestId,
-    Verdict,
-};
+use rtf_model::{EventKind, Phase, Source, StopCause, TestId, Verdict};
 
-pub use answers::{parse_answer, parse_initialized};
-
-use crate::run::machine::capture::Capture;
-use crate::run::machine::io::{
-    Deadline, Effect, HostId, HostInput, Program, Start, TestTimer, environment,
-};
-use crate::run::machine::judge::{Evidence, judge, leak_of};
-use crate::run::machine::suite::Context;
+use crate::run::machine::context::Context;
+use crate::run::machine::host_replies::{parse_answer, parse_initialized};
+use crate::run::machine::io::{Deadline, Effect, HostId, HostInput, TestTimer};
+use crate::run::machine::judge::Evidence;
+use crate::run::machine::output_capture::OutputCapture;
+use host::{HostChoice, TestRequest};
 use rtf_plan::plan::{SuitePlan, TestPlan};
 use rtf_process::codec::INITIALIZE;
+use stop::StopStep;
 use stopwatch::Stopwatch;
+use verdict::AttemptState;
+pub use verdict::FinishedAttempt;
 
-/// The number of the first `run-test` on a host's channel.
-const RUN_TEST: u64 = 2;
-
-/// From SIGTERM to SIGKILL.
-pub const TERM_GRACE: Duration = Duration::from_secs(1);
-/// How often a process is killed, and how long each time until it must have ended.
-/// One that waits in the kernel may never end.
-pub const KILLS: u32 = 2;
-pub const KILL_WAIT: Duration = Duration::from_secs(5);
-/// A test that did not pass waits this long for a fixture's collapse: a connection
-/// breaks before the kernel tells of the death at its other end. One that passed
-/// waits until all fixtures have passed an examination, which has limits of its own.
-/// Both wait for the end of a fixture that was seen to die.
-const SETTLE: Duration = Duration::from_millis(200);
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Step {
-    /// A stack dump is being taken; then the test is asked to stop.
-    DumpThenAsk,
-    /// It was asked to stop.
-    Asked,
-    /// Its grace is over, a stack dump is being taken.
-    DumpThenForce,
-    /// It got SIGTERM.
-    Terminated,
-    /// It got SIGKILL.
-    Killed,
-}
-
-/// How far its process is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Process {
-    /// It lives, or is being started.
-    Alive,
-    /// It is gone and would have passed, if all fixtures live.
-    Looking,
-    /// It is gone, but a fixture may turn out to have collapsed before.
-    Settling,
-    /// It is gone, and nothing more is waited for.
-    Over,
-    /// The attempt is judged, and nothing changes that.
-    Judged,
-}
-
-/// What an attempt that is over means for the suite.
-#[derive(Debug)]
-pub struct Ended {
-    /// The judgement.
-    pub verdict: Verdict,
-    /// Why it did not pass.
-    pub reason: Option<String>,
-    /// Where it was decided.
-    pub phase: Phase,
-    /// How the process ended.
-    pub exit: Option<ExitStatus>,
-    /// A critical assertion that did not hold: its text.
-    pub critical: Option<String>,
-}
-
-/// Where a test runs.
-#[derive(Clone, Copy, Debug)]
-pub enum Place {
-    /// In a host of its own, at least at first.
-    New,
-    /// In the host that served this one last.
-    On(HostId),
-    /// In a host that was asked for it before.
-    Asked(HostId),
-}
-
-/// One attempt of a test.
 #[derive(Debug)]
 pub struct TestRun<'p> {
     plan: &'p TestPlan,
     host: HostId,
-    /// The number of its request.
+    /// The number of its `run-test`.
     request: u64,
     /// Whether its host can serve several tests.
-    shares: bool,
-    /// Whether its host has outlived it.
-    released: bool,
+    shares_host: bool,
+    /// Whether its host stays alive for further tests.
+    is_released: bool,
     phase: Phase,
     evidence: Evidence,
     stack: StackSupport,
-    stack_taken: bool,
-    step: Option<Step>,
-    /// How often its process was killed.
+    has_stack_dump: bool,
+    step: Option<StopStep>,
     kills: u32,
-    /// How many times a limit it may take in wall time, if it follows another clock.
+    /// With a simulated clock: the wall-clock limit, as a multiple of each limit.
     backstop: Option<u32>,
-    /// The measure of its phase, if it follows another clock.
+    /// With a simulated clock: measures the phase.
     stopwatch: Option<Stopwatch>,
-    process: Process,
-    /// Whether there are fixtures that may have collapsed.
+    state: AttemptState,
     has_fixtures: bool,
     leak: Option<String>,
-    captures: [Capture; 2],
+    output: OutputCapture,
+    /// The critical assertion that failed.
     critical: Option<String>,
-    ended: Option<Ended>,
+    finished: Option<FinishedAttempt>,
 }
 
 impl<'p> TestRun<'p> {
-    /// Starts an attempt: emits `test-started`, starts the host, and asks it
-    /// for everything at once.
     pub fn start(
         suite: &SuitePlan,
         plan: &'p TestPlan,
-        (repetition, attempt): (u32, u32),
-        (place, last): (Place, bool),
+        attempt: u32,
+        (choice, request): (HostChoice, TestRequest),
         cx: &mut Context<'_>,
     ) -> Self {
-        let source = Source::Test(plan.id);
+        let repetition = request.repetition;
         cx.emit(EventKind::TestStarted { test: plan.id, repetition, attempt });
-        let wanted = (repetition, last);
-        let (host, request) = match place {
-            Place::New => (sharing::spawn(suite, plan, wanted, cx), RUN_TEST),
-            Place::On(on) => {
-                let host = sharing::ask(suite, plan, wanted, on, cx);
-                (host, sharing::request_of(host))
-            }
-            Place::Asked(host) => (host, sharing::request_of(host)),
-        };
+        let (host, number) = host::acquire(suite, plan, (choice, request), cx);
         cx.set(Deadline::Test(plan.id, TestTimer::Limit), plan.limits.load);
         Self {
             plan,
             host,
-            request,
-            shares: !matches!(place, Place::New),
-            released: false,
+            request: number,
+            shares_host: !matches!(choice, HostChoice::New),
+            is_released: false,
             phase: Phase::Load,
             evidence: Evidence::default(),
             stack: StackSupport::None,
-            stack_taken: false,
+            has_stack_dump: false,
             step: None,
             kills: 0,
             backstop: suite.clock.as_ref().map(|clock| clock.backstop),
             stopwatch: None,
-            process: Process::Alive,
+            state: AttemptState::Running,
             has_fixtures: !suite.fixtures.is_empty(),
             leak: None,
-            captures: [Capture::new(source, Stream::Stdout), Capture::new(source, Stream::Stderr)],
+            output: OutputCapture::new(Source::Test(plan.id)),
             critical: None,
-            ended: None,
+            finished: None,
         }
     }
 
-    /// How a test's host is started.
-    pub fn host_start(suite: &SuitePlan, plan: &TestPlan) -> Start {
-        Start {
-            what: Program::Host(plan.plugin.host.clone()),
-            env: environment(suite, &plan.env, "test", &plan.name),
-            folder: suite.folder.clone(),
-        }
-    }
-
-    /// Its test.
     pub fn id(&self) -> TestId {
         self.plan.id
     }
 
-    /// The process of this attempt.
     pub fn host(&self) -> HostId {
         self.host
     }
 
-    /// Takes in what its process did.
+    fn source(&self) -> Source {
+        Source::Test(self.plan.id)
+    }
+
+    fn set_limit(&self, after: Duration, cx: &mut Context<'_>) {
+        cx.set(Deadline::Test(self.plan.id, TestTimer::Limit), after);
+    }
+
+    fn clear(&self, timer: TestTimer, cx: &mut Context<'_>) {
+        cx.clear(Deadline::Test(self.plan.id, timer));
+    }
+
     pub fn handle(&mut self, input: HostInput, cx: &mut Context<'_>) {
         match input {
             HostInput::SpawnFailed(reason) => {
-                self.note(Verdict::Error, reason);
-                self.process = Process::Over;
+                self.record_problem(Verdict::Error, reason);
+                self.state = AttemptState::Ended;
             }
-            HostInput::Exited(status, left) => self.exited(Some(status), left, cx),
+            HostInput::Exited(status, leaked) => self.on_exit(Some(status), leaked, cx),
             HostInput::Released => {
-                self.released = true;
-                self.exited(None, Vec::new(), cx);
+                self.is_released = true;
+                self.on_exit(None, Vec::new(), cx);
             }
-            HostInput::Told(notification) => self.told(notification, cx),
+            HostInput::Told(notification) => self.on_notification(notification, cx),
             HostInput::Attached(Ok(attachment)) => {
                 cx.emit(EventKind::Attached { test: self.plan.id, fixture: None, attachment });
             }
-            HostInput::Attached(Err(reason)) => self.own_error(reason, cx),
-            HostInput::Answered(INITIALIZE, reply) => self.initialized(reply, cx),
-            HostInput::Answered(id, reply) if id == self.request => self.answered(reply, cx),
-            HostInput::Answered(id, _) => self.broke_protocol(format!("answered request {id}"), cx),
-            HostInput::Garbage(what) => self.broke_protocol(what, cx),
-            HostInput::Printed(stream, bytes) => {
-                if let Some(output) = self.captures[stream as usize].push(&bytes) {
-                    cx.emit(EventKind::Output(output));
-                }
+            HostInput::Attached(Err(reason)) => self.report_error(reason, cx),
+            HostInput::Answered(INITIALIZE, reply) => self.on_initialized(reply, cx),
+            HostInput::Answered(id, reply) if id == self.request => self.on_answer(reply, cx),
+            HostInput::Answered(id, _) => {
+                self.on_protocol_error(format!("answered request {id}"), cx);
             }
-            HostInput::StackTaken(text) => self.stack_taken(text, cx),
+            HostInput::Garbage(what) => self.on_protocol_error(what, cx),
+            HostInput::Printed(stream, bytes) => self.output.push(stream, &bytes, cx),
+            HostInput::StackTaken(text) => self.on_stack_dump(text, cx),
             HostInput::Uses { usage, tests_served } => {
-                cx.emit(EventKind::ResourcesMeasured {
-                    source: Source::Test(self.plan.id),
-                    usage,
-                    tests_served,
-                });
+                let source = self.source();
+                cx.emit(EventKind::ResourcesMeasured { source, usage, tests_served });
             }
-            HostInput::Throttled => self.pause_clock(true),
-            HostInput::Resumed => self.pause_clock(false),
+            HostInput::Throttled => self.pause_stopwatch(true),
+            HostInput::Resumed => self.pause_stopwatch(false),
             HostInput::Unbegun(_)
             | HostInput::ProbesHold
             | HostInput::ProbeWaits(_)
@@ -239,110 +147,38 @@ impl<'p> TestRun<'p> {
         }
     }
 
-    fn initialized(&mut self, reply: Reply<serde_json::Value>, cx: &mut Context<'_>) {
+    fn on_initialized(&mut self, reply: Reply<serde_json::Value>, cx: &mut Context<'_>) {
         match parse_initialized(reply) {
             Ok(initialized) => {
                 self.stack = initialized.stack;
-                self.shares = self.plan.shared && initialized.supports_shared;
+                self.shares_host = self.plan.shared && initialized.supports_shared;
             }
-            Err(what) => self.broke_protocol(what, cx),
+            Err(what) => self.on_protocol_error(what, cx),
         }
     }
 
-    fn answered(&mut self, reply: Reply<serde_json::Value>, cx: &mut Context<'_>) {
+    fn on_answer(&mut self, reply: Reply<serde_json::Value>, cx: &mut Context<'_>) {
         if self.evidence.answer.is_some() {
-            return self.broke_protocol("answered the same request twice".to_owned(), cx);
+            return self.on_protocol_error("answered the same request twice".to_owned(), cx);
         }
         match parse_answer(reply) {
             Ok(answer) => {
                 if !answer.as_ref().is_ok_and(|answer| answer.continues) {
-                    cx.out(Effect::CloseChannel(self.host));
+                    cx.push(Effect::CloseChannel(self.host));
                 }
                 self.evidence.answer = Some(answer);
                 self.phase = Phase::Exit;
                 self.stopwatch = None;
-                cx.clear(Deadline::Test(self.plan.id, TestTimer::Slow));
+                self.clear(TestTimer::Slow, cx);
                 if self.step.is_none() {
-                    cx.set(
-                        Deadline::Test(self.plan.id, TestTimer::Limit),
-                        self.plan.limits.teardown,
-                    );
+                    self.set_limit(self.plan.limits.teardown, cx);
                 }
             }
-            Err(what) => self.broke_protocol(what, cx),
+            Err(what) => self.on_protocol_error(what, cx),
         }
     }
 
-    fn broke_protocol(&mut self, what: String, cx: &mut Context<'_>) {
-        let reason = format!("the host broke the protocol: {what}");
-        self.stop(StopCause::Protocol, reason, cx);
-    }
-
-    fn exited(&mut self, exit: Option<ExitStatus>, left: Vec<LeakedProcess>, cx: &mut Context<'_>) {
-        self.stopwatch = None;
-        cx.clear(Deadline::Test(self.plan.id, TestTimer::Slow));
-        for capture in &mut self.captures {
-            if let Some(output) = capture.finish() {
-                cx.emit(EventKind::Output(output));
-            }
-        }
-        self.leak = leak_of(self.plan.leaks, &left);
-        if !left.is_empty() {
-            let source = Source::Test(self.plan.id);
-            cx.emit(EventKind::ProcessesLeaked { source, processes: left });
-        }
-        (self.evidence.exit, self.evidence.released) = (exit, self.released);
-        let (verdict, ..) = judge(&self.evidence, self.phase);
-        let may_be_collapsed = self.has_fixtures && self.evidence.stopped.is_none();
-        self.process = match (may_be_collapsed, verdict.is_green()) {
-            (false, _) => Process::Over,
-            (true, true) => Process::Looking,
-            (true, false) => Process::Settling,
-        };
-        let limit = Deadline::Test(self.plan.id, TestTimer::Limit);
-        match self.process {
-            Process::Settling => cx.set(limit, SETTLE),
-            _ => cx.clear(limit),
-        }
-    }
-
-    /// Judges it once its process is gone: verdict and reason, when that is now.
-    pub fn judge_once(&mut self, cx: &mut Context<'_>) -> Option<(Verdict, Option<String>)> {
-        if self.process != Process::Over {
-            return None;
-        }
-        cx.clear(Deadline::Test(self.plan.id, TestTimer::Limit));
-        cx.clear(Deadline::Test(self.plan.id, TestTimer::Slow));
-        let (mut verdict, mut reason, phase) = judge(&self.evidence, self.phase);
-        if let (Verdict::Passed, Some(problem)) = (verdict, self.leak.take()) {
-            verdict = Verdict::Error;
-            reason = Some(problem);
-        }
-        self.process = Process::Judged;
-        let (exit, critical) = (self.evidence.exit, self.critical.take());
-        self.ended = Some(Ended { verdict, reason: reason.clone(), phase, exit, critical });
-        Some((verdict, reason))
-    }
-
-    /// Whether its verdict is spoken.
-    pub fn is_judged(&self) -> bool {
-        self.process == Process::Judged
-    }
-
-    /// Its end, once it is judged. The caller then emits `test-finished` with [`Self::finished`].
-    pub fn take_end(&mut self) -> Option<Ended> {
-        self.ended.take()
-    }
-
-    /// The last event of this attempt.
-    pub fn finished(&self, ended: &Ended, rerun: bool) -> EventKind {
-        EventKind::TestFinished(TestFinished {
-            test: self.plan.id,
-            verdict: ended.verdict,
-            reason: ended.reason.clone(),
-            phase: ended.phase,
-            exit: ended.exit,
-            rerun,
-        })
+    fn on_protocol_error(&mut self, what: String, cx: &mut Context<'_>) {
+        self.stop(StopCause::Protocol, format!("the host broke the protocol: {what}"), cx);
     }
 }

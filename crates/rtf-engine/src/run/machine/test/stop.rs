@@ -1,127 +1,135 @@
-//! How a test is stopped: a stack dump when a limit was reached, the request to
-//! stop, its grace, a stack dump when there is none yet, SIGTERM, SIGKILL.
+//! Stops a test: a stack dump after a time-out, a request to stop, a stack dump after its
+//! grace if there is none yet, SIGTERM, SIGKILL.
 
 use std::time::Duration;
 
 use rtf_model::protocol::Request;
-use rtf_model::{EventKind, Phase, Source, StopCause};
+use rtf_model::{EventKind, Phase, StopCause};
 
-use super::{KILL_WAIT, KILLS, Process, Step, TERM_GRACE, TestRun};
-use crate::run::machine::io::{Deadline, Effect, TestTimer};
-use crate::run::machine::suite::Context;
+use super::{AttemptState, TestRun};
+use crate::run::machine::context::Context;
+use crate::run::machine::escalation::{KILL_WAIT, MAX_KILLS, SIGTERM, TERM_GRACE};
+use crate::run::machine::io::{Effect, TestTimer};
 
-const SIGTERM: i32 = 15;
-/// A stack dump takes no longer than this; the shell answers earlier.
-const STACK_LIMIT: Duration = Duration::from_secs(15);
+/// A backstop: the task of the process gives up a stack dump earlier.
+const STACK_DUMP_LIMIT: Duration = Duration::from_secs(15);
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum StopStep {
+    /// Waits for a stack dump; then the test is asked to stop.
+    DumpThenAsk,
+    /// Was asked to stop.
+    Asked,
+    /// Waits for a stack dump; then SIGTERM follows.
+    DumpThenTerminate,
+    Terminated,
+    Killed,
+}
 
 impl TestRun<'_> {
-    /// Asks the test to stop. The first cause is the one that counts.
+    /// Asks the test to stop. The first cause decides.
     pub fn stop(&mut self, cause: StopCause, reason: String, cx: &mut Context<'_>) {
-        if self.evidence.stopped.is_some() || self.process == Process::Judged {
-            return;
-        }
-        if self.process != Process::Alive && cause != StopCause::Collapse {
-            // It has ended; whether the fixtures live still counts.
+        // After its process has ended, only a collapse can still change the verdict.
+        let is_late = self.has_exited() && cause != StopCause::Collapse;
+        if self.evidence.stopped.is_some() || self.is_judged() || is_late {
             return;
         }
         cx.emit(EventKind::TestStopping { test: self.plan.id, cause, reason: reason.clone() });
-        cx.clear(Deadline::Test(self.plan.id, TestTimer::Slow));
+        self.clear(TestTimer::Slow, cx);
         self.stopwatch = None;
         self.evidence.stopped = Some((cause, reason, self.phase));
-        if self.process != Process::Alive {
-            self.process = Process::Over;
-            return;
-        }
-        if cause == StopCause::Timeout {
-            self.dump_stack(Step::DumpThenAsk, cx);
+        if self.has_exited() {
+            self.state = AttemptState::Ended;
+        } else if cause == StopCause::Timeout {
+            self.dump_stack(StopStep::DumpThenAsk, cx);
         } else {
             self.ask(cx);
         }
     }
 
-    fn dump_stack(&mut self, step: Step, cx: &mut Context<'_>) {
+    fn dump_stack(&mut self, step: StopStep, cx: &mut Context<'_>) {
         self.step = Some(step);
-        cx.out(Effect::TakeStack(self.host, self.stack));
-        cx.set(Deadline::Test(self.plan.id, TestTimer::Limit), STACK_LIMIT);
+        cx.push(Effect::TakeStack(self.host, self.stack));
+        self.set_limit(STACK_DUMP_LIMIT, cx);
     }
 
     fn ask(&mut self, cx: &mut Context<'_>) {
-        self.step = Some(Step::Asked);
+        self.step = Some(StopStep::Asked);
         let reason = self.evidence.stopped.as_ref().map(|(_, reason, _)| reason.clone());
         let (reason, request) = (reason.unwrap_or_default(), Some(self.request));
-        cx.out(Effect::Send(self.host, None, Request::Interrupt { reason, request }));
-        cx.set(Deadline::Test(self.plan.id, TestTimer::Limit), self.plan.limits.grace);
+        cx.push(Effect::Send(self.host, None, Request::Interrupt { reason, request }));
+        self.set_limit(self.plan.limits.grace, cx);
     }
 
-    pub(super) fn stack_taken(&mut self, text: String, cx: &mut Context<'_>) {
-        if !self.stack_taken {
-            self.stack_taken = true;
-            cx.emit(EventKind::StackDumped { source: Source::Test(self.plan.id), text });
+    pub(super) fn on_stack_dump(&mut self, text: String, cx: &mut Context<'_>) {
+        if !self.has_stack_dump {
+            self.has_stack_dump = true;
+            cx.emit(EventKind::StackDumped { source: self.source(), text });
         }
         match self.step {
-            Some(Step::DumpThenAsk) => self.ask(cx),
-            Some(Step::DumpThenForce) => self.terminate(cx),
+            Some(StopStep::DumpThenAsk) => self.ask(cx),
+            Some(StopStep::DumpThenTerminate) => self.terminate(cx),
             _ => {}
         }
     }
 
     fn terminate(&mut self, cx: &mut Context<'_>) {
-        self.step = Some(Step::Terminated);
-        cx.out(Effect::Signal(self.host, SIGTERM));
-        cx.set(Deadline::Test(self.plan.id, TestTimer::Limit), TERM_GRACE);
+        self.step = Some(StopStep::Terminated);
+        cx.push(Effect::Signal(self.host, SIGTERM));
+        self.set_limit(TERM_GRACE, cx);
     }
 
-    /// Kills its process and everything below it, now.
+    /// Kills its process and all descendants.
     pub fn kill(&mut self, cx: &mut Context<'_>) {
-        if self.process != Process::Alive {
-            if self.is_looking() {
-                self.process = Process::Over;
+        if self.has_exited() {
+            if self.awaits_fixtures() {
+                self.state = AttemptState::Ended;
             }
             return;
         }
-        self.step = Some(Step::Killed);
+        self.step = Some(StopStep::Killed);
         self.kills += 1;
-        cx.out(Effect::KillTree(self.host));
-        cx.set(Deadline::Test(self.plan.id, TestTimer::Limit), KILL_WAIT);
+        cx.push(Effect::KillTree(self.host));
+        self.set_limit(KILL_WAIT, cx);
     }
 
-    /// Its process does not end although it was killed: nobody waits any more.
+    /// Gives up a process that was killed and does not end.
     fn abandon(&mut self, cx: &mut Context<'_>) {
         cx.abandon(format!("the process of test `{}`", self.plan.name));
         if let Some((_, reason, _)) = &mut self.evidence.stopped {
             reason.push_str("; its process was killed and did not end");
         }
-        self.exited(None, Vec::new(), cx);
+        self.on_exit(None, Vec::new(), cx);
     }
 
-    /// A deadline about this test has passed.
-    pub fn deadline(&mut self, timer: TestTimer, cx: &mut Context<'_>) {
+    pub fn on_deadline(&mut self, timer: TestTimer, cx: &mut Context<'_>) {
         if timer == TestTimer::Slow {
             return cx.emit(EventKind::TestSlow { test: self.plan.id });
         }
-        if self.process == Process::Judged {
-            return;
-        }
-        if self.process != Process::Alive {
-            self.process = Process::Over;
+        if self.has_exited() {
+            if !self.is_judged() {
+                self.state = AttemptState::Ended;
+            }
             return;
         }
         match self.step {
             None => {
-                let reason = self.limit_reached(cx.now());
+                let reason = self.timeout_reason(cx.now());
                 self.stop(StopCause::Timeout, reason, cx);
             }
-            Some(Step::DumpThenAsk) => self.ask(cx),
-            Some(Step::Asked) if !self.stack_taken => self.dump_stack(Step::DumpThenForce, cx),
-            Some(Step::Asked | Step::DumpThenForce) => self.terminate(cx),
-            Some(Step::Killed) if self.kills >= KILLS => self.abandon(cx),
-            Some(Step::Terminated | Step::Killed) => self.kill(cx),
+            Some(StopStep::DumpThenAsk) => self.ask(cx),
+            Some(StopStep::Asked) if !self.has_stack_dump => {
+                self.dump_stack(StopStep::DumpThenTerminate, cx)
+            }
+            Some(StopStep::Asked | StopStep::DumpThenTerminate) => self.terminate(cx),
+            Some(StopStep::Killed) if self.kills >= MAX_KILLS => self.abandon(cx),
+            Some(StopStep::Terminated | StopStep::Killed) => self.kill(cx),
         }
     }
 
-    fn limit_reached(&self, now: Duration) -> String {
+    fn timeout_reason(&self, now: Duration) -> String {
         if let Some(stopwatch) = &self.stopwatch {
-            return format!("{} did not end {}", self.measured_step(), stopwatch.at_backstop(now));
+            return format!("{} did not end {}", self.step_name(), stopwatch.backstop_reason(now));
         }
         let limits = &self.plan.limits;
         match self.phase {

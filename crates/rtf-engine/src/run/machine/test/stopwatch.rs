@@ -1,96 +1,87 @@
-//! A phase of a test is measured in simulated time: how far its clock went, and
-//! what is said when a limit was reached.
-//!
-//! The machine is told what the clock shows; `run/clock.rs` reads it.
+//! Measures a phase of a test in simulated time. `run/clock.rs` reads the clock.
 
 use std::time::Duration;
 
 use rtf_model::{EventKind, Phase, StopCause};
 
 use super::TestRun;
+use crate::run::machine::context::Context;
 use crate::run::machine::io::{Deadline, TestTimer};
-use crate::run::machine::suite::Context;
 
-/// The measure of a phase, from its begin on.
 #[derive(Debug)]
 pub struct Stopwatch {
     limit: Duration,
-    /// The limit in wall time.
+    /// The limit in wall-clock time.
     backstop: Duration,
-    /// From which on the test counts as slow, until that was told.
+    /// When the test counts as slow, until that is reported.
     slow: Option<Duration>,
-    /// When the phase began, in wall time.
-    began: Duration,
-    /// What the clock showed last, and since when.
-    shown: Option<(Duration, Duration)>,
-    /// How far it went. What it jumped back is no time.
-    passed: Duration,
-    /// What passes now does not count: the test waits for the runner.
+    /// The start of the phase, in wall-clock time.
+    started: Duration,
+    /// The last reading of the clock, and since when it shows that.
+    reading: Option<(Duration, Duration)>,
+    /// Simulated time since the start; jumps back do not reduce it.
+    elapsed: Duration,
+    /// The test is throttled by the runner: time does not count.
     is_paused: bool,
 }
 
-/// What a look at the clock means for the test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Passed {
-    /// Nothing yet.
+enum LimitStatus {
     Within,
-    /// It counts as slow from now on.
+    /// Reported once.
     Slow,
-    /// The limit is reached.
-    Limit,
+    Reached,
 }
 
 impl Stopwatch {
-    /// Begins at `now`; the limit, and how many times it may take in wall time.
-    fn new((limit, backstop): (Duration, u32), slow: Option<Duration>, now: Duration) -> Self {
-        let backstop = limit.saturating_mul(backstop);
-        let (shown, passed, is_paused) = (None, Duration::ZERO, false);
-        Self { limit, backstop, slow, began: now, shown, passed, is_paused }
+    /// The limit may take `factor` times as long in wall-clock time.
+    fn new((limit, factor): (Duration, u32), slow: Option<Duration>, now: Duration) -> Self {
+        let backstop = limit.saturating_mul(factor);
+        let (reading, elapsed, is_paused) = (None, Duration::ZERO, false);
+        Self { limit, backstop, slow, started: now, reading, elapsed, is_paused }
     }
 
-    /// The clock shows a time.
-    fn look(&mut self, time: Duration, now: Duration) -> Passed {
-        match self.shown {
+    fn record(&mut self, time: Duration, now: Duration) -> LimitStatus {
+        match self.reading {
             Some((before, _)) if before == time => {}
             before => {
                 let before = before.map_or(time, |(before, _)| before);
                 if !self.is_paused {
-                    self.passed += time.saturating_sub(before);
+                    self.elapsed += time.saturating_sub(before);
                 }
-                self.shown = Some((time, now));
+                self.reading = Some((time, now));
             }
         }
-        if self.passed >= self.limit {
-            return Passed::Limit;
+        if self.elapsed >= self.limit {
+            return LimitStatus::Reached;
         }
-        match self.slow.take_if(|slow| *slow <= self.passed) {
-            Some(_) => Passed::Slow,
-            None => Passed::Within,
+        match self.slow.take_if(|slow| *slow <= self.elapsed) {
+            Some(_) => LimitStatus::Slow,
+            None => LimitStatus::Within,
         }
     }
 
-    /// What took too long, when the limit was reached: "within 10s of simulated time, …".
-    fn at_limit(&self, now: Duration) -> String {
-        let wall = rounded(now.saturating_sub(self.began));
+    fn limit_reason(&self, now: Duration) -> String {
+        let wall = rounded(now.saturating_sub(self.started));
         format!("within {:?} of simulated time, which took {wall:?}", self.limit)
     }
 
-    /// The same, when so much wall time is over.
-    pub fn at_backstop(&self, now: Duration) -> String {
+    /// Why the backstop passed before the limit.
+    pub fn backstop_reason(&self, now: Duration) -> String {
         let Self { limit, backstop, .. } = *self;
-        let clock = match self.shown {
+        let clock = match self.reading {
             None => "the clock showed no time".to_owned(),
             Some((time, since)) => {
-                let (time, passed) = (rounded(time), rounded(self.passed));
+                let (time, elapsed) = (rounded(time), rounded(self.elapsed));
                 let stood = rounded(now.saturating_sub(since));
-                if self.passed.is_zero() {
+                if self.elapsed.is_zero() {
                     format!("the clock stood at {time:?}")
                 } else if stood * 2 >= backstop {
                     format!(
-                        "the clock went on for {passed:?}, then stood at {time:?} for {stood:?}"
+                        "the clock advanced by {elapsed:?}, then stood at {time:?} for {stood:?}"
                     )
                 } else {
-                    format!("the clock went on for {passed:?} only, to {time:?}")
+                    format!("the clock advanced by only {elapsed:?}, to {time:?}")
                 }
             }
         };
@@ -99,9 +90,9 @@ impl Stopwatch {
 }
 
 impl TestRun<'_> {
-    /// Sets the limits of a phase: by the clock that the suite follows, and then
-    /// also by the wall clock, which goes on in any case.
-    pub(super) fn measure(
+    /// Sets the limits of a phase, by the simulated clock if the suite has one. The wall
+    /// clock is the backstop.
+    pub(super) fn set_phase_limit(
         &mut self,
         limit: Duration,
         slow: Option<Duration>,
@@ -120,32 +111,30 @@ impl TestRun<'_> {
         self.stopwatch = Some(stopwatch);
     }
 
-    /// Lets no time of that clock count, or lets it count again.
-    pub(super) fn pause_clock(&mut self, is_paused: bool) {
+    pub(super) fn pause_stopwatch(&mut self, is_paused: bool) {
         self.stopwatch.iter_mut().for_each(|stopwatch| stopwatch.is_paused = is_paused);
     }
 
-    /// Whether it waits for the clock that its suite follows.
+    /// Whether it needs readings of the simulated clock.
     pub fn follows_clock(&self) -> bool {
         self.stopwatch.is_some()
     }
 
-    /// The clock that its suite follows shows a time.
-    pub fn clock_shows(&mut self, time: Duration, cx: &mut Context<'_>) {
+    /// Takes a reading of the simulated clock.
+    pub fn on_clock(&mut self, time: Duration, cx: &mut Context<'_>) {
         let Some(stopwatch) = &mut self.stopwatch else { return };
-        match stopwatch.look(time, cx.now()) {
-            Passed::Within => {}
-            Passed::Slow => cx.emit(EventKind::TestSlow { test: self.plan.id }),
-            Passed::Limit => {
-                let limit = stopwatch.at_limit(cx.now());
-                let reason = format!("{} did not end {limit}", self.measured_step());
+        match stopwatch.record(time, cx.now()) {
+            LimitStatus::Within => {}
+            LimitStatus::Slow => cx.emit(EventKind::TestSlow { test: self.plan.id }),
+            LimitStatus::Reached => {
+                let limit = stopwatch.limit_reason(cx.now());
+                let reason = format!("{} did not end {limit}", self.step_name());
                 self.stop(StopCause::Timeout, reason, cx);
             }
         }
     }
 
-    /// The step that is measured.
-    pub(super) fn measured_step(&self) -> &'static str {
+    pub(super) fn step_name(&self) -> &'static str {
         match self.phase {
             Phase::Setup => "set-up",
             Phase::TearDown => "tear-down",
@@ -169,48 +158,48 @@ mod tests {
     }
 
     #[test]
-    fn time_is_what_the_clock_goes_on() {
+    fn elapsed_time_is_the_clocks_progress() {
         let mut watch = Stopwatch::new((SECOND, 10), Some(tenths(5)), Duration::ZERO);
-        assert_eq!(watch.look(tenths(1000), SECOND), Passed::Within);
-        assert_eq!(watch.look(tenths(1004), SECOND), Passed::Within);
-        assert_eq!(watch.look(tenths(1005), SECOND), Passed::Slow);
-        assert_eq!(watch.look(tenths(1009), SECOND), Passed::Within);
-        assert_eq!(watch.look(tenths(1010), 3 * SECOND), Passed::Limit);
-        assert_eq!(watch.at_limit(3 * SECOND), "within 1s of simulated time, which took 3s");
+        assert_eq!(watch.record(tenths(1000), SECOND), LimitStatus::Within);
+        assert_eq!(watch.record(tenths(1004), SECOND), LimitStatus::Within);
+        assert_eq!(watch.record(tenths(1005), SECOND), LimitStatus::Slow);
+        assert_eq!(watch.record(tenths(1009), SECOND), LimitStatus::Within);
+        assert_eq!(watch.record(tenths(1010), 3 * SECOND), LimitStatus::Reached);
+        assert_eq!(watch.limit_reason(3 * SECOND), "within 1s of simulated time, which took 3s");
     }
 
     #[test]
-    fn what_passed_before_the_clock_jumped_back_stays_counted() {
+    fn a_jump_back_does_not_reduce_the_elapsed_time() {
         let mut watch = Stopwatch::new((SECOND, 10), None, Duration::ZERO);
         for time in [50, 56, 0, 3] {
-            assert_eq!(watch.look(tenths(time), SECOND), Passed::Within);
+            assert_eq!(watch.record(tenths(time), SECOND), LimitStatus::Within);
         }
-        assert_eq!(watch.look(tenths(4), SECOND), Passed::Limit);
+        assert_eq!(watch.record(tenths(4), SECOND), LimitStatus::Reached);
     }
 
     #[test]
-    fn what_passes_while_the_clock_is_paused_does_not_count() {
+    fn time_while_paused_does_not_count() {
         let mut watch = Stopwatch::new((SECOND, 10), None, Duration::ZERO);
-        watch.look(tenths(50), SECOND);
+        watch.record(tenths(50), SECOND);
         watch.is_paused = true;
-        assert_eq!(watch.look(tenths(90), SECOND), Passed::Within);
+        assert_eq!(watch.record(tenths(90), SECOND), LimitStatus::Within);
         watch.is_paused = false;
-        assert_eq!(watch.look(tenths(99), SECOND), Passed::Within);
-        assert_eq!(watch.look(tenths(100), SECOND), Passed::Limit);
+        assert_eq!(watch.record(tenths(99), SECOND), LimitStatus::Within);
+        assert_eq!(watch.record(tenths(100), SECOND), LimitStatus::Reached);
     }
 
     #[test]
-    fn what_stopped_the_clock_is_told() {
+    fn the_reason_describes_the_clock() {
         let mut watch = Stopwatch::new((SECOND, 10), None, Duration::ZERO);
-        let reason = |watch: &Stopwatch| watch.at_backstop(10 * SECOND);
+        let reason = |watch: &Stopwatch| watch.backstop_reason(10 * SECOND);
         let begin = "within 1s of simulated time, nor within 10s: the clock";
         assert_eq!(reason(&watch), format!("{begin} showed no time"));
-        watch.look(tenths(70), SECOND);
+        watch.record(tenths(70), SECOND);
         assert_eq!(reason(&watch), format!("{begin} stood at 7s"));
-        watch.look(tenths(75), 2 * SECOND);
-        let stood = "went on for 500ms, then stood at 7.5s for 8s";
+        watch.record(tenths(75), 2 * SECOND);
+        let stood = "advanced by 500ms, then stood at 7.5s for 8s";
         assert_eq!(reason(&watch), format!("{begin} {stood}"));
-        watch.look(tenths(76), 9 * SECOND);
-        assert_eq!(reason(&watch), format!("{begin} went on for 600ms only, to 7.6s"));
+        watch.record(tenths(76), 9 * SECOND);
+        assert_eq!(reason(&watch), format!("{begin} advanced by only 600ms, to 7.6s"));
     }
 }

@@ -1,4 +1,4 @@
-//! Attached fixtures: watched, neither started nor stopped.
+//! Attached fixtures: monitored, neither started nor stopped.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ fn plan() -> SuitePlan {
 }
 
 #[test]
-fn it_is_waited_for_watched_and_let_go() {
+fn an_attached_fixture_is_awaited_monitored_and_released() {
     let plan = plan();
     let mut world = World::started(&plan);
     world.now = SECOND;
@@ -34,7 +34,7 @@ fn it_is_waited_for_watched_and_let_go() {
     world.pass(1);
     world.exit(FIXTURE, ExitStatus::Code(0));
     world.finish();
-    assert_snapshot!(world.story(), @"
+    assert_snapshot!(world.transcript(), @"
     0.0  suite-started
     0.0  fixture-starting attempt=1 fixture=0
     1.0  fixture-ready fixture=0
@@ -64,7 +64,7 @@ fn it_is_waited_for_watched_and_let_go() {
 }
 
 #[test]
-fn one_that_is_not_there_says_what_it_waited_for() {
+fn a_missing_attached_fixture_reports_the_failing_probe() {
     let plan = plan();
     let mut world = World::started(&plan);
     for reason in ["refused", "no route to the robot"] {

@@ -1,6 +1,5 @@
-//! Random hosts: whatever they do and whenever they die, the events are in
-//! order, each test has exactly one last word, and nothing overlaps a collapse
-//! and is green.
+//! Random hosts: the events are always in order, each test has exactly one final result,
+//! and no test that overlaps a collapse is green.
 
 use std::time::Duration;
 
@@ -15,12 +14,12 @@ use crate::run::machine::{HostInput, Input, StopLevel};
 use rtf_plan::plan::{AfterCollapse, Retries, SuitePlan};
 use rtf_process::codec::INITIALIZE;
 
-/// What becomes of a shared host that has nothing to do; false when it is not its turn.
+/// Lets an idle shared host begin a test or exit; false if another host acts.
 fn act_idle(world: &mut World<'_>, choice: u8) -> bool {
-    let is_turn = !choice.is_multiple_of(3);
-    let Some(idle) = world.idle.first().copied().filter(|_| is_turn) else { return false };
-    if choice % 3 == 1 || !world.begin_joined(idle) {
-        world.end_idle(idle, ExitStatus::Signal(11));
+    let is_chosen = !choice.is_multiple_of(3);
+    let Some(idle) = world.idle.first().copied().filter(|_| is_chosen) else { return false };
+    if choice % 3 == 1 || !world.begin_assigned(idle) {
+        world.exit_idle(idle, ExitStatus::Signal(11));
     }
     true
 }
@@ -49,17 +48,17 @@ pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool)
     if world.answered.contains(&host) && choice.is_multiple_of(2) {
         return world.release(host);
     }
-    let told = |notification| Input::Host(host, HostInput::Told(notification));
+    let notify = |notification| Input::Host(host, HostInput::Told(notification));
     match choice % 16 {
         0..=4 => {
             if let Some(id) = answerable(world) {
                 let outcome = if choice > 200 { "failed" } else { "passed" };
-                let notices = ["test-started", "test-finished"];
-                let stays = shared && outcome == "passed" && matches!(source, Source::Test(_));
+                let topics = ["test-started", "test-finished"];
+                let continues = shared && outcome == "passed" && matches!(source, Source::Test(_));
                 let value = serde_json::json!({
-                    "outcome": outcome, "subscriptions": notices, "continues": stays
+                    "outcome": outcome, "subscriptions": topics, "continues": continues
                 });
-                if stays {
+                if continues {
                     world.answered.insert(host);
                 }
                 world.feed(Input::Host(host, HostInput::Answered(id, Reply::Result(value))));
@@ -70,47 +69,47 @@ pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool)
             let answer = HostInput::Answered(INITIALIZE, Reply::Result(value));
             world.feed(Input::Host(host, answer));
         }
-        step @ 5..=8 => world.feed(told(Notification::Phase { phase: phase(step) })),
+        step @ 5..=8 => world.feed(notify(Notification::Phase { phase: phase(step) })),
         9 if choice > 128 => world.feed(Input::Host(host, HostInput::Dies)),
-        9 => world.feed(told(Notification::Collapsed { reason: "gone".to_owned() })),
+        9 => world.feed(notify(Notification::Collapsed { reason: "gone".to_owned() })),
         10 => world.exit(source, ExitStatus::Signal(9)),
         11 | 12 => world.exit(source, ExitStatus::Code(0)),
         13 => {
             let (kind, text, critical) = (MessageKind::Failure, "no".to_owned(), choice > 240);
             let message = Message { kind, text, location: None, comparison: None, critical };
-            world.feed(told(Notification::Message(message)));
+            world.feed(notify(Notification::Message(message)));
         }
         14 => drop((!world.deadlines.is_empty()).then(|| world.next_deadline())),
         _ if choice == 255 => world.stop(StopLevel::Kill),
         _ if choice == 239 => world.stop(StopLevel::TearDown),
         _ if choice == 207 => world.stop(StopLevel::KillHooks),
-        _ if choice == 223 => world.feed(Input::Skip("a person".to_owned())),
+        _ if choice == 223 => world.feed(Input::Skip("a user".to_owned())),
         _ if choice % 32 == 15 => {
             let test = TestId(u32::try_from(which).unwrap_or_default());
-            world.feed(Input::StopTest(test, "a person".to_owned()));
+            world.feed(Input::StopTest(test, "a user".to_owned()));
         }
         _ => world.feed(Input::Host(host, HostInput::Garbage("it wrote `x`".to_owned()))),
     }
 }
 
-fn settle(world: &mut World<'_>) {
+fn end_all(world: &mut World<'_>) {
     for _ in 0..2000 {
         if world.done {
             return;
         }
         match (world.hosts.values().next().copied(), world.idle.first().copied()) {
             (Some(source), _) => world.exit(source, ExitStatus::Code(0)),
-            (None, Some(idle)) => world.end_idle(idle, ExitStatus::Code(0)),
+            (None, Some(idle)) => world.exit_idle(idle, ExitStatus::Code(0)),
             (None, None) => drop(world.next_deadline()),
         }
     }
 }
 
 proptest! {
-    // More: PROPTEST_CASES=20000. A failure prints what led to it.
+    // For more cases: PROPTEST_CASES=20000.
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
     #[test]
-    fn whatever_happens_every_test_has_one_last_word(
+    fn every_test_has_exactly_one_final_result(
         steps in prop::collection::vec((any::<u8>(), 0..4usize), 0..200),
         fixtures in 0..3usize,
         tests in 1..5usize,
@@ -149,23 +148,22 @@ proptest! {
             }
             act(&mut world, choice, which, shared);
         }
-        settle(&mut world);
+        end_all(&mut world);
         world.finish();
         let totals = world.record.totals();
         prop_assert_eq!(totals.done() as usize, tests);
         check_overlaps(&world);
-        check_alone(&world, &plan);
+        check_exclusive(&world, &plan);
         prop_assert!(world.record.hooks.iter().all(|h| h.runs.iter().all(|r| r.finished.is_some())));
     }
 }
 
-/// Nothing runs beside an exclusive test, nothing of what is written after a
-/// critical test has begun before that was over, no test runs beside itself, and
-/// tests begin in the order in which they are written.
-fn check_alone(world: &World<'_>, plan: &SuitePlan) {
+/// Nothing runs in parallel with an exclusive test, no test starts before a critical one
+/// above it has finished, no test overlaps itself, and tests start in the suite's order.
+fn check_exclusive(world: &World<'_>, plan: &SuitePlan) {
     let mut begun: Vec<TestId> = Vec::new();
     let mut running: Vec<TestId> = Vec::new();
-    for kind in &world.happened {
+    for kind in &world.events {
         match kind {
             EventKind::TestStarted { test, .. } => {
                 let of = |id: &TestId| &plan.tests[id.index()];
@@ -195,7 +193,7 @@ fn check_overlaps(world: &World<'_>) {
             let Some((end, finished)) = &attempt.finished else {
                 continue;
             };
-            // What happens once it is judged, and fixtures are told, changes nothing.
+            // The verdict is final before fixtures are notified.
             let noticed = attempt.phases.iter().find(|(phase, _)| *phase == Phase::Notify);
             let judged = noticed.map_or(end, |(_, at)| at);
             let overlaps = collapses.iter().any(|at| *at > attempt.started && at < judged);

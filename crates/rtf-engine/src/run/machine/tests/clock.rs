@@ -1,4 +1,4 @@
-//! Limits by a clock that is not the wall clock.
+//! Limits in simulated time.
 
 use std::time::Duration;
 
@@ -28,7 +28,7 @@ fn dump_and_end(world: &mut World<'_>) {
 }
 
 #[test]
-fn a_phase_ends_when_its_limit_is_over_by_the_clock() {
+fn a_phase_times_out_by_the_simulated_clock() {
     let plan = plan(1);
     let mut world = World::new(&plan);
     world.start();
@@ -42,7 +42,7 @@ fn a_phase_ends_when_its_limit_is_over_by_the_clock() {
     }
     assert!(!world.machine.follows_clock(), "it was asked to stop");
     dump_and_end(&mut world);
-    assert_snapshot!(world.story(), @"
+    assert_snapshot!(world.transcript(), @"
      0.0  suite-started
      0.0  test-started attempt=1 repetition=1 test=0
      0.0  test-phase phase=setup test=0
@@ -58,7 +58,7 @@ fn a_phase_ends_when_its_limit_is_over_by_the_clock() {
 }
 
 #[test]
-fn a_clock_that_stands_is_not_waited_for_without_end() {
+fn a_stopped_clock_times_out_by_the_wall_clock() {
     let plan = plan(1);
     let mut world = World::new(&plan);
     world.start();
@@ -71,12 +71,12 @@ fn a_clock_that_stands_is_not_waited_for_without_end() {
     world.next_deadline();
     dump_and_end(&mut world);
     let reason = "run did not end within 5s of simulated time, nor within 50s: \
-                  the clock went on for 500ms, then stood at 3.5s for 49s";
+                  the clock advanced by 500ms, then stood at 3.5s for 49s";
     assert_eq!(world.record.tests[0].reason(), Some(reason));
 }
 
 #[test]
-fn each_phase_begins_to_count_anew() {
+fn each_phase_is_measured_from_its_start() {
     let plan = plan(1);
     let mut world = World::new(&plan);
     world.start();
@@ -93,9 +93,9 @@ fn each_phase_begins_to_count_anew() {
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Passed));
 }
 
-/// What is written to a file beside the clock's end may come after the test's.
+/// The clock's file may change after the end of the test.
 #[test]
-fn nobody_follows_the_clock_between_tests() {
+fn the_clock_is_not_read_between_tests() {
     let plan = plan(2);
     let mut world = World::new(&plan);
     world.start();

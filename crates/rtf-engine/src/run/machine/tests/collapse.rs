@@ -19,12 +19,7 @@ fn a_collapse_during_the_only_test_interrupts_it() {
     world.end(TEST, "interrupted");
     world.tear_down(0);
     world.finish();
-    assert_snapshot!(world.story(), @"
-    0.0  suite-started
-    0.0  fixture-starting attempt=1 fixture=0
-    0.0  fixture-ready fixture=0
-    0.0  test-started attempt=1 repetition=1 test=0
-    0.0  test-phase phase=run test=0
+    assert_snapshot!(world.transcript(), @"
     0.0  fixture-collapsed fixture=0 reason=the motor driver is gone
     0.0  test-stopping cause=collapse reason=fixture `fixture0` collapsed: the motor driver is gone test=0
     0.0    → close the channel
@@ -39,7 +34,7 @@ fn a_collapse_during_the_only_test_interrupts_it() {
 }
 
 #[test]
-fn after_the_restart_the_suite_goes_on() {
+fn after_the_restart_the_suite_continues() {
     let plan = suite(2, 2);
     let mut world = World::running(&plan);
     world.exit(FIXTURE, ExitStatus::Signal(9));
@@ -50,14 +45,7 @@ fn after_the_restart_the_suite_goes_on() {
     world.tear_down(1);
     world.tear_down(0);
     world.finish();
-    assert_snapshot!(world.story(), @"
-    0.0  suite-started
-    0.0  fixture-starting attempt=1 fixture=0
-    0.0  fixture-ready fixture=0
-    0.0  fixture-starting attempt=1 fixture=1
-    0.0  fixture-ready fixture=1
-    0.0  test-started attempt=1 repetition=1 test=0
-    0.0  test-phase phase=run test=0
+    assert_snapshot!(world.transcript(), @"
     0.0  fixture-collapsed fixture=0 reason=its process ended with signal 9 (SIGKILL)
     0.0  test-stopping cause=collapse reason=fixture `fixture0` collapsed: its process ended with signal 9 (SIGKILL) test=0
     0.0    → close the channel
@@ -109,7 +97,7 @@ fn a_rerun_keeps_both_attempts_and_the_last_one_counts() {
 }
 
 #[test]
-fn when_the_restarts_are_used_up_the_rest_is_skipped_with_the_first_cause() {
+fn without_restarts_left_the_rest_is_skipped_with_the_first_cause() {
     let mut plan = suite(1, 3);
     plan.fixtures[0].restarts = 0;
     let mut world = World::running(&plan);
@@ -125,7 +113,7 @@ fn when_the_restarts_are_used_up_the_rest_is_skipped_with_the_first_cause() {
 }
 
 #[test]
-fn a_collapse_while_another_fixture_is_set_up_tears_both_down_and_starts_again() {
+fn a_collapse_during_another_set_up_restarts_both_fixtures() {
     let plan = suite(2, 1);
     let mut world = World::started(&plan);
     world.answer(FIXTURE, "passed");
@@ -137,7 +125,7 @@ fn a_collapse_while_another_fixture_is_set_up_tears_both_down_and_starts_again()
     world.tear_down(1);
     world.tear_down(0);
     world.finish();
-    assert_snapshot!(world.story(), @"
+    assert_snapshot!(world.transcript(), @"
     0.0  suite-started
     0.0  fixture-starting attempt=1 fixture=0
     0.0  fixture-ready fixture=0
@@ -184,6 +172,20 @@ fn a_check_that_fails_before_a_test_restarts_the_fixture_first() {
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Passed));
 }
 
+/// A plug-in's threads may also report between requests; that is no problem of a check.
+#[test]
+fn the_first_problem_that_is_reported_during_a_check_is_its_reason() {
+    let mut plan = suite(1, 1);
+    plan.fixtures[0].check_every = Some(SECOND);
+    let mut world = World::running(&plan);
+    world.failure(FIXTURE, "reported between two requests", false);
+    assert_eq!(world.next_deadline(), Deadline::Fixture(0, FixtureTimer::CheckDue));
+    world.failure(FIXTURE, "no heartbeat\nwithin 2 s", false);
+    world.failure(FIXTURE, "no torque", false);
+    world.answer(FIXTURE, "failed");
+    assert_eq!(world.record.fixtures[0].collapses[0].1, "check failed: no heartbeat");
+}
+
 #[test]
 fn a_fixture_that_dies_between_tests_is_restarted() {
     let plan = suite(1, 1);
@@ -210,15 +212,15 @@ fn a_collapse_during_the_last_tear_down_is_not_green() {
     assert!(!world.record.is_green());
 }
 
-/// It is told a moment after its death: what it left is swept first.
+/// Its end is reported late, because leftover processes are killed first.
 #[test]
-fn a_test_that_passes_beside_a_dying_fixture_is_collapsed() {
+fn a_test_that_passes_while_a_fixture_is_dying_is_collapsed() {
     let plan = suite(2, 1);
     let mut world = World::running(&plan);
-    world.unseen = true;
+    world.hides_liveness = true;
     world.end(TEST, "passed");
     world.input(Source::Fixture(FixtureId(1)), HostInput::Lives);
-    assert!(world.record.tests[0].is_running(), "its last word is not spoken yet");
+    assert!(world.record.tests[0].is_running(), "it has no verdict yet");
     world.exit(FIXTURE, ExitStatus::Signal(9));
     world.tear_down(1);
     world.finish();
@@ -226,27 +228,27 @@ fn a_test_that_passes_beside_a_dying_fixture_is_collapsed() {
 }
 
 #[test]
-fn a_test_passes_at_once_when_all_fixtures_were_seen_to_live() {
+fn a_test_passes_as_soon_as_all_fixtures_passed_their_examination() {
     let plan = suite(2, 1);
     let mut world = World::running(&plan);
-    world.unseen = true;
+    world.hides_liveness = true;
     world.end(TEST, "passed");
-    world.examined(0);
-    assert!(world.record.tests[0].is_running(), "its last word is not spoken yet");
-    world.examined(1);
+    world.pass_examination(0);
+    assert!(world.record.tests[0].is_running(), "it has no verdict yet");
+    world.pass_examination(1);
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Passed));
     assert_eq!(world.now, std::time::Duration::ZERO);
 }
 
 #[test]
-fn a_fixture_that_is_not_seen_to_live_after_the_last_test_has_collapsed() {
+fn a_fixture_that_fails_the_last_examination_has_collapsed() {
     for (lives, reason) in [
         (true, "check did not answer within 1s"),
-        (false, "it could not be seen in time whether its process lives"),
+        (false, "its process could not be examined in time"),
     ] {
         let plan = suite(1, 1);
         let mut world = World::running(&plan);
-        world.unseen = true;
+        world.hides_liveness = true;
         world.end(TEST, "passed");
         if lives {
             world.input(FIXTURE, HostInput::Lives);
@@ -259,17 +261,17 @@ fn a_fixture_that_is_not_seen_to_live_after_the_last_test_has_collapsed() {
     }
 }
 
-/// The device is gone since the last test ended, and nothing would ask any more.
+/// No further check would detect that the device is gone.
 #[test]
-fn a_check_that_fails_after_the_last_test_is_a_collapse_of_that_test() {
+fn a_check_that_fails_after_the_last_test_makes_it_collapsed() {
     for every in [None, Some(SECOND)] {
         let mut plan = suite(1, 1);
         plan.fixtures[0].check_every = every;
         let mut world = World::running(&plan);
-        world.unseen = true;
+        world.hides_liveness = true;
         world.end(TEST, "passed");
         world.input(FIXTURE, HostInput::Lives);
-        assert!(world.record.tests[0].is_running(), "its last word is not spoken yet");
+        assert!(world.record.tests[0].is_running(), "it has no verdict yet");
         world.answer(FIXTURE, "failed");
         world.tear_down(0);
         world.finish();
@@ -279,7 +281,7 @@ fn a_check_that_fails_after_the_last_test_is_a_collapse_of_that_test() {
 }
 
 #[test]
-fn a_check_is_asked_once_between_two_tests() {
+fn check_is_called_once_between_two_tests() {
     let plan = suite(1, 3);
     let mut world = World::started(&plan);
     world.ready(1);
@@ -290,23 +292,22 @@ fn a_check_is_asked_once_between_two_tests() {
     assert_eq!(checks.count(), 4, "before the first test and after each");
 }
 
-/// A check that was asked before its end says nothing about the time since then.
 #[test]
-fn a_test_is_not_passed_by_a_check_that_was_asked_before_its_end() {
+fn a_check_requested_before_a_tests_end_does_not_confirm_it() {
     let mut plan = suite(1, 1);
     plan.fixtures[0].check_every = Some(SECOND);
     let mut world = World::running(&plan);
     world.next_deadline();
-    world.unseen = true;
+    world.hides_liveness = true;
     world.end(TEST, "passed");
     world.answer(FIXTURE, "passed");
-    assert!(world.record.tests[0].is_running(), "its last word is not spoken yet");
-    world.examined(0);
+    assert!(world.record.tests[0].is_running(), "it has no verdict yet");
+    world.pass_examination(0);
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Passed));
 }
 
 #[test]
-fn probes_that_cost_a_process_are_asked_after_the_last_test_only() {
+fn slow_probes_run_only_after_the_last_test() {
     let plan = suite(1, 2);
     let mut world = World::started(&plan);
     world.ready(1);
@@ -315,18 +316,18 @@ fn probes_that_cost_a_process_are_asked_after_the_last_test_only() {
     assert_eq!(world.probes, [Probes::Quick, Probes::All]);
 }
 
-/// A fixture whose memory image is written takes its time to end.
+/// Writing a core dump takes time.
 #[test]
-fn a_test_waits_for_the_end_of_a_fixture_that_was_seen_to_die() {
+fn a_test_waits_for_the_end_of_a_dying_fixture() {
     for outcome in ["passed", "failed"] {
         let plan = suite(2, 1);
         let mut world = World::running(&plan);
-        world.unseen = true;
+        world.hides_liveness = true;
         world.end(TEST, outcome);
         world.input(FIXTURE, HostInput::Dies);
         world.now += 5 * SECOND;
         world.input(Source::Fixture(FixtureId(1)), HostInput::Lives);
-        assert!(world.record.tests[0].is_running(), "its last word is not spoken yet");
+        assert!(world.record.tests[0].is_running(), "it has no verdict yet");
         world.exit(FIXTURE, ExitStatus::Signal(11));
         world.tear_down(1);
         world.finish();
@@ -337,10 +338,10 @@ fn a_test_waits_for_the_end_of_a_fixture_that_was_seen_to_die() {
 }
 
 #[test]
-fn a_fixture_that_dies_forever_has_collapsed_after_a_while() {
+fn a_dying_fixture_that_does_not_end_has_collapsed() {
     let plan = suite(1, 1);
     let mut world = World::running(&plan);
-    world.unseen = true;
+    world.hides_liveness = true;
     world.end(TEST, "passed");
     world.input(FIXTURE, HostInput::Dies);
     assert_eq!(world.next_deadline(), Deadline::Fixture(0, FixtureTimer::Death));
@@ -348,24 +349,24 @@ fn a_fixture_that_dies_forever_has_collapsed_after_a_while() {
     world.finish();
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Collapsed));
     let why = &world.record.fixtures[0].collapses[0].1;
-    assert_eq!(why, "its process is dying, and does not come to its end");
+    assert_eq!(why, "its process is dying but does not end");
 }
 
-/// A test notices a broken connection before the kernel tells of the death.
+/// A test detects a broken connection before the kernel reports the death.
 #[test]
-fn a_test_that_errs_just_before_the_collapse_is_told_is_collapsed() {
+fn a_failure_just_before_the_collapse_is_reported_is_collapsed() {
     let plan = suite(1, 1);
     let mut world = World::running(&plan);
     world.failure(TEST, "connection reset by peer", false);
     world.end(TEST, "failed");
-    assert!(world.record.tests[0].is_running(), "its last word is not spoken yet");
+    assert!(world.record.tests[0].is_running(), "it has no verdict yet");
     world.exit(FIXTURE, ExitStatus::Signal(9));
     world.finish();
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Collapsed));
 }
 
 #[test]
-fn a_test_that_fails_beside_a_healthy_fixture_has_failed_a_moment_later() {
+fn a_test_that_fails_with_a_healthy_fixture_has_failed() {
     let plan = suite(1, 1);
     let mut world = World::running(&plan);
     world.failure(TEST, "the arm is stuck", false);

@@ -1,4 +1,4 @@
-//! Hooks: after what, before what, and with which outcome.
+//! Hooks: when they run, and with which outcome.
 
 use insta::assert_snapshot;
 use rtf_model::{ExitStatus, FixtureId, Phase, Source, TestId, Trigger, Verdict};
@@ -29,12 +29,7 @@ fn after_a_failure_the_hook_runs_before_the_next_test() {
     world.pass(1);
     world.tear_down(0);
     world.finish();
-    assert_snapshot!(world.story(), @"
-    0.0  suite-started
-    0.0  fixture-starting attempt=1 fixture=0
-    0.0  fixture-ready fixture=0
-    0.0  test-started attempt=1 repetition=1 test=0
-    0.0  test-phase phase=run test=0
+    assert_snapshot!(world.transcript(), @"
     0.0  message source={test:0}
     0.0    → close the channel
     0.2  test-finished exit={code:0} phase=run reason=the arm is stuck test=0 verdict=failed
@@ -63,12 +58,7 @@ fn after_a_collapse_the_hook_runs_before_anything_is_torn_down() {
     world.exit(HOOK, ExitStatus::Code(0));
     world.tear_down(0);
     world.finish();
-    assert_snapshot!(world.story(), @"
-    0.0  suite-started
-    0.0  fixture-starting attempt=1 fixture=0
-    0.0  fixture-ready fixture=0
-    0.0  test-started attempt=1 repetition=1 test=0
-    0.0  test-phase phase=run test=0
+    assert_snapshot!(world.transcript(), @"
     0.0  fixture-collapsed fixture=0 reason=no heartbeat
     0.0  test-stopping cause=collapse reason=fixture `fixture0` collapsed: no heartbeat test=0
     0.0    → close the channel
@@ -83,7 +73,7 @@ fn after_a_collapse_the_hook_runs_before_anything_is_torn_down() {
 }
 
 #[test]
-fn a_hook_that_fails_is_told_and_the_run_is_not_green() {
+fn a_failed_hook_is_reported_and_the_run_is_not_green() {
     let plan = plan(1, &[Trigger::End]);
     let mut world = World::running(&plan);
     world.phase(TEST, Phase::TearDown);
@@ -98,7 +88,7 @@ fn a_hook_that_fails_is_told_and_the_run_is_not_green() {
 }
 
 #[test]
-fn a_hook_that_hangs_is_ended_by_force() {
+fn a_hanging_hook_is_killed() {
     let plan = plan(1, &[Trigger::Failure]);
     let mut world = World::running(&plan);
     fail(&mut world);
@@ -112,7 +102,7 @@ fn a_hook_that_hangs_is_ended_by_force() {
 }
 
 #[test]
-fn the_end_does_not_call_a_hook_again_that_ran_since_the_last_test() {
+fn the_end_does_not_repeat_a_hook_that_ran_since_the_last_test() {
     let plan = plan(1, &[Trigger::Failure, Trigger::End]);
     let mut world = World::running(&plan);
     fail(&mut world);
@@ -123,7 +113,7 @@ fn the_end_does_not_call_a_hook_again_that_ran_since_the_last_test() {
 }
 
 #[test]
-fn the_first_signal_calls_the_hook_and_the_second_one_leaves_it_running() {
+fn the_first_signal_triggers_the_hook_and_the_second_leaves_it_running() {
     let plan = plan(1, &[Trigger::Interrupt]);
     let mut world = World::running(&plan);
     world.stop(StopLevel::TearDown);
@@ -132,12 +122,7 @@ fn the_first_signal_calls_the_hook_and_the_second_one_leaves_it_running() {
     world.exit(FIXTURE, ExitStatus::Signal(9));
     world.exit(HOOK, ExitStatus::Code(0));
     world.finish();
-    assert_snapshot!(world.story(), @"
-    0.0  suite-started
-    0.0  fixture-starting attempt=1 fixture=0
-    0.0  fixture-ready fixture=0
-    0.0  test-started attempt=1 repetition=1 test=0
-    0.0  test-phase phase=run test=0
+    assert_snapshot!(world.transcript(), @"
     0.0  test-stopping cause=interrupt reason=stopped by SIGINT test=0
     0.0    → close the channel
     0.0  test-finished exit={code:0} phase=run reason=stopped by SIGINT test=0 verdict=interrupted
@@ -151,7 +136,7 @@ fn the_first_signal_calls_the_hook_and_the_second_one_leaves_it_running() {
 }
 
 #[test]
-fn a_fixture_that_breaks_calls_its_hook_before_the_others_are_torn_down() {
+fn a_broken_fixture_triggers_its_hook_before_the_others_are_torn_down() {
     let mut plan = suite(2, 1);
     plan.hooks = vec![hook(0, &[Trigger::FixtureBroken])];
     let mut world = World::started(&plan);
@@ -165,7 +150,7 @@ fn a_fixture_that_breaks_calls_its_hook_before_the_others_are_torn_down() {
 }
 
 #[test]
-fn a_second_request_that_hides_the_first_one_runs_the_interrupt_hooks() {
+fn a_kill_request_without_a_first_request_runs_the_interrupt_hooks() {
     let plan = plan(1, &[Trigger::Interrupt]);
     let mut world = World::running(&plan);
     world.stop(StopLevel::Kill);
@@ -175,11 +160,11 @@ fn a_second_request_that_hides_the_first_one_runs_the_interrupt_hooks() {
     world.finish();
     let triggers: Vec<_> = world.record.hooks[0].runs.iter().map(|run| run.trigger).collect();
     assert_eq!(triggers, [Trigger::Interrupt]);
-    assert!(!world.record.hook_failed(), "{}", world.story());
+    assert!(!world.record.hook_failed(), "{}", world.transcript());
 }
 
 #[test]
-fn the_third_request_kills_the_hook_and_refuses_those_that_wait() {
+fn the_third_request_kills_the_hook_and_drops_queued_ones() {
     let mut plan = plan(1, &[Trigger::Interrupt]);
     plan.hooks.push(hook(1, &[Trigger::Interrupt]));
     plan.hooks.push(hook(2, &[Trigger::End]));

@@ -1,4 +1,4 @@
-//! Limits: what happens, and in which order, when something takes too long.
+//! Limits: the steps that follow when something takes too long.
 
 use insta::assert_snapshot;
 use rtf_model::{ExitStatus, FixtureId, HookId, Phase, Source, TestId, Trigger, Verdict};
@@ -7,7 +7,7 @@ use super::world::{FIXTURE, HOOK, SECOND, TEST, World, hook, suite};
 use crate::run::machine::{Deadline, HostInput, StopLevel, TestTimer};
 
 #[test]
-fn a_test_that_hangs_is_dumped_asked_terminated_and_killed() {
+fn a_hanging_test_is_dumped_interrupted_terminated_and_killed() {
     let plan = suite(0, 1);
     let mut world = World::started(&plan);
     world.phase(TEST, Phase::Run);
@@ -18,7 +18,7 @@ fn a_test_that_hangs_is_dumped_asked_terminated_and_killed() {
     world.next_deadline();
     world.exit(TEST, ExitStatus::Signal(9));
     world.finish();
-    assert_snapshot!(world.story(), @"
+    assert_snapshot!(world.transcript(), @"
     0.0  suite-started
     0.0  test-started attempt=1 repetition=1 test=0
     0.0  test-phase phase=run test=0
@@ -62,7 +62,7 @@ fn a_fixture_that_is_not_ready_in_time_is_broken_and_torn_down() {
     world.next_deadline();
     world.exit(FIXTURE, ExitStatus::Signal(9));
     world.finish();
-    assert_snapshot!(world.story(), @"
+    assert_snapshot!(world.transcript(), @"
      0.0  suite-started
      0.0  fixture-starting attempt=1 fixture=0
     10.0    → take a stack dump
@@ -91,7 +91,7 @@ fn a_check_that_hangs_is_a_collapse() {
 }
 
 #[test]
-fn checks_are_asked_for_while_a_test_runs() {
+fn check_is_called_while_a_test_runs() {
     let mut plan = suite(1, 1);
     plan.fixtures[0].check_every = Some(SECOND);
     let mut world = World::started(&plan);
@@ -118,9 +118,9 @@ fn the_limit_of_the_suite_ends_it_with_tear_down() {
     assert_eq!(world.record.tests[1].reason(), Some("the suite did not end within 1s"));
 }
 
-/// Each step is within its own limit, and all of them together are not.
+/// Each step is within its limit, but all together exceed that of the shutdown.
 #[test]
-fn a_shutdown_that_takes_too_long_goes_on_by_force_and_the_hooks_still_run() {
+fn a_shutdown_that_takes_too_long_kills_fixtures_and_hooks_still_run() {
     let mut plan = suite(2, 1);
     plan.hooks = vec![hook(0, &[Trigger::Interrupt]), hook(1, &[Trigger::End])];
     plan.hooks[0].timeout = 15 * SECOND;
@@ -140,7 +140,7 @@ fn a_shutdown_that_takes_too_long_goes_on_by_force_and_the_hooks_still_run() {
         world.exit(Source::Fixture(FixtureId(number)), ExitStatus::Signal(9));
     });
     world.finish();
-    assert_snapshot!(world.story(), @"
+    assert_snapshot!(world.transcript(), @"
      0.0  suite-started
      0.0  fixture-starting attempt=1 fixture=0
      0.0  fixture-ready fixture=0
@@ -155,7 +155,7 @@ fn a_shutdown_that_takes_too_long_goes_on_by_force_and_the_hooks_still_run() {
     12.0  hook-started hook=1 reason=the suite ends trigger=end
     12.0  hook-finished hook=1
     12.0  fixture-stopping fixture=1
-    21.0  warning diagnostic={code:shutdown-timeout,hint:`--shutdown-timeout` says how long tear-downs and hooks may take,message:the run did not end within 20s of SIGINT: what was left was killed,severity:warning}
+    21.0  warning diagnostic={code:shutdown-timeout,hint:`--shutdown-timeout` sets how long tear-downs and hooks may take,message:the run did not end within 20s of SIGINT: the remaining processes were killed,severity:warning}
     21.0    → kill the tree
     21.0  fixture-stopping fixture=0
     21.0    → kill the tree
@@ -166,7 +166,7 @@ fn a_shutdown_that_takes_too_long_goes_on_by_force_and_the_hooks_still_run() {
 }
 
 #[test]
-fn a_hook_that_runs_when_the_shutdown_is_over_comes_to_its_end() {
+fn a_hook_that_runs_at_the_shutdown_timeout_finishes() {
     let mut plan = suite(1, 1);
     plan.hooks = vec![hook(0, &[Trigger::Interrupt]), hook(1, &[Trigger::End])];
     plan.hooks[0].timeout = 30 * SECOND;
@@ -180,7 +180,7 @@ fn a_hook_that_runs_when_the_shutdown_is_over_comes_to_its_end() {
     world.exit(HOOK, ExitStatus::Code(0));
     world.exit(Source::Hook(HookId(1)), ExitStatus::Code(0));
     world.finish();
-    assert_snapshot!(world.story(), @"
+    assert_snapshot!(world.transcript(), @"
      0.0  suite-started
      0.0  fixture-starting attempt=1 fixture=0
      0.0  fixture-ready fixture=0
@@ -188,7 +188,7 @@ fn a_hook_that_runs_when_the_shutdown_is_over_comes_to_its_end() {
      0.0  test-stopping cause=interrupt reason=stopped by SIGINT test=0
      0.0  test-finished exit={code:0} phase=load reason=stopped by SIGINT test=0 verdict=interrupted
      0.0  hook-started hook=0 reason=stopped by SIGINT test=0 trigger=interrupt
-    20.0  warning diagnostic={code:shutdown-timeout,hint:`--shutdown-timeout` says how long tear-downs and hooks may take,message:the run did not end within 20s of SIGINT: what was left was killed,severity:warning}
+    20.0  warning diagnostic={code:shutdown-timeout,hint:`--shutdown-timeout` sets how long tear-downs and hooks may take,message:the run did not end within 20s of SIGINT: the remaining processes were killed,severity:warning}
     20.0  fixture-stopping fixture=0
     20.0    → kill the tree
     20.0  fixture-stopped fixture=0 problem=it was killed: the run did not end within 20s of SIGINT
@@ -200,7 +200,7 @@ fn a_hook_that_runs_when_the_shutdown_is_over_comes_to_its_end() {
 }
 
 #[test]
-fn a_stubborn_test_is_killed_when_the_shutdown_is_over() {
+fn a_test_that_does_not_stop_is_killed_at_the_shutdown_timeout() {
     let mut plan = suite(0, 2);
     let limits = rtf_plan::plan::TestLimits { grace: 100 * SECOND, ..*plan.tests[0].limits };
     plan.tests[0].limits = std::sync::Arc::new(limits);

@@ -1,20 +1,20 @@
 //! The state machine with invented times: no processes, no sleeps.
 
-mod abandoned;
 mod attached;
 mod chaos;
 mod clock;
 mod collapse;
-mod control;
-mod flow;
-mod graph;
+mod dependencies;
 mod hooks;
 mod limits;
-mod notices;
 mod parallel;
-mod prepared;
+mod preparation;
 mod retries;
-mod rounds;
+mod sequence;
 mod shared;
-mod silence;
+mod soak;
+mod stop_and_skip;
+mod subscriptions;
+mod unkillable;
+mod unresponsive;
 pub(crate) mod world;

@@ -1,4 +1,4 @@
-//! Several tests of a suite at once.
+//! Parallel tests of a suite.
 
 use insta::assert_snapshot;
 use rtf_model::protocol::Notification;
@@ -29,7 +29,6 @@ fn started(plan: &SuitePlan) -> World<'_> {
     world
 }
 
-/// The tests that run.
 fn running(world: &World<'_>) -> Vec<u32> {
     let tests = world.hosts.values().filter_map(|source| match source {
         Source::Test(id) => Some(id.0),
@@ -56,7 +55,7 @@ fn verdicts(world: &World<'_>) -> Vec<&'static str> {
 }
 
 #[test]
-fn the_next_test_begins_as_soon_as_there_is_room() {
+fn the_next_test_starts_as_soon_as_a_slot_is_free() {
     let plan = plan(0, 4, 2);
     let mut world = started(&plan);
     assert_eq!(running(&world), [0, 1]);
@@ -66,11 +65,11 @@ fn the_next_test_begins_as_soon_as_there_is_room() {
     world.pass(0);
     world.pass(3);
     world.finish();
-    assert!(world.record.is_green(), "{}", world.story());
+    assert!(world.record.is_green(), "{}", world.transcript());
 }
 
 #[test]
-fn repetitions_of_a_test_never_overlap_and_keep_its_place() {
+fn repetitions_of_a_test_never_overlap_and_keep_its_slot() {
     let mut plan = plan(0, 3, 2);
     plan.tests[0].repetitions = 2;
     let mut world = started(&plan);
@@ -83,11 +82,11 @@ fn repetitions_of_a_test_never_overlap_and_keep_its_place() {
     world.pass(2);
     world.finish();
     assert_eq!(world.record.tests[0].attempts.len(), 2);
-    assert!(world.record.is_green(), "{}", world.story());
+    assert!(world.record.is_green(), "{}", world.transcript());
 }
 
 #[test]
-fn an_exclusive_test_waits_for_those_before_it_and_those_after_it_wait_for_it() {
+fn an_exclusive_test_runs_alone() {
     let mut plan = plan(0, 4, 3);
     plan.tests[1].exclusive = true;
     let mut world = started(&plan);
@@ -99,11 +98,11 @@ fn an_exclusive_test_waits_for_those_before_it_and_those_after_it_wait_for_it() 
     world.pass(2);
     world.pass(3);
     world.finish();
-    assert!(world.record.is_green(), "{}", world.story());
+    assert!(world.record.is_green(), "{}", world.transcript());
 }
 
 #[test]
-fn a_collapse_interrupts_all_of_them_and_each_goes_its_own_way() {
+fn a_collapse_interrupts_all_tests_and_each_has_its_after_collapse() {
     let mut plan = plan(1, 4, 3);
     plan.tests[1].after_collapse = AfterCollapse::Rerun;
     plan.tests[2].after_collapse = AfterCollapse::Skip;
@@ -112,7 +111,7 @@ fn a_collapse_interrupts_all_of_them_and_each_goes_its_own_way() {
     world.input(FIXTURE, HostInput::Told(Notification::Collapsed { reason: "gone".to_owned() }));
     interrupted(&mut world, 2);
     interrupted(&mut world, 0);
-    // The robot is not parked while a test still moves it.
+    // No hook parks the robot while a test still moves it.
     assert!(!world.hosts.values().any(|source| *source == HOOK));
     interrupted(&mut world, 1);
     world.exit(HOOK, OK);
@@ -123,7 +122,7 @@ fn a_collapse_interrupts_all_of_them_and_each_goes_its_own_way() {
     world.tear_down(0);
     world.finish();
     assert_eq!(verdicts(&world), ["collapsed", "passed", "skipped", "passed"]);
-    assert_snapshot!(world.story(), @"
+    assert_snapshot!(world.transcript(), @"
     0.0  suite-started
     0.0  fixture-starting attempt=1 fixture=0
     0.0  fixture-ready fixture=0
@@ -167,10 +166,10 @@ fn a_collapse_interrupts_all_of_them_and_each_goes_its_own_way() {
 }
 
 #[test]
-fn a_collapse_that_is_told_late_counts_for_all_that_ended_beside_it() {
+fn a_collapse_reported_late_affects_all_tests_that_just_ended() {
     let plan = plan(1, 2, 2);
     let mut world = started(&plan);
-    world.unseen = true;
+    world.hides_liveness = true;
     world.pass(0);
     world.pass(1);
     world.exit(FIXTURE, ExitStatus::Signal(11));
@@ -178,24 +177,24 @@ fn a_collapse_that_is_told_late_counts_for_all_that_ended_beside_it() {
     assert_eq!(verdicts(&world), ["collapsed", "collapsed"]);
 }
 
-/// An answer to an earlier question says nothing about the time since then.
+/// An earlier examination does not cover the time since then.
 #[test]
-fn each_test_that_would_pass_has_the_fixtures_looked_at_after_its_own_end() {
+fn fixtures_are_examined_after_the_end_of_each_passing_test() {
     let plan = plan(1, 2, 2);
     let mut world = started(&plan);
-    world.unseen = true;
+    world.hides_liveness = true;
     world.pass(0);
     world.pass(1);
-    world.examined(0);
+    world.pass_examination(0);
     assert_eq!(verdicts(&world), ["passed", "none"]);
-    world.examined(0);
+    world.pass_examination(0);
     assert_eq!(verdicts(&world), ["passed", "passed"]);
     world.tear_down(0);
     world.finish();
 }
 
 #[test]
-fn a_hook_waits_for_those_that_run_and_no_other_begins_before_it() {
+fn a_hook_waits_for_running_tests_and_no_test_starts_before_it() {
     let mut plan = plan(0, 4, 2);
     plan.hooks = vec![hook(0, &[Trigger::Failure])];
     let mut world = started(&plan);
@@ -213,7 +212,7 @@ fn a_hook_waits_for_those_that_run_and_no_other_begins_before_it() {
 }
 
 #[test]
-fn after_a_critical_failure_those_that_run_come_to_their_end() {
+fn after_a_critical_failure_running_tests_finish() {
     let plan = plan(1, 4, 2);
     let mut world = started(&plan);
     fail(&mut world, 0, true);
@@ -226,7 +225,7 @@ fn after_a_critical_failure_those_that_run_come_to_their_end() {
 }
 
 #[test]
-fn what_is_written_after_a_critical_test_waits_for_it() {
+fn tests_after_a_critical_test_wait_for_it() {
     let mut plan = plan(0, 4, 3);
     plan.tests[1].critical = true;
     let mut world = started(&plan);
@@ -239,11 +238,11 @@ fn what_is_written_after_a_critical_test_waits_for_it() {
 }
 
 #[test]
-fn a_person_stops_one_test_and_the_others_go_on() {
+fn a_user_stops_one_test_and_the_others_continue() {
     let mut plan = plan(0, 3, 2);
     plan.tests[1].repetitions = 2;
     let mut world = started(&plan);
-    world.feed(Input::StopTest(TestId(1), "a person".to_owned()));
+    world.feed(Input::StopTest(TestId(1), "a user".to_owned()));
     interrupted(&mut world, 1);
     assert_eq!(running(&world), [0, 2]);
     world.pass(0);
@@ -253,7 +252,7 @@ fn a_person_stops_one_test_and_the_others_go_on() {
 }
 
 #[test]
-fn a_signal_and_the_suites_limit_stop_all_of_them() {
+fn a_signal_and_the_suite_timeout_stop_all_tests() {
     let mut plan = plan(0, 3, 2);
     plan.timeout = Some(SECOND);
     for by_signal in [true, false] {
@@ -274,7 +273,7 @@ fn a_signal_and_the_suites_limit_stop_all_of_them() {
 }
 
 #[test]
-fn a_second_signal_kills_all_of_them() {
+fn a_second_signal_kills_all_tests() {
     let plan = plan(0, 2, 2);
     let mut world = started(&plan);
     world.stop(StopLevel::Kill);
@@ -285,7 +284,7 @@ fn a_second_signal_kills_all_of_them() {
 }
 
 #[test]
-fn a_crash_is_one_tests_own() {
+fn a_crash_affects_only_its_test() {
     let plan = plan(0, 2, 2);
     let mut world = started(&plan);
     world.phase(test(1), Phase::Run);
@@ -311,7 +310,7 @@ fn each_test_has_its_own_deadlines() {
 }
 
 #[test]
-fn a_retry_that_waits_keeps_its_place_and_stops_nobody() {
+fn a_delayed_retry_keeps_its_slot_and_blocks_no_test() {
     let mut plan = plan(0, 3, 2);
     plan.tests[0].retries = Retries { count: 1, delay: 4 * SECOND };
     let mut world = started(&plan);
@@ -324,11 +323,11 @@ fn a_retry_that_waits_keeps_its_place_and_stops_nobody() {
     world.pass(0);
     world.pass(2);
     world.finish();
-    assert!(world.record.is_green(), "{}", world.story());
+    assert!(world.record.is_green(), "{}", world.transcript());
 }
 
 #[test]
-fn when_enough_have_failed_those_that_run_come_to_their_end() {
+fn at_the_failure_limit_running_tests_finish() {
     let plan = plan(0, 4, 3);
     let mut world = World::new(&plan);
     world.machine = SuiteMachine::new(&plan, FailLimit::new(Some(1)));
@@ -341,18 +340,18 @@ fn when_enough_have_failed_those_that_run_come_to_their_end() {
 }
 
 #[test]
-fn a_check_that_fails_between_two_tests_counts_for_the_one_before_and_those_beside() {
+fn a_check_that_fails_after_a_test_affects_it_and_the_running_ones() {
     let plan = plan(1, 3, 2);
     let mut world = started(&plan);
     assert_eq!(running(&world), [0, 1]);
-    world.unseen = true;
+    world.hides_liveness = true;
     world.pass(0);
     assert_eq!(running(&world), [1], "no other one has begun");
-    world.unseen = false;
+    world.hides_liveness = false;
     world.answer(FIXTURE, "failed");
     let stopping =
         |kind: &EventKind| matches!(kind, EventKind::TestStopping { test, .. } if test.0 == 1);
-    assert!(world.happened.iter().any(stopping), "{}", world.story());
+    assert!(world.events.iter().any(stopping), "{}", world.transcript());
     interrupted(&mut world, 1);
     world.tear_down(0);
     world.ready(1);

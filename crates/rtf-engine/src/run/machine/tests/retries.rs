@@ -1,4 +1,4 @@
-//! A test that fails is tried again.
+//! Retries of failed tests.
 
 use std::time::Duration;
 
@@ -30,7 +30,7 @@ fn a_pass_at_the_second_attempt_is_flaky() {
     world.pass(0);
     world.pass(1);
     world.finish();
-    assert_snapshot!(world.story(), @"
+    assert_snapshot!(world.transcript(), @"
     0.0  suite-started
     0.0  test-started attempt=1 repetition=1 test=0
     0.0  test-phase phase=run test=0
@@ -57,7 +57,7 @@ fn a_pass_at_the_second_attempt_is_flaky() {
 }
 
 #[test]
-fn each_repetition_has_its_own_retries_and_then_it_has_failed() {
+fn each_repetition_has_separate_retries() {
     let mut plan = plan(1, Duration::ZERO);
     plan.tests[0].repetitions = 2;
     let mut world = World::started(&plan);
@@ -75,7 +75,7 @@ fn each_repetition_has_its_own_retries_and_then_it_has_failed() {
 }
 
 #[test]
-fn a_retry_waits_and_ctrl_c_ends_the_wait() {
+fn ctrl_c_ends_the_delay_of_a_retry() {
     let plan = plan(5, 10 * SECOND);
     let mut world = World::started(&plan);
     fail(&mut world, false);
@@ -85,7 +85,7 @@ fn a_retry_waits_and_ctrl_c_ends_the_wait() {
     assert!(world.hosts.is_empty());
     world.stop(StopLevel::TearDown);
     world.finish();
-    assert_snapshot!(world.story(), @"
+    assert_snapshot!(world.transcript(), @"
      0.0  suite-started
      0.0  test-started attempt=1 repetition=1 test=0
      0.0  test-phase phase=run test=0
@@ -105,7 +105,7 @@ fn a_retry_waits_and_ctrl_c_ends_the_wait() {
 }
 
 #[test]
-fn nothing_follows_a_critical_assertion_and_hooks_see_each_attempt() {
+fn a_critical_assertion_is_not_retried_and_each_attempt_triggers_hooks() {
     let mut plan = plan(5, Duration::ZERO);
     plan.hooks = vec![hook(0, &[rtf_model::Trigger::Failure])];
     let mut world = World::started(&plan);
@@ -121,7 +121,7 @@ fn nothing_follows_a_critical_assertion_and_hooks_see_each_attempt() {
 }
 
 #[test]
-fn when_it_is_enough_the_rest_is_skipped() {
+fn at_the_failure_limit_the_rest_is_skipped() {
     let mut plan = suite(1, 3);
     plan.tests[0].repetitions = 3;
     let mut world = World::new(&plan);
@@ -136,7 +136,7 @@ fn when_it_is_enough_the_rest_is_skipped() {
     world.finish();
     let why = Some("1 test has not passed (--max-fail 1)");
     assert_eq!(world.record.tests[2].skipped.as_deref(), why);
-    // The next suite of the run begins nothing at all.
+    // The next suite of the run starts nothing.
     let mut next = World::new(&plan);
     next.machine = SuiteMachine::new(&plan, fails);
     next.start();
@@ -145,7 +145,7 @@ fn when_it_is_enough_the_rest_is_skipped() {
 }
 
 #[test]
-fn what_fails_in_a_suite_beside_it_ends_a_suite_after_its_test() {
+fn failures_of_another_suite_end_a_suite_after_its_test() {
     let plan = suite(0, 3);
     let fails = FailLimit::new(Some(1));
     let [mut failing, mut other] = [(); 2].map(|()| {
@@ -156,7 +156,7 @@ fn what_fails_in_a_suite_beside_it_ends_a_suite_after_its_test() {
     });
     fail(&mut failing, false);
     failing.finish();
-    // What runs comes to its end, and nothing follows.
+    // The running test finishes, and none follows.
     let test = Source::Test(TestId(0));
     other.answer(test, "passed");
     other.exit(test, ExitStatus::Code(0));

@@ -9,29 +9,28 @@ use rtf_plan::plan::SuitePlan;
 use rtf_process::codec::INITIALIZE;
 
 impl World<'_> {
-    /// A host that has answered goes on to the test that it was asked for, or waits.
+    /// A host that has answered begins its assigned test or becomes idle.
     pub fn release(&mut self, host: HostId) {
         self.answered.remove(&host);
         self.hosts.remove(&host);
-        if !self.begin_joined(host) {
+        if !self.begin_assigned(host) {
             self.idle.insert(host);
         }
         self.feed(Input::Host(host, HostInput::Released));
     }
 
-    /// A host begins the test that it was asked for; false when there is none.
-    pub fn begin_joined(&mut self, on: HostId) -> bool {
-        let Some((host, source, request)) = self.joined.remove(&on) else { return false };
+    /// A host begins its assigned test; false if there is none.
+    pub fn begin_assigned(&mut self, on: HostId) -> bool {
+        let Some((host, source, request)) = self.assigned.remove(&on) else { return false };
         self.idle.remove(&on);
         self.hosts.insert(host, source);
         self.sent.push((host, Some(request), Request::DumpStack {}));
         true
     }
 
-    /// A host that has nothing to do ends.
-    pub fn end_idle(&mut self, host: HostId, status: ExitStatus) {
+    pub fn exit_idle(&mut self, host: HostId, status: ExitStatus) {
         self.idle.remove(&host);
-        match self.joined.remove(&host) {
+        match self.assigned.remove(&host) {
             Some((next, ..)) => self.feed(Input::Host(next, HostInput::Unbegun(status))),
             None => self.feed(Input::Host(host, HostInput::Exited(status, Vec::new()))),
         }
@@ -48,14 +47,14 @@ fn source(test: u32) -> Source {
     Source::Test(TestId(test))
 }
 
-/// The host says that it can be shared.
+/// The host reports that it can be shared.
 fn initialized(world: &mut World<'_>, test: u32) {
     let value = serde_json::json!({ "protocol": 1, "host": "h", "supports_shared": true });
     world.input(source(test), HostInput::Answered(INITIALIZE, Reply::Result(value)));
 }
 
-/// A test goes through its phases and is answered; its host stays.
-pub(super) fn stays(world: &mut World<'_>, test: u32) -> HostId {
+/// A test passes, and its host stays alive.
+pub(super) fn answer_and_continue(world: &mut World<'_>, test: u32) -> HostId {
     for phase in [Phase::Setup, Phase::Run, Phase::TearDown] {
         world.phase(source(test), phase);
     }
@@ -68,15 +67,15 @@ pub(super) fn stays(world: &mut World<'_>, test: u32) -> HostId {
 }
 
 #[test]
-fn a_host_is_asked_for_the_next_test_while_the_present_one_runs() {
+fn a_host_is_assigned_the_next_test_while_the_present_one_runs() {
     let plan = shared(0, 3);
     let mut world = World::started(&plan);
     let host = world.host_of(source(0));
-    assert!(world.joined.is_empty(), "not before it is known that it can");
+    assert!(world.assigned.is_empty(), "the host has not reported that it can be shared");
     initialized(&mut world, 0);
-    assert!(world.joined.contains_key(&host));
+    assert!(world.assigned.contains_key(&host));
     for test in [0, 1] {
-        let host = stays(&mut world, test);
+        let host = answer_and_continue(&mut world, test);
         assert_eq!(world.record.verdict(TestId(test)), None, "the next one has not begun");
         world.release(host);
         assert_eq!(world.record.verdict(TestId(test)), Some(Verdict::Passed));
@@ -87,19 +86,19 @@ fn a_host_is_asked_for_the_next_test_while_the_present_one_runs() {
 }
 
 #[test]
-fn what_a_host_uses_is_told_before_it_gets_the_next_repetition() {
+fn resource_usage_is_reported_before_the_next_repetition() {
     let mut plan = shared(0, 1);
     plan.tests[0].repetitions = 3;
     let mut world = World::started(&plan);
     initialized(&mut world, 0);
     for served in 1..=2 {
-        let host = stays(&mut world, 0);
-        assert!(world.joined.is_empty(), "it is looked at first");
+        let host = answer_and_continue(&mut world, 0);
+        assert!(world.assigned.is_empty(), "its usage is measured first");
         let usage = Usage { processes: 1, memory: 4096, descriptors: 9 };
         world.input(source(0), HostInput::Uses { usage, tests_served: Some(served) });
         world.release(host);
-        assert!(world.joined.contains_key(&host), "then it is asked again");
-        world.begin_joined(host);
+        assert!(world.assigned.contains_key(&host), "then it is assigned the next one");
+        world.begin_assigned(host);
     }
     world.pass(0);
     world.finish();
@@ -109,11 +108,11 @@ fn what_a_host_uses_is_told_before_it_gets_the_next_repetition() {
 }
 
 #[test]
-fn a_host_that_dies_before_the_next_test_begins_is_the_present_tests() {
+fn a_host_that_crashes_before_the_next_test_begins_fails_the_present_one() {
     let plan = shared(0, 2);
     let mut world = World::started(&plan);
     initialized(&mut world, 0);
-    stays(&mut world, 0);
+    answer_and_continue(&mut world, 0);
     world.exit(source(0), ExitStatus::Signal(11));
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Crashed));
     world.pass(1);
@@ -122,20 +121,20 @@ fn a_host_that_dies_before_the_next_test_begins_is_the_present_tests() {
 }
 
 #[test]
-fn a_host_that_dies_idle_is_nobodys_and_the_next_test_gets_another() {
+fn an_idle_host_that_crashes_fails_no_test_and_is_replaced() {
     let plan = shared(1, 2);
     let mut world = World::started(&plan);
     let fixture = Source::Fixture(rtf_model::FixtureId(0));
     world.answer(fixture, "passed");
     world.answer(fixture, "passed");
     initialized(&mut world, 0);
-    let host = stays(&mut world, 0);
-    assert!(world.joined.is_empty(), "the fixture is asked first");
+    let host = answer_and_continue(&mut world, 0);
+    assert!(world.assigned.is_empty(), "the fixture is checked first");
     world.release(host);
     world.answer(fixture, "passed");
-    assert!(world.joined.contains_key(&host));
-    world.end_idle(host, ExitStatus::Signal(6));
-    assert!(world.story().contains("shared-host-ended"), "{}", world.story());
+    assert!(world.assigned.contains_key(&host));
+    world.exit_idle(host, ExitStatus::Signal(6));
+    assert!(world.transcript().contains("shared-host-ended"), "{}", world.transcript());
     world.pass(1);
     world.tear_down(0);
     world.finish();
@@ -143,11 +142,11 @@ fn a_host_that_dies_idle_is_nobodys_and_the_next_test_gets_another() {
 }
 
 #[test]
-fn a_stop_that_crosses_the_answer_stops_the_next_test_too() {
+fn a_stop_during_the_answer_also_stops_the_next_test() {
     let plan = shared(0, 3);
     let mut world = World::started(&plan);
     initialized(&mut world, 0);
-    let host = stays(&mut world, 0);
+    let host = answer_and_continue(&mut world, 0);
     world.stop(StopLevel::TearDown);
     world.release(host);
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Interrupted));
@@ -158,20 +157,20 @@ fn a_stop_that_crosses_the_answer_stops_the_next_test_too() {
 }
 
 #[test]
-fn a_host_without_a_test_is_ended_with_the_suite() {
+fn an_idle_host_is_killed_at_the_end_of_the_suite() {
     let plan = shared(1, 2);
     let mut world = World::started(&plan);
     let fixture = Source::Fixture(rtf_model::FixtureId(0));
     world.answer(fixture, "passed");
     world.answer(fixture, "passed");
-    let host = stays(&mut world, 0);
-    world.unseen = true;
+    let host = answer_and_continue(&mut world, 0);
+    world.hides_liveness = true;
     world.release(host);
-    world.feed(Input::Skip("a person".to_owned()));
-    world.examined(0);
+    world.feed(Input::Skip("a user".to_owned()));
+    world.pass_examination(0);
     world.tear_down(0);
-    assert!(!world.done, "its end is awaited");
-    assert!(world.story().contains("kill the tree"), "{}", world.story());
-    world.end_idle(host, ExitStatus::Signal(9));
+    assert!(!world.done, "the suite waits for its end");
+    assert!(world.transcript().contains("kill the tree"), "{}", world.transcript());
+    world.exit_idle(host, ExitStatus::Signal(9));
     world.finish();
 }

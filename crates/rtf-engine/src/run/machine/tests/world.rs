@@ -1,8 +1,8 @@
-//! A world for the machine: plans, hosts that do what a test says, and time.
+//! Simulates the world around the machine: plans, hosts that tests control, and time.
 
-mod acts;
+mod format;
+mod host_actions;
 mod plans;
-mod story;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
@@ -13,9 +13,9 @@ use rtf_model::{
     RunStarted, Source, SuitePlanned, TestPlanned,
 };
 
-pub use self::acts::{FIXTURE, HOOK, TEST};
+use self::format::{effect_of, line_of};
+pub use self::host_actions::{FIXTURE, HOOK, TEST};
 pub use self::plans::{hook, suite};
-use self::story::{effect_of, line_of};
 use crate::run::FailLimit;
 use crate::run::machine::{
     Deadline, Effect, HostId, HostInput, Input, Probes, Stop, StopLevel, SuiteMachine,
@@ -24,7 +24,6 @@ use rtf_plan::plan::SuitePlan;
 
 pub const SECOND: Duration = Duration::from_secs(1);
 
-/// The machine, what it asked for, and what it reported.
 pub struct World<'p> {
     pub now: Duration,
     pub machine: SuiteMachine<'p>,
@@ -32,17 +31,20 @@ pub struct World<'p> {
     pub hosts: BTreeMap<HostId, Source>,
     pub sent: Vec<(HostId, Option<u64>, Request)>,
     pub log: Vec<String>,
-    pub happened: Vec<EventKind>,
+    /// The first line of the transcript.
+    transcript_start: usize,
+    pub events: Vec<EventKind>,
     pub deadlines: BTreeMap<Deadline, Duration>,
     pub done: bool,
-    /// Shared hosts that have nothing to do, and what others were asked for next.
+    /// Shared hosts without a test.
     pub idle: BTreeSet<HostId>,
-    /// Shared hosts that have answered, and stay.
+    /// Shared hosts that have answered and stay alive.
     pub answered: BTreeSet<HostId>,
-    pub joined: BTreeMap<HostId, (HostId, Source, u64)>,
-    /// Whether it cannot be seen that fixtures live.
-    pub unseen: bool,
-    /// Which probes were asked after tests.
+    /// The tests that shared hosts were assigned.
+    pub assigned: BTreeMap<HostId, (HostId, Source, u64)>,
+    /// Whether examinations of fixtures get no answer.
+    pub hides_liveness: bool,
+    /// The probes of each examination.
     pub probes: Vec<Probes>,
     order: OrderChecker,
     seq: u64,
@@ -50,15 +52,15 @@ pub struct World<'p> {
 
 impl<'p> World<'p> {
     pub fn new(plan: &'p SuitePlan) -> Self {
-        Self::of(plan, false)
+        Self::build(plan, false)
     }
 
-    /// Of tests that are repeated until a time is over.
+    /// A soak.
     pub fn timed(plan: &'p SuitePlan) -> Self {
-        Self::of(plan, true)
+        Self::build(plan, true)
     }
 
-    fn of(plan: &'p SuitePlan, timed: bool) -> Self {
+    fn build(plan: &'p SuitePlan, timed: bool) -> Self {
         let mut world = Self {
             now: Duration::ZERO,
             machine: SuiteMachine::new(plan, FailLimit::default()),
@@ -66,13 +68,14 @@ impl<'p> World<'p> {
             hosts: BTreeMap::new(),
             sent: Vec::new(),
             log: Vec::new(),
-            happened: Vec::new(),
+            transcript_start: 0,
+            events: Vec::new(),
             deadlines: BTreeMap::new(),
             done: false,
             idle: BTreeSet::new(),
             answered: BTreeSet::new(),
-            joined: BTreeMap::new(),
-            unseen: false,
+            assigned: BTreeMap::new(),
+            hides_liveness: false,
             probes: Vec::new(),
             order: OrderChecker::default(),
             seq: 0,
@@ -137,7 +140,7 @@ impl<'p> World<'p> {
             .check(&event)
             .unwrap_or_else(|error| panic!("{error}\n{event:?}\n{:#?}", self.log));
         self.record.apply(&event);
-        self.happened.push(event.kind.clone());
+        self.events.push(event.kind.clone());
         let json = serde_json::to_value(&event.kind).unwrap();
         self.log.push(format!("{:>5.1}  {}", self.now.as_secs_f64(), line_of(&json)));
     }
@@ -147,18 +150,18 @@ impl<'p> World<'p> {
         let ends = matches!(&input, Input::Host(_, Exited(..) | Released));
         let (mut effects, mut checked) = (Vec::new(), Vec::new());
         self.machine.handle(input, self.now, &mut effects);
-        let mut looked_at = Vec::new();
+        let mut examined = Vec::new();
         for effect in effects {
             match effect {
                 Effect::LookAlive(host, probes) => {
                     self.probes.push(probes);
-                    looked_at.push(host);
+                    examined.push(host);
                 }
                 Effect::Emit(kind) => self.emit(kind),
                 Effect::Spawn { host, source, .. } => drop(self.hosts.insert(host, source)),
                 Effect::Join { host, on, source, request, .. } => {
                     assert!(self.hosts.contains_key(&on) || self.idle.contains(&on));
-                    assert!(self.joined.insert(on, (host, source, request)).is_none());
+                    assert!(self.assigned.insert(on, (host, source, request)).is_none());
                 }
                 Effect::Send(host, id, request) => {
                     if let (true, Some(id), Request::CheckFixture {}) = (ends, id, &request) {
@@ -177,10 +180,10 @@ impl<'p> World<'p> {
                 )),
             }
         }
-        looked_at.retain(|host| !self.unseen && self.hosts.contains_key(host));
-        looked_at.into_iter().for_each(|host| self.feed(Input::Host(host, HostInput::Lives)));
-        // When a test has ended, fixtures that are asked say that they are well.
-        checked.retain(|(host, _)| !self.unseen && self.hosts.contains_key(host));
+        examined.retain(|host| !self.hides_liveness && self.hosts.contains_key(host));
+        examined.into_iter().for_each(|host| self.feed(Input::Host(host, HostInput::Lives)));
+        // Fixtures that are checked after a test pass.
+        checked.retain(|(host, _)| !self.hides_liveness && self.hosts.contains_key(host));
         for (host, id) in checked {
             let answer = Reply::Result(serde_json::json!({ "outcome": "passed" }));
             self.feed(Input::Host(host, HostInput::Answered(id, answer)));
@@ -196,7 +199,6 @@ impl<'p> World<'p> {
         self.feed(Input::Stop(Stop { level, reason, limit }));
     }
 
-    /// The host of a source that is alive.
     pub fn host_of(&self, source: Source) -> HostId {
         let host = self.hosts.iter().find(|(_, of)| **of == source);
         *host.unwrap_or_else(|| panic!("no host of {source:?}\n{:#?}", self.log)).0
@@ -206,7 +208,7 @@ impl<'p> World<'p> {
         let host = self.host_of(source);
         if matches!(input, HostInput::Exited(..) | HostInput::SpawnFailed(_)) {
             self.hosts.remove(&host);
-            self.joined.remove(&host);
+            self.assigned.remove(&host);
             self.answered.remove(&host);
         }
         self.feed(Input::Host(host, input));
@@ -216,7 +218,7 @@ impl<'p> World<'p> {
         self.input(source, HostInput::Exited(status, Vec::new()));
     }
 
-    /// Lets time pass up to the next deadline, which then passes.
+    /// Advances time to the next deadline.
     pub fn next_deadline(&mut self) -> Deadline {
         let next = self.deadlines.iter().min_by_key(|(_, at)| **at);
         let (deadline, at) = next.map(|(deadline, at)| (*deadline, *at)).expect("a deadline");
@@ -227,15 +229,20 @@ impl<'p> World<'p> {
     }
 
     pub fn finish(&mut self) {
-        assert!(self.done, "the suite is not over\n{:#?}", self.log);
+        assert!(self.done, "the suite has not finished\n{:#?}", self.log);
         assert!(self.deadlines.is_empty(), "deadlines are left: {:?}", self.deadlines);
         self.emit(EventKind::RunFinished { interrupted: None });
     }
 
-    /// What happened after the plan.
-    pub fn story(&self) -> String {
-        let story =
-            self.log.iter().filter(|line| !line.contains("-planned") && !line.contains("run-"));
-        story.cloned().collect::<Vec<_>>().join("\n")
+    /// Lets the transcript begin here.
+    pub fn restart_transcript(&mut self) {
+        self.transcript_start = self.log.len();
+    }
+
+    /// The events without the plan, and the effects.
+    pub fn transcript(&self) -> String {
+        let lines = self.log[self.transcript_start..].iter();
+        let lines = lines.filter(|line| !line.contains("-planned") && !line.contains("run-"));
+        lines.cloned().collect::<Vec<_>>().join("\n")
     }
 }

@@ -1,4 +1,4 @@
-//! Plans of which each test changes what matters to it.
+//! Default plans; each test changes the relevant part.
 
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -1,0 +1,91 @@
+//! Repeats a suite until a time has passed (`--for`), in rounds on the same fixtures. A
+//! round that has started is completed, so that all tests are repeated equally often.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::time::Duration;
+
+use rtf_model::{EventKind, TestId};
+
+use super::SuiteMachine;
+use super::active_test::AttemptNumber;
+use crate::run::machine::context::Context;
+use crate::run::machine::io::Deadline;
+use rtf_plan::plan::TestPlan;
+
+/// A suite that is not repeated has one round.
+#[derive(Debug, Default)]
+pub(super) struct Soak {
+    /// No round starts after this time of the run.
+    until: Option<Duration>,
+    completed_rounds: u32,
+    /// The repetition of each test that started last.
+    last_started: BTreeMap<TestId, u32>,
+    /// Tests that are in no further round.
+    excluded: BTreeSet<TestId>,
+}
+
+impl Soak {
+    pub fn is_timed(&self) -> bool {
+        self.until.is_some()
+    }
+
+    /// Whether a test is in this round.
+    pub fn includes(&self, test: TestId) -> bool {
+        !self.excluded.contains(&test)
+    }
+
+    /// The first attempt of a test in this round.
+    pub fn first_attempt(&self, plan: &TestPlan) -> AttemptNumber {
+        let previous = plan.repetitions.saturating_mul(self.completed_rounds);
+        AttemptNumber { repetition: previous.saturating_add(1), ..AttemptNumber::FIRST }
+    }
+
+    /// The last repetition of a test in this round.
+    pub fn last_repetition(&self, plan: &TestPlan) -> u32 {
+        plan.repetitions.saturating_mul(self.completed_rounds.saturating_add(1))
+    }
+
+    pub fn record_start(&mut self, test: TestId, number: AttemptNumber) {
+        self.last_started.insert(test, number.repetition);
+    }
+
+    pub fn exclude(&mut self, test: TestId) {
+        self.excluded.insert(test);
+    }
+
+    /// Starts another round; false if the time has passed.
+    pub fn begin_round(&mut self, now: Duration) -> bool {
+        let begins = self.until.is_some_and(|until| now < until);
+        self.completed_rounds = self.completed_rounds.saturating_add(begins.into());
+        begins
+    }
+}
+
+impl SuiteMachine<'_> {
+    /// Repeats the suite until this time of the run.
+    #[must_use]
+    pub fn until(mut self, until: Option<Duration>) -> Self {
+        self.scheduler.soak.until = until;
+        self
+    }
+
+    /// Reports tests without a final result. In a timed run, only those are skipped that
+    /// never ran, or were to be rerun.
+    pub(super) fn report_unfinished_tests(&self, cx: &mut Context<'_>) {
+        let reason = self.end_reason.clone().unwrap_or_default();
+        let soak = &self.scheduler.soak;
+        let mut tests: Vec<TestId> = self.scheduler.unfinished().collect();
+        if soak.is_timed() {
+            tests = self.plan.tests.iter().map(|plan| plan.id).collect();
+        }
+        for test in tests.into_iter().filter(|test| soak.includes(*test)) {
+            cx.clear(Deadline::Retry(test));
+            match soak.last_started.get(&test) {
+                Some(&repetitions) if soak.is_timed() && !self.scheduler.is_rerun(test) => {
+                    cx.emit(EventKind::TestRepeated { test, repetitions });
+                }
+                _ => cx.emit(EventKind::TestSkipped { test, reason: reason.clone() }),
+            }
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! Handles the notifications of a test: phases, messages, measurements and samples.
+
+use rtf_model::protocol::Notification;
+use rtf_model::{EventKind, Message, MessageKind, Phase, Verdict};
+
+use super::TestRun;
+use crate::run::machine::context::{Context, error_message};
+use crate::run::machine::judge::TestProblem;
+
+impl TestRun<'_> {
+    pub(super) fn on_notification(&mut self, notification: Notification, cx: &mut Context<'_>) {
+        let test = self.plan.id;
+        match notification {
+            Notification::Phase { phase } => self.enter_phase(phase, cx),
+            Notification::Message(message) => self.report(message, cx),
+            Notification::Measured(measurement) => {
+                let problem = measurement.problem();
+                self.record(problem, EventKind::Measured { test, fixture: None, measurement }, cx);
+            }
+            Notification::Sampled(samples) => {
+                let problem = samples.problem();
+                self.record(problem, EventKind::Sampled { test, samples }, cx);
+            }
+            Notification::Stack { text } => self.on_stack_dump(text, cx),
+            Notification::Attached(_) => {}
+            Notification::Collapsed { .. } => {
+                self.on_protocol_error("sent `collapsed`, which is for fixtures".to_owned(), cx);
+            }
+        }
+    }
+
+    fn enter_phase(&mut self, phase: Phase, cx: &mut Context<'_>) {
+        if phase <= self.phase || phase >= Phase::Exit || self.evidence.answer.is_some() {
+            let what = format!("entered {phase} after {}", self.phase);
+            return self.on_protocol_error(what, cx);
+        }
+        self.phase = phase;
+        cx.emit(EventKind::TestPhase { test: self.plan.id, phase });
+        if self.step.is_some() {
+            return;
+        }
+        let limits = &self.plan.limits;
+        let limit = match phase {
+            Phase::Setup => limits.setup,
+            Phase::Run => limits.run,
+            _ => limits.teardown,
+        };
+        let slow = Some(limits.slow).filter(|slow| phase == Phase::Run && *slow < limit);
+        self.set_phase_limit(limit, slow, cx);
+    }
+
+    fn report(&mut self, message: Message, cx: &mut Context<'_>) {
+        match message.kind {
+            MessageKind::Failure => self.record_problem(Verdict::Failed, message.text.clone()),
+            MessageKind::Error => self.record_problem(Verdict::Error, message.text.clone()),
+            MessageKind::Report | MessageKind::Check => {}
+        }
+        if message.critical && message.kind != MessageKind::Check && self.critical.is_none() {
+            self.critical = Some(message.text.clone());
+        }
+        cx.emit(EventKind::Message { source: self.source(), message, test: None });
+    }
+
+    fn record(&mut self, problem: Option<String>, result: EventKind, cx: &mut Context<'_>) {
+        problem.into_iter().for_each(|problem| self.record_problem(Verdict::Failed, problem));
+        cx.emit(result);
+    }
+
+    pub(super) fn report_error(&mut self, text: String, cx: &mut Context<'_>) {
+        self.report(error_message(text), cx);
+    }
+
+    /// Records the first failure or error. Only `run` can show that the robot is wrong;
+    /// a failure in another phase is an error of the bench.
+    pub(super) fn record_problem(&mut self, verdict: Verdict, reason: String) {
+        let verdict = if self.phase == Phase::Run { verdict } else { Verdict::Error };
+        let phase = self.phase;
+        self.evidence.first_problem.get_or_insert(TestProblem { verdict, reason, phase });
+    }
+}

@@ -1,0 +1,132 @@
+//! From the end of a test's process to its verdict, which depends on the fixtures: a test
+//! during which a fixture collapsed is collapsed.
+
+use std::time::Duration;
+
+use rtf_model::{ExitStatus, LeakedProcess, Phase, TestFinished, Verdict};
+
+use super::TestRun;
+use crate::run::machine::context::Context;
+use crate::run::machine::io::TestTimer;
+use crate::run::machine::judge::{judge, leak_problem};
+
+/// How long a test that did not pass waits for a fixture's collapse: a connection breaks
+/// before the kernel reports the death at its other end. A test that would pass waits for
+/// the examination of all fixtures instead. Both wait for the end of a dying fixture.
+const COLLAPSE_WAIT: Duration = Duration::from_millis(200);
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum AttemptState {
+    /// Its process is alive or is being started.
+    Running,
+    /// Its process has ended; it passes if all fixtures pass their examination.
+    AwaitsExamination,
+    /// Its process has ended; it did not pass, but a collapse may be the cause.
+    AwaitsCollapse,
+    /// It waits for nothing more.
+    Ended,
+    /// Its verdict is final.
+    Judged,
+}
+
+/// The result of an attempt.
+#[derive(Debug)]
+pub struct FinishedAttempt {
+    pub verdict: Verdict,
+    pub reason: Option<String>,
+    /// Where the verdict was decided.
+    pub phase: Phase,
+    pub exit: Option<ExitStatus>,
+    /// The critical assertion that failed.
+    pub critical: Option<String>,
+}
+
+impl TestRun<'_> {
+    pub(super) fn on_exit(
+        &mut self,
+        exit: Option<ExitStatus>,
+        leaked: Vec<LeakedProcess>,
+        cx: &mut Context<'_>,
+    ) {
+        self.stopwatch = None;
+        self.clear(TestTimer::Slow, cx);
+        self.output.finish(cx);
+        self.leak = leak_problem(self.plan.leaks, &leaked);
+        cx.report_leaked(self.source(), leaked);
+        (self.evidence.exit, self.evidence.released) = (exit, self.is_released);
+        let (verdict, ..) = judge(&self.evidence, self.phase);
+        let may_have_collapsed = self.has_fixtures && self.evidence.stopped.is_none();
+        self.state = match (may_have_collapsed, verdict.is_green()) {
+            (false, _) => AttemptState::Ended,
+            (true, true) => AttemptState::AwaitsExamination,
+            (true, false) => AttemptState::AwaitsCollapse,
+        };
+        match self.state {
+            AttemptState::AwaitsCollapse => self.set_limit(COLLAPSE_WAIT, cx),
+            _ => self.clear(TestTimer::Limit, cx),
+        }
+    }
+
+    pub fn has_exited(&self) -> bool {
+        self.state != AttemptState::Running
+    }
+
+    /// Whether its verdict still depends on the fixtures.
+    pub fn awaits_fixtures(&self) -> bool {
+        matches!(self.state, AttemptState::AwaitsExamination | AttemptState::AwaitsCollapse)
+    }
+
+    /// All fixtures have passed the examination.
+    pub fn on_fixtures_alive(&mut self) {
+        if self.state == AttemptState::AwaitsExamination {
+            self.state = AttemptState::Ended;
+        }
+    }
+
+    /// Waits for the end of the dying fixture or its limit; both are a collapse.
+    pub fn on_fixture_dying(&mut self, cx: &mut Context<'_>) {
+        if self.awaits_fixtures() {
+            self.clear(TestTimer::Limit, cx);
+        }
+    }
+
+    /// Decides verdict and reason, once, when it has ended.
+    pub fn judge(&mut self, cx: &mut Context<'_>) -> Option<(Verdict, Option<String>)> {
+        if self.state != AttemptState::Ended {
+            return None;
+        }
+        self.clear(TestTimer::Limit, cx);
+        self.clear(TestTimer::Slow, cx);
+        let (mut verdict, mut reason, phase) = judge(&self.evidence, self.phase);
+        if let (Verdict::Passed, Some(problem)) = (verdict, self.leak.take()) {
+            verdict = Verdict::Error;
+            reason = Some(problem);
+        }
+        self.state = AttemptState::Judged;
+        let (exit, critical) = (self.evidence.exit, self.critical.take());
+        let finished = FinishedAttempt { verdict, reason: reason.clone(), phase, exit, critical };
+        self.finished = Some(finished);
+        Some((verdict, reason))
+    }
+
+    pub fn is_judged(&self) -> bool {
+        self.state == AttemptState::Judged
+    }
+
+    /// Its result, once it is judged. The caller then emits [`Self::finished_event`].
+    pub fn take_finished(&mut self) -> Option<FinishedAttempt> {
+        self.finished.take()
+    }
+
+    /// The last event of this attempt.
+    pub fn finished_event(&self, finished: &FinishedAttempt, rerun: bool) -> TestFinished {
+        TestFinished {
+            test: self.plan.id,
+            verdict: finished.verdict,
+            reason: finished.reason.clone(),
+            phase: finished.phase,
+            exit: finished.exit,
+            rerun,
+        }
+    }
+}
