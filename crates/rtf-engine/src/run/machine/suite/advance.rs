@@ -28,7 +28,7 @@ impl SuiteMachine<'_> {
         if self.scheduler.any_running() {
             return self.run_hooks_or_more_tests(cx);
         }
-        // Tests of other suites may have failed meanwhile.
+        // Tests of other suites may have reached the limit.
         if let Some(reason) = self.fails.reached() {
             self.end_early(reason);
         }

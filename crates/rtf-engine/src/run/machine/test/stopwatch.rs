@@ -98,16 +98,15 @@ impl TestRun<'_> {
         slow: Option<Duration>,
         cx: &mut Context<'_>,
     ) {
-        let timer = |timer| Deadline::Test(self.plan.id, timer);
         let Some(backstop) = self.backstop else {
-            cx.set(timer(TestTimer::Limit), limit);
+            self.set_limit(limit, cx);
             return match slow {
-                Some(slow) => cx.set(timer(TestTimer::Slow), slow),
-                None => cx.clear(timer(TestTimer::Slow)),
+                Some(slow) => cx.set(Deadline::Test(self.plan.id, TestTimer::Slow), slow),
+                None => self.clear(TestTimer::Slow, cx),
             };
         };
         let stopwatch = Stopwatch::new((limit, backstop), slow, cx.now());
-        cx.set(timer(TestTimer::Limit), stopwatch.backstop);
+        self.set_limit(stopwatch.backstop, cx);
         self.stopwatch = Some(stopwatch);
     }
 

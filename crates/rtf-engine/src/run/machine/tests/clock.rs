@@ -16,7 +16,7 @@ fn plan(tests: usize) -> SuitePlan {
     SuitePlan { clock, ..suite(0, tests) }
 }
 
-fn shows(world: &mut World<'_>, tenths: u64) {
+fn set_clock(world: &mut World<'_>, tenths: u64) {
     world.feed(Input::Clock(Duration::from_millis(100 * tenths)));
 }
 
@@ -30,15 +30,14 @@ fn dump_and_end(world: &mut World<'_>) {
 #[test]
 fn a_phase_times_out_by_the_simulated_clock() {
     let plan = plan(1);
-    let mut world = World::new(&plan);
-    world.start();
-    assert!(!world.machine.follows_clock(), "loading is the host's own matter");
+    let mut world = World::started(&plan);
+    assert!(!world.machine.follows_clock(), "the limit of loading is wall-clock time");
     world.phase(TEST, Phase::Setup);
     world.phase(TEST, Phase::Run);
     assert!(world.machine.follows_clock());
     for (seconds, tenths) in [(10, 1000), (20, 1019), (21, 1020), (30, 1049), (31, 1050)] {
         world.now = seconds * SECOND;
-        shows(&mut world, tenths);
+        set_clock(&mut world, tenths);
     }
     assert!(!world.machine.follows_clock(), "it was asked to stop");
     dump_and_end(&mut world);
@@ -60,12 +59,11 @@ fn a_phase_times_out_by_the_simulated_clock() {
 #[test]
 fn a_stopped_clock_times_out_by_the_wall_clock() {
     let plan = plan(1);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.phase(TEST, Phase::Run);
-    shows(&mut world, 30);
+    set_clock(&mut world, 30);
     world.now = SECOND;
-    shows(&mut world, 35);
+    set_clock(&mut world, 35);
     let limit = Deadline::Test(TestId(0), TestTimer::Limit);
     assert_eq!(world.deadlines, [(limit, 50 * SECOND)].into());
     world.next_deadline();
@@ -78,15 +76,14 @@ fn a_stopped_clock_times_out_by_the_wall_clock() {
 #[test]
 fn each_phase_is_measured_from_its_start() {
     let plan = plan(1);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     for (phase, tenths) in [(Phase::Setup, 99), (Phase::Run, 49), (Phase::TearDown, 29)] {
         world.phase(TEST, phase);
-        shows(&mut world, 0);
-        shows(&mut world, tenths);
+        set_clock(&mut world, 0);
+        set_clock(&mut world, tenths);
     }
     world.answer(TEST, "passed");
-    shows(&mut world, 1_000_000);
+    set_clock(&mut world, 1_000_000);
     assert_eq!(world.deadlines.values().copied().collect::<Vec<_>>(), [3 * SECOND]);
     world.exit(TEST, ExitStatus::Code(0));
     world.finish();
@@ -97,12 +94,11 @@ fn each_phase_is_measured_from_its_start() {
 #[test]
 fn the_clock_is_not_read_between_tests() {
     let plan = plan(2);
-    let mut world = World::new(&plan);
-    world.start();
+    let mut world = World::started(&plan);
     world.phase(TEST, Phase::Run);
     world.exit(TEST, ExitStatus::Signal(11));
     assert!(!world.machine.follows_clock());
-    shows(&mut world, 1_000_000);
+    set_clock(&mut world, 1_000_000);
     world.pass(1);
     world.finish();
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Crashed));

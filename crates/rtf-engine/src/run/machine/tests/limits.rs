@@ -9,8 +9,7 @@ use crate::run::machine::{Deadline, HostInput, StopLevel, TestTimer};
 #[test]
 fn a_hanging_test_is_dumped_interrupted_terminated_and_killed() {
     let plan = suite(0, 1);
-    let mut world = World::started(&plan);
-    world.phase(TEST, Phase::Run);
+    let mut world = World::running(&plan);
     assert_eq!(world.next_deadline(), Deadline::Test(TestId(0), TestTimer::Slow));
     world.next_deadline();
     world.input(TEST, HostInput::StackTaken("#0 pause".to_owned()));
@@ -19,9 +18,6 @@ fn a_hanging_test_is_dumped_interrupted_terminated_and_killed() {
     world.exit(TEST, ExitStatus::Signal(9));
     world.finish();
     assert_snapshot!(world.transcript(), @"
-    0.0  suite-started
-    0.0  test-started attempt=1 repetition=1 test=0
-    0.0  test-phase phase=run test=0
     2.0  test-slow test=0
     5.0  test-stopping cause=timeout reason=run did not end within 5s test=0
     5.0    → take a stack dump
@@ -94,9 +90,7 @@ fn a_check_that_hangs_is_a_collapse() {
 fn check_is_called_while_a_test_runs() {
     let mut plan = suite(1, 1);
     plan.fixtures[0].check_every = Some(SECOND);
-    let mut world = World::started(&plan);
-    world.ready(1);
-    world.phase(TEST, Phase::Run);
+    let mut world = World::running(&plan);
     world.next_deadline();
     world.answer(FIXTURE, "failed");
     world.end(TEST, "interrupted");
@@ -107,9 +101,7 @@ fn check_is_called_while_a_test_runs() {
 fn the_limit_of_the_suite_ends_it_with_tear_down() {
     let mut plan = suite(1, 2);
     plan.timeout = Some(SECOND);
-    let mut world = World::started(&plan);
-    world.ready(1);
-    world.phase(TEST, Phase::Run);
+    let mut world = World::running(&plan);
     world.next_deadline();
     world.exit(TEST, ExitStatus::Code(0));
     world.tear_down(0);
@@ -204,8 +196,7 @@ fn a_test_that_does_not_stop_is_killed_at_the_shutdown_timeout() {
     let mut plan = suite(0, 2);
     let limits = rtf_plan::plan::TestLimits { grace: 100 * SECOND, ..*plan.tests[0].limits };
     plan.tests[0].limits = std::sync::Arc::new(limits);
-    let mut world = World::started(&plan);
-    world.phase(TEST, Phase::Run);
+    let mut world = World::running(&plan);
     world.next_deadline();
     world.stop(StopLevel::TearDown);
     assert_eq!(world.next_deadline(), Deadline::Shutdown);

@@ -26,6 +26,7 @@ fn started(plan: &SuitePlan) -> World<'_> {
     if !plan.fixtures.is_empty() {
         world.ready(1);
     }
+    world.restart_transcript();
     world
 }
 
@@ -123,12 +124,6 @@ fn a_collapse_interrupts_all_tests_and_each_has_its_after_collapse() {
     world.finish();
     assert_eq!(verdicts(&world), ["collapsed", "passed", "skipped", "passed"]);
     assert_snapshot!(world.transcript(), @"
-    0.0  suite-started
-    0.0  fixture-starting attempt=1 fixture=0
-    0.0  fixture-ready fixture=0
-    0.0  test-started attempt=1 repetition=1 test=0
-    0.0  test-started attempt=1 repetition=1 test=1
-    0.0  test-started attempt=1 repetition=1 test=2
     0.0  fixture-collapsed fixture=0 reason=gone
     0.0  test-stopping cause=collapse reason=fixture `fixture0` collapsed: gone test=0
     0.0  test-stopping cause=collapse reason=fixture `fixture0` collapsed: gone test=1
