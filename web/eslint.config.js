@@ -16,9 +16,9 @@ export default ts.config(
         rules: {
             'max-lines': ['error', 300],
             'max-params': ['error', 5],
-            // Sets and maps are replaced as a whole here, which is enough to be noticed.
+            // Sets and maps are replaced as a whole, which Svelte notices.
             'svelte/prefer-svelte-reactivity': 'off',
-            // What a test prints must never become markup.
+            // Output of a test must never become markup.
             'svelte/no-at-html-tags': 'error',
             'no-restricted-properties': [
                 'error',

@@ -3,7 +3,7 @@ import { readFile } from 'node:fs/promises';
 import type { Plugin } from 'vite';
 import { defineConfig } from 'vitest/config';
 
-/** The viewer of the API's description, beside the page (spec/web.md). */
+/** The viewer of the API's description, next to the page (spec/web.md). */
 const viewer: Plugin = {
     name: 'rapidoc',
     async generateBundle() {
@@ -14,7 +14,7 @@ const viewer: Plugin = {
 };
 
 export default defineConfig({
-    // Relative, so that the page works wherever it is mounted.
+    // Relative, so that the page works below any path.
     base: './',
     plugins: [svelte(), viewer],
     build: {
@@ -26,7 +26,7 @@ export default defineConfig({
         target: 'es2022',
     },
     server: {
-        // `npm run dev` beside an `rtf run --web` or `rtf serve`.
+        // `npm run dev` next to an `rtf run --web` or `rtf serve`.
         proxy: { '/api': process.env['RTF_URL'] ?? 'http://127.0.0.1:8080' },
     },
     test: { include: ['src/**/*.test.ts'], environment: 'node' },

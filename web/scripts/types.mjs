@@ -1,6 +1,6 @@
-// Writes the page's types from the JSON Schemas of the project and the API's
-// description, so that what changes there does not compile here until the page
-// knows it.
+// Generates the page's types from the JSON Schemas of the project and the API's
+// description, so that a change there is a compile error here until the page
+// supports it.
 
 import { mkdir, readFile, writeFile } from 'node:fs/promises';
 import { compile } from 'json-schema-to-typescript';
@@ -8,7 +8,7 @@ import { compile } from 'json-schema-to-typescript';
 const SCHEMAS = new URL('../../schemas/', import.meta.url);
 const TARGET = new URL('../src/generated/', import.meta.url);
 
-/** A `$ref` with properties beside it means both; the compiler sees only one. */
+/** A `$ref` with sibling properties means both; the compiler reads only one. */
 function joinReferences(node) {
     if (Array.isArray(node)) return node.map(joinReferences);
     if (node === null || typeof node !== 'object') return node;
@@ -22,11 +22,11 @@ function joinReferences(node) {
     return JSON.parse(JSON.stringify({ ...rest, $ref, properties, required }));
 }
 
-/** The API leaves out what there is not to say, and never says null (spec/web.md). */
+/** The API omits missing values, and never sends null (spec/web.md). */
 function leaveOutNull(node) {
     if (Array.isArray(node)) return node.map(leaveOutNull);
     if (node === null || typeof node !== 'object') return node;
-    // Words beside a reference would make another type of it.
+    // Other keywords next to a reference would create another type.
     if (node.$ref !== undefined) return { $ref: node.$ref };
     const clear = Object.fromEntries(
         Object.entries(node).map(([name, value]) => [name, leaveOutNull(value)]),
@@ -40,7 +40,7 @@ function leaveOutNull(node) {
     return clear;
 }
 
-/** All schemas of the API's description, those of its own made clear of null. */
+/** All schemas of the API's description, without null in the API's types. */
 async function api() {
     const { components } = await read('openapi');
     const { $defs: model } = await read('event');
@@ -50,7 +50,7 @@ async function api() {
     ]);
     const text = JSON.stringify(Object.fromEntries(schemas));
     const $defs = JSON.parse(text.replaceAll('#/components/schemas/', '#/$defs/'));
-    // What nothing refers to would be left out.
+    // Types without a reference would be left out.
     const all = Object.keys($defs).map((name) => [name, { $ref: `#/$defs/${name}` }]);
     return { title: 'Api', type: 'object', properties: Object.fromEntries(all), $defs };
 }

@@ -1,4 +1,4 @@
-// The page by keyboard, on a narrow screen, and as assistive programs get it.
+// The page by keyboard, on a narrow screen, and for assistive technology.
 
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
@@ -28,7 +28,7 @@ after(async () => {
     await bench.close();
 });
 
-/** Each place of the page: its address, and what is there when it is drawn. */
+/** Each view of the page: its address, and a text that is visible when it is drawn. */
 function places() {
     const [old, now] = names;
     const run = `#/runs/${now}`;
@@ -50,10 +50,10 @@ async function goTo(guarded, { hash, ready }) {
     await guarded.page.getByText(ready).first().waitFor({ state: 'attached' });
 }
 
-/** Rules that are off, or that axe takes less seriously than we do. */
+/** Rules that are disabled, or that axe rates lower than we do. */
 const RULES = ['target-size', 'region', 'empty-table-header', 'page-has-heading-one'];
 
-/** What axe finds to be seriously wrong, in a line each. */
+/** Serious violations that axe finds, one line each. */
 async function violations({ page }) {
     await page.evaluate(AXE);
     const options = { rules: Object.fromEntries(RULES.map((rule) => [rule, { enabled: true }])) };
@@ -79,14 +79,14 @@ for (const colorScheme of ['light', 'dark']) {
             }
             await guarded.page.evaluate((run) => (location.hash = `#/runs/${run}`), names[1]);
             await guarded.button('Table').click();
-            await guarded.page.getByRole('table', { name: 'Time line' }).waitFor();
-            assert.deepEqual(await violations(guarded), [], 'the time line as a table');
+            await guarded.page.getByRole('table', { name: 'Timeline' }).waitFor();
+            assert.deepEqual(await violations(guarded), [], 'the timeline as a table');
             await guarded.close();
         });
     }
 }
 
-test('390 px are enough', async () => {
+test('a width of 390 px is sufficient', async () => {
     const viewport = { width: 390, height: 844 };
     const guarded = await Guarded.open(browser, serve.url, { viewport, hasTouch: true });
     for (const place of places()) {
@@ -105,7 +105,7 @@ test('390 px are enough', async () => {
     await guarded.close();
 });
 
-test('light and dark: as the system has it, or as chosen', async () => {
+test('light and dark theme: the system default, or the choice of the user', async () => {
     const guarded = await Guarded.open(browser, serve.url, { colorScheme: 'dark' });
     const background = () =>
         guarded.page.evaluate(() => getComputedStyle(document.body).backgroundColor);
@@ -121,7 +121,7 @@ test('light and dark: as the system has it, or as chosen', async () => {
     await guarded.close();
 });
 
-test('the keyboard is enough', async () => {
+test('every function works with the keyboard', async () => {
     const guarded = await Guarded.open(browser, serve.url);
     const { page } = guarded;
     const { keyboard } = page;
@@ -134,7 +134,7 @@ test('the keyboard is enough', async () => {
         assert.fail(`Tab does not lead to ${label}`);
     };
 
-    // Two runs are chosen and compared.
+    // Select two runs and compare them.
     for (const name of names) {
         await tabTo(`Compare ${name}`).catch(() => keyboard.press('Home'));
         await page.getByLabel(`Compare ${name}`).focus();
@@ -144,7 +144,7 @@ test('the keyboard is enough', async () => {
     await keyboard.press('Enter');
     await guarded.see('Two runs compared');
 
-    // A test is searched, and opened.
+    // Search for a test, and open it.
     await page.locator(`main a[href$="${names[1]}"]`).first().focus();
     await keyboard.press('Enter');
     await guarded.rowIs('Fails', 'failed');
@@ -160,10 +160,10 @@ test('the keyboard is enough', async () => {
     await keyboard.press('ArrowLeft');
     await page.getByRole('treeitem', { expanded: false }).waitFor();
 
-    // The time line is zoomed, and read as a table.
+    // Zoom the timeline, and read it as a table.
     const range = page.locator('.range');
     const whole = await range.innerText();
-    await page.getByRole('region', { name: /^Time line, drawn/ }).focus();
+    await page.getByRole('region', { name: /^Timeline, drawn/ }).focus();
     await keyboard.press('+');
     await guarded.page.waitForFunction(
         (text) => document.querySelector('.range').innerText !== text,
@@ -173,9 +173,9 @@ test('the keyboard is enough', async () => {
     await guarded.see(whole, '.range');
     await guarded.button('Table').focus();
     await keyboard.press('Enter');
-    await page.getByRole('table', { name: 'Time line' }).waitFor();
+    await page.getByRole('table', { name: 'Timeline' }).waitFor();
 
-    // Whoever does not want to go through all of the head skips it.
+    // A link skips the header.
     await page.reload();
     await keyboard.press('Tab');
     assert.equal(

@@ -1,4 +1,4 @@
-// Who has the token may stop the run, a test, a suite; who has not sees no button.
+// With the token, a user can stop the run, a test or a suite; without it there are no buttons.
 
 import assert from 'node:assert/strict';
 import { after, afterEach, before, beforeEach, test } from 'node:test';
@@ -48,7 +48,7 @@ test('with the token a test is stopped, then the suite is skipped', async () => 
 test('with the token the run is stopped', async () => {
     const guarded = await Guarded.open(browser, run.url);
     await guarded.button('Stop the run').click();
-    // Who says no has stopped nothing.
+    // Cancelling stops nothing.
     await guarded.button('No').click();
     await guarded.rowIs('First', 'running');
     await guarded.button('Stop the run').click();
@@ -57,12 +57,12 @@ test('with the token the run is stopped', async () => {
     await guarded.rowIs('First', 'interrupted');
     await guarded.rowIs('Third', 'skipped');
     await within('the end of the run', run.ended);
-    // What had been seen stays, though the server is gone.
+    // Loaded details stay although the server has exited.
     await guarded.see('Interrupted by');
     await guarded.close();
 });
 
-test('who has lost the token is told by the first button', async () => {
+test('a lost token is reported by the first refused action', async () => {
     const guarded = await Guarded.open(browser, run.url);
     await guarded.button('Control is on').waitFor();
     await guarded.context.clearCookies();
@@ -87,16 +87,16 @@ test('without the token there is no button, with it there is', async () => {
     await guarded.button('Enter').click();
     await guarded.see(/token/, '[role=alert]');
     assert.deepEqual(await controls(guarded), []);
-    // The whole address, as it is copied from a terminal, will do.
+    // Pasting the whole address from a terminal works, too.
     await field.fill(run.url);
     await field.press('Enter');
     await guarded.button('Stop the test').waitFor();
     assert.deepEqual(await controls(guarded), ['Stop the run', 'Stop the test']);
-    // It is a cookie that no script can read, and that a reload keeps.
+    // The token is a cookie that no script can read, and that survives a reload.
     assert.equal(await guarded.page.evaluate(() => document.cookie), '');
     await guarded.page.reload();
     await guarded.button('Stop the test').waitFor();
-    // One click on the badge forgets nothing: it asks.
+    // A click on the badge asks for confirmation.
     await guarded.button('Control is on').click();
     await guarded.button('Keep it').click();
     await guarded.button('Stop the test').waitFor();

@@ -1,5 +1,5 @@
-// Example 02, as a reader of its lesson sees it: an arm that is simulated, dies in
-// the middle of a test, is started again, and ends up parked.
+// Example 02, as its lesson describes it: the simulation of an arm dies during a
+// test, is restarted, and is parked at the end.
 
 import assert from 'node:assert/strict';
 import { cp } from 'node:fs/promises';
@@ -11,7 +11,7 @@ import { Bench, step, within } from './support/rtf.mjs';
 
 const EXAMPLES = fileURLToPath(new URL('../../examples/', import.meta.url));
 const EXAMPLE = 'examples/02-supervised-simulator/supervised.xml';
-/** MuJoCo takes its time to start on a busy machine. */
+/** MuJoCo starts slowly on a busy machine. */
 const EXAMPLE_MS = 60_000;
 
 let browser;
@@ -19,17 +19,17 @@ let bench;
 
 before(async () => {
     browser = await launch();
-    // The first page takes longest, and the arm does not wait for it.
+    // The first page is the slowest, and the arm does not wait for it.
     await (await browser.newPage()).close();
     bench = await Bench.make();
-    await cp(EXAMPLES, path.join(bench.folder, 'examples'), { recursive: true });
+    await cp(EXAMPLES, path.join(bench.dir, 'examples'), { recursive: true });
 });
 after(async () => {
     await browser.close();
     await bench.close();
 });
 
-/** Every event of the run so far that says so, from the server. */
+/** Number of events of a type so far, from the server. */
 async function count(run, type) {
     const answer = await fetch(`${run.origin}/api/v1/runs/current/journal`);
     const lines = (await answer.text()).split('\n').filter((line) => line.endsWith('}'));
@@ -49,7 +49,7 @@ test('an arm is watched from its start over its collapse to its end', async () =
         await rows.filter({ hasText: 'running:' }).waitFor();
     });
 
-    await step('it dies, and is started again', async () => {
+    await step('it dies, and is restarted', async () => {
         await guarded.button('Table').click();
         await guarded.see(/^collapsed: /, '.timeline');
         await guarded.see('restarted: start 2', '.timeline');
@@ -58,7 +58,7 @@ test('an arm is watched from its start over its collapse to its end', async () =
     });
 
     await step('a reload in the middle loses nothing', async () => {
-        assert.equal(await count(run, 'run-finished'), 0, 'it still goes on');
+        assert.equal(await count(run, 'run-finished'), 0, 'it still continues');
         await page.reload();
         await page.getByRole('link', { name: 'collapsed attempt 1' }).click();
         await guarded.see(/fixture `arm` collapsed/, '#detail');

@@ -1,4 +1,4 @@
-// Names, messages, output and attachments are text, whatever they hold.
+// Names, messages, output and attachments are always shown as text.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -31,7 +31,7 @@ test('names are text', async () => {
     await guarded.see(`<b> "quoted" 'suite' &amp;`, '[role=tree]');
     await guarded.see('<img src=x onerror=alert(1)>', 'article');
     await guarded.see(SCRIPT, '[role=tree]');
-    // What turns the direction of text is spelled out.
+    // Characters that change the text direction are spelled out.
     await guarded.see('größe 🤖 ⟨U+202E⟩gnp.exe', '[role=tree]');
     await guarded.see(SCRIPT, 'article, #detail');
 });
@@ -41,7 +41,7 @@ test('search takes characters as they are', async () => {
     await search.fill('<script>');
     await guarded.see('1 of 2', '.search');
     await search.fill('(.*');
-    await guarded.see('No test fits.');
+    await guarded.see('No test matches.');
     await search.fill('tag:<i>tag');
     await guarded.see('1 of 2', '.search');
     await search.fill('');
@@ -68,7 +68,7 @@ test('a line of a megabyte is shown, piece by piece', async () => {
     await output.press('End');
     await output.locator('.row').filter({ hasText: 'the last line' }).waitFor();
     const long = await output.locator('.row').filter({ hasText: /^↳x+$/ }).count();
-    assert.ok(long > 5, 'it goes on over rows');
+    assert.ok(long > 5, 'it continues over several rows');
 });
 
 test('an attached page is not opened in this origin', async () => {

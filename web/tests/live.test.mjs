@@ -1,5 +1,5 @@
-// A run as it is watched: from its start over a collapse to its end, through
-// reloads, in two browsers, and over a network that is cut.
+// A live run: from its start over a collapse to its end, with
+// reloads, two browsers, and an interrupted network.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -20,7 +20,7 @@ after(async () => {
     await bench.close();
 });
 
-/** What the page says about the run, without what changes by itself. */
+/** The text of the page, without changing times. */
 async function told({ page }) {
     const tree = await page.getByRole('tree').innerText();
     const detail = await page.locator('#detail').innerText();
@@ -48,7 +48,7 @@ test('a run is watched live', async (context) => {
         await first.rowIs('Grip', 'pending');
         await first.see('0 of 2', 'section.summary');
         await first.see('ready', 'article');
-        // What it got for itself, and how a person joins in.
+        // The private resources of the suite, and how to join it.
         await first.see(/^ROS_DOMAIN_ID=\d+$/, 'article');
         await first.see(/^export .*ROS_DOMAIN_ID=/, 'article');
     });
@@ -79,7 +79,7 @@ test('a run is watched live', async (context) => {
         await first.button('Table').click();
         await first.see(/^collapsed: .*SIGKILL/, '.timeline');
         await first.see('restarted: start 2', '.timeline');
-        // Its output is left out of the stream while nobody looks; no other event is.
+        // Output is left out of the stream while no page shows it; other events are not.
         await page.getByRole('link', { name: '← Overview' }).click();
         await first.see('ready', 'article');
         await first.row('Sweep').click();
@@ -109,15 +109,15 @@ test('a run is watched live', async (context) => {
         await network.cut();
         await first.see(/not connected/);
         await bench.open('sweep');
-        // The second browser proves that it happened meanwhile.
+        // The second browser proves that the run has continued.
         await second.rowIs('Grip', 'running');
         await first.rowIs('Sweep', 'running');
         await network.join();
         await first.rowIs('Sweep', 'passed');
         await first.rowIs('Grip', 'running');
         await first.see('live', '.connection');
-        assert.equal(snapshots(), known, 'it goes on where it was, without a new snapshot');
-        // The stream is that of all pages: only the network sees who asks for it.
+        assert.equal(snapshots(), known, 'it resumes without a new snapshot');
+        // All pages share the stream: only the network shows which page requested it.
         const streams = network.requests.filter(({ url }) => url.includes('/events?'));
         assert.ok(Number(streams.at(-1).headers['last-event-id']) > 0);
     });

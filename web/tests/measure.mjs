@@ -1,7 +1,7 @@
 // Measures the page in a real Chromium, for benches/lines/page.py:
 //
 //   node measure.mjs URL TEST     the test with this name reports `tick SECONDS`;
-//                                 without one, nothing is said to be late
+//                                 without a test, latencies are not measured
 //
 // Prints one line of JSON, in milliseconds: how long it takes until the list of
 // tests is drawn, how late ticks are on the screen, and the frames while the
@@ -11,7 +11,7 @@ import { Guarded, launch } from './support/browser.mjs';
 
 const TICKS = 30;
 const FRAMES = 120;
-/** A million reports come before the first tick. */
+/** A million reports precede the first tick. */
 const START_MS = 120_000;
 
 const [url, test] = process.argv.slice(2);
@@ -20,7 +20,7 @@ const guarded = await Guarded.open(browser, url);
 const { page } = guarded;
 await page.getByRole('treeitem').first().waitFor();
 const results = {
-    // First, because it waits until all that comes before the ticks is there.
+    // First, because it waits for everything that precedes the ticks.
     lateness: test ? await lateness() : [],
     paint: await paint(),
     frames: await frames(),
@@ -46,7 +46,7 @@ async function paint() {
     return page.evaluate(() => globalThis.drawnAt);
 }
 
-/** From the moment that a plug-in says it until it has been drawn. */
+/** From the plug-in's report until it is drawn. */
 async function lateness() {
     await page.getByLabel('Search tests').fill(test);
     await page.getByRole('treeitem').filter({ hasText: test }).click();
@@ -59,7 +59,7 @@ async function lateness() {
     return found;
 }
 
-/** In the page: how late each of the next ticks is there. */
+/** In the page: the latency of each of the next ticks. */
 function watchTicks(wanted) {
     const late = [];
     let last = Date.now();
@@ -70,7 +70,7 @@ function watchTicks(wanted) {
                 .map((row) => Number(/tick ([\d.]+)/.exec(row.textContent)?.[1]) * 1000)
                 .filter((time) => time > last);
             last = Math.max(last, ...times);
-            // What was put into the page before a frame is seen at its end.
+            // Changes before a frame are visible at its end.
             setTimeout(() => {
                 late.push(...times.map((time) => Date.now() - time));
                 if (late.length < wanted) requestAnimationFrame(look);
@@ -81,7 +81,7 @@ function watchTicks(wanted) {
     });
 }
 
-/** How long frames take while the whole list is gone through. */
+/** Frame times while the whole list is scrolled. */
 function frames() {
     return page.evaluate(
         (wanted) =>

@@ -1,5 +1,5 @@
-// What people do with the page: find a run, read a test, follow it in many tabs, and see what
-// stays when the server goes.
+// Typical use of the page: find a run, read a test, follow it in many tabs, and what
+// stays when the server exits.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -7,7 +7,7 @@ import { Guarded, launch } from './support/browser.mjs';
 import { Bench, step, within } from './support/rtf.mjs';
 import { BROKEN, MIXED, SIGNALS, WAITING } from './support/suites.mjs';
 
-/** A laptop's screen, without what the browser takes of it. */
+/** A laptop's screen, without the browser's own bars. */
 const LAPTOP = { viewport: { width: 1366, height: 657 } };
 
 let browser;
@@ -78,7 +78,7 @@ test('a run is found again, and the list stays where it was', async () => {
     assert.equal(await guarded.run(mixed).count(), 0);
     assert.equal(await page.getByLabel('Search runs').inputValue(), 'broken');
     await page.getByLabel('Result', { exact: true }).selectOption('green');
-    await guarded.see('No run fits this filter.');
+    await guarded.see('No run matches this filter.');
     await guarded.button('Show all').click();
     await guarded.run(mixed).waitFor();
 
@@ -114,11 +114,11 @@ test('a test is read: its command, its messages, their moments', async () => {
     assert.equal(copied, 'rtf run suite.xml::Measures');
     await guarded.see('load', '#detail [aria-label=Phases]');
 
-    await step('the moment of a message is marked in the time line', async () => {
-        await guarded.button('Fold the time line').click();
+    await step('the moment of a message is marked in the timeline', async () => {
+        await guarded.button('Fold the timeline').click();
         await page.getByRole('region', { name: /drawn/ }).waitFor({ state: 'detached' });
         await page
-            .getByRole('button', { name: /show in the time line/ })
+            .getByRole('button', { name: /show in the timeline/ })
             .first()
             .click();
         await page.locator('.timeline .mark').waitFor();
@@ -127,13 +127,13 @@ test('a test is read: its command, its messages, their moments', async () => {
     await step('what is folded leaves its room to the detail, also after a reload', async () => {
         const height = () => page.locator('#detail').evaluate((each) => each.clientHeight);
         const before = await height();
-        await guarded.button('Fold the time line').click();
+        await guarded.button('Fold the timeline').click();
         await guarded.button('Fold the summary').click();
         await page.reload();
         await guarded.see(/30 values/);
         assert.ok((await height()) > before + 100, `${before} px, then ${await height()} px`);
         await guarded.button('Show the summary').click();
-        await guarded.button('Show the time line').click();
+        await guarded.button('Show the timeline').click();
         await page.locator('.chips').waitFor();
     });
     await guarded.close();
@@ -149,7 +149,7 @@ test('signals: values under the cursor, one plot for several, every sample of a 
     const box = await plots.first().boundingBox();
     const at = (share) => [box.x + 80 + (box.width - 90) * share, box.y + box.height / 2];
     await page.mouse.move(...at(0.5));
-    // The cursor of one plot is the cursor of all.
+    // All plots share one cursor.
     for (const bar of await page.locator('.plot .bar').all())
         await bar.getByText(/^[\d.]+ s$/).waitFor();
 
@@ -160,8 +160,8 @@ test('signals: values under the cursor, one plot for several, every sample of a 
     const { series } = await (await part).json();
     const [low, high] = [series[0].times[0], series[0].times.at(-1)];
     const wanted = Math.round((high - low) / 0.005) + 1;
-    assert.equal(series[0].times.length, wanted, 'no sample of the part is left out');
-    // Both show the same part, and one button shows all of both again.
+    assert.equal(series[0].times.length, wanted, 'no sample of the part is missing');
+    // Both show the same part, and one button resets both.
     assert.equal(await guarded.button('Reset zoom').count(), 2);
     await guarded.button('Reset zoom').first().click();
     assert.equal(await guarded.button('Reset zoom').count(), 0);
@@ -212,14 +212,14 @@ test('when the server of a run has ended, what was loaded stays', async (context
     await guarded.button('Yes, stop the run').click();
     await guarded.rowIs('First', 'interrupted');
     await within('the end of the run', run.ended);
-    await guarded.see(/The run is over, and its server has ended/);
+    await guarded.see(/The run has ended, and its server has exited/);
     await guarded.see('rtf serve');
     await guarded.row('Second').click();
     await guarded.see('skipped', '#detail');
     await guarded.row('First').click();
     await guarded.see('the arm is ready for never');
     await guarded.see('waiting', '.output');
-    assert.equal(await guarded.page.getByText('It printed nothing').count(), 0);
+    assert.equal(await guarded.page.getByText('No output').count(), 0);
     assert.equal(await guarded.page.getByText('the server does not answer').count(), 0);
     await guarded.close();
 });

@@ -1,4 +1,4 @@
-// Who has the token runs the failed tests of a past run again, and watches it.
+// With the token, a user reruns the failed tests of a past run, and follows the new run.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -6,7 +6,7 @@ import { Guarded, launch } from './support/browser.mjs';
 import { Bench, step, within } from './support/rtf.mjs';
 import { BROKEN } from './support/suites.mjs';
 
-const AGAIN = 'Run failed tests again';
+const RERUN = 'Rerun failed tests';
 
 let browser;
 let bench;
@@ -20,17 +20,17 @@ after(async () => {
     await bench.close();
 });
 
-/** Presses the button, says yes, and waits for the new run. */
-async function again(guarded) {
+/** Presses the button, confirms, and waits for the new run. */
+async function rerun(guarded) {
     const { page } = guarded;
     const before = page.url();
-    await guarded.button(AGAIN).click();
-    await guarded.see('Run 1 test again?', 'dialog');
-    await guarded.button('Yes, run failed tests again').click();
+    await guarded.button(RERUN).click();
+    await guarded.see('Rerun 1 test?', 'dialog');
+    await guarded.button('Yes, rerun failed tests').click();
     await page.waitForFunction((from) => location.href !== from, before);
 }
 
-test('failed tests are run again from the page', async () => {
+test('failed tests are rerun from the page', async () => {
     await bench.runToEnd(BROKEN);
     const [past] = await bench.names();
     const serve = await bench.serve();
@@ -41,15 +41,15 @@ test('failed tests are run again from the page', async () => {
         const reader = await Guarded.open(browser, `${serve.origin}/#/runs/${past}`);
         await reader.rowIs('Breaks', 'failed');
         await reader.button('Control …').waitFor();
-        assert.equal(await reader.button(AGAIN).count(), 0);
+        assert.equal(await reader.button(RERUN).count(), 0);
         await reader.close();
     });
 
     await step('the page goes to the new run, which can be stopped', async () => {
         await guarded.run(past).click();
-        // Mended in a way: now it waits for a word that nobody says.
+        // Now it waits for a word that is never sent.
         await bench.write('suite.xml', BROKEN.replace('"fail">Ends', '"never">Step'));
-        await again(guarded);
+        await rerun(guarded);
         await guarded.rowIs('Breaks', 'running');
         assert.equal(await guarded.row('Works').count(), 0);
         assert.equal(await guarded.button('Skip the rest').count(), 0);
@@ -57,17 +57,17 @@ test('failed tests are run again from the page', async () => {
         await guarded.button('Yes, stop the run').click();
         await guarded.rowIs('Breaks', 'interrupted');
         // It was stopped, it did not fail.
-        assert.equal(await guarded.button(AGAIN).count(), 0);
+        assert.equal(await guarded.button(RERUN).count(), 0);
     });
 
     await step('a test that was mended passes', async () => {
         await bench.write('suite.xml', BROKEN.replace('"fail">Ends', '"through">Step'));
         await page.evaluate((to) => (location.hash = to), `#/runs/${past}`);
         await guarded.rowIs('Breaks', 'failed');
-        await again(guarded);
+        await rerun(guarded);
         await guarded.rowIs('Breaks', 'passed');
         await guarded.see('green', 'section.summary');
-        assert.equal(await guarded.button(AGAIN).count(), 0);
+        assert.equal(await guarded.button(RERUN).count(), 0);
     });
 
     await step('the server ends with nothing left', async () => {

@@ -1,9 +1,9 @@
 // Makes the pictures of the page for the documentation:
 //
-//   node screenshots.mjs FOLDER
+//   node screenshots.mjs DIR
 //
-// Example 02 is watched until its arm has died and was started again; then a
-// small suite with a bit of everything is looked at.
+// Example 02 runs until its arm has died and was restarted; then a
+// small suite with every kind of result.
 
 import { cp } from 'node:fs/promises';
 import path from 'node:path';
@@ -14,9 +14,9 @@ import { MIXED } from './support/suites.mjs';
 
 const EXAMPLES = fileURLToPath(new URL('../../examples/', import.meta.url));
 const EXAMPLE = 'examples/02-supervised-simulator/supervised.xml';
-/** The simulator takes its time to start on a busy machine. */
+/** The simulator starts slowly on a busy machine. */
 const EXAMPLE_MS = 60_000;
-const folder = process.argv[2];
+const dir = process.argv[2];
 const browser = await launch();
 const bench = await Bench.make();
 const wide = { viewport: { width: 1280, height: 800 }, colorScheme: 'light' };
@@ -31,7 +31,7 @@ try {
 }
 
 async function takeLive() {
-    await cp(EXAMPLES, path.join(bench.folder, 'examples'), { recursive: true });
+    await cp(EXAMPLES, path.join(bench.dir, 'examples'), { recursive: true });
     const run = await bench.start(['run', '--web=127.0.0.1:0', EXAMPLE]);
     const live = await Guarded.open(browser, run.url, wide);
     live.page.setDefaultTimeout(EXAMPLE_MS);
@@ -66,5 +66,5 @@ async function visit(past, hash, ready, name) {
 async function save({ page }, name) {
     await page.evaluate(() => document.fonts.ready);
     await page.getByText('Loading …').waitFor({ state: 'hidden' });
-    await page.screenshot({ path: path.join(folder, `${name}.png`) });
+    await page.screenshot({ path: path.join(dir, `${name}.png`) });
 }

@@ -1,6 +1,6 @@
-// Looks at a run in a real Chromium, for benches/lines/watched.py:
+// Shows a run in a real Chromium, for benches/lines/watched.py:
 //
-//   node watch.mjs URL     prints `open` once tests are shown, and looks on until its input ends
+//   node watch.mjs URL     prints `open` once tests are shown, and continues until its input ends
 
 import { once } from 'node:events';
 import { Guarded, launch } from './support/browser.mjs';

@@ -1,8 +1,8 @@
-// Splits what a process printed into pieces of text with a style. Colours and
-// weights are understood; every other escape sequence is left out, so that
-// nothing that is printed can do more than look coloured.
+// Splits the output of a process into pieces of styled text. Colours and
+// weights are supported; every other escape sequence is removed, so that
+// output can only change its own style.
 
-/** A piece of text in one style. `classes` are the page's own. */
+/** A piece of text in one style. `classes` are CSS classes of the page. */
 export interface Piece {
     text: string;
     classes: string;
@@ -18,8 +18,8 @@ interface Style {
 }
 
 // CSI sequences, OSC and other strings up to their end, two-character escapes,
-// and the same with the 8-bit introducers. A string without its end hides
-// nothing but its introducer.
+// and the same with the 8-bit introducers. Of an unterminated string, only
+// the introducer is removed.
 const ESCAPE =
     /(?:\x1b\[|\x9b)([0-?]*)[ -/]*([@-~])|(?:\x1b[\]PX^_]|[\x90\x98\x9d-\x9f])[^\x07\x1b\x9c]{0,4096}(?:\x07|\x1b\\|\x9c)|\x1b[ -/]*[0-~]/g;
 
@@ -33,7 +33,7 @@ const FLAGS = new Map([
     [9, 'strike'],
 ]);
 
-/** Reads a text; the style goes on from piece to piece. */
+/** Reads a text; the style continues from piece to piece. */
 export class AnsiReader {
     private style: Style = { flags: new Set(), foreground: null, background: null };
 
@@ -96,13 +96,13 @@ export class AnsiReader {
     }
 }
 
-/** A colour of the sixteen: `red`, `bright-red`. */
+/** One of the sixteen colours: `red`, `bright-red`. */
 function named(index: number): string {
     const name = NAMES[index % 8] ?? 'white';
     return index < 8 ? name : `bright-${name}`;
 }
 
-/** What stands behind 38 or 48, and how many numbers that took. */
+/** The colour after 38 or 48, and the number of parameters that it uses. */
 function extended(codes: number[]): [string | null, number] {
     const byte = (index: number) => Math.min(255, Math.max(0, codes[index] || 0));
     if (codes[0] === 2) return [`rgb(${byte(1)}, ${byte(2)}, ${byte(3)})`, 4];
@@ -126,9 +126,9 @@ const CONTROLS = (
 ).split(' ');
 
 /**
- * A text whose control characters can be seen: NUL becomes ⟨NUL⟩. Line ends and
- * tabs stay; characters that turn the direction of what follows are shown by
- * their names, because they can make a text say something else.
+ * Makes control characters visible: NUL becomes ⟨NUL⟩. Line breaks and
+ * tabs stay; characters that change the text direction are shown by
+ * name, because they can disguise a text.
  */
 export function visible(text: string): string {
     return text
@@ -150,7 +150,7 @@ export function oneLine(text: string): string {
     return visible(text).replace(/[\n\t]/g, spelled);
 }
 
-/** A text without its colours, for places that show none. */
+/** A text without its colours. */
 export function plain(text: string): string {
     return visible(text.replace(ESCAPE, ''));
 }

@@ -1,5 +1,5 @@
-// The objects of the web API, version 1 (spec/web.md), as its description has
-// them, and what the page makes of them while it follows a run.
+// The objects of the web API, version 1 (spec/web.md), from its description,
+// and the page's additions while it follows a run.
 
 import type * as api from '../generated/api';
 
@@ -23,11 +23,11 @@ export type {
     Totals,
 } from '../generated/api';
 
-/** What the lists of an attempt hold: an event's number, its time, its content. */
+/** An entry in a list of an attempt: an event's number, time and content. */
 export type Said = Pick<api.Said, 'seq' | 'at'>;
 
 export interface AttemptRow extends api.AttemptRow {
-    /** Known only of attempts that ended while the page looked. */
+    /** Known only for attempts that ended while the page was open. */
     reason?: string;
 }
 
@@ -40,6 +40,6 @@ export interface Snapshot extends api.Snapshot {
 }
 
 export type Attempt = api.Attempt & {
-    /** Why it is being stopped, while it is. */
+    /** Why it is being stopped. */
     stopping?: string;
 };

@@ -5,7 +5,7 @@ import type { ApiRoot, Attempt, RunInfo, Snapshot, Started, Test } from './api-t
 
 const BASE = '/api/v1';
 
-/** An answer that is not a success, or no answer at all (`status` 0). */
+/** An error response, or no response (`status` 0). */
 export class ApiError extends Error {
     constructor(
         readonly status: number,
@@ -36,7 +36,7 @@ async function request(path: string, options: Options = {}): Promise<Response> {
     return response;
 }
 
-/** What an error's body says. */
+/** The problem in an error's body. */
 async function reason(response: Response): Promise<string> {
     const text = await response.text().catch(() => '');
     try {
@@ -47,7 +47,7 @@ async function reason(response: Response): Promise<string> {
             if (words.length > 0) return words.join('; ');
         }
     } catch {
-        // Not JSON: the status has to do.
+        // Not JSON: only the status is known.
     }
     return `the server answers ${response.status} ${response.statusText}`.trim();
 }
@@ -56,7 +56,7 @@ export async function get<T>(path: string, signal: AbortSignal | null = null): P
     return (await (await request(path, { signal })).json()) as T;
 }
 
-/** A path with its parts encoded and its query. */
+/** A path with encoded parts and a query. */
 export function path(
     parts: (string | number)[],
     query: Record<string, string | number | undefined> = {},
@@ -81,7 +81,7 @@ export const root = () => get<ApiRoot>('');
 export interface RunPage {
     runs: RunInfo[];
     next?: string;
-    /** How many runs are still being read: whether they match is not known yet. */
+    /** Number of runs that are still being read: they may match, too. */
     unread?: number;
 }
 
@@ -104,7 +104,7 @@ export const signOut = () => request('/session', { method: 'DELETE' });
 export const stopRun = (run: string) =>
     request(path(['runs', run, 'stop']), { method: 'POST', body: {} });
 
-/** Runs the failed tests of a past run again; the new run's name. */
+/** Reruns the failed tests of a past run; returns the new run's name. */
 export async function rerun(run: string): Promise<string> {
     const asked = await request(path(['runs', run, 'rerun']), { method: 'POST', body: {} });
     return ((await asked.json()) as Started).run;

@@ -1,4 +1,4 @@
-// What is different between two runs.
+// The differences between two runs.
 
 import type { Test } from './api-types';
 import type { TestState } from './event';
@@ -7,7 +7,7 @@ import type { RunRecord } from './record/record';
 
 export type Change = 'broke' | 'fixed' | 'other' | 'slower' | 'faster' | 'same' | 'new' | 'gone';
 
-/** One test in both runs; `null` where it is not. */
+/** One test in both runs; `null` where it is missing. */
 export interface Pair {
     name: string;
     old: Side | null;
@@ -20,7 +20,7 @@ export interface Side {
     state: TestState;
 }
 
-/** In the order in which one wants to read them. */
+/** In display order. */
 export const CHANGES: readonly Change[] = [
     'broke',
     'other',
@@ -43,7 +43,7 @@ export const CHANGE_NAMES: Record<Change, string> = {
     same: 'the same',
 };
 
-/** A difference in time counts from a quarter and from 100 ms on. */
+/** A test is slower or faster from 25 % and 100 ms on. */
 const FACTOR = 1.25;
 const LEAST_US = 100_000;
 

@@ -1,5 +1,5 @@
-// Draws lanes on a canvas. Bars that fall onto the same pixel are drawn once,
-// the worst of them, so that ten thousand cost no more than fit on a screen.
+// Draws lanes on a canvas. Of bars on the same pixel, only the worst is drawn,
+// so that ten thousand bars cost no more than fit on a screen.
 
 import { oneLine } from './ansi';
 import { VERDICTS } from './event';
@@ -24,7 +24,7 @@ export type Palette = Record<'text' | 'muted' | 'border' | 'surface' | 'font', s
     mark: string;
 };
 
-/** The colours of the theme. `isDark` is asked for so that callers depend on it. */
+/** The colours of the theme. `isDark` makes callers depend on the theme. */
 export function palette(element: Element, isDark: boolean): Palette {
     const style = getComputedStyle(element);
     const read = (name: string) => style.getPropertyValue(`--${name}`).trim();
@@ -138,7 +138,7 @@ function drawLane(
     context.fillText(label, indent, y + LANE / 2 + 0.5);
 }
 
-/** The bars that are seen, those on one pixel as one. */
+/** The visible bars, at most one per pixel. */
 function* pixels(lane: Lane, frame: Frame): Generator<{ x: number; to: number; bar: Bar }> {
     let open: { x: number; to: number; bar: Bar } | null = null;
     for (const bar of lane.bars) {
@@ -146,7 +146,7 @@ function* pixels(lane: Lane, frame: Frame): Generator<{ x: number; to: number; b
         if (end < frame.view.from || bar.from > frame.view.to) continue;
         const x = Math.max(xOf(bar.from, frame), frame.gutter - 2);
         const right = Math.min(xOf(end, frame), frame.width);
-        // A gap of one pixel tells two bars apart, where there is room for it.
+        // A gap of one pixel separates two bars, if there is room for it.
         const to = Math.max(right - (right - x > 4 ? 1 : 0), x + 1.5);
         if (open !== null && to - x < 2.5 && x - open.to < 0.5 && open.to - open.x < 3) {
             open = { x: open.x, to: Math.max(open.to, to), bar: worse(open.bar, bar) };
@@ -178,7 +178,7 @@ function drawName(
 }
 
 function fit(context: CanvasRenderingContext2D, text: string, room: number): string {
-    // Whatever is longer than this does not fit on any screen.
+    // Longer labels do not fit on any screen.
     let shown = text.slice(0, 300);
     if (context.measureText(shown).width <= room) return shown;
     let [low, high] = [0, shown.length];

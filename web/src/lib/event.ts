@@ -1,4 +1,4 @@
-// The vocabulary of a run, as the event stream has it (spec/events.md).
+// The vocabulary of a run, as in the event stream (spec/events.md).
 
 import type { Event } from '../generated/event';
 
@@ -37,7 +37,7 @@ export const VERDICTS = [
     'interrupted',
 ] as const satisfies readonly Verdict[];
 
-/** The verdicts for which a test is run again, as `rtf run --rerun failed` has them. */
+/** The verdicts after which `rtf run --rerun failed` reruns a test. */
 export const FAILED = [
     'failed',
     'error',
@@ -46,22 +46,22 @@ export const FAILED = [
     'collapsed',
 ] as const satisfies readonly Verdict[];
 
-/** What a test looks like from outside: its verdict, or how far it is. */
+/** The state of a test for display: its verdict, or its progress. */
 export type TestState = Verdict | 'running' | 'pending';
 
 export const TEST_STATES: readonly TestState[] = [...VERDICTS, 'running', 'pending'];
 
-/** A phase as people say it. */
+/** A phase for display. */
 export function phaseName(phase: Phase): string {
     return phase === 'setup' ? 'set-up' : phase;
 }
 
-/** Whether one source is another. */
+/** Whether two sources are the same. */
 export function isSame(a: Source, b: Source): boolean {
     return sourceKey(a) === sourceKey(b);
 }
 
-/** A source as a text that can be compared: `test 3`. */
+/** A source as a key: `test 3`. */
 export function sourceKey(source: Source): string {
     if ('test' in source) return `test ${source.test}`;
     if ('fixture' in source) return `fixture ${source.fixture}`;

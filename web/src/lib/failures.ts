@@ -1,4 +1,4 @@
-// Tests that did not pass, those with the same cause together.
+// Groups tests that did not pass by cause.
 
 import type { Test } from './api-types';
 import type { TestState } from './event';
@@ -9,7 +9,7 @@ export interface FailureGroup<T> {
     tests: T[];
 }
 
-/** What differs between two failures of one cause: numbers, addresses, times. */
+/** Numbers, addresses and times differ between failures with one cause. */
 const VARYING = /0x[0-9a-f]+|[-+]?\d+(?:[.,:]\d+)*(?:e[-+]?\d+)?/gi;
 
 /** Groups in the order of their first tests. */

@@ -1,4 +1,4 @@
-// Parts of the page that the reader has folded, kept for the next visit.
+// The folded parts of the page, stored in the browser.
 
 const KEY = 'rtf-folded';
 
@@ -7,12 +7,12 @@ function stored(): string[] {
         const list: unknown = JSON.parse(localStorage.getItem(KEY) ?? '[]');
         return Array.isArray(list) ? list.filter((each) => typeof each === 'string') : [];
     } catch {
-        // Storage may be forbidden, or hold nonsense: then nothing is folded.
+        // Storage may be disabled or invalid: then nothing is folded.
         return [];
     }
 }
 
-class Folded {
+class FoldState {
     private names: readonly string[] = $state.raw(stored());
 
     has(name: string): boolean {
@@ -25,9 +25,9 @@ class Folded {
         try {
             localStorage.setItem(KEY, JSON.stringify(this.names));
         } catch {
-            // It holds until the page is closed.
+            // The state is kept until the page is closed.
         }
     }
 }
 
-export const folded = new Folded();
+export const foldState = new FoldState();

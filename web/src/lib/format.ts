@@ -1,4 +1,4 @@
-// Numbers, times and sizes as people read them.
+// Numbers, times and sizes for display.
 
 /** A duration in microseconds: `0.8 ms`, `12.3 s`, `4 min 05 s`, `2 h 03 min`. */
 export function duration(micros: number): string {
@@ -20,12 +20,12 @@ export function clock(seconds: number): string {
     return `${Math.floor(minutes / 60)} h ${two(minutes % 60)} min`;
 }
 
-/** When in the run something happened: `+12.345 s`. */
+/** A moment of the run: `+12.345 s`. */
 export function moment(micros: number): string {
     return `+${(micros / 1e6).toFixed(3)} s`;
 }
 
-/** A number as measured: neither rounded away nor longer than it is. */
+/** A number in full precision. */
 export function number(value: number): string {
     if (value === 0) return '0';
     const size = Math.abs(value);
@@ -33,19 +33,19 @@ export function number(value: number): string {
     return String(value);
 }
 
-/** A number to be read at a glance: six digits. */
+/** A number with six digits. */
 export function rounded(value: number): string {
     return number(Number(value.toPrecision(6)));
 }
 
-/** A number for an axis or a difference: four digits. */
+/** A number with four digits, for an axis or a difference. */
 export function short(value: number): string {
     return number(Number(value.toPrecision(4)));
 }
 
 /**
- * Labels for an axis, whose values are `step` apart: with as many digits as it takes to tell
- * them apart, and no more.
+ * Labels for an axis, whose values are `step` apart: with as many digits as are needed to
+ * tell them apart.
  */
 export function axisLabels(values: readonly number[], step: number): string[] {
     const largest = Math.max(0, ...values.map(Math.abs));
@@ -88,7 +88,7 @@ export function grouped(amount: number): string {
     return digits.length < 5 ? digits : digits.replace(/\B(?=(\d{3})+$)/g, '\u202f');
 }
 
-/** A time of day of RFC 3339, in the reader's zone: `2026-11-21 07:30:12`. */
+/** An RFC 3339 time in the user's time zone: `2026-11-21 07:30:12`. */
 export function timeOfDay(text: string): string {
     const time = new Date(text);
     if (Number.isNaN(time.getTime())) return text;
@@ -97,7 +97,7 @@ export function timeOfDay(text: string): string {
     return `${day} ${[time.getHours(), time.getMinutes(), time.getSeconds()].map(two).join(':')}`;
 }
 
-/** What a value has to keep: `95 … 105`, `≥ 0.5`, `≤ 2`; empty without limits. */
+/** The limits of a value: `95 … 105`, `≥ 0.5`, `≤ 2`; empty without limits. */
 export function limits(low: number | null | undefined, high: number | null | undefined): string {
     if (low != null && high != null) return `${number(low)} … ${number(high)}`;
     if (low != null) return `≥ ${number(low)}`;

@@ -1,4 +1,4 @@
-// Cuts what a process printed into rows of a screen, so that a line of a
+// Wraps the output of a process into rows, so that a line of a
 // megabyte and a log of a million lines are shown as quickly as short ones.
 
 import { AnsiReader, type Piece } from './ansi';
@@ -7,12 +7,12 @@ import type { OutputEntry } from './api-types';
 export interface OutputRow {
     pieces: Piece[];
     stream: 'stdout' | 'stderr';
-    /** Not the beginning of a line: the row before it was full. */
+    /** Whether it continues the line of the previous row. */
     isContinued: boolean;
     at: number;
 }
 
-/** Adds entries one by one; what was read stays read. */
+/** Adds entries one by one; each is read once. */
 export class OutputRows {
     readonly rows: OutputRow[] = [];
     private readonly readers = { stdout: new AnsiReader(), stderr: new AnsiReader() };
@@ -40,7 +40,7 @@ export class OutputRows {
         this.end(entry);
     }
 
-    /** A line ends; an empty one is a row as well. */
+    /** Ends a line; an empty one is a row, too. */
     private end(entry: OutputEntry): void {
         if (this.open === null) this.row(entry, false);
         this.open = null;
@@ -63,7 +63,7 @@ export class OutputRows {
             if (this.filled >= this.columns) row = this.row(entry, true);
             const text = cut(rest, this.columns - this.filled);
             if (text === '') {
-                // Two halves of a character, and room for one.
+                // A surrogate pair, and room for one half.
                 this.filled = this.columns;
                 continue;
             }
@@ -74,7 +74,7 @@ export class OutputRows {
     }
 }
 
-/** The first characters of a text; what belongs together is not split. */
+/** The first characters of a text; grapheme clusters are not split. */
 function cut(text: string, length: number): string {
     if (text.length <= length) return text;
     const code = text.charCodeAt(length - 1);

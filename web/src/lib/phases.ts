@@ -1,4 +1,4 @@
-// How long each phase of an attempt took.
+// The duration of each phase of an attempt.
 
 import type { Attempt } from './api-types';
 import { phaseName } from './event';
@@ -9,7 +9,7 @@ export interface PhaseTime {
     took: number | null;
 }
 
-/** All phases from the start of the attempt on: before the first one the plug-in was loaded. */
+/** All phases from the start of the attempt on: it starts with loading the plug-in. */
 export function phaseTimes(
     started: number,
     phases: Attempt['phases'],
@@ -26,7 +26,7 @@ export function phaseTimes(
     });
 }
 
-/** When the plug-in's set-up began, in microseconds after the attempt: its own clock's zero. */
+/** Start of the set-up, in microseconds after the start of the attempt: the zero of the plug-in's clock. */
 export function setUpAfter(started: number, phases: Attempt['phases']): number {
     const setUp = phases.find(({ phase }) => phase === 'setup') ?? phases[0];
     return setUp === undefined ? 0 : setUp.at - started;

@@ -1,10 +1,10 @@
-// What a plot draws, without how it draws it.
+// The data of a plot.
 
 import uPlot from 'uplot';
 import type { Series } from './series';
 
 /**
- * The times and the values of series; of one alone with its limits. Times are multiplied by
+ * The times and values of series; a single series includes its limits. Times are multiplied by
  * `factor`.
  */
 export function alignedData(series: readonly Series[], factor: number): uPlot.AlignedData {
@@ -24,17 +24,17 @@ export function padded(low: number | null, high: number | null): [number, number
     if (low === null || high === null || !Number.isFinite(low + high)) return [0, 1];
     const by = (high - low) * 0.08 || Math.abs(high) * 0.05 || 1;
     const range: [number, number] = [low - by, high + by];
-    // Numbers near the end of their range have no room around them.
+    // Values near the largest number leave no room.
     return Number.isFinite(range[1] - range[0])
         ? range
         : [-Number.MAX_VALUE / 4, Number.MAX_VALUE / 4];
 }
 
-/** Plots that are reset together, by their links. */
+/** Plots that are reset together, by link. */
 class Linked {
     private readonly resets = new Map<string, Set<() => void>>();
 
-    /** Until the answer is called. */
+    /** Joins until the returned function is called. */
     join(link: string, reset: () => void): () => void {
         const group = this.resets.get(link) ?? new Set();
         this.resets.set(link, group.add(reset));

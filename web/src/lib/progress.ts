@@ -1,16 +1,16 @@
-// How much of a run is left, in time.
+// Estimates the remaining time of a run.
 
 import type { Test } from './api-types';
 import type { RunRecord } from './record/record';
 
 export interface Estimate {
-    /** Seconds until the last test should be over. */
+    /** Estimated seconds until the last test has finished. */
     seconds: number;
-    /** What it is drawn from. */
+    /** The basis of the estimate. */
     basis: 'last run' | 'this run';
 }
 
-/** How long tests took in another run, by `suite/test`, in microseconds. */
+/** Durations of tests in another run, by `suite/test`, in microseconds. */
 export type History = ReadonlyMap<string, number>;
 
 export function historyOf(record: RunRecord): History {
@@ -27,9 +27,9 @@ export function fullName(record: RunRecord, test: Test): string {
 }
 
 /**
- * What is left: each test that is not over is expected to take what it took in
- * the last run, or else as long as the tests of this run took on average.
- * `null` while nothing is known to draw from.
+ * The remaining time: each unfinished test is expected to take as long as in
+ * the last run, or as long as the average test of this run.
+ * `null` without any data.
  */
 export function estimate(record: RunRecord, now: number, history: History): Estimate | null {
     let spent = 0;

@@ -1,4 +1,4 @@
-// The places inside the page, behind the `#` of its address.
+// The routes of the page, after the `#` of its address.
 
 import { filterQuery, parseFilter, type RunFilter } from './run-filter';
 
@@ -8,7 +8,7 @@ export type Route =
     | { at: 'run'; run: string; show: Shown }
     | { at: 'compare'; old: string; new: string };
 
-/** What of a run is looked at. */
+/** The selected part of a run. */
 export type Shown =
     | { what: 'overview' }
     | { what: 'test'; id: number; attempt: number | null }

@@ -1,6 +1,6 @@
-// Which runs the list shows: kept in the page's address.
+// The filter of the list of runs, which the page's address contains.
 
-/** How a run ended, or that it goes on. */
+/** The result of a run, or that it is running. */
 export const RUN_RESULTS = ['running', 'green', 'red', 'interrupted', 'died', 'damaged'] as const;
 
 export const FILTER_NAMES = [
@@ -18,7 +18,7 @@ export const FILTER_NAMES = [
 export type FilterName = (typeof FILTER_NAMES)[number];
 export type RunFilter = Partial<Record<FilterName, string>>;
 
-/** A filter, and what of it makes no sense, in words. */
+/** A filter, and the problems of its invalid parts. */
 export interface ParsedFilter {
     filter: RunFilter;
     problems: string[];
@@ -45,7 +45,7 @@ function isName(name: string): name is FilterName {
     return (FILTER_NAMES as readonly string[]).includes(name);
 }
 
-/** What is wrong with a value, in words; `null` when it makes sense. */
+/** The problem of a value; `null` if it is valid. */
 export function problemOf(name: FilterName, value: string): string | null {
     if (name === 'result' && !(RUN_RESULTS as readonly string[]).includes(value))
         return `“${value}” is no result: ${RUN_RESULTS.join(', ')}`;

@@ -1,8 +1,8 @@
-// Lists of runs as they were left, for those who come back to them.
+// Keeps lists of runs, with their scroll positions, for when the user returns to them.
 
 import type { RunInfo } from './api-types';
 
-export interface Listed {
+export interface CachedList {
     runs: RunInfo[];
     next: string | undefined;
     chosen: string[];
@@ -11,14 +11,14 @@ export interface Listed {
 
 const MOST = 10;
 
-class Lists {
-    private readonly all = new Map<string, Listed>();
+class RunListCache {
+    private readonly all = new Map<string, CachedList>();
 
-    of(key: string): Listed | undefined {
+    get(key: string): CachedList | undefined {
         return this.all.get(key);
     }
 
-    keep(key: string, list: Omit<Listed, 'scroll'>): void {
+    keep(key: string, list: Omit<CachedList, 'scroll'>): void {
         const scroll = this.all.get(key)?.scroll ?? 0;
         this.all.delete(key);
         this.all.set(key, { ...list, scroll });
@@ -34,4 +34,4 @@ class Lists {
     }
 }
 
-export const listed = new Lists();
+export const runListCache = new RunListCache();

@@ -1,10 +1,10 @@
-// What a run is called: by what was run, not by when.
+// The title of a run: what was run, not when.
 
 import type { RunInfo } from './api-types';
 
 const MOST_NAMES = 3;
 
-/** Its suites, or else its command. */
+/** Its suites, or its command. */
 export function titleOf({ suite_names, suites, command, run }: RunInfo): string {
     if (suite_names.length === 0) return command.length === 0 ? run : command.slice(1).join(' ');
     const shown = suite_names.slice(0, MOST_NAMES).join(', ');

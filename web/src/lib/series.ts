@@ -13,7 +13,7 @@ export interface Series {
     key: string;
     name: string;
     unit: string;
-    /** The limits that were given last. */
+    /** The last reported limits. */
     low: number | null;
     high: number | null;
     points: Point[];
@@ -26,7 +26,7 @@ export interface Series {
 }
 
 /**
- * Entries of the same name and unit, in the order in which the names came; their
+ * Entries of the same name and unit, in the order of the names' first entries; their
  * times are counted from `zero` on.
  */
 export function series(entries: readonly MeasurementEntry[], zero = 0): Series[] {
@@ -51,7 +51,7 @@ export function series(entries: readonly MeasurementEntry[], zero = 0): Series[]
         one.most = Math.max(one.most, value);
         const taken = (finite.get(key) ?? 0) + 1;
         finite.set(key, taken);
-        // No sum: values near the end of their range would overflow it.
+        // A sum of very large values would overflow.
         const mean = taken === 1 ? value : one.mean;
         one.mean = mean + (value / taken - mean / taken);
     }
@@ -59,9 +59,9 @@ export function series(entries: readonly MeasurementEntry[], zero = 0): Series[]
 }
 
 /**
- * What a drawing of the values against their limits reaches over; `null` without limits. With
- * one limit it also reaches from there to zero, or as far as the limit is from zero: the same
- * limit has the same drawing as long as the values fit, and other values other places.
+ * The scale of a drawing of values and limits; `null` without limits. With
+ * one limit, it also reaches to zero, or as far as the limit is from zero: the same
+ * limit has the same scale as long as the values fit, and different values have different places.
  */
 export function scaleOf(one: Series): { from: number; to: number } | null {
     const { low, high, least, most } = one;
@@ -73,7 +73,7 @@ export function scaleOf(one: Series): { from: number; to: number } | null {
     const [from, to] = [Math.min(...known), Math.max(...known)];
     const by = (to - from) * 0.15 || Math.abs(to) * 0.2 || 1;
     const scale = { from: from - by, to: to + by };
-    // Numbers near the end of their range have no room beside them.
+    // Values near the largest number leave no room.
     return Number.isFinite(scale.to - scale.from) ? scale : null;
 }
 
@@ -89,7 +89,7 @@ function oneSided(limit: number, isUpper: boolean, { least, most }: Series) {
     return Number.isFinite(scale.to - scale.from) ? scale : null;
 }
 
-/** A signal as its plot takes it: its curve, `zero` microseconds after the attempt's start. */
+/** A signal as a series for a plot: its curve, `zero` microseconds after the attempt's start. */
 export function ofSignal(signal: Signal, zero = 0): Series {
     const { name, unit, low = null, high = null, last = null } = signal;
     const { times, values, outside: violations, mean = NaN } = signal;
@@ -97,7 +97,7 @@ export function ofSignal(signal: Signal, zero = 0): Series {
         at: time * 1e6 + zero,
         value: values[index] ?? null,
     }));
-    // A test may give times of its own in any order; a plot goes from left to right.
+    // A test may report its times in any order; a plot needs ascending times.
     points.sort((a, b) => a.at - b.at);
     const [least, most] = [signal.min ?? Infinity, signal.max ?? -Infinity];
     return { key: name, name, unit, low, high, points, last, least, most, mean, violations };

@@ -1,4 +1,4 @@
-// Who the reader is to the server: what the server is, and whether this
+// The session with the server: its mode, and whether this
 // browser may control it.
 
 import * as api from './api';
@@ -6,19 +6,19 @@ import type { ApiRoot } from './api-types';
 
 class Session {
     root: ApiRoot | null = $state.raw(null);
-    /** Why the server cannot be asked, in words. */
+    /** Why the server cannot be reached. */
     problem: string | null = $state(null);
-    /** Whether the server has refused the token that this browser had. */
+    /** Whether the server has refused this browser's token. */
     hasLostToken = $state(false);
-    /** Whether the server does not answer at all. */
+    /** Whether the server does not respond. */
     isGone = $state(false);
 
-    /** Whether this browser may do what the token allows. */
+    /** Whether this browser has the token's permissions. */
     get mayControl(): boolean {
         return this.root !== null && this.root.control && this.root.authorised;
     }
 
-    /** Whether failed tests can be run again here, by this browser. */
+    /** Whether this browser may rerun failed tests. */
     get mayRerun(): boolean {
         return this.mayControl && this.root?.rerun === true;
     }
@@ -28,12 +28,12 @@ class Session {
         return this.mayControl && this.root?.controlled === run;
     }
 
-    /** Whether that holds for its tests and suites, one by one. */
+    /** Whether it may stop single tests and suites of this run. */
     mayStopParts(run: string): boolean {
         return this.mayStop(run) && this.root?.mode === 'run';
     }
 
-    /** Whether not even reading is allowed without the token. */
+    /** Whether reading needs the token, too. */
     get isLocked(): boolean {
         return this.root !== null && this.root.token_to_read && !this.root.authorised;
     }
@@ -49,7 +49,7 @@ class Session {
         }
     }
 
-    /** Takes the token out of the page's address, and out of sight. */
+    /** Removes the token from the page's address. */
     async begin(): Promise<void> {
         const token = /^#token=(.+)$/.exec(location.hash)?.[1];
         if (token !== undefined) {
@@ -60,7 +60,7 @@ class Session {
         if (this.root === null) await this.refresh();
     }
 
-    /** Throws an `ApiError` when the token is not the right one. */
+    /** Throws an `ApiError` if the token is wrong. */
     async signIn(token: string): Promise<void> {
         await api.signIn(token);
         this.hasLostToken = false;
@@ -72,7 +72,7 @@ class Session {
         await this.refresh();
     }
 
-    /** Does what needs the token; a refusal tells that this browser has it no longer. */
+    /** Runs an action that needs the token; after a refusal, the token is forgotten. */
     async control<T>(act: () => Promise<T>): Promise<T> {
         try {
             return await act();

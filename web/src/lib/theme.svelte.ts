@@ -1,4 +1,4 @@
-// Light or dark: as the system says, or as the reader chose.
+// Light or dark theme: the system's, or the user's choice.
 
 export type Choice = 'system' | 'light' | 'dark';
 
@@ -10,7 +10,7 @@ function stored(): Choice {
         const text = localStorage.getItem(KEY);
         return text === 'light' || text === 'dark' ? text : 'system';
     } catch {
-        // Storage may be forbidden; the system's choice is a good one.
+        // Storage may be disabled: then the system's theme is used.
         return 'system';
     }
 }
@@ -33,7 +33,7 @@ class Theme {
             if (choice === 'system') localStorage.removeItem(KEY);
             else localStorage.setItem(KEY, choice);
         } catch {
-            // It holds until the page is closed.
+            // The choice is kept until the page is closed.
         }
     }
 }

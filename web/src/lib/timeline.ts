@@ -1,5 +1,5 @@
-// Where everything of a run lies in time: lanes with bars and marks, without
-// a word about how they are drawn.
+// The timeline of a run: lanes with bars and marks,
+// independent of drawing.
 
 import type { TestState } from './event';
 import { marks, spans, type Mark, type Span } from './record/fixture';
@@ -13,7 +13,7 @@ export interface Bar {
     to: number | null;
     state: BarState;
     label: string;
-    /** Where a click leads to. */
+    /** The target of a click. */
     target: { what: 'test' | 'fixture' | 'hook'; id: number; attempt: number | null };
 }
 
@@ -86,7 +86,7 @@ export function lanes(record: RunRecord): Lane[] {
     });
 }
 
-/** Bars in rows in which none overlaps another one: each in the first that is free. */
+/** Distributes bars to rows without overlaps: each to the first free row. */
 function apart(bars: Bar[]): Bar[][] {
     const rows: { bars: Bar[]; end: number }[] = [{ bars: [], end: 0 }];
     for (const bar of bars.sort((a, b) => a.from - b.from)) {
@@ -117,7 +117,7 @@ export function zoom(view: View, factor: number, at: number, end: number): View 
     return clamp({ from: at - share * width, to: at - share * width + width }, end);
 }
 
-/** Moves by a share of what is seen. */
+/** Moves by a share of the visible range. */
 export function pan(view: View, share: number, end: number): View {
     const by = (view.to - view.from) * share;
     return clamp({ from: view.from + by, to: view.to + by }, end);
@@ -167,7 +167,7 @@ function tickLabel(seconds: number, step: number): string {
     return `${Number(seconds.toFixed(3))} s`;
 }
 
-/** The bar under a moment, in a lane whose bars are in order. */
+/** The bar at a moment, in a lane with sorted bars. */
 export function barAt(lane: Lane, at: number, slack: number, now: number): Bar | null {
     let best: Bar | null = null;
     let distance = slack;

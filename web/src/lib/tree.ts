@@ -9,13 +9,13 @@ export type Row =
     | { kind: 'test'; test: Test; state: TestState; position: number; siblings: number };
 
 export interface Filter {
-    /** Words that all have to be in `suite/test`; `tag:slow` asks for a tag. */
+    /** Words that `suite/test` must contain; `tag:slow` requires a tag. */
     search: string;
-    /** States of which one has to fit; none means all. */
+    /** Accepted states; none means all. */
     states: ReadonlySet<TestState>;
 }
 
-/** A filter, ready to be asked about many tests. */
+/** A filter, prepared for many tests. */
 export function compile(filter: Filter): (suite: string, test: Test, state: TestState) => boolean {
     const words = filter.search.toLowerCase().split(/\s+/).filter(Boolean);
     const tags = words.filter((word) => word.startsWith('tag:')).map((word) => word.slice(4));
@@ -30,7 +30,7 @@ export function compile(filter: Filter): (suite: string, test: Test, state: Test
     };
 }
 
-/** All rows, in the order of the plan. Suites in which nothing fits are left out. */
+/** All rows, in the order of the plan. Suites without matches are left out. */
 export function rows(record: RunRecord, filter: Filter, closed: ReadonlySet<number>): Row[] {
     const fits = compile(filter);
     const isFiltered = filter.search.trim() !== '' || filter.states.size > 0;
@@ -59,7 +59,7 @@ export function rows(record: RunRecord, filter: Filter, closed: ReadonlySet<numb
     return result;
 }
 
-/** A row's name in the page: `t17`, `s0`. */
+/** A row's id in the page: `t17`, `s0`. */
 export function rowKey(row: Row): string {
     return row.kind === 'suite' ? `s${row.suite.id}` : `t${row.test.id}`;
 }

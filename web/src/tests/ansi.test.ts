@@ -26,14 +26,14 @@ describe('colours', () => {
         expect(read(text)).toEqual(pieces);
     });
 
-    test('go on from one piece of output to the next', () => {
+    test('continue from one piece of output to the next', () => {
         const reader = new AnsiReader();
         reader.read('\x1b[32mgreen');
         expect(reader.read('still')[0]?.classes).toBe('ansi-green');
     });
 });
 
-describe('whatever else a terminal would obey is left out', () => {
+describe('other terminal commands are removed', () => {
     test.each([
         ['\x1b[2J\x1b[Hcleared', 'cleared'],
         ['\x1b]0;owned\x07title', 'title'],
@@ -45,7 +45,7 @@ describe('whatever else a terminal would obey is left out', () => {
         expect(plain(text)).toBe(shown);
     });
 
-    test('a string without its end hides nothing', () => {
+    test('an unterminated string hides nothing', () => {
         expect(plain('\x1b]0;the rest stays')).toContain('the rest stays');
     });
 

@@ -50,7 +50,7 @@ describe('what is drawn', () => {
         return (value - from) / (to - from);
     };
 
-    test('other values have other places against one limit', () => {
+    test('different values have different places against one limit', () => {
         expect(place(4.09, null, 5) - place(3.67, null, 5)).toBeGreaterThan(0.05);
         expect(place(7, 5, null) - place(6, 5, null)).toBeGreaterThan(0.05);
         expect(place(-3, null, 0)).toBeCloseTo(0);
@@ -88,7 +88,7 @@ describe('what is drawn', () => {
 });
 
 describe('tests that did not pass', () => {
-    test('are one group when their causes differ in numbers only', () => {
+    test('form one group if their causes differ only in numbers', () => {
         const tests = [
             { id: 1, reason: 'elbow is 1.75 rad at 0.3 s' },
             { id: 2, reason: 'no answer of /arm' },
@@ -120,7 +120,7 @@ describe('places in the page', () => {
     ];
     test.each(routes)('$at', (route) => expect(parseRoute(hrefOf(route))).toEqual(route));
 
-    test('a filter that is nonsense is told, and the rest of it holds', () => {
+    test('an invalid filter is reported, and its valid parts apply', () => {
         const query = 'result=good&commit=xyz&until=2026-02-30&branch=main&colour=red&robot=';
         expect(parseRoute(`#/runs?${query}`)).toEqual({
             at: 'runs',
@@ -134,7 +134,7 @@ describe('places in the page', () => {
         });
     });
 
-    test('an address that is nonsense leads home', () => {
+    test('an invalid address opens the start page', () => {
         expect(parseRoute('#/%zz/x')).toEqual({ at: 'home' });
         expect(parseRoute('#/runs/r/tests/-1')).toMatchObject({ show: { what: 'overview' } });
     });
@@ -162,7 +162,7 @@ describe('the list of tests', () => {
     });
 });
 
-describe('the time line', () => {
+describe('the timeline', () => {
     const record = recordOf(stream('collapse-restart'));
     const all = lanes(record);
 
@@ -172,7 +172,7 @@ describe('the time line', () => {
             ['fixture', 7],
         ]);
     });
-    test('tests that overlap are in rows of their own', () => {
+    test('overlapping tests have separate rows', () => {
         const suites = lanes(recordOf(stream('parallel'))).filter(({ kind }) => kind === 'suite');
         expect(suites.map(({ row, bars }) => [row, bars.map(({ label }) => label)])).toEqual([
             [0, ['EncoderTest (1)', 'EncoderTest (2)', 'EncoderTest (3)']],
@@ -206,7 +206,7 @@ describe('the time line', () => {
     });
 });
 
-test('what is left is drawn from the last run', () => {
+test('the remaining time is estimated from the last run', () => {
     const events = stream('measured');
     const history = historyOf(recordOf(events));
     const now = recordOf(events.slice(0, 12));
@@ -253,7 +253,7 @@ describe('output', () => {
         for (const text of ['one\ntw', 'o\n\nthree']) rows.add(row(text));
         expect(shown(rows)).toEqual(['one', 'two', '', 'three']);
     });
-    test('long lines go on in the next row, and no character is split', () => {
+    test('long lines continue in the next row, and no character is split', () => {
         const rows = new OutputRows(4);
         rows.add(row('abc🤖defgh'));
         expect(shown(rows)).toEqual(['abc', '+🤖de', '+fgh']);
@@ -263,7 +263,7 @@ describe('output', () => {
         rows.add(row('x'.repeat(1_000_000)));
         expect(rows.rows).toHaveLength(10_000);
     });
-    test('streams do not share a row, and what was left out is told', () => {
+    test('streams do not share a row, and omitted bytes are reported', () => {
         const rows = new OutputRows(80);
         rows.add(row('out'));
         rows.add({ ...row('err\n', 'stderr'), omitted_bytes: 123 });
@@ -271,7 +271,7 @@ describe('output', () => {
     });
 });
 
-test('a measurement near the end of numbers has no scale, and does not break', () => {
+test('a measurement near the largest number has no scale, and does not break', () => {
     const entries = stream('nasty').flatMap((event) =>
         event.type === 'measured'
             ? [{ seq: event.seq, at: event.at, measurement: event.measurement, within: false }]
@@ -282,7 +282,7 @@ test('a measurement near the end of numbers has no scale, and does not break', (
     expect(scaleOf({ ...one!, most: Number.MAX_VALUE, least: -Number.MAX_VALUE })).toBeNull();
 });
 
-test('a signal is drawn from left to right, whatever times the test gave', () => {
+test('a signal is drawn from left to right, in any order of its times', () => {
     const signal = { name: 'elbow', unit: 'rad', high: 1.5, count: 3, min: 0.25, max: 1.75 };
     const curve = { times: [0, 1, 0.5], values: [0.25, 1.75, 1] };
     const drawn = ofSignal({ ...signal, mean: 1, last: 1, outside: 1, ...curve });

@@ -1,4 +1,4 @@
-// One stream for all who follow a run.
+// One stream for all followers of a run.
 
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
 import { Hub, type Request, type StreamOptions } from '../lib/live/hub';
@@ -36,7 +36,7 @@ const event = (id: number): SseEvent => ({ type: 'message', id: `${id}`, data: '
 const soon = () => vi.advanceTimersByTimeAsync(20);
 const running = () => opened.filter(({ signal }) => !signal.aborted);
 
-test('ten tabs have one stream, from where the last of them is', async () => {
+test('ten tabs share one stream, from the position of the slowest', async () => {
     const tabs = Array.from({ length: 10 }, (_, index) => join(100 - index));
     await soon();
     expect(opened.map(({ from, details }) => [from, details])).toEqual([[91, []]]);
@@ -50,7 +50,7 @@ test('ten tabs have one stream, from where the last of them is', async () => {
     expect(running()).toHaveLength(0);
 });
 
-test('who comes later misses nothing, and who is there already is not sent back', async () => {
+test('a late follower misses nothing, and the others are not set back', async () => {
     const first = join(5);
     await soon();
     opened[0]?.opened();
@@ -64,14 +64,14 @@ test('who comes later misses nothing, and who is there already is not sent back'
     await soon();
     expect(opened).toHaveLength(2);
     expect(ahead.seen).toEqual(['opened']);
-    // What the first stream still delivers is nobody's any more.
+    // The hub ignores what the first stream still delivers.
     opened[0]?.received([event(7)]);
     opened[1]?.received([event(7)]);
     expect(first.seen).toEqual(['opened', '5', '6', 'opened', '7']);
     expect(behind.seen).toEqual(['opened', '7']);
 });
 
-test('the details of all are asked for, and no longer when nobody wants them', async () => {
+test('details are requested as long as a follower needs them', async () => {
     const one = join(0, ['test:3']);
     const other = join(0, ['fixture:0', 'test:3']);
     await soon();
@@ -84,7 +84,7 @@ test('the details of all are asked for, and no longer when nobody wants them', a
     expect(running()).toHaveLength(0);
 });
 
-test('the end of the stream is the end for all, and each begins again by itself', async () => {
+test('the end of the stream is reported to all followers, which restart separately', async () => {
     const tabs = [join(0), join(1)];
     await soon();
     opened[0]?.opened();

@@ -22,12 +22,12 @@ describe('server-sent events', () => {
         expect(events).toEqual(whole);
     });
 
-    test('one that is cut off does not come', () => {
+    test('an incomplete event is not delivered', () => {
         expect(new SseParser().push('id: 1\ndata: half')).toEqual([]);
     });
 });
 
-test('what pages and events both have is there once', () => {
+test('an entry in both pages and events is kept once', () => {
     const events = stream('measured').filter(({ type }) => type === 'measured');
     const lists = emptyLists();
     for (const event of [...events, ...events]) addToLists(lists, event, 'run');

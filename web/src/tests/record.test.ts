@@ -5,7 +5,7 @@ import { marks, spans } from '../lib/record/fixture';
 import { isFlaky } from '../lib/record/test';
 import { names, recordOf, stream } from './streams';
 
-/** A run in a few words: how it ended, then each test. */
+/** A summary of a run: its result, then each test. */
 function told(record: RunRecord): string[] {
     const { state, green } = record.info;
     return [
@@ -27,7 +27,7 @@ describe('the fold over the stored streams', () => {
         const grown = new RunRecord(data);
         for (const event of events) {
             grown.apply(event);
-            // What a page gets that opens now, and then the same events again and the rest.
+            // A page that opens now gets a snapshot, then the same events and the rest.
             const opened = new RunRecord(structuredClone(data) as Snapshot);
             for (const each of events) opened.apply(each);
             expect(told(opened)).toEqual(whole);
@@ -41,7 +41,7 @@ test('each test of the plan is known before it runs', () => {
     expect([planned, pending, done]).toEqual([8, 8, 0]);
 });
 
-test('what a suite got for itself is known, and the first of it stays', () => {
+test('the private resources of a suite are kept from its first event', () => {
     const events = stream('prepared');
     const record = recordOf(events);
     const prepared = record.suites[0]?.prepared;
@@ -74,12 +74,12 @@ test('a fixture that collapses is a lane with its marks', () => {
     expect(marks(fixture).map(({ kind }) => kind)).toEqual(['collapsed', 'restarted']);
 });
 
-test('a test that passes in a rerun is flaky', () => {
+test('a test that passes after a retry is flaky', () => {
     const record = recordOf(stream('collapse-restart'));
     expect(record.tests.map(isFlaky)).toEqual([true, false]);
 });
 
-test('an event that is known already changes nothing', () => {
+test('a known event changes nothing', () => {
     const events = stream('repetitions');
     const record = recordOf(events);
     const before = JSON.stringify(record.tests);
@@ -87,7 +87,7 @@ test('an event that is known already changes nothing', () => {
     expect(JSON.stringify(record.tests)).toBe(before);
 });
 
-test('progress without events moves the place where the stream goes on', () => {
+test('progress without events moves the position where the stream resumes', () => {
     const record = recordOf(stream('measured').slice(0, 8));
     record.progress(41, 9_000_000);
     expect([record.info.seq, record.info.last_at]).toEqual([42, 9_000_000]);

@@ -1,4 +1,4 @@
-// The stored event streams of the project, which every reader has to understand.
+// The stored event streams of the project, which every reader must support.
 
 import { readdirSync, readFileSync } from 'node:fs';
 import type { Event } from '../lib/event';
@@ -10,7 +10,7 @@ export function names(): string[] {
     return readdirSync(FOLDER).map((name) => name.replace('.jsonl', ''));
 }
 
-/** All events of a stream; a last line without its end is left out. */
+/** All events of a stream; an incomplete last line is ignored. */
 export function stream(name: string): Event[] {
     const text = readFileSync(new URL(`${name}.jsonl`, FOLDER), 'utf8');
     return text

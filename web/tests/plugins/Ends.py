@@ -1,4 +1,4 @@
-"""Ends as its parameter says."""
+"""Ends with the result that its parameter names."""
 
 from __future__ import annotations
 

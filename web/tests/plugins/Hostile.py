@@ -1,4 +1,4 @@
-"""Prints, reports and attaches what a careless page would obey."""
+"""Prints, reports and attaches markup that a careless page would execute."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from pathlib import Path
 
 import rtf
 
-FOLDER = Path(os.environ["PAGE_TEST_FOLDER"])
+DIR = Path(os.environ["PAGE_TEST_DIR"])
 SCRIPT = "<script>alert('x')</script><img src=x onerror=alert(1)>"
 
 
 class Hostile(rtf.TestCase):
-    """All of it is text."""
+    """The page shows all of it as text."""
 
     def run(self) -> None:
         write(f"{SCRIPT}\n")
@@ -23,13 +23,13 @@ class Hostile(rtf.TestCase):
         write("the last line\n")
         self.report(SCRIPT)
         self.measure("<b>bold</b>", 1.0, '"unit"')
-        page = FOLDER / "page.html"
+        page = DIR / "page.html"
         page.write_text(SCRIPT, encoding="utf-8")
         self.attach(page, "<svg onload=alert(1)>.html", "text/html")
         self.fail(f'{SCRIPT} "quoted"')
 
 
 def write(text: str) -> None:
-    """Straight to the pipe."""
+    """Writes to the pipe without buffering."""
     sys.stdout.write(text)
     sys.stdout.flush()

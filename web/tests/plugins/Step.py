@@ -1,4 +1,4 @@
-"""Reports, measures and prints; goes on when it is let."""
+"""Reports, measures and prints; continues when the test permits it."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from pathlib import Path
 
 import rtf
 
-FOLDER = Path(os.environ["PAGE_TEST_FOLDER"])
+DIR = Path(os.environ["PAGE_TEST_DIR"])
 
 
 class Step(rtf.TestCase):
-    """Its parameter is the word that it waits for; `through` waits for nothing."""
+    """Its parameter is the word that it waits for; with `through` it does not wait."""
 
     def run(self) -> None:
         word = self.args[0]
@@ -24,7 +24,7 @@ class Step(rtf.TestCase):
         for step in range(30):
             self.measure("lag", 0.3 + 0.1 * math.sin(step / 4), "rad", high=0.5)
         self.measure("rate", 99.5, "Hz", low=95, high=105)
-        picture = FOLDER / f"picture-{os.getpid()}.png"
+        picture = DIR / f"picture-{os.getpid()}.png"
         picture.write_bytes(png())
         self.attach(picture, "camera", "image/png")
         if word != "through":
@@ -37,8 +37,8 @@ class Step(rtf.TestCase):
         self.args = args
 
     def await_word(self, word: str) -> None:
-        """Waits until somebody lets it go on."""
-        while not (FOLDER / f"{word}.go").exists():
+        """Waits until the test permits it to continue."""
+        while not (DIR / f"{word}.go").exists():
             self.sleep(0.02)
 
 

@@ -1,4 +1,4 @@
 #!/usr/bin/env python3
-"""A hook that does its work."""
+"""A hook that succeeds."""
 
 print("parked")

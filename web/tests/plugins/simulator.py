@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A simulator that talks, and is killed on its first start when it is told to."""
+"""A simulator that prints, and can be killed on its first start."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import signal
 import time
 from pathlib import Path
 
-KILL = Path(os.environ["PAGE_TEST_FOLDER"]) / "kill.go"
+KILL = Path(os.environ["PAGE_TEST_DIR"]) / "kill.go"
 
 
 def main() -> None:

@@ -1,5 +1,5 @@
-// A real Chromium, and pages in it that may not err: whatever the page logs as
-// an error, asks of another origin or violates of its policy fails the test.
+// A real Chromium with guarded pages: a test fails if its page logs
+// an error, sends a request to another origin, or violates its policy.
 
 import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
@@ -22,7 +22,7 @@ export function launch() {
     });
 }
 
-/** A page, and what it did wrong. `mistakes` has to be empty at the end. */
+/** A page and its mistakes, of which there must be none at the end. */
 export class Guarded {
     mistakes = [];
     requests = [];
@@ -43,7 +43,7 @@ export class Guarded {
     watch(origin) {
         const { page } = this;
         page.on('console', (message) => {
-            // That a request failed is the browser's word, not the page's.
+            // The browser, not the page, logs failed requests.
             const isNetwork = /^Failed to load resource/.test(message.text());
             if (message.type() === 'error' && !isNetwork) this.mistakes.push(message.text());
         });
@@ -60,7 +60,7 @@ export class Guarded {
         });
     }
 
-    /** Waits until an element with this text can be seen. */
+    /** Waits until an element with this text is visible. */
     async see(text, within = 'body') {
         const found = this.page.locator(within).getByText(text).filter({ visible: true }).first();
         await found.waitFor().catch(async (late) => {
@@ -76,7 +76,7 @@ export class Guarded {
         return found;
     }
 
-    /** Waits until no element with this text can be seen. */
+    /** Waits until no element with this text is visible. */
     async gone(text, within = 'body') {
         await this.page
             .locator(within)
@@ -86,7 +86,7 @@ export class Guarded {
             .waitFor({ state: 'hidden' });
     }
 
-    /** Waits until an attempt is drawn that has said and printed all that it will. */
+    /** Waits until an attempt is drawn with its last message and output. */
     async seeAttempt() {
         await this.see('one more message');
         await this.see('one more line', '.output');
@@ -100,7 +100,7 @@ export class Guarded {
         return this.page.locator(`main a[href="#/runs/${name}"]`);
     }
 
-    /** How far the page itself can be scrolled, and how far its middle. */
+    /** How far the page can be scrolled, and how far its main element. */
     beyond() {
         return this.page.evaluate(() => {
             const { scrollingElement } = document;
@@ -138,7 +138,7 @@ export class Guarded {
         return tab;
     }
 
-    /** Hides the page, or shows it: a browser without windows shows all of them. */
+    /** Hides or shows the page: in a headless browser, all pages are visible. */
     async hide(isHidden) {
         await this.page.evaluate((value) => {
             Object.defineProperty(document, 'hidden', { value, configurable: true });

@@ -1,11 +1,11 @@
-// A network between the browser and the server that can be cut: a forward proxy
-// which hangs up on everybody and listens no more.
+// A network between browser and server that can be interrupted: a forward proxy
+// that closes all its connections.
 
 import http from 'node:http';
 
 export class Network {
     sockets = new Set();
-    /** What was asked for: the address and the headers. */
+    /** All requests: their addresses and headers. */
     requests = [];
     server = http.createServer((request, response) => {
         const { hostname, port, pathname, search } = new URL(request.url);
@@ -32,7 +32,7 @@ export class Network {
         return network;
     }
 
-    /** What a browser's context has to be opened with to be behind it. */
+    /** The options of a browser context that uses it. */
     get options() {
         return { proxy: { server: `http://127.0.0.1:${this.port}`, bypass: '<-loopback>' } };
     }

@@ -1,4 +1,4 @@
-// Runs the real rtf, whose page is then looked at.
+// Runs the real rtf, which serves the page.
 
 import { spawn } from 'node:child_process';
 import { mkdtemp, readdir, rm, writeFile, cp } from 'node:fs/promises';
@@ -11,28 +11,28 @@ const RTF = process.env['RTF'] ?? path.join(TOP, 'target/release/rtf');
 const PLUGINS = fileURLToPath(new URL('../plugins/', import.meta.url));
 const PATIENCE_MS = 60_000;
 
-/** A temporary folder with the plug-ins, in which suites are run. */
+/** A temporary directory with the plug-ins, in which suites run. */
 export class Bench {
-    /** Programs that were started and have to be gone at the end. */
+    /** Started programs, which must have exited at the end. */
     children = new Set();
 
     static async make() {
         const bench = new Bench();
-        bench.folder = await mkdtemp(path.join(tmpdir(), 'rtf-page-'));
-        await cp(PLUGINS, bench.folder, { recursive: true });
+        bench.dir = await mkdtemp(path.join(tmpdir(), 'rtf-page-'));
+        await cp(PLUGINS, bench.dir, { recursive: true });
         return bench;
     }
 
-    /** Lets whatever waits for this word go on. */
+    /** Lets plug-ins that wait for this word continue. */
     async open(...words) {
-        for (const word of words) await writeFile(path.join(this.folder, `${word}.go`), '');
+        for (const word of words) await writeFile(path.join(this.dir, `${word}.go`), '');
     }
 
     async write(name, content) {
-        await writeFile(path.join(this.folder, name), content);
+        await writeFile(path.join(this.dir, name), content);
     }
 
-    /** `rtf run --web` of a suite; resolves when its page can be opened. */
+    /** `rtf run --web` of a suite; resolves when its server is ready. */
     async run(suite, ...options) {
         await this.write('suite.xml', suite);
         return this.start(['run', '--web=127.0.0.1:0', ...options, 'suite.xml']);
@@ -43,7 +43,7 @@ export class Bench {
         return this.start(['serve', '--web=127.0.0.1:0', ...options]);
     }
 
-    /** A run that nobody looks at. */
+    /** A run without a page. */
     async runToEnd(suite) {
         await this.write('suite.xml', suite);
         const program = this.spawn(['run', 'suite.xml']);
@@ -51,7 +51,7 @@ export class Bench {
     }
 
     async names() {
-        const names = await readdir(path.join(this.folder, 'rtf-results'));
+        const names = await readdir(path.join(this.dir, 'rtf-results'));
         return names.filter((name) => name !== 'latest').sort();
     }
 
@@ -65,9 +65,9 @@ export class Bench {
 
     spawn(args) {
         const child = spawn(RTF, args, {
-            cwd: this.folder,
+            cwd: this.dir,
             stdio: ['ignore', 'pipe', 'pipe'],
-            env: { ...process.env, NO_COLOR: '1', PAGE_TEST_FOLDER: this.folder },
+            env: { ...process.env, NO_COLOR: '1', PAGE_TEST_DIR: this.dir },
         });
         const program = { child, printed: '' };
         program.address = new Promise((resolve, reject) => {
@@ -83,24 +83,24 @@ export class Bench {
                 reject(new Error(`rtf ended with ${code}: ${program.printed}`)),
             );
         });
-        // Whoever wants the address asks for it.
+        // A caller that needs the address awaits it.
         program.address.catch(() => undefined);
         program.ended = new Promise((resolve) => child.on('exit', (code) => resolve(code)));
         this.children.add(program);
         return program;
     }
 
-    /** Ends what still runs, as a user would, and removes the folder. */
+    /** Interrupts running programs, as a user would, and removes the directory. */
     async close() {
         for (const { child, ended } of this.children) {
             if (child.exitCode === null && child.signalCode === null) child.kill('SIGINT');
             await within('the end of rtf', ended);
         }
-        await rm(this.folder, { recursive: true });
+        await rm(this.dir, { recursive: true });
     }
 }
 
-/** Fails when something takes far longer than it should. */
+/** Fails when something takes far too long. */
 export function within(what, promise) {
     let timer;
     const late = new Promise((_, reject) => {
@@ -112,7 +112,7 @@ export function within(what, promise) {
     return Promise.race([promise, late]).finally(() => clearTimeout(timer));
 }
 
-/** A part of a test that builds on those before it: the first that fails is the last. */
+/** A step of a test that depends on the previous steps. */
 export async function step(name, work) {
     try {
         await work();

@@ -1,6 +1,6 @@
-// The suites that are run before the browser's eyes.
+// The suites of the browser tests.
 
-/** An arm whose simulator is killed on its first start; each step waits to be let go on. */
+/** An arm whose simulator is killed on its first start; each step waits for permission to continue. */
 export const ARM = `<suite name="arm" tolerate-collapse="true">
   <description>An arm that loses its simulator</description>
   <fixture name="simulator" type="process" restarts="2" restart-delay="100ms">
@@ -12,14 +12,14 @@ export const ARM = `<suite name="arm" tolerate-collapse="true">
   <test type="python" name="Grip" param="grip" tags="slow">Step</test>
 </suite>`;
 
-/** Two suites' worth of tests that wait, to be stopped one by one. */
+/** Tests that wait until they are stopped. */
 export const WAITING = `<suite name="waiting">
   <test type="python" name="First" param="never">Step</test>
   <test type="python" name="Second" param="never">Step</test>
   <test type="python" name="Third" param="never">Step</test>
 </suite>`;
 
-/** What passes, fails, goes wrong, and measures more than once. */
+/** Tests that pass, fail, have an error, crash, and measure more than once. */
 export const MIXED = `<suite name="mixed">
   <description>A bit of everything</description>
   <fixture name="simulator" type="process">
@@ -34,7 +34,7 @@ export const MIXED = `<suite name="mixed">
   <test type="python" name="Crashes" param="crash">Ends</test>
 </suite>`;
 
-/** Names and output that a page could be fooled with. */
+/** Names and output that try to inject markup. */
 export const HOSTILE = `<suite name="&lt;b&gt; &quot;quoted&quot; 'suite' &amp;amp;">
   <description>&lt;img src=x onerror=alert(1)&gt;</description>
   <test type="python" name="&lt;script&gt;alert(1)&lt;/script&gt;" tags="&lt;i&gt;tag">Hostile</test>
@@ -46,7 +46,7 @@ export const SIGNALS = `<suite name="signals">
   <test type="python" name="Samples">Samples</test>
 </suite>`;
 
-/** What has to be run again. */
+/** A suite with a failure, to be rerun. */
 export const BROKEN = `<suite name="broken">
   <test type="python" name="Works" param="through">Step</test>
   <test type="python" name="Breaks" param="fail">Ends</test>

@@ -1,5 +1,5 @@
-// Loads what one attempt of a test, one start of a fixture or one run of a hook
-// said, and keeps it up to date while the run goes on.
+// Loads the details of one attempt of a test, one start of a fixture or one run of a hook,
+// and keeps them up to date while the run continues.
 
 import { get, path } from '../api';
 import type { Said, Signal, Signals } from '../api-types';
@@ -14,7 +14,7 @@ export interface Subject {
     number: number;
 }
 
-/** What was said by others than tests has these lists only. */
+/** Fixtures and hooks have only these lists. */
 const LISTS: Record<Subject['kind'], readonly ListName[]> = {
     test: LIST_NAMES,
     fixture: ['messages', 'output'],
@@ -23,24 +23,24 @@ const LISTS: Record<Subject['kind'], readonly ListName[]> = {
 
 const PARTS = { test: 'attempts', fixture: 'starts', hook: 'runs' } as const;
 
-/** Pages that are loaded without being asked for: 5000 entries, 5 MB of output. */
+/** Pages that are loaded without a click: 5000 entries, 5 MB of output. */
 const FIRST_PAGES = 5;
 const PAGE = 1000;
-/** Curves that grow are loaded anew after so many milliseconds. */
+/** Growing curves are reloaded after this time. */
 const SIGNALS_EVERY = 1000;
 
 type Page = { next?: number } & { [list in ListName]?: Said[] };
 
 export class Details {
-    /** Grows with each change of the lists. */
+    /** Incremented with each change of the lists. */
     version = $state(0);
     isLoading = $state(true);
-    /** Whether what is there is all that there was. */
+    /** Whether all pages have been loaded. */
     isLoaded = $state(false);
     problem: string | null = $state(null);
-    /** Lists of which the server has more, and where it goes on. */
+    /** Lists with more pages on the server, and where they continue. */
     more: Partial<Record<ListName, number>> = $state.raw({});
-    /** What a test sampled. */
+    /** The signals of a test. */
     signals: readonly Signal[] = $state.raw([]);
     private signalsDue: ReturnType<typeof setTimeout> | null = null;
     private all = emptyLists();
@@ -55,7 +55,7 @@ export class Details {
     ) {
         this.latest = this.known();
         const source = `${subject.kind}:${subject.id}`;
-        // First listen, then ask: what comes in between is in both and is dropped once.
+        // Subscribe, then load: events in between are in both and are dropped once.
         this.unwatch = run.watch(run.record.isOver ? [] : [source], (events) =>
             this.receive(events),
         );
@@ -107,7 +107,7 @@ export class Details {
         this.run.keep(this.key, { lists: this.all, more: this.more, signals: this.signals });
     }
 
-    /** What was loaded before is better than nothing. */
+    /** Restores details that were loaded before. */
     private restore(): void {
         const kept = this.run.kept.get(this.key);
         if (kept === undefined || this.closing.signal.aborted) return;
@@ -134,7 +134,7 @@ export class Details {
         }, SIGNALS_EVERY);
     }
 
-    /** Whether it was done. */
+    /** Whether it succeeded. */
     private async attempt(work: () => Promise<void>): Promise<boolean> {
         let isDone = false;
         try {
@@ -200,7 +200,7 @@ export class Details {
 
     private add(event: Event): void {
         const list = listOf(event);
-        // The end of a list that is not all there would leave a hole.
+        // Appending to an incomplete list would leave a gap.
         if (list !== null && this.more[list] === undefined)
             addToLists(this.all, event, this.run.name);
     }

@@ -1,5 +1,5 @@
-// Keeps a record up to date: gets the snapshot, follows the events, takes up
-// the stream where it was cut, and starts over when the server asks for it.
+// Keeps a record up to date: loads the snapshot, follows the events, resumes
+// an interrupted stream, and starts over when the server requires it.
 
 import { ApiError, snapshot } from '../api';
 import type { RunStateName, Snapshot } from '../api-types';
@@ -11,16 +11,16 @@ import type { SseEvent } from './sse';
 export type Connection =
     | { kind: 'loading' }
     | { kind: 'live' }
-    /** The page is hidden, and follows again when it is looked at. */
+    /** The page is hidden, and resumes when it is visible. */
     | { kind: 'paused' }
     | { kind: 'reconnecting'; reason: string }
     | { kind: 'ended' }
     | { kind: 'refused'; status: number; reason: string };
 
 export interface Listener {
-    /** A new record; what was known before is void. */
+    /** A new record, which replaces the previous one. */
     loaded: (record: RunRecord) => void;
-    /** The record has changed. `details` are the events that it does not keep. */
+    /** The record has changed. `details` are events that it does not keep. */
     changed: (events: Event[]) => void;
     connected: (connection: Connection) => void;
 }
@@ -30,7 +30,7 @@ const LAST_DELAY_MS = 5000;
 
 export class Feed {
     private record: RunRecord | null = null;
-    /** The record has to be replaced by a new snapshot. */
+    /** A new snapshot must replace the record. */
     private isStale = true;
     private details: readonly string[] = [];
     private stream: AbortController | null = null;
@@ -41,7 +41,7 @@ export class Feed {
         private readonly listener: Listener,
     ) {}
 
-    /** Loads and follows until the run is over or the feed is closed. */
+    /** Loads and follows until the run has ended or the feed is closed. */
     async start(): Promise<void> {
         const hidden = () => document.hidden && this.stream?.abort();
         document.addEventListener('visibilitychange', hidden);
@@ -68,7 +68,7 @@ export class Feed {
         this.stream?.abort();
     }
 
-    /** Of whom messages, measurements and output are wanted: `test:3`. */
+    /** The sources whose messages, measurements and output are requested: `test:3`. */
     watch(sources: string[]): void {
         if (sources.join() === this.details.join()) return;
         this.details = sources;
@@ -87,7 +87,7 @@ export class Feed {
 
     private failed(problem: unknown): 'over' | 'wait' {
         if (this.record?.isOver) {
-            // The server has ended with its run: what is shown is all that there is.
+            // The server has exited with its run: there is nothing more to load.
             this.listener.connected({ kind: 'ended' });
             return 'over';
         }
@@ -135,7 +135,7 @@ export class Feed {
         if (this.closing.signal.aborted) return 'over';
         if (stream.signal.aborted) return 'again';
         if ('status' in end && end.status === 204) {
-            // The run is over, and there is nothing after what is known.
+            // The run has ended, and all its events are known.
             this.isStale = true;
             return 'again';
         }
@@ -145,7 +145,7 @@ export class Feed {
     }
 
     private receive(received: SseEvent[], stream: AbortController): void {
-        // What a stream still delivers after it was given up comes again in the next one.
+        // The next stream repeats what an abandoned one still delivers.
         if (stream.signal.aborted) return;
         const { record } = this;
         const events: Event[] = [];
@@ -160,7 +160,7 @@ export class Feed {
                 const { last_at } = JSON.parse(data) as { last_at: number };
                 record.progress(Number(id), last_at);
             } else if (type === 'resync' || type === 'end') {
-                // Both are answered by a new snapshot, which has the last word.
+                // In both cases, a new snapshot is loaded.
                 this.isStale = true;
                 if (type === 'end')
                     record.finish((JSON.parse(data) as { state: RunStateName }).state);
@@ -171,7 +171,7 @@ export class Feed {
         this.listener.changed(events);
     }
 
-    /** Waits until somebody looks at the page, or the feed is closed. */
+    /** Waits until the page is visible, or the feed is closed. */
     private shown(): Promise<void> {
         return new Promise((resolve) => {
             const done = () => {

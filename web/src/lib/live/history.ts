@@ -1,11 +1,11 @@
-// How long the tests took the last time that the same command was run.
+// The durations of the tests in the last run of the same command.
 
 import * as api from '../api';
 import type { RunInfo } from '../api-types';
 import { historyOf, type History } from '../progress';
 import { RunRecord } from '../record/record';
 
-/** Looks among the runs before this one; empty when there is none like it. */
+/** Searches the runs before this one; empty if none has the same command. */
 export async function loadHistory(info: RunInfo): Promise<History> {
     try {
         const { runs } = await api.runs(info.run, 20);
@@ -17,7 +17,7 @@ export async function loadHistory(info: RunInfo): Promise<History> {
             ? new Map()
             : historyOf(new RunRecord(await api.snapshot(last.run)));
     } catch {
-        // It is for an estimate only, which this run's own tests can give as well.
+        // Only an estimate depends on it, which can also use this run's tests.
         return new Map();
     }
 }

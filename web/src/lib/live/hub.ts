@@ -1,21 +1,21 @@
-// One stream of events per run, shared by all who follow the run. Browsers open
-// six connections to a server at most: with a stream of its own for each tab the
+// One event stream per run, shared by all followers of the run. Browsers open
+// at most six connections to a server: with one stream per tab, the
 // seventh tab would never load.
 
 import type { SseEvent, StreamEnd } from './sse';
 
-/** Who follows a run. */
+/** A follower of a run. */
 export interface Subscriber {
-    /** The number of the next event that is wanted. */
+    /** The number of the next event that it needs. */
     from: number;
-    /** Whose messages and outputs are wanted: `test:3`. */
+    /** The sources whose messages and output it needs: `test:3`. */
     details: readonly string[];
     opened: () => void;
     received: (events: SseEvent[]) => void;
     ended: (end: StreamEnd) => void;
 }
 
-/** What a stream is opened with. */
+/** The parameters of a stream. */
 export interface Request {
     run: string;
     from: number;
@@ -30,7 +30,7 @@ export interface StreamOptions {
 
 export type Open = (request: Request, options: StreamOptions) => Promise<StreamEnd>;
 
-/** Those who come together open one stream. */
+/** Followers that arrive within this time open one stream. */
 const COLLECT_MS = 10;
 
 export class Hub {
@@ -38,7 +38,7 @@ export class Hub {
 
     constructor(private readonly open: Open) {}
 
-    /** Follows a run until the answer is called or the stream has ended. */
+    /** Follows a run until the returned function is called or the stream has ended. */
     subscribe(run: string, subscriber: Subscriber): () => void {
         let stream = this.streams.get(run);
         if (stream === undefined) {
@@ -53,7 +53,7 @@ class SharedStream {
     private readonly subscribers = new Set<Subscriber>();
     private current: AbortController | null = null;
     private isOpen = false;
-    /** The number of the next event, and whose details come. */
+    /** The number of the next event, and the requested sources. */
     private next = 0;
     private details: readonly string[] = [];
     private timer: ReturnType<typeof setTimeout> | null = null;
@@ -103,7 +103,7 @@ class SharedStream {
         const stream = new AbortController();
         this.current = stream;
         this.isOpen = false;
-        // Whoever knows more already drops what comes again.
+        // Followers that are ahead drop known events.
         this.next = Math.min(...[...this.subscribers].map(({ from }) => from));
         this.details = this.wanted();
         const request = { run: this.run, from: this.next, details: this.details };
@@ -118,7 +118,7 @@ class SharedStream {
             received: (events) => isCurrent() && this.receive(events),
         });
         if (!isCurrent()) return;
-        // Those who go on subscribe again, from where they are.
+        // Remaining followers subscribe again, from their current position.
         const left = [...this.subscribers];
         this.subscribers.clear();
         this.stop();

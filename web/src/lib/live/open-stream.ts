@@ -1,4 +1,4 @@
-// A stream of a run's events, over a connection of its own.
+// A stream of a run's events, over a separate connection.
 
 import { address } from '../api';
 import type { Request, StreamOptions } from './hub';

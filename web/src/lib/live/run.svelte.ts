@@ -1,7 +1,7 @@
-// The run that is shown, for components. Ten thousand tests are too many to
-// watch each field of each of them: the record is plain data, and once a frame
-// there is a new view of it when something has changed. What is taken out of the
-// record keeps its identity while it changes; components copy what they show.
+// The shown run, for components. Ten thousand tests are too many to
+// observe each field: the record is plain data, and once per frame
+// there is a new view of it if something has changed. Objects of the
+// record keep their identity while they change; components copy what they show.
 
 import { flushSync } from 'svelte';
 import * as api from '../api';
@@ -11,50 +11,50 @@ import type { ListName, Lists } from '../record/detail';
 import { RunRecord } from '../record/record';
 import { Feed, type Connection } from './feed';
 
-/** What was loaded of one attempt, start or run. */
+/** The loaded details of one attempt, start or run. */
 export interface Kept {
     lists: Lists;
     more: Partial<Record<ListName, number>>;
     signals: readonly Signal[];
 }
 
-/** What of so many of them is kept. */
+/** Maximum number of details that are kept. */
 const KEPT = 30;
 
-/** Gets what came in, as long as it wants to. */
+/** Receives new events until it is removed. */
 export type DetailListener = (events: Event[]) => void;
 
 const FRAME_MS = 16;
-/** The least time between two draws: who looks does not see more, and the tests need the time. */
+/** The minimum time between two draws: faster updates are not visible, and the tests need the CPU. */
 const BETWEEN_MS = 100;
-/** A draw may take one part in this many of the time. */
+/** Drawing may take at most 1/n of the time. */
 const SHARE = 5;
-/** Nothing waits longer than this to be drawn. */
+/** The maximum time between two draws. */
 const LATEST_MS = 120;
-/** How often that is drawn which is only looked at now and then. */
+/** The interval between draws of expensive parts. */
 const CALM_MS = 500;
 
 export class LiveRun {
     readonly name: string;
     connection: Connection = $state.raw({ kind: 'loading' });
-    /** What is known, another object after each change. */
+    /** The record; a new object after each change. */
     record: RunRecord = $state.raw(new RunRecord());
-    /** The same, but not every change: for what is long to draw. */
+    /** The same, updated less often: for parts that are expensive to draw. */
     calm: RunRecord = $state.raw(new RunRecord());
     /** Microseconds since the run started, as of `calm`. */
     now = $state(0);
-    /** The moment that is shown in the time line, in microseconds since the run's start. */
+    /** The marked moment in the timeline, in microseconds since the run's start. */
     moment: number | null = $state(null);
-    /** Grows with each new record: what was loaded beside it is old. */
+    /** Incremented with each new record: loaded details are outdated. */
     generation = $state(0);
-    /** What was loaded of attempts, starts and hook runs: it stays when the server goes. */
+    /** Loaded details of attempts, starts and hook runs: they stay when the server exits. */
     readonly kept = new Map<string, Kept>();
     private readonly feed: Feed;
     private readonly listeners = new Set<DetailListener>();
     private readonly watched = new Map<symbol, string[]>();
     private readonly timer: ReturnType<typeof setInterval>;
     private isDrawing = false;
-    /** When and for how long the components were last brought up to date. */
+    /** When and for how long the components were last updated. */
     private drawn = { at: 0, took: 0 };
     /** The server's clock minus the browser's, in seconds. */
     private skew = 0;
@@ -88,7 +88,7 @@ export class LiveRun {
         this.feed.close();
     }
 
-    /** Keeps what was loaded; what was not looked at for longest is forgotten. */
+    /** Keeps loaded details; drops the least recently used ones. */
     keep(key: string, kept: Kept): void {
         this.kept.delete(key);
         this.kept.set(key, kept);
@@ -103,7 +103,7 @@ export class LiveRun {
         this.now = this.clock();
     }
 
-    /** Asks for the details of these sources until the answer is called. */
+    /** Requests the details of these sources until the returned function is called. */
     watch(sources: string[], listener: DetailListener): () => void {
         const key = Symbol('watch');
         this.watched.set(key, sources);
@@ -126,7 +126,7 @@ export class LiveRun {
     }
 
     private tellFeed(): void {
-        // Together, so that going from one test to the next opens one stream.
+        // In one step, so that switching from one test to the next opens one stream.
         queueMicrotask(() =>
             this.feed.watch([...new Set([...this.watched.values()].flat())].sort()),
         );
@@ -143,8 +143,8 @@ export class LiveRun {
             flushSync();
             this.drawn = { at: begun, took: performance.now() - begun };
         };
-        // A page in the background gets no frames. In sight, most of the time is
-        // the reader's: what is long to draw is drawn less often.
+        // A hidden page gets no frames. In a visible page, most of the time is
+        // the user's: expensive parts are drawn less often.
         const { at, took } = this.drawn;
         const next = at + Math.max(took * SHARE, BETWEEN_MS);
         const wait = Math.min(next - performance.now(), LATEST_MS);

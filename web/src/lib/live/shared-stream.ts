@@ -1,5 +1,5 @@
-// A stream of a run's events, over the connection that all pages share. Where the
-// browser has no shared workers, each page has its own.
+// A stream of a run's events, over the connection that all pages share. If the
+// browser has no shared workers, each page opens a connection.
 
 import type { Request, StreamOptions } from './hub';
 import { openStream } from './open-stream';
@@ -17,7 +17,7 @@ class Streams {
 
     constructor(private readonly worker: SharedWorker) {
         worker.port.onmessage = ({ data }: MessageEvent<FromWorker>) => this.receive(data);
-        // A page that is left, or put aside by the browser, tells the worker.
+        // A page that is closed or suspended notifies the worker.
         addEventListener('pagehide', () => this.closeAll());
     }
 
@@ -73,7 +73,7 @@ function shared(): Streams | null {
         });
         const made = new Streams(worker);
         worker.onerror = () => {
-            // It cannot be loaded: each page for itself.
+            // The worker cannot be loaded: use a separate connection.
             streams = null;
             made.closeAll();
         };

@@ -1,6 +1,6 @@
-// Reads a stream of server-sent events. Unlike `EventSource` it hands over
-// all events of a piece of network at once, sees the server's heartbeat, and
-// learns why a connection was refused.
+// Reads a stream of server-sent events. Unlike `EventSource`, it delivers
+// all events of a network chunk at once, checks the server's heartbeat, and
+// reports why a connection was refused.
 
 export interface SseEvent {
     type: string;
@@ -8,7 +8,7 @@ export interface SseEvent {
     data: string;
 }
 
-/** Cuts text that comes in arbitrary pieces into events (HTML Standard, 9.2.6). */
+/** Splits text that arrives in arbitrary chunks into events (HTML Standard, 9.2.6). */
 export class SseParser {
     private rest = '';
     private type = '';
@@ -51,12 +51,12 @@ export class SseParser {
     }
 }
 
-/** How a stream came to its end, when it was not aborted. */
+/** How a stream ended, if it was not aborted. */
 export type StreamEnd = { status: number } | { lost: true };
 
 interface Options {
     signal: AbortSignal;
-    /** The last event that was seen; `null` for a first connection. */
+    /** The last received event; `null` for the first connection. */
     lastEventId: number | null;
     opened: () => void;
     received: (events: SseEvent[]) => void;

@@ -1,4 +1,4 @@
-// The worker that all pages of this server share: it has the streams of events.
+// The worker that all pages of this server share: it owns the event streams.
 
 import { Hub } from './hub';
 import { openStream } from './open-stream';

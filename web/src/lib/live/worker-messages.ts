@@ -1,4 +1,4 @@
-// What a page and the worker that is shared by all pages say to each other.
+// The messages between a page and the shared worker.
 
 import type { SseEvent, StreamEnd } from './sse';
 

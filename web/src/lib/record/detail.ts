@@ -1,5 +1,5 @@
-// What one attempt of a test, one start of a fixture or one run of a hook said:
-// the pages that the server sent, and the events that came after them.
+// The details of one attempt of a test, one start of a fixture or one run of a hook:
+// the pages from the server, and later events.
 
 import type {
     AttachmentEntry,
@@ -33,7 +33,7 @@ export function emptyLists(): Lists {
     return { messages: [], measurements: [], attachments: [], stacks: [], output: [] };
 }
 
-/** Puts an event of this source where it belongs. */
+/** Adds an event of this source to its list. */
 export function addToLists(lists: Lists, event: Event, run: string): LeakedProcess[] {
     const { seq, at } = event;
     switch (event.type) {
@@ -66,13 +66,13 @@ export function addToLists(lists: Lists, event: Event, run: string): LeakedProce
     return [];
 }
 
-/** Pages and events may overlap: an entry that is there already is dropped. */
+/** Pages and events may overlap: a known entry is dropped. */
 export function append<T extends Said>(list: T[], entry: T): void {
     const last = list.at(-1);
     if (last === undefined || last.seq < entry.seq) list.push(entry);
 }
 
-/** Whether a value lies within its limits; one that is not a finite number does not. */
+/** Whether a value is finite and within its limits. */
 export function isWithin({ value, low, high }: Measurement): boolean {
     if (value == null) return false;
     return (low == null || value >= low) && (high == null || value <= high);

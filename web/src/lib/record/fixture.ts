@@ -1,4 +1,4 @@
-// What the events of a fixture make of it, and its life as spans and marks.
+// Applies events to a fixture; its life as spans and marks.
 
 import type { Fixture, Start } from '../api-types';
 import type { Event, FixturePlanned } from '../event';
@@ -22,7 +22,7 @@ export function plannedFixture(plan: FixturePlanned): Fixture {
     return { id: fixture, suite, name, plugin_type, state: 'pending', starts: [] };
 }
 
-/** Takes in an event of this fixture. */
+/** Applies an event of this fixture. */
 export function applyToFixture(fixture: Fixture, event: Event): void {
     const { at } = event;
     const last = fixture.starts.at(-1);
@@ -79,7 +79,7 @@ export function spans(fixture: Fixture): Span[] {
     });
 }
 
-/** What happened in a fixture's life. */
+/** The marks of a fixture's life. */
 export function marks(fixture: Fixture): Mark[] {
     return fixture.starts.flatMap((start, index) => [
         ...(index === 0 ? [] : [mark('restarted', start.starting, `start ${start.number}`)]),
@@ -96,7 +96,7 @@ function endOf(start: Start): number {
     return start.stopped ?? start.stopping ?? start.starting;
 }
 
-/** What speaks against the suite being green, in words. */
+/** The reasons why the suite is not green. */
 export function fixtureProblems(fixture: Fixture, toleratesCollapse: boolean): string[] {
     const name = `fixture \`${fixture.name}\``;
     const problems: string[] = [];

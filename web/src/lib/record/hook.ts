@@ -1,4 +1,4 @@
-// What the events of a hook make of it.
+// Applies events to a hook.
 
 import type { Hook } from '../api-types';
 import type { Event, HookPlanned } from '../event';
@@ -7,12 +7,12 @@ export function plannedHook(plan: HookPlanned): Hook {
     return { id: plan.hook, suite: plan.suite, name: plan.name, on: plan.on, runs: [] };
 }
 
-/** Takes in an event of this hook. */
+/** Applies an event of this hook. */
 export function applyToHook(hook: Hook, event: Event): void {
     if (event.type === 'hook-started') {
         const { trigger, reason, test, at } = event;
         const about = test == null ? {} : { test };
-        // What it prints is left to whoever looks at it.
+        // Its output is loaded on demand.
         const run = { number: hook.runs.length + 1, started: at, trigger, reason, output: '' };
         hook.runs.push({ ...run, ...about });
     } else if (event.type === 'hook-finished') {
@@ -23,7 +23,7 @@ export function applyToHook(hook: Hook, event: Event): void {
     }
 }
 
-/** Runs that did not do their work, in words. One that runs has not failed yet. */
+/** The problems of its runs. A run that has not finished has not failed yet. */
 export function hookProblems(hook: Hook, isOver: boolean): string[] {
     return hook.runs.flatMap((run) => {
         const unfinished = isOver && run.finished === undefined;

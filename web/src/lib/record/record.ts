@@ -1,7 +1,7 @@
-// What the page knows of a run: a snapshot, and the events that came after it.
-// It is the only place that takes in events; everything that is shown of the
-// run's state is read from here. A record that begins empty and gets all events
-// of a journal ends up the same as a snapshot.
+// The state of a run in the page: a snapshot and the events after it.
+// Only this class applies events; every component reads
+// the state from here. An empty record with all events
+// of a journal equals a snapshot.
 
 import type {
     Fixture,
@@ -43,17 +43,17 @@ export class RunRecord {
         return this.data.leaked;
     }
 
-    /** Whether nothing more will come. */
+    /** Whether the run has ended. */
     get isOver(): boolean {
         return this.info.state !== 'running';
     }
 
-    /** The same record as another object, for those who compare. */
+    /** The same record as a new object, so that components notice a change. */
     view(): RunRecord {
         return new RunRecord(this.data);
     }
 
-    /** Takes in the next event; one that is known already is dropped. */
+    /** Applies the next event; a known event is dropped. */
     apply(event: Event): void {
         const { info } = this.data;
         if (event.seq < info.seq) return;
@@ -78,13 +78,13 @@ export class RunRecord {
         }
     }
 
-    /** Notes how far the run is, when events were left out of a stream. */
+    /** Records the progress of the run, when a stream has left out events. */
     progress(seq: number, at: number): void {
         this.info.seq = Math.max(this.info.seq, seq + 1);
         this.info.last_at = Math.max(this.info.last_at, at);
     }
 
-    /** Notes that nothing more will come, and how the run ended. */
+    /** Records the end of the stream, and how the run ended. */
     finish(state: RunStateName): void {
         if (!this.isOver) this.info.state = state;
     }
@@ -150,12 +150,12 @@ export class RunRecord {
         }
     }
 
-    /** What a test looks like now. */
+    /** The current state of a test. */
     stateOf(test: Test) {
         return testState(test, this.isOver);
     }
 
-    /** How many tests, of one suite or of all, are in which state. */
+    /** Number of tests by state, of one suite or of all. */
     totals(suite?: number): Totals {
         const totals = noTotals();
         for (const test of this.tests) {
@@ -171,7 +171,7 @@ export class RunRecord {
         return totals;
     }
 
-    /** What went wrong in a suite beside its tests, in words. */
+    /** The problems of a suite apart from its tests. */
     suiteProblems(suite: Suite): string[] {
         const fixtures = suite.fixtures.flatMap((id) => this.fixtures[id] ?? []);
         const hooks = suite.hooks.flatMap((id) => this.hooks[id] ?? []);
@@ -208,7 +208,7 @@ function plannedSuite(plan: Extract<Event, { type: 'suite-planned' }>): Suite {
     };
 }
 
-/** What a suite got for itself, without what is the event's own. */
+/** The private resources of a suite, without the fields of the event. */
 function preparedOf(event: Extract<Event, { type: 'suite-prepared' }>): SuitePrepared {
     const { suite, network, ports, variables, join_command } = event;
     return {

@@ -1,4 +1,4 @@
-// What the events of a test make of it. The rules over its verdict are those
+// Applies events to a test. The rules for its verdict are those
 // of rtf_model::TestRecord.
 
 import type { AttemptRow, Test } from '../api-types';
@@ -31,7 +31,7 @@ export function plannedTest(plan: TestPlanned): Test {
     };
 }
 
-/** Takes in an event of this test. */
+/** Applies an event of this test. */
 export function applyToTest(test: Test, event: Event): void {
     const last = test.attempts.at(-1);
     switch (event.type) {
@@ -44,7 +44,7 @@ export function applyToTest(test: Test, event: Event): void {
         }
         case 'test-phase':
             test.phase = event.phase;
-            // It is judged; what follows is the fixtures' time.
+            // It is judged; the remaining time is spent on notifying fixtures.
             if (event.phase === 'notify' && last !== undefined)
                 test.duration_us += event.at - last.started;
             break;
@@ -64,7 +64,7 @@ export function applyToTest(test: Test, event: Event): void {
                 conclude(test, null);
             break;
         case 'test-repeated':
-            // The time is over: now it is known how many repetitions there are.
+            // The time has elapsed: the number of repetitions is known now.
             test.repetitions = event.repetitions;
             delete test.timed;
             conclude(test, null);
@@ -75,7 +75,7 @@ export function applyToTest(test: Test, event: Event): void {
     }
 }
 
-/** Speaks the last word: the first attempt that counts and did not pass, if there is one. */
+/** Sets the final verdict: that of the first deciding attempt that did not pass, if there is one. */
 function conclude(test: Test, skipped: string | null): void {
     const bad = decidingAttempts(test).find(({ verdict }) => isBad(verdict));
     test.state = 'done';
@@ -88,26 +88,26 @@ function isBad(verdict: Verdict | undefined): boolean {
     return verdict !== undefined && verdict !== 'passed';
 }
 
-/** The attempts that count: the last one of each repetition. */
+/** The deciding attempts: the last one of each repetition. */
 export function decidingAttempts(test: Test): AttemptRow[] {
     return test.attempts.filter(
         (attempt, index) => test.attempts[index + 1]?.repetition !== attempt.repetition,
     );
 }
 
-/** What a test looks like; `isOver` tells that nothing more will come of its run. */
+/** The state of a test; `isOver`: its run has ended. */
 export function testState(test: Test, isOver: boolean): TestState {
     if (test.verdict !== undefined) return test.verdict;
     if (isOver) return test.attempts.length === 0 ? 'skipped' : 'interrupted';
     return test.state === 'running' ? 'running' : 'pending';
 }
 
-/** Whether it passed only after a repetition was run again. */
+/** Whether it passed only after a retry. */
 export function isFlaky(test: Test): boolean {
     return test.verdict === 'passed' && test.attempts.some((attempt) => attempt.rerun === true);
 }
 
-/** The attempt to look at first: the one that decided, or else the last. */
+/** The attempt to show first: the decisive one, or the last. */
 export function decisiveAttempt(test: Test): AttemptRow | undefined {
     return decidingAttempts(test).find(({ verdict }) => isBad(verdict)) ?? test.attempts.at(-1);
 }
