@@ -4,12 +4,13 @@
 //! long as they like: neither the run nor its journal waits for that. What waits to be
 //! written is kept in memory; [`BackgroundWriter::is_full`] tells a reporter to leave out detail.
 
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, Write};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 use crate::console::{Bar, BarState};
+use crate::is_disconnect;
 
 /// When so many bytes wait, detail should be left out.
 const FULL: usize = 4 * 1024 * 1024;
@@ -162,9 +163,7 @@ fn write_all(shared: &Shared, mut out: Box<dyn Write + Send>) {
         state.is_writing = false;
         if let Err(error) = written {
             state.is_over = true;
-            // Whoever read along (`head`, a pager) has seen enough: the run goes on, and its
-            // exit code stays about the tests.
-            state.error = Some(error).filter(|error| error.kind() != ErrorKind::BrokenPipe);
+            state.error = Some(error).filter(|error| !is_disconnect(error));
         }
         drop(state);
         shared.changed.notify_all();

@@ -1,12 +1,12 @@
-//! Whether somebody reads what is written to standard output or standard error.
+//! Readers of standard output or standard error that disconnect (`| head`, a pager, a closed
+//! terminal) are no failure: the run continues, and its exit code reports the tests.
 
-use std::io;
+use std::io::{self, Write};
 
-/// EIO: what a terminal answers that was closed.
+/// EIO: the error of a terminal that was closed.
 const INPUT_OUTPUT: i32 = 5;
 
-/// Whether whoever read along has gone: the other end of a pipe is closed
-/// (`| head`, a pager), or the terminal is. That is no failure.
+/// Whether the reader has disconnected: the other end of a pipe, or the terminal, is closed.
 #[must_use]
 pub fn is_disconnect(error: &io::Error) -> bool {
     error.kind() == io::ErrorKind::BrokenPipe
@@ -14,7 +14,7 @@ pub fn is_disconnect(error: &io::Error) -> bool {
 }
 
 /// Whether standard output or standard error is a character device, as terminals
-/// are. A terminal that was closed does not say any more that it is one.
+/// are. A closed terminal is not recognised as a terminal any more.
 #[cfg(target_os = "linux")]
 fn writes_to_device() -> bool {
     use std::os::unix::fs::FileTypeExt;
@@ -25,4 +25,40 @@ fn writes_to_device() -> bool {
 #[cfg(not(target_os = "linux"))]
 fn writes_to_device() -> bool {
     false
+}
+
+/// Writes until the reader disconnects, and discards everything after that.
+pub(crate) struct UntilDisconnect {
+    out: Option<Box<dyn Write + Send>>,
+}
+
+impl UntilDisconnect {
+    pub fn new(out: Box<dyn Write + Send>) -> Self {
+        Self { out: Some(out) }
+    }
+
+    fn try_with<T>(
+        &mut self,
+        discarded: T,
+        act: impl FnOnce(&mut dyn Write) -> io::Result<T>,
+    ) -> io::Result<T> {
+        let Some(out) = &mut self.out else { return Ok(discarded) };
+        match act(out) {
+            Err(error) if is_disconnect(&error) => {
+                self.out = None;
+                Ok(discarded)
+            }
+            result => result,
+        }
+    }
+}
+
+impl Write for UntilDisconnect {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.try_with(bytes.len(), |out| out.write(bytes))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.try_with((), |out| out.flush())
+    }
 }

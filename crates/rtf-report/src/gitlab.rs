@@ -3,19 +3,20 @@
 //! that run side by side have none: sections cannot overlap, and in that of one
 //! suite nobody looks for lines of another.
 
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::Path;
 
 use jiff::Timestamp;
 use rtf_model::{Event, EventKind, Micros, Record, SuiteId};
 
-use crate::{ReportError, Reporter, escape, is_disconnect};
+use crate::disconnect::UntilDisconnect;
+use crate::{ReportError, Reporter, escape};
 
 /// Puts what another reporter writes to the same place into sections, one for
 /// each suite.
 pub struct Sections {
     inner: Box<dyn Reporter>,
-    out: Box<dyn Write + Send>,
+    out: UntilDisconnect,
     /// The suite whose section is open.
     open: Option<SuiteId>,
 }
@@ -24,7 +25,7 @@ impl Sections {
     /// Sections around what `inner` writes; both write to `out`'s place.
     #[must_use]
     pub fn around(inner: Box<dyn Reporter>, out: Box<dyn Write + Send>) -> Self {
-        Self { inner, out, open: None }
+        Self { inner, out: UntilDisconnect::new(out), open: None }
     }
 
     fn begin(&mut self, suite: SuiteId, at: Micros, record: &Record) -> Result<(), ReportError> {
@@ -47,13 +48,7 @@ impl Sections {
 
     fn write(&mut self, text: &str) -> Result<(), ReportError> {
         let written = self.out.write_all(text.as_bytes());
-        match written {
-            Err(error) if is_disconnect(&error) => {
-                self.out = Box::new(io::sink());
-                Ok(())
-            }
-            written => written.map_err(ReportError::at("sections", Path::new("standard output"))),
-        }
+        written.map_err(ReportError::at("sections", Path::new("standard output")))
     }
 }
 

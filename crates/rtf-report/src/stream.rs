@@ -3,7 +3,8 @@
 use std::io::Write;
 use std::path::Path;
 
-use crate::{ReportError, is_disconnect};
+use crate::ReportError;
+use crate::disconnect::UntilDisconnect;
 
 /// So much may wait before it is written, however busy the run is.
 const PAGE: usize = 16 * 1024;
@@ -11,7 +12,7 @@ const PAGE: usize = 16 * 1024;
 /// Collects whole lines and writes them together.
 pub(crate) struct Stream {
     what: &'static str,
-    out: Box<dyn Write + Send>,
+    out: UntilDisconnect,
     /// What waits to be written: always whole lines.
     pub page: Vec<u8>,
 }
@@ -19,7 +20,7 @@ pub(crate) struct Stream {
 impl Stream {
     /// A stream to `out`; `what` names it in errors.
     pub fn new(what: &'static str, out: Box<dyn Write + Send>) -> Self {
-        Self { what, out, page: Vec::new() }
+        Self { what, out: UntilDisconnect::new(out), page: Vec::new() }
     }
 
     /// Writes when much waits.
@@ -34,23 +35,17 @@ impl Stream {
         }
         let written = self.out.write_all(&self.page);
         self.page.clear();
-        self.judge(written)
+        written.map_err(self.failed())
     }
 
     /// Writes what waits, and waits until it is written.
     pub fn finish(&mut self) -> Result<(), ReportError> {
         self.flush()?;
         let written = self.out.flush();
-        self.judge(written)
+        written.map_err(self.failed())
     }
 
-    fn judge(&mut self, written: std::io::Result<()>) -> Result<(), ReportError> {
-        if written.as_ref().is_err_and(is_disconnect) {
-            // Whoever read along has seen enough: the run goes on, and its exit
-            // code stays about the tests.
-            self.out = Box::new(std::io::sink());
-            return Ok(());
-        }
-        written.map_err(ReportError::at(self.what, Path::new("standard output")))
+    fn failed(&self) -> impl FnOnce(std::io::Error) -> ReportError {
+        ReportError::at(self.what, Path::new("standard output"))
     }
 }

@@ -10,11 +10,12 @@ use std::time::{Duration, Instant};
 
 use axum::response::sse::Event;
 use rtf_model::{FixtureId, HookId, Source, TestId};
+use rtf_report::journal::EventHeader;
 use serde_json::json;
 use tokio::sync::watch;
 
 use crate::app::blocking;
-use crate::index::{Head, Lines, State};
+use crate::index::{Lines, State};
 use crate::problem::Problem;
 use crate::runs::Run;
 
@@ -77,8 +78,8 @@ impl Details {
         }
     }
 
-    fn want(&self, head: &Head) -> bool {
-        match (self, head.detail_of()) {
+    fn want(&self, header: &EventHeader) -> bool {
+        match (self, header.detail_source()) {
             (Self::All, _) | (_, None) => true,
             (Self::Of(sources), Some(source)) => sources.contains(&source),
         }
@@ -231,20 +232,20 @@ impl Place {
         let mut lines = Lines::between(journal, self.offset, stop).map_err(failed)?;
         while let Some(line) = lines.next().map_err(failed)? {
             self.offset = line.end;
-            let Ok(head) = serde_json::from_slice::<Head>(line.text) else { continue };
+            let Ok(header) = serde_json::from_slice::<EventHeader>(line.text) else { continue };
             let Ok(text) = str::from_utf8(line.text) else { continue };
-            if head.seq < self.next {
+            if header.seq < self.next {
                 continue;
             }
-            if head.seq > self.next {
-                batch.events.push(resync(head.seq, "the journal is damaged"));
+            if header.seq > self.next {
+                batch.events.push(resync(header.seq, "the journal is damaged"));
             }
-            self.next = head.seq.saturating_add(1);
-            if self.details.want(&head) {
+            self.next = header.seq.saturating_add(1);
+            if self.details.want(&header) {
                 self.left_out = None;
-                batch.events.push(Event::default().id(head.seq.to_string()).data(text));
+                batch.events.push(Event::default().id(header.seq.to_string()).data(text));
             } else {
-                self.left_out = Some((head.seq, head.at));
+                self.left_out = Some((header.seq, header.at));
             }
         }
         batch.is_last = self.offset >= end;

@@ -2,6 +2,7 @@
 
 use axum::extract::State;
 use rtf_model::{Event, EventKind, MessageKind, Record, SuiteRecord, TestRecord, Verdict};
+use rtf_report::journal::parse_event;
 use rtf_report::run_dir::LATEST;
 use serde::Serialize;
 
@@ -68,7 +69,7 @@ pub async fn update(State(app): State<App>) -> Result<JsonText, Problem> {
         let mut lines = Lines::between(run.journal()?, start, end).map_err(failed)?;
         let mut shown = std::collections::VecDeque::new();
         while let Some(line) = lines.next().map_err(failed)? {
-            let event = serde_json::from_slice::<Event>(line.text);
+            let event = parse_event(line.text);
             shown.extend(event.ok().and_then(|event| html(&event, index.record())));
             if shown.len() > LINES {
                 shown.pop_front();

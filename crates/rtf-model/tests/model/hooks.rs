@@ -81,7 +81,7 @@ fn a_hook_belongs_to_the_suite_planned_last_and_runs_in_it() {
     assert_eq!(wrong(&unplanned), "event 5: hook 0 was not planned");
     let mut late = opened(1);
     late.push(hook(0, 0));
-    assert_eq!(wrong(&late), "event 5: plans come before the first suite starts");
+    assert_eq!(wrong(&late), "event 5: plans precede the start of the first suite");
     let mut after = all([]);
     after.insert(after.len() - 1, start());
     assert_eq!(wrong(&after), "event 9: suite 0 is not running");

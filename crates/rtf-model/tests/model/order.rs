@@ -110,7 +110,7 @@ fn a_timed_test_is_repeated_until_it_is_told_to_be_over() {
     assert_eq!(timed(vec![started(1, 1), over(1)]), ends_here(6));
     assert_eq!(timed(vec![started(1, 1), rerun(Verdict::Failed), over(1)]), ends_here(7));
     assert_eq!(check_body(2, [started(1, 1), passed(), over(1)]), ends_here(7));
-    let again = "event 10: test 0 started although it was skipped or is over";
+    let again = "event 10: test 0 started although it was skipped or has ended";
     assert_eq!(and(twice(), &[over(2), started(3, 1)]), Err(again.to_owned()));
 }
 
@@ -165,7 +165,7 @@ fn what_a_test_or_fixture_says_lies_between_its_start_and_its_end() {
     let late = [started(1, 1), finished(Verdict::Passed), left(Source::Test(TEST))];
     assert_eq!(wrong(&late), "event 7: test 0 is not running");
     let after = [skipped(0), started(1, 1)];
-    assert_eq!(wrong(&after), "event 6: test 0 started although it was skipped or is over");
+    assert_eq!(wrong(&after), "event 6: test 0 started although it was skipped or has ended");
     assert_eq!(wrong(&[skipped(0), skipped(0)]), "event 6: test 0 skipped twice, or after its end");
     assert_eq!(wrong(&[started(1, 1), skipped(0)]), "event 6: test 0 skipped while it runs");
 }
@@ -186,7 +186,7 @@ fn plans_come_first_and_in_order() {
     );
     let mut late = opened(1);
     late.push(suite(1));
-    assert_eq!(wrong(&late), "event 5: plans come before the first suite starts");
+    assert_eq!(wrong(&late), "event 5: plans precede the start of the first suite");
 }
 
 #[test]

@@ -25,7 +25,8 @@ pub(crate) use progress::{Bar, BarState};
 pub use options::{ConsoleOptions, RerunCommand, Verbosity, rerun_suite};
 
 use crate::background_writer::BackgroundWriter;
-use crate::{ReportError, Reporter, is_disconnect, words};
+use crate::disconnect::UntilDisconnect;
+use crate::{ReportError, Reporter, words};
 use page::Page;
 use progress::Progress;
 use verbose::Verbose;
@@ -39,15 +40,15 @@ const PATIENCE: Duration = Duration::from_millis(200);
 /// Tells people what happens.
 pub struct Console {
     options: ConsoleOptions,
-    out: Box<dyn Write + Send>,
-    /// Where `out` leads to, when that is a thread of its own.
-    outlet: Option<BackgroundWriter>,
+    out: UntilDisconnect,
+    /// The writer behind `out`, if it writes in the background.
+    background: Option<BackgroundWriter>,
     bar: Bar,
     page: Page,
     written: Micros,
     progress: Progress,
     verbose: Verbose,
-    /// How many lines were left out, and not told of.
+    /// Number of omitted lines that are not reported yet.
     left_out: u64,
 }
 
@@ -59,23 +60,23 @@ impl Console {
         Self::new(Box::new(anstream::AutoStream::auto(std::io::stdout())), options)
     }
 
-    /// Writes to an outlet of standard output, for a run that must not wait.
+    /// Writes through a background writer, for a run that must not wait.
     #[must_use]
-    pub fn over(outlet: &BackgroundWriter, options: ConsoleOptions) -> Self {
-        let out: Box<dyn Write + Send> = Box::new(outlet.clone());
+    pub fn over(writer: &BackgroundWriter, options: ConsoleOptions) -> Self {
+        let out: Box<dyn Write + Send> = Box::new(writer.clone());
         let choice = anstream::AutoStream::choice(&std::io::stdout());
         let out = Box::new(anstream::AutoStream::new(out, choice));
-        Self { outlet: Some(outlet.clone()), ..Self::new(out, options) }
+        Self { background: Some(writer.clone()), ..Self::new(out, options) }
     }
 
-    /// Writes to `out`, with colour codes: wrap it to be rid of them.
+    /// Writes to `out`, with colour codes.
     #[must_use]
     pub fn new(out: Box<dyn Write + Send>, options: ConsoleOptions) -> Self {
         let progress = if options.progress { Progress::on_terminal() } else { Progress::hidden() };
         Self {
             options,
-            out,
-            outlet: None,
+            out: UntilDisconnect::new(out),
+            background: None,
             bar: Bar::hidden(),
             page: Page::default(),
             written: Micros::default(),
@@ -90,46 +91,36 @@ impl Console {
         if self.page.len() == 0 {
             return Ok(());
         }
-        let Self { out, page, bar, outlet, .. } = self;
+        let Self { out, page, bar, background, .. } = self;
         let written = bar.around(|| {
             out.write_all(page.as_bytes())?;
-            // An outlet writes by itself; waiting for that is left for the end.
-            if outlet.is_none() { out.flush() } else { Ok(()) }
+            // A background writer is flushed only at the end.
+            if background.is_none() { out.flush() } else { Ok(()) }
         });
         self.page.clear();
-        self.judge(written)
-    }
-
-    fn judge(&mut self, written: std::io::Result<()>) -> Result<(), ReportError> {
-        if written.as_ref().is_err_and(is_disconnect) {
-            // Whoever read along (`head`, a pager) has seen enough: the run goes
-            // on, and its exit code stays about the tests.
-            self.out = Box::new(std::io::sink());
-            return Ok(());
-        }
-        written.map_err(ReportError::at("what happens", Path::new("standard output")))
+        written.map_err(failed)
     }
 
     fn show_bar(&mut self, state: &BarState) {
-        match &self.outlet {
-            Some(outlet) => outlet.show(state.clone()),
+        match &self.background {
+            Some(writer) => writer.show(state.clone()),
             None => self.bar.show(state),
         }
     }
 
     /// Shows an event in all detail, unless too much waits to be written.
     fn show_verbose(&mut self, event: &Event, record: &Record) {
-        if self.outlet.as_ref().is_some_and(BackgroundWriter::is_full)
+        if self.background.as_ref().is_some_and(BackgroundWriter::is_full)
             && let Some(lines) = self.verbose.skip(event)
         {
             self.left_out += lines;
             return;
         }
-        self.tell_left_out();
+        self.report_left_out();
         self.verbose.show(&mut self.page, event, record);
     }
 
-    fn tell_left_out(&mut self) {
+    fn report_left_out(&mut self) {
         let lines = std::mem::take(&mut self.left_out);
         if lines > 0 {
             let text = format!("{} (standard output is too slow)", words::count(lines, "line"));
@@ -161,11 +152,15 @@ impl Reporter for Console {
     fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
         let bar = self.progress.end();
         bar.iter().for_each(|state| self.show_bar(state));
-        self.tell_left_out();
+        self.report_left_out();
         self.verbose.flush(&mut self.page, record);
         summary::show(&mut self.page, &self.options, record);
         self.flush(record.last_at)?;
         let written = self.out.flush();
-        self.judge(written)
+        written.map_err(failed)
     }
+}
+
+fn failed(error: std::io::Error) -> ReportError {
+    ReportError::at("what happens", Path::new("standard output"))(error)
 }

@@ -1,7 +1,7 @@
-//! Takes the lines of a journal one by one and finds what is damaged. The only
-//! place that decides what counts, for those who read a journal at once and for
-//! those who follow it.
+//! Reads a journal line by line and finds damage. All readers use it, whether they read a
+//! complete journal or follow a growing one.
 
+use super::event_line::parse_event;
 use rtf_model::{
     Damage, EVENTS_VERSION, Event, EventCheck, EventKind, LineCheck, LineChecker, Record, RunState,
     StreamChecker,
@@ -15,7 +15,7 @@ pub struct NewerVersion {
     pub found: u32,
 }
 
-/// What a journal's lines were found to be, so far.
+/// The state of reading a journal line by line.
 #[derive(Debug, Default)]
 pub struct JournalLines {
     lines: LineChecker,
@@ -24,26 +24,25 @@ pub struct JournalLines {
 }
 
 impl JournalLines {
-    /// Takes the next line, without its end, and reads it with `parse`. An event
-    /// that counts is applied to the record, and damage is added there.
+    /// Reads the next line, without its line break. An event that counts is applied to
+    /// the record, and damage is added there.
     ///
     /// # Errors
     /// The journal is of a newer version.
-    pub fn take(
+    pub fn read(
         &mut self,
         line: &[u8],
-        parse: impl FnOnce(&[u8]) -> serde_json::Result<Event>,
         record: &mut Record,
     ) -> Result<Option<Event>, NewerVersion> {
         self.line += 1;
         let check = self.lines.check(line);
         let is_trusted = matches!(check, LineCheck::Intact | LineCheck::Unchecked);
-        let event = match parse(line) {
+        let event = match parse_event(line) {
             Ok(event) => event,
             Err(error) => {
                 self.stream.skip_line();
                 let why = error.to_string();
-                // Not all that it could have been.
+                // Without the list of all kinds of events.
                 let why = why.split_once(", expected one of").map_or(&*why, |(why, _)| why);
                 self.damage(record, format!("this is not an event: {why}"));
                 return Ok(None);
@@ -65,32 +64,32 @@ impl JournalLines {
         Ok(is_new.then_some(event))
     }
 
-    /// Whether there was a line.
+    /// Whether a line was read.
     #[must_use]
     pub fn has_begun(&self) -> bool {
         self.line > 0
     }
 
-    /// The number of the next event.
+    /// The expected number of the next event.
     #[must_use]
     pub fn next_seq(&self) -> u64 {
         self.stream.next()
     }
 
-    /// What has been read is not in the file any more.
-    pub fn shrunk(&self, record: &mut Record) {
+    /// Records that the file is shorter than what was read.
+    pub fn record_truncated(&self, record: &mut Record) {
         self.damage_once(record, "the journal was longer than it is now");
     }
 
-    /// The journal ends in a line without its end: the runner was killed while it
-    /// wrote, but not after it had written the end of the run.
-    pub fn torn(&self, record: &mut Record) {
+    /// Records an incomplete last line: a killed runner leaves one, but not after the end
+    /// of the run.
+    pub fn record_incomplete_line(&self, record: &mut Record) {
         if record.state != RunState::Running {
-            self.damage_once(record, "something stands after the end of the run");
+            self.damage_once(record, "something follows the end of the run");
         }
     }
 
-    /// Those who follow a journal find it each time.
+    /// A reader that follows a journal finds the same damage each time.
     fn damage_once(&self, record: &mut Record, problem: &str) {
         let damage = Damage { line: self.line, problem: problem.to_owned() };
         if !record.damages.contains(&damage) {

@@ -2,12 +2,14 @@
 //! happens. It is the truth from which every report can be made again, also
 //! after the runner was killed.
 
+mod event_line;
 mod lines;
 mod page;
 mod presence;
 mod reader;
 mod writer;
 
+pub use event_line::{EventHeader, parse_event};
 pub use lines::{JournalLines, NewerVersion};
 pub use reader::{
     JournalError, Stored, find_damage, read, read_from, read_lines, read_with, replay,

@@ -193,7 +193,7 @@ impl<'a, V: FnMut(&[u8], &Event, &Record) -> Result<(), ReportError>> Reading<'a
                 Line::Torn(text) if self.lines.has_begun() || text.starts_with(b"{") => {
                     self.stored.torn = true;
                     if !self.is_damage_known {
-                        self.lines.torn(&mut self.stored.record);
+                        self.lines.record_incomplete_line(&mut self.stored.record);
                     }
                 }
                 Line::Torn(text) => self.line(text)?,
@@ -210,8 +210,7 @@ impl<'a, V: FnMut(&[u8], &Event, &Record) -> Result<(), ReportError>> Reading<'a
     fn line(&mut self, line: &[u8]) -> Result<(), JournalError> {
         let record = &mut self.stored.record;
         let known = record.damages.len();
-        let parse = |line: &[u8]| serde_json::from_slice(line);
-        let event = self.lines.take(line, parse, record).map_err(|NewerVersion { found }| {
+        let event = self.lines.read(line, record).map_err(|NewerVersion { found }| {
             JournalError::Version { path: self.path.to_owned(), found }
         })?;
         if self.is_damage_known {

@@ -9,7 +9,8 @@ use rtf_model::{Event, EventKind, Output, Record};
 use super::lines::{self, Line, Word};
 use super::summary;
 use crate::background_writer::BackgroundWriter;
-use crate::{ReportError, Reporter, escape, is_disconnect};
+use crate::disconnect::UntilDisconnect;
+use crate::{ReportError, Reporter, escape};
 
 /// Lines are written at the latest when so many bytes wait.
 const PAGE: usize = 16 * 1024;
@@ -28,10 +29,10 @@ pub struct ConsoleOptions {
 /// Shows lines as they come.
 pub struct Console {
     options: ConsoleOptions,
-    out: Box<dyn Write + Send>,
-    /// Where `out` leads to, when that is a thread of its own.
-    outlet: Option<BackgroundWriter>,
-    /// How many lines were left out, and not told of.
+    out: UntilDisconnect,
+    /// The writer behind `out`, if it writes in the background.
+    background: Option<BackgroundWriter>,
+    /// Number of omitted lines that are not reported yet.
     left_out: usize,
     page: String,
     /// Whether a plug-in printed half of a line.
@@ -45,34 +46,34 @@ impl Console {
         Self::new(Box::new(anstream::AutoStream::auto(std::io::stdout())), options)
     }
 
-    /// Writes to an outlet of standard output, for a run that must not wait.
+    /// Writes through a background writer, for a run that must not wait.
     #[must_use]
-    pub fn over(outlet: &BackgroundWriter, options: ConsoleOptions) -> Self {
-        let out: Box<dyn Write + Send> = Box::new(outlet.clone());
+    pub fn over(writer: &BackgroundWriter, options: ConsoleOptions) -> Self {
+        let out: Box<dyn Write + Send> = Box::new(writer.clone());
         let choice = anstream::AutoStream::choice(&std::io::stdout());
         let out = Box::new(anstream::AutoStream::new(out, choice));
-        Self { outlet: Some(outlet.clone()), ..Self::new(out, options) }
+        Self { background: Some(writer.clone()), ..Self::new(out, options) }
     }
 
-    /// Writes to `out`, with colour codes: wrap it to be rid of them.
+    /// Writes to `out`, with colour codes.
     #[must_use]
     pub fn new(out: Box<dyn Write + Send>, options: ConsoleOptions) -> Self {
-        let (outlet, left_out, page) = (None, 0, String::new());
-        Self { options, out, outlet, left_out, page, within_line: false }
+        let (out, page) = (UntilDisconnect::new(out), String::new());
+        Self { options, out, background: None, left_out: 0, page, within_line: false }
     }
 
     /// Whether detail is left out now, because too much waits to be written.
     fn leaves_out(&mut self, lines: usize) -> bool {
-        let is_full = self.outlet.as_ref().is_some_and(BackgroundWriter::is_full);
+        let is_full = self.background.as_ref().is_some_and(BackgroundWriter::is_full);
         if is_full {
             self.left_out += lines;
         } else {
-            self.tell_left_out();
+            self.report_left_out();
         }
         is_full
     }
 
-    fn tell_left_out(&mut self) {
+    fn report_left_out(&mut self) {
         let lines = std::mem::take(&mut self.left_out);
         if lines > 0 {
             self.end_line();
@@ -126,16 +127,7 @@ impl Console {
         }
         let written = self.out.write_all(self.page.as_bytes());
         self.page.clear();
-        self.judge(written)
-    }
-
-    fn judge(&mut self, written: std::io::Result<()>) -> Result<(), ReportError> {
-        if written.as_ref().is_err_and(is_disconnect) {
-            // Who read along has seen enough; the exit code stays about the tests.
-            self.out = Box::new(std::io::sink());
-            return Ok(());
-        }
-        written.map_err(ReportError::at("what happens", Path::new("standard output")))
+        written.map_err(failed)
     }
 }
 
@@ -163,14 +155,14 @@ impl Reporter for Console {
         for line in lines::left_open(record) {
             self.line(&line);
         }
-        self.tell_left_out();
+        self.report_left_out();
         self.end_line();
         if self.options.summary {
             self.page += &summary::of(record, "results");
         }
         self.flush()?;
         let written = self.out.flush();
-        self.judge(written)
+        written.map_err(failed)
     }
 }
 
@@ -182,4 +174,8 @@ fn style(word: Word) -> Style {
         Word::Fail | Word::Error => AnsiColor::BrightRed,
     };
     color.on_default()
+}
+
+fn failed(error: std::io::Error) -> ReportError {
+    ReportError::at("what happens", Path::new("standard output"))(error)
 }

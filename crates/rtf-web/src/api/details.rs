@@ -3,6 +3,7 @@
 
 use axum::extract::State;
 use rtf_model::{Event, EventKind, FixtureId, HookId, Source, TestId};
+use rtf_report::journal::{EventHeader, parse_event};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
@@ -13,7 +14,7 @@ use super::types::{
     Stacks,
 };
 use crate::app::{App, JsonText};
-use crate::index::{Head, Lines};
+use crate::index::Lines;
 use crate::problem::Problem;
 use crate::runs::Run;
 
@@ -43,12 +44,13 @@ impl Part {
         let (mut entries, mut bytes, mut last) = (Vec::new(), 0, 0);
         let failed = crate::runs::unreadable;
         while let Some(line) = lines.next().map_err(failed)? {
-            let Ok(head) = serde_json::from_slice::<Head>(line.text) else { continue };
-            let wanted = self.page.after.is_none_or(|Number(after)| head.seq > after);
-            if !wanted || *head.kind != *self.kind || head.detail_of() != Some(self.source) {
+            let Ok(header) = serde_json::from_slice::<EventHeader>(line.text) else { continue };
+            let wanted = self.page.after.is_none_or(|Number(after)| header.seq > after);
+            if !wanted || *header.kind != *self.kind || header.detail_source() != Some(self.source)
+            {
                 continue;
             }
-            let Some(entry) = serde_json::from_slice(line.text).ok().and_then(&mut pick) else {
+            let Some(entry) = parse_event(line.text).ok().and_then(&mut pick) else {
                 continue;
             };
             if entries.len() >= limit || bytes >= PAGE_BYTES {
@@ -56,7 +58,7 @@ impl Part {
             }
             entries.push(entry);
             bytes += line.text.len();
-            last = head.seq;
+            last = header.seq;
         }
         Ok((entries, None))
     }
@@ -66,9 +68,9 @@ impl Part {
         let mut lines = self.lines(run)?;
         let failed = crate::runs::unreadable;
         while let Some(line) = lines.next().map_err(failed)? {
-            let Ok(head) = serde_json::from_slice::<Head>(line.text) else { continue };
-            if *head.kind == *self.kind && head.detail_of() == Some(self.source) {
-                serde_json::from_slice(line.text).into_iter().for_each(&mut take);
+            let Ok(header) = serde_json::from_slice::<EventHeader>(line.text) else { continue };
+            if *header.kind == *self.kind && header.detail_source() == Some(self.source) {
+                parse_event(line.text).into_iter().for_each(&mut take);
             }
         }
         Ok(())

@@ -1,14 +1,12 @@
-//! The whole lines of a part of a journal.
+//! The complete lines of a range of a journal.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Seek, SeekFrom};
 
-use rtf_model::{Source, TestId};
-
-/// How much is read at once.
+/// Buffer size in bytes.
 const BUFFER: usize = 64 * 1024;
 
-/// Reads lines one by one. A last line without its end does not count.
+/// Reads lines one by one. An incomplete last line is ignored.
 #[derive(Debug)]
 pub struct Lines {
     file: BufReader<File>,
@@ -20,40 +18,12 @@ pub struct Lines {
 /// One line.
 #[derive(Debug)]
 pub struct Line<'a> {
-    /// Without its end.
+    /// The text, without its line break.
     pub text: &'a [u8],
-    /// Where in the file it starts.
+    /// The offset of its start.
     pub start: u64,
-    /// Where the next one starts.
+    /// The offset of the next line.
     pub end: u64,
-}
-
-/// What tells whether an event is looked for, without reading the rest of it.
-#[derive(Debug, serde::Deserialize)]
-pub struct Head {
-    /// The event's number.
-    pub seq: u64,
-    /// When it happened.
-    pub at: u64,
-    /// Its kind.
-    #[serde(rename = "type")]
-    pub kind: Box<str>,
-    source: Option<Source>,
-    test: Option<TestId>,
-}
-
-impl Head {
-    /// Whether this is something that was reported or printed, and by whom.
-    #[must_use]
-    pub fn detail_of(&self) -> Option<Source> {
-        match &*self.kind {
-            // A fixture's report about a test is the test's.
-            "message" => self.test.map(Source::Test).or(self.source),
-            "output" | "stack-dumped" | "processes-leaked" => self.source,
-            "measured" | "sampled" | "attached" => self.test.map(Source::Test),
-            _ => None,
-        }
-    }
 }
 
 impl Lines {

@@ -1,51 +1,51 @@
-//! What is held in memory of a run: the fold over its journal, without what
-//! tests reported and printed, and where in the journal that is to be found.
+//! The index of a run in memory: the fold over its journal, without messages and output,
+//! and the positions of these in the journal.
 //!
-//! The journal is read as far as it is written; [`Index::advance`] goes on from
-//! there. This is the same for a run that goes on and for a past one.
+//! [`Index::advance`] reads what was appended to the journal. Live and past runs are read
+//! in the same way.
 
 mod attached;
 mod lines;
-mod parse;
 mod places;
 
-use std::fs::File;
+use std::fs::{File, Metadata};
 use std::io;
+use std::time::SystemTime;
 
 use rtf_model::{Damage, Record, RunState};
 use rtf_report::journal::{self, JournalLines};
 
 pub use attached::{Attached, Description};
-pub use lines::{Head, Lines};
+pub use lines::Lines;
 pub use places::Places;
 
-/// How far a run is, in the words of the API.
+/// The state of a run in the API.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, utoipa::ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum State {
-    /// It goes on.
+    /// The runner is still running.
     Running,
-    /// It came to its end.
+    /// The run has finished.
     Finished,
-    /// It was ended early.
+    /// The run was interrupted.
     Interrupted,
     /// The runner died; its guard closed the journal.
     Died,
-    /// It has no end, and nobody writes any more.
+    /// The journal has no end, and no process writes it.
     Incomplete,
     /// Its journal is long and still being read; ask again.
     Unread,
 }
 
 impl State {
-    /// Whether nothing more will come.
+    /// Whether no event will follow.
     #[must_use]
     pub fn is_over(self) -> bool {
         !matches!(self, Self::Running | Self::Unread)
     }
 }
 
-/// What is held of one run.
+/// The index of one run.
 #[derive(Debug)]
 pub struct Index {
     file: File,
@@ -53,8 +53,10 @@ pub struct Index {
     places: Places,
     lines: JournalLines,
     attached: Attached,
-    /// Whole lines were read up to here.
+    /// Complete lines were read up to here.
     offset: u64,
+    /// When the journal was last modified, once it has been read to its end.
+    modified: Option<SystemTime>,
 }
 
 impl Index {
@@ -68,24 +70,35 @@ impl Index {
             lines: JournalLines::default(),
             attached: Attached::default(),
             offset: 0,
+            modified: None,
         }
     }
 
-    /// Reads what was written since.
+    /// Whether the journal was modified, but did not grow: it was rewritten in place.
+    fn is_rewritten(&self, journal: &Metadata) -> bool {
+        let is_modified = self.modified.is_some_and(|at| journal.modified().ok() != Some(at));
+        is_modified && journal.len() == self.offset
+    }
+
+    /// Reads appended lines; reads the journal again if it was rewritten in place.
     ///
     /// # Errors
     /// The journal cannot be read, or is of a newer version.
     pub fn advance(&mut self) -> io::Result<()> {
-        let length = self.file.metadata()?.len();
+        let journal = self.file.metadata()?;
+        if self.is_rewritten(&journal) {
+            *self = Self::new(self.file.try_clone()?);
+        }
+        let length = journal.len();
         if length < self.offset {
-            self.lines.shrunk(&mut self.record);
+            self.lines.record_truncated(&mut self.record);
         }
         if length <= self.offset {
             return Ok(());
         }
         let mut lines = Lines::between(self.file.try_clone()?, self.offset, u64::MAX)?;
         while let Some(line) = lines.next()? {
-            let taken = self.lines.take(line.text, parse::event, &mut self.record);
+            let taken = self.lines.read(line.text, &mut self.record);
             let newer = |error| io::Error::new(io::ErrorKind::InvalidData, error);
             if let Some(event) = taken.map_err(newer)? {
                 self.places.take(&event, line.start, line.end);
@@ -94,12 +107,16 @@ impl Index {
             self.offset = line.end;
         }
         if self.offset < length {
-            self.lines.torn(&mut self.record);
+            self.lines.record_incomplete_line(&mut self.record);
         }
+        // A journal that has grown in the meantime is modified, and not rewritten.
+        let journal = self.file.metadata()?;
+        let is_at_end = journal.len() == self.offset;
+        self.modified = journal.modified().ok().filter(|_| is_at_end);
         Ok(())
     }
 
-    /// How far the run is.
+    /// The state of the run.
     #[must_use]
     pub fn state(&self) -> State {
         match &self.record.state {
@@ -111,37 +128,37 @@ impl Index {
         }
     }
 
-    /// The fold, without what tests reported.
+    /// The record, without messages and output.
     #[must_use]
     pub fn record(&self) -> &Record {
         &self.record
     }
 
-    /// Where things are in the journal.
+    /// The positions of events in the journal.
     #[must_use]
     pub fn places(&self) -> &Places {
         &self.places
     }
 
-    /// What tests said about their attachments.
+    /// Names and media types of attachments.
     #[must_use]
     pub fn attached(&self) -> &Attached {
         &self.attached
     }
 
-    /// What could not be read.
+    /// The damage of the journal.
     #[must_use]
     pub fn damages(&self) -> &[Damage] {
         &self.record.damages
     }
 
-    /// How many bytes were read: all whole lines.
+    /// Number of bytes read: all complete lines.
     #[must_use]
     pub fn offset(&self) -> u64 {
         self.offset
     }
 
-    /// The number of the next event.
+    /// The expected number of the next event.
     #[must_use]
     pub fn next_seq(&self) -> u64 {
         self.lines.next_seq()

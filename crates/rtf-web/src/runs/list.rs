@@ -1,16 +1,16 @@
-//! The list of all runs. What is known of a run that is over is kept, so that
+//! The list of all runs. The summary of a run that has ended is cached, so that
 //! its journal is read once.
 
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 use super::{Run, RunFilter, Runs};
 use crate::api::RunInfo;
 use crate::problem::Problem;
 
-/// How long an answer may wait for journals that were never read.
+/// How long a response may be delayed by reading journals for the first time.
 const BUDGET: Duration = Duration::from_millis(500);
 
 /// A page of the list.
@@ -18,28 +18,32 @@ const BUDGET: Duration = Duration::from_millis(500);
 pub struct Listing {
     /// The runs, the newest first.
     pub runs: Vec<RunInfo>,
-    /// The name with which it goes on.
+    /// The last name of this page, if there are more runs.
     pub next: Option<String>,
-    /// How many runs were left out because nobody knows yet whether they match.
+    /// Number of runs that are left out because their journals are still being read.
     pub unread: usize,
 }
 
-/// What is known of runs that are over.
+/// The cached summaries of runs that have ended.
 #[derive(Debug, Default)]
-pub struct Listed {
-    known: Mutex<HashMap<String, RunInfo>>,
+pub struct SummaryCache {
+    known: Mutex<HashMap<String, (JournalStamp, RunInfo)>>,
     reading: AtomicBool,
 }
 
-impl Listed {
-    fn get(&self, name: &str) -> Option<RunInfo> {
-        self.known.lock().unwrap_or_else(PoisonError::into_inner).get(name).cloned()
+/// Size and modification time: a journal with another stamp has to be read again.
+type JournalStamp = Option<(u64, SystemTime)>;
+
+impl SummaryCache {
+    fn get(&self, name: &str, stamp: JournalStamp) -> Option<RunInfo> {
+        let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        known.get(name).filter(|(known, _)| *known == stamp).map(|(_, info)| info.clone())
     }
 
-    fn keep(&self, info: &RunInfo) {
+    fn keep(&self, stamp: JournalStamp, info: &RunInfo) {
         if info.state.is_over() {
             let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-            known.insert(info.run.clone(), info.clone());
+            known.insert(info.run.clone(), (stamp, info.clone()));
         }
     }
 }
@@ -62,7 +66,7 @@ impl Runs {
                 listing.next = listing.runs.last().map(|run| run.run.clone());
                 break;
             }
-            match self.listed.get(&name) {
+            match self.listed.get(&name, self.stamp(&name)) {
                 Some(info) => listing.runs.extend(Some(info).filter(|run| filter.matches(run))),
                 None if Instant::now() < until => {
                     let info = self.info(&name);
@@ -79,11 +83,17 @@ impl Runs {
                 }
             }
         }
-        self.read_on(unread);
+        self.read_in_background(unread);
         listing
     }
 
+    fn stamp(&self, name: &str) -> JournalStamp {
+        let journal = self.results.join(super::journal_of(name)).metadata().ok()?;
+        Some((journal.len(), journal.modified().ok()?))
+    }
+
     fn info(&self, name: &str) -> Result<RunInfo, Problem> {
+        let stamp = self.stamp(name);
         let info = match self.opened(name) {
             Some(run) => RunInfo::of(&run.name, &*run.read()?),
             None => {
@@ -93,12 +103,11 @@ impl Runs {
                 info
             }
         };
-        self.listed.keep(&info);
+        self.listed.keep(stamp, &info);
         Ok(info)
     }
 
-    /// Keeps what was read, where there is a place for it: the newest run is
-    /// looked at next, more often than not.
+    /// Keeps the index if there is room for it: a user usually opens the newest run next.
     fn keep(&self, run: Arc<Run>) {
         let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
         if open.len() < super::KEPT && open.iter().all(|other| other.name != run.name) {
@@ -111,15 +120,15 @@ impl Runs {
         open.iter().find(|run| run.name == name).cloned()
     }
 
-    /// Reads what there was no time for, for those who ask again.
-    fn read_on(self: &Arc<Self>, unread: Vec<String>) {
+    /// Reads the remaining journals in the background, for later requests.
+    fn read_in_background(self: &Arc<Self>, unread: Vec<String>) {
         if unread.is_empty() || self.listed.reading.swap(true, Ordering::AcqRel) {
             return;
         }
         let runs = self.clone();
         let read = std::thread::Builder::new().name("web-list".into()).spawn(move || {
             for name in unread {
-                // Whoever asks for this run gets to know why it cannot be read.
+                // A request for this run reports why it cannot be read.
                 drop(runs.info(&name));
             }
             runs.listed.reading.store(false, Ordering::Release);

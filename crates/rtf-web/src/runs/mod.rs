@@ -79,7 +79,7 @@ pub struct Runs {
     own: Option<String>,
     /// The one used last is the last.
     open: Mutex<Vec<Arc<Run>>>,
-    listed: list::Listed,
+    listed: list::SummaryCache,
 }
 
 impl Runs {
@@ -87,7 +87,7 @@ impl Runs {
     #[must_use]
     pub fn new(results: &Path, own: Option<String>) -> Self {
         let results = results.to_owned();
-        Self { results, own, open: Mutex::default(), listed: list::Listed::default() }
+        Self { results, own, open: Mutex::default(), listed: list::SummaryCache::default() }
     }
 
     /// The name of the run that goes on, if there is one.

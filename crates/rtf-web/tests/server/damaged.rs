@@ -46,3 +46,25 @@ fn a_journal_that_becomes_shorter_is_damaged() {
     std::fs::write(&journal, &text[..text.len() / 2]).unwrap();
     assert_eq!(world.get("/api/v1/runs/cut").json()["green"], json!(false));
 }
+
+/// The journal keeps its size, and its check values do not match any more.
+#[test]
+fn a_journal_that_is_rewritten_in_place_is_damaged() {
+    let (world, _own) = World::new();
+    let journal = green_run(&world, "rewritten");
+    let green = || {
+        let list = world.get("/api/v1/runs").json();
+        let listed = list["runs"].as_array().unwrap().iter().find(|run| run["run"] == "rewritten");
+        let listed = listed.unwrap()["green"].clone();
+        (listed, world.get("/api/v1/runs/rewritten").json()["green"].clone())
+    };
+    assert_eq!(green(), (json!(true), json!(true)));
+    let text = std::fs::read_to_string(&journal).unwrap();
+    let rewritten = text.replacen("\"name\":\"first\"", "\"name\":\"fifth\"", 1);
+    assert_eq!(rewritten.len(), text.len());
+    std::fs::write(&journal, rewritten).unwrap();
+    // The clock of the file system may be coarse.
+    let later = std::time::SystemTime::now() + std::time::Duration::from_secs(1);
+    std::fs::File::options().append(true).open(&journal).unwrap().set_modified(later).unwrap();
+    assert_eq!(green(), (json!(false), json!(false)));
+}
