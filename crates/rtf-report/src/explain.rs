@@ -141,7 +141,7 @@ pub(crate) fn series(series: &SignalSummary) -> String {
 
 /// The stacks of a process before it was stopped by force.
 pub(crate) fn stack(stack: &str, extent: Extent, sink: Sink<'_>) {
-    sink(Tone::Plain, "stack before it was stopped by force:");
+    sink(Tone::Plain, "stack before it was killed:");
     let text = escape::block(stack);
     for line in text.lines().take(extent.stack_lines) {
         sink(Tone::Dim, &format!("| {line}"));

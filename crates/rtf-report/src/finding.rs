@@ -110,7 +110,7 @@ fn hook_text(run: &HookRunRecord) -> String {
     let mut lines = vec!["the robot may not be in a safe state".to_owned()];
     let sink = &mut |_, line: &str| lines.push(line.to_owned());
     explain::hook(run, EXTENT, sink);
-    explain::block(explain::Tone::Dim, &run.reason, "called for: ", sink);
+    explain::block(explain::Tone::Dim, &run.reason, "reason: ", sink);
     lines.join("\n")
 }
 

@@ -9,23 +9,23 @@ use crate::explain::{Sink, Tone};
 pub(crate) fn show(prepared: &SuitePrepared, sink: Sink<'_>) {
     if let Some(SuiteNetwork { pid, user_namespace }) = prepared.network {
         let user = if user_namespace { ", with a user namespace" } else { "" };
-        sink(Tone::Plain, &format!("network of its own: held by process {pid}{user}"));
+        sink(Tone::Plain, &format!("private network: held by process {pid}{user}"));
     }
     for own in &prepared.ports {
         sink(Tone::Plain, &format!("port {}: {}", escape::line(&own.name), own.port));
     }
     for variable in &prepared.variables {
-        let yours = if variable.inherited { " (yours, kept)" } else { "" };
+        let yours = if variable.inherited { " (inherited)" } else { "" };
         sink(Tone::Plain, &format!("{}{yours}", assignment(variable)));
     }
-    sink(Tone::Dim, &format!("join in: {}", escape::line(&prepared.join_command)));
+    sink(Tone::Dim, &format!("join: {}", escape::line(&prepared.join_command)));
 }
 
 /// The variables that the user had set and that were kept.
 pub(crate) fn kept(prepared: &SuitePrepared) -> String {
     let kept = prepared.variables.iter().filter(|variable| variable.inherited);
     let list: Vec<_> = kept.map(assignment).collect();
-    format!("{} of your environment (`middleware=\"own\"` replaces it)", list.join(", "))
+    format!("{} from your environment (`middleware=\"own\"` replaces it)", list.join(", "))
 }
 
 fn assignment(variable: &SuiteVariable) -> String {

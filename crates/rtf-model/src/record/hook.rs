@@ -101,7 +101,7 @@ impl HookRunRecord {
     pub fn problem(&self) -> Option<&str> {
         match &self.finished {
             Some((_, problem)) => problem.as_deref(),
-            None => Some("it did not come to its end"),
+            None => Some("it did not finish"),
         }
     }
 

@@ -187,10 +187,7 @@ fn a_run_whose_runner_died_is_over_but_not_complete() {
 fn a_hook_that_the_runner_died_in_did_not_do_its_work() {
     let record = record(dying([started(1, 1), hook_started(Trigger::Failure)]));
     assert!(record.hook_failed());
-    assert_eq!(
-        record.suite_problems(SUITE),
-        ["hook `hook-0` on failure: it did not come to its end"]
-    );
+    assert_eq!(record.suite_problems(SUITE), ["hook `hook-0` on failure: it did not finish"]);
     assert_eq!(record.final_verdict(TEST), Verdict::Interrupted);
 }
 

@@ -41,7 +41,7 @@ fn failed(
     let (id, run) = which;
     let sink = &mut |tone, line: &str| page.detail(tone, line);
     explain::hook(run, EXTENT, sink);
-    explain::block(Tone::Dim, &run.reason, "called for: ", sink);
+    explain::block(Tone::Dim, &run.reason, "reason: ", sink);
     if let Some(test) = run.test {
         sink(Tone::Dim, &format!("about: {}", escape::line(&record.full_name(test))));
     }

@@ -95,12 +95,12 @@ fn damage(page: &mut Page, record: &Record) {
 fn chosen(page: &mut Page, manifest: &Manifest) {
     let mut parts = Vec::new();
     if manifest.selected_from > 0 {
-        parts.push(format!("a part of {}", words::count(manifest.selected_from.into(), "test")));
+        parts.push(format!("from {}", words::count(manifest.selected_from.into(), "test")));
     }
     parts.extend(manifest.shard.iter().map(|shard| format!("--shard {shard}")));
     parts.extend(manifest.shuffle.iter().map(|seed| format!("--shuffle={seed}")));
     if !parts.is_empty() {
-        page.remark((DIM, "chosen"), &parts.join(", "));
+        page.remark((DIM, "selected"), &parts.join(", "));
     }
 }
 
@@ -170,10 +170,10 @@ impl Live<'_> {
             _ => "the suite".to_owned(),
         };
         if all {
-            page.remark((DIM, "prepared"), &format!("what {suite} has for itself"));
+            page.remark((DIM, "prepared"), &format!("private resources of {suite}"));
             prepared::show(prepared, &mut |tone, line| page.detail(tone, line));
         } else if prepared.network.is_some() {
-            let text = format!("{suite} has a network of its own; to join in:");
+            let text = format!("{suite} has a private network; to join it:");
             page.remark((DIM, "isolated"), &text);
             // The command is long, and seldom needed.
             let log = self.options.shown(&logs::suite_log(self.record, prepared.suite));
@@ -183,7 +183,7 @@ impl Live<'_> {
         if kept && !all {
             let whose =
                 if self.record.runs_suites_in_parallel() { suite + ": " } else { String::new() };
-            page.remark((LOUD, "kept"), &(whose + &prepared::kept(prepared)));
+            page.remark((LOUD, "inherited"), &(whose + &prepared::kept(prepared)));
         }
     }
 
@@ -214,7 +214,7 @@ impl Live<'_> {
         let told = self.record.fixture(id).and_then(|fixture| fixture.collapses.last());
         match told {
             Some((_, told)) if told == reason => {
-                let text = format!("{} is not started again", self.fixture(id));
+                let text = format!("{} will not be restarted", self.fixture(id));
                 page.remark((BAD, "BROKEN"), &text);
             }
             _ => self.trouble(page, "BROKEN", id, (reason, &[])),
@@ -236,10 +236,10 @@ impl Live<'_> {
     fn last_lines(&self, page: &mut Page, id: FixtureId, log_tail: &[String]) {
         let sink = &mut |tone, line: &str| page.detail(tone, line);
         if !log_tail.is_empty() {
-            sink(Tone::Plain, "its last lines:");
+            sink(Tone::Plain, "last lines:");
             explain::printed(log_tail.iter().map(String::as_str), sink);
             if let Some(log) = self.log(Source::Fixture(id)) {
-                sink(Tone::Dim, &format!("all of them: {log}"));
+                sink(Tone::Dim, &format!("full log: {log}"));
             }
         }
     }
@@ -272,7 +272,7 @@ impl Live<'_> {
     /// What a test or a hook left behind is told with its end.
     fn left(&self, page: &mut Page, source: Source, processes: &[LeakedProcess]) {
         if let Source::Fixture(id) = source {
-            page.remark((LOUD, "left"), &self.fixture(id));
+            page.remark((LOUD, "leaked"), &self.fixture(id));
             explain::left(processes, &mut |tone, line| page.detail(tone, line));
         }
     }
@@ -290,7 +290,7 @@ impl Live<'_> {
             name += &format!(", attempt {}", attempt.attempt);
         }
         if finished.rerun {
-            name += ", will be run again";
+            name += ", will be retried";
         }
         let green = finished.verdict.is_green();
         if !green || self.options.verbosity > Verbosity::Quiet {
@@ -337,6 +337,6 @@ pub(super) fn output(text: &str, log: Option<String>, sink: explain::Sink<'_>) {
     sink(Tone::Plain, &heading);
     explain::printed(lines, sink);
     if let Some(log) = log.filter(|_| total > OUTPUT_LINES) {
-        sink(Tone::Dim, &format!("all of them: {log}"));
+        sink(Tone::Dim, &format!("full log: {log}"));
     }
 }

@@ -52,7 +52,7 @@ fn problems(page: &mut Page, record: &Record) {
         return;
     }
     page.line("");
-    page.line(&style::paint(BOLD, "beside the tests:"));
+    page.line(&style::paint(BOLD, "problems outside the tests:"));
     for same in problems.chunk_by(|a, b| a == b) {
         let times = if same.len() > 1 { format!(" ({} times)", same.len()) } else { String::new() };
         page.line(&format!("  {}{times}", style::paint(BAD, &same[0])));
@@ -102,7 +102,7 @@ fn failed_test(page: &mut Page, options: &ConsoleOptions, record: &Record, id: T
         options.shown(&log).into_iter().for_each(|log| page.fact("log", &log));
     }
     if let Some(command) = (options.rerun)(record, id) {
-        page.fact("again", &escape::line(&command));
+        page.fact("rerun", &escape::line(&command));
     }
 }
 
@@ -111,7 +111,7 @@ fn skipped(page: &mut Page, record: &Record) {
     for test in &record.tests {
         if test.final_verdict() == Verdict::Skipped {
             let reason = test.skipped.as_deref();
-            let reason = reason.unwrap_or("the run ended before the test began");
+            let reason = reason.unwrap_or("the run ended before the test started");
             reasons.entry(reason).or_default().push(test.plan.test);
         }
     }
@@ -141,7 +141,7 @@ fn flaky(page: &mut Page, record: &Record) {
     }
     let style = if record.flaky_fails() { BAD } else { LOUD };
     page.line("");
-    page.line(&style::paint(BOLD, "flaky tests, which passed only when they were tried again:"));
+    page.line(&style::paint(BOLD, "flaky tests, which passed only after a retry:"));
     for test in tests {
         let name = style::paint(style, &escape::line(&record.full_name(test.plan.test)));
         let attempts = words::count(test.attempts.len() as u64, "attempt");

@@ -16,10 +16,10 @@ const MEASUREMENTS: usize = 100;
 const CUT_SHORT: &str = "the run ended before the test did";
 
 /// What is said of a test that passed only when it was tried again, when that counts.
-const FLAKY: &str = "it is flaky: it passed only when it was tried again";
+const FLAKY: &str = "it is flaky: it passed only after a retry";
 
 /// What is said of a test that did not begin although the run ended.
-const NOT_BEGUN: &str = "the run ended before the test began";
+const NOT_BEGUN: &str = "the run ended before the test started";
 
 /// The case of a test.
 pub(super) fn of(record: &Record, test: &TestRecord, folder: Option<&Path>) -> TestCase {
@@ -112,7 +112,7 @@ fn description(record: &Record, test: &TestRecord, reason: &str) -> String {
 fn title(test: &TestRecord, attempt: &AttemptRecord) -> String {
     let mut title = words::repetition(test, attempt);
     title += &format!(", attempt {}", attempt.attempt);
-    let Some((_, finished)) = &attempt.finished else { return title + ": it did not end" };
+    let Some((_, finished)) = &attempt.finished else { return title + ": it did not finish" };
     title += &format!(": {} in {}", finished.verdict, finished.phase);
     if let Some(exit) = finished.exit {
         title += &format!(", {exit}");

@@ -45,7 +45,7 @@ fn status(run: &HookRunRecord) -> TestCaseStatus {
     let mut lines = Vec::new();
     let sink = &mut |_, line: &str| lines.push(line.to_owned());
     explain::hook(run, Extent::ALL, sink);
-    explain::block(explain::Tone::Dim, &run.reason, "called for: ", sink);
+    explain::block(explain::Tone::Dim, &run.reason, "reason: ", sink);
     status.set_description(lines.join("\n"));
     status
 }

@@ -11,15 +11,13 @@ mod problems;
 mod time;
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use quick_junit::{Report, TestCase, TestSuite};
-use rtf_model::{Event, LeakedProcess, Record, SuiteRecord};
+use rtf_model::{LeakedProcess, Record, SuiteRecord};
 
 use crate::growth::{self, Within};
-use crate::{ReportError, Reporter, escape, explain, output_file, words};
-
-const WHAT: &str = "the JUnit report";
+use crate::{ReportError, ReportFile, escape, explain, words};
 
 /// Writes the JUnit report of a record. `folder` is the run's folder, below
 /// which attachments are named.
@@ -32,34 +30,16 @@ pub fn write(out: &mut dyn Write, record: &Record, folder: Option<&Path>) -> io:
     out.write_all(xml.as_bytes())
 }
 
-/// Writes the JUnit report into a file when the run is over.
-#[derive(Debug)]
-pub struct JunitFile {
-    path: PathBuf,
-    folder: Option<PathBuf>,
-}
-
-impl JunitFile {
-    /// Checks that the file can be written: call it before the run. `folder`
-    /// is the run's folder, below which attachments are named.
-    ///
-    /// # Errors
-    /// It cannot.
-    pub fn new(path: &Path, folder: Option<&Path>) -> Result<Self, ReportError> {
-        output_file::probe(WHAT, path)?;
-        Ok(Self { path: path.to_owned(), folder: folder.map(Path::to_owned) })
-    }
-}
-
-impl Reporter for JunitFile {
-    fn event(&mut self, _event: &Event, _record: &Record) -> Result<(), ReportError> {
-        Ok(())
-    }
-
-    fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
-        let folder = self.folder.as_deref();
-        output_file::write(WHAT, &self.path, |out| write(out, record, folder))
-    }
+/// Writes the report into a file at the end of the run. `run_dir` is the run's directory,
+/// which contains the attachments.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn file(path: &Path, run_dir: Option<&Path>) -> Result<ReportFile, ReportError> {
+    let run_dir = run_dir.map(Path::to_owned);
+    let write =
+        move |out: &mut dyn Write, record: &Record| self::write(out, record, run_dir.as_deref());
+    ReportFile::new("the JUnit report", path, Box::new(write))
 }
 
 fn report(record: &Record, folder: Option<&Path>) -> Report {
@@ -106,7 +86,7 @@ fn properties(junit: &mut TestSuite, record: &Record, suite: &SuiteRecord) {
         add("run", &run.run);
         add("rtf", &run.rtf);
         add("command", &words::command(&run.command));
-        add("folder", &run.working_dir);
+        add("working-dir", &run.working_dir);
     }
     add("file", &suite.plan.file);
     add("description", &suite.plan.description);

@@ -1,45 +1,24 @@
 //! `result.txt`.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use rtf_model::{Event, Record};
+use rtf_model::Record;
 
 use super::lines::{self, Line};
 use super::summary;
 use crate::journal::{self, JournalError};
-use crate::{ReportError, Reporter, output_file};
+use crate::{ReportError, ReportFile};
 
-const WHAT: &str = "the result file";
-
-/// Writes all lines of a run into a file when it is over. They come from the
-/// journal, so that however much a test says nothing of it is held in memory.
-#[derive(Debug)]
-pub struct ResultFile {
-    path: PathBuf,
-    journal: PathBuf,
-    detail: bool,
-}
-
-impl ResultFile {
-    /// Checks that the file can be written: call it before the run.
-    ///
-    /// # Errors
-    /// It cannot.
-    pub fn new(path: &Path, journal: &Path, detail: bool) -> Result<Self, ReportError> {
-        output_file::probe(WHAT, path)?;
-        Ok(Self { path: path.to_owned(), journal: journal.to_owned(), detail })
-    }
-}
-
-impl Reporter for ResultFile {
-    fn event(&mut self, _event: &Event, _record: &Record) -> Result<(), ReportError> {
-        Ok(())
-    }
-
-    fn finish(&mut self, _record: &Record) -> Result<(), ReportError> {
-        output_file::write(WHAT, &self.path, |out| write(out, &self.journal, self.detail))
-    }
+/// Writes all lines of a run into a file at the end of the run. They come from the journal,
+/// so that the output of a test is never held in memory.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn file(path: &Path, journal: &Path, detail: bool) -> Result<ReportFile, ReportError> {
+    let journal = journal.to_owned();
+    let write = move |out: &mut dyn Write, _: &Record| self::write(out, &journal, detail);
+    ReportFile::new("the result file", path, Box::new(write))
 }
 
 fn write(out: &mut dyn Write, journal: &Path, detail: bool) -> io::Result<()> {

@@ -104,7 +104,7 @@ pub(super) fn left_open(record: &Record) -> Vec<Line> {
     }
     for test in record.tests.iter().filter(|test| test.verdict().is_none()) {
         let why = if test.attempts.is_empty() {
-            "skipped: the run ended before the test began"
+            "skipped: the run ended before the test started"
         } else {
             "interrupted: the run ended before the test did"
         };

@@ -2,7 +2,7 @@
 //! scripts that read it. `spec/testrunner.md` is the contract.
 //!
 //! [`lines`] turns an event into lines, [`Console`] shows some of them as they
-//! come, [`ResultFile`] makes a file of all of them when the run is over.
+//! come, [`file()`] writes all of them to a file at the end of the run.
 
 mod console;
 mod file;
@@ -11,4 +11,4 @@ mod problems;
 mod summary;
 
 pub use console::{Console, ConsoleOptions};
-pub use file::ResultFile;
+pub use file::file;

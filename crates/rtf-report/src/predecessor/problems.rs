@@ -105,7 +105,7 @@ fn broken(fixture: &FixtureRecord, reason: &str) -> String {
     let name = &fixture.plan.name;
     match fixture.collapses.len() {
         0 => format!("setup() failed!: {name}: {reason}"),
-        _ => format!("Fixture collapsed: {name}: it is not started again: {reason}"),
+        _ => format!("Fixture collapsed: {name}: it will not be restarted: {reason}"),
     }
 }
 

@@ -20,7 +20,7 @@ pub(super) fn test(text: &mut String, number: usize, test: &TestRecord) {
     let indent = " ".repeat(SUBTEST);
     let name = description(&test.plan.name);
     if verdict == Verdict::Skipped {
-        let unspoken = "the run ended before the test began";
+        let unspoken = "the run ended before the test started";
         let reason = test.reason().unwrap_or(unspoken);
         *text += &format!("{indent}ok {number} - {name} # SKIP {}\n", description(reason));
         return;

@@ -36,7 +36,7 @@ pub(super) fn show(lines: &mut Lines, fixture: &FixtureRecord) {
     }
     explain::left(&fixture.leaked, &mut |_, line| lines.at(4, line));
     if !fixture.log_tail.is_empty() {
-        lines.at(4, "its last lines before something went wrong:");
+        lines.at(4, "last lines before the last problem:");
         fixture.log_tail.iter().for_each(|line| lines.quoted(6, line));
     }
 }

@@ -11,7 +11,7 @@ pub(super) fn show(lines: &mut Lines, record: &Record, hook: &HookRecord) {
     let on: Vec<_> = hook.plan.on.iter().map(|trigger| Trigger::as_str(*trigger)).collect();
     lines.fact(2, "hook", &format!("{} (on {})", hook.plan.name, on.join(", ")));
     if hook.runs.is_empty() {
-        lines.at(4, "it was not called for");
+        lines.at(4, "it was not triggered");
     }
     for (number, run) in (1..).zip(&hook.runs) {
         show_run(lines, record, (number, run));
@@ -20,12 +20,12 @@ pub(super) fn show(lines: &mut Lines, record: &Record, hook: &HookRecord) {
 
 fn show_run(lines: &mut Lines, record: &Record, (number, run): (usize, &HookRunRecord)) {
     let how = match (run.problem().is_some(), run.duration()) {
-        (_, None) => "it did not end".to_owned(),
+        (_, None) => "it did not finish".to_owned(),
         (false, Some(took)) => format!("done after {}", words::time(took)),
         (true, Some(took)) => format!("failed after {}", words::time(took)),
     };
     lines.at(4, &format!("run {number} on {}: {how}", run.trigger));
-    lines.fact(6, "called for", cause::short(record, &run.reason));
+    lines.fact(6, "reason", cause::short(record, &run.reason));
     if let Some(test) = run.test {
         lines.fact(6, "about", &record.full_name(test));
     }

@@ -6,15 +6,13 @@ mod lines;
 mod tests;
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use rtf_model::{Event, Record, SuiteRecord, Verdict};
+use rtf_model::{Record, SuiteRecord, Verdict};
 
 use crate::growth::{self, Within};
-use crate::{ReportError, Reporter, explain, output_file, prepared, words};
+use crate::{ReportError, ReportFile, explain, prepared, words};
 use lines::Lines;
-
-const WHAT: &str = "the text report";
 
 /// Writes the text report of a record.
 ///
@@ -31,31 +29,12 @@ pub fn write(out: &mut dyn Write, record: &Record) -> io::Result<()> {
     lines.write_to(out)
 }
 
-/// Writes the text report into a file when the run is over.
-#[derive(Debug)]
-pub struct TextFile {
-    path: PathBuf,
-}
-
-impl TextFile {
-    /// Checks that the file can be written: call it before the run.
-    ///
-    /// # Errors
-    /// It cannot.
-    pub fn new(path: &Path) -> Result<Self, ReportError> {
-        output_file::probe(WHAT, path)?;
-        Ok(Self { path: path.to_owned() })
-    }
-}
-
-impl Reporter for TextFile {
-    fn event(&mut self, _event: &Event, _record: &Record) -> Result<(), ReportError> {
-        Ok(())
-    }
-
-    fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
-        output_file::write(WHAT, &self.path, |out| write(out, record))
-    }
+/// Writes the report into a file at the end of the run.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn file(path: &Path) -> Result<ReportFile, ReportError> {
+    ReportFile::new("the text report", path, Box::new(write))
 }
 
 fn head(lines: &mut Lines, record: &Record) {
@@ -64,12 +43,12 @@ fn head(lines: &mut Lines, record: &Record) {
         record.damages.iter().for_each(|damage| lines.fact(2, "damage", &damage.to_string()));
     }
     let Some(run) = &record.run else {
-        return lines.at(0, "run: its beginning is missing");
+        return lines.at(0, "run: the start of the journal is missing");
     };
     lines.fact(0, "run", &run.run);
     lines.fact(0, "started", &run.started_at);
     lines.fact(0, "command", &words::command(&run.command));
-    lines.fact(0, "folder", &run.working_dir);
+    lines.fact(0, "directory", &run.working_dir);
     lines.fact(0, "rtf", &run.rtf);
     for warning in &record.warnings {
         let place = warning.labels.first();

@@ -34,7 +34,7 @@ fn show_attempt(lines: &mut Lines, test: &TestRecord, attempt: &AttemptRecord) {
         title += &format!(", attempt {}", attempt.attempt);
     }
     match &attempt.finished {
-        None => title += ": it did not end",
+        None => title += ": it did not finish",
         Some((at, finished)) => {
             let time = words::time(at.since(attempt.started));
             title += &format!(": {} in {} after {time}", finished.verdict, finished.phase);
@@ -42,7 +42,7 @@ fn show_attempt(lines: &mut Lines, test: &TestRecord, attempt: &AttemptRecord) {
                 title += &format!(", {exit}");
             }
             if finished.rerun {
-                title += ", will be run again";
+                title += ", will be retried";
             }
         }
     }

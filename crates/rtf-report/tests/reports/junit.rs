@@ -115,7 +115,7 @@ fn a_killed_runner_leaves_a_case_for_each_test() {
     assert_eq!(begun.message, "the run ended before the test did");
     assert!(begun.text.contains("joint 3 does not move"));
     let not_begun = case(&junit, "GripperTest").status.skipped_as_ref();
-    assert_eq!(not_begun.message, "the run ended before the test began");
+    assert_eq!(not_begun.message, "the run ended before the test started");
 }
 
 /// All tests passed, and yet the robot may stand anywhere.

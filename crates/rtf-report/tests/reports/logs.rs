@@ -114,6 +114,6 @@ fn what_a_suite_has_for_itself_has_a_log() {
     let logs = logs("prepared");
     let [(name, text)] = logs.iter().collect::<Vec<_>>()[..] else { panic!("{logs:?}") };
     assert_eq!(name, "arm.suite.log");
-    assert!(text.contains("port sim: 20019\nROS_DOMAIN_ID=7 (yours, kept)\n"), "{text}");
+    assert!(text.contains("port sim: 20019\nROS_DOMAIN_ID=7 (inherited)\n"), "{text}");
     assert!(text.ends_with("RTF_PORT_SIM=20019 ${SHELL:-sh}\n"), "{text}");
 }

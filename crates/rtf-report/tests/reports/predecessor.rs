@@ -6,7 +6,7 @@ use anstream::StripStream;
 use rtf_model::{EventKind, Record, Verdict};
 use rtf_report::Reporter;
 use rtf_report::journal;
-use rtf_report::predecessor::{Console, ConsoleOptions, ResultFile};
+use rtf_report::predecessor::{self, Console, ConsoleOptions};
 
 use crate::support::*;
 
@@ -20,7 +20,7 @@ fn console(name: &str, options: ConsoleOptions) -> String {
 fn file(name: &str, detail: bool) -> String {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("result.txt");
-    let mut file = ResultFile::new(&path, &stream_path(name), detail).unwrap();
+    let mut file = predecessor::file(&path, &stream_path(name), detail).unwrap();
     assert!(!path.exists(), "nothing is there before the end");
     file.finish(&Record::default()).unwrap();
     std::fs::read_to_string(path).unwrap()
@@ -69,7 +69,7 @@ fn every_test_that_did_not_pass_is_failed_in_the_file_and_in_the_counts() {
 fn a_journal_that_cannot_be_read_leaves_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("result.txt");
-    let mut file = ResultFile::new(&path, Path::new("/nowhere/events.jsonl"), false).unwrap();
+    let mut file = predecessor::file(&path, Path::new("/nowhere/events.jsonl"), false).unwrap();
     assert!(file.finish(&Record::default()).is_err());
     assert!(!path.exists());
 }

@@ -8,9 +8,9 @@ use rtf_report::background_writer::BackgroundWriter;
 use rtf_report::console::{Console, ConsoleOptions, Verbosity};
 use rtf_report::event_stream::EventStream;
 use rtf_report::gitlab::Sections;
-use rtf_report::junit::{self, JunitFile};
+use rtf_report::junit;
 use rtf_report::tap::{self, TapStream};
-use rtf_report::text::{self, TextFile};
+use rtf_report::text;
 use rtf_report::{AnnotationReporter, FailureNotice, ReportError, Reporter, code_quality, github};
 
 use super::again;
@@ -40,8 +40,8 @@ pub fn open_report(
     let root = repository();
     let root = root.as_deref();
     let report: Result<Box<dyn Reporter>, ReportError> = match format {
-        Format::Text => TextFile::new(path).map(|report| Box::new(report) as _),
-        Format::Junit => JunitFile::new(path, folder).map(|report| Box::new(report) as _),
+        Format::Text => text::file(path).map(|report| Box::new(report) as _),
+        Format::Junit => junit::file(path, folder).map(|report| Box::new(report) as _),
         Format::Tap => tap::file(path).map(|report| Box::new(report) as _),
         Format::CodeQuality => code_quality::file(path, root).map(|report| Box::new(report) as _),
         Format::Github => github::file(path, root).map(|report| Box::new(report) as _),

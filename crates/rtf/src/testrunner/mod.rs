@@ -21,9 +21,9 @@ use rtf_model::Record;
 use rtf_plan::plan::{Compatibility, Options, RunnerEnvironment};
 use rtf_process::fork_server::ForkMode;
 use rtf_report::journal::Journal;
-use rtf_report::junit::JunitFile;
+use rtf_report::junit;
 use rtf_report::logs::Logs;
-use rtf_report::predecessor::{Console, ConsoleOptions, ResultFile};
+use rtf_report::predecessor::{self, Console, ConsoleOptions};
 use rtf_report::{Reporter, run_dir};
 use rtf_web::{Capabilities, Server};
 
@@ -169,9 +169,9 @@ fn result_file(args: &Args, journal: &Path) -> Result<Option<Box<dyn Reporter>>,
     let Some(path) = args.result_file() else { return Ok(None) };
     let file: Result<Box<dyn Reporter>, _> = match args.output_type {
         OutputType::Text => {
-            ResultFile::new(path, journal, args.detail).map(|file| Box::new(file) as _)
+            predecessor::file(path, journal, args.detail).map(|file| Box::new(file) as _)
         }
-        OutputType::Junit => JunitFile::new(path, journal.parent()).map(|file| Box::new(file) as _),
+        OutputType::Junit => junit::file(path, journal.parent()).map(|file| Box::new(file) as _),
     };
     file.map(Some).map_err(|error| {
         Failure::input(error).hint("choose another path with `--output FILE`".to_owned())

@@ -173,7 +173,7 @@ fn gitlab_gets_sections() {
         reason  100%: the brake, it is open
         at      [FOLDER]/tests/Brake.lua:4
         log     rtf-results/[RUN]/logs/arm.Brake.log
-        again   rtf run arm.xml::Brake
+        rerun   rtf run arm.xml::Brake
 
     skipped tests:
       1 test: the critical test `Brake` did not pass: it is failed

@@ -50,7 +50,7 @@ fn every_process_finds_its_suites_ports_and_ids() {
          ROS_DOMAIN_ID ROS_HOSTNAME ROS_LOG_DIR ROS_MASTER_URI RTF_PORT_GAZEBO_MASTER RTF_PORT_ROS_MASTER RTF_PORT_SIM YARP_NAMESPACE";
     assert!(told.contains(names), "{told}");
     let log = std::fs::read_to_string(folder.path().join("rtf-results/latest/logs/s.suite.log"));
-    assert!(log.expect("a log").contains(&format!("join in: {}\n", own.join_command)));
+    assert!(log.expect("a log").contains(&format!("join: {}\n", own.join_command)));
 }
 
 #[test]

@@ -27,13 +27,13 @@ fn a_retry_that_passes_is_flaky() {
     exit code 0
     ----- stdout
     suite s  2 tests  s.xml
-         failed     [TIME]  s/Flaky, will be run again
+         failed     [TIME]  s/Flaky, will be retried
                  failure: not yet
                    at [FOLDER]/Flaky.lua:10
          passed     [TIME]  s/Flaky, attempt 2
          passed     [TIME]  s/P
 
-    flaky tests, which passed only when they were tried again:
+    flaky tests, which passed only after a retry:
       s/Flaky  2 attempts
         before  failed: not yet
 
@@ -66,7 +66,7 @@ fn retries_that_all_fail_are_a_failure() {
     exit code 1
     ----- stdout
     suite s  2 tests  s.xml
-         failed     [TIME]  s/Flaky, will be run again
+         failed     [TIME]  s/Flaky, will be retried
                  failure: not yet
                    at [FOLDER]/Flaky.lua:10
          failed     [TIME]  s/Flaky, attempt 2
@@ -78,7 +78,7 @@ fn retries_that_all_fail_are_a_failure() {
       s/Flaky  failed
         reason  not yet
         at      [FOLDER]/Flaky.lua:10
-        again   rtf run s.xml::Flaky
+        rerun   rtf run s.xml::Flaky
 
     results: rtf-results/[RUN]
     FAILED  2 tests in 1 suite, [TIME]: 1 passed, 1 failed
@@ -306,11 +306,11 @@ fn enough_is_enough() {
       s/Flaky  failed
         reason  not yet
         at      [FOLDER]/Flaky.lua:10
-        again   rtf run s.xml::Flaky
+        rerun   rtf run s.xml::Flaky
       plug-ins/Flaky  failed
         reason  not yet
         at      [FOLDER]/Flaky.lua:10
-        again   rtf run [FOLDER]/Flaky.lua
+        rerun   rtf run [FOLDER]/Flaky.lua
 
     repeated tests:
       s/Flaky  0 of 3 passed (0.0 %)

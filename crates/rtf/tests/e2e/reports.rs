@@ -50,7 +50,7 @@ fn a_run_as_it_is_told() {
         reason  `rate` is 87.5 Hz, its limits are 95 … 105
         at      [FOLDER]/rate.py:9
         log     rtf-results/[RUN]/logs/arm.rate.log
-        again   rtf run arm.xml::rate
+        rerun   rtf run arm.xml::rate
 
     results: rtf-results/[RUN]
     FAILED  2 tests in 1 suite, [TIME]: 1 passed, 1 failed

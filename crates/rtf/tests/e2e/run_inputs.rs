@@ -153,7 +153,7 @@ fn the_rest_is_skipped_when_a_critical_test_does_not_pass() {
       arm/Fails  failed
         reason  the brake is open
         at      [FOLDER]/Fails.lua:2
-        again   rtf run 1.xml::Fails
+        rerun   rtf run 1.xml::Fails
 
     skipped tests:
       1 test: the critical test `Fails` did not pass: it is failed

@@ -34,7 +34,7 @@ fn a_filter_chooses_and_the_run_says_so() {
     assert_snapshot!(folder.shown(&finished), @"
     exit code 0
     ----- stdout
-         chosen  a part of 3 tests
+       selected  from 3 tests
     suite arm  2 tests  arm.xml
          passed     [TIME]  arm/Limits
          passed     [TIME]  arm/Rate
@@ -150,7 +150,7 @@ fn what_failed_is_run_again_with_what_it_had() {
     assert_snapshot!(folder.shown(&again), @"
     exit code 1
     ----- stdout
-         chosen  a part of 4 tests, --shuffle=5
+       selected  from 4 tests, --shuffle=5
     suite plug-ins  1 test
          failed     [TIME]  plug-ins/F
                  failure: stuck at joint 9
@@ -164,11 +164,11 @@ fn what_failed_is_run_again_with_what_it_had() {
       plug-ins/F  failed
         reason  stuck at joint 9
         at      [FOLDER]/F.lua:2
-        again   rtf run [FOLDER]/F.lua --param 'joint 9'
+        rerun   rtf run [FOLDER]/F.lua --param 'joint 9'
       arm/Speed  failed
         reason  stuck at joint 3
         at      [FOLDER]/F.lua:2
-        again   rtf run arm.xml::Speed
+        rerun   rtf run arm.xml::Speed
 
     results: rtf-results/[RUN]
     FAILED  2 tests in 2 suites, [TIME]: 2 failed

@@ -92,7 +92,7 @@ fn a_collapse_during_the_only_test_is_red() {
     exit code 1
     ----- stdout
     [ERROR] (s) Fixture collapsed: Driver: check failed: check returned false
-    [ERROR] (s) Fixture collapsed: Driver: it is not started again: check failed: check returned false
+    [ERROR] (s) Fixture collapsed: Driver: it will not be restarted: check failed: check returned false
     [ERROR] (T) collapsed: fixture `Driver` collapsed: check failed: check returned false
 
     ---------- results -----------
