@@ -1,4 +1,4 @@
-//! Makes the folder of the page, which is built by other tools, if it is not
+//! Creates the directory of the page, which other tools build, if it is not
 //! there: what is embedded must have a place, and a change of it must be noticed.
 
 fn main() -> std::io::Result<()> {

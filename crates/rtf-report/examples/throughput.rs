@@ -3,7 +3,7 @@
 //! `cargo run --release -p rtf-report --example throughput [EVENTS]`
 //!
 //! One test floods with reports, the most that a single plug-in can do to the
-//! runner. The journal goes to a temporary folder, the console to nowhere.
+//! runner. The journal goes to a temporary directory, the console output is discarded.
 
 use std::io::{self, Write};
 use std::time::Instant;

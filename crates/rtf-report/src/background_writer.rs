@@ -1,8 +1,8 @@
-//! Standard output, written to by a thread of its own.
+//! Writes standard output in a background thread.
 //!
-//! Whoever reads there (a pager, a terminal after Ctrl-S, a slow connection) may stop for as
-//! long as they like: neither the run nor its journal waits for that. What waits to be
-//! written is kept in memory; [`BackgroundWriter::is_full`] tells a reporter to leave out detail.
+//! A slow reader (a pager, a terminal after Ctrl-S, a slow connection) must not delay the
+//! run or its journal. Pending output is kept
+//! in memory; reporters omit detail when [`BackgroundWriter::is_full`].
 
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -12,13 +12,13 @@ use std::thread;
 use crate::console::{Bar, BarState};
 use crate::is_disconnect;
 
-/// When so many bytes wait, detail should be left out.
+/// Above this number of pending bytes, reporters omit detail.
 const FULL: usize = 4 * 1024 * 1024;
 
-/// A stream of data leaves nothing out: it waits when so many bytes do.
+/// A data stream omits nothing: writing blocks above this number of pending bytes.
 const STREAM_LIMIT: usize = 4 * 1024 * 1024;
 
-/// A place that is written to by a thread of its own. Cheap to clone; what is written through
+/// A writer with a background thread. Cheap to clone; output that is written through
 /// one handle keeps its order. [`Write::flush`] waits until everything is written.
 #[derive(Clone, Debug)]
 pub struct BackgroundWriter {
@@ -42,7 +42,7 @@ struct State {
     bar: Option<BarState>,
     /// The thread has taken something and is not done with it.
     is_writing: bool,
-    /// Nothing is written any more: nobody reads it, or it cannot be written.
+    /// Output is discarded: its reader has disconnected, or an error occurred.
     is_over: bool,
     error: Option<io::Error>,
     /// All handles are gone.
@@ -73,10 +73,10 @@ impl Shared {
 }
 
 impl BackgroundWriter {
-    /// A place for lines that people read. It never waits.
+    /// A writer for console output. It never blocks.
     ///
     /// # Errors
-    /// The system has no thread to give.
+    /// The thread cannot be started.
     pub fn new(out: Box<dyn Write + Send>) -> io::Result<Self> {
         let shared = Arc::new(Shared::default());
         let ours = Arc::clone(&shared);
@@ -85,7 +85,7 @@ impl BackgroundWriter {
         Ok(Self { shared, limit: usize::MAX, _handle: handle })
     }
 
-    /// The same place for a stream of data: writing waits when very much does.
+    /// The same writer for a data stream: writing blocks when too much is pending.
     #[must_use]
     pub fn for_stream(&self) -> Self {
         Self { limit: STREAM_LIMIT, ..self.clone() }
@@ -103,7 +103,7 @@ impl BackgroundWriter {
         self.shared.changed.notify_all();
     }
 
-    /// Writes no more, and lets nobody wait: the reader is not waited for any longer.
+    /// Discards all output and ends all waits.
     pub fn abandon(&self) {
         self.shared.lock().is_over = true;
         self.shared.changed.notify_all();

@@ -1,27 +1,27 @@
-//! How much of what each process told waits to be reported.
+//! Backlog: how much of each process waits to be reported.
 
 use std::sync::{Mutex, PoisonError};
 
 use rtf_model::{Event, EventKind, Source};
 
-/// About what an event takes in memory beside its texts, in bytes.
+/// Approximate memory of an event without its texts, in bytes.
 const EVENT_BYTES: usize = 200;
-/// What a sample takes.
+/// Memory of a sample, in bytes.
 const SAMPLE_BYTES: usize = 16;
 
-/// What waits, of each process that told something.
+/// The number of pending bytes of each process.
 #[derive(Debug, Default)]
 pub(crate) struct Backlog(Mutex<Waiting>);
 
 #[derive(Debug, Default)]
 struct Waiting {
-    /// Few processes have something that waits at the same time.
+    /// A list, because few processes have pending events at the same time.
     of: Vec<(Source, usize)>,
     is_closed: bool,
 }
 
 impl Backlog {
-    /// An event waits from now on.
+    /// Adds a pending event.
     pub fn add(&self, event: &Event) {
         let Some((source, bytes)) = size(&event.kind) else { return };
         let mut waiting = self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -34,7 +34,7 @@ impl Backlog {
         }
     }
 
-    /// An event waits no longer.
+    /// Removes an event that was reported.
     pub fn remove(&self, event: &Event) {
         let Some((source, bytes)) = size(&event.kind) else { return };
         let mut waiting = self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -46,21 +46,21 @@ impl Backlog {
         }
     }
 
-    /// How much of a process waits, in bytes.
+    /// Number of pending bytes of a process.
     pub fn of(&self, source: Source) -> usize {
         let waiting = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         waiting.of.iter().find(|(of, _)| *of == source).map_or(0, |(_, bytes)| *bytes)
     }
 
-    /// Nothing waits any more, and nothing ever will.
+    /// Drops all counts, and ignores further events.
     pub fn close(&self) {
         let mut waiting = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         *waiting = Waiting { of: Vec::new(), is_closed: true };
     }
 }
 
-/// Who told it, and how much memory it takes. `None` for what the run itself tells, and for
-/// what a process printed, of which the run keeps only so much.
+/// The reporting process, and the memory that the event takes. `None` for events of the run,
+/// and for output, which the run limits.
 fn size(kind: &EventKind) -> Option<(Source, usize)> {
     let teller = |test, fixture: Option<_>| fixture.map_or(Source::Test(test), Source::Fixture);
     let (source, more) = match kind {

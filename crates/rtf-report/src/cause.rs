@@ -1,9 +1,9 @@
-//! Reasons that say again what was said with the fixture that broke.
+//! Shortens reasons that repeat why a fixture is broken.
 
 use rtf_model::Record;
 
-/// What a reason says first: that a fixture is broken. What broke it is told with the
-/// fixture, once. Other reasons stay as they are.
+/// Cuts the cause from a reason that names a broken fixture, because the cause is reported
+/// with the fixture. Other reasons are unchanged.
 pub(crate) fn short<'a>(record: &Record, reason: &'a str) -> &'a str {
     let broken = record.fixtures.iter().filter(|fixture| fixture.broken.is_some());
     let heads = broken.map(|fixture| format!("fixture `{}` is broken", fixture.plan.name));

@@ -32,9 +32,9 @@ struct Lines {
     begin: u32,
 }
 
-/// Writes the report of a record. `repository` is the folder from which GitLab
-/// names files; `None`: the run's. What has no place in the repository is left
-/// out, because GitLab refuses it.
+/// Writes the report of a record. `repository` is the directory to which GitLab's file
+/// names are relative; `None`: the run's. Findings without a location there are omitted
+/// because GitLab refuses them.
 ///
 /// # Errors
 /// `out` cannot be written.
@@ -43,7 +43,7 @@ pub fn write(out: &mut dyn Write, record: &Record, repository: Option<&Path>) ->
     let mut issues = Vec::new();
     for finding in finding::all(record, &Roots::new(record, repository)) {
         let Some(place) = finding.place.clone() else { continue };
-        // GitLab shows only one of those with the same fingerprint.
+        // GitLab shows only one issue per fingerprint.
         let number = seen.entry((finding.kind.clone(), finding.about.clone())).or_insert(0_u32);
         *number += 1;
         issues.push(issue(&finding, place, *number));
@@ -52,7 +52,7 @@ pub fn write(out: &mut dyn Write, record: &Record, repository: Option<&Path>) ->
     out.write_all(b"\n")
 }
 
-/// Writes the report into a file when the run is over.
+/// Writes the report into a file at the end of the run.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -70,7 +70,7 @@ fn issue(finding: &Finding, place: Place, number: u32) -> Issue {
         Rank::Robot => "major",
         Rank::Warning => "minor",
     };
-    // Neither line nor wording: what is moved is not new.
+    // Without line and wording: moved code causes no new issue.
     let known = format!("{}\n{}\n{number}", finding.kind, finding.about);
     let description = match finding.text.starts_with(&finding.title) {
         true => finding.text.clone(),

@@ -1,11 +1,11 @@
-//! Text of others, made harmless: a plug-in's output must not move the cursor,
+//! Escapes untrusted text: a plug-in's output must not move the cursor,
 //! recolour the terminal, reverse what is read, or break an XML file.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
 /// The text with every control character but line ends and tabs written out
-/// (`\x1b`), and so the characters that change the direction of writing.
+/// (`\x1b`), and characters that change the text direction.
 /// `\r\n` becomes `\n`.
 #[must_use]
 pub fn block(text: &str) -> Cow<'_, str> {
@@ -16,7 +16,7 @@ pub fn block(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// As [`block`], and on one line: line ends and tabs are written out too.
+/// As [`block`], on one line: line breaks and tabs are escaped, too.
 #[must_use]
 pub fn line(text: &str) -> Cow<'_, str> {
     if text.chars().any(is_harmful) {

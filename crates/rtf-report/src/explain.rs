@@ -1,5 +1,5 @@
-//! Why an attempt of a test or a hook went wrong, line by line. Console, text and JUnit
-//! tell it alike; each paints and indents the lines as it likes.
+//! Explains line by line why a test or hook failed. Console, text and JUnit
+//! use the same lines with their own style and indentation.
 
 use rtf_model::{
     AttemptRecord, Comparison, HookRunRecord, LeakedProcess, Measurement, Message, MessageKind,
@@ -8,23 +8,23 @@ use rtf_model::{
 
 use crate::{escape, words};
 
-/// How a line is meant.
+/// The style of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Tone {
-    /// What went wrong.
+    /// A problem.
     Bad,
     /// A fact.
     Plain,
-    /// A fact of second rank.
+    /// A secondary fact.
     Dim,
 }
 
-/// How much of an attempt is told.
+/// How much of an attempt is explained.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extent {
-    /// How many failures, and how many measurements outside their limits.
+    /// Maximum number of failures, and of measurements outside their limits.
     pub items: usize,
-    /// How many lines of each stack dump.
+    /// Maximum number of lines per stack dump.
     pub stack_lines: usize,
 }
 
@@ -33,11 +33,11 @@ impl Extent {
     pub(crate) const ALL: Self = Self { items: usize::MAX, stack_lines: usize::MAX };
 }
 
-/// Takes each line in turn; a line has no line end.
+/// Receives each line, without its line break.
 pub(crate) type Sink<'a> = &'a mut dyn FnMut(Tone, &str);
 
-/// Tells why an attempt did not pass: reason, failures, measurements and signals
-/// outside their limits, stacks. Neither what it printed nor what it left is told.
+/// Explains why an attempt did not pass: reason, failures, measurements and signals
+/// outside their limits, stacks. Output and leaked processes are not included.
 pub(crate) fn explain(attempt: &AttemptRecord, extent: Extent, sink: Sink<'_>) {
     let reason = attempt.finished.as_ref().and_then(|(_, finished)| finished.reason.as_deref());
     if let Some(reason) = reason.filter(|reason| !is_told_with_its_place(attempt, reason)) {
@@ -57,8 +57,8 @@ pub(crate) fn explain(attempt: &AttemptRecord, extent: Extent, sink: Sink<'_>) {
     }
 }
 
-/// Tells why a run of a hook did not do its work: problem, failures, stacks,
-/// processes left behind. What it printed is not told.
+/// Explains why a run of a hook failed: problem, failures, stacks,
+/// leaked processes. Output is not included.
 pub(crate) fn hook(run: &HookRunRecord, extent: Extent, sink: Sink<'_>) {
     let is_told = |problem: &&str| run.messages.iter().any(|message| message.text == *problem);
     if let Some(problem) = run.problem().filter(|problem| !is_told(problem)) {
@@ -72,15 +72,15 @@ pub(crate) fn hook(run: &HookRunRecord, extent: Extent, sink: Sink<'_>) {
     left(&run.leaked, sink);
 }
 
-/// Whether the reason is one of the failures or measurements that are told
-/// anyway: usually the first one is, and it tells its place as well.
+/// Whether the reason is one of the failures or measurements that are
+/// listed with their locations: usually it is the first one.
 fn is_told_with_its_place(attempt: &AttemptRecord, reason: &str) -> bool {
     attempt.failures().any(|failure| failure.text == reason)
         || attempt.violations().any(|value| value.problem().as_deref() == Some(reason))
         || attempt.series.iter().any(|series| series.problem.as_deref() == Some(reason))
 }
 
-/// A message with its place and the vectors behind it.
+/// A message with its location and compared vectors.
 pub(crate) fn message(message: &Message, sink: Sink<'_>) {
     let (tone, word) = match message.kind {
         MessageKind::Report => (Tone::Plain, "report"),
@@ -94,7 +94,7 @@ pub(crate) fn message(message: &Message, sink: Sink<'_>) {
         sink(Tone::Dim, &format!("  at {}", escape::line(&location.to_string())));
     }
     let fails = matches!(message.kind, MessageKind::Failure | MessageKind::Error);
-    // The text tells a scalar's numbers already.
+    // The text already contains a scalar's numbers.
     if let Some(comparison) = message.comparison.as_ref().filter(|c| fails && c.got.len() > 1) {
         vectors(comparison, sink);
     }
@@ -139,7 +139,7 @@ pub(crate) fn series(series: &SignalSummary) -> String {
     text
 }
 
-/// The stacks of a process before it was stopped by force.
+/// The stack dump of a process that was killed.
 pub(crate) fn stack(stack: &str, extent: Extent, sink: Sink<'_>) {
     sink(Tone::Plain, "stack before it was killed:");
     let text = escape::block(stack);
@@ -149,7 +149,7 @@ pub(crate) fn stack(stack: &str, extent: Extent, sink: Sink<'_>) {
     left_out(text.lines().count(), extent.stack_lines, "line", sink);
 }
 
-/// The processes that had to be killed.
+/// The leaked processes.
 pub(crate) fn left(processes: &[LeakedProcess], sink: Sink<'_>) {
     if processes.is_empty() {
         return;
@@ -169,7 +169,7 @@ pub(crate) fn process(process: &LeakedProcess) -> String {
     format!("{} {command}{owner}", process.pid)
 }
 
-/// Lines that a process printed.
+/// Lines of a process's output.
 pub(crate) fn printed<'a>(lines: impl IntoIterator<Item = &'a str>, sink: Sink<'_>) {
     for line in lines {
         sink(Tone::Dim, format!("| {}", escape::block(line)).trim_end());

@@ -1,13 +1,13 @@
-//! Hands each event to each reporter, on a thread of its own.
+//! Passes each event to each reporter, in a separate thread.
 //!
 //! The run must not wait for a disk, and reporters must not need locks: one thread owns
 //! the record and all reporters, and a queue leads there. Handing an event over never
 //! waits, so that a fixture's collapse is dealt with even while the disk does not answer.
 //! Instead, [`FanoutHandle::backlog`] tells the run how much of one process waits, so that
 //! it reads no more from a plug-in that floods, which cannot fill the memory. Standard
-//! output has a thread of its own: see [`crate::background_writer`].
+//! output has another thread: see [`crate::background_writer`].
 //!
-//! A reporter that panics is given no further event; the others go on.
+//! A reporter that panics receives no further events; the others continue.
 
 use std::io;
 use std::mem::take;
@@ -23,18 +23,18 @@ use rtf_model::{Event, OrderChecker, Record, Source};
 use crate::backlog::Backlog;
 use crate::{ReportError, Reporter};
 
-/// What happens sooner than this after reporters have written waits until then, so
-/// that short tests are written together. It is how late a report can be by that.
+/// Events within this time after the last write are collected, so that the events of
+/// short tests are written together. Reports are delayed by up to this time.
 const GATHERING: Duration = Duration::from_micros(250);
 
-/// All reporters, and the thread that they live on.
+/// All reporters, and their thread.
 #[derive(Debug)]
 pub struct Fanout {
     handle: FanoutHandle,
     thread: JoinHandle<Outcome>,
 }
 
-/// The way to all reporters. Cheap to clone; events of one handle keep their order.
+/// Sends events to all reporters. Cheap to clone; events of one handle keep their order.
 #[derive(Clone, Debug)]
 pub struct FanoutHandle {
     sender: Sender<Event>,
@@ -43,33 +43,33 @@ pub struct FanoutHandle {
 
 impl FanoutHandle {
     /// Hands over an event; never waits. When the thread is gone (it panicked) the
-    /// event is dropped: the run, its tear-down and its hooks go on, and
-    /// [`Fanout::join`] tells.
+    /// event is dropped: the run, its tear-down and its hooks continue, and
+    /// [`Fanout::join`] reports it.
     pub fn send(&self, event: Event) {
         self.backlog.add(&event);
         drop(self.sender.send(event));
     }
 
-    /// About how many bytes of what a process told wait to be reported.
+    /// Approximate number of bytes of a process that wait to be reported.
     #[must_use]
     pub fn backlog(&self, source: Source) -> usize {
         self.backlog.of(source)
     }
 }
 
-/// What is left when all events were reported.
+/// The result after all events were reported.
 #[derive(Debug)]
 pub struct FanoutResult {
     /// The fold over all events.
     pub record: Record,
-    /// Reports that could not be written, at most one of each reporter.
+    /// Reports that could not be written, at most one per reporter.
     pub errors: Vec<ReportError>,
 }
 
 #[derive(Debug)]
 struct Outcome {
     finished: FanoutResult,
-    /// The first event that came where it may not, where that is checked.
+    /// The first violation of the order of events, if the order is checked.
     disorder: Option<String>,
 }
 
@@ -77,7 +77,7 @@ impl Fanout {
     /// Starts the thread.
     ///
     /// # Errors
-    /// The system has no thread to give.
+    /// The thread cannot be started.
     pub fn start(reporters: Vec<Box<dyn Reporter>>) -> std::io::Result<Self> {
         let (sender, receiver) = mpsc::channel();
         let backlog = Arc::new(Backlog::default());
@@ -86,12 +86,12 @@ impl Fanout {
         Ok(Self { handle: FanoutHandle { sender, backlog }, thread })
     }
 
-    /// Hands over an event, see [`FanoutHandle::send`].
+    /// Sends an event, see [`FanoutHandle::send`].
     pub fn send(&self, event: Event) {
         self.handle.send(event);
     }
 
-    /// A way to the reporters. All handles must be gone before [`Fanout::join`] returns.
+    /// A handle for sending events. [`Fanout::join`] waits until all handles are dropped.
     #[must_use]
     pub fn handle(&self) -> FanoutHandle {
         self.handle.clone()
@@ -112,8 +112,8 @@ impl Fanout {
     }
 }
 
-/// Lets events come, unless nothing was `written` for a while. While this thread
-/// does not wait for them, those who hand them over need not wake it for each.
+/// Waits for more events, unless the last write was a while ago. While this thread
+/// does not wait for an event, senders need not wake it for each one.
 fn gather(written: Instant) {
     if let Some(rest) = GATHERING.checked_sub(written.elapsed()) {
         // Ends early when there will be no more, see `Fanout::join`.
@@ -121,7 +121,7 @@ fn gather(written: Instant) {
     }
 }
 
-/// What is told of a reporter that panicked; the panic itself was printed.
+/// The error for a reporter that panicked; the panic itself was printed.
 fn panicked() -> ReportError {
     let source = io::Error::other("the reporter panicked");
     ReportError::at("a report", Path::new("its place"))(source)
@@ -138,7 +138,7 @@ struct State {
 }
 
 impl Drop for State {
-    /// Nothing waits for a thread that is gone.
+    /// No process waits for a thread that has ended.
     fn drop(&mut self) {
         self.backlog.close();
     }

@@ -1,5 +1,5 @@
-//! What speaks against a run, each with the place in the sources that shows it
-//! best: what code hosts mark in a change.
+//! The problems of a run, each with the best location in the sources:
+//! code hosts annotate changes with them.
 
 mod place;
 
@@ -11,10 +11,10 @@ use crate::escape;
 use crate::explain::{self, Extent};
 use crate::words;
 
-/// How much of a test is told; hosts cut long texts.
+/// How much of a test is explained; code hosts cut long texts.
 const EXTENT: Extent = Extent { items: 10, stack_lines: 30 };
 
-/// How bad it is.
+/// The severity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Rank {
     /// The robot may not be in a safe state.
@@ -23,18 +23,18 @@ pub(crate) enum Rank {
     Bench,
     /// The robot is wrong.
     Robot,
-    /// Worth a look.
+    /// Probably a mistake.
     Warning,
 }
 
-/// One thing that speaks against a run.
+/// One problem of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct Finding {
-    /// How bad it is.
+    /// The severity.
     pub rank: Rank,
     /// A stable word for its kind: `failed`, `fixture`, `hook`.
     pub kind: String,
-    /// What it is about, stable from run to run: `arm/EncoderTest`.
+    /// The subject, stable from run to run: `arm/EncoderTest`.
     pub about: String,
     /// One line.
     pub title: String,
@@ -44,8 +44,8 @@ pub(crate) struct Finding {
     pub place: Option<Place>,
 }
 
-/// All of them: first the run, then hooks, fixtures and tests, so that what
-/// a host shows of many is the cause, not what followed from it.
+/// All findings: first the run, then hooks, fixtures and tests, so that a code
+/// host that shows only some of them shows the cause, not its consequences.
 pub(crate) fn all(record: &Record, roots: &Roots<'_>) -> Vec<Finding> {
     let mut findings: Vec<Finding> = of_run(record, roots).into_iter().collect();
     findings.extend(record.suites.iter().flat_map(|suite| of_hooks(record, suite, roots)));
@@ -55,7 +55,7 @@ pub(crate) fn all(record: &Record, roots: &Roots<'_>) -> Vec<Finding> {
     findings
 }
 
-/// What is wrong with the run as a whole, in words.
+/// The problem of the run as a whole.
 pub(crate) fn run_problem(record: &Record) -> Option<String> {
     if let Some(damage) = words::damage(record) {
         Some(damage)
@@ -143,7 +143,7 @@ fn of_test(record: &Record, test: &TestRecord, roots: &Roots<'_>) -> Option<Find
     let verdict = test.final_verdict();
     let rank = match verdict {
         Verdict::Failed => Rank::Robot,
-        // What was not run says nothing: why it was not is a finding of its own.
+        // The reason why it was skipped is a separate finding.
         Verdict::Skipped => return None,
         verdict if verdict.is_green() => return None,
         _ => Rank::Bench,

@@ -1,5 +1,5 @@
-//! Workflow commands of GitHub Actions, which mark what went wrong in the
-//! change that is looked at: `::error file=…,line=…,title=…::…`.
+//! Workflow commands of GitHub Actions, which annotate the
+//! changed lines: `::error file=…,line=…,title=…::…`.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -10,8 +10,8 @@ use crate::ReportError;
 use crate::finding::{self, Finding, Rank, Roots};
 use crate::report_file::ReportFile;
 
-/// Writes a command for each finding. `repository` is the folder from which
-/// GitHub names files; `None`: the run's.
+/// Writes a command for each finding. `repository` is the directory to which
+/// GitHub's file names are relative; `None`: the run's.
 ///
 /// # Errors
 /// `out` cannot be written.
@@ -22,7 +22,7 @@ pub fn write(out: &mut dyn Write, record: &Record, repository: Option<&Path>) ->
     Ok(())
 }
 
-/// Writes the commands into a file when the run is over.
+/// Writes the commands into a file at the end of the run.
 ///
 /// # Errors
 /// The file cannot be written.

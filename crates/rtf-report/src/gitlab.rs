@@ -1,7 +1,7 @@
-//! Sections of GitLab's job log: what a suite prints can be folded away. They
-//! begin folded, because the summary at the end names all that went wrong. Suites
-//! that run side by side have none: sections cannot overlap, and in that of one
-//! suite nobody looks for lines of another.
+//! Sections of GitLab's job log: the output of a suite can be folded. They
+//! are folded initially, because the summary at the end names all problems. Suites
+//! that run in parallel have none, because sections
+//! cannot overlap.
 
 use std::io::Write;
 use std::path::Path;
@@ -12,7 +12,7 @@ use rtf_model::{Event, EventKind, Micros, Record, SuiteId};
 use crate::disconnect::UntilDisconnect;
 use crate::{ReportError, Reporter, escape};
 
-/// Puts what another reporter writes to the same place into sections, one for
+/// Puts the output of another reporter into sections, one for
 /// each suite.
 pub struct Sections {
     inner: Box<dyn Reporter>,

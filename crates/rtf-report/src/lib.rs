@@ -1,13 +1,13 @@
-//! Reporters: each is given every event of a run and shows or keeps what it wants.
+//! Reporters: each receives every event of a run, and shows or stores what it needs.
 //!
 //! [`Fanout`] owns the [`rtf_model::Record`] and hands each event to each
-//! [`Reporter`] on a thread of its own. The [`journal`] is the truth from which
-//! every other report can be made again; [`console`] talks while the run goes
-//! on; [`text`] and [`junit`] write a file when it is over; [`logs`] keeps what
-//! each process printed. [`tap`], [`event_stream`], [`github`], [`gitlab`] and
-//! [`code_quality`] talk to other programs. [`run_dir`] is where all of it goes.
-//! [`merge`] makes one run of several.
-//! [`predecessor`] tells and writes what robot-testing-framework 2.x did.
+//! [`Reporter`] in a separate thread. The [`journal`] is the authoritative record, from which
+//! every other report can be generated; [`console`] shows the run while it
+//! continues; [`text`] and [`junit`] write a file at its end; [`logs`] keeps the output of
+//! each process. [`tap`], [`event_stream`], [`github`], [`gitlab`] and
+//! [`code_quality`] are for other programs. [`run_dir`] is the directory of all results.
+//! [`merge`] merges several runs.
+//! [`predecessor`] has the output formats of robot-testing-framework 2.x.
 //!
 //! This crate starts nothing and decides nothing about a run.
 

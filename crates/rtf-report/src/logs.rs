@@ -1,7 +1,7 @@
-//! Keeps what each process printed in a file of its own in the run's folder.
+//! Writes the output of each process to a separate file in the run's directory.
 //!
-//! The files are made when there is something to write. They hold what the
-//! events hold: a process that floods is cut there as it is in the journal.
+//! The files are created on demand. They contain the output of the
+//! events, with the same limits as in the journal.
 
 use std::collections::HashMap;
 use std::fs::{self, File, OpenOptions};
@@ -19,7 +19,7 @@ const WHAT: &str = "a log";
 /// Names longer than this are cut.
 const NAME_LENGTH: usize = 80;
 
-/// The log of the newest attempt of a test, relative to the run's folder:
+/// The log of the newest attempt of a test, relative to the run's directory:
 /// `logs/arm.EncoderTest.r2.log`.
 #[must_use]
 pub fn test_log(record: &Record, id: TestId) -> PathBuf {
@@ -29,7 +29,7 @@ pub fn test_log(record: &Record, id: TestId) -> PathBuf {
 }
 
 /// The log of one attempt (its repetition and its number) of a test, relative
-/// to the run's folder.
+/// to the run's directory.
 #[must_use]
 pub fn attempt_log(record: &Record, id: TestId, number: (u32, u32)) -> PathBuf {
     let Some(test) = record.tests.get(id.index()) else {
@@ -47,14 +47,14 @@ pub fn attempt_log(record: &Record, id: TestId, number: (u32, u32)) -> PathBuf {
     path(name, attempt)
 }
 
-/// The log of the newest start of a fixture, relative to the run's folder:
+/// The log of the newest start of a fixture, relative to the run's directory:
 /// `logs/arm.fixture-simulator.a2.log`.
 #[must_use]
 pub fn fixture_log(record: &Record, id: FixtureId) -> PathBuf {
     fixture_start_log(record, id, record.fixture(id).map_or(1, |fixture| fixture.starts))
 }
 
-/// The log of one start of a fixture, counted from 1, relative to the run's folder.
+/// The log of one start of a fixture, counted from 1, relative to the run's directory.
 #[must_use]
 pub fn fixture_start_log(record: &Record, id: FixtureId, start: u32) -> PathBuf {
     let Some(fixture) = record.fixture(id) else {
@@ -65,7 +65,7 @@ pub fn fixture_start_log(record: &Record, id: FixtureId, start: u32) -> PathBuf 
     path(base(suite, &name, false, &format!("f{id}")), start)
 }
 
-/// The log of the newest run of a hook, relative to the run's folder:
+/// The log of the newest run of a hook, relative to the run's directory:
 /// `logs/arm.hook-park.a2.log`.
 #[must_use]
 pub fn hook_log(record: &Record, id: HookId) -> PathBuf {
@@ -73,7 +73,7 @@ pub fn hook_log(record: &Record, id: HookId) -> PathBuf {
     hook_run_log(record, id, runs)
 }
 
-/// The log of one run of a hook, counted from 1, relative to the run's folder.
+/// The log of one run of a hook, counted from 1, relative to the run's directory.
 #[must_use]
 pub fn hook_run_log(record: &Record, id: HookId, run: usize) -> PathBuf {
     let Some(hook) = record.hooks.get(id.index()) else {
@@ -96,7 +96,7 @@ pub fn log(record: &Record, source: Source) -> PathBuf {
     }
 }
 
-/// What a suite has for itself, relative to the run's folder:
+/// The private resources of a suite, relative to the run's directory:
 /// `logs/arm.suite.log`.
 #[must_use]
 pub fn suite_log(record: &Record, id: SuiteId) -> PathBuf {
@@ -126,7 +126,7 @@ fn base(suite: &str, name: &str, ambiguous: bool, id: &str) -> String {
     }
 }
 
-/// Writes the logs below the run's folder.
+/// Writes the logs in the run's directory.
 #[derive(Debug)]
 pub struct Logs {
     folder: PathBuf,
@@ -140,7 +140,7 @@ struct Log {
 }
 
 impl Logs {
-    /// Logs in `logs/` of this run's folder.
+    /// Logs in `logs/` of this run's directory.
     #[must_use]
     pub fn new(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), open: HashMap::new() }
@@ -159,7 +159,7 @@ impl Logs {
         log.print(output).map_err(ReportError::at(WHAT, &log.path))
     }
 
-    /// What a suite has for itself, for whoever looks at its logs while it runs.
+    /// The private resources of a suite.
     fn prepared(&self, prepared: &SuitePrepared, record: &Record) -> Result<(), ReportError> {
         let path = self.folder.join(suite_log(record, prepared.suite));
         let mut text = String::new();

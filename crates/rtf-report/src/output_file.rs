@@ -1,6 +1,6 @@
-//! Report files appear at once and complete, or not at all.
+//! Report files are written atomically.
 //!
-//! A report is written beside its final name and then renamed, so that a
+//! A report is written to a temporary file and then renamed, so that a
 //! reader never sees half of it and an earlier report survives a failure. What
 //! is no regular file (`/dev/stdout`, a named pipe) is written directly.
 
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use crate::ReportError;
 
 /// Checks before a run that a report can be written to `path` after it: makes
-/// the folder if it is missing and puts a file beside the report for a moment.
+/// the directory if it is missing, and creates and removes a temporary file next to the report.
 ///
 /// # Errors
 /// What would prevent the report.

@@ -1,4 +1,4 @@
-//! A report that is made of the record when the run is over.
+//! Reports that are generated from the record at the end of the run.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -10,10 +10,10 @@ use crate::{ReportError, Reporter, is_disconnect, output_file};
 /// Writes a report of a record.
 pub type WriteReport = Box<dyn Fn(&mut dyn Write, &Record) -> io::Result<()> + Send>;
 
-/// Tells something of the record when the run is over.
+/// Prints annotations for a record.
 pub type PrintAnnotations = Box<dyn Fn(&Record) -> io::Result<()> + Send>;
 
-/// Tells something on standard error when the run is over.
+/// Prints annotations on standard error at the end of the run.
 pub struct AnnotationReporter(PrintAnnotations);
 
 impl AnnotationReporter {
@@ -53,7 +53,7 @@ impl Reporter for FailureNotice {
     }
 }
 
-/// Writes a file when the run is over.
+/// Writes a file at the end of the run.
 pub struct ReportFile {
     what: &'static str,
     path: PathBuf,

@@ -9,7 +9,7 @@ pub trait Reporter: Send {
     /// Takes in an event. `record` already contains it.
     ///
     /// # Errors
-    /// What was to be written could not be written. The run goes on without
+    /// The report cannot be written. The run continues without
     /// this reporter; the others are notified at once, and the failure is shown at
     /// its end and in the exit code.
     fn event(&mut self, event: &Event, record: &Record) -> Result<(), ReportError>;
@@ -25,7 +25,7 @@ pub trait Reporter: Send {
     /// Another reporter could not write, and is given nothing more.
     fn reporter_failed(&mut self, _error: &ReportError) {}
 
-    /// No event will follow: the run is over, or its stream ended early.
+    /// No event will follow: the run has ended, or its stream ended early.
     ///
     /// # Errors
     /// As for [`Reporter::event`].

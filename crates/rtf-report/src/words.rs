@@ -1,4 +1,4 @@
-//! Numbers, times and commands as people read them.
+//! Numbers, times and commands for display.
 
 use std::borrow::Cow;
 use std::time::Duration;
@@ -49,7 +49,7 @@ pub(crate) fn significant(number: f64) -> String {
     }
 }
 
-/// `repetition 2 of 3`; nobody knows of how many while the time is not over.
+/// `repetition 2 of 3`; without the total while it is unknown.
 pub(crate) fn repetition(test: &TestRecord, attempt: &AttemptRecord) -> String {
     match test.repetitions() {
         Some(all) => format!("repetition {} of {all}", attempt.repetition),

@@ -1,4 +1,4 @@
-//! What every answer is made from.
+//! The shared state of all handlers.
 
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
@@ -16,29 +16,29 @@ use crate::index::Index;
 use crate::problem::Problem;
 use crate::runs::{Run, Runs};
 
-/// How many event streams there may be at the same time.
+/// Maximum number of concurrent event streams.
 const STREAMS: usize = 256;
 
-/// What every answer is made from. Cheap to clone.
+/// The shared state of all handlers. Cheap to clone.
 #[derive(Clone)]
 pub struct App {
     /// The runs.
     pub runs: Arc<Runs>,
-    /// Who may do what.
+    /// Access control.
     pub access: Arc<Access>,
-    /// What it can do beside showing runs.
+    /// What the server can do in addition to showing runs.
     pub role: Capabilities,
-    /// Makes what says with which command a test of a run is run again.
+    /// Creates the function that returns the command for rerunning a test.
     pub rerun: fn() -> RerunCommand,
     /// Changes when the journal of that run has grown.
     pub grown: watch::Receiver<u64>,
-    /// Turns true when the server ends.
+    /// Becomes true when the server shuts down.
     pub ending: watch::Receiver<bool>,
-    /// When the server ends, once the run is over that it was a part of.
+    /// When the server exits after its run has ended.
     pub lingers: Arc<OnceLock<Instant>>,
-    /// Places for event streams.
+    /// Positions for event streams.
     pub streams: Arc<Semaphore>,
-    /// Places for files that are sent.
+    /// Positions for files that are sent.
     pub files: Arc<Semaphore>,
 }
 
@@ -49,13 +49,13 @@ impl std::fmt::Debug for App {
 }
 
 impl App {
-    /// Places for event streams.
+    /// Positions for event streams.
     #[must_use]
     pub fn streams() -> Arc<Semaphore> {
         Arc::new(Semaphore::new(STREAMS))
     }
 
-    /// A place for a file that is sent.
+    /// A permit for sending a file.
     ///
     /// # Errors
     /// 503: so many are sent already.
@@ -65,7 +65,7 @@ impl App {
         })
     }
 
-    /// Makes an answer from a run and its index, on a thread that may wait.
+    /// Creates a response from a run and its index, in a thread that may block.
     ///
     /// # Errors
     /// There is no such run, it cannot be read, or `view` says no.
@@ -97,7 +97,7 @@ impl App {
     }
 }
 
-/// Does what may wait on a thread for that.
+/// Runs a blocking function in a thread for blocking work.
 ///
 /// # Errors
 /// What `act` says; 500 when it panicked.
@@ -108,7 +108,7 @@ pub async fn blocking<T: Send + 'static>(
     tokio::task::spawn_blocking(act).await.map_err(failed)?
 }
 
-/// JSON that was made on a thread that may wait.
+/// A JSON response.
 #[derive(Debug)]
 pub struct JsonText(Bytes);
 

@@ -1,12 +1,12 @@
-//! What a server can do beside showing runs, which is up to the program that it
-//! is a part of.
+//! What a server can do in addition to showing runs. The program that contains the
+//! server implements it.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use rtf_model::{SuiteId, TestId};
 
-/// What a person may ask of the run that this process makes.
+/// Controls the run of this process.
 pub trait RunControl: Send + Sync {
     /// End the run as SIGINT does.
     fn stop_run(&self);
@@ -16,51 +16,51 @@ pub trait RunControl: Send + Sync {
     fn skip_suite(&self, suite: SuiteId);
 }
 
-/// What starts runs of the results folder again, one at a time.
+/// Reruns runs of the results directory, one at a time.
 pub trait RunStarter: Send + Sync {
-    /// Starts the failed tests of a run again; the name of the new run. Takes
-    /// until its journal is there.
+    /// Reruns the failed tests of a run; returns the name of the new run once
+    /// its journal exists.
     ///
     /// # Errors
     /// Why it was not started.
     fn rerun_failed(&self, run: &FinishedRun<'_>) -> Result<String, RerunRejected>;
 
-    /// The name of the run that was started and still goes on.
+    /// The name of the rerun that is in progress.
     fn started(&self) -> Option<String>;
 
     /// End this run as SIGINT does.
     fn stop(&self);
 }
 
-/// A run of the results folder that is over.
+/// A finished run of the results directory.
 #[derive(Clone, Copy, Debug)]
 pub struct FinishedRun<'a> {
     /// Its name.
     pub name: &'a str,
-    /// The folder in which its command was given.
+    /// The directory in which it was started.
     pub folder: &'a Path,
 }
 
 /// Why a run was not started.
 #[derive(Debug)]
 pub struct RerunRejected {
-    /// Why, in words.
+    /// Why, as text.
     pub reason: String,
-    /// What to do about it.
+    /// How to fix it.
     pub hint: Option<String>,
 }
 
-/// What a server can do beside showing runs.
+/// What a server can do in addition to showing runs.
 #[derive(Clone)]
 pub enum Capabilities {
-    /// It is a part of the process that makes this run.
+    /// It is part of the process that runs this run, which it controls.
     Runner(String, Arc<dyn RunControl>),
-    /// It shows what others made, and starts some of it again.
+    /// It shows the runs of other processes, and can rerun their failed tests.
     Viewer(Arc<dyn RunStarter>),
 }
 
 impl Capabilities {
-    /// The run that this process makes.
+    /// The run of this process.
     #[must_use]
     pub fn own(&self) -> Option<&str> {
         match self {

@@ -1,9 +1,9 @@
-//! One client's way through a journal: from an event on, as fast as the client
-//! takes it, and then as the run goes on.
+//! A feed sends a journal to one client: from an event on, as fast as the client
+//! reads it, and then as the run continues.
 //!
-//! A feed holds its place in the file and one batch of events. What the client
-//! does not take stays in the file, so that a client that does not read costs
-//! nothing; when it comes back and is too far behind, it is told to start anew.
+//! A feed holds its position in the file and one batch of events. Events that the client
+//! does not read stay in the file, so that a client that does not read costs
+//! nothing; when it resumes and is too far behind, it must load a new snapshot.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -19,29 +19,29 @@ use crate::index::{Lines, State};
 use crate::problem::Problem;
 use crate::runs::Run;
 
-/// A client that is further behind than this many bytes is told to start anew.
+/// A client that is further behind than this many bytes must load a new snapshot.
 const BEHIND: u64 = 8 << 20;
-/// How much of the journal is looked through at once.
+/// Maximum size of a batch, in bytes of the journal.
 const BATCH: u64 = 256 * 1024;
-/// How often a journal is looked at when nobody tells that it has grown.
+/// Polling interval for a journal of another process.
 const LOOK: Duration = Duration::from_millis(100);
 /// How long growth is collected.
 const COLLECT: Duration = Duration::from_millis(20);
-/// The least time between two looks that find something. Each wakes the client, which may need
+/// Minimum time between two batches. Each wakes the client, which may need
 /// the processors that the tests run on.
 const BETWEEN: Duration = Duration::from_millis(100);
-/// How often the client is told how far the run is, while details are left out.
+/// Interval of `progress` events while details are omitted.
 const PROGRESS: Duration = Duration::from_secs(1);
-/// How long a journal that nobody writes may still get its end from the guard.
+/// How long the guard may take to complete the journal of a runner that died.
 const ABANDONED: Duration = Duration::from_secs(10);
 
 /// How many digits an id has at most.
 const LONGEST_ID: usize = 9;
 
-/// Whose messages, measurements and outputs a client wants.
+/// The sources whose messages, measurements and output a client requests.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Details {
-    /// Everybody's.
+    /// All sources.
     All,
     /// Of these.
     Of(Vec<Source>),
@@ -86,42 +86,42 @@ impl Details {
     }
 }
 
-/// One client's way through a journal.
+/// Sends a journal to one client.
 #[derive(Debug)]
 pub struct Feed {
-    at: Option<Place>,
+    at: Option<FeedPosition>,
     grown: Option<watch::Receiver<u64>>,
     ending: Option<watch::Receiver<bool>>,
     ended: bool,
-    /// When there was something in the journal.
+    /// When the journal last grew.
     moved: Option<Instant>,
 }
 
-/// Where in the journal a client is.
+/// The position of a client in the journal.
 #[derive(Debug)]
-struct Place {
+struct FeedPosition {
     run: Arc<Run>,
     details: Details,
-    /// Whole lines were looked at up to here.
+    /// Lines before this offset have been processed.
     offset: u64,
     /// The number of the next event.
     next: u64,
-    /// The last event that was left out, since the client was told.
+    /// The last omitted event since the last `progress`.
     left_out: Option<(u64, u64)>,
     told: Instant,
-    /// Since when nothing came.
+    /// Since when there were no events.
     quiet: Instant,
-    /// Where the client has to start anew, before anything else is sent.
+    /// Why the client must load a new snapshot, before anything else is sent.
     anew: Option<&'static str>,
 }
 
-/// What a look at the journal brings.
+/// New events in the journal.
 #[derive(Debug, Default)]
 struct Batch {
     events: Vec<Event>,
     /// Nothing is left for now.
     is_last: bool,
-    /// The run is over, and everything was sent.
+    /// The run has ended, and everything was sent.
     is_over: bool,
 }
 
@@ -143,20 +143,20 @@ impl Feed {
             return Ok(None);
         }
         let anew = (next > coming).then_some("these events have not happened yet");
-        let offset = if next >= coming { index.offset() } else { index.places().before(next) };
+        let offset = if next >= coming { index.offset() } else { index.positions().before(next) };
         drop(index);
         let (left_out, now) = (None, Instant::now());
         let next = next.min(coming);
-        let at = Place { run, details, offset, next, left_out, told: now, quiet: now, anew };
+        let at = FeedPosition { run, details, offset, next, left_out, told: now, quiet: now, anew };
         Ok(Some(Self { at: Some(at), grown: None, ending: None, ended: false, moved: None }))
     }
 
-    /// Listens to who tells that the journal has grown, and that the server ends.
+    /// Subscribes to growth of the journal, and to the shutdown of the server.
     pub fn listen(&mut self, grown: watch::Receiver<u64>, ending: watch::Receiver<bool>) {
         (self.grown, self.ending) = (Some(grown), Some(ending));
     }
 
-    /// The next events; nothing when the stream is over.
+    /// The next events; `None` at the end of the stream.
     pub async fn next(&mut self) -> Option<Vec<Event>> {
         while !self.ended {
             let ending = self.ending.as_ref().is_some_and(|ending| *ending.borrow());
@@ -213,7 +213,7 @@ impl Feed {
     }
 }
 
-impl Place {
+impl FeedPosition {
     fn look(&mut self) -> Result<Batch, Problem> {
         let index = self.run.read()?;
         let (end, coming, state) = (index.offset(), index.next_seq(), index.state());

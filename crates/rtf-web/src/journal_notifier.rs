@@ -1,12 +1,12 @@
-//! The reporter of a live run. It writes nothing and keeps nothing: the journal,
-//! which comes before it among the reporters, has the events already. It only
-//! tells those who follow the journal that there is more.
+//! Notifies the server of a live run that the journal has grown. The journal,
+//! an earlier reporter, has already written
+//! the events.
 
 use rtf_model::{Event, EventKind, Record};
 use rtf_report::{ReportError, Reporter};
 use tokio::sync::watch;
 
-/// Tells the server that the journal has grown.
+/// Notifies the server that the journal has grown.
 #[derive(Clone, Debug)]
 pub struct JournalNotifier {
     grown: watch::Sender<u64>,
@@ -17,8 +17,8 @@ impl JournalNotifier {
         Self { grown }
     }
 
-    fn tell(&self, record: &Record) {
-        // Never waits: whoever listens looks when there is time.
+    fn notify(&self, record: &Record) {
+        // Never blocks.
         self.grown.send_replace(record.events);
     }
 }
@@ -28,18 +28,18 @@ impl Reporter for JournalNotifier {
         // While so much happens that the queue is never empty, the journal is
         // flushed soon after the ends of tests.
         if let EventKind::TestFinished(_) = event.kind {
-            self.tell(record);
+            self.notify(record);
         }
         Ok(())
     }
 
     fn idle(&mut self, record: &Record) -> Result<(), ReportError> {
-        self.tell(record);
+        self.notify(record);
         Ok(())
     }
 
     fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
-        self.tell(record);
+        self.notify(record);
         Ok(())
     }
 }

@@ -65,7 +65,7 @@ pub async fn update(State(app): State<App>) -> Result<JsonText, Problem> {
     read(app, |run, index| {
         let failed = crate::runs::unreadable;
         let end = index.offset();
-        let start = index.places().at(end.saturating_sub(END));
+        let start = index.positions().at(end.saturating_sub(END));
         let mut lines = Lines::between(run.journal()?, start, end).map_err(failed)?;
         let mut shown = std::collections::VecDeque::new();
         while let Some(line) = lines.next().map_err(failed)? {

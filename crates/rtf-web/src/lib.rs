@@ -1,18 +1,17 @@
 //! Live and past runs in a browser: a page, an API, a stream of events.
 //!
-//! Nothing but journals is read, also of the run that goes on; see `spec/web.md`.
-//! [`BoundServer::serve`] serves on a thread of its own. A request finds its run in
+//! The server reads only journals, also that of the live run; see `spec/web.md`.
+//! [`BoundServer::serve`] serves in a separate thread. A request finds its run in
 //! [`runs`], which follows the run's journal with an [`index`]: a lean
 //! [`rtf_model::Record`] and the places of what it does not keep. [`api`] makes
 //! answers of it, [`feed`] a stream. [`access`] stands before all of it.
 //!
-//! The run pays for none of this: its only part here is [`JournalNotifier`], which tells
-//! that the journal has grown.
+//! The server does not slow down the run, whose only part here is [`JournalNotifier`].
+//!
 
 mod access;
 mod api;
 mod app;
-mod below;
 mod capabilities;
 mod connections;
 mod feed;
@@ -21,6 +20,7 @@ mod journal_notifier;
 mod legacy;
 mod page;
 mod problem;
+mod regular_file;
 mod runs;
 mod server;
 mod stream_file;

@@ -18,7 +18,7 @@ pub struct Problem {
     pub title: String,
     /// What is wrong.
     pub detail: String,
-    /// What to do about it.
+    /// How to fix it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hint: Option<String>,
 }

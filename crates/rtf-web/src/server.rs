@@ -40,7 +40,7 @@ const NICE: i32 = 10;
 pub struct Settings {
     /// Where to listen. Port 0 is any that is free.
     pub address: SocketAddr,
-    /// Whether somebody beyond this machine may connect.
+    /// Whether clients on other machines may connect.
     pub allow_remote: bool,
     /// A file with the token; a new one is made without it.
     pub token_file: Option<PathBuf>,
@@ -73,13 +73,13 @@ pub enum ServeError {
     /// There is no TLS.
     #[error(transparent)]
     Tls(#[from] TlsError),
-    /// The system has no thread to give.
+    /// The thread cannot be started.
     #[error("cannot start the server")]
     Start(#[source] io::Error),
 }
 
 impl ServeError {
-    /// What to do about it.
+    /// How to fix it.
     #[must_use]
     pub fn hint(&self) -> Option<&'static str> {
         match self {
@@ -97,13 +97,13 @@ impl ServeError {
 
 /// What is served.
 pub struct Service<'a> {
-    /// The results folder.
+    /// The results directory.
     pub results: &'a Path,
-    /// What this server can do beside showing them.
+    /// What this server can do in addition to showing them.
     pub role: Capabilities,
-    /// Makes what says with which command a test of a run is run again.
+    /// Creates the function that returns the command for rerunning a test.
     pub rerun: fn() -> RerunCommand,
-    /// Reports that somebody sent a wrong token.
+    /// Reports a wrong token.
     pub wrong_token: Box<dyn Fn(WrongToken) + Send>,
 }
 
@@ -135,7 +135,7 @@ pub struct Server {
 }
 
 impl BoundServer {
-    /// Takes the address. Whoever connects waits until [`BoundServer::serve`].
+    /// Binds the address. Clients wait until [`BoundServer::serve`].
     ///
     /// # Errors
     /// The settings do not allow it, or the system does not.
@@ -164,10 +164,10 @@ impl BoundServer {
         Ok(Self { listener, address, wanted, token, tls, hosts, remote, limits })
     }
 
-    /// Serves on a thread of its own.
+    /// Serves in a separate thread.
     ///
     /// # Errors
-    /// The system has no thread to give.
+    /// The thread cannot be started.
     pub fn serve(self, service: Service<'_>) -> Result<Server, ServeError> {
         let Self { listener, address, wanted, token, tls, hosts, remote, limits } = self;
         let Service { results, role, rerun, wrong_token } = service;
@@ -225,7 +225,7 @@ impl Server {
     pub fn url(&self) -> String {
         let scheme = if self.tls { "https" } else { "http" };
         let (ip, port) = (self.address.ip(), self.address.port());
-        // Nobody can open the address that means all addresses.
+        // A browser cannot open the unspecified address.
         let host = match ip {
             ip if ip.is_unspecified() => access::machine(),
             IpAddr::V4(ip) => ip.to_string(),
@@ -259,7 +259,7 @@ impl Server {
         JournalNotifier::new(self.grown.clone())
     }
 
-    /// Tells those who ask that the run is over, and the server goes on for this long.
+    /// Announces that the run has ended, and that the server stays for this time.
     pub fn linger(&self, time: Duration) {
         // The first word is the last one.
         let _ = self.lingers.set(Instant::now() + time);
@@ -334,7 +334,7 @@ fn serve(listener: TcpListener, limits: Limits, tls: Option<Tls>, app: App) -> i
         let mut ending = app.ending.clone();
         let parting = handle.clone();
         tokio::spawn(async move {
-            // An error means that nobody can end the server any more.
+            // An error means that no handle can end the server any more.
             let _ = ending.wait_for(|ending| *ending).await;
             parting.graceful_shutdown(Some(PARTING));
         });

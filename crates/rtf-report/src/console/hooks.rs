@@ -1,4 +1,4 @@
-//! What is told of hooks: each when it ends, and at the end of the run those
+//! Hooks in the console: each when it finishes, and at the end of the run those
 //! after which the robot may not be in a safe state.
 
 use rtf_model::{HookId, HookRunRecord, Record};
@@ -10,7 +10,7 @@ use super::{ConsoleOptions, Verbosity};
 use crate::explain::{self, Tone};
 use crate::{cause, escape, logs, words};
 
-/// Tells how a run of a hook ended.
+/// Shows the result of a run of a hook.
 pub(super) fn finished(page: &mut Page, options: &ConsoleOptions, record: &Record, id: HookId) {
     let Some(hook) = record.hooks.get(id.index()) else { return };
     let Some(run) = hook.runs.last() else { return };

@@ -1,4 +1,4 @@
-//! What is told while the run goes on.
+//! Console output during the run.
 
 use rtf_model::{
     Event, EventKind, FixtureId, LeakedProcess, Manifest, Message, MessageKind, Micros, Record,
@@ -11,13 +11,13 @@ use super::{ConsoleOptions, Verbosity, hooks};
 use crate::explain::{self, Extent, Tone};
 use crate::{ReportError, cause, escape, logs, prepared, words};
 
-/// How much of a failed test is told at once; the reports have all of it.
+/// How much of a failed test is shown; the reports contain everything.
 pub(super) const EXTENT: Extent = Extent { items: 10, stack_lines: 40 };
 
-/// How many lines of a failed test's output are told at once.
+/// Number of output lines of a failed test.
 const OUTPUT_LINES: usize = 20;
 
-/// Tells of one event.
+/// Shows one event.
 pub(super) fn show(page: &mut Page, options: &ConsoleOptions, event: &Event, record: &Record) {
     let live = Live { options, record };
     let quiet = options.verbosity == Verbosity::Quiet;
@@ -75,13 +75,13 @@ pub(super) fn show(page: &mut Page, options: &ConsoleOptions, event: &Event, rec
     }
 }
 
-/// What is missing from now on, and why.
+/// Shows which report is missing from now on, and why.
 pub(super) fn reporter_failed(page: &mut Page, error: &ReportError) {
     let what = format!("{} `{}`: {}", error.what, error.path.display(), error.source);
     page.remark((BAD, "NOT WRITTEN"), &escape::line(&what));
 }
 
-/// Where the journal of a past run is damaged, before anything that comes from it.
+/// Shows damage of a past run's journal before its events.
 fn damage(page: &mut Page, record: &Record) {
     if record.is_damaged() {
         page.remark((BAD, "DAMAGED"), "the journal of this run; what follows is incomplete:");
@@ -91,7 +91,7 @@ fn damage(page: &mut Page, record: &Record) {
     }
 }
 
-/// Which tests are run, unless it is all of them as they are written.
+/// Shows how tests were selected, unless all tests run in their order.
 fn chosen(page: &mut Page, manifest: &Manifest) {
     let mut parts = Vec::new();
     if manifest.selected_from > 0 {
@@ -149,7 +149,7 @@ impl Live<'_> {
         page.line(&line);
     }
 
-    /// The end of a suite, where it is not where another one begins.
+    /// The end of a suite, if suites run in parallel.
     fn suite_over(&self, page: &mut Page, id: SuiteId) {
         let Some(suite) = self.record.suites.get(id.index()) else { return };
         if self.record.runs_suites_in_parallel() {
@@ -159,7 +159,7 @@ impl Live<'_> {
         }
     }
 
-    /// What a person must know who looks for the suite's processes.
+    /// The private resources of the suite, needed to find its processes.
     fn prepared(&self, page: &mut Page, prepared: &SuitePrepared) {
         let all = self.options.verbosity == Verbosity::Verbose;
         let kept = prepared.variables.iter().any(|variable| variable.inherited);
@@ -209,7 +209,7 @@ impl Live<'_> {
         self.last_lines(page, id, log_tail);
     }
 
-    /// What it is told of that breaks a fixture was told just before, if it collapsed.
+    /// A broken fixture that has collapsed has already shown its reason.
     fn broken(&self, page: &mut Page, id: FixtureId, reason: &str) {
         let told = self.record.fixture(id).and_then(|fixture| fixture.collapses.last());
         match told {
@@ -221,7 +221,7 @@ impl Live<'_> {
         }
     }
 
-    /// One that broke has said why; what it printed is known only now.
+    /// A broken fixture has already shown its reason; its last lines are new.
     fn stopped(&self, page: &mut Page, id: FixtureId, (problem, log_tail): (&str, &[String])) {
         let broke = self.record.fixture(id).and_then(|fixture| fixture.broken.as_deref());
         if broke != Some(problem) {
@@ -269,7 +269,7 @@ impl Live<'_> {
         page.remark((LOUD, "stopping"), &format!("{} ({cause}): {reason}", self.test(id)));
     }
 
-    /// What a test or a hook left behind is told with its end.
+    /// Leaked processes of a fixture. Those of tests and hooks are shown with their results.
     fn left(&self, page: &mut Page, source: Source, processes: &[LeakedProcess]) {
         if let Source::Fixture(id) = source {
             page.remark((LOUD, "leaked"), &self.fixture(id));
@@ -319,7 +319,7 @@ impl Live<'_> {
     }
 }
 
-/// Tells what somebody left behind whose work was done nevertheless.
+/// Shows leaked processes of a test or hook that succeeded.
 pub(super) fn leaked(page: &mut Page, name: &str, processes: &[LeakedProcess]) {
     if !processes.is_empty() {
         page.remark((LOUD, "leaked"), name);
@@ -327,7 +327,7 @@ pub(super) fn leaked(page: &mut Page, name: &str, processes: &[LeakedProcess]) {
     }
 }
 
-/// Tells the last lines of what somebody printed, and in which log the others are.
+/// Shows the last lines of an output, and the log with all lines.
 pub(super) fn output(text: &str, log: Option<String>, sink: explain::Sink<'_>) {
     let (lines, total) = words::tail(text, OUTPUT_LINES);
     let heading = match total {

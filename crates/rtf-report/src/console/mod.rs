@@ -1,9 +1,9 @@
-//! Tells people what happens while a run goes on, and at its end what came of it.
+//! Shows a run on the console, and a summary at its end.
 //!
-//! The lines go to standard output: they are what `rtf run` is asked for. The
-//! progress bar goes to standard error, and only to a terminal. While a run goes on,
-//! both are written by the thread of an [`BackgroundWriter`]; when it cannot write as fast as
-//! messages come, the console leaves out detail, and says how much.
+//! The lines are the data of `rtf run` and go to standard output. The
+//! progress bar goes to standard error, and only to a terminal. During a run,
+//! a [`BackgroundWriter`] writes both; if it cannot keep up with the
+//! messages, the console omits detail and shows how much.
 
 mod hooks;
 mod live;
@@ -31,13 +31,13 @@ use page::Page;
 use progress::Progress;
 use verbose::Verbose;
 
-/// Lines are written at the latest when so many bytes wait …
+/// Lines are written when this number of bytes is pending …
 const PAGE: usize = 16 * 1024;
 
-/// … or when so much time has passed, however busy the run is.
+/// … or after this time.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// Tells people what happens.
+/// Shows a run on the console.
 pub struct Console {
     options: ConsoleOptions,
     out: UntilDisconnect,
@@ -53,7 +53,7 @@ pub struct Console {
 }
 
 impl Console {
-    /// Writes to standard output, with colours where that is wanted
+    /// Writes to standard output, with colours if enabled
     /// (`NO_COLOR`, `CLICOLOR`, a terminal or not).
     #[must_use]
     pub fn stdout(options: ConsoleOptions) -> Self {
@@ -108,7 +108,7 @@ impl Console {
         }
     }
 
-    /// Shows an event in all detail, unless too much waits to be written.
+    /// Shows an event in full detail, unless too much output is pending.
     fn show_verbose(&mut self, event: &Event, record: &Record) {
         if self.background.as_ref().is_some_and(BackgroundWriter::is_full)
             && let Some(lines) = self.verbose.skip(event)

@@ -1,4 +1,4 @@
-//! How much the console tells, and what it must be told.
+//! Options of the console.
 
 use std::path::{Path, PathBuf};
 
@@ -6,36 +6,36 @@ use rtf_model::{Record, TestId};
 
 use crate::{escape, words};
 
-/// How much is told while the run goes on.
+/// How much is shown during the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verbosity {
-    /// Only what did not go well.
+    /// Only problems.
     Quiet,
     /// Each suite, test and fixture.
     #[default]
     Normal,
-    /// Also each message, measurement, and what the processes print.
+    /// Also each message, measurement, and line of output.
     Verbose,
 }
 
-/// Returns the command that runs a test again, `None` when there is none.
+/// Returns the command that reruns a test, `None` if there is none.
 pub type RerunCommand = Box<dyn Fn(&Record, TestId) -> Option<String> + Send>;
 
-/// How the console behaves.
+/// Options of the console.
 pub struct ConsoleOptions {
-    /// How much is told while the run goes on.
+    /// How much is shown during the run.
     pub verbosity: Verbosity,
-    /// The run's folder as it is shown; logs are named below it. `None` when
+    /// The run's directory for display; it contains the logs. `None` if
     /// nothing is kept.
     pub folder: Option<PathBuf>,
-    /// Whether a progress bar is shown where standard error is a terminal.
+    /// Whether a progress bar is shown if standard error is a terminal.
     pub progress: bool,
-    /// Which command runs a failed test again.
+    /// Returns the command that reruns a failed test.
     pub rerun: RerunCommand,
 }
 
 impl ConsoleOptions {
-    /// A file or folder below the run's folder, as it is shown.
+    /// A path in the run's directory, for display.
     pub(super) fn shown(&self, path: &Path) -> Option<String> {
         let path = self.folder.as_ref()?.join(path);
         Some(escape::line(&path.display().to_string()).into_owned())

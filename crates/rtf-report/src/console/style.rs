@@ -1,4 +1,4 @@
-//! The few colours of the console; what they say is always said in words too.
+//! The colours of the console. All information is also available without colours.
 
 use anstyle::{AnsiColor, Style};
 use rtf_model::Verdict;

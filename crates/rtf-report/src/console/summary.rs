@@ -1,5 +1,5 @@
-//! What is told at the end: what is wrong, how to look at it and how to run it
-//! again, and as the last line the result.
+//! The summary at the end: problems, logs, commands for reruns,
+//! and the result in the last line.
 
 use std::collections::BTreeMap;
 
@@ -13,16 +13,16 @@ use crate::growth::{self, Growing, Within};
 use crate::repeated::Repeated;
 use crate::{cause, escape, explain, logs, words};
 
-/// How many names of skipped tests are listed for one reason.
+/// Maximum number of skipped tests that are listed per reason.
 const NAMES: usize = 5;
 
-/// How many repetitions make a histogram worth a look.
+/// Minimum number of repetitions for a histogram.
 const HISTOGRAM: usize = 10;
 
-/// How many processes that had to be killed are listed.
+/// Maximum number of leaked processes that are listed.
 const PROCESSES: usize = 50;
 
-/// Tells what came of the run.
+/// Shows the summary.
 pub(super) fn show(page: &mut Page, options: &ConsoleOptions, record: &Record) {
     hooks::summary(page, options, record);
     problems(page, record);
@@ -133,7 +133,7 @@ fn skipped(page: &mut Page, record: &Record) {
     }
 }
 
-/// Tests that passed only when they were tried again, and what they said before.
+/// Tests that passed only after a retry, with the reasons of earlier failures.
 fn flaky(page: &mut Page, record: &Record) {
     let mut tests = record.tests.iter().filter(|test| test.is_flaky()).peekable();
     if tests.peek().is_none() {
@@ -154,7 +154,7 @@ fn flaky(page: &mut Page, record: &Record) {
     }
 }
 
-/// How tests that ran more than once did.
+/// Statistics of repeated tests.
 fn repeated(page: &mut Page, record: &Record) {
     let tests = record.tests.iter().filter_map(|test| Some((test, Repeated::of(test)?)));
     let mut tests = tests.peekable();
@@ -174,7 +174,7 @@ fn repeated(page: &mut Page, record: &Record) {
     }
 }
 
-/// What fixtures, and hosts that tests share, use more and more of.
+/// Fixtures and shared hosts whose resources grow.
 fn growing(page: &mut Page, record: &Record) {
     let fixtures =
         record.suites.iter().flat_map(|suite| growth::fixtures(record, suite, Within::Run));
@@ -200,7 +200,7 @@ fn grow(page: &mut Page, title: &str, growing: Vec<Growing>) {
     }
 }
 
-/// Everything that had to be killed, whoever left it.
+/// All leaked processes.
 fn killed(page: &mut Page, record: &Record) {
     let left = record.leaked_processes();
     if left.is_empty() {
@@ -239,7 +239,7 @@ fn result(page: &mut Page, record: &Record) {
     page.line(&format!("{}  {rest}", style::paint(style, &word)));
 }
 
-/// The result in a word, and whatever stands behind it.
+/// The result as a word, with its reason.
 fn outcome(record: &Record) -> (Style, String) {
     if record.is_green() {
         return (GOOD, "PASSED".to_owned());

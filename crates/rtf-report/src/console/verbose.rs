@@ -1,5 +1,5 @@
-//! What is told in addition when everything is to be told: each message,
-//! measurement and line of output, under the name of whoever it comes from.
+//! Verbose console output: each message,
+//! measurement and line of output, with the name of its source.
 
 use std::collections::BTreeMap;
 
@@ -10,16 +10,16 @@ use super::style::DIM;
 use crate::explain::{self, Tone};
 use crate::{escape, words};
 
-/// A line that does not end is shown in pieces of this size.
+/// Longer lines are shown in pieces of this size.
 const LONGEST_LINE: usize = 8 * 1024;
 
-/// Tells everything; keeps the beginnings of lines that have not ended yet.
+/// Shows everything; keeps incomplete lines until they end.
 #[derive(Debug, Default)]
 pub(super) struct Verbose {
     partial: BTreeMap<Key, String>,
 }
 
-/// Whose output it is, and whether standard error.
+/// The source of an output, and whether it is standard error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Key {
     Test(TestId, bool),
@@ -51,7 +51,7 @@ impl Key {
 }
 
 impl Verbose {
-    /// Tells of one event; what is always told is left to the other module.
+    /// Shows the details of an event; `live` shows the rest.
     pub fn show(&mut self, page: &mut Page, event: &Event, record: &Record) {
         match &event.kind {
             EventKind::TestStarted { test, .. } => {
@@ -104,15 +104,15 @@ impl Verbose {
         }
     }
 
-    /// Leaves out an event that is shown in all detail only: how many lines that are. `None`
-    /// when it is one that is always shown.
+    /// Omits an event that only verbose output shows; returns its number of lines. `None`
+    /// if the event is always shown.
     pub fn skip(&mut self, event: &Event) -> Option<u64> {
         let lines = |text: &str| text.lines().count() as u64;
         match &event.kind {
             EventKind::Message { message, .. } => Some(lines(&message.text).max(1)),
             EventKind::Measured { .. } | EventKind::Attached { .. } => Some(1),
             EventKind::Output(output) => {
-                // The rest of this line is another line's.
+                // The next piece would not continue this line.
                 self.partial.remove(&Key::of(output));
                 Some(lines(&output.text))
             }
@@ -138,8 +138,8 @@ impl Verbose {
         print(page, &key.name(record), &text);
     }
 
-    /// Shows the lines of a suite that have not ended, but for those of tests that
-    /// run beside whoever has ended: the rest of these may follow.
+    /// Shows the incomplete lines of a suite, except those of tests
+    /// that are still running: the rest of these lines may follow.
     fn flush_suite(&mut self, page: &mut Page, record: &Record, source: Source) {
         let suite = record.suite_of(source);
         let goes_on = |key: &Key| matches!(key, Key::Test(..)) && key.source() != source;
@@ -151,7 +151,7 @@ impl Verbose {
         self.partial = later;
     }
 
-    /// Shows the lines that have not ended.
+    /// Shows incomplete lines.
     pub fn flush(&mut self, page: &mut Page, record: &Record) {
         for (key, text) in std::mem::take(&mut self.partial) {
             print(page, &key.name(record), &text);
@@ -183,7 +183,7 @@ fn print(page: &mut Page, name: &str, text: &str) {
     }
 }
 
-/// Shows the signals that a test has sampled, each in one line.
+/// Shows the signals of a test, one line each.
 fn sampled(page: &mut Page, record: &Record, test: TestId) {
     let attempt = record.tests.get(test.index()).and_then(|test| test.attempts.last());
     let lines = attempt.iter().flat_map(|attempt| &attempt.series).map(|series| {
@@ -194,7 +194,7 @@ fn sampled(page: &mut Page, record: &Record, test: TestId) {
     lines_of(page, &name(record, Source::Test(test)), &lines);
 }
 
-/// Who keeps something with a test's result: the test, or a fixture.
+/// The source of a detail of a test: the test, or a fixture.
 fn teller(test: TestId, fixture: Option<FixtureId>) -> Source {
     fixture.map_or(Source::Test(test), Source::Fixture)
 }

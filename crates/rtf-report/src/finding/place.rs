@@ -17,14 +17,14 @@ pub(crate) struct Place {
 
 /// Where paths begin.
 pub(crate) struct Roots<'a> {
-    /// The folder in which the run's command was given.
+    /// The directory in which the run was started.
     folder: &'a Path,
     /// The repository's root.
     repository: &'a Path,
 }
 
 impl<'a> Roots<'a> {
-    /// Those of a run. Without a repository, the run's folder stands for it.
+    /// The roots of a run. Without a repository, the run's directory is used.
     pub fn new(record: &'a Record, repository: Option<&'a Path>) -> Self {
         let folder = Path::new(record.run.as_ref().map_or("", |run| run.working_dir.as_str()));
         Self { folder, repository: repository.unwrap_or(folder) }

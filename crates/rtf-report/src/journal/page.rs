@@ -71,7 +71,7 @@ fn object(event: &Event, room: &mut Room<'_>) -> serde_json::Result<()> {
     number(event.at.0, room)?;
     let start = room.used;
     serde_json::to_writer(&mut *room, &event.kind)?;
-    // The kind is an object, too, and never an empty one: its fields go on.
+    // The kind is an object, too, and never an empty one: its fields follow.
     if let Some(brace) = room.bytes.get_mut(start) {
         *brace = b',';
     }

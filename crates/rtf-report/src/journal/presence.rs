@@ -1,5 +1,5 @@
-//! Notices when a file that is being written is removed, moved, replaced, or
-//! changed by somebody else. A test can do that, and so can a person.
+//! Detects that a file that is being written is removed, moved, replaced, or
+//! changed by another process.
 
 use std::fs::{self, File, Metadata};
 use std::io;
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// What is known of the file since it was created.
 #[derive(Debug)]
 pub(super) struct Presence {
-    /// Absolute: the working folder may change.
+    /// Absolute: the working directory may change.
     path: PathBuf,
     /// Which file it is, where the file system tells the same by path and by file.
     identity: Option<Identity>,

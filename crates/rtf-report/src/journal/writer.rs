@@ -44,7 +44,7 @@ impl Journal {
         let file = OpenOptions::new().append(true).create_new(true).open(path);
         let file = file.map_err(ReportError::at(WHAT, path))?;
         // Held until the runner ends, however it ends: see [`super::is_written`].
-        // Nobody else holds it for longer than a look. Some file systems have no
+        // Readers hold it only for a moment. Some file systems have no
         // locks; the run does not depend on them.
         drop(file.lock());
         let presence = Presence::of(&file, path).map_err(ReportError::at(WHAT, path))?;
@@ -93,7 +93,7 @@ impl Journal {
 enum Landmark {
     /// With the others, when the queue is empty.
     None,
-    /// The same, but also while so much is going on that the queue is never empty.
+    /// The same, and also within a bounded time while the queue is never empty.
     Soon,
     /// At once.
     Now,

@@ -19,8 +19,8 @@ use rtf_model::{LeakedProcess, Record, SuiteRecord};
 use crate::growth::{self, Within};
 use crate::{ReportError, ReportFile, escape, explain, words};
 
-/// Writes the JUnit report of a record. `folder` is the run's folder, below
-/// which attachments are named.
+/// Writes the JUnit report of a record. `folder` is the run's directory,
+/// which contains the attachments.
 ///
 /// # Errors
 /// `out` cannot be written.

@@ -1,4 +1,4 @@
-//! What speaks against a run beside its tests, as further cases.
+//! Problems of a run outside its tests, as additional cases.
 
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 use rtf_model::{FixtureRecord, Record, SuiteRecord};
@@ -29,7 +29,7 @@ pub(super) fn of_fixture(
     Some(case)
 }
 
-/// A suite of its own for what is wrong with the run as a whole.
+/// A separate suite for problems of the run as a whole.
 pub(super) fn of_run(record: &Record) -> Option<TestSuite> {
     let problem = finding::run_problem(record)?;
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);

@@ -160,8 +160,8 @@ impl Mergeable {
     }
 }
 
-/// Where the merged run keeps what a run has at `path`, relative to the folders
-/// of both; `None` for what lies elsewhere than among a run's attachments.
+/// The path of an attachment in the merged run, relative to the run directories
+/// of both; `None` if `path` is not in a run's attachments.
 /// `part` is the run's place, from 0.
 #[must_use]
 pub fn attachment_path(part: usize, path: &str) -> Option<String> {

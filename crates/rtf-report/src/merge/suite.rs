@@ -23,7 +23,7 @@ pub(super) struct Piece {
     events: Vec<(Micros, EventKind)>,
 }
 
-/// How far the fixtures and hooks are, and what is told of them only when no
+/// The states of fixtures and hooks, and events that are delayed until no
 /// part follows that starts them again.
 #[derive(Debug, Default)]
 struct Lives {
@@ -116,7 +116,7 @@ impl Suite {
             return;
         }
         out.push(EventKind::SuiteStarted { suite: self.id });
-        // A suite gets its ports once; what the other parts had is over, too.
+        // The private resources of the first part are kept.
         let prepared = events().find(|kind| matches!(kind, EventKind::SuitePrepared(_)));
         prepared.into_iter().for_each(|kind| out.push(kind.clone()));
         let is_whole = pieces.iter().all(Piece::is_whole);

@@ -1,4 +1,4 @@
-//! What is shown while the run goes on, and the counts at its end.
+//! The console output during the run, and the counts at its end.
 
 use std::io::Write;
 use std::path::Path;
@@ -40,7 +40,7 @@ pub struct Console {
 }
 
 impl Console {
-    /// Writes to standard output, with colours where that is wanted.
+    /// Writes to standard output, with colours if enabled.
     #[must_use]
     pub fn stdout(options: ConsoleOptions) -> Self {
         Self::new(Box::new(anstream::AutoStream::auto(std::io::stdout())), options)

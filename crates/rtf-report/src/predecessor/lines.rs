@@ -14,7 +14,7 @@ pub(super) enum Word {
     Progress,
     /// Information only.
     Info,
-    /// Something to look at that does not count.
+    /// A warning, which does not count.
     Warn,
     /// The robot is wrong.
     Fail,
@@ -96,7 +96,7 @@ fn last_word(record: &Record, test: TestId) -> Option<Line> {
     Some(test_line(record, test, if passed { "passed!" } else { "failed!" }))
 }
 
-/// What is to be told when no more events come: what an incomplete run left open.
+/// The lines after the last event: tests that an incomplete run left open.
 pub(super) fn left_open(record: &Record) -> Vec<Line> {
     let mut lines = Vec::new();
     if record.tests.is_empty() {

@@ -95,7 +95,7 @@ fn of_fixture(
     Some(Line::about(word, &suite_name(record, fixture.plan.suite), &text))
 }
 
-/// A set-up or tear-down that went wrong. What breaks the fixture is told then.
+/// A failed tear-down. A failed set-up is reported when the fixture is broken.
 fn stopped(fixture: &FixtureRecord, problem: &str) -> Option<(Word, String)> {
     fixture.ready?;
     Some((Word::Error, format!("tearDown() failed!: {}: {problem}", fixture.plan.name)))

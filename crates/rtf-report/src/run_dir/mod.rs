@@ -1,4 +1,4 @@
-//! Where the results of one run go: a folder of its own, which no other run
+//! The directory with the results of one run, which no other run
 //! shares or overwrites.
 
 mod resolve;
@@ -14,22 +14,22 @@ use jiff::tz::TimeZone;
 
 pub use resolve::{ResolveError, resolve};
 
-/// The journal's name in the folder of a run.
+/// The journal's name in the directory of a run.
 pub const JOURNAL: &str = "events.jsonl";
 
-/// The link to the newest run in the results folder.
+/// The link to the newest run in the results directory.
 pub const LATEST: &str = "latest";
 
-/// How often another name is tried when a folder of this name exists.
+/// Maximum number of attempts to find an unused name.
 const TRIES: u32 = 100;
 
 /// After this time the name is another one: a step of its last digits.
 const NEXT_NAME: Duration = Duration::from_micros(16);
 
-/// The folder of one run.
+/// The directory of one run.
 #[derive(Clone, Debug)]
 pub struct RunDir {
-    /// Where it is, below the results folder as that was given.
+    /// Its path, below the results directory as the user named it.
     pub path: PathBuf,
     /// Its name, which is the run's: `2026-11-21T06-30-12Z-1f3a`.
     pub name: String,
@@ -44,10 +44,10 @@ impl RunDir {
         self.path.join(JOURNAL)
     }
 
-    /// The folder for what tests attach; made when it is first asked for.
+    /// The directory for attachments; it is created on demand.
     ///
     /// # Errors
-    /// The folder cannot be made.
+    /// The directory cannot be created.
     pub fn attachments(&self) -> Result<PathBuf, RunDirError> {
         let path = self.path.join("attachments");
         match fs::create_dir_all(&path) {
@@ -57,11 +57,11 @@ impl RunDir {
     }
 }
 
-/// The folder of a run cannot be made.
+/// The directory of a run cannot be created.
 #[derive(Debug, thiserror::Error)]
 pub enum RunDirError {
-    /// A folder cannot be made or written to.
-    #[error("cannot create the results folder `{}`", path.display())]
+    /// A directory cannot be created or written.
+    #[error("cannot create the results directory `{}`", path.display())]
     Create {
         /// Which.
         path: PathBuf,
@@ -80,8 +80,8 @@ pub enum RunDirError {
     },
 }
 
-/// Makes the folder of a new run in `results` (which is made too, if need be)
-/// and lets `latest` lead to it.
+/// Creates the directory of a new run in `results` (which is created, too, if necessary)
+/// and points `latest` to it.
 ///
 /// # Errors
 /// Nothing can be written there. Nothing was started yet.
@@ -106,7 +106,7 @@ pub fn create(results: &Path) -> Result<RunDir, RunDirError> {
         }
     };
     if let Err(error) = point_latest(results, &name) {
-        // Nothing will run: do not leave an empty folder that looks like a run.
+        // Nothing will run: remove the empty directory.
         drop(fs::remove_dir(&path));
         return Err(error);
     }
@@ -122,7 +122,7 @@ fn name(now: &Zoned) -> String {
     format!("{time}-{fraction:04x}")
 }
 
-/// Replaces the link at once: it never leads nowhere while runs come and go.
+/// Replaces the link atomically, so that it is always valid.
 fn point_latest(results: &Path, name: &str) -> Result<(), RunDirError> {
     let link = results.join(LATEST);
     let beside = results.join(format!(".{LATEST}-{name}"));

@@ -1,4 +1,4 @@
-//! Which run is meant: `rtf show latest`, a run's name, a folder, or a journal.
+//! Resolves `latest`, a run's name, a directory, or a journal to a journal.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -24,7 +24,7 @@ pub enum ResolveError {
     /// There are no runs at all.
     #[error("there are no runs in `{}`", results.display())]
     Empty {
-        /// The results folder.
+        /// The results directory.
         results: PathBuf,
     },
 }
@@ -44,13 +44,13 @@ impl ResolveError {
                 let looked: Vec<_> = looked.iter().map(|path| path.display().to_string()).collect();
                 Some(format!("looked for {}", looked.join(", ")))
             }
-            Self::Empty { .. } => Some("run something first, or name a run's folder".to_owned()),
+            Self::Empty { .. } => Some("run something first, or name a run's directory".to_owned()),
         }
     }
 }
 
 /// Finds the journal of a run: `latest`, the name of a run in `results`, the
-/// path of a run's folder, or the path of a journal.
+/// path of a run's directory, or the path of a journal.
 ///
 /// # Errors
 /// There is none; the error says where it was looked for and what there is.
@@ -82,7 +82,7 @@ pub fn resolve(results: &Path, run: &str) -> Result<PathBuf, ResolveError> {
     Err(ResolveError::Unknown { run: run.to_owned(), looked, newest })
 }
 
-/// The runs in the results folder, the oldest first.
+/// The runs in the results directory, the oldest first.
 fn names(results: &Path) -> Vec<String> {
     let Ok(entries) = fs::read_dir(results) else { return Vec::new() };
     let runs = entries.filter_map(Result::ok).filter(|entry| entry.path().join(JOURNAL).is_file());

@@ -26,7 +26,7 @@ pub fn write(out: &mut dyn Write, record: &Record) -> io::Result<()> {
     out.write_all(text.as_bytes())
 }
 
-/// Writes the report into a file when the run is over.
+/// Writes the report into a file at the end of the run.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -34,7 +34,7 @@ pub fn file(path: &Path) -> Result<ReportFile, ReportError> {
     ReportFile::new("the TAP report", path, Box::new(write))
 }
 
-/// Writes TAP while the run goes on.
+/// Writes TAP during the run.
 pub struct TapStream {
     stream: Stream,
     walk: Walk,
@@ -115,7 +115,7 @@ impl Walk {
         }
     }
 
-    /// Goes on with a suite; whether it is written to its end.
+    /// Continues a suite; returns whether it is complete.
     fn suite(
         &mut self,
         text: &mut String,

@@ -11,7 +11,7 @@ use crate::{escape, words};
 /// A subtest is written four columns further in than its parent.
 const SUBTEST: usize = 4;
 
-/// How much of a process's output is told.
+/// Maximum number of output lines.
 const OUTPUT_LINES: usize = 50;
 
 /// The point of a test, in its suite's subtest.

@@ -22,7 +22,7 @@ pub(super) fn show(lines: &mut Lines, fixture: &FixtureRecord) {
         let label = format!("collapsed at {}", words::time(at.as_duration()));
         lines.fact(4, &label, reason);
     }
-    // What broke it is told as that.
+    // The problem that broke it is shown as `broken`.
     let broke = fixture.broken.as_ref();
     for (at, problem) in fixture.problems.iter().filter(|(_, problem)| broke != Some(problem)) {
         lines.fact(4, &format!("problem at {}", words::time(at.as_duration())), problem);

@@ -66,8 +66,8 @@ fn phases(lines: &mut Lines, attempt: &AttemptRecord) {
 }
 
 fn details(lines: &mut Lines, attempt: &AttemptRecord) {
-    // Failures, violations, stacks and left processes are told as everywhere,
-    // what did not speak against the test after them.
+    // Failures, violations, stacks and leaked processes come first,
+    // then everything else.
     explain::explain(attempt, Extent::ALL, &mut |_, line| lines.at(6, line));
     explain::left(&attempt.leaked, &mut |_, line| lines.at(6, line));
     let others = attempt

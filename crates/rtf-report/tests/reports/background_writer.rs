@@ -1,4 +1,4 @@
-//! What is shown while nobody reads it.
+//! Console output without a reader.
 
 use std::io::{self, Write};
 use std::sync::mpsc::{self, Receiver};
@@ -9,7 +9,7 @@ use rtf_report::Reporter;
 use rtf_report::background_writer::BackgroundWriter;
 use rtf_report::console::{Console, ConsoleOptions, Verbosity};
 
-/// Paper that takes nothing before it is told to.
+/// Paper that blocks until it is released.
 struct Blocked {
     open: Receiver<()>,
     paper: Paper,

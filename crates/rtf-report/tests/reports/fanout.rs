@@ -127,7 +127,7 @@ fn calls_until_last(calls: &Receiver<Call>, events: &[Event]) -> bool {
     Some(calls.recv().unwrap()) != last
 }
 
-/// Each write fails, the error is told once, and the run goes on.
+/// Each write fails, the error is reported once, and the run continues.
 #[test]
 #[cfg(target_os = "linux")]
 fn what_cannot_be_written_is_told_once() {

@@ -244,7 +244,7 @@ fn fields_of_a_later_runner_are_ignored() {
     assert!(read(later + "\n").unwrap().record.is_green());
 }
 
-/// Somebody else changes the file while the run goes on.
+/// Another process changes the file during the run.
 mod interference {
     use super::*;
 
@@ -278,7 +278,7 @@ mod interference {
             self.journal.idle(&self.record)
         }
 
-        /// The rest of it; what is told at the end.
+        /// Writes the rest; returns the error at the end.
         fn rest(&mut self) -> String {
             let events = events("verdicts").0;
             let written = self.write(&events[events.len() / 2..]);

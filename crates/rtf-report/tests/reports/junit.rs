@@ -118,7 +118,7 @@ fn a_killed_runner_leaves_a_case_for_each_test() {
     assert_eq!(not_begun.message, "the run ended before the test started");
 }
 
-/// All tests passed, and yet the robot may stand anywhere.
+/// All tests passed, but the robot may not be in a safe state.
 #[test]
 fn each_run_of_a_hook_is_a_case_and_one_that_failed_is_an_error() {
     let junit = parsed(&junit("hooks"));
@@ -128,7 +128,7 @@ fn each_run_of_a_hook_is_a_case_and_one_that_failed_is_an_error() {
     let brakes = case(&junit, "hook brakes (collapse)");
     let error = brakes.status.error_as_ref();
     assert_eq!((&*error.message, &*error.error_type), ("joint 22 is not locked", "hook"));
-    for part in ["brakes.py:31", "4715 candump can0", "called for: fixture `simulator` collapsed"] {
+    for part in ["brakes.py:31", "4715 candump can0", "reason: fixture `simulator` collapsed"] {
         assert!(error.text.contains(part), "`{part}` in {}", error.text);
     }
     let hung = &case(&junit, "hook park (failure)").status.error_as_ref().text;

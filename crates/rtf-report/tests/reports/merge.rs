@@ -45,7 +45,7 @@ fn facts(record: &Record) -> BTreeMap<String, Vec<String>> {
     facts.collect()
 }
 
-/// How often the shared hosts of each suite were measured. Parts have hosts of their own.
+/// Number of measurements of the shared hosts of each suite. Each part has separate hosts.
 fn measured(record: &Record) -> BTreeMap<&str, u64> {
     let seen = |suite: &SuiteRecord| suite.hosts.iter().map(|host| host.usage.seen()).sum();
     record.suites.iter().map(|suite| (suite.plan.name.as_str(), seen(suite))).collect()

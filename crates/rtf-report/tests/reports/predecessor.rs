@@ -64,7 +64,7 @@ fn every_test_that_did_not_pass_is_failed_in_the_file_and_in_the_counts() {
     }
 }
 
-/// However much is told, the file has all of it: it comes from the journal.
+/// The file contains all messages, because it is generated from the journal.
 #[test]
 fn a_journal_that_cannot_be_read_leaves_no_file() {
     let folder = tempfile::tempdir().unwrap();

@@ -29,7 +29,7 @@ struct Wrong {
 }
 
 impl Wrong {
-    /// When the next attempt may be looked at. Old wrong tokens are forgotten.
+    /// The time of the next attempt. Old wrong tokens are forgotten.
     fn due(&mut self, now: Instant) -> Option<Instant> {
         if self.last.is_none_or(|last| now.saturating_duration_since(last) > REMEMBERED) {
             *self = Self::default();
@@ -39,7 +39,7 @@ impl Wrong {
         self.last.map(|last| last + delay)
     }
 
-    /// One more; how many there were lately.
+    /// Counts a wrong token; returns the recent number.
     fn add(&mut self, now: Instant) -> u64 {
         self.last = Some(now);
         self.count += 1;
@@ -48,8 +48,8 @@ impl Wrong {
 }
 
 impl Guesses {
-    /// Looks at an attempt, when it is its turn; after a wrong one, how many wrong
-    /// tokens this client has sent lately.
+    /// Checks an attempt after its delay. The error is the number of wrong
+    /// tokens that this client has sent recently.
     pub async fn attempt(
         &self,
         client: IpAddr,
@@ -66,7 +66,7 @@ impl Guesses {
     fn of(&self, client: IpAddr) -> Arc<AsyncMutex<Wrong>> {
         let mut clients = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if clients.len() >= CLIENTS {
-            // Who is in use is not forgotten; the others may begin anew.
+            // Clients with a pending attempt are kept; the others start over.
             clients.retain(|_, wrong| Arc::strong_count(wrong) > 1);
         }
         clients.entry(network_of(client)).or_default().clone()

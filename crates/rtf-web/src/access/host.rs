@@ -64,7 +64,7 @@ impl Hosts {
         };
         let bare = name.strip_prefix('[').and_then(|name| name.strip_suffix(']')).unwrap_or(name);
         let by_address = bare.parse::<IpAddr>().is_ok_and(|address| {
-            // An address is not a name that somebody else could have made lead here.
+            // DNS rebinding needs a name, not an address.
             self.remote || address.is_loopback() || address == self.address.ip()
         });
         port_is_ours && (by_address || self.names.iter().any(|known| known == name))

@@ -33,7 +33,7 @@ const BODY: usize = 4096;
 /// Who makes a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Who {
-    /// Nobody that is known.
+    /// An unknown client.
     Nobody,
     /// A program with the token.
     Token,
@@ -64,18 +64,18 @@ pub struct Access {
     log: Log,
 }
 
-/// How many reports wait for whoever writes them; further ones are dropped.
+/// Maximum number of pending reports; further ones are dropped.
 const REPORTS: usize = 16;
 
-/// Where it is reported that somebody sent a wrong token.
+/// Reports wrong tokens.
 #[derive(Debug)]
 pub struct Log(SyncSender<WrongToken>);
 
 impl Log {
-    /// Reports on a thread of its own: whoever writes it may have to wait.
+    /// Reports in a separate thread, because writing a report may block.
     ///
     /// # Errors
-    /// The system has no thread to give.
+    /// The thread cannot be started.
     pub fn start(report: impl Fn(WrongToken) + Send + 'static) -> io::Result<Self> {
         let (sender, reports) = sync_channel(REPORTS);
         let write = move || reports.iter().for_each(report);
@@ -84,17 +84,17 @@ impl Log {
     }
 
     fn report(&self, wrong: WrongToken) {
-        // When nobody takes them, the count in the next one tells how many there were.
+        // The count in the next report includes dropped ones.
         let _ = self.0.try_send(wrong);
     }
 }
 
-/// Somebody sent a wrong token.
+/// A client has sent a wrong token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WrongToken {
     /// The client.
     pub client: IpAddr,
-    /// How many it has sent lately.
+    /// Recent number of wrong tokens of this client.
     pub count: u64,
 }
 
@@ -156,7 +156,7 @@ impl Access {
         if pairs.any(is_ours) { Who::Session } else { Who::Nobody }
     }
 
-    /// The cookie of a session, for whoever has the token.
+    /// The cookie of a session of a client with the token.
     pub async fn open_session(&self, client: IpAddr, token: &str) -> Option<HeaderValue> {
         let is_token = self.is_token(client, token).await;
         is_token.then(|| self.cookie(self.session.text(), ""))

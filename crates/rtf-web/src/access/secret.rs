@@ -9,7 +9,7 @@ use subtle::ConstantTimeEq;
 /// How many random bytes a token has.
 const BYTES: usize = 32;
 
-/// The least number of characters of a token that somebody chose.
+/// Minimum number of characters of a token in a file.
 const SHORTEST: usize = 16;
 
 /// How much of a token's file is read: no token is that long.
@@ -64,7 +64,7 @@ impl Secret {
     /// It cannot be read, or is too short for a token.
     pub fn read(path: &Path) -> Result<Self, TokenError> {
         let failed = |source| TokenError::Read { path: path.to_owned(), source };
-        // The same open file is looked at and read.
+        // The same open file is checked and read.
         let file = std::fs::File::open(path).map_err(failed)?;
         if others_may_read(&file.metadata().map_err(failed)?) {
             return Err(TokenError::Open { path: path.to_owned() });

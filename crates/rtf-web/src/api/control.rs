@@ -10,9 +10,9 @@ use rtf_model::{SuiteId, TestId};
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::asked::At;
-use super::parts::entry;
+use super::plan::entry;
 use super::problems::ChangeProblems;
+use super::query::At;
 use crate::app::{App, JsonText};
 use crate::capabilities::{Capabilities, FinishedRun, RerunRejected, RunControl, RunStarter};
 use crate::index::Index;

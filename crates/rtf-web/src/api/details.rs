@@ -1,5 +1,5 @@
-//! What one attempt of a test, start of a fixture or run of a hook reported and
-//! printed. It is read from the journal, page by page.
+//! The messages, measurements and output of one attempt of a test, start of a fixture
+//! or run of a hook. They are read from the journal, page by page.
 
 use axum::extract::State;
 use rtf_model::{Event, EventKind, FixtureId, HookId, Source, TestId};
@@ -7,8 +7,8 @@ use rtf_report::journal::{EventHeader, parse_event};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
-use super::asked::{Asked, At, Number, Page, words};
 use super::problems::Problems;
+use super::query::{Asked, At, Number, Page, words};
 use super::types::{
     Attached, Attachments, Measured, Measurements, Messages, OutputPage, Printed, Said, Stack,
     Stacks,
@@ -18,7 +18,7 @@ use crate::index::Lines;
 use crate::problem::Problem;
 use crate::runs::Run;
 
-/// How much text a page holds, apart from its last entry.
+/// Maximum text per page in bytes, apart from its last entry.
 const PAGE_BYTES: usize = 1 << 20;
 
 pub(super) type Path3 = At<(String, u32, u32)>;
@@ -33,7 +33,7 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// The entries of the page, and the number with which the next one goes on.
+    /// The entries of the page, and the number after which the next one starts.
     fn read<T>(
         &self,
         run: &Run,
@@ -63,7 +63,7 @@ impl Part {
         Ok((entries, None))
     }
 
-    /// Goes through all entries, of all pages.
+    /// Visits the entries of all pages.
     pub(super) fn each(&self, run: &Run, mut take: impl FnMut(Event)) -> Result<(), Problem> {
         let mut lines = self.lines(run)?;
         let failed = crate::runs::unreadable;
@@ -78,7 +78,7 @@ impl Part {
 
     fn lines(&self, run: &Run) -> Result<Lines, Problem> {
         let index = run.read()?;
-        let Some(place) = index.places().of(self.source, self.number) else {
+        let Some(place) = index.positions().of(self.source, self.number) else {
             let (what, id) = match self.source {
                 Source::Test(id) => ("attempt", format!("test {id}")),
                 Source::Fixture(id) => ("start", format!("fixture {id}")),
@@ -87,7 +87,7 @@ impl Part {
             let number = self.number;
             return Err(Problem::not_found(format!("there is no {what} {number} of {id}")));
         };
-        let known = self.page.after.map_or(0, |Number(after)| index.places().before(after));
+        let known = self.page.after.map_or(0, |Number(after)| index.positions().before(after));
         let end = place.end.unwrap_or(index.offset());
         let start = place.start.max(known);
         drop(index);
@@ -212,7 +212,7 @@ pub async fn attachments(
     .await
 }
 
-/// Where an attempt of a test was before it was stopped by force.
+/// The stack dumps of an attempt that was killed.
 #[utoipa::path(get, path = "/runs/{run}/tests/{test}/attempts/{number}/stacks", tag = "details",
     params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), Page),
     responses((status = 200, body = Stacks), Problems))]

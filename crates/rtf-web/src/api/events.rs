@@ -11,8 +11,8 @@ use futures_util::stream::{self, StreamExt};
 use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
 
-use super::asked::{Asked, At, Number};
 use super::problems::Problems;
+use super::query::{Asked, At, Number};
 use crate::app::App;
 use crate::feed::{Details, Feed};
 use crate::problem::Problem;

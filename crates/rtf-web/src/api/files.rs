@@ -11,15 +11,15 @@ use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
 use super::ROOT;
-use super::asked::At;
 use super::problems::Problems;
+use super::query::At;
 use crate::app::App;
 use crate::index::Description;
 use crate::problem::Problem;
 use crate::runs::Run;
 use crate::stream_file;
 
-/// The only folder of which files are served.
+/// The only directory whose files are served.
 const FOLDER: &str = "attachments";
 
 /// What a browser shows or plays without running anything of it, and the usual
@@ -46,7 +46,7 @@ const SHOWN: [(&str, &str); 16] = [
 /// Nothing of a file may do anything, whatever it is.
 const POLICY: HeaderValue = HeaderValue::from_static("sandbox; default-src 'none'");
 
-/// The address of a file in the run's folder.
+/// The address of a file in the run's directory.
 pub fn url(run: &str, path: &str) -> String {
     format!("{ROOT}/runs/{}/files/{}", encoded(run), encoded(path))
 }

@@ -12,13 +12,13 @@ use rtf_report::logs;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 
-use super::asked::{Asked, At, Number};
 use super::problems::Problems;
+use super::query::{Asked, At, Number};
 use crate::app::{App, JsonText};
 use crate::problem::Problem;
 use crate::stream_file;
 
-/// How much a part holds when nobody says so.
+/// Default size of a part in bytes.
 const PART: u64 = 64 * 1024;
 /// How much it may hold.
 const LARGEST_PART: u64 = 1 << 20;

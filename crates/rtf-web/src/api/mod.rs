@@ -1,13 +1,13 @@
 //! Version 1 of the API: its routes, and its description made from them.
 
-mod asked;
 mod control;
 mod details;
 mod events;
 mod files;
 mod logs;
-mod parts;
+mod plan;
 mod problems;
+mod query;
 mod runs;
 mod series;
 mod session;
@@ -68,12 +68,12 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(runs::list))
         .routes(routes!(runs::run))
         .routes(routes!(runs::snapshot))
-        .routes(routes!(parts::suites))
-        .routes(routes!(parts::suite))
-        .routes(routes!(parts::fixtures))
-        .routes(routes!(parts::fixture))
-        .routes(routes!(parts::hooks))
-        .routes(routes!(parts::hook))
+        .routes(routes!(plan::suites))
+        .routes(routes!(plan::suite))
+        .routes(routes!(plan::fixtures))
+        .routes(routes!(plan::fixture))
+        .routes(routes!(plan::hooks))
+        .routes(routes!(plan::hook))
         .routes(routes!(tests::list))
         .routes(routes!(tests::test))
         .routes(routes!(details::test_messages))

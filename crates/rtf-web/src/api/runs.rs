@@ -4,14 +4,14 @@ use axum::extract::State;
 use serde::Deserialize;
 use utoipa::IntoParams;
 
-use super::asked::{Asked, At, limit};
 use super::problems::Problems;
+use super::query::{Asked, At, limit};
 use super::types::{RunInfo, RunList, Snapshot};
 use crate::app::{App, JsonText, blocking};
 use crate::problem::Problem;
 use crate::runs::{Listing, RunFilter, RunResult};
 
-/// How many runs a page has when nobody says so.
+/// Default number of runs per page.
 const PAGE: usize = 50;
 
 /// Which runs.
@@ -26,7 +26,7 @@ pub struct Which {
     /// Runs with all of these words in their name, command, suites, commit, branch,
     /// robot or profile, whatever the case.
     q: Option<String>,
-    /// Runs that ended so, or still go on.
+    /// Runs with this result, or still running.
     #[param(inline)]
     result: Option<RunResult>,
     /// Runs with a suite of this name.

@@ -6,9 +6,9 @@ use rtf_model::{EventKind, Samples, SignalOutline, SignalSummary, Source, TestId
 use serde::Deserialize;
 use utoipa::IntoParams;
 
-use super::asked::{Asked, At, Page};
 use super::details::{Answer, Part, Path3};
 use super::problems::Problems;
+use super::query::{Asked, At, Page};
 use super::types::{Signal, Signals};
 use crate::app::{App, JsonText};
 use crate::problem::Problem;

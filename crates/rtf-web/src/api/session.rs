@@ -25,7 +25,7 @@ pub struct Server {
     rtf: &'static str,
     /// `run` when it makes a run, `serve` when it shows the runs of others.
     mode: &'static str,
-    /// The run that goes on.
+    /// The current run.
     #[serde(skip_serializing_if = "Option::is_none")]
     current: Option<String>,
     /// The run that can be stopped here.
@@ -33,14 +33,14 @@ pub struct Server {
     controlled: Option<String>,
     /// Whether the token allows something here.
     control: bool,
-    /// Whether failed tests can be run again here.
+    /// Whether failed tests can be rerun here.
     rerun: bool,
     /// Whether this request came with the token or a session.
     authorised: bool,
     /// Whether reading needs the token.
     token_to_read: bool,
-    /// For how many seconds the server goes on, when the run is over that it was
-    /// a part of.
+    /// The remaining seconds of a server whose run has ended.
+
     #[serde(skip_serializing_if = "Option::is_none")]
     lingers_s: Option<u64>,
     /// The server's time of day, in seconds since 1970.

@@ -5,14 +5,14 @@ use rtf_model::{Record, TestRecord, Verdict};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
-use super::asked::{Asked, At, limit, words};
-use super::parts::entry;
+use super::plan::entry;
 use super::problems::Problems;
+use super::query::{Asked, At, limit, words};
 use super::types::{Attempt, Test, TestDetail, TestPage, TestState};
 use crate::app::{App, JsonText};
 use crate::problem::Problem;
 
-/// How many tests a page has when nobody says so.
+/// Default number of tests per page.
 const PAGE: usize = 100;
 
 /// Which tests. All conditions hold.

@@ -4,9 +4,9 @@
 //! [`Index::advance`] reads what was appended to the journal. Live and past runs are read
 //! in the same way.
 
-mod attached;
+mod attachments;
 mod lines;
-mod places;
+mod positions;
 
 use std::fs::{File, Metadata};
 use std::io;
@@ -15,9 +15,9 @@ use std::time::SystemTime;
 use rtf_model::{Damage, Record, RunState};
 use rtf_report::journal::{self, JournalLines};
 
-pub use attached::{Attached, Description};
+pub use attachments::{AttachmentIndex, Description};
 pub use lines::Lines;
-pub use places::Places;
+pub use positions::Positions;
 
 /// The state of a run in the API.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, utoipa::ToSchema)]
@@ -50,9 +50,9 @@ impl State {
 pub struct Index {
     file: File,
     record: Record,
-    places: Places,
+    positions: Positions,
     lines: JournalLines,
-    attached: Attached,
+    attached: AttachmentIndex,
     /// Complete lines were read up to here.
     offset: u64,
     /// When the journal was last modified, once it has been read to its end.
@@ -66,9 +66,9 @@ impl Index {
         Self {
             file,
             record: Record::lean(),
-            places: Places::default(),
+            positions: Positions::default(),
             lines: JournalLines::default(),
-            attached: Attached::default(),
+            attached: AttachmentIndex::default(),
             offset: 0,
             modified: None,
         }
@@ -101,7 +101,7 @@ impl Index {
             let taken = self.lines.read(line.text, &mut self.record);
             let newer = |error| io::Error::new(io::ErrorKind::InvalidData, error);
             if let Some(event) = taken.map_err(newer)? {
-                self.places.take(&event, line.start, line.end);
+                self.positions.take(&event, line.start, line.end);
                 self.attached.take(&event);
             }
             self.offset = line.end;
@@ -136,13 +136,13 @@ impl Index {
 
     /// The positions of events in the journal.
     #[must_use]
-    pub fn places(&self) -> &Places {
-        &self.places
+    pub fn positions(&self) -> &Positions {
+        &self.positions
     }
 
     /// Names and media types of attachments.
     #[must_use]
-    pub fn attached(&self) -> &Attached {
+    pub fn attached(&self) -> &AttachmentIndex {
         &self.attached
     }
 

@@ -6,15 +6,15 @@ use utoipa::ToSchema;
 use crate::api::RunInfo;
 use crate::index::State;
 
-/// How a run ended, or that it goes on.
+/// The result of a run, or that it is running.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RunResult {
-    /// It goes on.
+    /// It is running.
     Running,
-    /// It is over, and nothing speaks against the robot or the bench.
+    /// It has finished without any problem.
     Green,
-    /// It came to its end, and is not green.
+    /// It has finished, and is not green.
     Red,
     /// It was ended early.
     Interrupted,

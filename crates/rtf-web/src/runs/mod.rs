@@ -1,5 +1,5 @@
-//! The runs of a results folder: finding one by its name, and keeping the
-//! indexes of those that are looked at.
+//! The runs of a results directory: finds runs by name, and keeps the
+//! indexes of recently used ones.
 
 mod filter;
 mod list;
@@ -15,29 +15,29 @@ use rtf_report::run_dir::{JOURNAL, LATEST};
 pub use filter::{RunFilter, RunResult};
 pub use list::Listing;
 
-use crate::below;
 use crate::index::Index;
 use crate::problem::Problem;
+use crate::regular_file;
 
 /// How many indexes are kept; one of 10 000 tests has about 10 MB.
 const KEPT: usize = 4;
 
-/// Among how many of the newest runs one that goes on is looked for.
+/// The current run is searched among this number of newest runs.
 const CURRENT_AMONG: usize = 20;
 
-/// A run that is looked at.
+/// A run with its index.
 #[derive(Debug)]
 pub struct Run {
     /// Its name.
     pub name: String,
-    /// The results folder.
+    /// The results directory.
     results: PathBuf,
     index: Mutex<Index>,
 }
 
 impl Run {
     fn open(results: &Path, name: &str) -> Result<Self, Problem> {
-        let journal = below::open(results, &journal_of(name)).map_err(unreadable)?;
+        let journal = regular_file::open(results, &journal_of(name)).map_err(unreadable)?;
         let index = Mutex::new(Index::new(journal));
         Ok(Self { name: name.to_owned(), results: results.to_owned(), index })
     }
@@ -54,7 +54,7 @@ impl Run {
         Ok(index)
     }
 
-    /// The journal, opened anew.
+    /// A new handle of the journal.
     ///
     /// # Errors
     /// It cannot be opened.
@@ -62,20 +62,20 @@ impl Run {
         self.open_file(Path::new(JOURNAL)).map_err(unreadable)
     }
 
-    /// Opens a regular file in the run's folder; no part of the path may be a link.
+    /// Opens a regular file in the run's directory; no part of the path may be a link.
     ///
     /// # Errors
     /// There is no such file.
     pub fn open_file(&self, path: &Path) -> io::Result<File> {
-        below::open(&self.results, &Path::new(&self.name).join(path))
+        regular_file::open(&self.results, &Path::new(&self.name).join(path))
     }
 }
 
-/// The runs of a results folder.
+/// The runs of a results directory.
 #[derive(Debug)]
 pub struct Runs {
     results: PathBuf,
-    /// The run that this process makes.
+    /// The run of this process.
     own: Option<String>,
     /// The one used last is the last.
     open: Mutex<Vec<Arc<Run>>>,
@@ -90,7 +90,7 @@ impl Runs {
         Self { results, own, open: Mutex::default(), listed: list::SummaryCache::default() }
     }
 
-    /// The name of the run that goes on, if there is one.
+    /// The name of the current run, if there is one.
     #[must_use]
     pub fn current(&self) -> Option<String> {
         if let Some(own) = &self.own {
@@ -98,7 +98,7 @@ impl Runs {
         }
         let newest = self.names().into_iter().take(CURRENT_AMONG);
         newest.into_iter().find(|name| {
-            let journal = below::open(&self.results, &journal_of(name));
+            let journal = regular_file::open(&self.results, &journal_of(name));
             journal.is_ok_and(|journal| journal::is_written(&journal))
         })
     }
@@ -147,7 +147,7 @@ impl Runs {
 
     /// Whether there is a run of this name.
     fn is_run(&self, name: &str) -> bool {
-        name != LATEST && is_plain(name) && below::is_file(&self.results, &journal_of(name))
+        name != LATEST && is_plain(name) && regular_file::is_file(&self.results, &journal_of(name))
     }
 
     /// The names of all runs, the newest first.
@@ -160,7 +160,7 @@ impl Runs {
     }
 }
 
-/// A run's journal, below the results folder.
+/// A run's journal, relative to the results directory.
 fn journal_of(name: &str) -> PathBuf {
     Path::new(name).join(JOURNAL)
 }
@@ -170,7 +170,7 @@ pub fn unreadable(error: io::Error) -> Problem {
     Problem::unreadable(Path::new(JOURNAL), &error)
 }
 
-/// Whether this is the name of a folder in the results folder, and of none elsewhere.
+/// Whether this is a valid name of a run's directory in the results directory.
 fn is_plain(name: &str) -> bool {
     !name.is_empty() && !name.starts_with('.') && !name.contains(['/', '\\', '\0'])
 }

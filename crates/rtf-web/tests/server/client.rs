@@ -1,4 +1,4 @@
-//! A client that says exactly what it is told to, also what no browser would.
+//! A client that can also send requests that no browser would send.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{SocketAddr, TcpStream};

@@ -1,4 +1,4 @@
-//! Attached files, logs, and what lies beside them.
+//! Attachments, logs, and other files in a run's directory.
 
 use std::os::unix::fs::symlink;
 use std::path::Path;
@@ -92,7 +92,7 @@ fn attachments_keep_the_type_and_the_name_that_the_test_gave() {
     }
 }
 
-/// A test may plant whatever it likes in its run's folder.
+/// A test may write any file to its run's directory.
 #[test]
 fn planted_links_and_pipes_lead_nowhere_and_hang_nothing() {
     let (world, mut run) = World::new();

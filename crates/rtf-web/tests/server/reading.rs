@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::client::ask;
 use crate::world::{TEST, World, Writer};
 
-/// Text that breaks whoever does not escape.
+/// Text that needs escaping.
 const HOSTILE: &str = "\"</script><script>alert('\\')</script>\u{0}\u{1b}[31m\r\n\u{202e}🤖&amp;";
 
 #[test]

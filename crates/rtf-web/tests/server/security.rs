@@ -1,4 +1,4 @@
-//! Who may do what, and what nobody may.
+//! Access control.
 
 use crate::client::{ask, get};
 use crate::world::{STARTED, World, Writer, settings};

@@ -82,7 +82,7 @@ fn details_come_only_for_those_who_are_looked_at() {
         run.print("more noise");
         run.flush();
     }
-    // It is told how far the run is, although nothing of it is sent.
+    // It receives the progress, although no event is sent.
     let progress = std::iter::from_fn(|| stream.next()).find(|sent| sent.name == "progress");
     assert_eq!(progress.unwrap().data["seq"], 15);
 }
@@ -147,7 +147,7 @@ fn a_client_from_the_future_and_one_at_a_gap_start_anew() {
     assert_eq!(names, wanted.map(|(name, id)| (name.to_owned(), id)));
 }
 
-/// Known trap: an open stream kept axum's graceful shutdown waiting for ever.
+/// An open stream must not block axum's graceful shutdown.
 #[test]
 fn open_streams_do_not_keep_the_server() {
     let (world, mut run) = World::new();

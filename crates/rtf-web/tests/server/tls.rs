@@ -12,7 +12,7 @@ use rustls::{ClientConfig, ClientConnection, RootCertStore, StreamOwned};
 use crate::client::Answer;
 use crate::world::{World, settings};
 
-/// A server with a certificate of its own, and a client that trusts only that.
+/// A server with a given certificate, and a client that trusts only that.
 fn world() -> (World, crate::world::Writer, Arc<ClientConfig>) {
     let temp = tempfile::tempdir().unwrap();
     let made = rcgen::generate_simple_self_signed(["localhost".to_owned()]).unwrap();

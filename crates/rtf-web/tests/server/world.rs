@@ -1,4 +1,4 @@
-//! A results folder, a run that is being written, and a server over it.
+//! A results directory, a run that is being written, and their server.
 
 use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -212,7 +212,7 @@ impl Writer {
     }
 }
 
-/// A server over a results folder of its own.
+/// A server with a separate results directory.
 pub struct World {
     pub temp: tempfile::TempDir,
     pub server: Server,

@@ -17,7 +17,7 @@ fn folder() -> Folder {
 fn a_results_folder_that_cannot_be_written() {
     let folder = folder();
     assert_snapshot!(refused(&folder, &["run", "EncoderTest.lua", "--results", "file/results"]), @"
-    error: cannot create the results folder `file/results`
+    error: cannot create the results directory `file/results`
     caused by: Not a directory (os error 20)
     hint: choose another folder with `--results DIR`
     ");

@@ -109,7 +109,7 @@ fn a_run_that_there_is_not_is_answered_with_those_that_there_are() {
     ----- stdout
     ----- stderr
     error: there are no runs in `rtf-results`
-    hint: run something first, or name a run's folder
+    hint: run something first, or name a run's directory
     ");
     folder.rtf(&["run", "Encoder.lua"]);
     let finished = folder.rtf(&["show", "2026"]);

@@ -33,7 +33,7 @@ pub struct Fixture {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<model::Message>, required = false)]
     pub messages: Vec<Message>,
-    /// Processes of it that had to be killed.
+    /// Its processes that had to be killed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<model::LeakedProcess>, required = false)]
     pub leaked: Vec<LeakedProcess>,

@@ -49,11 +49,11 @@ pub struct HookRun {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<model::Message>, required = false)]
     pub messages: Vec<Message>,
-    /// Where it was before it was stopped by force.
+    /// Stack dumps from before it was killed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub stacks: Vec<String>,
-    /// Processes of it that had to be killed.
+    /// Its processes that had to be killed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<model::LeakedProcess>, required = false)]
     pub leaked: Vec<LeakedProcess>,

@@ -22,7 +22,7 @@ pub struct RunInfo {
     pub rtf: String,
     /// Its command line.
     pub command: Vec<String>,
-    /// The folder in which the command was given.
+    /// The directory in which the run was started.
     pub working_dir: String,
     /// How far it is.
     pub state: State,
@@ -43,7 +43,7 @@ pub struct RunInfo {
     pub suites: usize,
     /// The names of its suites; only the first ones, when there are many.
     pub suite_names: Vec<String>,
-    /// What Git had checked out in its folder.
+    /// The Git revision of its working directory.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<model::Revision>)]
     pub revision: Option<Revision>,
@@ -57,7 +57,7 @@ pub struct RunInfo {
     pub bytes: u64,
     /// How many tests are in which state.
     pub totals: Totals,
-    /// What went wrong beside its tests.
+    /// Problems outside its tests.
     pub problems: Vec<String>,
     /// What of the journal could not be read.
     pub damages: Vec<DamageAt>,
@@ -123,8 +123,8 @@ pub struct RunList {
     /// The `before` of the next page.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next: Option<String>,
-    /// How many runs are still being read, so that nobody knows whether they match;
-    /// ask again.
+    /// Number of runs that are still being read and may match;
+    /// poll for them.
     #[serde(skip_serializing_if = "is_zero")]
     #[schema(required = false)]
     pub unread: usize,
@@ -201,7 +201,7 @@ impl RunInfo {
     }
 }
 
-/// How many names of suites are told.
+/// Maximum number of suite names.
 const NAMES: usize = 100;
 
 fn robots(record: &Record) -> Vec<String> {

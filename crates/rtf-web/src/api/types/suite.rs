@@ -20,7 +20,7 @@ pub struct Snapshot {
     pub hooks: Vec<Hook>,
     /// The tests, by their ids.
     pub tests: Vec<Test>,
-    /// What the user should look at.
+    /// Warnings.
     #[schema(value_type = Vec<model::Diagnostic>)]
     pub warnings: Vec<Diagnostic>,
     /// What was left at the end and had to be killed, when the runner died.
@@ -36,7 +36,7 @@ pub enum SuiteState {
     Pending,
     /// It runs.
     Running,
-    /// It is over.
+    /// It has finished.
     Finished,
 }
 
@@ -57,7 +57,7 @@ pub struct Suite {
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     #[schema(required = false)]
     pub tolerates_collapse: bool,
-    /// Where it is.
+    /// Its state.
     pub state: SuiteState,
     /// When it started.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -67,7 +67,7 @@ pub struct Suite {
     pub finished: Option<u64>,
     /// How many of its tests are in which state.
     pub totals: Totals,
-    /// What went wrong beside its tests.
+    /// Problems outside its tests.
     pub problems: Vec<String>,
     /// Its fixtures.
     pub fixtures: Vec<u32>,
@@ -117,7 +117,7 @@ impl Suite {
     }
 }
 
-/// The totals of a suite in a run that will not go on.
+/// The totals of a suite in a run that has ended.
 fn settled(suite: &SuiteRecord, record: &Record) -> Totals {
     let mut totals = Totals::from(&rtf_model::TestTotals::default());
     for test in suite.tests.iter().filter_map(|id| record.tests.get(id.index())) {

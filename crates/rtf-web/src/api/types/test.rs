@@ -6,15 +6,15 @@ use utoipa::ToSchema;
 
 use super::model;
 
-/// Where a test is.
+/// The state of a test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum TestState {
-    /// It waits, also for its next repetition.
+    /// It has not started, or waits for its next repetition.
     Pending,
     /// It runs.
     Running,
-    /// Its last word is spoken.
+    /// Its verdict is final.
     Done,
 }
 
@@ -31,9 +31,9 @@ pub struct Test {
     pub plugin_type: String,
     /// The plug-in's file.
     pub plugin: String,
-    /// How often it is to be run.
+    /// The number of repetitions.
     pub repetitions: u32,
-    /// Whether it is repeated until a time is over; `repetitions` is then that of a round.
+    /// Whether it is repeated for a given time; `repetitions` is then that of a round.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     #[schema(required = false)]
     pub timed: bool,
@@ -41,16 +41,16 @@ pub struct Test {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub tags: Vec<String>,
-    /// Where it is.
+    /// Its state.
     pub state: TestState,
-    /// Its last word.
+    /// Its final verdict.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<model::Verdict>)]
     pub verdict: Option<Verdict>,
     /// Why it did not pass.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// The phase in which it is, while it runs.
+    /// Its current phase, while it runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<model::Phase>)]
     pub phase: Option<Phase>,
@@ -62,7 +62,7 @@ pub struct Test {
     pub slow: bool,
     /// Its attempts, in order.
     pub attempts: Vec<AttemptRow>,
-    /// How much it reported in all of them.
+    /// How much all of them reported.
     pub counts: Counts,
 }
 
@@ -80,11 +80,11 @@ pub struct AttemptRow {
     /// When it ended.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub finished: Option<u64>,
-    /// The judgement.
+    /// The verdict.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<model::Verdict>)]
     pub verdict: Option<Verdict>,
-    /// Whether the same repetition is run again.
+    /// Whether the same repetition is retried.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     #[schema(required = false)]
     pub rerun: bool,
@@ -112,21 +112,21 @@ pub struct Counts {
 pub struct TestPage {
     /// The tests, by their ids.
     pub tests: Vec<Test>,
-    /// How many there are that match.
+    /// Number of matching tests.
     pub total: usize,
     /// The `after` of the next page.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next: Option<u32>,
 }
 
-/// A test with all that is known of its attempts, apart from what they reported.
+/// A test with its attempts, without messages and output.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct TestDetail {
     /// The test.
     pub test: Test,
     /// Its attempts, in order.
     pub attempts: Vec<Attempt>,
-    /// The command that runs it again, in the folder of its run.
+    /// The command that reruns it, in the working directory of its run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub command: Option<String>,
 }
@@ -142,7 +142,7 @@ pub struct Attempt {
     /// Why it did not pass.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// The phase in which the verdict fell.
+    /// The phase that decided the verdict.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<model::Phase>)]
     pub phase: Option<Phase>,
@@ -156,7 +156,7 @@ pub struct Attempt {
     pub slow: bool,
     /// How much it reported.
     pub counts: Counts,
-    /// Processes of it that had to be killed.
+    /// Its processes that had to be killed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<model::LeakedProcess>, required = false)]
     pub leaked: Vec<LeakedProcess>,
@@ -173,7 +173,7 @@ pub struct PhaseAt {
 }
 
 impl Test {
-    /// A view of a test; `over` when its run will not go on.
+    /// A view of a test; `over`: its run has ended.
     #[must_use]
     pub fn of(test: &TestRecord, over: bool) -> Self {
         let plan = &test.plan;

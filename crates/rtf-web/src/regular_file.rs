@@ -1,7 +1,7 @@
-//! Opens regular files below a directory, and nothing else.
+//! Opens only regular files below a directory.
 //!
-//! A run's folder is written by tests, which are not to be trusted: a link in it
-//! may lead anywhere, and opening a FIFO or a device may wait for ever. No part of
+//! Tests, which are not trusted, write to a run's directory: a link in it
+//! may lead anywhere, and opening a FIFO or a device may block indefinitely. No part of
 //! a path below the directory may be a link, not even one that stays inside.
 
 use std::fs::File;

@@ -2,8 +2,8 @@
 
 use axum::extract::State;
 
-use super::asked::At;
 use super::problems::Problems;
+use super::query::At;
 use super::types::{Fixture, Fixtures, Hook, Hooks, Suite, Suites};
 use crate::app::{App, JsonText};
 use crate::problem::Problem;

@@ -81,7 +81,7 @@ pub struct Page {
     pub limit: Option<usize>,
 }
 
-/// How many entries a page has when nobody says so.
+/// Default number of entries per page.
 const PAGE: usize = 100;
 /// How many it may have.
 const LARGEST_PAGE: usize = 1000;

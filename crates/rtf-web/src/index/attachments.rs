@@ -1,14 +1,14 @@
-//! What tests said about the files that they attached: media types and names.
+//! Names and media types of attachments.
 
 use std::collections::HashMap;
 
 use rtf_model::{Event, EventKind};
 
-/// Names and media types of attachments, by their paths in the run's folder.
+/// Names and media types of attachments, by their paths in the run's directory.
 #[derive(Debug, Default)]
-pub struct Attached(HashMap<Box<str>, Description>);
+pub struct AttachmentIndex(HashMap<Box<str>, Description>);
 
-/// What a test said about an attachment.
+/// The name and media type of an attachment.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Description {
     /// Its name.
@@ -17,8 +17,8 @@ pub struct Description {
     pub media_type: Box<str>,
 }
 
-impl Attached {
-    /// Takes in an event.
+impl AttachmentIndex {
+    /// Adds the attachment of an event.
     pub(super) fn take(&mut self, event: &Event) {
         let EventKind::Attached { attachment, .. } = &event.kind else { return };
         let description = Description {
@@ -28,7 +28,7 @@ impl Attached {
         self.0.insert(attachment.path.as_str().into(), description);
     }
 
-    /// What was said about the file at this path.
+    /// The description of the file at this path.
     #[must_use]
     pub fn of(&self, path: &str) -> Option<&Description> {
         self.0.get(path)

@@ -1,32 +1,32 @@
-//! Where in a journal the events of one attempt are, and where an event with a
-//! given number is.
+//! The positions of attempts, and of events by number, in a
+//! journal.
 
 use rtf_model::{Event, EventKind, Source};
 
-/// Every so many events their place is kept.
+/// The position of every n-th event is kept.
 const EVERY: u64 = 256;
 
 /// A part of a journal, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct JournalRange {
     /// The start of its first line.
     pub start: u64,
     /// The end of its last line, once that is written.
     pub end: Option<u64>,
 }
 
-/// The places of a run.
+/// The positions of a run's events in its journal.
 #[derive(Debug, Default)]
-pub struct Places {
-    tests: Vec<Vec<Place>>,
-    fixtures: Vec<Vec<Place>>,
-    hooks: Vec<Vec<Place>>,
-    /// Numbers of events and where their lines start, both growing.
+pub struct Positions {
+    tests: Vec<Vec<JournalRange>>,
+    fixtures: Vec<Vec<JournalRange>>,
+    hooks: Vec<Vec<JournalRange>>,
+    /// Numbers of events and offsets of their lines, both ascending.
     marks: Vec<(u64, u64)>,
 }
 
-impl Places {
-    /// Takes in an event, the start of its line and the end.
+impl Positions {
+    /// Adds an event with the start and end offsets of its line.
     pub(super) fn take(&mut self, event: &Event, start: u64, end: u64) {
         if self.marks.last().is_none_or(|(seq, _)| event.seq >= seq + EVERY) {
             self.marks.push((event.seq, start));
@@ -46,7 +46,7 @@ impl Places {
             Source::Hook(id) => (&mut self.hooks, id.index()),
         };
         if begins && list.len() <= index {
-            // The number may be damaged: it is worth no more than a journal's line.
+            // A damaged number must not allocate much memory.
             if index - list.len() > 1_000_000 {
                 return;
             }
@@ -54,7 +54,7 @@ impl Places {
         }
         let Some(places) = list.get_mut(index) else { return };
         match places.last_mut() {
-            _ if begins => places.push(Place { start, end: None }),
+            _ if begins => places.push(JournalRange { start, end: None }),
             Some(place) => place.end = Some(end),
             None => {}
         }
@@ -62,7 +62,7 @@ impl Places {
 
     /// The attempt, start or run of a source with this number, from 1.
     #[must_use]
-    pub fn of(&self, source: Source, number: u32) -> Option<Place> {
+    pub fn of(&self, source: Source, number: u32) -> Option<JournalRange> {
         let (list, index) = match source {
             Source::Test(id) => (&self.tests, id.index()),
             Source::Fixture(id) => (&self.fixtures, id.index()),
