@@ -1,11 +1,14 @@
 //! Runs plans.
 //!
-//! [`verify`] checks whether the plug-ins of a plan can be loaded. [`run`] runs
-//! the plan: a state machine without I/O or clock, with one task around it.
-//! [`isolate`] gives a suite its private network, ports and ids; [`guard`] takes over
-//! when the runner dies.
+//! [`verify`] checks that the hosts can load the plug-ins of a plan. [`run`] runs the plan: a
+//! state machine without I/O or clock, with one task around it. [`isolate`] gives a suite
+//! exclusive network, ports and ids; [`locks`] waits for shared resources; [`guard`] takes
+//! over when the runner dies. Processes are the business of `rtf-process`.
 
+pub mod control;
+pub mod events;
 pub mod guard;
+mod hook;
 pub mod isolate;
 pub mod locks;
 pub mod run;

@@ -1,6 +1,4 @@
-//! Signals that end a run: the first request asks, the second insists, the third kills.
-//!
-//! They come through the [`crate::guard`], whose own death counts as one.
+//! Signals that end a run. The [`crate::guard`] forwards them; its death counts as one.
 
 use std::io;
 use std::time::Duration;
@@ -9,38 +7,38 @@ use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::watch;
 use tokio::time::Instant;
 
-use crate::guard::{BEAT, Link, Requests};
-use crate::run::{Stop, StopLevel};
+use crate::control::{Stop, StopLevel};
+use crate::guard::{HEARTBEAT_INTERVAL, Link, StopRequests};
 use rtf_process::tree;
 
-/// The signals that end a run, by number and name.
-const ENDING: [(i32, &str); 3] = [(2, "SIGINT"), (15, "SIGTERM"), (1, "SIGHUP")];
+/// The signals that end a run: numbers and names.
+const STOP_SIGNALS: [(i32, &str); 3] = [(2, "SIGINT"), (15, "SIGTERM"), (1, "SIGHUP")];
 
-/// After the third request, the runner may take this long to write how it ended.
+/// How long the runner may take to write its reports after the third request.
 const LAST_GRACE: Duration = Duration::from_secs(4);
 
-/// Turns signals, and the guard's death, into stop requests, and shows the guard
-/// that this process is alive, for as long as it is polled. By [`Requests`]:
+/// Converts signals, and the guard's death, to stop requests, and sends heartbeats while it is
+/// polled. By the number of requests (see [`StopRequests`]):
 ///
-/// 1. stop the test, hooks, tear down, report, all within `limit`;
-/// 2. kill without tear-down, hooks, report;
+/// 1. stop the test, run hooks, tear down, report, all within `limit`;
+/// 2. kill without tear-down, run hooks, report;
 /// 3. kill everything, report.
 ///
-/// Returns a signal's number when the third request did not end the run: the
-/// process should end.
+/// Returns a signal's number if the third request did not end the run: the process should
+/// end.
 ///
 /// # Errors
-/// A signal's handler cannot be installed.
+/// A handler cannot be installed.
 pub async fn forward(
     stops: &watch::Sender<Option<Stop>>,
     guard: &Link,
     limit: Duration,
 ) -> io::Result<i32> {
     let mut signals = Signals::install()?;
-    let mut requests = Requests::default();
-    let mut beats = tokio::time::interval(BEAT);
+    let mut requests = StopRequests::default();
+    let mut heartbeats = tokio::time::interval(HEARTBEAT_INTERVAL);
     let mut died = Box::pin(guard.guard_died());
-    let (mut alive, mut last) = (true, None);
+    let (mut is_guard_alive, mut last) = (true, None);
     loop {
         let (number, reason) = tokio::select! {
             biased;
@@ -48,21 +46,21 @@ pub async fn forward(
                 let _ = tree::kill_everything();
                 return Ok(last.map_or(0, |(_, number)| number));
             }
-            _ = beats.tick() => {
-                guard.beat();
+            _ = heartbeats.tick() => {
+                guard.send_heartbeat();
                 continue;
             }
             (number, name) = signals.next() => (number, name),
-            () = &mut died, if alive => {
-                alive = false;
-                if requests.made() > 0 {
+            () = &mut died, if is_guard_alive => {
+                is_guard_alive = false;
+                if requests.count() > 0 {
                     continue;
                 }
                 (0, "the guard died")
             }
         };
-        if requests.take(std::time::Instant::now()) {
-            let level = level(requests.made());
+        if requests.record(std::time::Instant::now()) {
+            let level = level(requests.count());
             stops.send_replace(Some(Stop { level, reason: reason.to_owned(), limit }));
             if level == StopLevel::KillHooks && last.is_none() {
                 last = Some((Instant::now() + LAST_GRACE, number));
@@ -86,34 +84,34 @@ async fn until(moment: Option<Instant>) {
     }
 }
 
-/// The signals that end a run, as they come to this process.
+/// The received signals that end a run.
 #[derive(Debug)]
 pub struct Signals([Signal; 3]);
 
 impl Signals {
-    /// Takes them from now on.
+    /// Installs the handlers.
     ///
     /// # Errors
-    /// A signal's handler cannot be installed.
+    /// A handler cannot be installed.
     pub fn install() -> io::Result<Self> {
-        let [int, term, hup] = ENDING.map(|(number, _)| signal(SignalKind::from_raw(number)));
+        let [int, term, hup] = STOP_SIGNALS.map(|(number, _)| signal(SignalKind::from_raw(number)));
         Ok(Self([int?, term?, hup?]))
     }
 
-    /// Waits for the next one: its number and its name.
+    /// Waits for the next signal; returns its number and name.
     pub async fn next(&mut self) -> (i32, &'static str) {
         let [int, term, hup] = &mut self.0;
         tokio::select! {
-            _ = int.recv() => ENDING[0],
-            _ = term.recv() => ENDING[1],
-            _ = hup.recv() => ENDING[2],
+            _ = int.recv() => STOP_SIGNALS[0],
+            _ = term.recv() => STOP_SIGNALS[1],
+            _ = hup.recv() => STOP_SIGNALS[2],
         }
     }
 }
 
-/// The exit code of a run that this signal (by name) ended: 128 + its number.
+/// Returns the exit code of a run that this signal ended: 128 + its number.
 #[must_use]
 pub fn exit_code(name: &str) -> Option<u8> {
-    let (number, _) = ENDING.iter().find(|(_, known)| *known == name)?;
+    let (number, _) = STOP_SIGNALS.iter().find(|(_, known)| *known == name)?;
     u8::try_from(128 + number).ok()
 }

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use rtf_engine::guard::{self, Died, Ended, Link, Side};
+use rtf_engine::guard::{self, GuardOutcome, Link, Recovery, Side};
 use rtf_model::{LeakedProcess, Record};
 use rtf_report::{Reporter, journal};
 
@@ -55,15 +55,15 @@ impl<R: FnOnce(Link) -> Outcome> Guarded<'_, R> {
     pub fn watch(self) -> Outcome {
         let ended = match guard::split(self.lifeline, self.patience).map_err(Failure::own)? {
             Side::Runner(link) => return (self.run)(link),
-            Side::Guard(guard) => guard.watch(),
+            Side::Guard(guard) => guard.supervise(),
         };
         match ended {
-            Ended::ByItself { code, left } => {
+            GuardOutcome::RunnerExited { code, left } => {
                 let mut err = anstream::stderr().lock();
                 Failure::unless_reader_left(tell_left(&mut err, &left))?;
                 Ok(ExitCode::from(code))
             }
-            Ended::Died(died) => {
+            GuardOutcome::RunnerDied(died) => {
                 let told = tell(&mut anstream::stderr().lock(), &died, self.kept);
                 Failure::unless_reader_left(told)?;
                 let recorded = died.journal.as_ref().map(|journal| close(self.close, journal));
@@ -98,7 +98,7 @@ pub fn finish(report: Result<Box<dyn Reporter>, Failure>, record: &Record) {
     }
 }
 
-fn tell(err: &mut impl Write, died: &Died, kept: bool) -> io::Result<()> {
+fn tell(err: &mut impl Write, died: &Recovery, kept: bool) -> io::Result<()> {
     let (red, green, bold, reset) = ("\u{1b}[1;31m", "\u{1b}[32m", "\u{1b}[1m", "\u{1b}[0m");
     writeln!(err, "{red}error{reset}: the runner died: {}", died.reason)?;
     for hook in &died.hooks {

@@ -1,4 +1,4 @@
-//! The runner's end of the line to its guard.
+//! The runner's connection to its guard.
 
 use std::os::fd::BorrowedFd;
 use std::os::unix::net::UnixStream;
@@ -11,35 +11,34 @@ use rtf_model::{HookId, Source, SuiteId, TestId};
 use rustix::net::SendFlags;
 use tokio::sync::Notify;
 
-use super::note::{Hook, HookBegins, Note};
-use super::queue::Queue;
-use crate::isolate::Prepared;
+use super::message::{GuardMessage, HookSpec, HookStart};
+use super::message_queue::MessageQueue;
+use crate::isolate::PreparedSuite;
 use rtf_plan::plan::SuitePlan;
 use rtf_process::descriptor_passing::MAX_DESCRIPTORS;
 use rtf_process::task::ProcessStream;
 
-/// How often the runner shows that it is alive.
-pub const BEAT: Duration = Duration::from_secs(1);
+/// The interval of heartbeats.
+pub const HEARTBEAT_INTERVAL: Duration = Duration::from_secs(1);
 
-/// The way to the guard. Telling never fails and never waits: without a guard, or
-/// when it is gone or does not read, the run goes on.
+/// The connection to the guard. Sending never fails and never blocks: the run continues
+/// without a guard, or if the guard has ended or does not read.
 #[derive(Debug)]
 pub struct Link {
-    queue: Mutex<Option<Queue>>,
-    /// Closed by the guard's death. The runner shows there that it is alive.
-    pulse: Option<UnixStream>,
+    queue: Mutex<Option<MessageQueue>>,
+    /// Carries heartbeats; closed by the guard's death.
+    heartbeat: Option<UnixStream>,
     forked: Instant,
-    /// How many of the suites that run have hooks: without, the guard needs to
-    /// know nothing of tests and fixtures.
-    hooked: AtomicUsize,
-    /// Tells that the guard missed something.
-    missed: Notify,
+    /// The number of running suites with hooks. Without hooks, the guard needs no messages
+    /// about tests and fixtures.
+    suites_with_hooks: AtomicUsize,
+    messages_lost: Notify,
 }
 
 impl Link {
-    pub(super) fn new(socket: UnixStream, pulse: UnixStream, forked: Instant) -> Self {
-        let pulse = pulse.set_nonblocking(true).is_ok().then_some(pulse);
-        Self { pulse, forked, ..Self::with(Some(Queue::new(socket))) }
+    pub(super) fn new(socket: UnixStream, heartbeat: UnixStream, forked: Instant) -> Self {
+        let heartbeat = heartbeat.set_nonblocking(true).is_ok().then_some(heartbeat);
+        Self { heartbeat, forked, ..Self::with(Some(MessageQueue::new(socket))) }
     }
 
     /// A runner without a guard.
@@ -48,108 +47,112 @@ impl Link {
         Self::with(None)
     }
 
-    fn with(queue: Option<Queue>) -> Self {
-        let (queue, hooked) = (Mutex::new(queue), AtomicUsize::new(0));
-        Self { queue, pulse: None, forked: Instant::now(), hooked, missed: Notify::new() }
-    }
-
-    /// Shows that the runner is alive, and tells what could not be told before.
-    pub fn beat(&self) {
-        if let Some(pulse) = &self.pulse {
-            // A guard that does not read has enough of them.
-            let _ = rustix::net::send(pulse, b".", SendFlags::NOSIGNAL | SendFlags::DONTWAIT);
+    fn with(queue: Option<MessageQueue>) -> Self {
+        Self {
+            queue: Mutex::new(queue),
+            heartbeat: None,
+            forked: Instant::now(),
+            suites_with_hooks: AtomicUsize::new(0),
+            messages_lost: Notify::new(),
         }
-        self.with_queue(Queue::flush);
     }
 
-    /// Waits until the guard has been told everything. It is who the user waits
-    /// for: when it was stopped, the runner may wait, too.
+    /// Sends a heartbeat, and queued messages.
+    pub fn send_heartbeat(&self) {
+        if let Some(heartbeat) = &self.heartbeat {
+            // Fails if the guard does not read, and has unread heartbeats.
+            let _ = rustix::net::send(heartbeat, b".", SendFlags::NOSIGNAL | SendFlags::DONTWAIT);
+        }
+        self.with_queue(MessageQueue::flush);
+    }
+
+    /// Waits until all messages were sent. The user waits for the guard: if it was stopped, the
+    /// runner may wait, too.
     pub fn finish(&self) {
-        self.with_queue(Queue::finish);
+        self.with_queue(MessageQueue::finish);
     }
 
-    /// Waits until the guard has missed something, because it did not read for long.
-    pub async fn guard_missed(&self) {
-        self.missed.notified().await;
+    /// Waits until messages were lost, because the guard did not read for a long time.
+    pub async fn wait_for_lost_messages(&self) {
+        self.messages_lost.notified().await;
     }
 
-    fn any_hooks(&self) -> bool {
-        self.hooked.load(Ordering::Relaxed) > 0
+    fn has_hooks(&self) -> bool {
+        self.suites_with_hooks.load(Ordering::Relaxed) > 0
     }
 
-    /// The run begins; `start` is zero on the clock of its events. `scratch` is
-    /// its folder for files that are gone when it is over.
-    pub fn run_begins(&self, journal: &Path, scratch: PathBuf, start: Instant) {
+    /// The run starts; `start` is zero on the clock of its events. `scratch_dir` is its
+    /// directory for temporary files.
+    pub fn run_started(&self, journal: &Path, scratch_dir: PathBuf, start: Instant) {
         let started = start.saturating_duration_since(self.forked);
-        self.tell(&Note::RunBegins { journal: journal.to_owned(), scratch, started });
+        self.send(&GuardMessage::RunStarted { journal: journal.to_owned(), scratch_dir, started });
     }
 
-    /// The run is over.
-    pub fn run_ends(&self) {
-        self.tell(&Note::RunEnds);
+    /// The run has finished.
+    pub fn run_finished(&self) {
+        self.send(&GuardMessage::RunFinished);
     }
 
-    /// A suite begins: from now on, the guard will run its abort hooks, in its
-    /// network, while nobody else gets its numbers.
-    pub fn suite_begins(&self, prepared: &Prepared<'_>) {
+    /// A suite starts: the guard keeps its exclusive resources, and runs its abort hooks.
+    pub fn suite_started(&self, prepared: &PreparedSuite<'_>) {
         let suite = &*prepared.plan;
         if let Some(held) = prepared.held_network() {
             let descriptors: Vec<_> = held.network().namespaces().descriptors().collect();
-            self.suite_holds(suite.id, &descriptors, Some(held.pid));
+            self.send_resources(suite.id, &descriptors, Some(held.pid));
         }
         let locks: Vec<_> = prepared.locks().collect();
-        for some in locks.chunks(MAX_DESCRIPTORS) {
-            self.suite_holds(suite.id, some, None);
+        for locks in locks.chunks(MAX_DESCRIPTORS) {
+            self.send_resources(suite.id, locks, None);
         }
         if !suite.hooks.is_empty() {
-            self.hooked.fetch_add(1, Ordering::Relaxed);
+            self.suites_with_hooks.fetch_add(1, Ordering::Relaxed);
             let leases: Vec<_> = prepared.leases().collect();
-            for some in leases.chunks(MAX_DESCRIPTORS) {
-                self.suite_holds(suite.id, some, None);
+            for leases in leases.chunks(MAX_DESCRIPTORS) {
+                self.send_resources(suite.id, leases, None);
             }
-            let hooks = suite.hooks.iter().map(|hook| Hook::of(suite, hook)).collect();
-            self.tell(&Note::SuiteBegins { suite: suite.id, hooks });
+            let hooks = suite.hooks.iter().map(|hook| HookSpec::new(suite, hook)).collect();
+            self.send(&GuardMessage::SuiteStarted { suite: suite.id, hooks });
         }
     }
 
-    fn suite_holds(&self, suite: SuiteId, beside: &[BorrowedFd<'_>], holder: Option<i32>) {
-        let note = Note::SuiteHolds { suite, descriptors: beside.len(), holder };
-        self.tell_with(&note, beside);
+    fn send_resources(&self, suite: SuiteId, fds: &[BorrowedFd<'_>], holder: Option<i32>) {
+        let message = GuardMessage::SuiteResources { suite, descriptors: fds.len(), holder };
+        self.send_with(&message, fds);
     }
 
-    /// A suite is over.
-    pub fn suite_ends(&self, prepared: &Prepared<'_>) {
-        let holds = prepared.held_network().is_some() || prepared.locks().next().is_some();
+    /// A suite has finished.
+    pub fn suite_finished(&self, prepared: &PreparedSuite<'_>) {
+        let has_resources = prepared.held_network().is_some() || prepared.locks().next().is_some();
         let has_hooks = !prepared.plan.hooks.is_empty();
-        if has_hooks || holds {
-            self.tell(&Note::SuiteEnds { suite: prepared.plan.id });
+        if has_hooks || has_resources {
+            self.send(&GuardMessage::SuiteFinished { suite: prepared.plan.id });
         }
         if has_hooks {
-            self.hooked.fetch_sub(1, Ordering::Relaxed);
+            self.suites_with_hooks.fetch_sub(1, Ordering::Relaxed);
         }
     }
 
-    /// A test of a suite begins.
-    pub fn test_begins(&self, suite: &SuitePlan, test: TestId, name: &str) {
+    /// A test of a suite starts.
+    pub fn test_started(&self, suite: &SuitePlan, test: TestId, name: &str) {
         if !suite.hooks.is_empty() {
-            self.tell(&Note::TestBegins { suite: suite.id, test, name: name.to_owned() });
+            self.send(&GuardMessage::TestStarted { suite: suite.id, test, name: name.to_owned() });
         }
     }
 
-    /// A test of a suite is over.
-    pub fn test_ends(&self, suite: &SuitePlan, test: TestId) {
+    /// A test of a suite has finished.
+    pub fn test_finished(&self, suite: &SuitePlan, test: TestId) {
         if !suite.hooks.is_empty() {
-            self.tell(&Note::TestEnds { suite: suite.id, test });
+            self.send(&GuardMessage::TestFinished { suite: suite.id, test });
         }
     }
 
-    /// A hook is about to be started; to be told before its process is.
-    pub fn hook_begins(&self, hook: HookBegins) {
-        self.tell(&Note::HookBegins(hook));
+    /// A hook is about to start. Call it before its process is started.
+    pub fn hook_starting(&self, start: HookStart) {
+        self.send(&GuardMessage::HookStarting(start));
     }
 
-    /// A process was started. The streams of a hook's or fixture's process are
-    /// kept by the guard, too, so that it can go on without the runner.
+    /// A process was started. The guard also keeps the streams of a hook's or fixture's
+    /// process, so that it can continue without the runner.
     pub fn process_started(
         &self,
         source: Source,
@@ -157,56 +160,56 @@ impl Link {
         streams: &[(ProcessStream, BorrowedFd<'_>)],
     ) {
         let (names, descriptors): (Vec<_>, Vec<_>) = streams.iter().copied().unzip();
-        let note = match source {
+        let message = match source {
             Source::Test(_) => return,
-            _ if !self.any_hooks() => return,
-            Source::Hook(hook) => Note::HookStarted { hook, pid, streams: names },
-            Source::Fixture(_) => Note::FixtureStarted { pid, streams: names },
+            _ if !self.has_hooks() => return,
+            Source::Hook(hook) => GuardMessage::HookStarted { hook, pid, streams: names },
+            Source::Fixture(_) => GuardMessage::FixtureStarted { pid, streams: names },
         };
-        self.tell_with(&note, &descriptors);
+        self.send_with(&message, &descriptors);
     }
 
-    /// A hook is over; to be told before anybody else is.
-    pub fn hook_ends(&self, hook: HookId, problem: Option<String>) {
-        self.tell(&Note::HookEnds { hook, problem });
+    /// A hook has finished. Call it before its event is emitted.
+    pub fn hook_finished(&self, hook: HookId, problem: Option<String>) {
+        self.send(&GuardMessage::HookFinished { hook, problem });
     }
 
-    /// A process has ended. The guard needs to know as long as there are hooks.
+    /// A process has ended.
     pub fn process_ended(&self, source: Source, pid: i32) {
-        if matches!(source, Source::Fixture(_)) && self.any_hooks() {
-            self.tell(&Note::FixtureEnds { pid });
+        if matches!(source, Source::Fixture(_)) && self.has_hooks() {
+            self.send(&GuardMessage::FixtureEnded { pid });
         }
     }
 
-    /// Waits for the guard's death; for ever when there is no guard.
+    /// Waits for the guard's death. Never returns without a guard.
     pub async fn guard_died(&self) {
-        let pulse = self.pulse.as_ref().and_then(|pulse| pulse.try_clone().ok());
-        match pulse.and_then(|pulse| tokio::net::UnixStream::from_std(pulse).ok()) {
-            // The guard never writes there: what can be read is its end.
-            Some(pulse) => drop(pulse.readable().await),
+        let socket = self.heartbeat.as_ref().and_then(|socket| socket.try_clone().ok());
+        match socket.and_then(|socket| tokio::net::UnixStream::from_std(socket).ok()) {
+            // The guard never writes: the socket becomes readable at its end.
+            Some(socket) => drop(socket.readable().await),
             None => std::future::pending().await,
         }
     }
 
-    fn tell(&self, note: &Note) {
-        self.tell_with(note, &[]);
+    fn send(&self, message: &GuardMessage) {
+        self.send_with(message, &[]);
     }
 
-    fn tell_with(&self, note: &Note, descriptors: &[BorrowedFd<'_>]) {
+    fn send_with(&self, message: &GuardMessage, descriptors: &[BorrowedFd<'_>]) {
         self.with_queue(|queue| {
-            let before = queue.missed;
-            let told = queue.tell(note, descriptors);
-            if queue.missed && !before {
-                self.missed.notify_one();
+            let had_lost = queue.has_lost_messages;
+            let sent = queue.send(message, descriptors);
+            if queue.has_lost_messages && !had_lost {
+                self.messages_lost.notify_one();
             }
-            told
+            sent
         });
     }
 
-    fn with_queue(&self, act: impl FnOnce(&mut Queue) -> std::io::Result<()>) {
+    fn with_queue(&self, act: impl FnOnce(&mut MessageQueue) -> std::io::Result<()>) {
         let mut slot = self.queue.lock().unwrap_or_else(PoisonError::into_inner);
         if slot.as_mut().is_some_and(|queue| act(queue).is_err()) {
-            // The guard is gone, which is noticed by its pulse.
+            // The guard has ended, which the heartbeat socket shows.
             *slot = None;
         }
     }

@@ -1,32 +1,29 @@
-//! The guard: the process that the user starts. It runs the runner below it,
-//! and puts things in order when the runner dies.
+//! The guard: the process that the user starts. The runner is its child.
 //!
-//! [`split`] makes two processes of one. The guard's side is [`Guard::watch`]:
-//! it passes signals on and waits. The runner's side is the [`Link`], over
-//! which it tells the guard what would have to be done without it: which hooks
-//! there are, which have begun, and which outputs must stay open.
+//! [`split`] forks. The guard's side is [`Guard::supervise`]: it forwards signals and
+//! waits. The runner's side is the [`Link`], over which it reports what the guard needs if
+//! the runner dies: the hooks, which of them have started, and streams that must remain
+//! open. The runner sends a heartbeat every second; a silent runner is killed.
 //!
-//! The runner shows every second that it is alive. One that does not for a while
-//! is killed, and then has died.
+//! After the runner's death, [`recovery`] kills its tests, runs the abort hooks, kills
+//! everything that is left, and closes the journal. After the guard's death, the runner
+//! tears down in order, as after Ctrl-C.
 //!
-//! When the runner has died: the running test is killed ([`after`]), the abort
-//! hooks are run ([`hook`]), everything that is left is killed, and the journal
-//! is closed ([`closing`]). When the guard has died, the runner tears down in
-//! order, as after Ctrl-C.
-//!
-//! Why it is like this: `docs/decisions/0007-the-guard.md`.
+//! Rationale: `docs/decisions/0007-the-guard.md`.
 
-mod after;
-mod attend;
-mod closing;
-mod duties;
-mod hook;
+mod heartbeat;
+mod hook_process;
+mod hook_run;
+mod journal_close;
 mod link;
-mod note;
-mod queue;
-mod requests;
+mod message;
+mod message_queue;
+mod message_receiver;
+mod recovery;
+mod recovery_state;
+mod stop_requests;
+mod supervisor;
 mod unix;
-mod watch;
 
 use std::io;
 use std::os::fd::OwnedFd;
@@ -35,12 +32,12 @@ use std::time::{Duration, Instant};
 
 use rtf_process::resources;
 
-pub use after::{Died, Parked};
-pub use link::{BEAT, Link};
-pub use note::HookBegins;
-pub use requests::{Requests, WINDOW};
+pub use link::{HEARTBEAT_INTERVAL, Link};
+pub use message::HookStart;
+pub use recovery::{RecoveredHook, Recovery};
+pub use stop_requests::{StopRequests, WINDOW};
+pub use supervisor::{Guard, GuardOutcome};
 pub use unix::survive_file_size_limit;
-pub use watch::{Ended, Guard};
 
 /// Which of the two processes this is.
 #[derive(Debug)]
@@ -51,52 +48,51 @@ pub enum Side {
     Runner(Link),
 }
 
-/// Makes two processes of this one. The guard becomes a child subreaper; the
-/// runner gets a process group of its own, so that a terminal's Ctrl-C comes to
-/// it once, through the guard.
+/// Forks this process. The guard becomes a child subreaper; the runner becomes the leader of
+/// a new process group, so that it receives a terminal's Ctrl-C once, from the guard.
 ///
-/// The end of `lifeline` counts as SIGTERM; what comes over it is read and forgotten.
-/// A runner that does not answer for `patience`, or [`watch::LEAST_PATIENCE`], is killed.
+/// The end of `lifeline` counts as SIGTERM; its data is discarded. A runner that is silent
+/// for `patience`, or for [`supervisor::MIN_PATIENCE`], is killed.
 ///
 /// # Errors
 /// This process has more than one thread, or the system refused.
 pub fn split(lifeline: Option<OwnedFd>, patience: Duration) -> io::Result<Side> {
     resources::raise_descriptor_limit();
     let (guards, runners) = UnixStream::pair()?;
-    let (pulse, felt) = UnixStream::pair()?;
+    let (heartbeat, runners_heartbeat) = UnixStream::pair()?;
     rustix::process::set_child_subreaper(Some(rustix::process::getpid()))?;
     let forked = Instant::now();
-    // No signal may come before it is known who takes it.
-    let held = unix::Held::hold();
+    // No signal may arrive before its handler is installed.
+    let blocked = unix::BlockedSignals::block();
     match unix::fork()? {
         Some(runner) => {
-            drop((runners, felt));
-            // Both do it: whoever comes first, it is done.
-            unix::own_group(Some(runner));
+            drop((runners, runners_heartbeat));
+            // Both processes do it, because either may be the first.
+            unix::lead_group(Some(runner));
             let signals = unix::Signals::install()?;
-            drop(held);
-            unix::stay_in_memory();
-            let guard = Guard::new(runner, [guards, pulse], signals, forked);
-            let guard = guard.ending_with(lifeline).patient_for(patience);
+            drop(blocked);
+            unix::lock_memory();
+            let guard = Guard::new(runner, [guards, heartbeat], signals, forked);
+            let guard = guard.with_lifeline(lifeline).with_patience(patience);
             Ok(Side::Guard(Box::new(guard)))
         }
         None => {
-            drop((guards, pulse, lifeline));
-            unix::own_group(None);
-            drop(held);
-            unix::write_to_terminal_from_behind();
-            die_of_panics();
-            Ok(Side::Runner(Link::new(runners, felt, forked)))
+            drop((guards, heartbeat, lifeline));
+            unix::lead_group(None);
+            drop(blocked);
+            unix::permit_background_output();
+            abort_on_panic();
+            Ok(Side::Runner(Link::new(runners, runners_heartbeat, forked)))
         }
     }
 }
 
-/// Lets a panic of the thread that supervises end the runner at once. Unwinding
-/// would kill the fixtures on its way, before the guard can park the robot.
-fn die_of_panics() {
-    let tell = std::panic::take_hook();
+/// Makes a panic of the main thread end the runner at once. Unwinding would kill the fixtures
+/// before the guard can run the hooks.
+fn abort_on_panic() {
+    let report = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
-        tell(panic);
+        report(panic);
         if std::thread::current().name() == Some("main") {
             std::process::abort();
         }

@@ -13,22 +13,22 @@ use rustix::io::Errno;
 use rustix::pipe::PipeFlags;
 use rustix::process::{Pid, WaitOptions, WaitStatus};
 
-use super::requests::Requests;
+use super::stop_requests::StopRequests;
 
-/// The number of requests to end the run after which nobody is waited for.
-const KILLS: u32 = 3;
+/// The number of requests after which hooks are killed.
+const KILL_REQUESTS: u32 = 3;
 
-/// Signals that ask for the end of the run.
-pub const ASKING: [i32; 3] = [libc::SIGINT, libc::SIGTERM, libc::SIGHUP];
+/// The signals that request the end of the run.
+pub const STOP_SIGNALS: [i32; 3] = [libc::SIGINT, libc::SIGTERM, libc::SIGHUP];
 
-/// All that the guard takes care of.
-const TAKEN: [i32; 6] =
+/// The signals that the guard handles.
+const HANDLED_SIGNALS: [i32; 6] =
     [libc::SIGINT, libc::SIGTERM, libc::SIGHUP, libc::SIGQUIT, libc::SIGTSTP, libc::SIGCHLD];
 
-/// Where the handler writes the numbers of signals.
-static NOTED: AtomicI32 = AtomicI32::new(-1);
+/// The pipe to which the handler writes the numbers of signals.
+static SIGNAL_PIPE: AtomicI32 = AtomicI32::new(-1);
 
-/// Makes two processes of this one: `Some` with the child's id in the parent.
+/// Forks this process: `Some` with the child's id in the parent.
 pub fn fork() -> io::Result<Option<i32>> {
     if std::fs::read_dir("/proc/self/task").map_err(unreadable_proc)?.count() != 1 {
         return Err(io::Error::other("the process has threads already"));
@@ -42,23 +42,22 @@ pub fn fork() -> io::Result<Option<i32>> {
     }
 }
 
-/// Gives a process (this one when `None`) a group of its own.
-pub fn own_group(pid: Option<i32>) {
+/// Makes a process, this one when `None`, the leader of a new group.
+pub fn lead_group(pid: Option<i32>) {
     let pid = pid.and_then(Pid::from_raw);
-    // The other side may have done it.
+    // Fails if the other process has done so.
     let _ = rustix::process::setpgid(pid, pid);
 }
 
-/// A background process may write to its terminal, unless `stty tostop` is set:
-/// then SIGTTOU would stop it, which must not happen to one that supervises a robot.
-pub fn write_to_terminal_from_behind() {
+/// Blocks SIGTTOU: with `stty tostop`, it would stop a background process that writes to its
+/// terminal, which must not happen to one that supervises a robot.
+pub fn permit_background_output() {
     change_mask(libc::SIG_BLOCK, &set_of(&[libc::SIGTTOU]));
 }
 
-/// Keeps the memory of this process from being swapped out, where it may: what is
-/// there, and of the rest what is used.
-pub fn stay_in_memory() {
-    // SAFETY: it changes nothing but where pages are. One that may not does without.
+/// Prevents the used memory of this process from being swapped out, if permitted.
+pub fn lock_memory() {
+    // SAFETY: it only changes where pages are.
     unsafe { libc::mlockall(libc::MCL_CURRENT | libc::MCL_ONFAULT) };
 }
 
@@ -83,81 +82,83 @@ fn change_mask(how: i32, set: &libc::sigset_t) -> libc::sigset_t {
     before
 }
 
-/// While it lives, the signals that the guard takes care of wait.
-pub struct Held(libc::sigset_t);
+/// Blocks the signals that the guard handles, until it is dropped.
+pub struct BlockedSignals(libc::sigset_t);
 
-impl Held {
-    /// Lets them wait.
-    pub fn hold() -> Self {
-        Self(change_mask(libc::SIG_BLOCK, &set_of(&TAKEN)))
+impl BlockedSignals {
+    /// Blocks them.
+    pub fn block() -> Self {
+        Self(change_mask(libc::SIG_BLOCK, &set_of(&HANDLED_SIGNALS)))
     }
 }
 
-impl Drop for Held {
+impl Drop for BlockedSignals {
     fn drop(&mut self) {
         change_mask(libc::SIG_SETMASK, &self.0);
     }
 }
 
-/// The signals that came, to be polled and read.
+/// The received signals, to be polled and read.
 #[derive(Debug)]
 pub struct Signals {
-    noted: OwnedFd,
+    pipe: OwnedFd,
     /// The requests to end the run.
-    pub requests: Requests,
+    pub requests: StopRequests,
 }
 
 impl Signals {
-    /// Takes the signals from now on. Handlers, unlike a mask, are not
-    /// inherited by the programs that the guard starts.
+    /// Installs the handlers. Unlike a mask, programs that the guard starts do not inherit
+    /// them.
     pub fn install() -> io::Result<Self> {
-        let (noted, note) = rustix::pipe::pipe_with(PipeFlags::CLOEXEC | PipeFlags::NONBLOCK)?;
-        // It is open until the process ends: a handler may run at any time.
-        NOTED.store(note.into_raw_fd(), Ordering::Release);
-        for signal in TAKEN {
-            // After `nohup`, the terminal's end is not the run's.
+        let (pipe, writer) = rustix::pipe::pipe_with(PipeFlags::CLOEXEC | PipeFlags::NONBLOCK)?;
+        // Never closed: a handler may run at any time.
+        SIGNAL_PIPE.store(writer.into_raw_fd(), Ordering::Release);
+        for signal in HANDLED_SIGNALS {
+            // `nohup` ignores SIGHUP.
             if signal != libc::SIGHUP || !is_ignored(signal) {
-                take(signal)?;
+                handle(signal, write_to_pipe)?;
             }
         }
-        Ok(Self { noted, requests: Requests::default() })
+        Ok(Self { pipe, requests: StopRequests::default() })
     }
 
-    /// The signals that came since the last call. Of those that ask for the end
-    /// of the run, only new requests.
+    /// Returns the signals since the last call. Signals that belong to an earlier request are
+    /// left out.
     pub fn read(&mut self) -> Vec<i32> {
         let mut numbers = [0; 256];
-        let read = rustix::io::read(&self.noted, &mut numbers[..]).unwrap_or(0);
-        let came = numbers[..read].iter().map(|number| i32::from(*number));
+        let read = rustix::io::read(&self.pipe, &mut numbers[..]).unwrap_or(0);
+        let received = numbers[..read].iter().map(|number| i32::from(*number));
         let now = Instant::now();
-        came.filter(|signal| !ASKING.contains(signal) || self.requests.take(now)).collect()
+        received
+            .filter(|signal| !STOP_SIGNALS.contains(signal) || self.requests.record(now))
+            .collect()
     }
 
-    /// Whether nobody is waited for any more.
+    /// Whether hooks are killed.
     #[must_use]
-    pub fn kill(&self) -> bool {
-        self.requests.made() >= KILLS
+    pub fn requests_kill(&self) -> bool {
+        self.requests.count() >= KILL_REQUESTS
     }
 }
 
 impl AsFd for Signals {
     fn as_fd(&self) -> BorrowedFd<'_> {
-        self.noted.as_fd()
+        self.pipe.as_fd()
     }
 }
 
 fn is_ignored(signal: i32) -> bool {
     let mut action = MaybeUninit::<libc::sigaction>::zeroed();
-    // SAFETY: a null action only asks; all zeroes are a valid `sigaction`.
+    // SAFETY: a null action only queries; all zeroes are a valid `sigaction`.
     unsafe {
         libc::sigaction(signal, std::ptr::null(), action.as_mut_ptr());
         action.assume_init().sa_sigaction == libc::SIG_IGN
     }
 }
 
-/// Lets a write beyond the limit of file sizes (`ulimit -f`) fail, which is
-/// reported, instead of ending the process. A handler, unlike an ignored signal,
-/// is not inherited by the programs that this process starts.
+/// Makes a write beyond the file size limit (`ulimit -f`) fail instead of ending the
+/// process. Unlike an ignored signal, programs that this process starts do not inherit the
+/// handler.
 ///
 /// # Errors
 /// The system refused.
@@ -166,10 +167,6 @@ pub fn survive_file_size_limit() -> io::Result<()> {
 }
 
 extern "C" fn ignore(_: libc::c_int) {}
-
-fn take(signal: i32) -> io::Result<()> {
-    handle(signal, note)
-}
 
 fn handle(signal: i32, handler: extern "C" fn(libc::c_int)) -> io::Result<()> {
     // SAFETY: all zeroes are a valid `sigaction`, and the handlers of this file
@@ -183,27 +180,26 @@ fn handle(signal: i32, handler: extern "C" fn(libc::c_int)) -> io::Result<()> {
     if handled == 0 { Ok(()) } else { Err(io::Error::last_os_error()) }
 }
 
-extern "C" fn note(signal: libc::c_int) {
+extern "C" fn write_to_pipe(signal: libc::c_int) {
     let number = u8::try_from(signal).unwrap_or(0);
-    // SAFETY: `write` and `errno` may be used in a handler; the descriptor is
-    // never closed. A pipe that is full has woken the reader already.
+    // SAFETY: `write` and `errno` may be used in a handler; the descriptor is never closed.
+    // A full pipe has woken the reader already.
     unsafe {
         let errno = libc::__errno_location();
         let before = *errno;
-        libc::write(NOTED.load(Ordering::Acquire), (&raw const number).cast(), 1);
+        libc::write(SIGNAL_PIPE.load(Ordering::Acquire), (&raw const number).cast(), 1);
         *errno = before;
     }
 }
 
-/// How a child of this process ended, if it has; it is gone then. `Err` when
-/// there is no such child (any more).
+/// Reaps a child of this process if it has ended. `Err` if there is no such child.
 pub fn ended(pid: i32) -> Result<Option<ExitStatus>, Errno> {
     let pid = Pid::from_raw(pid).ok_or(Errno::CHILD)?;
     let status = rustix::process::waitpid(Some(pid), WaitOptions::NOHANG)?;
-    Ok(status.map(|(_, status)| in_our_words(status)))
+    Ok(status.map(|(_, status)| exit_status(status)))
 }
 
-fn in_our_words(status: WaitStatus) -> ExitStatus {
+fn exit_status(status: WaitStatus) -> ExitStatus {
     match (status.exit_status(), status.terminating_signal()) {
         (Some(code), _) => ExitStatus::Code(code),
         (None, Some(signal)) => ExitStatus::Signal(signal),

@@ -1,10 +1,9 @@
-//! Numbers that no other run on this machine has.
+//! Leases of ports and ids, exclusive on this machine.
 //!
-//! A lease is a socket that is bound to a name of the abstract namespace. The
-//! kernel sees to it that nobody else can bind it, whoever they are, and frees
-//! it when the last process that holds it is gone: no file is left behind, and
-//! a runner that was killed blocks nothing. Names live in a network namespace,
-//! as ports do.
+//! A lease is a socket bound to a name of the abstract namespace. No other process, of any
+//! user, can bind that name until the last process that holds the socket has ended: no file
+//! is left behind, and a killed runner blocks nothing. Names belong to a network namespace, as
+//! ports do.
 
 use std::io;
 use std::net::{Ipv4Addr, Ipv6Addr, SocketAddr};
@@ -16,22 +15,21 @@ use std::os::unix::net::{SocketAddr as UnixAddr, UnixDatagram};
 use rustix::io::Errno;
 use rustix::net::{AddressFamily, SocketFlags, SocketType, bind, socket_with};
 
-/// Below the ports that the kernel hands out by itself, above those that
-/// services have by custom.
+/// Below the kernel's ephemeral ports, above the usual ports of services.
 const PORTS: RangeInclusive<u16> = 20_000..=29_999;
-/// With these, all ports of ROS 2's discovery lie below those that the kernel
-/// hands out; 0 is everybody's.
+/// The ROS 2 domains whose discovery ports are below the ephemeral ports; 0 is the default of
+/// all users.
 const DOMAINS: RangeInclusive<u16> = 1..=101;
 
-/// Why there is no number.
+/// Why no number can be leased.
 #[derive(Debug, thiserror::Error)]
 pub enum LeaseError {
-    /// Other runs have them all, or programs that are not rtf.
+    /// Other runs or programs use them all.
     #[error("every {kind} from {} to {} is in use", range.start(), range.end())]
     NoneLeft {
-        /// What was wanted.
+        /// What the number is for.
         kind: &'static str,
-        /// Among which.
+        /// The permitted numbers.
         range: RangeInclusive<u16>,
     },
     /// The system refused.
@@ -39,7 +37,7 @@ pub enum LeaseError {
     System(#[from] io::Error),
 }
 
-/// A number that is ours until this is dropped, here and in the guard.
+/// A number that is leased until this value is dropped, here and in the guard.
 #[derive(Debug)]
 pub struct Lease {
     number: u16,
@@ -47,13 +45,13 @@ pub struct Lease {
 }
 
 impl Lease {
-    /// The number.
+    /// Returns the number.
     pub fn number(&self) -> u16 {
         self.number
     }
 
-    /// Takes a number; `None` when somebody has it.
-    fn take(kind: &str, number: u16) -> io::Result<Option<Self>> {
+    /// Leases a number; `None` if it is in use.
+    fn try_new(kind: &str, number: u16) -> io::Result<Option<Self>> {
         let address = UnixAddr::from_abstract_name(format!("rtf/{kind}/{number}"))?;
         match UnixDatagram::bind_addr(&address) {
             Ok(socket) => Ok(Some(Self { number, socket })),
@@ -69,24 +67,24 @@ impl AsFd for Lease {
     }
 }
 
-/// A TCP port that is free on all addresses. `seed` says where to begin.
+/// Leases a TCP port that is free on all addresses. `seed` selects the first candidate.
 pub fn port(seed: &str) -> Result<Lease, LeaseError> {
-    first("port", PORTS, seed, is_free)
+    lease_first("port", PORTS, seed, is_free)
 }
 
-/// A domain of ROS 2.
+/// Leases a ROS 2 domain.
 pub fn domain(seed: &str) -> Result<Lease, LeaseError> {
-    first("domain", DOMAINS, seed, |_| Ok(true))
+    lease_first("domain", DOMAINS, seed, |_| Ok(true))
 }
 
-fn first(
+fn lease_first(
     kind: &'static str,
     range: RangeInclusive<u16>,
     seed: &str,
     fits: impl Fn(u16) -> io::Result<bool>,
 ) -> Result<Lease, LeaseError> {
-    for number in from(range.clone(), seed) {
-        if let Some(lease) = Lease::take(kind, number)?
+    for number in candidates(range.clone(), seed) {
+        if let Some(lease) = Lease::try_new(kind, number)?
             && fits(number)?
         {
             return Ok(lease);
@@ -95,10 +93,10 @@ fn first(
     Err(LeaseError::NoneLeft { kind, range })
 }
 
-/// The numbers of a range, once around. Where it begins differs from run to
-/// run: a port that was in use a moment ago is not given out again at once.
-fn from(range: RangeInclusive<u16>, seed: &str) -> impl Iterator<Item = u16> {
-    // FNV-1a: any hash will do that spreads.
+/// Returns the numbers of a range. The first one differs from run to run, so that a port is not
+/// reused immediately.
+fn candidates(range: RangeInclusive<u16>, seed: &str) -> impl Iterator<Item = u16> {
+    // FNV-1a; any hash that distributes well will do.
     let hash = seed.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
     });
@@ -107,7 +105,7 @@ fn from(range: RangeInclusive<u16>, seed: &str) -> impl Iterator<Item = u16> {
     range.cycle().skip(start).take(length)
 }
 
-/// Whether nobody listens there, or did a moment ago.
+/// Whether no process listens on the port, or did a moment ago.
 fn is_free(port: u16) -> io::Result<bool> {
     let any = [
         (AddressFamily::INET, SocketAddr::from((Ipv4Addr::UNSPECIFIED, port))),
@@ -119,11 +117,11 @@ fn is_free(port: u16) -> io::Result<bool> {
         match bound {
             Ok(()) => {}
             Err(Errno::ADDRINUSE) => return Ok(false),
-            // Nothing is known of the port when there are no descriptors left.
+            // Out of descriptors or memory: the state of the port is unknown.
             Err(error @ (Errno::MFILE | Errno::NFILE | Errno::NOMEM | Errno::NOBUFS)) => {
                 return Err(error.into());
             }
-            // There may be no IPv6.
+            // The machine may lack IPv6.
             Err(_) if family == AddressFamily::INET6 => {}
             Err(error) => return Err(error.into()),
         }
@@ -137,13 +135,13 @@ mod tests {
     use std::net::TcpListener;
 
     #[test]
-    fn a_number_is_leased_once_and_freed_by_its_drop() {
+    fn a_number_is_leased_once_and_released_by_its_drop() {
         let kind = format!("test-{}", std::process::id());
-        let lease = Lease::take(&kind, 5).unwrap().unwrap();
-        assert!(Lease::take(&kind, 5).unwrap().is_none());
-        assert!(Lease::take(&kind, 6).unwrap().is_some());
+        let lease = Lease::try_new(&kind, 5).unwrap().unwrap();
+        assert!(Lease::try_new(&kind, 5).unwrap().is_none());
+        assert!(Lease::try_new(&kind, 6).unwrap().is_some());
         drop(lease);
-        assert!(Lease::take(&kind, 5).unwrap().is_some());
+        assert!(Lease::try_new(&kind, 5).unwrap().is_some());
     }
 
     #[test]
@@ -154,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn a_port_on_which_somebody_listens_is_not_free() {
+    fn a_port_with_a_listener_is_not_free() {
         for address in ["127.0.0.1:0", "0.0.0.0:0"] {
             let listener = TcpListener::bind(address).unwrap();
             let port = listener.local_addr().unwrap().port();
@@ -163,25 +161,24 @@ mod tests {
     }
 
     #[test]
-    fn every_number_comes_once_wherever_it_begins() {
+    fn every_number_is_a_candidate_once_for_any_seed() {
         for seed in ["a", "b", "2026-11-21T06-30-12Z-1f3a.0"] {
-            let mut numbers: Vec<_> = from(DOMAINS, seed).collect();
+            let mut numbers: Vec<_> = candidates(DOMAINS, seed).collect();
             numbers.sort_unstable();
             assert_eq!(numbers, DOMAINS.collect::<Vec<_>>(), "{seed}");
         }
     }
 
     #[test]
-    fn when_all_are_taken_it_says_so() {
-        let error = first("port", 20_000..=20_003, "seed", |_| Ok(false)).unwrap_err();
+    fn a_range_without_free_numbers_is_an_error() {
+        let error = lease_first("port", 20_000..=20_003, "seed", |_| Ok(false)).unwrap_err();
         assert_eq!(error.to_string(), "every port from 20000 to 20003 is in use");
     }
 
-    /// Nothing is known of any port then.
     #[test]
-    fn ports_that_cannot_be_tried_are_not_called_taken() {
+    fn ports_whose_state_is_unknown_are_not_reported_as_in_use() {
         let full = |_| Err(Errno::MFILE.into());
-        let error = first("port", 20_000..=20_003, "seed", full).unwrap_err();
+        let error = lease_first("port", 20_000..=20_003, "seed", full).unwrap_err();
         assert!(error.to_string().starts_with("Too many open files"), "{error}");
     }
 }

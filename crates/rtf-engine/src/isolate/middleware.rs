@@ -1,4 +1,4 @@
-//! The environment variables that name a suite's own middleware.
+//! The environment variables that isolate a suite's middleware.
 
 use std::path::Path;
 
@@ -9,25 +9,25 @@ use rtf_plan::plan::{FixtureBody, FixturePlan, OwnMiddleware, SuitePlan};
 const ROS_MASTER: &str = "ros-master";
 const GAZEBO_MASTER: &str = "gazebo-master";
 
-/// The ports that a suite with middleware of its own has in any case.
+/// The ports of every suite with isolated middleware.
 pub const PORTS: [&str; 2] = [ROS_MASTER, GAZEBO_MASTER];
 
-/// What the variables are made of.
+/// The values of the variables.
 #[derive(Clone, Copy, Debug)]
-pub struct Own<'a> {
+pub struct MiddlewareIds<'a> {
     /// The run.
     pub run: &'a str,
-    /// The run's folder.
-    pub folder: &'a Path,
-    /// A number that no other suite has.
+    /// The run's directory.
+    pub run_dir: &'a Path,
+    /// The leased ROS 2 domain.
     pub domain: u16,
     /// The suite's ports.
     pub ports: &'a [SuitePort],
 }
 
-impl Own<'_> {
-    /// The variables. What the suite itself sets is left out; `user` is the
-    /// environment in which the run was started.
+impl MiddlewareIds<'_> {
+    /// Returns the variables, except those that the suite sets. `user` is the environment in which
+    /// the run was started.
     pub fn variables(
         &self,
         plan: &SuitePlan,
@@ -47,18 +47,17 @@ impl Own<'_> {
         let local_master = own_master && is_here;
         let mut variables = Vec::new();
         for (name, value) in self.all(plan) {
-            // The range belongs to the domain: another one may span machines.
+            // The user's domain may span machines, and needs the user's range.
             let spans_machines = name == "ROS_AUTOMATIC_DISCOVERY_RANGE" && !local_domain;
             if written(name) || (spans_machines && user(name).is_none()) {
                 continue;
             }
-            // So does the address by which the nodes of a master are known; that
-            // of the user's shell is for the user's master.
+            // The user's host name belongs to the user's master.
             let of_master = name == "ROS_HOSTNAME";
             if of_master && !local_master {
                 continue;
             }
-            // Another machine has no such folder.
+            // The directory does not exist on a remote machine.
             if name == "ROS_LOG_DIR" && !is_here {
                 continue;
             }
@@ -87,7 +86,7 @@ impl Own<'_> {
         ]
     }
 
-    /// Where nodes write, as the suite's other logs are named: `logs/arm.ros`.
+    /// The directory for logs of nodes, named like the suite's other logs: `logs/arm.ros`.
     fn logs(&self, plan: &SuitePlan) -> String {
         let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
         let name = if plan.name.chars().all(is_plain) {
@@ -95,7 +94,7 @@ impl Own<'_> {
         } else {
             format!("ros~s{}", plan.id)
         };
-        self.folder.join("logs").join(name).to_string_lossy().into_owned()
+        self.run_dir.join("logs").join(name).to_string_lossy().into_owned()
     }
 
     fn address(&self, name: &str) -> String {

@@ -1,16 +1,14 @@
-//! What a suite gets for itself when it starts: a network namespace, ports, and
-//! ids for its middleware. `spec/suite.md`, "Isolation", says what a user sees.
+//! The exclusive resources of a suite: a network namespace, ports, and ids for its middleware.
+//! See `spec/suite.md`, "Isolation", and the rationale in `docs/decisions/0009-isolation.md`.
 //!
-//! - [`Prepared`]: all of it, for one suite; given back with its end.
-//! - `lease`: numbers that no other run on this machine has.
+//! - [`PreparedSuite`]: all resources of one suite, until its end.
+//! - `lease`: numbers that are exclusive on this machine.
 //! - `middleware`: the environment variables.
-//! - `fill`: puts what was given into the texts of a plan.
-//!
-//! Why it is like this: `docs/decisions/0009-isolation.md`.
+//! - `port_substitution`: completes the texts of a plan.
 
-mod fill;
 mod lease;
 mod middleware;
+mod port_substitution;
 #[cfg(test)]
 mod tests;
 
@@ -26,43 +24,43 @@ use rtf_plan::plan::{OwnMiddleware, Preparation, SuitePlan};
 use rtf_process::network::{HeldNetwork, Network, NetworkError};
 use rtf_process::spawner::Spawner;
 
-/// Whether a suite could have a network of its own here; else why not.
+/// Checks that this machine permits private networks.
 ///
 /// # Errors
-/// What the system refuses.
-pub async fn network_is_possible(spawner: &Spawner) -> Result<(), String> {
+/// The reason why it does not.
+pub async fn check_network(spawner: &Spawner) -> Result<(), String> {
     let network = HeldNetwork::start(spawner).await.map_err(|error| error.to_string())?;
     network.end().await;
     Ok(())
 }
 
-/// Why a suite cannot have what it needs.
+/// Why a suite cannot get its resources.
 #[derive(Debug, thiserror::Error)]
-enum RefusedError {
+enum PreparationError {
     #[error("cannot lease a number: {0}")]
     Lease(#[from] LeaseError),
     #[error("no network of its own: {0}")]
     Network(#[from] NetworkError),
 }
 
-/// A suite with all that it got for itself.
+/// A suite with its exclusive resources.
 #[derive(Debug)]
-pub struct Prepared<'p> {
-    /// The plan, in which everything is filled in.
+pub struct PreparedSuite<'p> {
+    /// The completed plan.
     pub plan: Cow<'p, SuitePlan>,
     network: Option<HeldNetwork>,
     leases: Vec<Lease>,
     locks: Vec<Lock>,
 }
 
-impl<'p> Prepared<'p> {
-    /// Gets what a suite needs, unless the locks that it requires are held by
-    /// somebody else. `run` is unique on this machine; `folder` is the run's.
-    pub async fn get(
+impl<'p> PreparedSuite<'p> {
+    /// Acquires the resources of a suite, unless its locks are refused. `run` is unique on this
+    /// machine; `run_dir` is the run's directory.
+    pub async fn prepare(
         plan: &'p SuitePlan,
         locks: Result<Vec<Lock>, String>,
         run: &str,
-        folder: &Path,
+        run_dir: &Path,
         spawner: &Spawner,
     ) -> Self {
         let (plan, leases, network) = (Cow::Borrowed(plan), Vec::new(), None);
@@ -70,17 +68,17 @@ impl<'p> Prepared<'p> {
         match locks {
             Ok(locks) => prepared.locks = locks,
             Err(held) => {
-                fill::fill(prepared.plan.to_mut(), Preparation::Refused(held));
+                port_substitution::substitute(prepared.plan.to_mut(), Preparation::Refused(held));
                 return prepared;
             }
         }
         let plan = prepared.plan.clone();
-        let given = match prepared.acquire(&plan, run, folder, spawner).await {
+        let preparation = match prepared.acquire(&plan, run, run_dir, spawner).await {
             Ok(None) => return prepared,
-            Ok(Some(given)) => Preparation::Done(given),
+            Ok(Some(resources)) => Preparation::Done(resources),
             Err(refused) => Preparation::Refused(refused.to_string()),
         };
-        fill::fill(prepared.plan.to_mut(), given);
+        port_substitution::substitute(prepared.plan.to_mut(), preparation);
         prepared
     }
 
@@ -88,18 +86,18 @@ impl<'p> Prepared<'p> {
         &mut self,
         plan: &SuitePlan,
         run: &str,
-        folder: &Path,
+        run_dir: &Path,
         spawner: &Spawner,
-    ) -> Result<Option<SuitePrepared>, RefusedError> {
-        let wanted = &plan.isolate;
-        let own = wanted.middleware != OwnMiddleware::No;
-        if !own && !wanted.network && wanted.ports.is_empty() {
+    ) -> Result<Option<SuitePrepared>, PreparationError> {
+        let isolate = &plan.isolate;
+        let own = isolate.middleware != OwnMiddleware::No;
+        if !own && !isolate.network && isolate.ports.is_empty() {
             return Ok(None);
         }
         let seed = format!("{run}.{}", plan.id);
         let mut ports = Vec::new();
         let always = middleware::PORTS.iter().copied().filter(|_| own);
-        for name in always.chain(wanted.ports.iter().map(String::as_str)) {
+        for name in always.chain(isolate.ports.iter().map(String::as_str)) {
             if ports.iter().all(|known: &SuitePort| known.name != name) {
                 let lease = lease::port(&seed)?;
                 let port = lease.number();
@@ -111,46 +109,47 @@ impl<'p> Prepared<'p> {
         let mut variables = Vec::new();
         if own {
             let domain = lease::domain(&seed)?;
-            let own = middleware::Own { run, folder, domain: domain.number(), ports: &ports };
+            let own =
+                middleware::MiddlewareIds { run, run_dir, domain: domain.number(), ports: &ports };
             variables = own.variables(plan, |name| std::env::var(name).ok());
             self.leases.push(domain);
         }
-        if wanted.network {
+        if isolate.network {
             self.network = Some(HeldNetwork::start(spawner).await?);
         }
         let network = self
             .network
             .as_ref()
             .map(|held| SuiteNetwork { pid: held.pid, user_namespace: held.has_user_namespace });
-        let join = join(network, &ports, &variables);
-        Ok(Some(SuitePrepared { suite: plan.id, network, ports, variables, join_command: join }))
+        let join_command = join_command(network, &ports, &variables);
+        Ok(Some(SuitePrepared { suite: plan.id, network, ports, variables, join_command }))
     }
 
-    /// The network of its processes.
+    /// Returns the network of its processes.
     #[must_use]
     pub fn network(&self) -> Option<Network> {
         self.network.as_ref().map(|held| held.network().clone())
     }
 
-    /// The namespaces, and the process that holds them.
+    /// Returns the network with its holder.
     #[must_use]
     pub fn held_network(&self) -> Option<&HeldNetwork> {
         self.network.as_ref()
     }
 
-    /// What keeps others from what it requires.
+    /// Returns the descriptors of its locks.
     pub fn locks(&self) -> impl Iterator<Item = BorrowedFd<'_>> {
         self.locks.iter().map(AsFd::as_fd)
     }
 
-    /// What keeps its numbers from other runs.
+    /// Returns the descriptors of its leases.
     pub fn leases(&self) -> impl Iterator<Item = BorrowedFd<'_>> {
         self.leases.iter().map(AsFd::as_fd)
     }
 
-    /// Gives everything back.
-    pub async fn give_back(self, spawner: &Spawner) {
-        // Nothing of the suite is left that could use what is locked.
+    /// Releases all resources.
+    pub async fn release(self, spawner: &Spawner) {
+        // No process of the suite is left that could use a locked resource.
         self.locks.into_iter().for_each(Lock::release);
         if let Some(held) = self.network {
             let namespaces = held.network().namespaces().clone();
@@ -161,8 +160,12 @@ impl<'p> Prepared<'p> {
     }
 }
 
-/// A command for a shell, with which a person joins in.
-fn join(network: Option<SuiteNetwork>, ports: &[SuitePort], variables: &[SuiteVariable]) -> String {
+/// Returns a shell command with which a user joins the suite's environment.
+fn join_command(
+    network: Option<SuiteNetwork>,
+    ports: &[SuitePort],
+    variables: &[SuiteVariable],
+) -> String {
     let ports = ports.iter().map(|own| (SuitePort::variable(&own.name), own.port.to_string()));
     let ids = variables.iter().map(|own| (own.name.clone(), own.value.clone()));
     let words = ids.chain(ports).map(|(name, value)| {

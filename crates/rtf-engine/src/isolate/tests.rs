@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use rtf_model::{SuiteId, SuiteNetwork, SuitePort, SuitePrepared, SuiteVariable};
 
-use super::middleware::Own;
-use super::{fill, join};
+use super::middleware::MiddlewareIds;
+use super::{join_command, port_substitution};
 use crate::run::machine::tests::world::{SECOND, suite};
 use rtf_plan::plan::{
     FixtureBody, OwnMiddleware, Preparation, Probe, ProbeKind, ProcessPlan, RemotePlan, SuitePlan,
@@ -27,7 +27,7 @@ fn variables(
     plan.isolate.middleware = middleware;
     plan.env = Arc::new(written.iter().map(|(n, v)| (n.to_string(), v.to_string())).collect());
     let ports = ports();
-    let own = Own { run: "RUN", folder: Path::new("/run"), domain: 42, ports: &ports };
+    let own = MiddlewareIds { run: "RUN", run_dir: Path::new("/run"), domain: 42, ports: &ports };
     let of_user = |name: &str| {
         user.iter().find(|(known, _)| *known == name).map(|(_, value)| (*value).to_owned())
     };
@@ -45,7 +45,7 @@ fn a_fixture_on_another_machine_is_found_by_ros_2() {
     let FixtureBody::Process(process) = &mut plan.fixtures[1].body else { panic!("a process") };
     let remote = RemotePlan { host: "pi@robot".to_owned(), ssh: vec!["ssh".to_owned()] };
     Arc::make_mut(process).remote = Some(remote);
-    let own = Own { run: "RUN", folder: Path::new("/run"), domain: 42, ports: &ports() };
+    let own = MiddlewareIds { run: "RUN", run_dir: Path::new("/run"), domain: 42, ports: &ports() };
     let names: Vec<_> = own.variables(&plan, |_| None).into_iter().map(|own| own.name).collect();
     assert_eq!(names.len(), 6);
     assert!(!names.contains(&"ROS_AUTOMATIC_DISCOVERY_RANGE".to_owned()));
@@ -164,7 +164,7 @@ fn plan_of(text: &str) -> SuitePlan {
 #[test]
 fn ports_are_filled_in_everywhere() {
     let mut plan = plan_of("${port:sim}, $${port:sim}, ${HOME}");
-    fill::fill(&mut plan, Preparation::Done(prepared()));
+    port_substitution::substitute(&mut plan, Preparation::Done(prepared()));
     let filled = plan_of("20003, ${port:sim}, ${HOME}");
     assert_eq!(format!("{:?}", plan.fixtures), format!("{:?}", filled.fixtures));
     assert_eq!(format!("{:?}", plan.tests), format!("{:?}", filled.tests));
@@ -185,7 +185,7 @@ fn ports_are_filled_in_everywhere() {
 #[test]
 fn a_suite_that_is_refused_keeps_its_texts() {
     let mut plan = plan_of("${port:sim}");
-    fill::fill(&mut plan, Preparation::Refused("no".to_owned()));
+    port_substitution::substitute(&mut plan, Preparation::Refused("no".to_owned()));
     assert_eq!(plan.tests[0].plugin.param, "${port:sim}");
     assert_eq!(plan.preparation, Preparation::Refused("no".to_owned()));
 }
@@ -195,7 +195,7 @@ fn a_person_can_join_in() {
     let variable =
         SuiteVariable { name: "A".to_owned(), value: "a b".to_owned(), inherited: false };
     let ports = [SuitePort { name: "name-server".to_owned(), port: 20_000 }];
-    let line = |network| join(network, &ports, std::slice::from_ref(&variable));
+    let line = |network| join_command(network, &ports, std::slice::from_ref(&variable));
     let inside = |user_namespace| Some(SuiteNetwork { pid: 7, user_namespace });
     assert_eq!(line(None), "export A='a b' RTF_PORT_NAME_SERVER=20000");
     assert_eq!(

@@ -1,14 +1,12 @@
-//! Locks on what there is only once, such as a robot: between the suites of a
-//! run, and between all runs and users of a machine.
+//! Locks on exclusive resources, such as a robot, between all runs and users of a machine.
 //!
-//! A lock is a lock of the kernel on a file, so that it is never given twice,
-//! and ends with the last process that has it: the runner, or after its death
-//! the guard, which parks the robot first. What stands in the file says for
-//! people who has it; who gives it back empties the file. So whoever gets a lock
-//! whose file is not empty knows that runner and guard were killed, and stops what
-//! they left. Files are never removed: who waits has them open.
+//! A lock is a kernel lock on a file. It ends with the last process that holds it: the runner,
+//! or after its death the guard, which runs the hooks first. The file names the owner for users;
+//! a release empties it. So a run that gets the lock of a file with contents knows that runner
+//! and guard of the owner were killed, and stops their processes. Files are never removed,
+//! because waiting runs have them open.
 
-mod orphans;
+mod abandoned_run;
 mod unix;
 mod wait;
 
@@ -24,17 +22,16 @@ pub use wait::{LockOptions, wait};
 
 use rtf_plan::plan::RequiredResource;
 
-/// The variable that names another folder of locks.
-pub const FOLDER_VARIABLE: &str = "RTF_LOCKS";
+/// The variable that names another directory of locks.
+pub const DIR_VARIABLE: &str = "RTF_LOCKS";
 
-/// The folder of locks unless [`FOLDER_VARIABLE`] names another one: the same
-/// for all users.
-pub const FOLDER: &str = "/tmp/rtf-locks";
+/// The default directory of locks, which is the same for all users.
+pub const DEFAULT_DIR: &str = "/tmp/rtf-locks";
 
-/// Who has a lock.
+/// The owner of a lock.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Owner {
+pub struct LockOwner {
     /// The user's name.
     pub user: String,
     /// The machine's name.
@@ -47,11 +44,11 @@ pub struct Owner {
     pub run: String,
     /// The suite.
     pub suite: String,
-    /// What the scopes of its processes begin with.
+    /// The prefix of the scopes of its processes.
     pub scope: String,
 }
 
-impl std::fmt::Display for Owner {
+impl std::fmt::Display for LockOwner {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { user, host, pid, since, run, suite, scope: _ } = self;
         if self.run.is_empty() {
@@ -61,59 +58,59 @@ impl std::fmt::Display for Owner {
     }
 }
 
-/// The folder of a machine's locks.
+/// The directory of a machine's locks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Locks {
-    folder: PathBuf,
+    dir: PathBuf,
 }
 
-/// A lock that is ours. It ends with [`Lock::release`], or with the last
-/// process that has its descriptor.
+/// A lock that this process holds, until [`Lock::release`] or until the last process with its
+/// descriptor ends.
 #[derive(Debug)]
 pub struct Lock {
     file: File,
-    /// Who had it before and never gave it back: runner and guard were killed.
-    abandoned: Option<Owner>,
+    /// The previous owner, if it did not release the lock because runner and guard were killed.
+    abandoned: Option<LockOwner>,
 }
 
-/// A lock that somebody has.
+/// A lock that another run holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Held {
+pub struct HeldLock {
     /// The resource.
     pub name: String,
-    /// Which of several of the kind, from 1.
+    /// The slot of the resource, from 1.
     pub slot: u32,
-    /// Who has it.
-    pub owner: Owner,
+    /// Its owner.
+    pub owner: LockOwner,
 }
 
 impl Locks {
-    /// The locks of a folder, which is made for everybody if it is not there.
+    /// Opens a directory of locks, and creates it for all users if it is missing.
     ///
     /// # Errors
-    /// It cannot be made.
-    pub fn open(folder: &Path) -> io::Result<Self> {
-        match DirBuilder::new().mode(0o777).create(folder) {
-            // As `/tmp`: everybody may add a file, nobody removes another's.
-            Ok(()) => std::fs::set_permissions(folder, Permissions::from_mode(0o1777))?,
+    /// It cannot be created.
+    pub fn open(dir: &Path) -> io::Result<Self> {
+        match DirBuilder::new().mode(0o777).create(dir) {
+            // As for `/tmp`: all users may add files, and only owners remove them.
+            Ok(()) => std::fs::set_permissions(dir, Permissions::from_mode(0o1777))?,
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error),
         }
-        Ok(Self { folder: folder.to_owned() })
+        Ok(Self { dir: dir.to_owned() })
     }
 
-    /// Takes a lock; or says who has all there are.
+    /// Acquires a lock of a resource, or returns its owners.
     ///
     /// # Errors
     /// A file cannot be opened, locked or written.
-    pub fn take(
+    pub fn try_acquire(
         &self,
         resource: &RequiredResource,
-        owner: &Owner,
-    ) -> io::Result<Result<Lock, Vec<Held>>> {
+        owner: &LockOwner,
+    ) -> io::Result<Result<Lock, Vec<HeldLock>>> {
         let mut held = Vec::new();
         for slot in 1..=resource.slots {
-            let mut file = open(&self.folder.join(format!("{}.{slot}", resource.name)))?;
+            let mut file = open(&self.dir.join(format!("{}.{slot}", resource.name)))?;
             if unix::lock(&file)? {
                 let abandoned = Some(read(&mut file)).filter(|before| !before.scope.is_empty());
                 let text = serde_json::to_string(owner)?;
@@ -122,26 +119,26 @@ impl Locks {
                 file.write_all(text.as_bytes())?;
                 return Ok(Ok(Lock { file, abandoned }));
             }
-            held.push(Held { name: resource.name.clone(), slot, owner: read(&mut file) });
+            held.push(HeldLock { name: resource.name.clone(), slot, owner: read(&mut file) });
         }
         Ok(Err(held))
     }
 
-    /// All that somebody has, by name.
+    /// Returns all held locks, by name.
     ///
     /// # Errors
-    /// The folder cannot be read.
-    pub fn held(&self) -> io::Result<Vec<Held>> {
+    /// The directory cannot be read.
+    pub fn held(&self) -> io::Result<Vec<HeldLock>> {
         let mut all = Vec::new();
-        for entry in std::fs::read_dir(&self.folder)? {
+        for entry in std::fs::read_dir(&self.dir)? {
             let name = entry?.file_name();
             let known = name.to_str().and_then(|name| name.rsplit_once('.'));
             let Some((name, Ok(slot))) = known.map(|(name, slot)| (name, slot.parse())) else {
                 continue;
             };
-            let mut file = open(&self.folder.join(format!("{name}.{slot}")))?;
+            let mut file = open(&self.dir.join(format!("{name}.{slot}")))?;
             if unix::is_locked(&file)? {
-                all.push(Held { name: name.to_owned(), slot, owner: read(&mut file) });
+                all.push(HeldLock { name: name.to_owned(), slot, owner: read(&mut file) });
             }
         }
         all.sort_by(|a, b| (&a.name, a.slot).cmp(&(&b.name, b.slot)));
@@ -150,10 +147,10 @@ impl Locks {
 }
 
 impl Lock {
-    /// Gives it back, also if the guard has its descriptor.
+    /// Releases the lock, even if the guard has its descriptor.
     pub fn release(self) {
         let _ = clear(&self.file);
-        // Who cannot unlock lets it end with the descriptors.
+        // If this fails, the lock ends with its descriptors.
         let _ = unix::unlock(&self.file);
     }
 }
@@ -164,8 +161,7 @@ impl AsFd for Lock {
     }
 }
 
-/// Says that the one who has a lock gives it back in order. (The guard does so for
-/// a runner that died.)
+/// Marks a lock as released in order. (The guard does so after the death of the runner.)
 ///
 /// # Errors
 /// It is not a lock.
@@ -173,9 +169,8 @@ pub fn clear(lock: impl AsFd) -> io::Result<()> {
     Ok(rustix::fs::ftruncate(lock, 0)?)
 }
 
-/// Opens a lock's file, or makes it for everybody. A link is not followed. (A
-/// file of another user must not be opened with the flag that would make it:
-/// Linux refuses that in folders like `/tmp`.)
+/// Opens a lock's file, or creates it for all users. Does not follow links. (Linux refuses to
+/// open another user's file with `O_CREAT` in directories such as `/tmp`.)
 fn open(path: &Path) -> io::Result<File> {
     let with = |flags| {
         let mut options = OpenOptions::new();
@@ -199,8 +194,8 @@ fn open(path: &Path) -> io::Result<File> {
     }
 }
 
-/// What the file says; it may be being written.
-fn read(file: &mut File) -> Owner {
+/// Reads the owner; the default while the file is being written.
+fn read(file: &mut File) -> LockOwner {
     let mut text = String::new();
     let read = file.rewind().and_then(|()| file.take(64 * 1024).read_to_string(&mut text));
     read.ok().and_then(|_| serde_json::from_str(&text).ok()).unwrap_or_default()
@@ -211,22 +206,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_gets_a_lock_knows_whether_it_was_given_back() {
-        let folder = tempfile::tempdir().unwrap();
-        let locks = Locks::open(folder.path()).unwrap();
+    fn an_acquired_lock_knows_whether_it_was_released() {
+        let dir = tempfile::tempdir().unwrap();
+        let locks = Locks::open(dir.path()).unwrap();
         let robot = RequiredResource { name: "robot".to_owned(), slots: 1 };
-        let owner = |run: &str| Owner {
+        let owner = |run: &str| LockOwner {
             run: run.to_owned(),
             scope: format!("{run}.0."),
-            ..Owner::default()
+            ..LockOwner::default()
         };
-        let take = |run: &str| locks.take(&robot, &owner(run)).unwrap().unwrap();
+        let take = |run: &str| locks.try_acquire(&robot, &owner(run)).unwrap().unwrap();
         let one = take("one");
         assert_eq!(one.abandoned, None);
         one.release();
         let two = take("two");
         assert_eq!(two.abandoned, None);
-        // As when it is killed.
+        // As after a kill.
         drop(two);
         let three = take("three");
         assert_eq!(three.abandoned, Some(owner("two")));
@@ -234,17 +229,18 @@ mod tests {
     }
 
     #[test]
-    fn there_are_as_many_as_the_suite_says() {
-        let folder = tempfile::tempdir().unwrap();
-        let locks = Locks::open(&folder.path().join("locks")).unwrap();
-        let owner = Owner { user: "ada".to_owned(), run: "r".to_owned(), ..Owner::default() };
+    fn a_resource_has_as_many_locks_as_slots() {
+        let dir = tempfile::tempdir().unwrap();
+        let locks = Locks::open(&dir.path().join("locks")).unwrap();
+        let owner =
+            LockOwner { user: "ada".to_owned(), run: "r".to_owned(), ..LockOwner::default() };
         let arm = RequiredResource { name: "arm:left".to_owned(), slots: 2 };
-        let [one, two] = [(); 2].map(|()| locks.take(&arm, &owner).unwrap().unwrap());
-        let held = locks.take(&arm, &Owner::default()).unwrap().unwrap_err();
+        let [one, two] = [(); 2].map(|()| locks.try_acquire(&arm, &owner).unwrap().unwrap());
+        let held = locks.try_acquire(&arm, &LockOwner::default()).unwrap().unwrap_err();
         assert_eq!(held, locks.held().unwrap());
         let slots: Vec<_> = held.iter().map(|held| (held.slot, held.owner.clone())).collect();
         assert_eq!(slots, [(1, owner.clone()), (2, owner.clone())]);
-        // The guard has a descriptor, too.
+        // As for a descriptor of the guard.
         let kept = one.file.try_clone().unwrap();
         drop(one);
         assert_eq!(locks.held().unwrap().len(), 2);

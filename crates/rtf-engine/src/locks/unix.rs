@@ -5,9 +5,9 @@ use std::fs::File;
 use std::io;
 use std::os::fd::AsRawFd;
 
-/// Locks a whole file, if nobody else has; whether it is locked now. The lock
-/// belongs to the open file description: it ends with its last descriptor, in
-/// whatever process, or when it is unlocked.
+/// Locks a file, unless another process has; returns whether it succeeded. The lock belongs to
+/// the open file description: it ends when it is unlocked, or with the last descriptor in any
+/// process.
 pub fn lock(file: &File) -> io::Result<bool> {
     match control(file, libc::F_OFD_SETLK, &mut whole(libc::F_WRLCK)) {
         Ok(()) => Ok(true),
@@ -18,16 +18,16 @@ pub fn lock(file: &File) -> io::Result<bool> {
     }
 }
 
-/// Unlocks it, whoever else has a descriptor of it.
+/// Unlocks a file, even if another process has its descriptor.
 pub fn unlock(file: &File) -> io::Result<()> {
     control(file, libc::F_OFD_SETLK, &mut whole(libc::F_UNLCK))
 }
 
-/// Whether somebody else has locked it. Takes no lock itself.
+/// Whether another process has locked a file. Does not lock it.
 pub fn is_locked(file: &File) -> io::Result<bool> {
-    let mut asked = whole(libc::F_WRLCK);
-    control(file, libc::F_OFD_GETLK, &mut asked)?;
-    Ok(i32::from(asked.l_type) != libc::F_UNLCK)
+    let mut query = whole(libc::F_WRLCK);
+    control(file, libc::F_OFD_GETLK, &mut query)?;
+    Ok(i32::from(query.l_type) != libc::F_UNLCK)
 }
 
 fn whole(kind: i32) -> libc::flock {

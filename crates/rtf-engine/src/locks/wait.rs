@@ -1,4 +1,4 @@
-//! Waiting until a suite has all the locks that it requires.
+//! Waits for all locks that a suite requires.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -7,31 +7,31 @@ use rtf_model::EventKind;
 use tokio::sync::watch;
 use tokio::time::Instant;
 
-use super::{Held, Lock, Locks, Owner, orphans};
-use crate::run::{Control, Controls, Events, Stop};
+use super::{HeldLock, Lock, LockOwner, Locks, abandoned_run};
+use crate::control::{Control, Controls, Stop};
+use crate::events::Events;
 use rtf_plan::plan::{RequiredResource, SuitePlan};
 
-/// How often a lock that somebody has is tried.
-const EVERY: Duration = Duration::from_millis(20);
-/// Who waits for less is not told of.
-const PATIENCE: Duration = Duration::from_millis(200);
+/// The polling interval.
+const POLL_INTERVAL: Duration = Duration::from_millis(20);
+/// A shorter wait is not reported.
+const REPORT_AFTER: Duration = Duration::from_millis(200);
 
-/// How locks are waited for.
+/// Options for waiting for locks.
 #[derive(Clone, Debug)]
 pub struct LockOptions {
-    /// The folder of locks.
-    pub folder: PathBuf,
-    /// How long one suite waits for all of its locks; `None`: for ever.
+    /// The directory of locks.
+    pub dir: PathBuf,
+    /// How long one suite waits for all its locks; `None` for no limit.
     pub limit: Option<Duration>,
 }
 
-/// Waits for the locks of a suite. Everybody takes them in the order of their
-/// names, so that no two wait for each other. A request to stop, or to skip the
-/// suite, ends the wait: then nothing is begun, and nothing is locked.
+/// Waits for the locks of a suite. All runs acquire them in the order of their names, which
+/// prevents deadlocks. A request to stop, or to skip the suite, ends the wait without locks.
 ///
 /// # Errors
-/// A sentence: what is held by whom when the limit is reached, or what the
-/// system refused.
+/// A message for users: the owner of a lock when the limit is reached, or an error of the
+/// system.
 pub async fn wait(
     suite: &SuitePlan,
     options: &LockOptions,
@@ -41,64 +41,64 @@ pub async fn wait(
     if suite.requires.is_empty() {
         return Ok(Vec::new());
     }
-    let shown = options.folder.display();
+    let shown = options.dir.display();
     let cannot = |error| format!("the locks in `{shown}` cannot be used: {error}");
-    let locks = Locks::open(&options.folder).map_err(cannot)?;
-    let begun = Instant::now();
-    let mut taken = Vec::new();
+    let locks = Locks::open(&options.dir).map_err(cannot)?;
+    let started = Instant::now();
+    let mut acquired = Vec::new();
     for resource in &suite.requires {
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         loop {
             if stops.borrow().is_some() || is_skipped(suite, controls) {
-                taken.into_iter().for_each(Lock::release);
+                acquired.into_iter().for_each(Lock::release);
                 return Ok(Vec::new());
             }
             let owner = owner(suite, events.run_token());
-            let held = match locks.take(resource, &owner).map_err(cannot)? {
-                Ok(lock) => break taken.push(lock),
+            let held = match locks.try_acquire(resource, &owner).map_err(cannot)? {
+                Ok(lock) => break acquired.push(lock),
                 Err(held) => held,
             };
-            let waited = begun.elapsed();
+            let waited = started.elapsed();
             if options.limit.is_some_and(|limit| waited >= limit) {
-                taken.into_iter().for_each(Lock::release);
-                return Err(given_up(resource, &held, waited));
+                acquired.into_iter().for_each(Lock::release);
+                return Err(limit_reached(resource, &held, waited));
             }
-            if waited >= PATIENCE && told != held {
-                let (suite, lock, held_by) = (suite.id, resource.name.clone(), shown_all(&held));
+            if waited >= REPORT_AFTER && reported != held {
+                let (suite, lock, held_by) = (suite.id, resource.name.clone(), owners(&held));
                 events.emit(EventKind::SuiteWaiting { suite, lock, held_by });
-                told = held;
+                reported = held;
             }
             tokio::select! {
-                () = tokio::time::sleep(EVERY) => {}
+                () = tokio::time::sleep(POLL_INTERVAL) => {}
                 Ok(()) = stops.changed() => {}
                 Ok(()) = controls.changed() => {}
             }
         }
     }
-    for owner in taken.iter().filter_map(|lock: &Lock| lock.abandoned.as_ref()) {
-        orphans::stop(owner, events).await;
+    for owner in acquired.iter().filter_map(|lock: &Lock| lock.abandoned.as_ref()) {
+        abandoned_run::stop_processes(owner, events).await;
     }
-    Ok(taken)
+    Ok(acquired)
 }
 
 fn is_skipped(suite: &SuitePlan, controls: &Controls) -> bool {
-    let skips = |control: &Control| matches!(control, Control::SkipSuite { suite: of, .. } if *of == suite.id);
+    let skips = |control: &Control| matches!(control, Control::SkipSuite { suite: id, .. } if *id == suite.id);
     controls.borrow().iter().any(skips)
 }
 
-fn given_up(resource: &RequiredResource, held: &[Held], waited: Duration) -> String {
+fn limit_reached(resource: &RequiredResource, held: &[HeldLock], waited: Duration) -> String {
     let secs = waited.as_secs_f64();
-    format!("`{}` is held by {}; given up after {secs:.1} s", resource.name, shown_all(held))
+    format!("`{}` is held by {}; given up after {secs:.1} s", resource.name, owners(held))
 }
 
-fn shown_all(held: &[Held]) -> String {
+fn owners(held: &[HeldLock]) -> String {
     held.iter().map(|held| held.owner.to_string()).collect::<Vec<_>>().join(" and ")
 }
 
-fn owner(suite: &SuitePlan, run: &str) -> Owner {
+fn owner(suite: &SuitePlan, run: &str) -> LockOwner {
     let uid = || rustix::process::getuid().as_raw().to_string();
     let uname = rustix::system::uname();
-    Owner {
+    LockOwner {
         user: std::env::var("USER").ok().filter(|user| !user.is_empty()).unwrap_or_else(uid),
         host: uname.nodename().to_string_lossy().into_owned(),
         pid: std::process::id(),
@@ -116,26 +116,26 @@ mod tests {
     use rtf_model::Event;
 
     use super::*;
-    use crate::run::Sink;
+    use crate::events::Sink;
     use crate::run::machine::tests::world::suite;
 
     #[derive(Debug)]
-    struct Nothing;
+    struct NullSink;
 
-    impl Sink for Nothing {
+    impl Sink for NullSink {
         fn emit(&self, _: Event) {}
     }
 
-    /// Whoever waits for a robot for hours does not want to stop the whole run.
     #[tokio::test]
-    async fn a_suite_that_is_skipped_waits_no_longer() {
+    async fn a_skipped_suite_stops_waiting() {
         let temp = tempfile::tempdir().unwrap();
-        let folder = temp.path().join("locks");
+        let dir = temp.path().join("locks");
         let arm = RequiredResource { name: "arm".to_owned(), slots: 1 };
-        let taken = Locks::open(&folder).unwrap().take(&arm, &Owner::default()).unwrap().unwrap();
+        let lock =
+            Locks::open(&dir).unwrap().try_acquire(&arm, &LockOwner::default()).unwrap().unwrap();
         let plan = SuitePlan { requires: vec![arm], ..suite(0, 1) };
-        let options = LockOptions { folder, limit: None };
-        let events = Events::new("r".to_owned(), Arc::new(Nothing));
+        let options = LockOptions { dir, limit: None };
+        let events = Events::new("r".to_owned(), Arc::new(NullSink));
         let (_stop, mut stops) = watch::channel(None);
         let (control, mut controls) = watch::channel(Vec::new());
         let waiting = wait(&plan, &options, &events, (&mut stops, &mut controls));
@@ -144,6 +144,6 @@ mod tests {
             control.send_replace(vec![skip]);
         });
         assert!(locks.unwrap().is_empty());
-        taken.release();
+        lock.release();
     }
 }

@@ -1,5 +1,4 @@
-//! The clock that the tests of a suite follow: where it is, when to look at it,
-//! and what it shows.
+//! The clock that the tests of a suite follow: its file, when to poll it, and its time.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -10,43 +9,43 @@ use rtf_process::spawn_request::ProcessRole;
 
 use rtf_plan::plan::SuitePlan;
 
-/// How often it is looked at.
-const EVERY: Duration = Duration::from_millis(10);
+/// The polling interval.
+const POLL_INTERVAL: Duration = Duration::from_millis(10);
 
 /// The clock of a suite; the wall clock if it has no file.
 #[derive(Debug)]
 pub struct Clock {
     file: Option<PathBuf>,
-    /// When it is to be looked at, if somebody waits for it.
-    next: Option<Duration>,
-    /// Whether rtf itself was started by a test that follows another clock.
+    /// The time of the next poll, while a test follows the clock.
+    next_poll: Option<Duration>,
+    /// Whether a test that follows another clock has started rtf.
     inherited: bool,
 }
 
 impl Clock {
-    /// The one of a suite; its file is in a folder of the run's.
-    pub fn of(suite: &SuitePlan, folder: &Path) -> Self {
-        let file = suite.clock.as_ref().map(|_| folder.join(format!("clock-{}", suite.id)));
+    /// Creates the clock of a suite, with a file in this directory.
+    pub fn new(suite: &SuitePlan, dir: &Path) -> Self {
+        let file = suite.clock.as_ref().map(|_| dir.join(format!("clock-{}", suite.id)));
         let inherited = std::env::var_os(CLOCK_VARIABLE).is_some();
-        Self { file, next: None, inherited }
+        Self { file, next_poll: None, inherited }
     }
 
-    /// When to look at it, in the time of the run.
-    pub fn next_look(&mut self, wanted: bool, now: Duration) -> Option<Duration> {
-        self.next = wanted.then(|| self.next.unwrap_or(now));
-        self.next
+    /// Returns when to poll it, in the time of the run.
+    pub fn next_poll(&mut self, wanted: bool, now: Duration) -> Option<Duration> {
+        self.next_poll = wanted.then(|| self.next_poll.unwrap_or(now));
+        self.next_poll
     }
 
-    /// What it shows, if it is to be looked at by now.
-    pub fn look(&mut self, now: Duration) -> Option<Duration> {
-        self.next.take_if(|next| *next <= now)?;
-        self.next = Some(now + EVERY);
+    /// Returns its time, if a poll is due.
+    pub fn poll(&mut self, now: Duration) -> Option<Duration> {
+        self.next_poll.take_if(|due| *due <= now)?;
+        self.next_poll = Some(now + POLL_INTERVAL);
         let text = std::fs::read_to_string(self.file.as_ref()?).ok()?;
         parse_clock(&text)
     }
 
-    /// What a process is told of it. A hook has to come to its end whatever the
-    /// clock does, and so has a fixture, but that may be the one that makes it go.
+    /// Returns the variables for a process. Hooks and fixtures must not depend on the clock, but
+    /// a fixture may be the one that drives it.
     pub fn variables(&self, role: ProcessRole) -> Vec<(String, String)> {
         let file = self.file.as_ref().map(|file| file.to_string_lossy().into_owned());
         let mut variables = Vec::new();

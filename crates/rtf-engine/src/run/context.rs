@@ -7,7 +7,7 @@ use std::sync::Arc;
 use rtf_model::Source;
 use rtf_process::task::{HostId, ProcessOwner, ProcessStream, TaskContext};
 
-use super::events::Sink;
+use crate::events::Sink;
 use crate::guard::Link;
 
 /// The resources of a run that its suites share.

@@ -1,5 +1,5 @@
-//! The deadlines of a suite. Those of a process that is throttled are paused: it must not be
-//! blamed for a disk that is slow.
+//! The deadlines of a suite. Those of a throttled process are paused: a slow disk must not fail
+//! a test.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::time::Duration;
@@ -9,13 +9,13 @@ use rtf_model::Source;
 use super::machine::{Deadline, HostId};
 use rtf_plan::plan::SuitePlan;
 
-/// The deadlines that are waited for, as times of the run.
+/// The pending deadlines, as times of the run.
 #[derive(Debug, Default)]
 pub(super) struct Deadlines {
     at: BTreeMap<Deadline, Duration>,
-    /// Whose are paused, and since when.
+    /// The hosts whose deadlines are paused, and since when.
     paused: HashMap<HostId, (Source, Duration)>,
-    /// Hosts that are being stopped: nothing of them is paused.
+    /// Hosts that are being stopped: their deadlines are not paused.
     stopping: HashSet<HostId>,
 }
 
@@ -28,19 +28,19 @@ impl Deadlines {
         self.at.remove(&deadline);
     }
 
-    /// The next one.
+    /// Returns the next one.
     pub(super) fn next(&self, plan: &SuitePlan) -> Option<Duration> {
         let due = self.at.iter().filter(|(deadline, _)| !self.is_paused(**deadline, plan));
         due.map(|(_, at)| *at).min()
     }
 
-    /// Those that have passed.
+    /// Returns those that have passed.
     pub(super) fn passed(&self, now: Duration, plan: &SuitePlan) -> Vec<Deadline> {
         let passed = self.at.iter().filter(|(_, at)| **at <= now).map(|(deadline, _)| *deadline);
         passed.filter(|deadline| !self.is_paused(*deadline, plan)).collect()
     }
 
-    /// Takes one away, if it has passed.
+    /// Removes one if it has passed.
     pub(super) fn take(&mut self, deadline: Deadline, now: Duration, plan: &SuitePlan) -> bool {
         let has_passed = self.at.get(&deadline).is_some_and(|at| *at <= now);
         let is_due = has_passed && !self.is_paused(deadline, plan);
@@ -50,14 +50,14 @@ impl Deadlines {
         is_due
     }
 
-    /// Lets no time pass for a host.
+    /// Pauses the deadlines of a host.
     pub(super) fn pause(&mut self, host: HostId, source: Source, now: Duration) {
         if !self.stopping.contains(&host) {
             self.paused.entry(host).or_insert((source, now));
         }
     }
 
-    /// Lets time pass for a host again.
+    /// Resumes the deadlines of a host.
     pub(super) fn resume(&mut self, host: HostId, now: Duration, plan: &SuitePlan) {
         let Some((source, since)) = self.paused.remove(&host) else { return };
         let late = now.saturating_sub(since);
@@ -65,7 +65,7 @@ impl Deadlines {
         ours.for_each(|(_, at)| *at += late);
     }
 
-    /// A host is being stopped: its deadlines are not paused from now on.
+    /// A host is being stopped: its deadlines are no longer paused.
     pub(super) fn stop(&mut self, host: HostId, now: Duration, plan: &SuitePlan) {
         self.resume(host, now, plan);
         self.stopping.insert(host);
@@ -85,8 +85,8 @@ impl Deadlines {
 fn is_of(deadline: Deadline, source: Source, plan: &SuitePlan) -> bool {
     match (deadline, source) {
         (Deadline::Test(test, _), Source::Test(of)) => test == of,
-        (Deadline::Fixture(place, _), Source::Fixture(of)) => {
-            plan.fixtures.get(place).is_some_and(|fixture| fixture.id == of)
+        (Deadline::Fixture(index, _), Source::Fixture(of)) => {
+            plan.fixtures.get(index).is_some_and(|fixture| fixture.id == of)
         }
         _ => false,
     }
@@ -115,10 +115,10 @@ mod tests {
     }
 
     #[test]
-    fn a_throttled_test_gets_the_time_back_for_which_it_was_not_read() {
+    fn the_deadline_of_a_throttled_test_moves_by_the_pause() {
         let (mut deadlines, plan) = (two(), suite(0, 3));
         deadlines.pause(HOST, Source::Test(TestId(1)), 4 * SECOND);
-        assert_eq!(deadlines.next(&plan), Some(6 * SECOND), "that of the other one goes on");
+        assert_eq!(deadlines.next(&plan), Some(6 * SECOND), "the other deadline is not paused");
         assert_eq!(deadlines.passed(10 * SECOND, &plan), [limit(2)]);
         assert!(!deadlines.take(limit(1), 10 * SECOND, &plan));
         deadlines.resume(HOST, 10 * SECOND, &plan);

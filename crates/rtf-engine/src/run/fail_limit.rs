@@ -1,4 +1,4 @@
-//! How many tests may fail before the rest of the run is skipped, and which one suffices.
+//! Decides when failed tests end the run.
 
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -6,51 +6,51 @@ use std::sync::{Arc, OnceLock};
 
 use rtf_model::{TestFinished, TestId, Verdict};
 
-/// Counts tests that did not pass, over all suites of a run: each suite has a
-/// clone, and all of them count together.
+/// Counts the tests that did not pass. Each suite has a clone; all clones share the counter.
 #[derive(Clone, Debug, Default)]
 pub struct FailLimit {
-    /// The number at which it is enough; none is never enough.
-    most: Option<u32>,
-    /// How many were counted by any clone.
-    seen: Arc<AtomicU32>,
-    /// What happened in some suite after which none goes on.
+    /// The limit; `None` for no limit.
+    limit: Option<u32>,
+    /// The number counted by all clones.
+    failed: Arc<AtomicU32>,
+    /// The reason why no suite continues.
     stopped: Arc<OnceLock<String>>,
-    /// The tests that this suite has counted: each is counted once.
+    /// The tests that this clone has counted: each counts once.
     counted: BTreeSet<TestId>,
 }
 
 impl FailLimit {
-    /// A limit at which nothing was counted yet.
+    /// Creates a counter with this limit.
     #[must_use]
-    pub fn new(most: Option<u32>) -> Self {
-        Self { most, ..Self::default() }
+    pub fn new(limit: Option<u32>) -> Self {
+        Self { limit, ..Self::default() }
     }
 
-    /// Takes the end of an attempt in.
+    /// Counts a finished attempt.
     pub fn count(&mut self, finished: &TestFinished) {
-        let says_nothing = matches!(finished.verdict, Verdict::Skipped | Verdict::Interrupted);
-        if finished.verdict.is_green() || finished.rerun || says_nothing {
+        let did_not_run = matches!(finished.verdict, Verdict::Skipped | Verdict::Interrupted);
+        if finished.verdict.is_green() || finished.rerun || did_not_run {
             return;
         }
         if self.counted.insert(finished.test) {
-            self.seen.fetch_add(1, Ordering::Relaxed);
+            self.failed.fetch_add(1, Ordering::Relaxed);
         }
     }
 
-    /// No suite goes on after this; the first reason counts.
+    /// Ends all suites. The first reason is reported.
     pub fn stop(&self, reason: String) {
         let _ = self.stopped.set(reason);
     }
 
-    /// Why nothing more is run, once it is enough.
+    /// Returns why nothing more runs, once the limit is reached.
     #[must_use]
     pub fn reached(&self) -> Option<String> {
         if let Some(reason) = self.stopped.get() {
             return Some(reason.clone());
         }
-        let most = self.most.filter(|most| self.seen.load(Ordering::Relaxed) >= *most)?;
-        let tests = if most == 1 { "1 test has".to_owned() } else { format!("{most} tests have") };
-        Some(format!("{tests} not passed (--max-fail {most})"))
+        let limit = self.limit.filter(|limit| self.failed.load(Ordering::Relaxed) >= *limit)?;
+        let tests =
+            if limit == 1 { "1 test has".to_owned() } else { format!("{limit} tests have") };
+        Some(format!("{tests} not passed (--max-fail {limit})"))
     }
 }

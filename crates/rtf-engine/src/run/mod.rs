@@ -1,19 +1,17 @@
 //! Runs a plan.
 //!
-//! [`machine`] decides, without I/O or clock; [`suite_task`] connects it with
-//! the processes of [`rtf_process`] and the clock. A collapse
-//! interrupts a test in `machine/suite/mod.rs`, `on_fixture_failure`.
+//! [`machine`] decides, without I/O or clock; [`suite_task`] connects it with the processes
+//! of [`rtf_process`] and the clock.
 
 mod clock;
 mod context;
-mod control;
+mod control_queue;
 mod deadlines;
-mod events;
 mod fail_limit;
-mod lineup;
 pub mod machine;
 mod probes;
-pub mod suite_task;
+mod suite_queue;
+mod suite_task;
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -28,14 +26,14 @@ use rtf_model::{
 use tokio::sync::watch;
 
 pub use context::RunContext;
-pub use control::{Control, Controls};
-pub use events::{Events, Sink};
 use fail_limit::FailLimit;
-use lineup::Lineup;
-pub use machine::{Stop, StopLevel};
+use suite_queue::SuiteQueue;
+use suite_task::SuiteRequests;
 
+pub use crate::control::{Control, Controls, Stop, StopLevel};
+pub use crate::events::{Events, Sink};
 use crate::guard::Link;
-use crate::isolate::Prepared;
+use crate::isolate::PreparedSuite;
 use crate::locks::{self, LockOptions};
 use rtf_plan::plan::{FixtureBody, FixturePlan, Plan, SuitePlan, TestPlan};
 use rtf_process::cgroup::Cgroups;
@@ -44,37 +42,37 @@ use rtf_process::spawner::Spawner;
 use rtf_process::task::TaskContext;
 use rtf_process::{prepare_process, tree};
 
-/// What a run needs beside its plan.
+/// The options of a run.
 #[derive(Debug)]
 pub struct RunOptions {
     /// The first event. Its `run` must be unique on this machine.
     pub started: RunStarted,
-    /// What the user should look at, found while the plan was made.
+    /// The warnings of the planner.
     pub warnings: Vec<Diagnostic>,
     /// The run's directory, for attachments.
     pub run_dir: PathBuf,
-    /// The run's journal, which the guard closes when the runner dies.
+    /// The run's journal, which the guard closes if the runner dies.
     pub journal: PathBuf,
-    /// The way to the guard.
+    /// The connection to the guard.
     pub guard: Arc<Link>,
     /// When hosts are forked.
     pub fork_mode: ForkMode,
-    /// After how many tests that did not pass the rest is skipped.
+    /// The number of tests that did not pass after which the rest is skipped.
     pub max_fail: Option<u32>,
-    /// For how long tests are repeated; none repeats as often as is planned.
-    pub time: Option<Duration>,
-    /// How many suites run at the same time at the most.
+    /// For how long tests are repeated; `None` repeats them as planned.
+    pub soak_time: Option<Duration>,
+    /// How many suites run in parallel, at most.
     pub jobs: NonZeroUsize,
-    /// What is asked of the run while it goes on.
+    /// The requests to the running run.
     pub controls: Controls,
-    /// How locks are waited for.
+    /// How the run waits for locks.
     pub locks: LockOptions,
 }
 
-/// Runs every suite of a plan, as many at the same time as the options say.
+/// Runs every suite of a plan.
 ///
 /// # Errors
-/// Nothing could be started: a thread, a folder or a system call is missing.
+/// The run cannot start: the system refuses a thread, a directory or a system call.
 pub async fn execute(
     plan: &Plan,
     options: RunOptions,
@@ -94,22 +92,23 @@ pub async fn execute(
         guard: options.guard.clone(),
     };
     let events = Events::new(options.started.run.clone(), sink);
-    options.guard.run_begins(&options.journal, scratch.clone(), events.start());
+    options.guard.run_started(&options.journal, scratch.clone(), events.start());
     events.emit(EventKind::RunStarted(options.started));
     for diagnostic in options.warnings {
         events.emit(EventKind::Warning { diagnostic });
     }
     for suite in &plan.suites {
-        announce(suite, options.time.is_some(), &events);
+        emit_planned(suite, options.soak_time.is_some(), &events);
     }
     let (stopped, controls) = (stops.clone(), options.controls);
     let fails = FailLimit::new(options.max_fail);
-    let asked = suite_task::Asked { stops: stopped, controls, fails, until: None };
-    let (context, events, locks, time) = (&context, &events, &options.locks, options.time);
-    let all = AllSuites { context, events, locks, asked, time };
+    let requests = SuiteRequests { stops: stopped, controls, fails, soak_until: None };
+    let (context, events, locks) = (&context, &events, &options.locks);
+    let scheduler =
+        SuiteScheduler { context, events, locks, requests, soak_time: options.soak_time };
     tokio::select! {
-        () = all.run(&plan.suites, options.jobs) => {}
-        () = warn_when_guard_missed(&options.guard, events) => {}
+        () = scheduler.run(&plan.suites, options.jobs) => {}
+        () = warn_of_lost_messages(&options.guard, events) => {}
     }
     context.tasks.spawner.stop_fork_servers(None).await;
     let left = tree::sweep_all();
@@ -125,67 +124,65 @@ pub async fn execute(
     }
     let interrupted = stops.borrow().as_ref().map(|stop| stop.reason.clone());
     events.emit(EventKind::RunFinished { interrupted });
-    options.guard.run_ends();
+    options.guard.run_finished();
     let _ = std::fs::remove_dir_all(scratch);
     Ok(())
 }
 
-/// Never ends.
-async fn warn_when_guard_missed(guard: &Link, events: &Events) {
-    guard.guard_missed().await;
-    let text = "the guard does not read what the run tells it, and has missed some: \
-        should the runner die now, it may not know which hooks have to run";
+/// Warns if the guard has missed messages. Never returns.
+async fn warn_of_lost_messages(guard: &Link, events: &Events) {
+    guard.wait_for_lost_messages().await;
+    let text = "the guard does not read the runner's messages, and has missed some: \
+        if the runner dies now, the guard may not know which hooks must run";
     let diagnostic = Diagnostic::warning("guard-missed", text)
-        .hint("its process may have been stopped: `kill -CONT` lets it go on");
+        .hint("its process may have been stopped: `kill -CONT` continues it");
     events.emit(EventKind::Warning { diagnostic });
     std::future::pending().await
 }
 
-/// What all suites of a run have in common.
-struct AllSuites<'a> {
+/// Runs the suites, several in parallel.
+struct SuiteScheduler<'a> {
     context: &'a RunContext,
     events: &'a Events,
     locks: &'a LockOptions,
-    asked: suite_task::Asked,
-    /// For how long tests are repeated.
-    time: Option<Duration>,
+    requests: SuiteRequests,
+    soak_time: Option<Duration>,
 }
 
-impl AllSuites<'_> {
+impl SuiteScheduler<'_> {
     async fn run(&self, suites: &[SuitePlan], jobs: NonZeroUsize) {
-        let mut lineup = Lineup::new(suites, jobs);
+        let mut queue = SuiteQueue::new(suites, jobs);
         let mut running = FuturesUnordered::new();
         loop {
-            while let Some(suite) = lineup.next() {
-                running.push(self.one(suite, lineup.turns()));
+            while let Some(suite) = queue.next() {
+                running.push(self.run_suite(suite, queue.remaining_rounds()));
             }
-            let Some(ended) = running.next().await else { return };
-            lineup.ended(ended);
+            let Some(finished) = running.next().await else { return };
+            queue.finished(finished);
         }
     }
 
-    /// One suite from its locks until it has given everything back; it is the
-    /// first of so many turns.
-    async fn one<'p>(&self, suite: &'p SuitePlan, turns: u32) -> &'p SuitePlan {
-        let Self { context, events, locks, asked, time } = self;
-        let (mut stops, mut controls) = (asked.stops.clone(), asked.controls.clone());
+    /// Runs a suite, from acquiring its locks to releasing all its resources. Suites that run one
+    /// after the other share the soak time: `rounds` are left.
+    async fn run_suite<'p>(&self, suite: &'p SuitePlan, rounds: u32) -> &'p SuitePlan {
+        let Self { context, events, locks, requests, soak_time } = self;
+        let (mut stops, mut controls) = (requests.stops.clone(), requests.controls.clone());
         let locks = locks::wait(suite, locks, events, (&mut stops, &mut controls)).await;
         let run = events.run_token();
         let TaskContext { spawner, run_dir, .. } = &*context.tasks;
-        let prepared = Prepared::get(suite, locks, run, run_dir, spawner).await;
-        context.guard.suite_begins(&prepared);
-        // Suites that come one after the other share the time.
+        let prepared = PreparedSuite::prepare(suite, locks, run, run_dir, spawner).await;
+        context.guard.suite_started(&prepared);
         let now = events.now();
-        let until = time.map(|time| now + time.saturating_sub(now) / turns);
-        let asked = suite_task::Asked { until, ..asked.clone() };
-        suite_task::run_suite(&prepared, context, events, asked).await;
-        context.guard.suite_ends(&prepared);
-        prepared.give_back(spawner).await;
+        let soak_until = soak_time.map(|time| now + time.saturating_sub(now) / rounds);
+        let requests = SuiteRequests { soak_until, ..requests.clone() };
+        suite_task::run_suite(&prepared, context, events, requests).await;
+        context.guard.suite_finished(&prepared);
+        prepared.release(spawner).await;
         suite
     }
 }
 
-/// A folder of this process for files that live as long as a process does.
+/// Creates a directory for files that are removed at the end of the run.
 fn create_scratch_dir() -> std::io::Result<PathBuf> {
     let path = std::env::temp_dir().join(format!(
         "rtf-{}-{}",
@@ -193,15 +190,17 @@ fn create_scratch_dir() -> std::io::Result<PathBuf> {
         uuid::Uuid::now_v7().simple()
     ));
     std::fs::create_dir(&path).map_err(|error| {
-        let text =
-            format!("the folder `{}` for temporary files cannot be made: {error}", path.display());
-        let advice = "`TMPDIR` names the folder for them";
+        let text = format!(
+            "the directory `{}` for temporary files cannot be made: {error}",
+            path.display()
+        );
+        let advice = "`TMPDIR` names the directory for them";
         std::io::Error::new(error.kind(), format!("{text}; {advice}"))
     })?;
     Ok(path)
 }
 
-fn announce(suite: &SuitePlan, timed: bool, events: &Events) {
+fn emit_planned(suite: &SuitePlan, timed: bool, events: &Events) {
     events.emit(EventKind::SuitePlanned(SuitePlanned {
         suite: suite.id,
         name: suite.name.clone(),

@@ -1,5 +1,4 @@
-//! The task around a suite's state machine: it carries out the effects and
-//! brings the inputs.
+//! The task around a suite's state machine: feeds it with inputs, and carries out its effects.
 
 use std::collections::{HashMap, HashSet};
 use std::time::Duration;
@@ -11,14 +10,15 @@ use tokio::time::Instant;
 
 use super::clock::Clock;
 use super::context::{RunContext, attachments_dir};
-use super::control::{Controls, Unseen};
+use super::control_queue::ControlQueue;
 use super::deadlines::Deadlines;
-use super::events::Events;
 use super::fail_limit::FailLimit;
 use super::machine::{Effect, HostId, HostInput, Input, Program, Start, Stop, SuiteMachine};
 use super::probes;
-use crate::guard::HookBegins;
-use crate::isolate::Prepared;
+use crate::control::Controls;
+use crate::events::Events;
+use crate::guard::HookStart;
+use crate::isolate::PreparedSuite;
 use rtf_plan::plan::{Leaks, ProcessPlan, SuitePlan, TestPlan};
 use rtf_process::launch::Launch;
 use rtf_process::network::Network;
@@ -30,34 +30,34 @@ use rtf_process::task::{
     Assignment, AttachedJob, EventSender, ProcessCommand, ProcessJob, run_process, watch_attached,
 };
 
-/// How many inputs may wait; then processes wait.
-const INPUTS: usize = 1024;
-/// The exit status of a process whose own is unknown.
-const UNKNOWN: ExitStatus = ExitStatus::Code(-1);
-/// How many more are taken before anything else is looked at.
-const AT_ONCE: usize = 16;
+/// The capacity of the event queue; the tasks of processes wait if it is full.
+const QUEUE_CAPACITY: usize = 1024;
+/// The status of a process whose exit status is unknown.
+const UNKNOWN_STATUS: ExitStatus = ExitStatus::Code(-1);
+/// How many events are handled before deadlines and requests are checked again.
+const BATCH: usize = 16;
 
-/// What may come from outside while a suite runs.
+/// The requests that may end or shorten a suite.
 #[derive(Clone, Debug)]
-pub struct Asked {
-    /// The request to end the run.
+pub struct SuiteRequests {
+    /// Requests to end the run.
     pub stops: watch::Receiver<Option<Stop>>,
-    /// Everything else.
+    /// Requests that concern a test or a suite.
     pub controls: Controls,
-    /// How many tests of the run have failed, and may.
+    /// The limit of failed tests.
     pub fails: FailLimit,
-    /// When the suite is repeated no more, as a time of the run.
-    pub until: Option<Duration>,
+    /// Until when the suite is repeated, as a time of the run.
+    pub soak_until: Option<Duration>,
 }
 
-/// Runs a suite to its end.
+/// Runs a suite.
 pub async fn run_suite(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedSuite<'_>,
     context: &RunContext,
     events: &Events,
-    asked: Asked,
+    requests: SuiteRequests,
 ) {
-    let (inputs, queue) = mpsc::channel(INPUTS);
+    let (inputs, queue) = mpsc::channel(QUEUE_CAPACITY);
     let plan = &*prepared.plan;
     let mut task = SuiteTask {
         plan,
@@ -65,22 +65,22 @@ pub async fn run_suite(
         context,
         events,
         inputs,
-        machine: SuiteMachine::new(plan, asked.fails.clone()).until(asked.until),
+        machine: SuiteMachine::new(plan, requests.fails.clone()).until(requests.soak_until),
         effects: Vec::new(),
         commands: HashMap::new(),
-        leaving: HashSet::new(),
-        unanswered: Vec::new(),
-        spares: Vec::new(),
-        called: None,
+        changing_ids: HashSet::new(),
+        substitutes: Vec::new(),
+        prelaunched: Vec::new(),
+        triggered: None,
         scopes: 0,
-        repeats: asked.until.is_some() || plan.repeats(),
+        is_repeated: requests.soak_until.is_some() || plan.repeats(),
         deadlines: Deadlines::default(),
-        clock: Clock::of(plan, &context.scratch_dir),
-        over: false,
+        clock: Clock::new(plan, &context.scratch_dir),
+        is_done: false,
     };
-    task.run(queue, asked).await;
-    for spare in task.spares {
-        spare.discard().await;
+    task.run(queue, requests).await;
+    for launch in task.prelaunched {
+        launch.discard().await;
     }
 }
 
@@ -104,36 +104,38 @@ struct SuiteTask<'a> {
     machine: SuiteMachine<'a>,
     effects: Vec<Effect>,
     commands: HashMap<HostId, ProcessHandle>,
-    /// Those that will be known by another id.
-    leaving: HashSet<HostId>,
-    /// Inputs for orders whose process has no task any more.
-    unanswered: Vec<(HostId, HostInput)>,
-    /// Hosts that were started ahead of their need.
-    spares: Vec<Launch>,
-    /// What called for the hook that is started next.
-    called: Option<HookBegins>,
-    /// Whether tests are repeated: then what fixtures and shared hosts use is measured.
-    repeats: bool,
-    /// How many scopes were given out.
+    /// Shared hosts whose id changes once the test has ended and the next is assigned, if one of
+    /// both has happened.
+    changing_ids: HashSet<HostId>,
+    /// Inputs that replace the events of ended tasks.
+    substitutes: Vec<(HostId, HostInput)>,
+    /// Hosts that were started ahead of time.
+    prelaunched: Vec<Launch>,
+    /// The start of the next hook, whose scope is not known yet.
+    triggered: Option<HookStart>,
+    /// Whether tests are repeated: then the resource usage of fixtures and shared hosts is
+    /// measured.
+    is_repeated: bool,
+    /// The number of assigned scopes.
     scopes: u64,
     deadlines: Deadlines,
     clock: Clock,
-    over: bool,
+    is_done: bool,
 }
 
 impl SuiteTask<'_> {
     async fn run(
         &mut self,
         mut queue: mpsc::Receiver<(HostId, HostInput)>,
-        Asked { mut stops, controls, .. }: Asked,
+        SuiteRequests { mut stops, controls, .. }: SuiteRequests,
     ) {
         let stop = stops.borrow_and_update().clone();
-        let (mut controls, skip) = Unseen::at_start(controls, self.plan);
+        let (mut controls, skip) = ControlQueue::new(controls, self.plan);
         for input in stop.map(Input::Stop).into_iter().chain(skip) {
             self.feed(input);
         }
         self.feed(Input::Start);
-        while !self.over {
+        while !self.is_done {
             let next = self.next_due();
             tokio::select! {
                 biased;
@@ -144,20 +146,20 @@ impl SuiteTask<'_> {
                     }
                 }
                 input = controls.next(self.plan) => self.feed(input),
-                () = self.sleep_until(next) => self.time_passed(),
+                () = self.sleep_until(next) => self.handle_due(),
                 Some((host, input)) = queue.recv() => {
                     self.host_input(host, input);
-                    self.take_more(&mut queue);
+                    self.handle_batch(&mut queue);
                 }
             }
         }
     }
 
-    /// Takes what came with the last input: mostly several come at once.
-    fn take_more(&mut self, queue: &mut mpsc::Receiver<(HostId, HostInput)>) {
-        for _ in 0..AT_ONCE {
+    /// Handles the events that arrived with the last one: often there are several.
+    fn handle_batch(&mut self, queue: &mut mpsc::Receiver<(HostId, HostInput)>) {
+        for _ in 0..BATCH {
             match queue.try_recv() {
-                Ok((host, input)) if !self.over => self.host_input(host, input),
+                Ok((host, input)) if !self.is_done => self.host_input(host, input),
                 _ => return,
             }
         }
@@ -172,19 +174,19 @@ impl SuiteTask<'_> {
         }
     }
 
-    /// When something has to be done for the sake of time.
+    /// Returns the time of the next deadline or poll of the clock.
     fn next_due(&mut self) -> Option<Duration> {
-        let look = self.clock.next_look(self.machine.follows_clock(), self.events.now());
-        self.deadlines.next(self.plan).into_iter().chain(look).min()
+        let poll = self.clock.next_poll(self.machine.follows_clock(), self.events.now());
+        self.deadlines.next(self.plan).into_iter().chain(poll).min()
     }
 
-    fn time_passed(&mut self) {
+    fn handle_due(&mut self) {
         let now = self.events.now();
-        if let Some(time) = self.clock.look(now) {
+        if let Some(time) = self.clock.poll(now) {
             self.feed(Input::Clock(time));
         }
         for deadline in self.deadlines.passed(now, self.plan) {
-            // An earlier one of these may have moved or cleared it.
+            // An earlier deadline may have moved or cleared it.
             if self.deadlines.take(deadline, now, self.plan) {
                 self.feed(Input::Deadline(deadline));
             }
@@ -205,17 +207,17 @@ impl SuiteTask<'_> {
                 }
             }
             Resumed => self.deadlines.resume(host, now, self.plan),
-            Released => self.leave(host),
+            Released => self.retire_id(host),
             _ => {}
         }
         self.feed(Input::Host(host, input));
     }
 
-    /// A host has another id when both was told: the test is over, and it has or
-    /// gets another test.
-    fn leave(&mut self, host: HostId) {
-        if !self.leaving.insert(host) {
-            self.leaving.remove(&host);
+    /// Removes the id of a shared host once its test has ended and the next is assigned, in either
+    /// order.
+    fn retire_id(&mut self, host: HostId) {
+        if !self.changing_ids.insert(host) {
+            self.changing_ids.remove(&host);
             self.commands.remove(&host);
         }
     }
@@ -227,7 +229,7 @@ impl SuiteTask<'_> {
             self.carry_out(effect);
         }
         self.effects = effects;
-        while let Some((host, input)) = self.unanswered.pop() {
+        while let Some((host, input)) = self.substitutes.pop() {
             self.host_input(host, input);
         }
     }
@@ -235,7 +237,7 @@ impl SuiteTask<'_> {
     fn carry_out(&mut self, effect: Effect) {
         match effect {
             Effect::Emit(kind) => {
-                self.tell_guard(&kind);
+                self.notify_guard(&kind);
                 self.events.emit(kind);
             }
             Effect::SetDeadline(deadline, at) => self.deadlines.set(deadline, at),
@@ -253,9 +255,9 @@ impl SuiteTask<'_> {
                         let _ = commands.send(ProcessCommand::Assign(assignment));
                         self.commands.insert(host, (source, commands));
                     }
-                    None => self.unanswered.push((host, HostInput::Unbegun(UNKNOWN))),
+                    None => self.substitutes.push((host, HostInput::Unbegun(UNKNOWN_STATUS))),
                 }
-                self.leave(on);
+                self.retire_id(on);
             }
             Effect::SpawnAhead(starts) => self.spawn_ahead(starts),
             Effect::Send(host, id, request) => {
@@ -271,24 +273,26 @@ impl SuiteTask<'_> {
             Effect::LookAlive(host, probes) => {
                 self.command(host, ProcessCommand::CheckAlive(probes))
             }
-            Effect::Done => self.over = true,
+            Effect::Done => self.is_done = true,
         }
     }
 
-    /// What the guard must know of tests and hooks, should the runner die.
-    fn tell_guard(&mut self, kind: &EventKind) {
+    /// Notifies the guard of tests and hooks.
+    fn notify_guard(&mut self, kind: &EventKind) {
         let guard = &self.context.guard;
         match kind {
             EventKind::TestStarted { test, .. } => {
                 let name = self.test(*test).map_or("", |plan| &plan.name);
-                guard.test_begins(self.plan, *test, name);
+                guard.test_started(self.plan, *test, name);
             }
-            EventKind::TestFinished(finished) => guard.test_ends(self.plan, finished.test),
-            EventKind::HookFinished { hook, problem } => guard.hook_ends(*hook, problem.clone()),
+            EventKind::TestFinished(finished) => guard.test_finished(self.plan, finished.test),
+            EventKind::HookFinished { hook, problem } => {
+                guard.hook_finished(*hook, problem.clone())
+            }
             EventKind::HookStarted { hook, trigger, reason, test } => {
                 let (reason, scope) = (reason.clone(), String::new());
                 let (hook, trigger, test) = (*hook, *trigger, *test);
-                self.called = Some(HookBegins { hook, scope, trigger, reason, test });
+                self.triggered = Some(HookStart { hook, scope, trigger, reason, test });
             }
             _ => {}
         }
@@ -304,11 +308,11 @@ impl SuiteTask<'_> {
         }
     }
 
-    /// Kills a process; one without a task has ended.
+    /// Kills a process. One without a task has ended.
     fn kill(&mut self, host: HostId) {
         let commands = self.commands.get(&host);
         if commands.is_none_or(|(_, commands)| commands.send(ProcessCommand::KillTree).is_err()) {
-            self.unanswered.push((host, HostInput::Exited(UNKNOWN, Vec::new())));
+            self.substitutes.push((host, HostInput::Exited(UNKNOWN_STATUS, Vec::new())));
         }
     }
 
@@ -322,8 +326,8 @@ impl SuiteTask<'_> {
         let request = self.request(start, role_of(source));
         let (commands, queue) = mpsc::unbounded_channel();
         self.commands.insert(host, (source, commands));
-        let launch = match self.spares.iter().position(|spare| spare.request == request) {
-            Some(place) => self.spares.remove(place),
+        let launch = match self.prelaunched.iter().position(|launch| launch.request == request) {
+            Some(index) => self.prelaunched.remove(index),
             None => self.launch(request),
         };
         if let Some(plan) = attached {
@@ -332,8 +336,8 @@ impl SuiteTask<'_> {
             let watch = watch_attached(job, spawner, queue, self.inputs.clone());
             return drop(tokio::spawn(watch));
         }
-        if let Some(called) = self.called.take_if(|_| matches!(source, Source::Hook(_))) {
-            self.context.guard.hook_begins(HookBegins { scope: launch.scope.clone(), ..called });
+        if let Some(start) = self.triggered.take_if(|_| matches!(source, Source::Hook(_))) {
+            self.context.guard.hook_starting(HookStart { scope: launch.scope.clone(), ..start });
         }
         let job = ProcessJob {
             host,
@@ -355,8 +359,8 @@ impl SuiteTask<'_> {
         self.plan.tests.get(test.index() - first)
     }
 
-    /// Joining a control group may take longer than a short test: it is for those
-    /// that live long, and where each leak counts.
+    /// Joining a control group may take longer than a short test: only long-lived processes, and
+    /// tests whose leaks are failures, get one.
     fn is_grouped(&self, source: Source) -> bool {
         match source {
             Source::Test(test) => self.test(test).is_some_and(|plan| plan.leaks == Leaks::Fail),
@@ -364,37 +368,36 @@ impl SuiteTask<'_> {
         }
     }
 
-    /// What may grow while tests are repeated: fixtures on this machine, and the
-    /// hosts that tests share.
+    /// Only fixtures on this machine and shared hosts may grow while tests are repeated.
     fn is_measured(&self, source: Source, process: Option<&ProcessPlan>) -> bool {
-        let lives_on = match source {
+        let outlives_test = match source {
             Source::Fixture(_) => process.is_none_or(|process| process.remote.is_none()),
             Source::Test(test) => self.test(test).is_some_and(|plan| plan.shared),
             Source::Hook(_) => false,
         };
-        self.repeats && lives_on
+        self.is_repeated && outlives_test
     }
 
     fn spawn_ahead(&mut self, starts: Vec<Start>) {
-        let mut before = std::mem::take(&mut self.spares);
+        let mut before = std::mem::take(&mut self.prelaunched);
         for start in starts {
             let request = self.request(start, ProcessRole::Test);
-            let spare = match before.iter().position(|spare| spare.request == request) {
-                Some(place) => before.remove(place),
+            let launch = match before.iter().position(|launch| launch.request == request) {
+                Some(index) => before.remove(index),
                 None => {
                     let mut launch = self.launch(request);
                     launch.start_ahead(self.spawner());
                     launch
                 }
             };
-            self.spares.push(spare);
+            self.prelaunched.push(launch);
         }
-        for unwanted in before {
-            tokio::spawn(unwanted.discard());
+        for unneeded in before {
+            tokio::spawn(unneeded.discard());
         }
     }
 
-    /// What is to be started; as a fork only if it may be one.
+    /// Converts the start of a process. Only hosts of tests may be forked.
     fn request(&self, start: Start, role: ProcessRole) -> SpawnRequest {
         let mut can_fork = false;
         let run_dir = self.context.tasks.run_dir.to_string_lossy().into_owned();
@@ -408,7 +411,7 @@ impl SuiteTask<'_> {
         }
         let (command, channel) = match start.what {
             Program::Host(plan) => {
-                // Last: the plan has put what the suite says into it already.
+                // Last: it contains the suite's variables.
                 env.extend_from_slice(&plan.env);
                 can_fork = plan.forks && role == ProcessRole::Test;
                 (plan.command.clone(), Some(Vec::new()))

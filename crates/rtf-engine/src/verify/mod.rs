@@ -1,9 +1,8 @@
-//! Checks before a run whether the hosts can load the plug-ins of a plan.
-//!
-//! [`rtf_plan::plan::PlanDraft`] lists the files and judges the answers; this module
-//! starts the hosts.
+//! Checks before a run that the hosts can load the plug-ins of a plan.
+//! [`rtf_plan::plan::PlanDraft`] lists the files and judges the results; this module runs the
+//! hosts.
 
-mod ask;
+mod host_check;
 mod unix;
 
 use std::collections::VecDeque;
@@ -13,18 +12,17 @@ use std::time::Duration;
 
 use rtf_plan::plan::{CheckAnswer, CheckGroup, PlanDraft, PlanOutcome};
 
-/// How long a host may be silent while it checks a plug-in, by default.
+/// The default limit for the check of one plug-in.
 pub const DEFAULT_LIMIT: Duration = Duration::from_secs(30);
 
-/// Files for one start of a host: enough to make the start cheap, few enough
-/// for the longest command line.
-const MOST_FILES: usize = 256;
+/// The number of files for one start of a host. Limited by the longest command line.
+const MAX_FILES: usize = 256;
 
-/// Checks all plug-ins of a draft, with as many hosts at once as there are
-/// processors, and completes the plan. Blocks until all hosts have answered.
+/// Checks all plug-ins of a draft with as many parallel hosts as processors, and completes the
+/// plan. Blocks until all hosts have reported.
 ///
-/// A host that reports nothing for `limit` is killed, and the plug-in that it was
-/// loading gets the blame.
+/// A host that reports nothing for `limit` is killed, and the plug-in that it was loading is
+/// reported.
 #[must_use]
 pub fn verify(draft: PlanDraft, limit: Duration) -> PlanOutcome {
     let answers = check(draft.check_groups(), limit);
@@ -41,7 +39,7 @@ fn check(groups: &[CheckGroup], limit: Duration) -> Vec<Vec<CheckAnswer>> {
         }
     });
     let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
-    // In the order of the plan, however fast each host was.
+    // In the order of the plan.
     done.sort_by_key(|(number, ..)| *number);
     let mut answers = vec![Vec::new(); groups.len()];
     for (_, group, of_batch) in done {
@@ -51,7 +49,7 @@ fn check(groups: &[CheckGroup], limit: Duration) -> Vec<Vec<CheckAnswer>> {
     answers
 }
 
-/// Files of one group that one start of a host checks.
+/// Files of one group for one start of a host.
 struct Batch<'a> {
     number: usize,
     /// The index of the group.
@@ -64,7 +62,7 @@ fn batches(groups: &[CheckGroup], workers: usize) -> VecDeque<Batch<'_>> {
     let mut batches = VecDeque::new();
     for (index, group) in groups.iter().enumerate() {
         let files: Vec<&Path> = group.files().collect();
-        let size = files.len().div_ceil(workers).clamp(1, MOST_FILES);
+        let size = files.len().div_ceil(workers).clamp(1, MAX_FILES);
         for files in files.chunks(size) {
             batches.push_back(Batch { number: batches.len(), index, group, files: files.to_vec() });
         }
@@ -79,7 +77,7 @@ fn work(queue: &Mutex<VecDeque<Batch<'_>>>, done: &Mutex<Done>, limit: Duration)
     loop {
         let batch = queue.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
         let Some(batch) = batch else { return };
-        let answers = ask::ask(batch.group, &batch.files, limit);
+        let answers = host_check::check(batch.group, &batch.files, limit);
         let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
         done.push((batch.number, batch.index, answers));
     }

@@ -7,12 +7,12 @@ use std::time::Duration;
 
 use rustix::process::{Pid, Signal, kill_process_group};
 
-/// Starts the command in a process group of its own.
+/// Starts the command in a new process group.
 pub(super) fn in_own_group(command: &mut Command) {
     command.process_group(0);
 }
 
-/// Kills a child that was started [`in_own_group`], and its group with it.
+/// Kills a child that was started [`in_own_group`], and its group.
 pub(super) fn kill_group(child: &mut Child) {
     kill(child.id());
     let _ = child.wait();
@@ -36,12 +36,12 @@ pub(super) fn wait(mut child: Child, limit: Duration) -> Option<ExitStatus> {
 
 fn kill(group: u32) {
     if let Some(pid) = i32::try_from(group).ok().and_then(Pid::from_raw) {
-        // Fails only when all of them are gone already.
+        // Fails if all of them have ended.
         let _ = kill_process_group(pid, Signal::KILL);
     }
 }
 
-/// How a process ended, in words.
+/// Describes how a process ended.
 pub(super) fn describe(status: ExitStatus) -> String {
     match (status.code(), status.signal()) {
         (Some(code), _) => format!("exit code {code}"),

@@ -84,7 +84,7 @@ impl Job<'_> {
             controls: controls.subscribe(),
             locks: self.locks.clone(),
             jobs: self.jobs.into(),
-            time: self.planned.manifest.for_ms.map(Duration::from_millis),
+            soak_time: self.planned.manifest.for_ms.map(Duration::from_millis),
         };
         let sink: Arc<dyn Sink> = Arc::new(Reports(events));
         let plan = self.planned.plan.clone();

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use rtf_engine::locks::{FOLDER, FOLDER_VARIABLE, Held, Locks};
+use rtf_engine::locks::{DEFAULT_DIR, DIR_VARIABLE, HeldLock, Locks};
 use rtf_report::escape;
 
 use super::Outcome;
@@ -49,12 +49,12 @@ fn free() -> ExitCode {
 
 /// The folder of this machine's locks.
 pub fn folder() -> PathBuf {
-    std::env::var_os(FOLDER_VARIABLE)
+    std::env::var_os(DIR_VARIABLE)
         .filter(|folder| !folder.is_empty())
-        .map_or_else(|| PathBuf::from(FOLDER), PathBuf::from)
+        .map_or_else(|| PathBuf::from(DEFAULT_DIR), PathBuf::from)
 }
 
-fn show(held: &[Held]) -> std::io::Result<()> {
+fn show(held: &[HeldLock]) -> std::io::Result<()> {
     let mut out = anstream::stdout().lock();
     for held in held {
         let owner = held.owner.to_string();

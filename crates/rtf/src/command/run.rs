@@ -40,7 +40,7 @@ pub fn run(args: &RunArgs, guard: Link) -> Outcome {
     let outlet = output::outlet()?;
     let reporters = reporters(journal, live, args, (&folder, &outlet))?;
     let (forks, max_fail) = (args.fork, args.input.repeat.most_fails());
-    let locks = LockOptions { folder: locks::folder(), limit: args.lock_timeout };
+    let locks = LockOptions { dir: locks::folder(), limit: args.lock_timeout };
     let (planned, folder, asks, jobs, outlet) = (&planned, &folder, &asks, args.jobs, &outlet);
     let job = Job { planned, folder, forks, asks, max_fail, locks, jobs, outlet };
     let ended = job.perform(reporters, guard);

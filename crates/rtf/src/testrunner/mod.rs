@@ -142,7 +142,7 @@ fn perform(args: &Args, results: &Results, guard: Link) -> Outcome {
         forks: ForkMode::default(),
         asks: &asks,
         max_fail: None,
-        locks: LockOptions { folder: locks::folder(), limit: None },
+        locks: LockOptions { dir: locks::folder(), limit: None },
         jobs: NonZeroU16::MIN,
         outlet: &outlet,
     };

@@ -8,12 +8,8 @@ use rtf_model::{TestId, Trigger, Verdict};
 use super::context::Context;
 use super::hook::{HookProcess, TriggeredHook, report_not_run};
 use super::io::{HostId, HostInput};
+use crate::hook::{HOOK_KILLED, HOOK_NOT_RUN};
 use rtf_plan::plan::SuitePlan;
-
-/// The problem of a hook that runs when everything is killed.
-pub const HOOK_KILLED: &str = "it was killed by the third request to end the run";
-/// The problem of a triggered hook that had not started.
-pub const HOOK_NOT_RUN: &str = "it did not run: the end of the run was requested three times";
 
 /// Hooks run one at a time, and never while a test without a verdict runs.
 #[derive(Debug)]

@@ -9,6 +9,7 @@ use rtf_model::{EventKind, Source, TestId};
 
 use rtf_plan::plan::{AttachedPlan, HostPlan, PluginPlan, ProcessPlan, SuitePlan};
 
+pub use crate::control::{Stop, StopLevel};
 pub use rtf_process::probe::ProbeSelection as Probes;
 pub use rtf_process::task::{HostId, ProcessEvent as HostInput};
 
@@ -29,29 +30,6 @@ pub enum Input {
     StopTest(TestId, String),
     /// A user skips the rest of the suite; the user's name.
     Skip(String),
-}
-
-/// How quickly a suite must end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum StopLevel {
-    /// Stop the tests, tear down.
-    TearDown,
-    /// Kill everything now, without tear-down; hooks run.
-    Kill,
-    /// Kill the hooks, too.
-    KillHooks,
-}
-
-/// A request to end the suite early.
-#[derive(Clone, Debug)]
-pub struct Stop {
-    /// How quickly the suite must end.
-    pub level: StopLevel,
-    /// The source of the request, such as `SIGINT`.
-    pub reason: String,
-    /// Limit for the end of the suite, tear-downs and hooks included. After that, it
-    /// continues as with [`StopLevel::Kill`].
-    pub limit: Duration,
 }
 
 /// A timer of the machine. Setting it again moves it.

@@ -19,7 +19,6 @@ mod test;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub use hook_queue::{HOOK_KILLED, HOOK_NOT_RUN};
 pub use io::{
     Deadline, Effect, FixtureTimer, HostId, HostInput, Input, Probes, Program, Start, Stop,
     StopLevel, TestTimer,

@@ -116,7 +116,7 @@ fn network() -> Finding {
         let runtime = builder.enable_all().build().map_err(|error| error.to_string())?;
         runtime.block_on(async {
             let spawner = Spawner::start(ForkMode::Never).map_err(|error| error.to_string())?;
-            isolate::network_is_possible(&spawner).await
+            isolate::check_network(&spawner).await
         })
     };
     let found = possible().map(|()| "network namespaces can be made".to_owned());

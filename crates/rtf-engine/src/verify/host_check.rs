@@ -1,4 +1,4 @@
-//! Starts one host with `--check FILE…` (`spec/protocol.md`) and reads its reports.
+//! Runs a host with `--check FILE…` (`spec/protocol.md`), and reads its reports.
 
 use std::io::{BufRead as _, BufReader, Read};
 use std::path::Path;
@@ -11,22 +11,22 @@ use rtf_plan::plan::{CheckAnswer, CheckGroup, CheckReport};
 
 use super::unix;
 
-/// How one start of the host ended.
-enum End {
+/// How a host ended.
+enum HostEnd {
     Exited { how: String, success: bool },
     Silent,
     NotStarted(String),
 }
 
-/// What is kept of the host's standard error.
+/// The longest standard error of a host.
 const STDERR_BYTES: u64 = 4096;
 
-/// A line longer than this is not one of the protocol.
+/// The longest line of the protocol.
 const LINE_BYTES: u64 = 1024 * 1024;
 
 /// Checks all files. A host that dies at one of them is restarted for the files
 /// after it, so that one bad plug-in does not hide another.
-pub(super) fn ask(group: &CheckGroup, files: &[&Path], limit: Duration) -> Vec<CheckAnswer> {
+pub(super) fn check(group: &CheckGroup, files: &[&Path], limit: Duration) -> Vec<CheckAnswer> {
     let mut answers = Vec::with_capacity(files.len());
     while answers.len() < files.len() {
         let rest = &files[answers.len()..];
@@ -38,17 +38,17 @@ pub(super) fn ask(group: &CheckGroup, files: &[&Path], limit: Duration) -> Vec<C
             break;
         }
         let failed = match end {
-            End::Silent => {
+            HostEnd::Silent => {
                 answers.push(CheckAnswer::Silent(limit));
                 continue;
             }
-            // A plug-in may end the process from its constructors. A host that
-            // cannot even look at no file at all is at fault itself.
-            End::Exited { how, .. } if !no_report || works(group, limit) => {
+            // A constructor of a plug-in may end the process. A host that also fails without
+            // files is itself at fault.
+            HostEnd::Exited { how, .. } if !no_report || works(group, limit) => {
                 answers.push(CheckAnswer::Died { how, stderr });
                 continue;
             }
-            End::Exited { how, .. } | End::NotStarted(how) => how,
+            HostEnd::Exited { how, .. } | HostEnd::NotStarted(how) => how,
         };
         let host_failed =
             |_| CheckAnswer::HostFailed { how: failed.clone(), stderr: stderr.clone() };
@@ -57,17 +57,21 @@ pub(super) fn ask(group: &CheckGroup, files: &[&Path], limit: Duration) -> Vec<C
     answers
 }
 
-/// Whether the host itself works.
+/// Whether the host works without files.
 fn works(group: &CheckGroup, limit: Duration) -> bool {
-    matches!(start(group, &[], limit).2, End::Exited { success: true, .. })
+    matches!(start(group, &[], limit).2, HostEnd::Exited { success: true, .. })
 }
 
-fn start(group: &CheckGroup, files: &[&Path], limit: Duration) -> (Vec<CheckReport>, String, End) {
+fn start(
+    group: &CheckGroup,
+    files: &[&Path],
+    limit: Duration,
+) -> (Vec<CheckReport>, String, HostEnd) {
     let mut child = match spawn(group, files) {
         Ok(child) => child,
         Err(error) => {
             let how = format!("it cannot be started: {error}");
-            return (Vec::new(), String::new(), End::NotStarted(how));
+            return (Vec::new(), String::new(), HostEnd::NotStarted(how));
         }
     };
     let lines = read_lines(&mut child);
@@ -78,12 +82,12 @@ fn start(group: &CheckGroup, files: &[&Path], limit: Duration) -> (Vec<CheckRepo
             Ok(line) => reports.extend(report(&line, files.get(reports.len()))),
             Err(RecvTimeoutError::Timeout) => {
                 unix::kill_group(&mut child);
-                break End::Silent;
+                break HostEnd::Silent;
             }
             Err(RecvTimeoutError::Disconnected) => break ended(child, limit),
         }
     };
-    // What the plug-in's children may still write is not waited for.
+    // Children of the plug-in may hold standard error open.
     let stderr = errors.recv_timeout(Duration::from_millis(200)).unwrap_or_default();
     (reports, stderr, end)
 }
@@ -102,17 +106,15 @@ fn spawn(group: &CheckGroup, files: &[&Path]) -> std::io::Result<Child> {
     command.spawn()
 }
 
-/// How a host ended that closed its output. One that does not end then is
-/// killed: all its answers are there.
-fn ended(child: Child, limit: Duration) -> End {
+/// Waits for the end of a host that has closed its output, and kills it after the limit.
+fn ended(child: Child, limit: Duration) -> HostEnd {
     match unix::wait(child, limit) {
-        Some(status) => End::Exited { how: unix::describe(status), success: status.success() },
-        None => End::Silent,
+        Some(status) => HostEnd::Exited { how: unix::describe(status), success: status.success() },
+        None => HostEnd::Silent,
     }
 }
 
-/// A line of the host, if it is about the file that is next. What plug-ins
-/// print while they are loaded is not.
+/// Parses a report about the next file. Plug-ins may print other lines while they are loaded.
 fn report(line: &[u8], next: Option<&&Path>) -> Option<CheckReport> {
     let report: CheckReport = serde_json::from_slice(line).ok()?;
     (next?.to_str() == Some(&report.file)).then_some(report)
@@ -142,7 +144,7 @@ fn read_errors(child: &mut Child) -> Receiver<String> {
         let Some(mut stderr) = stderr else { return };
         let mut kept = Vec::new();
         let _ = stderr.by_ref().take(STDERR_BYTES).read_to_end(&mut kept);
-        // The rest is read so that the host never waits for us.
+        // Discards the rest, so that the host does not block.
         let _ = std::io::copy(&mut stderr, &mut std::io::sink());
         let _ = sender.send(String::from_utf8_lossy(&kept).trim_end().to_owned());
     });

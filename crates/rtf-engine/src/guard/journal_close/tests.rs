@@ -58,12 +58,12 @@ fn died() -> EventKind {
 }
 
 /// Closes a journal with this text; returns what it holds then.
-fn closed(text: &str, ended: Vec<Ended>, happened: Vec<EventKind>) -> String {
+fn closed(text: &str, finished_hooks: Vec<FinishedHook>, events: Vec<EventKind>) -> String {
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), text).unwrap();
     let start = Instant::now();
-    let happened = happened.into_iter().map(|kind| Happened { at: start, kind }).collect();
-    close(file.path(), start, Told { ended, happened }).unwrap();
+    let events = events.into_iter().map(|kind| TimedEvent { at: start, kind }).collect();
+    close(file.path(), start, MissingEvents { finished_hooks, events }).unwrap();
     std::fs::read_to_string(file.path()).unwrap()
 }
 
@@ -78,13 +78,13 @@ fn types(journal: &str) -> Vec<String> {
     events.collect()
 }
 
-fn end_of_first_run() -> Vec<Ended> {
+fn end_of_first_run() -> Vec<FinishedHook> {
     let at = Instant::now() + Duration::from_millis(1);
-    vec![Ended {
+    vec![FinishedHook {
         hook: HOOK,
         number: 1,
-        started: Happened { at, kind: started() },
-        finished: Happened { at, kind: finished() },
+        started: TimedEvent { at, kind: started() },
+        finished: TimedEvent { at, kind: finished() },
     }]
 }
 

@@ -7,85 +7,83 @@ use std::time::Instant;
 
 use rtf_model::{Diagnostic, Event, EventKind, HookId, LineSealer, Micros, OrderChecker, SuiteId};
 
-/// Something that is to be written, and when it was.
+/// An event to write.
 #[derive(Debug)]
-pub struct Happened {
-    /// When.
+pub struct TimedEvent {
+    /// Its time.
     pub at: Instant,
-    /// What.
+    /// The event.
     pub kind: EventKind,
 }
 
-/// A run of a hook that came to its end under the runner, which may not have
-/// lived long enough to write it.
+/// A complete run of a hook under the runner, which may have died before it wrote the
+/// events.
 #[derive(Debug)]
-pub struct Ended {
+pub struct FinishedHook {
     /// The hook.
     pub hook: HookId,
-    /// Which of its runs, from 1.
+    /// The number of the run, from 1.
     pub number: u64,
     /// Its `hook-started`.
-    pub started: Happened,
+    pub started: TimedEvent,
     /// Its `hook-finished`.
-    pub finished: Happened,
+    pub finished: TimedEvent,
 }
 
-/// All that is to be written.
+/// The events that the runner could not write.
 #[derive(Debug)]
-pub struct Told {
-    /// Unless they are there: the ends of hooks under the runner.
-    pub ended: Vec<Ended>,
-    /// What happened after the runner's death.
-    pub happened: Vec<Happened>,
+pub struct MissingEvents {
+    /// The last complete runs of hooks, which the journal may contain already.
+    pub finished_hooks: Vec<FinishedHook>,
+    /// The events after the runner's death.
+    pub events: Vec<TimedEvent>,
 }
 
-/// Cuts off a last line that is not whole and writes what happened since.
-/// `start` is zero on the run's clock. A journal that is closed, or has no
-/// event, stays as it is.
+/// Removes an incomplete last line and appends the missing events. `start` is zero on the
+/// run's clock. A journal that is closed or empty remains unchanged.
 ///
 /// # Errors
 /// The file cannot be read or written.
-pub fn close(journal: &Path, start: Instant, told: Told) -> io::Result<()> {
+pub fn close(journal: &Path, start: Instant, missing: MissingEvents) -> io::Result<()> {
     let file = OpenOptions::new().read(true).append(true).open(journal)?;
-    let Some(mut closing) = Closing::read(&file, start)? else { return Ok(()) };
-    for ended in told.ended {
-        let written = closing.finished.iter().filter(|hook| **hook == ended.hook).count();
-        if (written as u64) < ended.number {
-            closing.add(ended.started.at, ended.started.kind);
-            closing.offer(ended.finished.at, ended.finished.kind);
+    let Some(mut journal) = OpenJournal::read(&file, start)? else { return Ok(()) };
+    for run in missing.finished_hooks {
+        let written = journal.finished.iter().filter(|hook| **hook == run.hook).count();
+        if (written as u64) < run.number {
+            journal.append(run.started.at, run.started.kind);
+            journal.append_if_valid(run.finished.at, run.finished.kind);
         }
     }
-    for Happened { at, kind } in told.happened {
-        closing.add(at, kind);
+    for TimedEvent { at, kind } in missing.events {
+        journal.append(at, kind);
     }
-    file.set_len(closing.whole)?;
-    (&file).write_all(&closing.lines)?;
+    file.set_len(journal.complete_bytes)?;
+    (&file).write_all(&journal.lines)?;
     file.sync_data()
 }
 
-struct Closing {
-    /// The length of the file up to the end of its last whole line.
-    whole: u64,
-    next: u64,
+struct OpenJournal {
+    /// The length of the file up to the end of its last complete line.
+    complete_bytes: u64,
+    next_seq: u64,
     last_at: Micros,
     start: Instant,
-    /// `None` when what is there breaks the order already, as damage does.
+    /// `None` if the existing events violate the order, as in a damaged journal.
     order: Option<OrderChecker>,
-    /// The suites of hooks, as planned.
     suites: Vec<(HookId, SuiteId)>,
-    /// The hooks that came to an end, once for each time.
+    /// Each finished run of a hook.
     finished: Vec<HookId>,
     lines: Vec<u8>,
     sealer: LineSealer,
 }
 
-impl Closing {
-    /// `None` when there is nothing to close.
+impl OpenJournal {
+    /// `None` if there is nothing to close.
     fn read(file: &File, start: Instant) -> io::Result<Option<Self>> {
         let order = Some(OrderChecker::default());
-        let mut closing = Self {
-            whole: 0,
-            next: 0,
+        let mut journal = Self {
+            complete_bytes: 0,
+            next_seq: 0,
             last_at: Micros::default(),
             start,
             order,
@@ -97,22 +95,21 @@ impl Closing {
         let mut reader = BufReader::with_capacity(64 * 1024, file);
         let mut line = Vec::new();
         while reader.read_until(b'\n', &mut line)? > 0 && line.ends_with(b"\n") {
-            closing.whole += line.len() as u64;
-            closing.sealer = LineSealer::after(&line);
+            journal.complete_bytes += line.len() as u64;
+            journal.sealer = LineSealer::after(&line);
             if let Ok(event) = serde_json::from_slice::<Event>(&line) {
-                let over = EventKind::RunFinished { interrupted: None };
-                if std::mem::discriminant(&event.kind) == std::mem::discriminant(&over) {
+                if matches!(event.kind, EventKind::RunFinished { .. }) {
                     return Ok(None);
                 }
-                closing.pass(&event);
+                journal.read_event(&event);
             }
             line.clear();
         }
-        Ok((closing.next > 0).then_some(closing))
+        Ok((journal.next_seq > 0).then_some(journal))
     }
 
-    fn pass(&mut self, event: &Event) {
-        self.next = event.seq.saturating_add(1);
+    fn read_event(&mut self, event: &Event) {
+        self.next_seq = event.seq.saturating_add(1);
         self.last_at = event.at;
         match &event.kind {
             EventKind::HookPlanned(plan) => self.suites.push((plan.hook, plan.suite)),
@@ -122,38 +119,38 @@ impl Closing {
         self.order.take_if(|order| order.check(event).is_err());
     }
 
-    fn add(&mut self, at: Instant, kind: EventKind) {
+    fn append(&mut self, at: Instant, kind: EventKind) {
         let hook = match &kind {
             EventKind::HookStarted { hook, .. } => Some(*hook),
             _ => None,
         };
-        if self.offer(at, kind.clone()) {
+        if self.append_if_valid(at, kind.clone()) {
             return;
         }
         match kind {
-            // The runner died after it had told the guard, but not the journal:
-            // its hook began (then this one is known), or its suite did.
+            // The runner died after it had notified the guard, but before it wrote the start
+            // of the hook, which is known then, or of its suite.
             EventKind::HookStarted { .. } => {
                 let suite = self.suites.iter().find(|(id, _)| Some(*id) == hook);
                 if let Some((_, suite)) = suite.copied() {
-                    self.offer(at, EventKind::SuiteStarted { suite });
-                    self.offer(at, kind);
+                    self.append_if_valid(at, EventKind::SuiteStarted { suite });
+                    self.append_if_valid(at, kind);
                 }
             }
             EventKind::HookFinished { hook, problem } => {
-                let end = problem.map_or("did its work".to_owned(), |why| format!("failed: {why}"));
+                let end = problem.map_or("succeeded".to_owned(), |why| format!("failed: {why}"));
                 let text = format!("hook {hook} was run by the guard and {end}");
                 let diagnostic = Diagnostic::warning("hook-of-the-guard", text);
-                self.offer(at, EventKind::Warning { diagnostic });
+                self.append_if_valid(at, EventKind::Warning { diagnostic });
             }
             _ => {}
         }
     }
 
-    /// Writes an event, if it may stand here.
-    fn offer(&mut self, at: Instant, kind: EventKind) -> bool {
+    /// Appends an event if the order of events permits it here.
+    fn append_if_valid(&mut self, at: Instant, kind: EventKind) -> bool {
         let at = Micros::from(at.saturating_duration_since(self.start)).max(self.last_at);
-        let event = Event { seq: self.next, at, kind };
+        let event = Event { seq: self.next_seq, at, kind };
         if let Some(order) = &self.order {
             let mut order = order.clone();
             if order.check(&event).is_err() {
@@ -167,7 +164,7 @@ impl Closing {
             return false;
         }
         self.sealer.seal(&mut self.lines, start);
-        self.next += 1;
+        self.next_seq += 1;
         self.last_at = at;
         true
     }

@@ -1,16 +1,16 @@
-//! Numbers and times the events of a run, and hands them out.
+//! Assigns numbers and times to the events of a run.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use rtf_model::{Event, EventKind, Micros, Source};
 
-/// Takes the events of a run.
+/// Receives the events of a run.
 pub trait Sink: Send + Sync + std::fmt::Debug {
-    /// Takes an event. Must not wait.
+    /// Receives an event. Must not block.
     fn emit(&self, event: Event);
 
-    /// About how many bytes of what a process told wait to be reported.
+    /// Approximately how many bytes of a source's events wait to be reported.
     fn backlog(&self, source: Source) -> usize {
         let _ = source;
         0
@@ -42,14 +42,14 @@ impl Events {
         self.start.elapsed()
     }
 
-    /// What tells this run's processes from those of others.
+    /// Returns the token that identifies the processes of this run.
     pub fn run_token(&self) -> &str {
         &self.token
     }
 
-    /// Reports something.
+    /// Emits an event.
     pub fn emit(&self, kind: EventKind) {
-        // The number, the time and the place in the queue are taken together.
+        // The lock keeps numbers, times and the order of the sink consistent.
         let mut next = self.next.lock().unwrap_or_else(PoisonError::into_inner);
         let event = Event { seq: *next, at: Micros::from(self.now()), kind };
         *next += 1;

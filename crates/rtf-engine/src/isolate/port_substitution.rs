@@ -1,5 +1,4 @@
-//! Puts what a suite was given into its plan: ports into its texts, variables
-//! into its environment.
+//! Substitutes the leased ports in the texts of a suite's plan, and adds its variables.
 
 use std::sync::Arc;
 
@@ -10,19 +9,19 @@ use rtf_plan::plan::{
 };
 use rtf_plan::suite::port_reference;
 
-/// Fills it in.
-pub fn fill(plan: &mut SuitePlan, given: Preparation) {
-    if let Preparation::Done(prepared) = &given {
-        // Where there is no port, a text may still have one that is escaped.
-        Filler(&prepared.ports).suite(plan);
-        let env = prefixed(prepared, &plan.env);
+/// Completes a plan.
+pub fn substitute(plan: &mut SuitePlan, preparation: Preparation) {
+    if let Preparation::Done(prepared) = &preparation {
+        // Even without ports, a text may contain an escaped reference.
+        Substitution(&prepared.ports).suite(plan);
+        let env = with_variables(prepared, &plan.env);
         plan.env = Arc::new(env);
     }
-    plan.preparation = given;
+    plan.preparation = preparation;
 }
 
-/// The suite's environment behind what it was given: what it sets itself counts.
-fn prefixed(prepared: &SuitePrepared, own: &[(String, String)]) -> Vec<(String, String)> {
+/// Puts the variables before the suite's environment, which overrides them.
+fn with_variables(prepared: &SuitePrepared, own: &[(String, String)]) -> Vec<(String, String)> {
     let ids = prepared.variables.iter().filter(|variable| !variable.inherited);
     let ids = ids.map(|variable| (variable.name.clone(), variable.value.clone()));
     let ports = prepared.ports.iter();
@@ -30,9 +29,9 @@ fn prefixed(prepared: &SuitePrepared, own: &[(String, String)]) -> Vec<(String, 
     ids.chain(ports).chain(own.iter().cloned()).collect()
 }
 
-struct Filler<'a>(&'a [SuitePort]);
+struct Substitution<'a>(&'a [SuitePort]);
 
-impl Filler<'_> {
+impl Substitution<'_> {
     fn text(&self, text: &mut String) {
         if port_reference::mentions(text) {
             let number = |name: &str| {
@@ -82,7 +81,7 @@ impl Filler<'_> {
     fn plugin(&self, plugin: &mut PluginPlan) {
         self.text(&mut plugin.param);
         self.texts(&mut plugin.args);
-        // What the suite sets of `PATH` and the like is in the host's, too.
+        // The host's environment repeats some variables of the suite, such as `PATH`.
         if plugin.host.env.iter().any(|(_, value)| port_reference::mentions(value)) {
             self.env(&mut Arc::make_mut(&mut plugin.host).env);
         }

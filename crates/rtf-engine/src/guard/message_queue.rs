@@ -1,5 +1,5 @@
-//! Notes on their way to the guard. A guard that does not read for a while (it
-//! was stopped, or the machine is busy) gets them later; the run never waits.
+//! Queues messages for a guard that does not read for a while, because it was stopped or
+//! the machine is busy. The run never waits.
 
 use std::collections::VecDeque;
 use std::io;
@@ -11,71 +11,75 @@ use rustix::event::{PollFd, PollFlags, poll};
 use rustix::io::Errno;
 use rustix::net::SendFlags;
 
-use super::note::Note;
+use super::message::GuardMessage;
 use rtf_process::descriptor_passing;
 
-/// How many bytes of notes may wait.
-const BYTES: usize = 4 << 20;
-/// How many descriptors may wait with them.
-const WAITING: usize = 48;
+/// The capacity of the queue in bytes.
+const MAX_BYTES: usize = 4 << 20;
+/// The capacity of the queue in descriptors.
+const MAX_DESCRIPTORS: usize = 48;
 
-/// How long to wait before trying again.
-const PAUSE: Duration = Duration::from_millis(1);
+/// The time between attempts to write.
+const RETRY_INTERVAL: Duration = Duration::from_millis(1);
 
-/// The runner's end of the line, and what has not been written yet.
+/// The runner's socket, and the lines that it has not written yet.
 #[derive(Debug)]
-pub struct Queue {
+pub struct MessageQueue {
     socket: UnixStream,
     lines: VecDeque<(Vec<u8>, Vec<OwnedFd>)>,
     bytes: usize,
     descriptors: usize,
-    /// Whether so much waited that the rest was thrown away.
-    pub missed: bool,
+    /// Whether messages were discarded because the queue was full.
+    pub has_lost_messages: bool,
 }
 
-impl Queue {
-    /// Nothing waits yet.
+impl MessageQueue {
+    /// Creates an empty queue.
     pub fn new(socket: UnixStream) -> Self {
-        Self { socket, lines: VecDeque::new(), bytes: 0, descriptors: 0, missed: false }
+        Self { socket, lines: VecDeque::new(), bytes: 0, descriptors: 0, has_lost_messages: false }
     }
 
-    /// Writes a note after those that wait, as far as there is room.
+    /// Writes a message after the queued ones, or queues it.
     ///
     /// # Errors
-    /// The guard is gone.
-    pub fn tell(&mut self, note: &Note, descriptors: &[BorrowedFd<'_>]) -> io::Result<()> {
+    /// The guard has ended.
+    pub fn send(
+        &mut self,
+        message: &GuardMessage,
+        descriptors: &[BorrowedFd<'_>],
+    ) -> io::Result<()> {
         self.flush()?;
-        if self.missed && !matches!(note, Note::RunEnds) {
+        if self.has_lost_messages && !matches!(message, GuardMessage::RunFinished) {
             return Ok(());
         }
-        let mut line = line_of(note)?;
-        let mut sent = false;
+        let mut line = line_of(message)?;
+        let mut is_partly_sent = false;
         if self.lines.is_empty() {
             match send(&self.socket, &line, descriptors)? {
                 Some(written) if written == line.len() => return Ok(()),
                 Some(written) => {
-                    sent = true;
+                    is_partly_sent = true;
                     line.drain(..written);
                 }
                 None => {}
             }
         }
-        let own: io::Result<Vec<_>> = match sent {
+        let own: io::Result<Vec<_>> = match is_partly_sent {
             true => Ok(Vec::new()),
             false => descriptors.iter().map(BorrowedFd::try_clone_to_owned).collect(),
         };
         match own {
             Ok(own) if self.has_room(line.len(), own.len()) => self.push(line, own),
-            _ if sent => self.push(line, Vec::new()),
-            _ => self.miss(note)?,
+            _ if is_partly_sent => self.push(line, Vec::new()),
+            _ => self.discard(message)?,
         }
         Ok(())
     }
 
-    /// Writes what waits, as far as there is room.
+    /// Writes the queued messages, as far as there is room.
     ///
     /// # Errors
-    /// The guard is gone.
+    /// The guard has ended.
     pub fn flush(&mut self) -> io::Result<()> {
         while let Some((line, descriptors)) = self.lines.front_mut() {
             let borrowed: Vec<_> = descriptors.iter().map(AsFd::as_fd).collect();
@@ -91,10 +95,10 @@ impl Queue {
         Ok(())
     }
 
-    /// Waits until everything is written.
+    /// Waits until all messages were written.
     ///
     /// # Errors
-    /// The guard is gone.
+    /// The guard has ended.
     pub fn finish(&mut self) -> io::Result<()> {
         while !self.lines.is_empty() {
             let mut fds = [PollFd::new(&self.socket, PollFlags::OUT)];
@@ -103,13 +107,15 @@ impl Queue {
                 Err(error) => return Err(error.into()),
             }
             // There may be room for bytes and none for descriptors.
-            std::thread::sleep(PAUSE);
+            std::thread::sleep(RETRY_INTERVAL);
         }
         Ok(())
     }
 
     fn has_room(&self, bytes: usize, descriptors: usize) -> bool {
-        self.missed || (self.bytes + bytes <= BYTES && self.descriptors + descriptors <= WAITING)
+        self.has_lost_messages
+            || (self.bytes + bytes <= MAX_BYTES
+                && self.descriptors + descriptors <= MAX_DESCRIPTORS)
     }
 
     fn push(&mut self, line: Vec<u8>, descriptors: Vec<OwnedFd>) {
@@ -118,20 +124,20 @@ impl Queue {
         self.lines.push_back((line, descriptors));
     }
 
-    /// From now on only the end of the run is written. What waits is kept: the
-    /// guard understands it, and may have half of the first line.
-    fn miss(&mut self, note: &Note) -> io::Result<()> {
-        self.missed = true;
-        self.push(line_of(&Note::Missed)?, Vec::new());
-        if matches!(note, Note::RunEnds) {
-            self.push(line_of(note)?, Vec::new());
+    /// Discards a message. From now on, only the end of the run is sent. The queued messages
+    /// remain valid, and the guard may have received a part of the first one.
+    fn discard(&mut self, message: &GuardMessage) -> io::Result<()> {
+        self.has_lost_messages = true;
+        self.push(line_of(&GuardMessage::MessagesLost)?, Vec::new());
+        if matches!(message, GuardMessage::RunFinished) {
+            self.push(line_of(message)?, Vec::new());
         }
         Ok(())
     }
 }
 
-fn line_of(note: &Note) -> io::Result<Vec<u8>> {
-    let mut line = serde_json::to_vec(note)?;
+fn line_of(message: &GuardMessage) -> io::Result<Vec<u8>> {
+    let mut line = serde_json::to_vec(message)?;
     line.push(b'\n');
     Ok(line)
 }
@@ -154,46 +160,49 @@ mod tests {
 
     use super::*;
 
-    fn begins(test: u32) -> Note {
-        Note::TestBegins { suite: SuiteId(0), test: TestId(test), name: "arm".to_owned() }
+    fn test_started(test: u32) -> GuardMessage {
+        GuardMessage::TestStarted { suite: SuiteId(0), test: TestId(test), name: "arm".to_owned() }
     }
 
-    fn read(socket: UnixStream) -> Vec<Note> {
+    fn read(socket: UnixStream) -> Vec<GuardMessage> {
         let lines = BufReader::new(socket).lines();
         lines.map(|line| serde_json::from_str(&line.unwrap()).unwrap()).collect()
     }
 
     #[test]
-    fn notes_wait_for_a_guard_that_does_not_read() {
+    fn messages_wait_for_a_guard_that_does_not_read() {
         let (ours, guards) = UnixStream::pair().unwrap();
-        let mut queue = Queue::new(ours);
-        let notes: Vec<Note> = (0..10_000).map(begins).collect();
-        for note in &notes {
-            queue.tell(note, &[]).unwrap();
+        let mut queue = MessageQueue::new(ours);
+        let messages: Vec<GuardMessage> = (0..10_000).map(test_started).collect();
+        for message in &messages {
+            queue.send(message, &[]).unwrap();
         }
-        assert!(!queue.missed && !queue.lines.is_empty(), "the socket holds less");
+        assert!(!queue.has_lost_messages && !queue.lines.is_empty(), "the socket holds less");
         let reader = std::thread::spawn(move || read(guards));
         queue.finish().unwrap();
         drop(queue);
-        assert_eq!(reader.join().unwrap(), notes);
+        assert_eq!(reader.join().unwrap(), messages);
     }
 
     #[test]
-    fn what_a_guard_missed_is_said_and_the_end_still_comes() {
+    fn lost_messages_are_reported_and_the_end_of_the_run_is_sent() {
         let (ours, guards) = UnixStream::pair().unwrap();
-        let mut queue = Queue::new(ours);
-        let mut told = 0;
-        while !queue.missed {
-            queue.tell(&begins(told), &[]).unwrap();
-            told += 1;
+        let mut queue = MessageQueue::new(ours);
+        let mut sent = 0;
+        while !queue.has_lost_messages {
+            queue.send(&test_started(sent), &[]).unwrap();
+            sent += 1;
         }
-        queue.tell(&begins(told), &[]).unwrap();
-        queue.tell(&Note::RunEnds, &[]).unwrap();
+        queue.send(&test_started(sent), &[]).unwrap();
+        queue.send(&GuardMessage::RunFinished, &[]).unwrap();
         let reader = std::thread::spawn(move || read(guards));
         queue.finish().unwrap();
         drop(queue);
-        let notes = reader.join().unwrap();
-        assert_eq!(notes.len(), told as usize + 1);
-        assert_eq!(notes[notes.len() - 2..], [Note::Missed, Note::RunEnds]);
+        let messages = reader.join().unwrap();
+        assert_eq!(messages.len(), sent as usize + 1);
+        assert_eq!(
+            messages[messages.len() - 2..],
+            [GuardMessage::MessagesLost, GuardMessage::RunFinished]
+        );
     }
 }

@@ -1,36 +1,35 @@
-//! What a run left whose runner and guard were killed together.
+//! Stops the processes of a run whose runner and guard were killed.
 //!
-//! Nobody stops its drivers then, and nobody parks the robot. Its lock is free,
-//! since the kernel takes it from the dead. Whoever gets the lock next finds in its
-//! file who did not give it back, and stops what that one left, which is known by
-//! its scope. So no process of a living run is touched: it would have the lock.
+//! Its drivers still run, and its hooks did not. The kernel has released its lock, but the
+//! lock's file names the owner. The next run with the lock stops the processes of the owner's
+//! scope. A live run is never affected, because it would hold the lock.
 
 use std::time::Duration;
 
 use rtf_model::{Diagnostic, EventKind};
 use tokio::time::Instant;
 
-use super::Owner;
-use crate::run::Events;
+use super::LockOwner;
+use crate::events::Events;
 use rtf_process::tree;
 
-/// How long they may take to end when they are asked to.
-const GRACE: Duration = Duration::from_secs(5);
-/// How long they may take when they are killed.
+/// The time between SIGTERM and the kill.
+const TERM_GRACE: Duration = Duration::from_secs(5);
+/// How long killed processes may take to end.
 const KILL_LIMIT: Duration = Duration::from_secs(5);
-/// How often is looked whether they have ended.
-const EVERY: Duration = Duration::from_millis(20);
+/// The polling interval.
+const POLL_INTERVAL: Duration = Duration::from_millis(20);
 const SIGTERM: i32 = 15;
 const SIGKILL: i32 = 9;
 
-/// Stops what an owner left that was killed with its guard, and says so.
-pub async fn stop(owner: &Owner, events: &Events) {
+/// Stops the processes of an owner that was killed with its guard, and emits a warning.
+pub async fn stop_processes(owner: &LockOwner, events: &Events) {
     let mut diagnostic = Diagnostic::warning(
         "run-abandoned",
         format!("the runner and the guard of {owner} were killed: its hooks did not run"),
     );
     let mut known = Vec::new();
-    for (signal, limit) in [(SIGTERM, GRACE), (SIGKILL, KILL_LIMIT)] {
+    for (signal, limit) in [(SIGTERM, TERM_GRACE), (SIGKILL, KILL_LIMIT)] {
         let end = Instant::now() + limit;
         let mut signalled = Vec::new();
         loop {
@@ -38,12 +37,12 @@ pub async fn stop(owner: &Owner, events: &Events) {
             let new: Vec<_> = alive.iter().filter(|left| !signalled.contains(&left.pid)).collect();
             new.iter().for_each(|left| rtf_process::signal_process(left.pid, signal));
             signalled.extend(new.into_iter().map(|left| left.pid));
-            let over = alive.is_empty() || Instant::now() >= end;
+            let is_finished = alive.is_empty() || Instant::now() >= end;
             tree::add_new(&mut known, alive);
-            if over {
+            if is_finished {
                 break;
             }
-            tokio::time::sleep(EVERY).await;
+            tokio::time::sleep(POLL_INTERVAL).await;
         }
     }
     for left in known {

@@ -1,0 +1,51 @@
+//! Requests to a running run: from signals, and from users of the page.
+
+use std::time::Duration;
+
+use rtf_model::{SuiteId, TestId};
+use tokio::sync::watch;
+
+/// How quickly a suite must end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum StopLevel {
+    /// Stop the test, tear down.
+    TearDown,
+    /// Kill everything now, without tear-down; hooks run.
+    Kill,
+    /// Kill the hooks, too.
+    KillHooks,
+}
+
+/// A request to end the run early.
+#[derive(Clone, Debug)]
+pub struct Stop {
+    /// How quickly.
+    pub level: StopLevel,
+    /// The reason, for users: `SIGINT`.
+    pub reason: String,
+    /// The limit for the end, tear-downs and hooks included; then the run continues as with
+    /// [`StopLevel::Kill`].
+    pub limit: Duration,
+}
+
+/// A request that concerns one test or suite.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Control {
+    /// Stop a running test, and skip its remaining repetitions.
+    StopTest {
+        /// The test.
+        test: TestId,
+        /// The user who requested it.
+        by: String,
+    },
+    /// Stop a suite's running tests, and skip the rest of the suite.
+    SkipSuite {
+        /// The suite.
+        suite: SuiteId,
+        /// The user who requested it.
+        by: String,
+    },
+}
+
+/// All requests of a run, the oldest first.
+pub type Controls = watch::Receiver<Vec<Control>>;

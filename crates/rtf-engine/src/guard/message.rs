@@ -1,0 +1,180 @@
+//! The messages of the runner to its guard, one JSON object per line. Descriptors travel
+//! with the line that announces them.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use rtf_model::protocol::{ENVIRONMENT_VARIABLE, OWNER_VARIABLE, Plugin};
+use rtf_model::{EventKind, HookId, SuiteId, TestId, Trigger};
+use rtf_process::task::ProcessStream;
+use serde::{Deserialize, Serialize};
+
+use crate::hook::request;
+use rtf_plan::plan::{HookBody, HookPlan, SuitePlan};
+
+/// A fact that the guard needs if the runner dies.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "message", rename_all = "kebab-case")]
+pub enum GuardMessage {
+    /// The run starts.
+    RunStarted {
+        /// Its journal, absolute.
+        journal: PathBuf,
+        /// Its directory for temporary files.
+        scratch_dir: PathBuf,
+        /// The start of its clock, as the time since the fork.
+        started: Duration,
+    },
+    /// The run has finished: nothing needs recovery.
+    RunFinished,
+    /// The guard did not read for so long that messages were lost. Only
+    /// [`GuardMessage::RunFinished`] follows.
+    MessagesLost,
+    /// Exclusive resources of a suite: the descriptors of its namespaces, or of some of its
+    /// locks and leases, come with this line.
+    SuiteResources {
+        /// The suite.
+        suite: SuiteId,
+        /// The number of descriptors.
+        descriptors: usize,
+        /// The process that holds the namespaces, if the descriptors are theirs.
+        holder: Option<i32>,
+    },
+    /// A suite starts.
+    SuiteStarted {
+        /// The suite.
+        suite: SuiteId,
+        /// Its hooks, in their order.
+        hooks: Vec<HookSpec>,
+    },
+    /// A suite has finished; its hooks will not run.
+    SuiteFinished {
+        /// The suite.
+        suite: SuiteId,
+    },
+    /// A test starts: all hooks of its suite become due.
+    TestStarted {
+        /// Its suite.
+        suite: SuiteId,
+        /// The test.
+        test: TestId,
+        /// Its name.
+        name: String,
+    },
+    /// A test has finished.
+    TestFinished {
+        /// Its suite.
+        suite: SuiteId,
+        /// The test.
+        test: TestId,
+    },
+    /// A hook is about to start.
+    HookStarting(HookStart),
+    /// The hook's process was started, and waits for its request.
+    HookStarted {
+        /// The hook.
+        hook: HookId,
+        /// Its process.
+        pid: i32,
+        /// The streams whose descriptors come with this line, in this order.
+        streams: Vec<ProcessStream>,
+    },
+    /// The hook has finished.
+    HookFinished {
+        /// The hook.
+        hook: HookId,
+        /// Why the robot may not be in a safe state.
+        problem: Option<String>,
+    },
+    /// A fixture's process was started. It must remain alive while hooks run.
+    FixtureStarted {
+        /// Its process.
+        pid: i32,
+        /// The streams whose descriptors come with this line, in this order.
+        streams: Vec<ProcessStream>,
+    },
+    /// A fixture's process has ended.
+    FixtureEnded {
+        /// Its process.
+        pid: i32,
+    },
+}
+
+/// The start of a hook.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct HookStart {
+    /// The hook.
+    pub hook: HookId,
+    /// The scope of its process.
+    pub scope: String,
+    /// The trigger.
+    pub trigger: Trigger,
+    /// The reason, for users.
+    pub reason: String,
+    /// The test that triggered it.
+    pub test: Option<TestId>,
+}
+
+impl HookStart {
+    /// Returns its `hook-started`.
+    #[must_use]
+    pub fn event(&self) -> EventKind {
+        EventKind::HookStarted {
+            hook: self.hook,
+            trigger: self.trigger,
+            reason: self.reason.clone(),
+            test: self.test,
+        }
+    }
+}
+
+/// A hook as the guard runs it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct HookSpec {
+    /// Its id.
+    pub id: HookId,
+    /// Its suite.
+    pub suite: SuiteId,
+    /// Its name.
+    pub name: String,
+    /// Whether it runs after the runner's death. Other hooks may only finish.
+    pub is_abort_hook: bool,
+    /// The program and its arguments.
+    pub command: Vec<String>,
+    /// Environment variables in addition to the runner's.
+    pub env: Vec<(String, String)>,
+    /// The working directory.
+    pub working_dir: PathBuf,
+    /// Its time limit.
+    pub limit: Duration,
+    /// The request to its host, for a plug-in.
+    pub plugin: Option<Plugin>,
+}
+
+impl HookSpec {
+    /// Converts a planned hook.
+    #[must_use]
+    pub fn new(suite: &SuitePlan, plan: &HookPlan) -> Self {
+        let mut env = vec![(ENVIRONMENT_VARIABLE.to_owned(), suite.environment.clone())];
+        env.extend(suite.env.iter().chain(&plan.env).cloned());
+        env.push((OWNER_VARIABLE.to_owned(), format!("hook {}/{}", suite.name, plan.name)));
+        let (command, plugin) = match &plan.body {
+            HookBody::Command(command) => (command.clone(), None),
+            HookBody::Plugin(plugin) => {
+                env.extend_from_slice(&plugin.host.env);
+                (plugin.host.command.clone(), Some(request(suite, plan, plugin)))
+            }
+        };
+        Self {
+            id: plan.id,
+            suite: suite.id,
+            name: plan.name.clone(),
+            is_abort_hook: plan.on.iter().any(|on| matches!(on, Trigger::Interrupt | Trigger::End)),
+            command,
+            env,
+            working_dir: suite.folder.clone(),
+            limit: plan.timeout,
+            plugin,
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! The parts of a hook's run that the state machine and the guard share: its request, its
+//! environment variables and its judgement.
+
+use std::time::Duration;
+
+use rtf_model::protocol::{Answer, Notification, Plugin, Reply};
+use rtf_model::{ExitStatus, MessageKind, Outcome, Trigger};
+use rtf_plan::plan::{HookPlan, PluginPlan, SuitePlan};
+use serde_json::Value;
+
+/// The id of `run-test` on a hook's channel.
+pub const RUN_REQUEST: u64 = 2;
+/// The problem of a hook that runs at the third request to end the run.
+pub const HOOK_KILLED: &str = "it was killed by the third request to end the run";
+/// The problem of a triggered hook that was not started.
+pub const HOOK_NOT_RUN: &str = "it did not run: the end of the run was requested three times";
+
+/// Returns the parameters of `run-test` for a hook's plug-in.
+#[must_use]
+pub fn request(suite: &SuitePlan, hook: &HookPlan, plugin: &PluginPlan) -> Plugin {
+    Plugin {
+        file: plugin.file.to_string_lossy().into_owned(),
+        name: hook.name.clone(),
+        param: plugin.param.clone(),
+        args: plugin.args.clone(),
+        environment: suite.environment.clone(),
+        repetition: 1,
+        is_last: true,
+        end_marker: None,
+        attachments_dir: None,
+    }
+}
+
+/// Returns the variables that describe what triggered a hook.
+#[must_use]
+pub fn trigger_variables(
+    trigger: Trigger,
+    reason: &str,
+    test: Option<&str>,
+) -> [(String, String); 3] {
+    [
+        ("RTF_HOOK_TRIGGER", trigger.as_str()),
+        ("RTF_HOOK_REASON", reason),
+        ("RTF_HOOK_TEST", test.unwrap_or_default()),
+    ]
+    .map(|(name, value)| (name.to_owned(), value.to_owned()))
+}
+
+/// Judges one run of a hook. The first problem decides.
+#[derive(Debug)]
+pub struct HookJudgement {
+    is_plugin: bool,
+    /// Whether the guard adopted the process from a dead runner, which may have read some of
+    /// its messages.
+    is_adopted: bool,
+    limit: Duration,
+    answer: Option<Answer>,
+    problem: Option<String>,
+}
+
+impl HookJudgement {
+    /// Starts the judgement of a hook with this limit.
+    #[must_use]
+    pub fn new(is_plugin: bool, limit: Duration) -> Self {
+        Self { is_plugin, is_adopted: false, limit, answer: None, problem: None }
+    }
+
+    /// Starts the judgement of a hook whose runner died.
+    #[must_use]
+    pub fn adopted(is_plugin: bool, limit: Duration) -> Self {
+        Self { is_adopted: true, ..Self::new(is_plugin, limit) }
+    }
+
+    /// Records a problem.
+    pub fn fail(&mut self, problem: impl Into<String>) {
+        self.problem.get_or_insert(problem.into());
+    }
+
+    /// Takes a notification of its host into account.
+    pub fn notified(&mut self, notification: &Notification) {
+        let problem = match notification {
+            Notification::Message(message) => {
+                let is_problem = matches!(message.kind, MessageKind::Failure | MessageKind::Error);
+                is_problem.then(|| message.text.clone())
+            }
+            Notification::Measured(measurement) => measurement.problem(),
+            Notification::Sampled(samples) => samples.problem(),
+            _ => None,
+        };
+        problem.into_iter().for_each(|problem| self.fail(problem));
+    }
+
+    /// Takes the reply to [`RUN_REQUEST`] into account.
+    pub fn replied(&mut self, reply: Reply<Value>) {
+        match reply {
+            Reply::Result(value) => match serde_json::from_value(value) {
+                Ok(answer) => self.answer = Some(answer),
+                Err(error) => self.fail(format!("its host broke the protocol: {error}")),
+            },
+            Reply::Error(error) => self.fail(format!("its host refused: {}", error.message)),
+        }
+    }
+
+    /// Takes an invalid message into account.
+    pub fn protocol_violated(&mut self, what: &str) {
+        // The runner may have read the beginning of the line.
+        if !self.is_adopted {
+            self.fail(format!("its host broke the protocol: {what}"));
+        }
+    }
+
+    /// The limit has passed.
+    pub fn limit_passed(&mut self) {
+        self.fail(format!("it did not end within {:?}", self.limit));
+    }
+
+    /// The runner gives the process up, because it was killed and does not end.
+    pub fn give_up(&mut self) {
+        let what = "its process was killed and did not end";
+        self.problem = Some(format!("it did not end within {:?}; {what}", self.limit));
+    }
+
+    /// Returns the problem of the run, if any: the robot may not be in a safe state. `exit`
+    /// is `None` if the process did not start or did not end.
+    #[must_use]
+    pub fn finish(mut self, exit: Option<ExitStatus>) -> Option<String> {
+        let problem = match (&mut self.answer, exit) {
+            (Some(answer), _) if answer.outcome != Outcome::Passed => {
+                Some(answer.reason.take().unwrap_or_else(|| "it says that it failed".to_owned()))
+            }
+            (None, Some(ExitStatus::Code(0))) if self.is_plugin && self.is_adopted => {
+                Some("it ended, but what it answered was lost with the runner".to_owned())
+            }
+            (None, Some(status)) if self.is_plugin => {
+                Some(format!("it ended with {status} before it was over"))
+            }
+            (_, Some(ExitStatus::Code(0)) | None) => None,
+            (_, Some(status)) => Some(format!("it ended with {status}")),
+        };
+        self.problem.or(problem)
+    }
+}
