@@ -8,6 +8,8 @@ use rtf_model::{ExitStatus, MessageKind, Outcome, Trigger};
 use rtf_plan::plan::{HookPlan, PluginPlan, SuitePlan};
 use serde_json::Value;
 
+use crate::plugin_request;
+
 /// The id of `run-test` on a hook's channel.
 pub const RUN_REQUEST: u64 = 2;
 /// The problem of a hook that runs at the third request to end the run.
@@ -18,17 +20,7 @@ pub const HOOK_NOT_RUN: &str = "it did not run: the end of the run was requested
 /// Returns the parameters of `run-test` for a hook's plug-in.
 #[must_use]
 pub fn request(suite: &SuitePlan, hook: &HookPlan, plugin: &PluginPlan) -> Plugin {
-    Plugin {
-        file: plugin.file.to_string_lossy().into_owned(),
-        name: hook.name.clone(),
-        param: plugin.param.clone(),
-        args: plugin.args.clone(),
-        environment: suite.environment.clone(),
-        repetition: 1,
-        is_last: true,
-        end_marker: None,
-        attachments_dir: None,
-    }
+    Plugin { is_last: true, ..plugin_request::plugin(suite, &hook.name, plugin, 1) }
 }
 
 /// Returns the variables that describe what triggered a hook.
@@ -95,7 +87,10 @@ impl HookJudgement {
         match reply {
             Reply::Result(value) => match serde_json::from_value(value) {
                 Ok(answer) => self.answer = Some(answer),
-                Err(error) => self.fail(format!("its host broke the protocol: {error}")),
+                Err(error) => {
+                    let what = format!("an answer is not understood: {error}");
+                    self.fail(format!("its host broke the protocol: {what}"));
+                }
             },
             Reply::Error(error) => self.fail(format!("its host refused: {}", error.message)),
         }
@@ -123,7 +118,7 @@ impl HookJudgement {
     /// Returns the problem of the run, if any: the robot may not be in a safe state. `exit`
     /// is `None` if the process did not start or did not end.
     #[must_use]
-    pub fn finish(mut self, exit: Option<ExitStatus>) -> Option<String> {
+    pub fn finish(&mut self, exit: Option<ExitStatus>) -> Option<String> {
         let problem = match (&mut self.answer, exit) {
             (Some(answer), _) if answer.outcome != Outcome::Passed => {
                 Some(answer.reason.take().unwrap_or_else(|| "it says that it failed".to_owned()))
@@ -137,6 +132,6 @@ impl HookJudgement {
             (_, Some(ExitStatus::Code(0)) | None) => None,
             (_, Some(status)) => Some(format!("it ended with {status}")),
         };
-        self.problem.or(problem)
+        self.problem.take().or(problem)
     }
 }

@@ -11,6 +11,7 @@ pub mod guard;
 mod hook;
 pub mod isolate;
 pub mod locks;
+mod plugin_request;
 pub mod run;
 pub mod signal;
 pub mod verify;

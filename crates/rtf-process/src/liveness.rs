@@ -178,8 +178,8 @@ mod tests {
         Command::new("sleep").arg("1000").spawn().unwrap()
     }
 
-    /// Never alive again, in whichever instant it is looked at: also between taking the
-    /// signal and ending, with a memory image and without, asleep and at work.
+    /// Checks all moments between the signal and the end, with a memory image and without,
+    /// for a sleeping and for a running process.
     #[test]
     fn a_process_is_not_alive_from_its_deadly_signal_on_until_it_is_reaped() {
         for command in ["ulimit -c 0; exec sleep 1000", "ulimit -c 0; while :; do :; done"] {

@@ -1,22 +1,22 @@
 #!/bin/sh
-# What runs on the other machine: SIGNAL GRACE COMMAND…
+# Runs a command on the remote machine: SIGNAL GRACE COMMAND…
 #
 # sshd made this shell the leader of a session and group, in which the command
-# is started. Standard input is the life line: after a greeting, each line is a
-# signal for the group. Its end means that nobody is there any more: the command
-# is asked to stop by SIGNAL, and GRACE seconds later everything is killed.
+# runs. Standard input is the channel of the runner: after a greeting, each line
+# is a signal for the group. At its end the runner is gone: the script sends
+# SIGNAL, and kills everything GRACE seconds later.
 
 stop=$1 grace=$2 mark=RTF_REMOTE=$$.$(date +%s)
 shift 2
 kill -s 0 -- "-$$" || exit 254
 exec 3<&0 </dev/null
 
-# Kills all that the command started, also what left the group.
+# Kills everything that the command started, including processes that left the group.
 sweep() {
   rounds=5
   while [ "$rounds" -gt 0 ]; do
     rounds=$((rounds - 1))
-    # It complains about those that end meanwhile.
+    # grep complains about processes that have ended.
     found=$(grep -l -s -F -e "$mark" /proc/[0-9]*/environ)
     [ -n "$found" ] || return
     for file in $found; do
@@ -43,11 +43,11 @@ sweep() {
   kill -s KILL -- "-$$"
 ) &
 
-# They are for the command; the trap keeps this shell alive to tell its end.
+# Signals are for the command; this shell remains to report its exit code.
 trap : HUP INT QUIT PIPE ALRM TERM USR1 USR2
 env "$mark" "$@" 3<&-
 code=$?
 sweep
-# ssh itself ends with 255 when the connection is lost.
+# ssh exits with 255 when the connection is lost.
 [ "$code" -ne 255 ] || code=254
 exit "$code"

@@ -34,7 +34,7 @@ impl StopRequests {
         self.count
     }
 
-    /// Lowers the number to `limit`: the runner did not act upon the others.
+    /// Lowers the number to `limit`: the runner did not handle the others.
     pub fn lower(&mut self, limit: u32) {
         self.count = self.count.min(limit);
     }

@@ -24,7 +24,7 @@ const KILL_LIMIT: Duration = Duration::from_secs(5);
 const SILENT: Duration = Duration::from_secs(3);
 /// The shortest time after which a silent runner is killed: a machine may be very busy.
 pub const MIN_PATIENCE: Duration = Duration::from_secs(5);
-/// A silent runner has acted upon at most this many requests: its hooks are run.
+/// A silent runner has handled at most this many requests: its hooks are run.
 const MAX_HANDLED_REQUESTS: u32 = 2;
 
 /// The guard.
@@ -144,7 +144,7 @@ impl Guard {
         let silence = self.heartbeat.silence();
         let late = self.kill_at.is_some_and(|at| at <= Instant::now());
         let why = if silence >= self.patience || (late && silence >= SILENT) {
-            // The runner did not act upon the last requests: its hooks did not run.
+            // The runner did not handle the last requests: its hooks did not run.
             self.signals.requests.lower(MAX_HANDLED_REQUESTS);
             let state = if tree::is_stopped(self.runner) { "it was stopped, and" } else { "it" };
             format!("{state} did not answer for {} s: the guard killed it", silence.as_secs())
@@ -179,7 +179,7 @@ impl Guard {
             libc::SIGCHLD | libc::SIGTSTP => {}
             _ => {
                 signal_process(self.runner, signal);
-                // A stopped runner must act upon it.
+                // A stopped runner must handle it.
                 signal_process(self.runner, libc::SIGCONT);
             }
         }

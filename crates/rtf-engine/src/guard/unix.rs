@@ -33,8 +33,8 @@ pub fn fork() -> io::Result<Option<i32>> {
     if std::fs::read_dir("/proc/self/task").map_err(unreadable_proc)?.count() != 1 {
         return Err(io::Error::other("the process has threads already"));
     }
-    // SAFETY: this is the only thread, so no lock is held by another one, and
-    // the child may do whatever the parent may.
+    // SAFETY: this is the only thread, so no other thread holds a lock, and the child may
+    // do all that the parent may.
     match unsafe { libc::fork() } {
         -1 => Err(io::Error::last_os_error()),
         0 => Ok(None),

@@ -99,21 +99,21 @@ fn a_torn_line_is_cut_off_and_the_numbers_go_on() {
 }
 
 #[test]
-fn what_the_runner_could_not_write_any_more_is_made_up_for() {
-    // The hook began, but its journal does not know that the suite did.
+fn events_that_the_runner_did_not_write_are_appended() {
+    // The hook started, but the journal lacks the start of the suite.
     let journal = closed(&beginning(3), Vec::new(), vec![started(), finished(), died()]);
     let expected = ["suite-started", "hook-started", "hook-finished", "runner-died"];
     assert_eq!(types(&journal)[3..], expected);
     // It was started before the runner died, and ended after.
     let journal = closed(&beginning(5), Vec::new(), vec![started(), finished(), died()]);
     assert_eq!(types(&journal)[5..], ["hook-finished", "runner-died"]);
-    // The plan is not there: it can only be told.
+    // The journal lacks the plan of the hook: only a warning is possible.
     let journal = closed(&beginning(2), Vec::new(), vec![started(), finished(), died()]);
     assert_eq!(types(&journal)[2..], ["warning", "runner-died"]);
 }
 
 #[test]
-fn the_end_of_a_hook_is_written_unless_it_is_there() {
+fn the_end_of_a_hook_is_appended_unless_the_journal_has_it() {
     for (there, missing) in [(4, 2), (5, 1), (6, 0)] {
         let journal = closed(&beginning(there), end_of_first_run(), vec![died()]);
         let expected = ["hook-started", "hook-finished", "runner-died"];
@@ -122,10 +122,11 @@ fn the_end_of_a_hook_is_written_unless_it_is_there() {
 }
 
 #[test]
-fn a_run_that_is_over_or_has_not_begun_has_nothing_to_close() {
-    let over = Event { seq: 1, at: Micros(1), kind: EventKind::RunFinished { interrupted: None } };
-    let over = beginning(1) + &serde_json::to_string(&over).unwrap() + "\n";
-    for text in [over.as_str(), "", "{\"seq\":0,"] {
+fn the_journal_of_a_finished_or_unstarted_run_is_unchanged() {
+    let finished =
+        Event { seq: 1, at: Micros(1), kind: EventKind::RunFinished { interrupted: None } };
+    let finished = beginning(1) + &serde_json::to_string(&finished).unwrap() + "\n";
+    for text in [finished.as_str(), "", "{\"seq\":0,"] {
         assert_eq!(closed(text, Vec::new(), vec![died()]), text);
     }
 }

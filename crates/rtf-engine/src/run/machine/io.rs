@@ -7,7 +7,7 @@ use std::time::Duration;
 use rtf_model::protocol::{OWNER_VARIABLE, Plugin, Request, StackSupport};
 use rtf_model::{EventKind, Source, TestId};
 
-use rtf_plan::plan::{AttachedPlan, HostPlan, PluginPlan, ProcessPlan, SuitePlan};
+use rtf_plan::plan::{AttachedPlan, HostPlan, ProcessPlan, SuitePlan};
 
 pub use crate::control::{Stop, StopLevel};
 pub use rtf_process::probe::ProbeSelection as Probes;
@@ -97,21 +97,6 @@ pub(super) fn environment(
 ) -> Vec<(String, String)> {
     let owner = (OWNER_VARIABLE.to_owned(), format!("{kind} {}/{name}", suite.name));
     suite.env.iter().chain(own).cloned().chain([owner]).collect()
-}
-
-/// A plug-in as its host needs it.
-pub(super) fn plugin(suite: &SuitePlan, name: &str, plan: &PluginPlan, repetition: u32) -> Plugin {
-    Plugin {
-        file: plan.file.to_string_lossy().into_owned(),
-        name: name.to_owned(),
-        param: plan.param.clone(),
-        args: plan.args.clone(),
-        environment: suite.environment.clone(),
-        repetition,
-        is_last: false,
-        end_marker: None,
-        attachments_dir: None,
-    }
 }
 
 /// A program to start.

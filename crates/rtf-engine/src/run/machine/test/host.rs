@@ -4,8 +4,9 @@ use rtf_model::Source;
 use rtf_model::protocol::{Plugin, Request};
 
 use super::{AttemptState, TestRun};
+use crate::plugin_request::plugin;
 use crate::run::machine::context::Context;
-use crate::run::machine::io::{Effect, HostId, Program, Start, environment, plugin};
+use crate::run::machine::io::{Effect, HostId, Program, Start, environment};
 use rtf_plan::plan::{SuitePlan, TestPlan};
 
 /// The number of the first `run-test` on a host's channel.

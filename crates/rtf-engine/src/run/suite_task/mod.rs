@@ -1,10 +1,11 @@
 //! The task around a suite's state machine: feeds it with inputs, and carries out its effects.
 
+mod processes;
+
 use std::collections::{HashMap, HashSet};
 use std::time::Duration;
 
-use rtf_model::protocol::{ENVIRONMENT_VARIABLE, RUN_DIR_VARIABLE};
-use rtf_model::{EventKind, ExitStatus, Source, TestId};
+use rtf_model::{EventKind, ExitStatus, Source};
 use tokio::sync::{mpsc, watch};
 use tokio::time::Instant;
 
@@ -13,22 +14,15 @@ use super::context::{RunContext, attachments_dir};
 use super::control_queue::ControlQueue;
 use super::deadlines::Deadlines;
 use super::fail_limit::FailLimit;
-use super::machine::{Effect, HostId, HostInput, Input, Program, Start, Stop, SuiteMachine};
-use super::probes;
+use super::machine::{Effect, HostId, HostInput, Input, Stop, SuiteMachine};
 use crate::control::Controls;
 use crate::events::Events;
 use crate::guard::HookStart;
 use crate::isolate::PreparedSuite;
-use rtf_plan::plan::{Leaks, ProcessPlan, SuitePlan, TestPlan};
+use rtf_plan::plan::SuitePlan;
 use rtf_process::launch::Launch;
 use rtf_process::network::Network;
-use rtf_process::spawn_request::{ProcessRole, SpawnRequest, Streams};
-use rtf_process::spawner::Spawner;
-use rtf_process::ssh::{self, RemoteCommand};
-use rtf_process::start_gate;
-use rtf_process::task::{
-    Assignment, AttachedJob, EventSender, ProcessCommand, ProcessJob, run_process, watch_attached,
-};
+use rtf_process::task::{Assignment, EventSender, ProcessCommand};
 
 /// The capacity of the event queue; the tasks of processes wait if it is full.
 const QUEUE_CAPACITY: usize = 1024;
@@ -86,14 +80,6 @@ pub async fn run_suite(
 
 /// The source of a process, and the queue of commands of its task.
 type ProcessHandle = (Source, mpsc::UnboundedSender<ProcessCommand>);
-
-fn role_of(source: Source) -> ProcessRole {
-    match source {
-        Source::Test(_) => ProcessRole::Test,
-        Source::Fixture(_) => ProcessRole::Fixture,
-        Source::Hook(_) => ProcessRole::Hook,
-    }
-}
 
 struct SuiteTask<'a> {
     plan: &'a SuitePlan,
@@ -314,143 +300,5 @@ impl SuiteTask<'_> {
         if commands.is_none_or(|(_, commands)| commands.send(ProcessCommand::KillTree).is_err()) {
             self.substitutes.push((host, HostInput::Exited(UNKNOWN_STATUS, Vec::new())));
         }
-    }
-
-    fn spawn(&mut self, host: HostId, source: Source, start: Start) {
-        let (mut process, mut attached) = (None, None);
-        match &start.what {
-            Program::Host(_) | Program::Command(_) => {}
-            Program::Process(plan) => process = Some(plan.clone()),
-            Program::Attached(plan) => attached = Some(plan.clone()),
-        }
-        let request = self.request(start, role_of(source));
-        let (commands, queue) = mpsc::unbounded_channel();
-        self.commands.insert(host, (source, commands));
-        let launch = match self.prelaunched.iter().position(|launch| launch.request == request) {
-            Some(index) => self.prelaunched.remove(index),
-            None => self.launch(request),
-        };
-        if let Some(plan) = attached {
-            let probes = probes::convert(&plan.ready, &plan.alive, self.network.clone());
-            let (job, spawner) = (AttachedJob { host, probes, launch }, self.spawner().clone());
-            let watch = watch_attached(job, spawner, queue, self.inputs.clone());
-            return drop(tokio::spawn(watch));
-        }
-        if let Some(start) = self.triggered.take_if(|_| matches!(source, Source::Hook(_))) {
-            self.context.guard.hook_starting(HookStart { scope: launch.scope.clone(), ..start });
-        }
-        let job = ProcessJob {
-            host,
-            owner: self.context.process_owner(source),
-            launch,
-            attachments_dir: attachments_dir(source, host),
-            is_grouped: self.is_grouped(source),
-            is_measured: self.is_measured(source, process.as_deref()),
-            probes: process.map(|process| {
-                probes::convert(&process.ready, &process.alive, self.network.clone())
-            }),
-        };
-        let tasks = self.context.tasks.clone();
-        tokio::spawn(run_process(job, tasks, queue, self.inputs.clone()));
-    }
-
-    fn test(&self, test: TestId) -> Option<&TestPlan> {
-        let first = self.plan.tests.first()?.id.index();
-        self.plan.tests.get(test.index() - first)
-    }
-
-    /// Joining a control group may take longer than a short test: only long-lived processes, and
-    /// tests whose leaks are failures, get one.
-    fn is_grouped(&self, source: Source) -> bool {
-        match source {
-            Source::Test(test) => self.test(test).is_some_and(|plan| plan.leaks == Leaks::Fail),
-            Source::Fixture(_) | Source::Hook(_) => true,
-        }
-    }
-
-    /// Only fixtures on this machine and shared hosts may grow while tests are repeated.
-    fn is_measured(&self, source: Source, process: Option<&ProcessPlan>) -> bool {
-        let outlives_test = match source {
-            Source::Fixture(_) => process.is_none_or(|process| process.remote.is_none()),
-            Source::Test(test) => self.test(test).is_some_and(|plan| plan.shared),
-            Source::Hook(_) => false,
-        };
-        self.is_repeated && outlives_test
-    }
-
-    fn spawn_ahead(&mut self, starts: Vec<Start>) {
-        let mut before = std::mem::take(&mut self.prelaunched);
-        for start in starts {
-            let request = self.request(start, ProcessRole::Test);
-            let launch = match before.iter().position(|launch| launch.request == request) {
-                Some(index) => before.remove(index),
-                None => {
-                    let mut launch = self.launch(request);
-                    launch.start_ahead(self.spawner());
-                    launch
-                }
-            };
-            self.prelaunched.push(launch);
-        }
-        for unneeded in before {
-            tokio::spawn(unneeded.discard());
-        }
-    }
-
-    /// Converts the start of a process. Only hosts of tests may be forked.
-    fn request(&self, start: Start, role: ProcessRole) -> SpawnRequest {
-        let mut can_fork = false;
-        let run_dir = self.context.tasks.run_dir.to_string_lossy().into_owned();
-        let mut env = vec![
-            (ENVIRONMENT_VARIABLE.to_owned(), self.plan.environment.clone()),
-            (RUN_DIR_VARIABLE.to_owned(), run_dir),
-        ];
-        env.extend(start.env);
-        if !matches!(&start.what, Program::Process(plan) if plan.remote.is_some()) {
-            env.extend(self.clock.variables(role));
-        }
-        let (command, channel) = match start.what {
-            Program::Host(plan) => {
-                // Last: it contains the suite's variables.
-                env.extend_from_slice(&plan.env);
-                can_fork = plan.forks && role == ProcessRole::Test;
-                (plan.command.clone(), Some(Vec::new()))
-            }
-            Program::Process(plan) => match &plan.remote {
-                None => (plan.command.clone(), None),
-                Some(remote) => {
-                    let remote = RemoteCommand {
-                        host: &remote.host,
-                        ssh: &remote.ssh,
-                        command: &plan.command,
-                        stop_signal: plan.stop_signal,
-                        stop_grace: plan.stop_grace,
-                    };
-                    (ssh::command(remote, &env), Some(Vec::new()))
-                }
-            },
-            Program::Attached(_) => (Vec::new(), None),
-            Program::Command(command) => (start_gate::behind(&command), Some(Vec::new())),
-        };
-        SpawnRequest {
-            command,
-            env,
-            working_dir: Some(start.folder),
-            channel,
-            streams: Streams::Both,
-            can_fork,
-            namespaces: self.network.as_ref().map(|network| network.namespaces().clone()),
-            role: Some(role),
-        }
-    }
-
-    fn launch(&mut self, request: SpawnRequest) -> Launch {
-        self.scopes += 1;
-        let scope = format!("{}.{}.{}", self.events.run_token(), self.plan.id, self.scopes);
-        Launch::new(request, scope, &self.context.scratch_dir)
-    }
-
-    fn spawner(&self) -> &Spawner {
-        &self.context.tasks.spawner
     }
 }
