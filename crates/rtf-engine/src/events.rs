@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use rtf_model::{Event, EventKind, Micros, Source};
 
 /// Receives the events of a run.
-pub trait Sink: Send + Sync + std::fmt::Debug {
+pub trait EventSink: Send + Sync + std::fmt::Debug {
     /// Receives an event. Must not block.
     fn emit(&self, event: Event);
 
@@ -23,12 +23,12 @@ pub struct Events {
     start: Instant,
     token: String,
     next: Mutex<u64>,
-    sink: Arc<dyn Sink>,
+    sink: Arc<dyn EventSink>,
 }
 
 impl Events {
     /// Starts the run's clock. `token` is unique on this machine.
-    pub fn new(token: String, sink: Arc<dyn Sink>) -> Self {
+    pub fn new(token: String, sink: Arc<dyn EventSink>) -> Self {
         Self { start: Instant::now(), token, next: Mutex::new(0), sink }
     }
 

@@ -25,7 +25,7 @@ pub enum HostMessage {
 }
 
 #[derive(Deserialize)]
-struct Envelope<'a> {
+struct RpcEnvelope<'a> {
     id: Option<u64>,
     #[serde(borrow)]
     method: Option<Cow<'a, str>>,
@@ -66,22 +66,24 @@ pub fn encode(id: Option<u64>, request: Request) -> Result<Vec<u8>, serde_json::
 /// Why the line is invalid, for users.
 pub fn decode(line: &[u8]) -> Result<HostMessage, String> {
     let text = std::str::from_utf8(line).map_err(|_| not_a_message(line, "it is not UTF-8"))?;
-    let envelope: Envelope<'_> =
+    let envelope: RpcEnvelope<'_> =
         serde_json::from_str(text).map_err(|error| not_a_message(line, &error.to_string()))?;
     match envelope {
-        Envelope { method: Some(_), id: None, .. } => serde_json::from_str(text)
+        RpcEnvelope { method: Some(_), id: None, .. } => serde_json::from_str(text)
             .map(HostMessage::Notification)
             .map_err(|error| not_a_message(line, &error.to_string())),
-        Envelope { method: Some(method), id: Some(_), .. } => {
+        RpcEnvelope { method: Some(method), id: Some(_), .. } => {
             Err(format!("it asks for `{method}`, but the runner answers no requests"))
         }
-        Envelope { id: Some(id), error: Some(error), .. } => {
+        RpcEnvelope { id: Some(id), error: Some(error), .. } => {
             Ok(HostMessage::Reply(id, Reply::Error(error)))
         }
-        Envelope { id: Some(id), result: Some(result), .. } => serde_json::from_str(result.get())
-            .map(|value| HostMessage::Reply(id, Reply::Result(value)))
-            .map_err(|error| not_a_message(line, &error.to_string())),
-        Envelope { .. } => Err(not_a_message(line, "neither a notification nor an answer")),
+        RpcEnvelope { id: Some(id), result: Some(result), .. } => {
+            serde_json::from_str(result.get())
+                .map(|value| HostMessage::Reply(id, Reply::Result(value)))
+                .map_err(|error| not_a_message(line, &error.to_string()))
+        }
+        RpcEnvelope { .. } => Err(not_a_message(line, "neither a notification nor an answer")),
     }
 }
 

@@ -54,7 +54,7 @@ pub struct ForkServers {
     /// Hosts requested once: the next such request starts a server.
     seen: Vec<HostSpec>,
     /// The most recently used one is the last.
-    servers: Vec<ForkServer>,
+    servers: Vec<ForkServerProcess>,
     /// Hosts whose server has failed.
     refused: Vec<HostSpec>,
 }
@@ -70,7 +70,7 @@ struct HostSpec {
 }
 
 #[derive(Debug)]
-struct ForkServer {
+struct ForkServerProcess {
     spec: HostSpec,
     socket: OwnedFd,
     process: Child,
@@ -118,7 +118,7 @@ impl ForkServers {
         }
         let server = match known {
             Some(index) => Ok(self.servers.remove(index)),
-            None => ForkServer::start(spec.clone()),
+            None => ForkServerProcess::start(spec.clone()),
         };
         let forked = server.and_then(|server| Ok((server.fork(&fork, ends)?, server)));
         let Ok((pid, server)) = forked else {
@@ -158,7 +158,7 @@ fn split(request: &SpawnRequest) -> Option<(HostSpec, Vec<u8>)> {
     Some((HostSpec { command, env, working_dir: dir.clone(), namespaces }, fork))
 }
 
-impl ForkServer {
+impl ForkServerProcess {
     fn start(spec: HostSpec) -> io::Result<Self> {
         let (socket, theirs) = unix::packet_pair()?;
         let (program, arguments) = spec.command.split_first().ok_or(io::ErrorKind::InvalidInput)?;
@@ -199,7 +199,7 @@ impl ForkServer {
     }
 }
 
-impl Drop for ForkServer {
+impl Drop for ForkServerProcess {
     fn drop(&mut self) {
         // It has nothing to clean up, and its forks are not its children.
         let _ = self.process.kill();

@@ -16,19 +16,19 @@ const REDIRECTS: usize = 5;
 
 /// The status of a response, with the server's phrase.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Status {
+pub struct HttpStatus {
     code: u16,
     phrase: String,
 }
 
-impl Status {
+impl HttpStatus {
     /// Whether it is 2xx.
     pub fn is_success(&self) -> bool {
         (200..300).contains(&self.code)
     }
 }
 
-impl fmt::Display for Status {
+impl fmt::Display for HttpStatus {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.code)?;
         if self.phrase.is_empty() { Ok(()) } else { write!(f, " {}", self.phrase) }
@@ -44,7 +44,7 @@ pub fn address(url: &Url) -> Option<String> {
 ///
 /// # Errors
 /// The connection fails, or the response is not HTTP.
-pub async fn get(network: Option<&Network>, url: &str) -> io::Result<Status> {
+pub async fn get(network: Option<&Network>, url: &str) -> io::Result<HttpStatus> {
     let mut url = Url::parse(url).map_err(io::Error::other)?;
     for _ in 0..REDIRECTS {
         let head = head(network, &url).await?;
@@ -87,7 +87,7 @@ async fn head(network: Option<&Network>, url: &Url) -> io::Result<String> {
 }
 
 /// Parses the status and the `Location` of a redirect.
-fn parse(head: &str) -> Option<(Status, Option<String>)> {
+fn parse(head: &str) -> Option<(HttpStatus, Option<String>)> {
     let mut lines = head.lines();
     let (version, rest) = lines.next()?.split_once(' ')?;
     if !version.starts_with("HTTP/1.") {
@@ -100,7 +100,7 @@ fn parse(head: &str) -> Option<(Status, Option<String>)> {
         .filter_map(|line| line.split_once(':'))
         .find(|(name, _)| name.eq_ignore_ascii_case("location"))
         .map(|(_, value)| value.trim().to_owned());
-    Some((Status { code, phrase: phrase.trim().to_owned() }, location))
+    Some((HttpStatus { code, phrase: phrase.trim().to_owned() }, location))
 }
 
 #[cfg(test)]

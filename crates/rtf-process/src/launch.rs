@@ -8,7 +8,7 @@ use rtf_model::protocol::SCOPE_VARIABLE;
 use tokio::sync::oneshot;
 
 use crate::cgroup::{Cgroup, Cgroups};
-use crate::process::Process;
+use crate::process::StartedProcess;
 use crate::spawn_request::SpawnRequest;
 use crate::spawner::Spawner;
 use crate::tree::Effort;
@@ -26,7 +26,7 @@ pub struct Launch {
     pub stack_file: PathBuf,
     /// Its control group, once started.
     pub cgroup: Option<Cgroup>,
-    ahead: Option<oneshot::Receiver<io::Result<Process>>>,
+    ahead: Option<oneshot::Receiver<io::Result<StartedProcess>>>,
 }
 
 impl Launch {
@@ -50,7 +50,7 @@ impl Launch {
         &mut self,
         spawner: &Spawner,
         groups: Option<&Cgroups>,
-    ) -> io::Result<Process> {
+    ) -> io::Result<StartedProcess> {
         let started = match self.ahead.take() {
             Some(started) => started,
             None => spawner.begin(self.full_request()),
@@ -61,7 +61,7 @@ impl Launch {
     }
 
     /// Kills the started process and everything below it.
-    pub fn kill(&self, process: &Process) {
+    pub fn kill(&self, process: &StartedProcess) {
         if let Some(group) = &self.cgroup {
             group.kill();
         }

@@ -26,27 +26,27 @@ const MAX_REASON_BYTES: u64 = 4096;
 #[derive(Clone, Debug, Default)]
 pub struct Probes {
     /// Each must pass once before the process is ready.
-    pub ready: Vec<Probe>,
+    pub ready: Vec<ProbeSpec>,
     /// All must pass while it is ready.
-    pub alive: Vec<Probe>,
+    pub alive: Vec<ProbeSpec>,
     /// The network namespace of the process; the runner's when `None`.
     pub network: Option<Network>,
 }
 
 /// A probe.
 #[derive(Clone, Debug)]
-pub struct Probe {
-    /// The kind, with its value.
-    pub kind: ProbeKind,
+pub struct ProbeSpec {
+    /// Its target.
+    pub target: ProbeTarget,
     /// The interval.
     pub interval: Duration,
     /// The limit for one evaluation.
     pub timeout: Duration,
 }
 
-/// The condition of a probe.
+/// The target of a probe, and the condition to pass.
 #[derive(Clone, Debug)]
-pub enum ProbeKind {
+pub enum ProbeTarget {
     /// `host:port` accepts a TCP connection.
     Tcp(String),
     /// An HTTP GET of the URL returns a 2xx status.
@@ -74,10 +74,10 @@ pub enum ProbeSelection {
 }
 
 impl ProbeSelection {
-    pub(crate) fn of(self, probes: &[Probe]) -> Vec<Probe> {
-        let is_selected = |probe: &&Probe| match probe.kind {
-            ProbeKind::Tcp(_) | ProbeKind::Http(_) | ProbeKind::File(_) => true,
-            ProbeKind::Command(_) | ProbeKind::ExplainingCommand { .. } => self == Self::All,
+    pub(crate) fn of(self, probes: &[ProbeSpec]) -> Vec<ProbeSpec> {
+        let is_selected = |probe: &&ProbeSpec| match probe.target {
+            ProbeTarget::Tcp(_) | ProbeTarget::Http(_) | ProbeTarget::File(_) => true,
+            ProbeTarget::Command(_) | ProbeTarget::ExplainingCommand { .. } => self == Self::All,
         };
         probes.iter().filter(is_selected).cloned().collect()
     }
@@ -88,9 +88,9 @@ impl ProbeSelection {
 pub(crate) async fn address_in_use(probes: Option<&Probes>) -> Option<String> {
     let Probes { ready, network, .. } = probes?;
     for probe in ready {
-        let address = match &probe.kind {
-            ProbeKind::Tcp(address) => address.clone(),
-            ProbeKind::Http(url) => http::address(&Url::parse(url).ok()?)?,
+        let address = match &probe.target {
+            ProbeTarget::Tcp(address) => address.clone(),
+            ProbeTarget::Http(url) => http::address(&Url::parse(url).ok()?)?,
             _ => continue,
         };
         let connection = timeout(ADDRESS_IN_USE_LIMIT, connect(network.as_ref(), &address)).await;
@@ -116,7 +116,7 @@ impl Prober {
     ///
     /// # Errors
     /// Why one does not pass.
-    pub async fn check_all(&self, probes: &[Probe]) -> Result<(), String> {
+    pub async fn check_all(&self, probes: &[ProbeSpec]) -> Result<(), String> {
         for probe in probes {
             self.check(probe, &FileVersions::default()).await?;
         }
@@ -124,7 +124,7 @@ impl Prober {
     }
 
     /// Polls these probes until one fails; returns the reason.
-    pub async fn wait_for_failure(&self, probes: &[Probe]) -> String {
+    pub async fn wait_for_failure(&self, probes: &[ProbeSpec]) -> String {
         let mut due: Vec<_> = probes.iter().map(|probe| Instant::now() + probe.interval).collect();
         loop {
             let next = (0..probes.len()).min_by_key(|index| due[*index]);
@@ -143,18 +143,18 @@ impl Prober {
     ///
     /// # Errors
     /// Why it does not pass.
-    pub async fn check(&self, probe: &Probe, before: &FileVersions) -> Result<(), String> {
+    pub async fn check(&self, probe: &ProbeSpec, before: &FileVersions) -> Result<(), String> {
         let network = self.network.as_ref();
         let result = async {
-            match &probe.kind {
-                ProbeKind::Tcp(address) => match connect(network, address).await {
+            match &probe.target {
+                ProbeTarget::Tcp(address) => match connect(network, address).await {
                     Ok(_) => Ok(()),
                     Err(error) => Err(format!("no TCP connection to {address}: {error}")),
                 },
-                ProbeKind::Http(url) => check_http(network, url).await,
-                ProbeKind::File(path) => before.check(path),
-                ProbeKind::Command(command) => self.check_command(command).await,
-                ProbeKind::ExplainingCommand { command, subject } => {
+                ProbeTarget::Http(url) => check_http(network, url).await,
+                ProbeTarget::File(path) => before.check(path),
+                ProbeTarget::Command(command) => self.check_command(command).await,
+                ProbeTarget::ExplainingCommand { command, subject } => {
                     self.check_explaining_command(command, subject).await
                 }
             }
@@ -212,13 +212,13 @@ impl Prober {
     }
 }
 
-fn subject(probe: &Probe) -> String {
-    match &probe.kind {
-        ProbeKind::Tcp(address) => address.clone(),
-        ProbeKind::Http(url) => url.clone(),
-        ProbeKind::File(path) => path.display().to_string(),
-        ProbeKind::Command(command) => format!("`{}`", shown(command)),
-        ProbeKind::ExplainingCommand { subject, .. } => subject.clone(),
+fn subject(probe: &ProbeSpec) -> String {
+    match &probe.target {
+        ProbeTarget::Tcp(address) => address.clone(),
+        ProbeTarget::Http(url) => url.clone(),
+        ProbeTarget::File(path) => path.display().to_string(),
+        ProbeTarget::Command(command) => format!("`{}`", shown(command)),
+        ProbeTarget::ExplainingCommand { subject, .. } => subject.clone(),
     }
 }
 
@@ -247,8 +247,8 @@ impl FileVersions {
     /// Reads the versions of the files of `ready` probes.
     pub fn now(probes: Option<&Probes>) -> Self {
         let probes = probes.into_iter().flat_map(|probes| &probes.ready);
-        let paths = probes.filter_map(|probe| match &probe.kind {
-            ProbeKind::File(path) => Some(path),
+        let paths = probes.filter_map(|probe| match &probe.target {
+            ProbeTarget::File(path) => Some(path),
             _ => None,
         });
         Self(paths.filter_map(|path| Some((path.clone(), version(path).ok()?))).collect())

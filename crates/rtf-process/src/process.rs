@@ -12,7 +12,7 @@ use crate::{tree, unix};
 
 /// A started process.
 #[derive(Debug)]
-pub struct Process {
+pub struct StartedProcess {
     /// Its id, and that of its group.
     pub pid: i32,
     /// The runner's end of its channel.

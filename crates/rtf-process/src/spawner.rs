@@ -18,13 +18,13 @@ use tokio::sync::oneshot;
 
 use crate::fork_server::{ChildEnds, ForkMode, ForkServers};
 use crate::namespaces::Namespaces;
-use crate::process::{Process, ProcessEnd, StartedChild};
+use crate::process::{ProcessEnd, StartedChild, StartedProcess};
 use crate::resources::{self, DescriptorReserve};
 use crate::spawn_request::{ProcessRole, SpawnRequest, Streams};
 use crate::{ssh, start_gate, tree, unix};
 
 enum SpawnerJob {
-    Start(SpawnRequest, oneshot::Sender<io::Result<Process>>),
+    Start(SpawnRequest, oneshot::Sender<io::Result<StartedProcess>>),
     StopForkServers(Option<Arc<Namespaces>>, oneshot::Sender<()>),
 }
 
@@ -71,13 +71,13 @@ impl Spawner {
     ///
     /// # Errors
     /// The program cannot be executed, or a resource is exhausted.
-    pub async fn spawn(&self, request: SpawnRequest) -> io::Result<Process> {
+    pub async fn spawn(&self, request: SpawnRequest) -> io::Result<StartedProcess> {
         Self::started(self.begin(request)).await
     }
 
     /// Requests the start of a process, without waiting for it.
     #[must_use]
-    pub fn begin(&self, request: SpawnRequest) -> oneshot::Receiver<io::Result<Process>> {
+    pub fn begin(&self, request: SpawnRequest) -> oneshot::Receiver<io::Result<StartedProcess>> {
         let (reply, started) = oneshot::channel();
         // Without the thread, the receiver reports it.
         let _ = self.jobs.send(SpawnerJob::Start(request, reply));
@@ -96,7 +96,9 @@ impl Spawner {
     ///
     /// # Errors
     /// As for [`Spawner::spawn`].
-    pub async fn started(reply: oneshot::Receiver<io::Result<Process>>) -> io::Result<Process> {
+    pub async fn started(
+        reply: oneshot::Receiver<io::Result<StartedProcess>>,
+    ) -> io::Result<StartedProcess> {
         reply.await.map_err(|_| io::Error::other("the thread that starts processes has ended"))?
     }
 }
@@ -106,7 +108,7 @@ fn spawn_or_release(
     request: &SpawnRequest,
     servers: &mut ForkServers,
     reserve: &mut DescriptorReserve,
-) -> io::Result<Process> {
+) -> io::Result<StartedProcess> {
     match (spawn(request, servers), request.role) {
         (Err(error), Some(role @ (ProcessRole::Hook | ProcessRole::Fixture)))
             if resources::is_exhausted(&error) =>
@@ -118,7 +120,7 @@ fn spawn_or_release(
     }
 }
 
-fn spawn(request: &SpawnRequest, servers: &mut ForkServers) -> io::Result<Process> {
+fn spawn(request: &SpawnRequest, servers: &mut ForkServers) -> io::Result<StartedProcess> {
     let (mut ours, mut theirs) = (None, None);
     if request.channel.is_some() {
         let (runner, host) = unix::channel_pair()?;
@@ -147,7 +149,7 @@ fn spawn(request: &SpawnRequest, servers: &mut ForkServers) -> io::Result<Proces
         // process that has ended is noticed by its exit.
         let _ = rustix::io::write(ours, greeting);
     }
-    Ok(Process { channel: ours, ..process })
+    Ok(StartedProcess { channel: ours, ..process })
 }
 
 /// Lets a server fork the process; `None` when it must be executed.
@@ -155,7 +157,7 @@ fn fork(
     request: &SpawnRequest,
     channel: &OwnedFd,
     servers: &mut ForkServers,
-) -> io::Result<Option<Process>> {
+) -> io::Result<Option<StartedProcess>> {
     let (stdout, their_stdout) = io::pipe()?;
     let (stderr, their_stderr) = io::pipe()?;
     let (channel, out, err) = (channel.as_fd(), their_stdout.as_fd(), their_stderr.as_fd());
@@ -168,7 +170,7 @@ fn fork(
     let child =
         unix::open_process(pid).map(StartedChild::Forked).inspect_err(|_| tree::kill_tree(pid))?;
     let end = ProcessEnd::new(pid, child);
-    Ok(Some(Process { pid, channel: None, stdout: Some(stdout), stderr: Some(stderr), end }))
+    Ok(Some(StartedProcess { pid, channel: None, stdout: Some(stdout), stderr: Some(stderr), end }))
 }
 
 /// Whether a command takes its channel as its standard input.
@@ -176,7 +178,7 @@ fn uses_stdin(command: &[String]) -> bool {
     start_gate::is_behind(command) || ssh::is_remote(command)
 }
 
-fn execute(request: &SpawnRequest, channel: Option<OwnedFd>) -> io::Result<Process> {
+fn execute(request: &SpawnRequest, channel: Option<OwnedFd>) -> io::Result<StartedProcess> {
     let Some((program, arguments)) = request.command.split_first() else {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "an empty command"));
     };
@@ -216,5 +218,5 @@ fn execute(request: &SpawnRequest, channel: Option<OwnedFd>) -> io::Result<Proce
     let pid = child.id().and_then(|pid| i32::try_from(pid).ok()).unwrap_or_default();
     let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
     let end = ProcessEnd::new(pid, StartedChild::Executed(child));
-    Ok(Process { pid, channel: None, stdout, stderr, end })
+    Ok(StartedProcess { pid, channel: None, stdout, stderr, end })
 }

@@ -91,17 +91,17 @@ pub struct Sender(pub i32);
 pub fn receive_from(channel: BorrowedFd<'_>, bytes: &mut [u8]) -> io::Result<(usize, Sender)> {
     /// Space for credentials only: the kernel discards descriptors sent with them.
     #[repr(C)]
-    struct Control {
+    struct CredentialsBuffer {
         header: libc::cmsghdr,
         credentials: libc::ucred,
     }
     let mut part = libc::iovec { iov_base: bytes.as_mut_ptr().cast(), iov_len: bytes.len() };
-    let mut control = MaybeUninit::<Control>::uninit();
+    let mut control = MaybeUninit::<CredentialsBuffer>::uninit();
     // SAFETY: all fields may be zero.
     let mut message: libc::msghdr = unsafe { std::mem::zeroed() };
     (message.msg_iov, message.msg_iovlen) = (&raw mut part, 1);
     message.msg_control = control.as_mut_ptr().cast();
-    message.msg_controllen = size_of::<Control>();
+    message.msg_controllen = size_of::<CredentialsBuffer>();
     let length = loop {
         let flags = libc::MSG_CMSG_CLOEXEC;
         // SAFETY: `message` names `bytes` and `control`, which are valid for writing.

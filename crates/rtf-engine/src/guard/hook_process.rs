@@ -12,7 +12,7 @@ use rtf_process::{signal_group, tree};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use super::journal_close::TimedEvent;
-use super::unix::{self, Signals};
+use super::unix::{self, GuardSignals};
 use crate::hook::{HOOK_KILLED, HookJudgement, RUN_REQUEST};
 
 /// The time between SIGTERM and the kill.
@@ -40,7 +40,7 @@ pub(super) struct HookProcess {
 /// Waits for the end of the process. Returns its problem, if any, and its events.
 pub(super) fn supervise(
     process: HookProcess,
-    signals: &mut Signals,
+    signals: &mut GuardSignals,
 ) -> (Option<String>, Vec<TimedEvent>) {
     let HookProcess { hook, pid, streams, deadline, judgement } = process;
     let mut supervisor = HookSupervisor {
@@ -78,7 +78,7 @@ struct CappedOutput {
 }
 
 impl HookSupervisor {
-    fn wait_for_end(&mut self, signals: &mut Signals) -> ExitStatus {
+    fn wait_for_end(&mut self, signals: &mut GuardSignals) -> ExitStatus {
         loop {
             match unix::ended(self.pid) {
                 Ok(Some(status)) => {
@@ -112,7 +112,7 @@ impl HookSupervisor {
     }
 
     /// Waits for data or a signal, and reads all streams. Returns whether there was data.
-    fn read(&mut self, signals: Option<&mut Signals>, timeout: Duration) -> bool {
+    fn read(&mut self, signals: Option<&mut GuardSignals>, timeout: Duration) -> bool {
         let streams = std::mem::take(&mut self.streams);
         let mut fds: Vec<_> =
             streams.iter().map(|(_, end)| PollFd::new(end, PollFlags::IN)).collect();

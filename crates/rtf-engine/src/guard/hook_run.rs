@@ -18,7 +18,7 @@ use super::hook_process::{HookProcess, StreamEnds, supervise};
 use super::journal_close::TimedEvent;
 use super::message::{HookSpec, HookStart};
 use super::recovery_state::{HookStatus, RunningHook};
-use super::unix::Signals;
+use super::unix::GuardSignals;
 use crate::hook::{HOOK_NOT_RUN, HookJudgement, RUN_REQUEST, trigger_variables};
 
 /// The circumstances of a hook's run.
@@ -48,7 +48,7 @@ pub fn run(
     hook: &HookSpec,
     status: HookStatus,
     context: &HookContext<'_>,
-    signals: &mut Signals,
+    signals: &mut GuardSignals,
 ) -> (Option<String>, Vec<TimedEvent>) {
     let mut started = Instant::now();
     let mut start = HookStart {

@@ -69,7 +69,7 @@ pub fn split(lifeline: Option<OwnedFd>, patience: Duration) -> io::Result<Side> 
             drop((runners, runners_heartbeat));
             // Both processes do it, because either may be the first.
             unix::lead_group(Some(runner));
-            let signals = unix::Signals::install()?;
+            let signals = unix::GuardSignals::install()?;
             drop(blocked);
             unix::lock_memory();
             let guard = Guard::new(runner, [guards, heartbeat], signals, forked);

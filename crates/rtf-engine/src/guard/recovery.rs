@@ -15,7 +15,7 @@ use super::message::HookSpec;
 use super::recovery_state::{
     GuardedHook, HookStatus, RecoveryState, RunFiles, SuiteResources, only_test,
 };
-use super::unix::Signals;
+use super::unix::GuardSignals;
 
 /// The limit for the end of killed processes. One that hangs in the kernel, for example in
 /// a driver, is reported and left.
@@ -49,7 +49,7 @@ pub struct RecoveredHook {
 pub fn recover(
     state: RecoveryState,
     reason: String,
-    mut signals: Signals,
+    mut signals: GuardSignals,
     forked: Instant,
 ) -> Recovery {
     // The guard starts processes only now: its descriptors must not leak into hooks.

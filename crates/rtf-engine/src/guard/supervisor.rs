@@ -11,7 +11,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use super::heartbeat::{CHECK_INTERVAL, Heartbeat};
 use super::message_receiver::MessageReceiver;
 use super::recovery::{Recovery, SWEEP_LIMIT, recover};
-use super::unix::{self, Signals};
+use super::unix::{self, GuardSignals};
 
 /// The exit code of a Rust program that panicked.
 const PANICKED: i32 = 101;
@@ -32,7 +32,7 @@ const MAX_HANDLED_REQUESTS: u32 = 2;
 pub struct Guard {
     runner: i32,
     receiver: MessageReceiver,
-    signals: Signals,
+    signals: GuardSignals,
     forked: Instant,
     heartbeat: Heartbeat,
     /// How long the runner may be silent.
@@ -63,7 +63,7 @@ impl Guard {
     pub(super) fn new(
         runner: i32,
         [messages, heartbeat]: [UnixStream; 2],
-        signals: Signals,
+        signals: GuardSignals,
         forked: Instant,
     ) -> Self {
         Self {

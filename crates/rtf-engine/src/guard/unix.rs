@@ -100,13 +100,13 @@ impl Drop for BlockedSignals {
 
 /// The received signals, to be polled and read.
 #[derive(Debug)]
-pub struct Signals {
+pub struct GuardSignals {
     pipe: OwnedFd,
     /// The requests to end the run.
     pub requests: StopRequests,
 }
 
-impl Signals {
+impl GuardSignals {
     /// Installs the handlers. Unlike a mask, programs that the guard starts do not inherit
     /// them.
     pub fn install() -> io::Result<Self> {
@@ -122,7 +122,7 @@ impl Signals {
         Ok(Self { pipe, requests: StopRequests::default() })
     }
 
-    /// Returns the signals since the last call. Signals that belong to an earlier request are
+    /// Returns the signals since the last call. GuardSignals that belong to an earlier request are
     /// left out.
     pub fn read(&mut self) -> Vec<i32> {
         let mut numbers = [0; 256];
@@ -141,7 +141,7 @@ impl Signals {
     }
 }
 
-impl AsFd for Signals {
+impl AsFd for GuardSignals {
     fn as_fd(&self) -> BorrowedFd<'_> {
         self.pipe.as_fd()
     }

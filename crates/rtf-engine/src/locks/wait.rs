@@ -116,13 +116,13 @@ mod tests {
     use rtf_model::Event;
 
     use super::*;
-    use crate::events::Sink;
+    use crate::events::EventSink;
     use crate::run::machine::tests::world::suite;
 
     #[derive(Debug)]
     struct NullSink;
 
-    impl Sink for NullSink {
+    impl EventSink for NullSink {
         fn emit(&self, _: Event) {}
     }
 

@@ -14,7 +14,7 @@ const POLL_INTERVAL: Duration = Duration::from_millis(10);
 
 /// The clock of a suite; the wall clock if it has no file.
 #[derive(Debug)]
-pub struct Clock {
+pub struct SuiteClock {
     file: Option<PathBuf>,
     /// The time of the next poll, while a test follows the clock.
     next_poll: Option<Duration>,
@@ -22,7 +22,7 @@ pub struct Clock {
     inherited: bool,
 }
 
-impl Clock {
+impl SuiteClock {
     /// Creates the clock of a suite, with a file in this directory.
     pub fn new(suite: &SuitePlan, dir: &Path) -> Self {
         let file = suite.clock.as_ref().map(|_| dir.join(format!("clock-{}", suite.id)));

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use rtf_model::Source;
 use rtf_process::task::{HostId, ProcessOwner, ProcessStream, TaskContext};
 
-use crate::events::Sink;
+use crate::events::EventSink;
 use crate::guard::Link;
 
 /// The resources of a run that its suites share.
@@ -16,7 +16,7 @@ pub struct RunContext {
     /// The resources of the processes' tasks.
     pub tasks: Arc<TaskContext>,
     /// The receiver of events.
-    pub sink: Arc<dyn Sink>,
+    pub sink: Arc<dyn EventSink>,
     /// A directory for files that are removed at the end of the run.
     pub scratch_dir: PathBuf,
     /// The connection to the guard.
@@ -44,7 +44,7 @@ pub(super) fn attachments_dir(source: Source, host: HostId) -> String {
 #[derive(Debug)]
 struct SourceOwner {
     source: Source,
-    sink: Arc<dyn Sink>,
+    sink: Arc<dyn EventSink>,
     guard: Arc<Link>,
 }
 

@@ -31,7 +31,7 @@ use suite_queue::SuiteQueue;
 use suite_task::SuiteRequests;
 
 pub use crate::control::{Control, Controls, Stop, StopLevel};
-pub use crate::events::{Events, Sink};
+pub use crate::events::{EventSink, Events};
 use crate::guard::Link;
 use crate::isolate::PreparedSuite;
 use crate::locks::{self, LockOptions};
@@ -76,7 +76,7 @@ pub struct RunOptions {
 pub async fn execute(
     plan: &Plan,
     options: RunOptions,
-    sink: Arc<dyn Sink>,
+    sink: Arc<dyn EventSink>,
     stops: watch::Receiver<Option<Stop>>,
 ) -> std::io::Result<()> {
     prepare_process()?;

@@ -2,7 +2,7 @@
 
 use rtf_plan::plan;
 use rtf_process::network::Network;
-use rtf_process::probe::{Probe, ProbeKind, Probes};
+use rtf_process::probe::{ProbeSpec, ProbeTarget, Probes};
 
 pub(super) fn convert(
     ready: &[plan::Probe],
@@ -13,16 +13,16 @@ pub(super) fn convert(
     Probes { ready: convert(ready), alive: convert(alive), network }
 }
 
-fn probe(plan: &plan::Probe) -> Option<Probe> {
-    let kind = match plan.kind.clone() {
-        plan::ProbeKind::Tcp(address) => ProbeKind::Tcp(address),
-        plan::ProbeKind::Http(url) => ProbeKind::Http(url),
-        plan::ProbeKind::Command(command) => ProbeKind::Command(command),
-        plan::ProbeKind::File(path) => ProbeKind::File(path),
+fn probe(plan: &plan::Probe) -> Option<ProbeSpec> {
+    let target = match plan.kind.clone() {
+        plan::ProbeKind::Tcp(address) => ProbeTarget::Tcp(address),
+        plan::ProbeKind::Http(url) => ProbeTarget::Http(url),
+        plan::ProbeKind::Command(command) => ProbeTarget::Command(command),
+        plan::ProbeKind::File(path) => ProbeTarget::File(path),
         plan::ProbeKind::Middleware { command, subject } => {
-            ProbeKind::ExplainingCommand { command, subject }
+            ProbeTarget::ExplainingCommand { command, subject }
         }
         plan::ProbeKind::Log(_) => return None,
     };
-    Some(Probe { kind, interval: plan.every, timeout: plan.timeout })
+    Some(ProbeSpec { target, interval: plan.every, timeout: plan.timeout })
 }

@@ -50,7 +50,7 @@ fn check(groups: &[CheckGroup], limit: Duration) -> Vec<Vec<CheckAnswer>> {
 }
 
 /// Files of one group for one start of a host.
-struct Batch<'a> {
+struct CheckBatch<'a> {
     number: usize,
     /// The index of the group.
     index: usize,
@@ -58,13 +58,18 @@ struct Batch<'a> {
     files: Vec<&'a Path>,
 }
 
-fn batches(groups: &[CheckGroup], workers: usize) -> VecDeque<Batch<'_>> {
+fn batches(groups: &[CheckGroup], workers: usize) -> VecDeque<CheckBatch<'_>> {
     let mut batches = VecDeque::new();
     for (index, group) in groups.iter().enumerate() {
         let files: Vec<&Path> = group.files().collect();
         let size = files.len().div_ceil(workers).clamp(1, MAX_FILES);
         for files in files.chunks(size) {
-            batches.push_back(Batch { number: batches.len(), index, group, files: files.to_vec() });
+            batches.push_back(CheckBatch {
+                number: batches.len(),
+                index,
+                group,
+                files: files.to_vec(),
+            });
         }
     }
     batches
@@ -73,7 +78,7 @@ fn batches(groups: &[CheckGroup], workers: usize) -> VecDeque<Batch<'_>> {
 /// The number of a batch, the index of its group, and the answers.
 type Done = Vec<(usize, usize, Vec<CheckAnswer>)>;
 
-fn work(queue: &Mutex<VecDeque<Batch<'_>>>, done: &Mutex<Done>, limit: Duration) {
+fn work(queue: &Mutex<VecDeque<CheckBatch<'_>>>, done: &Mutex<Done>, limit: Duration) {
     loop {
         let batch = queue.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
         let Some(batch) = batch else { return };

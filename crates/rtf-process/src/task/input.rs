@@ -8,7 +8,7 @@ use super::shared_host::SharedHost;
 use super::streams::{Buffers, Received, read, receive};
 use super::{DRAIN_LIMIT, ProcessEvent, ProcessTask};
 use crate::codec::{self, HostMessage, LINE_LIMIT};
-use crate::process::Process;
+use crate::process::StartedProcess;
 
 /// The number of reads after the limit: enough for the contents of a socket and two
 /// pipes, but not for an endless flood.
@@ -44,7 +44,7 @@ impl ProcessTask {
     }
 
     fn is_open(&self) -> bool {
-        let Process { channel, stdout, stderr, .. } = &self.process;
+        let StartedProcess { channel, stdout, stderr, .. } = &self.process;
         channel.is_some() || stdout.is_some() || stderr.is_some()
     }
 

@@ -36,7 +36,7 @@ pub use job::{ProcessJob, ProcessOwner, ProcessStream, TaskContext};
 
 use crate::codec::{self, HostMessage};
 use crate::probe::{self, FileVersions, ProbeSelection};
-use crate::process::Process;
+use crate::process::StartedProcess;
 use crate::spawn_request::ProcessRole;
 use crate::tree::Effort;
 use crate::{ssh, stack_dump, start_gate, tree, unix};
@@ -93,7 +93,7 @@ async fn copied(copy: &mut Option<FileCopy>) -> std::io::Result<()> {
 struct ProcessTask {
     job: ProcessJob,
     context: Arc<TaskContext>,
-    process: Process,
+    process: StartedProcess,
     events: EventSender,
     lines: LineAssembly,
     outgoing: WriteQueue,
@@ -113,7 +113,7 @@ impl ProcessTask {
     fn new(
         job: ProcessJob,
         context: Arc<TaskContext>,
-        process: Process,
+        process: StartedProcess,
         events: EventSender,
     ) -> Self {
         Self {
@@ -133,7 +133,7 @@ impl ProcessTask {
     }
 
     fn report_started(&self) {
-        let Process { channel, stdout, stderr, .. } = &self.process;
+        let StartedProcess { channel, stdout, stderr, .. } = &self.process;
         let channel = channel.as_ref().map(|end| (ProcessStream::Channel, end.as_fd()));
         let stdout = stdout.as_ref().map(|end| (ProcessStream::Stdout, end.as_fd()));
         let stderr = stderr.as_ref().map(|end| (ProcessStream::Stderr, end.as_fd()));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::ProcessTask;
 use super::event::{EventSender, HostId, ProcessEvent};
 use crate::liveness::LivenessCheck;
-use crate::probe::{FileVersions, Probe, Prober, Probes};
+use crate::probe::{FileVersions, ProbeSpec, Prober, Probes};
 use crate::usage;
 
 /// Evaluates the probes of one process, and reports the results as its events.
@@ -19,7 +19,7 @@ pub(super) struct ProbeReporter {
 impl ProbeReporter {
     /// Reports when each of these probes has passed once, and each new reason why one does
     /// not pass. A file must have changed since `before`.
-    pub(super) async fn watch_ready(self, probes: Vec<Probe>, before: FileVersions) {
+    pub(super) async fn watch_ready(self, probes: Vec<ProbeSpec>, before: FileVersions) {
         let mut reported = String::new();
         for probe in &probes {
             while let Err(reason) = self.prober.check(probe, &before).await {
@@ -34,13 +34,13 @@ impl ProbeReporter {
     }
 
     /// Reports when one of these probes fails.
-    pub(super) async fn watch_alive(self, probes: Vec<Probe>) {
+    pub(super) async fn watch_alive(self, probes: Vec<ProbeSpec>) {
         let reason = self.prober.wait_for_failure(&probes).await;
         self.report(ProcessEvent::ProbeFailed(reason)).await;
     }
 
     /// Reports whether all these probes pass, and `check`, if any, finds the process alive.
-    pub(super) async fn check_alive(self, probes: Vec<Probe>, check: Option<LivenessCheck>) {
+    pub(super) async fn check_alive(self, probes: Vec<ProbeSpec>, check: Option<LivenessCheck>) {
         let event = match (self.prober.check_all(&probes).await, check) {
             (Ok(()), Some(mut check)) => liveness_event(check.wait().await),
             (Ok(()), None) => ProcessEvent::Lives,

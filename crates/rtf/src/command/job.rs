@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use rtf_engine::guard::Link;
 use rtf_engine::locks::LockOptions;
-use rtf_engine::run::{RunOptions, Sink, execute};
+use rtf_engine::run::{EventSink, RunOptions, execute};
 use rtf_engine::signal::{self, Signals};
 use rtf_model::{EVENTS_VERSION, Event, Manifest, RunStarted, Source};
 use rtf_process::fork_server::ForkMode;
@@ -86,7 +86,7 @@ impl Job<'_> {
             jobs: self.jobs.into(),
             soak_time: self.planned.manifest.for_ms.map(Duration::from_millis),
         };
-        let sink: Arc<dyn Sink> = Arc::new(Reports(events));
+        let sink: Arc<dyn EventSink> = Arc::new(Reports(events));
         let plan = self.planned.plan.clone();
         runtime.block_on(async {
             // A task of its own is woken without a system call, other than this future.
@@ -137,7 +137,7 @@ impl Job<'_> {
 #[derive(Debug)]
 struct Reports(FanoutHandle);
 
-impl Sink for Reports {
+impl EventSink for Reports {
     fn emit(&self, event: Event) {
         self.0.send(event);
     }

@@ -9,7 +9,7 @@ use rtf_model::{EventKind, ExitStatus, Source};
 use tokio::sync::{mpsc, watch};
 use tokio::time::Instant;
 
-use super::clock::Clock;
+use super::clock::SuiteClock;
 use super::context::{RunContext, attachments_dir};
 use super::control_queue::ControlQueue;
 use super::deadlines::Deadlines;
@@ -69,7 +69,7 @@ pub async fn run_suite(
         scopes: 0,
         is_repeated: requests.soak_until.is_some() || plan.repeats(),
         deadlines: Deadlines::default(),
-        clock: Clock::new(plan, &context.scratch_dir),
+        clock: SuiteClock::new(plan, &context.scratch_dir),
         is_done: false,
     };
     task.run(queue, requests).await;
@@ -105,7 +105,7 @@ struct SuiteTask<'a> {
     /// The number of assigned scopes.
     scopes: u64,
     deadlines: Deadlines,
-    clock: Clock,
+    clock: SuiteClock,
     is_done: bool,
 }
 
