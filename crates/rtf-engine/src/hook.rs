@@ -18,13 +18,11 @@ pub const HOOK_KILLED: &str = "it was killed by the third request to end the run
 pub const HOOK_NOT_RUN: &str = "it did not run: the end of the run was requested three times";
 
 /// Returns the parameters of `run-test` for a hook's plug-in.
-#[must_use]
 pub fn request(suite: &SuitePlan, hook: &HookPlan, plugin: &PluginPlan) -> Plugin {
     Plugin { is_last: true, ..plugin_request::plugin(suite, &hook.name, plugin, 1) }
 }
 
 /// Returns the variables that describe what triggered a hook.
-#[must_use]
 pub fn trigger_variables(
     trigger: Trigger,
     reason: &str,
@@ -52,13 +50,11 @@ pub struct HookJudgement {
 
 impl HookJudgement {
     /// Starts the judgement of a hook with this limit.
-    #[must_use]
     pub fn new(is_plugin: bool, limit: Duration) -> Self {
         Self { is_plugin, is_adopted: false, limit, answer: None, problem: None }
     }
 
     /// Starts the judgement of a hook whose runner died.
-    #[must_use]
     pub fn adopted(is_plugin: bool, limit: Duration) -> Self {
         Self { is_adopted: true, ..Self::new(is_plugin, limit) }
     }
@@ -117,7 +113,6 @@ impl HookJudgement {
 
     /// Returns the problem of the run, if any: the robot may not be in a safe state. `exit`
     /// is `None` if the process did not start or did not end.
-    #[must_use]
     pub fn finish(&mut self, exit: Option<ExitStatus>) -> Option<String> {
         let problem = match (&mut self.answer, exit) {
             (Some(answer), _) if answer.outcome != Outcome::Passed => {

@@ -110,7 +110,6 @@ impl Signals {
 }
 
 /// Returns the exit code of a run that this signal ended: 128 + its number.
-#[must_use]
 pub fn exit_code(name: &str) -> Option<u8> {
     let (number, _) = STOP_SIGNALS.iter().find(|(_, known)| *known == name)?;
     u8::try_from(128 + number).ok()

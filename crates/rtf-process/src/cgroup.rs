@@ -26,7 +26,6 @@ pub struct Cgroups {
 impl Cgroups {
     /// Creates a group for the groups of this process; `None` without permission. Removes
     /// the groups of killed runners.
-    #[must_use]
     pub fn create() -> Option<Self> {
         let own = own_dir()?;
         remove_stale(&own);
@@ -38,7 +37,6 @@ impl Cgroups {
     }
 
     /// Moves a process that was just started into a new group.
-    #[must_use]
     pub fn enter(&self, name: &str, pid: i32) -> Option<Cgroup> {
         let group = Cgroup { dir: self.dir.join(name) };
         std::fs::create_dir(&group.dir).ok()?;

@@ -37,15 +37,16 @@ struct RpcEnvelope<'a> {
 /// The id of `initialize` on every channel; later requests have other ids.
 pub const INITIALIZE: u64 = 1;
 
-/// Returns the first line of every channel: `initialize`.
+/// Returns the first line of every channel: `initialize`. The host may dump its stacks to
+/// `stack_file`.
 ///
 /// # Errors
 /// As for [`encode`].
-pub fn greeting(stack_file: &Path) -> Result<Vec<u8>, serde_json::Error> {
+pub fn greeting(stack_file: Option<&Path>) -> Result<Vec<u8>, serde_json::Error> {
     let request = Request::Initialize(Initialize {
         protocol: PROTOCOL_VERSION,
         rtf: env!("CARGO_PKG_VERSION").to_owned(),
-        stack_file: Some(stack_file.to_string_lossy().into_owned()),
+        stack_file: stack_file.map(|file| file.to_string_lossy().into_owned()),
     });
     encode(Some(INITIALIZE), request)
 }

@@ -89,7 +89,6 @@ pub struct ChildEnds<'a> {
 
 impl ForkServers {
     /// Starts no server yet.
-    #[must_use]
     pub fn new(mode: ForkMode) -> Self {
         Self { mode, seen: Vec::new(), servers: Vec::new(), refused: Vec::new() }
     }

@@ -31,7 +31,6 @@ pub struct Launch {
 
 impl Launch {
     /// A process that [`Launch::start`] will start.
-    #[must_use]
     pub fn new(request: SpawnRequest, scope: String, scratch_dir: &Path) -> Self {
         let stack_file = scratch_dir.join(format!("{scope}.stack"));
         Self { request, scope, stack_file, cgroup: None, ahead: None }
@@ -90,13 +89,12 @@ impl Launch {
     }
 
     /// Returns the request with the scope variable.
-    #[must_use]
     pub fn full_request(&self) -> SpawnRequest {
         let mut request = self.request.clone();
         request.env.push((SCOPE_VARIABLE.to_owned(), self.scope.clone()));
         if let Some(greeting) = &mut request.channel {
             // A host without a greeting does not reply, which is reported.
-            *greeting = codec::greeting(&self.stack_file).unwrap_or_default();
+            *greeting = codec::greeting(Some(&self.stack_file)).unwrap_or_default();
         }
         request
     }

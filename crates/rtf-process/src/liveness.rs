@@ -50,7 +50,6 @@ enum ThreadState {
 
 impl LivenessCheck {
     /// Starts a check.
-    #[must_use]
     pub fn new(pid: i32) -> Self {
         Self { pid, settled: HashSet::new(), running: HashMap::new(), polls: 0 }
     }

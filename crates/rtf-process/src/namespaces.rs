@@ -25,7 +25,6 @@ impl Eq for Namespaces {}
 impl Namespaces {
     /// Creates the value from the descriptors of the network's namespace and, if any,
     /// the user's.
-    #[must_use]
     pub fn new(descriptors: Vec<OwnedFd>) -> Option<Self> {
         let mut descriptors = descriptors.into_iter();
         Some(Self { net: descriptors.next()?, user: descriptors.next() })

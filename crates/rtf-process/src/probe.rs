@@ -51,16 +51,15 @@ pub enum ProbeTarget {
     Tcp(String),
     /// An HTTP GET of the URL returns a 2xx status.
     Http(String),
-    /// The program exits with code 0.
-    Command(Vec<String>),
     /// The file exists.
     File(PathBuf),
-    /// The program exits with code 0; otherwise its output is the reason.
-    ExplainingCommand {
+    /// The program exits with code 0.
+    Command {
         /// The program and its arguments.
         command: Vec<String>,
-        /// The probed object, for messages: "ros-topic `/chatter`".
-        subject: String,
+        /// The probed object, for messages: "ros-topic `/chatter`". Set for a program that
+        /// prints the reason why the probe does not pass.
+        subject: Option<String>,
     },
 }
 
@@ -77,7 +76,7 @@ impl ProbeSelection {
     pub(crate) fn of(self, probes: &[ProbeSpec]) -> Vec<ProbeSpec> {
         let is_selected = |probe: &&ProbeSpec| match probe.target {
             ProbeTarget::Tcp(_) | ProbeTarget::Http(_) | ProbeTarget::File(_) => true,
-            ProbeTarget::Command(_) | ProbeTarget::ExplainingCommand { .. } => self == Self::All,
+            ProbeTarget::Command { .. } => self == Self::All,
         };
         probes.iter().filter(is_selected).cloned().collect()
     }
@@ -153,9 +152,8 @@ impl Prober {
                 },
                 ProbeTarget::Http(url) => check_http(network, url).await,
                 ProbeTarget::File(path) => before.check(path),
-                ProbeTarget::Command(command) => self.check_command(command).await,
-                ProbeTarget::ExplainingCommand { command, subject } => {
-                    self.check_explaining_command(command, subject).await
+                ProbeTarget::Command { command, subject } => {
+                    self.check_command(command, subject.as_deref()).await
                 }
             }
         };
@@ -165,25 +163,18 @@ impl Prober {
         }
     }
 
-    async fn check_command(&self, command: &[String]) -> Result<(), String> {
+    async fn check_command(&self, command: &[String], subject: Option<&str>) -> Result<(), String> {
+        let streams = if subject.is_some() { Streams::StdoutOnly } else { Streams::None };
         let shown = shown(command);
-        match self.run(command, Streams::None).await {
-            Ok((ExitStatus::Code(0), _)) => Ok(()),
-            Ok((status, _)) => Err(format!("`{shown}` ended with {status}")),
-            Err(error) => Err(format!("`{shown}` cannot run: {error}")),
-        }
-    }
-
-    async fn check_explaining_command(
-        &self,
-        command: &[String],
-        subject: &str,
-    ) -> Result<(), String> {
-        match self.run(command, Streams::StdoutOnly).await {
-            Ok((ExitStatus::Code(0), _)) => Ok(()),
-            Ok((_, reason)) if !reason.is_empty() => Err(reason),
-            Ok((status, _)) => Err(format!("the program that asks {subject} ended with {status}")),
-            Err(error) => Err(format!("{subject} cannot be asked: {error}")),
+        match (self.run(command, streams).await, subject) {
+            (Ok((ExitStatus::Code(0), _)), _) => Ok(()),
+            (Ok((_, reason)), Some(_)) if !reason.is_empty() => Err(reason),
+            (Ok((status, _)), None) => Err(format!("`{shown}` ended with {status}")),
+            (Ok((status, _)), Some(subject)) => {
+                Err(format!("the program that asks {subject} ended with {status}"))
+            }
+            (Err(error), None) => Err(format!("`{shown}` cannot run: {error}")),
+            (Err(error), Some(subject)) => Err(format!("{subject} cannot be asked: {error}")),
         }
     }
 
@@ -217,8 +208,8 @@ fn subject(probe: &ProbeSpec) -> String {
         ProbeTarget::Tcp(address) => address.clone(),
         ProbeTarget::Http(url) => url.clone(),
         ProbeTarget::File(path) => path.display().to_string(),
-        ProbeTarget::Command(command) => format!("`{}`", shown(command)),
-        ProbeTarget::ExplainingCommand { subject, .. } => subject.clone(),
+        ProbeTarget::Command { subject: Some(subject), .. } => subject.clone(),
+        ProbeTarget::Command { command, .. } => format!("`{}`", shown(command)),
     }
 }
 

@@ -95,7 +95,6 @@ fn reserve_size() -> usize {
 }
 
 /// Whether the error means that no descriptor is left.
-#[must_use]
 pub fn is_exhausted(error: &io::Error) -> bool {
     matches!(error.raw_os_error(), Some(libc::EMFILE | libc::ENFILE))
 }

@@ -76,7 +76,6 @@ impl Spawner {
     }
 
     /// Requests the start of a process, without waiting for it.
-    #[must_use]
     pub fn begin(&self, request: SpawnRequest) -> oneshot::Receiver<io::Result<StartedProcess>> {
         let (reply, started) = oneshot::channel();
         // Without the thread, the receiver reports it.

@@ -48,7 +48,6 @@ pub struct RemoteCommand<'a> {
 
 /// Returns the `ssh` command that runs a remote command with these variables. Its process
 /// needs a channel.
-#[must_use]
 pub fn command(remote: RemoteCommand<'_>, env: &[(String, String)]) -> Vec<String> {
     let mut command = remote.ssh.to_vec();
     for option in OPTIONS {
@@ -64,13 +63,11 @@ pub fn command(remote: RemoteCommand<'_>, env: &[(String, String)]) -> Vec<Strin
 }
 
 /// Whether a command is one of [`command`].
-#[must_use]
 pub fn is_remote(command: &[String]) -> bool {
     command.last().is_some_and(|line| line.starts_with(START.as_str()))
 }
 
 /// Returns the line that sends a signal to a remote process over its channel.
-#[must_use]
 pub fn signal_line(signal: i32) -> Vec<u8> {
     format!("{}\n", portable_name(signal)).into_bytes()
 }

@@ -26,14 +26,12 @@ const CLOSED: i32 = 125;
 pub const GO: &[u8] = b"go\n";
 
 /// Puts a command behind a gate. Its process needs a channel as its standard input.
-#[must_use]
 pub fn behind(command: &[String]) -> Vec<String> {
     let gate = [PROGRAM, WAIT_ARGUMENT].into_iter().map(str::to_owned);
     gate.chain(command.iter().cloned()).collect()
 }
 
 /// Whether a command waits behind a gate.
-#[must_use]
 pub fn is_behind(command: &[String]) -> bool {
     command.get(1).is_some_and(|first| first == WAIT_ARGUMENT)
 }

@@ -13,7 +13,7 @@ use std::os::fd::AsRawFd;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{LazyLock, Mutex, PoisonError};
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use rtf_model::LeakedProcess;
@@ -35,6 +35,10 @@ const EXEC_POLL_INTERVAL: Duration = Duration::from_micros(200);
 /// The processes that the runner started, and for which it will wait.
 static OWN_CHILDREN: LazyLock<Mutex<HashSet<i32>>> = LazyLock::new(Mutex::default);
 
+fn own_children() -> MutexGuard<'static, HashSet<i32>> {
+    OWN_CHILDREN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// Odd while a process is being started: it is already a child, but not yet registered.
 static STARTS: AtomicUsize = AtomicUsize::new(0);
 
@@ -44,7 +48,7 @@ pub fn start_own_child<T>(start: impl FnOnce() -> T, pid_of: impl FnOnce(&T) -> 
     STARTS.fetch_add(1, Ordering::SeqCst);
     let started = start();
     if let Some(pid) = pid_of(&started) {
-        OWN_CHILDREN.lock().unwrap_or_else(PoisonError::into_inner).insert(pid);
+        own_children().insert(pid);
     }
     STARTS.fetch_add(1, Ordering::SeqCst);
     started
@@ -52,12 +56,12 @@ pub fn start_own_child<T>(start: impl FnOnce() -> T, pid_of: impl FnOnce(&T) -> 
 
 /// Unregisters a process for which the runner has waited.
 pub fn remove_own_child(pid: i32) {
-    OWN_CHILDREN.lock().unwrap_or_else(PoisonError::into_inner).remove(&pid);
+    own_children().remove(&pid);
 }
 
 /// Whether the runner started a process and has not waited for it yet.
 pub fn is_own_child(pid: i32) -> bool {
-    OWN_CHILDREN.lock().unwrap_or_else(PoisonError::into_inner).contains(&pid)
+    own_children().contains(&pid)
 }
 
 /// Kills a process, its group, and everything below it.
@@ -71,27 +75,23 @@ pub fn kill_tree(root: i32) {
 }
 
 /// Kills the orphans of a scope and everything below them. Returns the killed processes.
-#[must_use]
 pub fn sweep(scope: &str, effort: Effort) -> Vec<LeakedProcess> {
     sweep_if(effort, |pid| scope_of(pid).is_some_and(|found| found == scope.as_bytes()))
 }
 
 /// Kills every process below this one, including those for which the runner waits.
-#[must_use]
 pub fn kill_everything() -> Vec<LeakedProcess> {
-    OWN_CHILDREN.lock().unwrap_or_else(PoisonError::into_inner).clear();
+    own_children().clear();
     sweep_all()
 }
 
 /// Kills every process below this one, except those for which the runner waits.
-#[must_use]
 pub fn sweep_all() -> Vec<LeakedProcess> {
     sweep_if(Effort::Once, |_| true)
 }
 
 /// Kills every process below this one, repeatedly until none is left or the limit has
 /// passed. Returns the killed processes.
-#[must_use]
 pub fn kill_until_none_is_left(limit: Duration) -> Vec<LeakedProcess> {
     let end = Instant::now() + limit;
     let mut left = Vec::new();
@@ -112,7 +112,6 @@ pub fn add_new(known: &mut Vec<LeakedProcess>, more: Vec<LeakedProcess>) {
 
 /// Kills the processes below this one whose owner has this prefix, and everything below
 /// them. Returns the killed processes. Reaps none.
-#[must_use]
 pub fn kill_owned(prefix: &str) -> Vec<LeakedProcess> {
     let mut left = Vec::new();
     loop {
@@ -120,10 +119,7 @@ pub fn kill_owned(prefix: &str) -> Vec<LeakedProcess> {
         let own = rustix::process::getpid().as_raw_nonzero().get();
         let owned = descendants(own).into_iter().filter(|pid| !is_zombie(*pid));
         let owned = owned.filter(|pid| owner_of(*pid).is_some_and(|o| o.starts_with(prefix)));
-        let found: Vec<_> = owned
-            .flat_map(|pid| std::iter::once(pid).chain(descendants(pid)))
-            .map(describe)
-            .collect();
+        let found: Vec<_> = owned.flat_map(with_descendants).map(describe).collect();
         let before = left.len();
         add_new(&mut left, found);
         for process in &left[before..] {
@@ -144,14 +140,12 @@ pub fn kill_child(child: i32) {
 }
 
 /// Returns the child of this process with this scope.
-#[must_use]
 pub fn child_of_scope(scope: &str) -> Option<i32> {
     let belongs = |pid: &i32| scope_of(*pid).is_some_and(|found| found == scope.as_bytes());
     children_of(OWN_TASKS).into_iter().find(belongs)
 }
 
 /// Whether a process is a child of this one, alive or not.
-#[must_use]
 pub fn is_child(pid: i32) -> bool {
     children_of(OWN_TASKS).contains(&pid)
 }
@@ -172,17 +166,15 @@ fn is_fork_server(pid: i32) -> bool {
 }
 
 /// Returns a process, the adopted orphans of its scope, and everything below them.
-#[must_use]
 pub fn members(root: i32, scope: &str) -> Vec<i32> {
     let belongs = |pid: &i32| scope_of(*pid).is_some_and(|found| found == scope.as_bytes());
     let orphans =
         children_of(OWN_TASKS).into_iter().filter(|pid| !is_own_child(*pid)).filter(belongs);
     let roots = std::iter::once(root).chain(orphans);
-    roots.flat_map(|root| std::iter::once(root).chain(descendants(root))).collect()
+    roots.flat_map(with_descendants).collect()
 }
 
 /// Returns this user's processes whose scope has this prefix, and everything below them.
-#[must_use]
 pub fn find_by_scope(prefix: &str) -> Vec<LeakedProcess> {
     let own = rustix::process::geteuid().as_raw();
     let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
@@ -198,10 +190,14 @@ pub fn find_by_scope(prefix: &str) -> Vec<LeakedProcess> {
     };
     let mut found = Vec::new();
     for pid in pids.filter(belongs) {
-        let below = std::iter::once(pid).chain(descendants(pid));
+        let below = with_descendants(pid);
         add_new(&mut found, below.filter(|pid| !is_zombie(*pid)).map(describe).collect());
     }
     found
+}
+
+fn with_descendants(root: i32) -> impl Iterator<Item = i32> {
+    std::iter::once(root).chain(descendants(root))
 }
 
 /// Returns everything below a process, parents before children.
@@ -236,7 +232,6 @@ fn is_zombie(pid: i32) -> bool {
 }
 
 /// Whether a process is stopped, by a signal or a debugger.
-#[must_use]
 pub fn is_stopped(pid: i32) -> bool {
     matches!(state_of(pid), Some('T' | 't'))
 }

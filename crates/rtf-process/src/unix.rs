@@ -51,7 +51,6 @@ fn check_proc(shown: io::Result<std::path::PathBuf>, own: u32) -> io::Result<()>
 }
 
 /// Explains that `/proc` is required.
-#[must_use]
 pub fn unreadable_proc(error: io::Error) -> io::Error {
     let text = format!("rtf needs `/proc`, which cannot be read: {error}");
     io::Error::new(error.kind(), text)

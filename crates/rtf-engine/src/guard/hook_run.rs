@@ -6,9 +6,7 @@ use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::time::Instant;
 
-use rtf_model::protocol::{
-    CHANNEL_VARIABLE, Initialize, PROTOCOL_VERSION, Request, SCOPE_VARIABLE,
-};
+use rtf_model::protocol::{CHANNEL_VARIABLE, Request, SCOPE_VARIABLE};
 use rtf_model::{EventKind, TestId, Trigger};
 use rtf_process::namespaces::Namespaces;
 use rtf_process::task::ProcessStream;
@@ -143,12 +141,7 @@ fn spawn(hook: &HookSpec, start: &HookStart, context: &HookContext<'_>) -> io::R
     let mut theirs = None;
     if let Some(plugin) = &hook.plugin {
         let (ours, host) = std::os::unix::net::UnixStream::pair()?;
-        let initialize = Request::Initialize(Initialize {
-            protocol: PROTOCOL_VERSION,
-            rtf: env!("CARGO_PKG_VERSION").to_owned(),
-            stack_file: None,
-        });
-        let mut lines = codec::encode(Some(codec::INITIALIZE), initialize)?;
+        let mut lines = codec::greeting(None)?;
         lines.extend(codec::encode(Some(RUN_REQUEST), Request::RunTest(plugin.clone()))?);
         io::Write::write_all(&mut &ours, &lines)?;
         command.env(CHANNEL_VARIABLE, tree::inheritable(&host)?);

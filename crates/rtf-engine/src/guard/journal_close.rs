@@ -12,7 +12,6 @@ use rtf_model::{Diagnostic, Event, EventKind, HookId, LineSealer, Micros, OrderC
 pub struct TimedEvent {
     /// Its time.
     pub at: Instant,
-    /// The event.
     pub kind: EventKind,
 }
 
@@ -20,7 +19,6 @@ pub struct TimedEvent {
 /// events.
 #[derive(Debug)]
 pub struct FinishedHook {
-    /// The hook.
     pub hook: HookId,
     /// The number of the run, from 1.
     pub number: u64,

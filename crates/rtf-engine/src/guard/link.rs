@@ -42,7 +42,6 @@ impl Link {
     }
 
     /// A runner without a guard.
-    #[must_use]
     pub fn none() -> Self {
         Self::with(None)
     }
@@ -58,7 +57,7 @@ impl Link {
     }
 
     /// Sends a heartbeat, and queued messages.
-    pub fn send_heartbeat(&self) {
+    pub(crate) fn send_heartbeat(&self) {
         if let Some(heartbeat) = &self.heartbeat {
             // Fails if the guard does not read, and has unread heartbeats.
             let _ = rustix::net::send(heartbeat, b".", SendFlags::NOSIGNAL | SendFlags::DONTWAIT);
@@ -73,7 +72,7 @@ impl Link {
     }
 
     /// Waits until messages were lost, because the guard did not read for a long time.
-    pub async fn wait_for_lost_messages(&self) {
+    pub(crate) async fn wait_for_lost_messages(&self) {
         self.messages_lost.notified().await;
     }
 
@@ -83,18 +82,17 @@ impl Link {
 
     /// The run starts; `start` is zero on the clock of its events. `scratch_dir` is its
     /// directory for temporary files.
-    pub fn run_started(&self, journal: &Path, scratch_dir: PathBuf, start: Instant) {
+    pub(crate) fn run_started(&self, journal: &Path, scratch_dir: PathBuf, start: Instant) {
         let started = start.saturating_duration_since(self.forked);
         self.send(&GuardMessage::RunStarted { journal: journal.to_owned(), scratch_dir, started });
     }
 
-    /// The run has finished.
-    pub fn run_finished(&self) {
+    pub(crate) fn run_finished(&self) {
         self.send(&GuardMessage::RunFinished);
     }
 
     /// A suite starts: the guard keeps its exclusive resources, and runs its abort hooks.
-    pub fn suite_started(&self, prepared: &PreparedSuite<'_>) {
+    pub(crate) fn suite_started(&self, prepared: &PreparedSuite<'_>) {
         let suite = &*prepared.plan;
         if let Some(held) = prepared.held_network() {
             let descriptors: Vec<_> = held.network().namespaces().descriptors().collect();
@@ -120,8 +118,7 @@ impl Link {
         self.send_with(&message, fds);
     }
 
-    /// A suite has finished.
-    pub fn suite_finished(&self, prepared: &PreparedSuite<'_>) {
+    pub(crate) fn suite_finished(&self, prepared: &PreparedSuite<'_>) {
         let has_resources = prepared.held_network().is_some() || prepared.locks().next().is_some();
         let has_hooks = !prepared.plan.hooks.is_empty();
         if has_hooks || has_resources {
@@ -132,28 +129,26 @@ impl Link {
         }
     }
 
-    /// A test of a suite starts.
-    pub fn test_started(&self, suite: &SuitePlan, test: TestId, name: &str) {
+    pub(crate) fn test_started(&self, suite: &SuitePlan, test: TestId, name: &str) {
         if !suite.hooks.is_empty() {
             self.send(&GuardMessage::TestStarted { suite: suite.id, test, name: name.to_owned() });
         }
     }
 
-    /// A test of a suite has finished.
-    pub fn test_finished(&self, suite: &SuitePlan, test: TestId) {
+    pub(crate) fn test_finished(&self, suite: &SuitePlan, test: TestId) {
         if !suite.hooks.is_empty() {
             self.send(&GuardMessage::TestFinished { suite: suite.id, test });
         }
     }
 
     /// A hook is about to start. Call it before its process is started.
-    pub fn hook_starting(&self, start: HookStart) {
+    pub(crate) fn hook_starting(&self, start: HookStart) {
         self.send(&GuardMessage::HookStarting(start));
     }
 
     /// A process was started. The guard also keeps the streams of a hook's or fixture's
     /// process, so that it can continue without the runner.
-    pub fn process_started(
+    pub(crate) fn process_started(
         &self,
         source: Source,
         pid: i32,
@@ -170,19 +165,18 @@ impl Link {
     }
 
     /// A hook has finished. Call it before its event is emitted.
-    pub fn hook_finished(&self, hook: HookId, problem: Option<String>) {
+    pub(crate) fn hook_finished(&self, hook: HookId, problem: Option<String>) {
         self.send(&GuardMessage::HookFinished { hook, problem });
     }
 
-    /// A process has ended.
-    pub fn process_ended(&self, source: Source, pid: i32) {
+    pub(crate) fn process_ended(&self, source: Source, pid: i32) {
         if matches!(source, Source::Fixture(_)) && self.has_hooks() {
             self.send(&GuardMessage::FixtureEnded { pid });
         }
     }
 
     /// Waits for the guard's death. Never returns without a guard.
-    pub async fn guard_died(&self) {
+    pub(crate) async fn guard_died(&self) {
         let socket = self.heartbeat.as_ref().and_then(|socket| socket.try_clone().ok());
         match socket.and_then(|socket| tokio::net::UnixStream::from_std(socket).ok()) {
             // The guard never writes: the socket becomes readable at its end.

@@ -33,7 +33,6 @@ pub enum GuardMessage {
     /// Exclusive resources of a suite: the descriptors of its namespaces, or of some of its
     /// locks and leases, come with this line.
     SuiteResources {
-        /// The suite.
         suite: SuiteId,
         /// The number of descriptors.
         descriptors: usize,
@@ -42,46 +41,35 @@ pub enum GuardMessage {
     },
     /// A suite starts.
     SuiteStarted {
-        /// The suite.
         suite: SuiteId,
         /// Its hooks, in their order.
         hooks: Vec<HookSpec>,
     },
     /// A suite has finished; its hooks will not run.
     SuiteFinished {
-        /// The suite.
         suite: SuiteId,
     },
     /// A test starts: all hooks of its suite become due.
     TestStarted {
-        /// Its suite.
         suite: SuiteId,
-        /// The test.
         test: TestId,
-        /// Its name.
         name: String,
     },
-    /// A test has finished.
     TestFinished {
-        /// Its suite.
         suite: SuiteId,
-        /// The test.
         test: TestId,
     },
     /// A hook is about to start.
     HookStarting(HookStart),
     /// The hook's process was started, and waits for its request.
     HookStarted {
-        /// The hook.
         hook: HookId,
         /// Its process.
         pid: i32,
         /// The streams whose descriptors come with this line, in this order.
         streams: Vec<ProcessStream>,
     },
-    /// The hook has finished.
     HookFinished {
-        /// The hook.
         hook: HookId,
         /// Why the robot may not be in a safe state.
         problem: Option<String>,
@@ -100,14 +88,11 @@ pub enum GuardMessage {
     },
 }
 
-/// The start of a hook.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HookStart {
-    /// The hook.
     pub hook: HookId,
     /// The scope of its process.
     pub scope: String,
-    /// The trigger.
     pub trigger: Trigger,
     /// The reason, for users.
     pub reason: String,
@@ -117,7 +102,6 @@ pub struct HookStart {
 
 impl HookStart {
     /// Returns its `hook-started`.
-    #[must_use]
     pub fn event(&self) -> EventKind {
         EventKind::HookStarted {
             hook: self.hook,
@@ -131,11 +115,8 @@ impl HookStart {
 /// A hook as the guard runs it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HookSpec {
-    /// Its id.
     pub id: HookId,
-    /// Its suite.
     pub suite: SuiteId,
-    /// Its name.
     pub name: String,
     /// Whether it runs after the runner's death. Other hooks may only finish.
     pub is_abort_hook: bool,
@@ -153,7 +134,6 @@ pub struct HookSpec {
 
 impl HookSpec {
     /// Converts a planned hook.
-    #[must_use]
     pub fn new(suite: &SuitePlan, plan: &HookPlan) -> Self {
         let mut env = vec![(ENVIRONMENT_VARIABLE.to_owned(), suite.environment.clone())];
         env.extend(suite.env.iter().chain(&plan.env).cloned());

@@ -32,10 +32,12 @@ use std::time::{Duration, Instant};
 
 use rtf_process::resources;
 
-pub use link::{HEARTBEAT_INTERVAL, Link};
-pub use message::HookStart;
+pub(crate) use link::HEARTBEAT_INTERVAL;
+pub use link::Link;
+pub(crate) use message::HookStart;
 pub use recovery::{RecoveredHook, Recovery};
-pub use stop_requests::{StopRequests, WINDOW};
+pub(crate) use stop_requests::StopRequests;
+pub use stop_requests::WINDOW;
 pub use supervisor::{Guard, GuardOutcome};
 pub use unix::survive_file_size_limit;
 

@@ -23,7 +23,6 @@ pub struct RecoveryState {
     pub is_finished: bool,
     /// The hooks of the suites.
     pub hooks: Vec<GuardedHook>,
-    /// The running tests.
     pub tests: RunningTests,
     /// The streams of the fixtures' processes.
     pub fixtures: HashMap<i32, StreamEnds>,
@@ -31,10 +30,8 @@ pub struct RecoveryState {
     pub resources: HashMap<SuiteId, SuiteResources>,
 }
 
-/// The files of a run.
 #[derive(Debug)]
 pub struct RunFiles {
-    /// Its journal.
     pub journal: PathBuf,
     /// Its directory for temporary files.
     pub scratch_dir: PathBuf,
@@ -46,7 +43,6 @@ pub struct RunFiles {
 pub type RunningTests = HashMap<SuiteId, Vec<(TestId, String)>>;
 
 /// Returns the running test of a suite, if there is exactly one.
-#[must_use]
 pub fn only_test(tests: &RunningTests, suite: SuiteId) -> Option<&(TestId, String)> {
     match tests.get(&suite)?.as_slice() {
         [one] => Some(one),
@@ -86,9 +82,7 @@ impl SuiteResources {
 /// A hook and its status.
 #[derive(Debug)]
 pub struct GuardedHook {
-    /// The hook.
     pub spec: HookSpec,
-    /// Its status.
     pub status: HookStatus,
     /// How often it was started.
     pub runs: u64,
@@ -99,7 +93,6 @@ pub struct GuardedHook {
 /// A complete run of a hook under the runner.
 #[derive(Clone, Debug)]
 pub struct FinishedHookRun {
-    /// Its start.
     pub start: HookStart,
     /// The time of its start.
     pub started_at: Instant,
@@ -114,18 +107,15 @@ pub struct FinishedHookRun {
 pub enum HookStatus {
     /// It did not run.
     Due,
-    /// It is running.
     Running(RunningHook),
     /// It ran.
     Done,
-    /// Its suite has finished.
     SuiteFinished,
 }
 
 /// A hook that the runner has started.
 #[derive(Debug)]
 pub struct RunningHook {
-    /// Its start.
     pub start: HookStart,
     /// The time of its start.
     pub at: Instant,

@@ -29,7 +29,6 @@ impl StopRequests {
     }
 
     /// Returns the number of requests.
-    #[must_use]
     pub fn count(&self) -> u32 {
         self.count
     }

@@ -90,7 +90,6 @@ impl Guard {
     }
 
     /// Waits for the end of the runner, and recovers if it died.
-    #[must_use]
     pub fn supervise(mut self) -> GuardOutcome {
         let status = loop {
             self.wait();

@@ -135,7 +135,6 @@ impl GuardSignals {
     }
 
     /// Whether hooks are killed.
-    #[must_use]
     pub fn requests_kill(&self) -> bool {
         self.requests.count() >= KILL_REQUESTS
     }

@@ -45,7 +45,6 @@ pub struct Lease {
 }
 
 impl Lease {
-    /// Returns the number.
     pub fn number(&self) -> u16 {
         self.number
     }

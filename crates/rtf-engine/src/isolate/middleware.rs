@@ -15,7 +15,6 @@ pub const PORTS: [&str; 2] = [ROS_MASTER, GAZEBO_MASTER];
 /// The values of the variables.
 #[derive(Clone, Copy, Debug)]
 pub struct MiddlewareIds<'a> {
-    /// The run.
     pub run: &'a str,
     /// The run's directory.
     pub run_dir: &'a Path,

@@ -126,13 +126,11 @@ impl<'p> PreparedSuite<'p> {
     }
 
     /// Returns the network of its processes.
-    #[must_use]
     pub fn network(&self) -> Option<Network> {
         self.network.as_ref().map(|held| held.network().clone())
     }
 
     /// Returns the network with its holder.
-    #[must_use]
     pub fn held_network(&self) -> Option<&HeldNetwork> {
         self.network.as_ref()
     }

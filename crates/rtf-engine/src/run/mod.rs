@@ -25,7 +25,7 @@ use rtf_model::{
 };
 use tokio::sync::watch;
 
-pub use context::RunContext;
+use context::RunContext;
 use fail_limit::FailLimit;
 use suite_queue::SuiteQueue;
 use suite_task::SuiteRequests;

@@ -17,10 +17,10 @@ fn probe(plan: &plan::Probe) -> Option<ProbeSpec> {
     let target = match plan.kind.clone() {
         plan::ProbeKind::Tcp(address) => ProbeTarget::Tcp(address),
         plan::ProbeKind::Http(url) => ProbeTarget::Http(url),
-        plan::ProbeKind::Command(command) => ProbeTarget::Command(command),
+        plan::ProbeKind::Command(command) => ProbeTarget::Command { command, subject: None },
         plan::ProbeKind::File(path) => ProbeTarget::File(path),
         plan::ProbeKind::Middleware { command, subject } => {
-            ProbeTarget::ExplainingCommand { command, subject }
+            ProbeTarget::Command { command, subject: Some(subject) }
         }
         plan::ProbeKind::Log(_) => return None,
     };

@@ -23,7 +23,6 @@ const MAX_FILES: usize = 256;
 ///
 /// A host that reports nothing for `limit` is killed, and the plug-in that it was loading is
 /// reported.
-#[must_use]
 pub fn verify(draft: PlanDraft, limit: Duration) -> PlanOutcome {
     let answers = check(draft.check_groups(), limit);
     draft.finish(answers)

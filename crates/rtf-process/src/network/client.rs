@@ -45,7 +45,6 @@ pub struct Network {
 
 impl Network {
     /// Its namespaces.
-    #[must_use]
     pub fn namespaces(&self) -> &Arc<Namespaces> {
         &self.namespaces
     }
@@ -144,7 +143,6 @@ impl HeldNetwork {
     }
 
     /// Returns the namespace.
-    #[must_use]
     pub fn network(&self) -> &Network {
         &self.network
     }

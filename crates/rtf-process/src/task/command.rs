@@ -31,7 +31,6 @@ pub enum ProcessCommand {
 
 impl ProcessCommand {
     /// Whether it is a step of a stop, whose deadlines are not paused.
-    #[must_use]
     pub fn stops(&self) -> bool {
         matches!(
             self,

@@ -6,7 +6,6 @@ use std::collections::HashMap;
 use crate::codec::LINE_LIMIT;
 use crate::unix::Sender;
 
-/// The writer of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LineWriter {
     /// The process that carries out requests.
