@@ -18,7 +18,7 @@ pub enum ProcessCommand {
     /// Send nothing more.
     CloseChannel,
     /// Dump the stacks of its threads.
-    TakeStack(StackSupport),
+    DumpStack(StackSupport),
     /// Send a signal to its process group.
     Signal(i32),
     /// Kill it and everything below it.
@@ -35,7 +35,7 @@ impl ProcessCommand {
         matches!(
             self,
             Self::Send(_, Request::Interrupt { .. })
-                | Self::TakeStack(_)
+                | Self::DumpStack(_)
                 | Self::Signal(_)
                 | Self::KillTree
         )

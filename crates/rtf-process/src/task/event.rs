@@ -17,13 +17,13 @@ pub enum ProcessEvent {
     /// It could not be started.
     SpawnFailed(String),
     /// It sent a notification.
-    Told(Notification),
+    Notified(Notification),
     /// It attached a file; the result of copying it into the run's directory.
     Attached(Result<Attachment, String>),
     /// It replied to a request.
-    Answered(u64, Reply<serde_json::Value>),
+    Replied(u64, Reply<serde_json::Value>),
     /// It violated the protocol.
-    Garbage(String),
+    ProtocolViolated(String),
     /// Its channel is not read for a while, because too much of its output waits to be
     /// reported: its deadlines are paused.
     Throttled,
@@ -32,30 +32,30 @@ pub enum ProcessEvent {
     /// It printed to an output.
     Printed(Stream, Vec<u8>),
     /// All `ready` probes have passed.
-    ProbesHold,
+    ProbesPassed,
     /// A `ready` probe does not pass yet; sent once for each reason.
-    ProbeWaits(String),
+    ProbePending(String),
     /// An `alive` probe failed.
     ProbeFailed(String),
     /// The resources that it and everything below it use.
-    Uses {
+    ResourcesMeasured {
         /// The usage.
         usage: Usage,
         /// The number of tests served, for a shared host.
         tests_served: Option<u32>,
     },
     /// It is alive, its probes pass, and all its earlier messages were delivered.
-    Lives,
+    Alive,
     /// It is dying; its end follows.
-    Dies,
+    Dying,
     /// The stacks of its threads, or why there are none.
-    StackTaken(String),
+    StackDumped(String),
     /// Its assignment has finished, and all its output was delivered. The host continues
     /// with the next one. The last event of this id.
     Released,
     /// Its host served earlier assignments and ended before this one began. The last event
     /// of this id.
-    Unbegun(ExitStatus),
+    NotStarted(ExitStatus),
     /// It ended, all its output was delivered, and its leftover processes were killed. The
     /// last event of this id.
     Exited(ExitStatus, Vec<LeakedProcess>),

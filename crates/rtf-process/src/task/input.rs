@@ -69,7 +69,7 @@ impl ProcessTask {
         self.deliver().await;
         if whole == Err(TooLong) && !self.has_no_assignment() {
             let what = format!("it wrote a line of more than {LINE_LIMIT} bytes");
-            self.report(ProcessEvent::Garbage(what)).await;
+            self.report(ProcessEvent::ProtocolViolated(what)).await;
         }
     }
 
@@ -94,9 +94,9 @@ impl ProcessTask {
             Ok(HostMessage::Notification(Notification::Attached(attachment))) => {
                 return self.store_attachment(attachment).await;
             }
-            Ok(HostMessage::Notification(notification)) => ProcessEvent::Told(notification),
-            Ok(HostMessage::Reply(id, reply)) => ProcessEvent::Answered(id, reply),
-            Err(what) => ProcessEvent::Garbage(what),
+            Ok(HostMessage::Notification(notification)) => ProcessEvent::Notified(notification),
+            Ok(HostMessage::Reply(id, reply)) => ProcessEvent::Replied(id, reply),
+            Err(what) => ProcessEvent::ProtocolViolated(what),
         };
         self.report(event).await;
     }

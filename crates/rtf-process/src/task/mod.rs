@@ -223,7 +223,7 @@ impl ProcessTask {
                 });
             }
             ProcessCommand::KillTree => self.job.launch.kill(&self.process),
-            ProcessCommand::TakeStack(support) => self.take_stack(support),
+            ProcessCommand::DumpStack(support) => self.dump_stack(support),
             ProcessCommand::WatchAlive => self.watch_alive(),
             ProcessCommand::CheckAlive(selection) => self.check = Some(selection),
         }
@@ -263,7 +263,7 @@ impl ProcessTask {
         }
     }
 
-    fn take_stack(&mut self, support: StackSupport) {
+    fn dump_stack(&mut self, support: StackSupport) {
         if support == StackSupport::Message {
             self.send(None, Request::DumpStack {});
         }
@@ -271,7 +271,7 @@ impl ProcessTask {
         let (spawner, file) = (self.context.spawner.clone(), self.job.launch.stack_file.clone());
         self.background.spawn(async move {
             let text = stack_dump::dump(pid, support, &file, &spawner).await;
-            drop(events.send((host, ProcessEvent::StackTaken(text))).await);
+            drop(events.send((host, ProcessEvent::StackDumped(text))).await);
         });
     }
 

@@ -25,12 +25,12 @@ impl ProbeReporter {
             while let Err(reason) = self.prober.check(probe, &before).await {
                 if reason != reported {
                     reported.clone_from(&reason);
-                    self.report(ProcessEvent::ProbeWaits(reason)).await;
+                    self.report(ProcessEvent::ProbePending(reason)).await;
                 }
                 tokio::time::sleep(probe.interval).await;
             }
         }
-        self.report(ProcessEvent::ProbesHold).await;
+        self.report(ProcessEvent::ProbesPassed).await;
     }
 
     /// Reports when one of these probes fails.
@@ -43,7 +43,7 @@ impl ProbeReporter {
     pub(super) async fn check_alive(self, probes: Vec<ProbeSpec>, check: Option<LivenessCheck>) {
         let event = match (self.prober.check_all(&probes).await, check) {
             (Ok(()), Some(mut check)) => liveness_event(check.wait().await),
-            (Ok(()), None) => ProcessEvent::Lives,
+            (Ok(()), None) => ProcessEvent::Alive,
             (Err(reason), _) => ProcessEvent::ProbeFailed(reason),
         };
         self.report(event).await;
@@ -85,7 +85,7 @@ impl ProcessTask {
 
     pub(super) async fn report_usage(&self, tests_served: Option<u32>) {
         let usage = usage::measure(self.process.pid, &self.job.launch.scope);
-        self.report(ProcessEvent::Uses { usage, tests_served }).await;
+        self.report(ProcessEvent::ResourcesMeasured { usage, tests_served }).await;
     }
 
     fn probe_reporter(&self) -> ProbeReporter {
@@ -100,5 +100,5 @@ impl ProcessTask {
 }
 
 fn liveness_event(is_alive: bool) -> ProcessEvent {
-    if is_alive { ProcessEvent::Lives } else { ProcessEvent::Dies }
+    if is_alive { ProcessEvent::Alive } else { ProcessEvent::Dying }
 }

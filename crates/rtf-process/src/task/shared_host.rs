@@ -232,7 +232,7 @@ impl ProcessTask {
             && let Some(next) = shared.pending.pop_front()
         {
             self.job.host = next.host;
-            return ProcessEvent::Unbegun(status);
+            return ProcessEvent::NotStarted(status);
         }
         ProcessEvent::Exited(status, left)
     }
@@ -247,11 +247,11 @@ impl ProcessTask {
     ) {
         let pending = self.shared.take().map(|shared| shared.pending);
         for next in pending.into_iter().flatten() {
-            drop(self.events.send((next.host, ProcessEvent::Unbegun(status))).await);
+            drop(self.events.send((next.host, ProcessEvent::NotStarted(status))).await);
         }
         while let Some(command) = commands.recv().await {
             if let ProcessCommand::Assign(next) = command {
-                drop(self.events.send((next.host, ProcessEvent::Unbegun(status))).await);
+                drop(self.events.send((next.host, ProcessEvent::NotStarted(status))).await);
             }
         }
     }

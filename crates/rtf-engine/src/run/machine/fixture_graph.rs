@@ -8,7 +8,7 @@ use rtf_model::protocol::{Request, Subscription};
 
 use super::context::Context;
 use super::fixture::{FixtureRun, FixtureStage};
-use super::io::{HostId, Probes};
+use super::io::{HostId, ProbeSelection};
 use rtf_plan::plan::SuitePlan;
 
 /// The fixtures of a suite, in the order of its plan.
@@ -145,7 +145,11 @@ impl<'p> FixtureGraph<'p> {
     }
 
     /// Examines all ready fixtures; returns their indices and the examinations' numbers.
-    pub fn examine_all(&mut self, probes: Probes, cx: &mut Context<'_>) -> Vec<(usize, u64)> {
+    pub fn examine_all(
+        &mut self,
+        probes: ProbeSelection,
+        cx: &mut Context<'_>,
+    ) -> Vec<(usize, u64)> {
         let all = self.runs.iter_mut().enumerate();
         let ready = all.filter(|(_, fixture)| fixture.stage() == FixtureStage::Ready);
         ready.map(|(index, fixture)| (index, fixture.examine(probes, cx))).collect()

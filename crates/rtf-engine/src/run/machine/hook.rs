@@ -5,7 +5,7 @@ use rtf_model::{EventKind, ExitStatus, LeakedProcess, Source, TestId, Trigger};
 
 use super::context::Context;
 use super::escalation::{KILL_WAIT, MAX_KILLS, SIGTERM, TERM_GRACE};
-use super::io::{Deadline, Effect, HostId, HostInput, Program, Start, environment};
+use super::io::{Deadline, Effect, HostId, ProcessEvent, Program, Start, environment};
 use super::output_capture::OutputCapture;
 use crate::hook::{HookJudgement, RUN_REQUEST, request, trigger_variables};
 use rtf_plan::plan::{HookBody, HookPlan, SuitePlan};
@@ -53,27 +53,27 @@ impl<'p> HookProcess<'p> {
     }
 
     /// True once it has ended.
-    pub fn handle(&mut self, input: HostInput, cx: &mut Context<'_>) -> bool {
+    pub fn handle(&mut self, input: ProcessEvent, cx: &mut Context<'_>) -> bool {
         match input {
-            HostInput::SpawnFailed(reason) => {
+            ProcessEvent::SpawnFailed(reason) => {
                 self.judgement.fail(reason);
                 self.end(None, Vec::new(), cx);
                 return true;
             }
-            HostInput::Exited(status, leaked) => {
+            ProcessEvent::Exited(status, leaked) => {
                 self.end(Some(status), leaked, cx);
                 return true;
             }
-            HostInput::Told(notification) => {
+            ProcessEvent::Notified(notification) => {
                 self.judgement.notified(&notification);
                 if let Notification::Message(message) = notification {
                     let source = Source::Hook(self.plan.id);
                     cx.emit(EventKind::Message { source, message, test: None });
                 }
             }
-            HostInput::Answered(RUN_REQUEST, reply) => self.judgement.replied(reply),
-            HostInput::Garbage(what) => self.judgement.protocol_violated(&what),
-            HostInput::Printed(stream, bytes) => self.output.push(stream, &bytes, cx),
+            ProcessEvent::Replied(RUN_REQUEST, reply) => self.judgement.replied(reply),
+            ProcessEvent::ProtocolViolated(what) => self.judgement.protocol_violated(&what),
+            ProcessEvent::Printed(stream, bytes) => self.output.push(stream, &bytes, cx),
             _ => {}
         }
         false

@@ -7,7 +7,7 @@ use rtf_model::{TestId, Trigger, Verdict};
 
 use super::context::Context;
 use super::hook::{HookProcess, TriggeredHook, report_not_run};
-use super::io::{HostId, HostInput};
+use super::io::{HostId, ProcessEvent};
 use crate::hook::{HOOK_KILLED, HOOK_NOT_RUN};
 use rtf_plan::plan::SuitePlan;
 
@@ -95,7 +95,7 @@ impl<'p> HookQueue<'p> {
         self.running.as_ref().is_some_and(|hook| hook.host() == host)
     }
 
-    pub fn handle(&mut self, input: HostInput, cx: &mut Context<'_>) {
+    pub fn handle(&mut self, input: ProcessEvent, cx: &mut Context<'_>) {
         self.running.take_if(|hook| hook.handle(input, cx));
     }
 

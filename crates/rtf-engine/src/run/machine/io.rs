@@ -10,8 +10,8 @@ use rtf_model::{EventKind, Source, TestId};
 use rtf_plan::plan::{AttachedPlan, HostPlan, ProcessPlan, SuitePlan};
 
 pub use crate::control::{Stop, StopLevel};
-pub use rtf_process::probe::ProbeSelection as Probes;
-pub use rtf_process::task::{HostId, ProcessEvent as HostInput};
+pub use rtf_process::probe::ProbeSelection;
+pub use rtf_process::task::{HostId, ProcessEvent};
 
 /// An input.
 #[derive(Debug)]
@@ -19,7 +19,7 @@ pub enum Input {
     /// The suite starts; once. Only `Stop` and `Skip` may come earlier.
     Start,
     /// An event of a process.
-    Host(HostId, HostInput),
+    Host(HostId, ProcessEvent),
     /// A deadline has passed.
     Deadline(Deadline),
     /// A reading of the suite's simulated clock.
@@ -145,8 +145,8 @@ pub enum Effect {
     Send(HostId, Option<u64>, Request),
     /// Close the channel: the host ends after the present request.
     CloseChannel(HostId),
-    /// Take a stack dump. Answered by [`HostInput::StackTaken`] or a `stack` notification.
-    TakeStack(HostId, StackSupport),
+    /// Take a stack dump. Answered by [`ProcessEvent::StackDumped`] or a `stack` notification.
+    DumpStack(HostId, StackSupport),
     /// Send a signal to the process and its group.
     Signal(HostId, i32),
     /// Kill the process and all descendants.
@@ -154,8 +154,8 @@ pub enum Effect {
     /// Run the `alive` probes of a fixture periodically from now on.
     WatchAlive(HostId),
     /// Check whether the process is alive and its `alive` probes succeed. Answered by
-    /// [`HostInput::Lives`], [`HostInput::Dies`], [`HostInput::ProbeFailed`] or its end.
-    LookAlive(HostId, Probes),
+    /// [`ProcessEvent::Alive`], [`ProcessEvent::Dying`], [`ProcessEvent::ProbeFailed`] or its end.
+    CheckAlive(HostId, ProbeSelection),
     /// Set a deadline, as a time of the run.
     SetDeadline(Deadline, Duration),
     /// Clear a deadline.

@@ -14,7 +14,7 @@ use super::context::{RunContext, attachments_dir};
 use super::control_queue::ControlQueue;
 use super::deadlines::Deadlines;
 use super::fail_limit::FailLimit;
-use super::machine::{Effect, HostId, HostInput, Input, Stop, SuiteMachine};
+use super::machine::{Effect, HostId, Input, ProcessEvent, Stop, SuiteMachine};
 use crate::control::Controls;
 use crate::events::Events;
 use crate::guard::HookStart;
@@ -94,7 +94,7 @@ struct SuiteTask<'a> {
     /// both has happened.
     changing_ids: HashSet<HostId>,
     /// Inputs that replace the events of ended tasks.
-    substitutes: Vec<(HostId, HostInput)>,
+    substitutes: Vec<(HostId, ProcessEvent)>,
     /// Hosts that were started ahead of time.
     prelaunched: Vec<Launch>,
     /// The start of the next hook, whose scope is not known yet.
@@ -112,7 +112,7 @@ struct SuiteTask<'a> {
 impl SuiteTask<'_> {
     async fn run(
         &mut self,
-        mut queue: mpsc::Receiver<(HostId, HostInput)>,
+        mut queue: mpsc::Receiver<(HostId, ProcessEvent)>,
         SuiteRequests { mut stops, controls, .. }: SuiteRequests,
     ) {
         let stop = stops.borrow_and_update().clone();
@@ -142,7 +142,7 @@ impl SuiteTask<'_> {
     }
 
     /// Handles the events that arrived with the last one: often there are several.
-    fn handle_batch(&mut self, queue: &mut mpsc::Receiver<(HostId, HostInput)>) {
+    fn handle_batch(&mut self, queue: &mut mpsc::Receiver<(HostId, ProcessEvent)>) {
         for _ in 0..BATCH {
             match queue.try_recv() {
                 Ok((host, input)) if !self.is_done => self.host_input(host, input),
@@ -179,11 +179,11 @@ impl SuiteTask<'_> {
         }
     }
 
-    fn host_input(&mut self, host: HostId, input: HostInput) {
-        use HostInput::{Exited, Released, Resumed, SpawnFailed, Throttled, Unbegun};
+    fn host_input(&mut self, host: HostId, input: ProcessEvent) {
+        use ProcessEvent::{Exited, NotStarted, Released, Resumed, SpawnFailed, Throttled};
         let now = self.events.now();
         match &input {
-            Exited(..) | SpawnFailed(_) | Unbegun(_) => {
+            Exited(..) | SpawnFailed(_) | NotStarted(_) => {
                 self.commands.remove(&host);
                 self.deadlines.forget(host, now, self.plan);
             }
@@ -241,7 +241,7 @@ impl SuiteTask<'_> {
                         let _ = commands.send(ProcessCommand::Assign(assignment));
                         self.commands.insert(host, (source, commands));
                     }
-                    None => self.substitutes.push((host, HostInput::Unbegun(UNKNOWN_STATUS))),
+                    None => self.substitutes.push((host, ProcessEvent::NotStarted(UNKNOWN_STATUS))),
                 }
                 self.retire_id(on);
             }
@@ -250,13 +250,13 @@ impl SuiteTask<'_> {
                 self.command(host, ProcessCommand::Send(id, request))
             }
             Effect::CloseChannel(host) => self.command(host, ProcessCommand::CloseChannel),
-            Effect::TakeStack(host, support) => {
-                self.command(host, ProcessCommand::TakeStack(support))
+            Effect::DumpStack(host, support) => {
+                self.command(host, ProcessCommand::DumpStack(support))
             }
             Effect::Signal(host, signal) => self.command(host, ProcessCommand::Signal(signal)),
             Effect::KillTree(host) => self.kill(host),
             Effect::WatchAlive(host) => self.command(host, ProcessCommand::WatchAlive),
-            Effect::LookAlive(host, probes) => {
+            Effect::CheckAlive(host, probes) => {
                 self.command(host, ProcessCommand::CheckAlive(probes))
             }
             Effect::Done => self.is_done = true,
@@ -298,7 +298,7 @@ impl SuiteTask<'_> {
     fn kill(&mut self, host: HostId) {
         let commands = self.commands.get(&host);
         if commands.is_none_or(|(_, commands)| commands.send(ProcessCommand::KillTree).is_err()) {
-            self.substitutes.push((host, HostInput::Exited(UNKNOWN_STATUS, Vec::new())));
+            self.substitutes.push((host, ProcessEvent::Exited(UNKNOWN_STATUS, Vec::new())));
         }
     }
 }

@@ -6,7 +6,7 @@ use rtf_model::TestId;
 
 use super::SuiteMachine;
 use crate::run::machine::context::Context;
-use crate::run::machine::io::Probes;
+use crate::run::machine::io::ProbeSelection;
 use crate::run::machine::test::TestRun;
 
 /// Which examinations each finished test waits for: fixture indices and numbers.
@@ -24,7 +24,11 @@ impl SuiteMachine<'_> {
         if is_due && !is_pending {
             // Slow probes run only after the last test: otherwise the next test's check
             // finds a collapse, and the run is not green.
-            let probes = if self.scheduler.is_last(test) { Probes::All } else { Probes::Quick };
+            let probes = if self.scheduler.is_last(test) {
+                ProbeSelection::All
+            } else {
+                ProbeSelection::Quick
+            };
             let examinations = self.fixtures.examine_all(probes, cx);
             self.examinations.pending.push((test, examinations));
             self.confirm_passed();

@@ -21,7 +21,7 @@ use super::context::Context;
 use super::fixture::FixtureFailure;
 use super::fixture_graph::FixtureGraph;
 use super::hook_queue::HookQueue;
-use super::io::{Deadline, Effect, HostId, HostInput, Input};
+use super::io::{Deadline, Effect, HostId, Input, ProcessEvent};
 use crate::run::FailLimit;
 use examinations::Examinations;
 use rtf_plan::plan::{Preparation, SuitePlan};
@@ -142,12 +142,12 @@ impl<'p> SuiteMachine<'p> {
         self.is_ending = true;
     }
 
-    fn on_host_input(&mut self, host: HostId, input: HostInput, cx: &mut Context<'_>) {
+    fn on_host_input(&mut self, host: HostId, input: ProcessEvent, cx: &mut Context<'_>) {
         if let Some(run) = self.scheduler.run_of_host(host) {
             let test = run.id();
             match input {
-                HostInput::Unbegun(status) => self.restart_in_new_host(test, status, cx),
-                HostInput::Exited(status, _) if run.is_released() => {
+                ProcessEvent::NotStarted(status) => self.restart_in_new_host(test, status, cx),
+                ProcessEvent::Exited(status, _) if run.is_released() => {
                     run.on_released_host_exit();
                     self.warn_host_exited(status, cx);
                 }
@@ -156,7 +156,7 @@ impl<'p> SuiteMachine<'p> {
             self.examine_fixtures(test, cx);
             self.scheduler.assign_ahead(test, cx);
         } else if let Some(index) = self.fixtures.index_of(host) {
-            if matches!(input, HostInput::Dies) {
+            if matches!(input, ProcessEvent::Dying) {
                 self.on_fixture_dying(index, cx);
             }
             let failure = self.fixtures.get(index).handle(input, cx);
@@ -164,7 +164,7 @@ impl<'p> SuiteMachine<'p> {
             self.confirm_passed();
         } else if self.hooks.owns(host) {
             self.hooks.handle(input, cx);
-        } else if let HostInput::Exited(status, _) = input {
+        } else if let ProcessEvent::Exited(status, _) = input {
             self.on_idle_host_exit(host, status, cx);
         }
     }

@@ -13,7 +13,7 @@ use rtf_model::{EventKind, Phase, Source, StopCause, TestId, Verdict};
 
 use crate::run::machine::context::Context;
 use crate::run::machine::host_replies::{parse_answer, parse_initialized};
-use crate::run::machine::io::{Deadline, Effect, HostId, HostInput, TestTimer};
+use crate::run::machine::io::{Deadline, Effect, HostId, ProcessEvent, TestTimer};
 use crate::run::machine::judge::Evidence;
 use crate::run::machine::output_capture::OutputCapture;
 use host::{HostChoice, TestRequest};
@@ -108,42 +108,42 @@ impl<'p> TestRun<'p> {
         cx.clear(Deadline::Test(self.plan.id, timer));
     }
 
-    pub fn handle(&mut self, input: HostInput, cx: &mut Context<'_>) {
+    pub fn handle(&mut self, input: ProcessEvent, cx: &mut Context<'_>) {
         match input {
-            HostInput::SpawnFailed(reason) => {
+            ProcessEvent::SpawnFailed(reason) => {
                 self.record_problem(Verdict::Error, reason);
                 self.state = AttemptState::Ended;
             }
-            HostInput::Exited(status, leaked) => self.on_exit(Some(status), leaked, cx),
-            HostInput::Released => {
+            ProcessEvent::Exited(status, leaked) => self.on_exit(Some(status), leaked, cx),
+            ProcessEvent::Released => {
                 self.is_released = true;
                 self.on_exit(None, Vec::new(), cx);
             }
-            HostInput::Told(notification) => self.on_notification(notification, cx),
-            HostInput::Attached(Ok(attachment)) => {
+            ProcessEvent::Notified(notification) => self.on_notification(notification, cx),
+            ProcessEvent::Attached(Ok(attachment)) => {
                 cx.emit(EventKind::Attached { test: self.plan.id, fixture: None, attachment });
             }
-            HostInput::Attached(Err(reason)) => self.report_error(reason, cx),
-            HostInput::Answered(INITIALIZE, reply) => self.on_initialized(reply, cx),
-            HostInput::Answered(id, reply) if id == self.request => self.on_answer(reply, cx),
-            HostInput::Answered(id, _) => {
+            ProcessEvent::Attached(Err(reason)) => self.report_error(reason, cx),
+            ProcessEvent::Replied(INITIALIZE, reply) => self.on_initialized(reply, cx),
+            ProcessEvent::Replied(id, reply) if id == self.request => self.on_answer(reply, cx),
+            ProcessEvent::Replied(id, _) => {
                 self.on_protocol_error(format!("answered request {id}"), cx);
             }
-            HostInput::Garbage(what) => self.on_protocol_error(what, cx),
-            HostInput::Printed(stream, bytes) => self.output.push(stream, &bytes, cx),
-            HostInput::StackTaken(text) => self.on_stack_dump(text, cx),
-            HostInput::Uses { usage, tests_served } => {
+            ProcessEvent::ProtocolViolated(what) => self.on_protocol_error(what, cx),
+            ProcessEvent::Printed(stream, bytes) => self.output.push(stream, &bytes, cx),
+            ProcessEvent::StackDumped(text) => self.on_stack_dump(text, cx),
+            ProcessEvent::ResourcesMeasured { usage, tests_served } => {
                 let source = self.source();
                 cx.emit(EventKind::ResourcesMeasured { source, usage, tests_served });
             }
-            HostInput::Throttled => self.pause_stopwatch(true),
-            HostInput::Resumed => self.pause_stopwatch(false),
-            HostInput::Unbegun(_)
-            | HostInput::ProbesHold
-            | HostInput::ProbeWaits(_)
-            | HostInput::ProbeFailed(_)
-            | HostInput::Lives
-            | HostInput::Dies => {}
+            ProcessEvent::Throttled => self.pause_stopwatch(true),
+            ProcessEvent::Resumed => self.pause_stopwatch(false),
+            ProcessEvent::NotStarted(_)
+            | ProcessEvent::ProbesPassed
+            | ProcessEvent::ProbePending(_)
+            | ProcessEvent::ProbeFailed(_)
+            | ProcessEvent::Alive
+            | ProcessEvent::Dying => {}
         }
     }
 

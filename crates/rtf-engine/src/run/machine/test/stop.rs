@@ -49,7 +49,7 @@ impl TestRun<'_> {
 
     fn dump_stack(&mut self, step: StopStep, cx: &mut Context<'_>) {
         self.step = Some(step);
-        cx.push(Effect::TakeStack(self.host, self.stack));
+        cx.push(Effect::DumpStack(self.host, self.stack));
         self.set_limit(STACK_DUMP_LIMIT, cx);
     }
 

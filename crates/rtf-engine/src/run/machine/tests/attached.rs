@@ -6,7 +6,7 @@ use insta::assert_snapshot;
 use rtf_model::{ExitStatus, TestId, Verdict};
 
 use super::world::{FIXTURE, SECOND, TEST, World, suite};
-use crate::run::machine::{Deadline, FixtureTimer, HostInput};
+use crate::run::machine::{Deadline, FixtureTimer, ProcessEvent};
 use rtf_plan::plan::{AttachedPlan, FixtureBody, Probe, ProbeKind, SuitePlan};
 
 fn plan() -> SuitePlan {
@@ -24,13 +24,13 @@ fn an_attached_fixture_is_awaited_monitored_and_released() {
     let plan = plan();
     let mut world = World::started(&plan);
     world.now = SECOND;
-    world.input(FIXTURE, HostInput::ProbesHold);
-    world.input(FIXTURE, HostInput::ProbeFailed("the robot is off".to_owned()));
+    world.input(FIXTURE, ProcessEvent::ProbesPassed);
+    world.input(FIXTURE, ProcessEvent::ProbeFailed("the robot is off".to_owned()));
     world.exit(TEST, ExitStatus::Code(0));
     world.exit(FIXTURE, ExitStatus::Code(0));
     world.next_deadline();
     world.now = 5 * SECOND;
-    world.input(FIXTURE, HostInput::ProbesHold);
+    world.input(FIXTURE, ProcessEvent::ProbesPassed);
     world.pass(1);
     world.exit(FIXTURE, ExitStatus::Code(0));
     world.finish();
@@ -68,7 +68,7 @@ fn a_missing_attached_fixture_reports_the_failing_probe() {
     let plan = plan();
     let mut world = World::started(&plan);
     for reason in ["refused", "no route to the robot"] {
-        world.input(FIXTURE, HostInput::ProbeWaits(reason.to_owned()));
+        world.input(FIXTURE, ProcessEvent::ProbePending(reason.to_owned()));
     }
     assert_eq!(world.next_deadline(), Deadline::Fixture(0, FixtureTimer::Limit));
     world.exit(FIXTURE, ExitStatus::Code(0));

@@ -10,7 +10,7 @@ use rtf_model::{
 };
 
 use super::world::{SECOND, World, hook, suite};
-use crate::run::machine::{HostInput, Input, StopLevel};
+use crate::run::machine::{Input, ProcessEvent, StopLevel};
 use rtf_plan::plan::{AfterCollapse, Retries, SuitePlan};
 use rtf_process::codec::INITIALIZE;
 
@@ -48,7 +48,7 @@ pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool)
     if world.answered.contains(&host) && choice.is_multiple_of(2) {
         return world.release(host);
     }
-    let notify = |notification| Input::Host(host, HostInput::Told(notification));
+    let notify = |notification| Input::Host(host, ProcessEvent::Notified(notification));
     match choice % 16 {
         0..=4 => {
             if let Some(id) = answerable(world) {
@@ -61,16 +61,16 @@ pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool)
                 if continues {
                     world.answered.insert(host);
                 }
-                world.feed(Input::Host(host, HostInput::Answered(id, Reply::Result(value))));
+                world.feed(Input::Host(host, ProcessEvent::Replied(id, Reply::Result(value))));
             }
         }
         5 if shared && choice > 100 => {
             let value = serde_json::json!({ "protocol": 1, "host": "h", "supports_shared": true });
-            let answer = HostInput::Answered(INITIALIZE, Reply::Result(value));
+            let answer = ProcessEvent::Replied(INITIALIZE, Reply::Result(value));
             world.feed(Input::Host(host, answer));
         }
         step @ 5..=8 => world.feed(notify(Notification::Phase { phase: phase(step) })),
-        9 if choice > 128 => world.feed(Input::Host(host, HostInput::Dies)),
+        9 if choice > 128 => world.feed(Input::Host(host, ProcessEvent::Dying)),
         9 => world.feed(notify(Notification::Collapsed { reason: "gone".to_owned() })),
         10 => world.exit(source, ExitStatus::Signal(9)),
         11 | 12 => world.exit(source, ExitStatus::Code(0)),
@@ -88,7 +88,9 @@ pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool)
             let test = TestId(u32::try_from(which).unwrap_or_default());
             world.feed(Input::StopTest(test, "a user".to_owned()));
         }
-        _ => world.feed(Input::Host(host, HostInput::Garbage("it wrote `x`".to_owned()))),
+        _ => {
+            world.feed(Input::Host(host, ProcessEvent::ProtocolViolated("it wrote `x`".to_owned())))
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use insta::assert_snapshot;
 use rtf_model::{ExitStatus, Phase, Source, TestId, Verdict};
 
 use super::world::{SECOND, World, suite};
-use crate::run::machine::{Deadline, HostInput, Input, TestTimer};
+use crate::run::machine::{Deadline, Input, ProcessEvent, TestTimer};
 use rtf_plan::plan::{ClockPlan, SuitePlan};
 
 const TEST: Source = Source::Test(TestId(0));
@@ -21,7 +21,7 @@ fn set_clock(world: &mut World<'_>, tenths: u64) {
 }
 
 fn dump_and_end(world: &mut World<'_>) {
-    world.input(TEST, HostInput::StackTaken("#0 pause".to_owned()));
+    world.input(TEST, ProcessEvent::StackDumped("#0 pause".to_owned()));
     world.answer(TEST, "interrupted");
     world.exit(TEST, ExitStatus::Code(0));
     world.finish();

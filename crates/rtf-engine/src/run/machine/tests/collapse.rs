@@ -5,7 +5,7 @@ use rtf_model::protocol::Request;
 use rtf_model::{ExitStatus, FixtureId, Source, TestId, Verdict};
 
 use super::world::{FIXTURE, SECOND, TEST, World, suite};
-use crate::run::machine::{Deadline, FixtureTimer, HostInput, Probes};
+use crate::run::machine::{Deadline, FixtureTimer, ProbeSelection, ProcessEvent};
 use rtf_plan::plan::AfterCollapse;
 
 const GONE: &str = "the motor driver is gone";
@@ -219,7 +219,7 @@ fn a_test_that_passes_while_a_fixture_is_dying_is_collapsed() {
     let mut world = World::running(&plan);
     world.hides_liveness = true;
     world.end(TEST, "passed");
-    world.input(Source::Fixture(FixtureId(1)), HostInput::Lives);
+    world.input(Source::Fixture(FixtureId(1)), ProcessEvent::Alive);
     assert!(world.record.tests[0].is_running(), "it has no verdict yet");
     world.exit(FIXTURE, ExitStatus::Signal(9));
     world.tear_down(1);
@@ -251,7 +251,7 @@ fn a_fixture_that_fails_the_last_examination_has_collapsed() {
         world.hides_liveness = true;
         world.end(TEST, "passed");
         if lives {
-            world.input(FIXTURE, HostInput::Lives);
+            world.input(FIXTURE, ProcessEvent::Alive);
         } else {
             world.answer(FIXTURE, "passed");
         }
@@ -270,7 +270,7 @@ fn a_check_that_fails_after_the_last_test_makes_it_collapsed() {
         let mut world = World::running(&plan);
         world.hides_liveness = true;
         world.end(TEST, "passed");
-        world.input(FIXTURE, HostInput::Lives);
+        world.input(FIXTURE, ProcessEvent::Alive);
         assert!(world.record.tests[0].is_running(), "it has no verdict yet");
         world.answer(FIXTURE, "failed");
         world.tear_down(0);
@@ -313,7 +313,7 @@ fn slow_probes_run_only_after_the_last_test() {
     world.ready(1);
     world.pass(0);
     world.pass(1);
-    assert_eq!(world.probes, [Probes::Quick, Probes::All]);
+    assert_eq!(world.probes, [ProbeSelection::Quick, ProbeSelection::All]);
 }
 
 /// Writing a core dump takes time.
@@ -324,9 +324,9 @@ fn a_test_waits_for_the_end_of_a_dying_fixture() {
         let mut world = World::running(&plan);
         world.hides_liveness = true;
         world.end(TEST, outcome);
-        world.input(FIXTURE, HostInput::Dies);
+        world.input(FIXTURE, ProcessEvent::Dying);
         world.now += 5 * SECOND;
-        world.input(Source::Fixture(FixtureId(1)), HostInput::Lives);
+        world.input(Source::Fixture(FixtureId(1)), ProcessEvent::Alive);
         assert!(world.record.tests[0].is_running(), "it has no verdict yet");
         world.exit(FIXTURE, ExitStatus::Signal(11));
         world.tear_down(1);
@@ -343,7 +343,7 @@ fn a_dying_fixture_that_does_not_end_has_collapsed() {
     let mut world = World::running(&plan);
     world.hides_liveness = true;
     world.end(TEST, "passed");
-    world.input(FIXTURE, HostInput::Dies);
+    world.input(FIXTURE, ProcessEvent::Dying);
     assert_eq!(world.next_deadline(), Deadline::Fixture(0, FixtureTimer::Death));
     world.exit(FIXTURE, ExitStatus::Signal(9));
     world.finish();

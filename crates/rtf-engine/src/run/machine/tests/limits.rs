@@ -4,7 +4,7 @@ use insta::assert_snapshot;
 use rtf_model::{ExitStatus, FixtureId, HookId, Phase, Source, TestId, Trigger, Verdict};
 
 use super::world::{FIXTURE, HOOK, SECOND, TEST, World, hook, suite};
-use crate::run::machine::{Deadline, HostInput, StopLevel, TestTimer};
+use crate::run::machine::{Deadline, ProcessEvent, StopLevel, TestTimer};
 
 #[test]
 fn a_hanging_test_is_dumped_interrupted_terminated_and_killed() {
@@ -12,7 +12,7 @@ fn a_hanging_test_is_dumped_interrupted_terminated_and_killed() {
     let mut world = World::running(&plan);
     assert_eq!(world.next_deadline(), Deadline::Test(TestId(0), TestTimer::Slow));
     world.next_deadline();
-    world.input(TEST, HostInput::StackTaken("#0 pause".to_owned()));
+    world.input(TEST, ProcessEvent::StackDumped("#0 pause".to_owned()));
     world.next_deadline();
     world.next_deadline();
     world.exit(TEST, ExitStatus::Signal(9));

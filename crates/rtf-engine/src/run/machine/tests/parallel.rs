@@ -6,7 +6,7 @@ use rtf_model::{EventKind, ExitStatus, Phase, Source, TestId, Trigger, Verdict};
 
 use super::world::{FIXTURE, HOOK, SECOND, World, hook, suite};
 use crate::run::FailLimit;
-use crate::run::machine::{Deadline, HostInput, Input, StopLevel, SuiteMachine};
+use crate::run::machine::{Deadline, Input, ProcessEvent, StopLevel, SuiteMachine};
 use rtf_plan::plan::{AfterCollapse, Retries, SuitePlan};
 
 const OK: ExitStatus = ExitStatus::Code(0);
@@ -109,7 +109,10 @@ fn a_collapse_interrupts_all_tests_and_each_has_its_after_collapse() {
     plan.tests[2].after_collapse = AfterCollapse::Skip;
     plan.hooks = vec![hook(0, &[Trigger::Collapse])];
     let mut world = started(&plan);
-    world.input(FIXTURE, HostInput::Told(Notification::Collapsed { reason: "gone".to_owned() }));
+    world.input(
+        FIXTURE,
+        ProcessEvent::Notified(Notification::Collapsed { reason: "gone".to_owned() }),
+    );
     interrupted(&mut world, 2);
     interrupted(&mut world, 0);
     // No hook parks the robot while a test still moves it.
@@ -256,8 +259,8 @@ fn a_signal_and_the_suite_timeout_stop_all_tests() {
             world.stop(StopLevel::TearDown);
         } else {
             assert_eq!(world.next_deadline(), Deadline::Suite);
-            world.input(test(0), HostInput::StackTaken("main".to_owned()));
-            world.input(test(1), HostInput::StackTaken("main".to_owned()));
+            world.input(test(0), ProcessEvent::StackDumped("main".to_owned()));
+            world.input(test(1), ProcessEvent::StackDumped("main".to_owned()));
         }
         interrupted(&mut world, 1);
         interrupted(&mut world, 0);
@@ -297,7 +300,7 @@ fn each_test_has_its_own_deadlines() {
     plan.tests[1].limits = limits.into();
     let mut world = started(&plan);
     world.next_deadline();
-    world.input(test(1), HostInput::StackTaken("main".to_owned()));
+    world.input(test(1), ProcessEvent::StackDumped("main".to_owned()));
     interrupted(&mut world, 1);
     world.pass(0);
     world.finish();

@@ -4,7 +4,7 @@ use insta::assert_snapshot;
 use rtf_model::{ExitStatus, FixtureId, Source, TestId, Verdict};
 
 use super::world::{FIXTURE, TEST, World, suite};
-use crate::run::machine::{HostInput, StopLevel};
+use crate::run::machine::{ProcessEvent, StopLevel};
 
 #[test]
 fn fixtures_are_set_up_in_order_and_torn_down_in_reverse() {
@@ -106,7 +106,7 @@ fn a_host_that_cannot_be_started_is_an_error_of_its_test_only() {
     let plan = suite(0, 2);
     let mut world = World::started(&plan);
     let reason = "no such file".to_owned();
-    world.input(TEST, HostInput::SpawnFailed(reason));
+    world.input(TEST, ProcessEvent::SpawnFailed(reason));
     world.pass(1);
     world.finish();
     assert_eq!(world.record.verdict(TestId(0)), Some(Verdict::Error));

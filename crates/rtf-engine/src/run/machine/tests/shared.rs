@@ -4,7 +4,7 @@ use rtf_model::protocol::{Reply, Request};
 use rtf_model::{ExitStatus, Phase, Source, TestId, Usage, Verdict};
 
 use super::world::{World, suite};
-use crate::run::machine::{HostId, HostInput, Input, StopLevel};
+use crate::run::machine::{HostId, Input, ProcessEvent, StopLevel};
 use rtf_plan::plan::SuitePlan;
 use rtf_process::codec::INITIALIZE;
 
@@ -16,7 +16,7 @@ impl World<'_> {
         if !self.begin_assigned(host) {
             self.idle.insert(host);
         }
-        self.feed(Input::Host(host, HostInput::Released));
+        self.feed(Input::Host(host, ProcessEvent::Released));
     }
 
     /// A host begins its assigned test; false if there is none.
@@ -31,8 +31,8 @@ impl World<'_> {
     pub fn exit_idle(&mut self, host: HostId, status: ExitStatus) {
         self.idle.remove(&host);
         match self.assigned.remove(&host) {
-            Some((next, ..)) => self.feed(Input::Host(next, HostInput::Unbegun(status))),
-            None => self.feed(Input::Host(host, HostInput::Exited(status, Vec::new()))),
+            Some((next, ..)) => self.feed(Input::Host(next, ProcessEvent::NotStarted(status))),
+            None => self.feed(Input::Host(host, ProcessEvent::Exited(status, Vec::new()))),
         }
     }
 }
@@ -50,7 +50,7 @@ fn source(test: u32) -> Source {
 /// The host reports that it can be shared.
 fn initialized(world: &mut World<'_>, test: u32) {
     let value = serde_json::json!({ "protocol": 1, "host": "h", "supports_shared": true });
-    world.input(source(test), HostInput::Answered(INITIALIZE, Reply::Result(value)));
+    world.input(source(test), ProcessEvent::Replied(INITIALIZE, Reply::Result(value)));
 }
 
 /// A test passes, and its host stays alive.
@@ -62,7 +62,7 @@ pub(super) fn answer_and_continue(world: &mut World<'_>, test: u32) -> HostId {
     let asked = world.sent.iter().rev().find(|(to, id, _)| *to == host && id.is_some());
     let id = asked.and_then(|(_, id, _)| *id).expect("a request");
     let value = serde_json::json!({ "outcome": "passed", "continues": true });
-    world.input(source(test), HostInput::Answered(id, Reply::Result(value)));
+    world.input(source(test), ProcessEvent::Replied(id, Reply::Result(value)));
     host
 }
 
@@ -95,7 +95,10 @@ fn resource_usage_is_reported_before_the_next_repetition() {
         let host = answer_and_continue(&mut world, 0);
         assert!(world.assigned.is_empty(), "its usage is measured first");
         let usage = Usage { processes: 1, memory: 4096, descriptors: 9 };
-        world.input(source(0), HostInput::Uses { usage, tests_served: Some(served) });
+        world.input(
+            source(0),
+            ProcessEvent::ResourcesMeasured { usage, tests_served: Some(served) },
+        );
         world.release(host);
         assert!(world.assigned.contains_key(&host), "then it is assigned the next one");
         world.begin_assigned(host);

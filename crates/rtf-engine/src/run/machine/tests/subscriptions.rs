@@ -6,7 +6,7 @@ use rtf_model::{
 };
 
 use super::world::{TEST, World, hook, suite};
-use crate::run::machine::{Deadline, FixtureTimer, HostInput, StopLevel};
+use crate::run::machine::{Deadline, FixtureTimer, ProcessEvent, StopLevel};
 
 const RECORDER: Source = Source::Fixture(FixtureId(0));
 
@@ -38,7 +38,7 @@ fn notified<'p>(plan: &'p rtf_plan::plan::SuitePlan) -> World<'p> {
 fn report(world: &mut World<'_>, kind: MessageKind, text: &str) {
     let (location, comparison) = (None, None);
     let message = Message { kind, text: text.to_owned(), location, comparison, critical: false };
-    world.input(RECORDER, HostInput::Told(Notification::Message(message)));
+    world.input(RECORDER, ProcessEvent::Notified(Notification::Message(message)));
 }
 
 fn attach(world: &mut World<'_>) {
@@ -47,7 +47,7 @@ fn attach(world: &mut World<'_>) {
         path: "attachments/fixture-0/1/1-run.mcap".to_owned(),
         media_type: String::new(),
     };
-    world.input(RECORDER, HostInput::Attached(Ok(attachment)));
+    world.input(RECORDER, ProcessEvent::Attached(Ok(attachment)));
 }
 
 #[test]
@@ -61,10 +61,10 @@ fn results_that_a_fixture_sends_at_a_tests_end_belong_to_the_test() {
     let (value, low, high, location) = (Some(3.5), None, None, None);
     let (name, unit) = ("size".to_owned(), "MB".to_owned());
     let measurement = Measurement { name, value, unit, low, high, location };
-    world.input(RECORDER, HostInput::Told(Notification::Measured(measurement)));
+    world.input(RECORDER, ProcessEvent::Notified(Notification::Measured(measurement)));
     let samples = r#"{"name":"speed","points":[[0,1]]}"#;
     let samples = serde_json::from_str(samples).unwrap();
-    world.input(RECORDER, HostInput::Told(Notification::Sampled(samples)));
+    world.input(RECORDER, ProcessEvent::Notified(Notification::Sampled(samples)));
     report(&mut world, MessageKind::Report, "kept 3.5 MB");
     assert!(!world.transcript().contains("test-finished"), "{}", world.transcript());
     world.answer(RECORDER, "passed");
@@ -312,5 +312,5 @@ fn requests(world: &World<'_>, kind: impl Fn(&Request) -> bool) -> Vec<u64> {
 
 fn answer(world: &mut World<'_>, request: u64) {
     let passed = serde_json::json!({ "outcome": "passed" });
-    world.input(RECORDER, HostInput::Answered(request, Reply::Result(passed)));
+    world.input(RECORDER, ProcessEvent::Replied(request, Reply::Result(passed)));
 }

@@ -3,7 +3,7 @@
 use rtf_model::{EventKind, ExitStatus, Phase, TestId, Trigger, Verdict};
 
 use super::world::{FIXTURE, HOOK, TEST, World, hook, suite};
-use crate::run::machine::{HostInput, Input, StopLevel};
+use crate::run::machine::{Input, ProcessEvent, StopLevel};
 use rtf_plan::plan::{FixtureBody, ProcessPlan, SuitePlan};
 
 fn wait(world: &mut World<'_>) {
@@ -75,7 +75,7 @@ fn a_fixture_that_cannot_start_during_its_stop_is_not_awaited() {
     let plan = process();
     let mut world = World::started(&plan);
     world.stop(StopLevel::TearDown);
-    world.input(FIXTURE, HostInput::SpawnFailed("`sim` cannot be started: no".to_owned()));
+    world.input(FIXTURE, ProcessEvent::SpawnFailed("`sim` cannot be started: no".to_owned()));
     assert_eq!(world.now, std::time::Duration::ZERO);
     world.finish();
     assert_eq!(world.record.fixtures[0].problems[0].1, "`sim` cannot be started: no");
@@ -108,7 +108,7 @@ fn a_process_that_crashes_during_its_stop_has_a_problem() {
     ] {
         let plan = process();
         let mut world = World::started(&plan);
-        world.input(FIXTURE, HostInput::ProbesHold);
+        world.input(FIXTURE, ProcessEvent::ProbesPassed);
         world.pass(0);
         world.exit(FIXTURE, status);
         world.finish();
@@ -147,8 +147,8 @@ fn a_test_assigned_to_an_ending_host_gets_a_new_host() {
     let (next, ..) = world.assigned.remove(&host).expect("the next test joins it");
     world.idle.remove(&host);
     // The host reports both: its end, and that the next test did not begin.
-    world.feed(Input::Host(host, HostInput::Exited(ExitStatus::Signal(11), Vec::new())));
-    world.feed(Input::Host(next, HostInput::Unbegun(ExitStatus::Signal(11))));
+    world.feed(Input::Host(host, ProcessEvent::Exited(ExitStatus::Signal(11), Vec::new())));
+    world.feed(Input::Host(next, ProcessEvent::NotStarted(ExitStatus::Signal(11))));
     world.pass(1);
     world.tear_down(0);
     world.finish();

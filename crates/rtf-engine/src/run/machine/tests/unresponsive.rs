@@ -10,7 +10,7 @@ use rtf_model::Trigger;
 
 use super::chaos::act;
 use super::world::{SECOND, World, hook, suite};
-use crate::run::machine::HostInput;
+use crate::run::machine::ProcessEvent;
 use rtf_plan::plan::{
     AfterCollapse, AttachedPlan, ClockPlan, FixtureBody, ProcessPlan, Retries, SuitePlan,
 };
@@ -103,7 +103,7 @@ proptest! {
             }
             let ready = world.hosts.iter().next().filter(|_| choice == 77).map(|(_, of)| *of);
             match ready {
-                Some(source) => world.input(source, HostInput::ProbesHold),
+                Some(source) => world.input(source, ProcessEvent::ProbesPassed),
                 None => act(&mut world, choice, which, choices.flags & 1 != 0),
             }
         }

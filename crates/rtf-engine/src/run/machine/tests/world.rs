@@ -18,7 +18,7 @@ pub use self::host_actions::{FIXTURE, HOOK, TEST};
 pub use self::plans::{hook, suite};
 use crate::run::FailLimit;
 use crate::run::machine::{
-    Deadline, Effect, HostId, HostInput, Input, Probes, Stop, StopLevel, SuiteMachine,
+    Deadline, Effect, HostId, Input, ProbeSelection, ProcessEvent, Stop, StopLevel, SuiteMachine,
 };
 use rtf_plan::plan::SuitePlan;
 
@@ -45,7 +45,7 @@ pub struct World<'p> {
     /// Whether examinations of fixtures get no answer.
     pub hides_liveness: bool,
     /// The probes of each examination.
-    pub probes: Vec<Probes>,
+    pub probes: Vec<ProbeSelection>,
     order: OrderChecker,
     seq: u64,
 }
@@ -146,14 +146,14 @@ impl<'p> World<'p> {
     }
 
     pub fn feed(&mut self, input: Input) {
-        use HostInput::{Exited, Released};
+        use ProcessEvent::{Exited, Released};
         let ends = matches!(&input, Input::Host(_, Exited(..) | Released));
         let (mut effects, mut checked) = (Vec::new(), Vec::new());
         self.machine.handle(input, self.now, &mut effects);
         let mut examined = Vec::new();
         for effect in effects {
             match effect {
-                Effect::LookAlive(host, probes) => {
+                Effect::CheckAlive(host, probes) => {
                     self.probes.push(probes);
                     examined.push(host);
                 }
@@ -181,12 +181,12 @@ impl<'p> World<'p> {
             }
         }
         examined.retain(|host| !self.hides_liveness && self.hosts.contains_key(host));
-        examined.into_iter().for_each(|host| self.feed(Input::Host(host, HostInput::Lives)));
+        examined.into_iter().for_each(|host| self.feed(Input::Host(host, ProcessEvent::Alive)));
         // Fixtures that are checked after a test pass.
         checked.retain(|(host, _)| !self.hides_liveness && self.hosts.contains_key(host));
         for (host, id) in checked {
             let answer = Reply::Result(serde_json::json!({ "outcome": "passed" }));
-            self.feed(Input::Host(host, HostInput::Answered(id, answer)));
+            self.feed(Input::Host(host, ProcessEvent::Replied(id, answer)));
         }
     }
 
@@ -204,9 +204,9 @@ impl<'p> World<'p> {
         *host.unwrap_or_else(|| panic!("no host of {source:?}\n{:#?}", self.log)).0
     }
 
-    pub fn input(&mut self, source: Source, input: HostInput) {
+    pub fn input(&mut self, source: Source, input: ProcessEvent) {
         let host = self.host_of(source);
-        if matches!(input, HostInput::Exited(..) | HostInput::SpawnFailed(_)) {
+        if matches!(input, ProcessEvent::Exited(..) | ProcessEvent::SpawnFailed(_)) {
             self.hosts.remove(&host);
             self.assigned.remove(&host);
             self.answered.remove(&host);
@@ -215,7 +215,7 @@ impl<'p> World<'p> {
     }
 
     pub fn exit(&mut self, source: Source, status: ExitStatus) {
-        self.input(source, HostInput::Exited(status, Vec::new()));
+        self.input(source, ProcessEvent::Exited(status, Vec::new()));
     }
 
     /// Advances time to the next deadline.

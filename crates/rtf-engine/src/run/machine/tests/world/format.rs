@@ -30,7 +30,7 @@ fn sorted(value: &serde_json::Value) -> serde_json::Value {
 pub fn effect_of(effect: &Effect) -> String {
     match effect {
         Effect::CloseChannel(_) => "→ close the channel".to_owned(),
-        Effect::TakeStack(..) => "→ take a stack dump".to_owned(),
+        Effect::DumpStack(..) => "→ take a stack dump".to_owned(),
         Effect::Signal(_, signal) => format!("→ signal {signal}"),
         Effect::KillTree(_) => "→ kill the tree".to_owned(),
         other => format!("→ {other:?}"),

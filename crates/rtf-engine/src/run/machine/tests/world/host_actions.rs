@@ -4,7 +4,7 @@ use rtf_model::protocol::{Notification, Reply};
 use rtf_model::{ExitStatus, FixtureId, HookId, Message, MessageKind, Phase, Source, TestId};
 
 use super::World;
-use crate::run::machine::HostInput;
+use crate::run::machine::ProcessEvent;
 use rtf_plan::plan::SuitePlan;
 
 /// The first fixture.
@@ -41,7 +41,7 @@ impl<'p> World<'p> {
 
     pub fn collapse(&mut self, source: Source, reason: &str) {
         let reason = reason.to_owned();
-        self.input(source, HostInput::Told(Notification::Collapsed { reason }));
+        self.input(source, ProcessEvent::Notified(Notification::Collapsed { reason }));
     }
 
     /// A host answers and exits with code 0.
@@ -56,7 +56,7 @@ impl<'p> World<'p> {
         let asked = self.sent.iter().rev().find(|(to, id, _)| *to == host && id.is_some());
         let id = asked.and_then(|(_, id, _)| *id).expect("a request");
         let value = serde_json::json!({ "outcome": outcome, "reason": format!("says {outcome}") });
-        self.input(source, HostInput::Answered(id, Reply::Result(value)));
+        self.input(source, ProcessEvent::Replied(id, Reply::Result(value)));
     }
 
     /// Set-up of a fixture passes; it subscribes to all notifications.
@@ -64,24 +64,24 @@ impl<'p> World<'p> {
         let source = Source::Fixture(FixtureId(fixture));
         let topics = ["test-started", "test-finished"];
         let value = serde_json::json!({ "outcome": "passed", "subscriptions": topics });
-        self.input(source, HostInput::Answered(2, Reply::Result(value)));
+        self.input(source, ProcessEvent::Replied(2, Reply::Result(value)));
     }
 
     pub fn phase(&mut self, source: Source, phase: Phase) {
-        self.input(source, HostInput::Told(Notification::Phase { phase }));
+        self.input(source, ProcessEvent::Notified(Notification::Phase { phase }));
     }
 
     pub fn failure(&mut self, source: Source, text: &str, critical: bool) {
         let kind = MessageKind::Failure;
         let message =
             Message { kind, text: text.to_owned(), location: None, comparison: None, critical };
-        self.input(source, HostInput::Told(Notification::Message(message)));
+        self.input(source, ProcessEvent::Notified(Notification::Message(message)));
     }
 
     /// A fixture passes its examination.
     pub fn pass_examination(&mut self, fixture: u32) {
         let source = Source::Fixture(FixtureId(fixture));
-        self.input(source, HostInput::Lives);
+        self.input(source, ProcessEvent::Alive);
         self.answer(source, "passed");
     }
 
