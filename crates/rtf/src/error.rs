@@ -1,57 +1,51 @@
-//! Errors of the program as a whole, and how they are shown.
+//! Errors that end the program.
 
+use std::error::Error;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
 use crate::exit;
 
-/// An error that ends the program, with its exit code and a hint.
+/// An error with its exit code and a hint.
 #[derive(Debug)]
 pub struct Failure {
-    /// The exit code.
     code: u8,
-    /// What went wrong; `None` when the user was told already.
-    error: Option<Box<dyn std::error::Error + Send + Sync>>,
-    /// What to do about it.
+    /// `None` if it has been printed.
+    error: Option<Box<dyn Error + Send + Sync>>,
     hint: Option<String>,
 }
 
 impl Failure {
     /// Bad input: nothing was started.
-    pub fn input(error: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
+    pub fn input(error: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
         Self { code: exit::BAD_INPUT, error: Some(error.into()), hint: None }
     }
 
-    /// `rtf` could not do its own work.
-    pub fn own(error: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
+    /// `rtf` itself failed.
+    pub fn internal(error: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
         Self { code: exit::BROKEN, ..Self::input(error) }
     }
 
-    /// Ends the program with a code; the user was told why.
-    pub fn told(code: u8) -> Self {
-        Self { code, error: None, hint: None }
+    /// Bad input that has been printed.
+    pub fn printed() -> Self {
+        Self { code: exit::BAD_INPUT, error: None, hint: None }
     }
 
-    /// For what is written to standard output or standard error: a reader that
-    /// has gone (`| head`) has seen enough, which is no failure.
-    pub fn unless_reader_left(written: io::Result<()>) -> Result<(), Self> {
-        match written {
-            Err(error) if rtf_report::is_disconnect(&error) => Ok(()),
-            written => written.map_err(Self::own),
-        }
+    /// Replaces the hint.
+    pub fn hint(self, hint: impl Into<String>) -> Self {
+        self.maybe_hint(Some(hint))
     }
 
-    /// Says what to do about it.
-    pub fn hint(mut self, hint: impl Into<Option<String>>) -> Self {
-        self.hint = hint.into();
+    /// Replaces the hint if there is a new one.
+    pub fn maybe_hint(mut self, hint: Option<impl Into<String>>) -> Self {
+        self.hint = hint.map(Into::into).or(self.hint);
         self
     }
 
-    /// Prints it to standard error; returns the exit code.
-    pub fn show(&self) -> ExitCode {
-        let mut err = anstream::stderr().lock();
-        // Nothing is left to tell it to when standard error is closed.
-        let _ = self.write(&mut err);
+    /// Prints the error to standard error and returns the exit code.
+    pub fn print(&self) -> ExitCode {
+        // Standard error may be closed.
+        let _ = self.write(&mut anstream::stderr().lock());
         ExitCode::from(self.code)
     }
 

@@ -1,4 +1,4 @@
-//! Exit codes. The README and `rtf --help` list them.
+//! Exit codes, which `spec/exit-codes.md` and `rtf --help` list.
 
 use std::process::ExitCode;
 
@@ -11,11 +11,11 @@ pub const PASSED: u8 = 0;
 pub const FAILED: u8 = 1;
 /// Bad input, or no tests: nothing was started.
 pub const BAD_INPUT: u8 = 2;
-/// `rtf` could not do its own work.
+/// `rtf` itself failed.
 pub const BROKEN: u8 = 3;
-/// A hook failed: the robot may not be in a safe state. Whatever else happened.
+/// A hook failed: the robot may not be in a safe state. Takes precedence over the
+/// codes of tests, signals and the runner's death.
 pub const HOOK_FAILED: u8 = 4;
-
 /// The runner died; the guard stopped everything.
 pub const RUNNER_DIED: u8 = 5;
 
@@ -24,11 +24,16 @@ pub fn of_run(record: &Record) -> ExitCode {
     let interrupted = record.interrupted().map(|by| signal::exit_code(by).unwrap_or(FAILED));
     ExitCode::from(match interrupted {
         _ if record.hook_failed() => HOOK_FAILED,
-        // Whatever else is known of the run: it may not be all.
+        // The record may be incomplete.
         _ if record.is_damaged() => FAILED,
         _ if record.runner_death().is_some() => RUNNER_DIED,
         Some(code) => code,
         None if record.is_green() => PASSED,
         None => FAILED,
     })
+}
+
+/// The exit code of a process that signal `number` ended, as shells report it.
+pub fn of_signal(number: i32) -> u8 {
+    u8::try_from(128 + number).unwrap_or(BROKEN)
 }

@@ -1,104 +1,74 @@
-//! A run under a guard: what the process does that the user started.
+//! Runs in a child process under a guard, which is the process that the user started.
 //!
-//! The runner is its child. This module tells what the guard had to do.
+//! The guard must fork while there is only one thread. This module reports what the
+//! guard did; the guard itself is [`rtf_engine::guard`].
 
 use std::io::{self, Write};
-use std::os::fd::{AsFd, OwnedFd};
+use std::os::fd::OwnedFd;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Duration;
 
 use rtf_engine::guard::{self, GuardOutcome, Link, Recovery, Side};
 use rtf_model::{LeakedProcess, Record};
-use rtf_report::{Reporter, journal};
+use rtf_report::journal;
 
-use crate::cli::RunArgs;
-use crate::command::{self, Outcome, output};
+use crate::command::Outcome;
 use crate::error::Failure;
-use crate::exit;
+use crate::{exit, terminal};
 
-/// Runs.
-pub fn run(args: &RunArgs) -> Outcome {
-    let run = |link| command::run::run(args, link);
-    let close = |journal: &Path, record: &Record| {
-        for (format, path) in &args.reports {
-            finish(output::open_report(*format, path, journal.parent()), record);
-        }
-        let closed = output::close(args, journal, record);
-        if let Err(failure) = Failure::unless_reader_left(closed) {
-            let _ = failure.show();
-        }
-    };
-    let lifeline = args.end_with_stdin.then(|| std::io::stdin().as_fd().try_clone_to_owned());
-    let lifeline = lifeline.transpose().map_err(Failure::own)?;
-    let patience = args.shutdown_timeout;
-    Guarded { run, close: &close, kept: true, lifeline, patience }.watch()
-}
-
-/// What runs under a guard.
-pub struct Guarded<'a, R> {
-    /// Runs, in the runner's process.
-    pub run: R,
-    /// What the runner would have written at its end, from the journal; in the
-    /// guard's process.
-    pub close: &'a dyn Fn(&Path, &Record),
-    /// Whether the journal is still there when the guard has ended.
-    pub kept: bool,
-    /// The run is asked to end when this does.
+/// How the guard supervises the runner.
+pub struct Supervision {
+    /// The guard ends the run when this closes.
     pub lifeline: Option<OwnedFd>,
-    /// How long the runner may not answer.
+    /// How long the runner may not answer before the guard kills it.
     pub patience: Duration,
+    /// Whether the journal is still there when the guard has ended.
+    pub keeps_journal: bool,
 }
 
-impl<R: FnOnce(Link) -> Outcome> Guarded<'_, R> {
-    /// Runs it.
-    pub fn watch(self) -> Outcome {
-        let ended = match guard::split(self.lifeline, self.patience).map_err(Failure::own)? {
-            Side::Runner(link) => return (self.run)(link),
-            Side::Guard(guard) => guard.supervise(),
-        };
-        match ended {
-            GuardOutcome::RunnerExited { code, left } => {
-                let mut err = anstream::stderr().lock();
-                Failure::unless_reader_left(tell_left(&mut err, &left))?;
-                Ok(ExitCode::from(code))
-            }
-            GuardOutcome::RunnerDied(died) => {
-                let told = tell(&mut anstream::stderr().lock(), &died, self.kept);
-                Failure::unless_reader_left(told)?;
-                let recorded = died.journal.as_ref().map(|journal| close(self.close, journal));
-                let unsafe_robot = died.hooks.iter().any(|hook| hook.problem.is_some());
-                let code = if unsafe_robot { exit::HOOK_FAILED } else { exit::RUNNER_DIED };
-                Ok(recorded.flatten().unwrap_or(ExitCode::from(code)))
-            }
+/// Calls `run` in the runner's process. If the runner dies, calls `complete` in the
+/// guard's process with the journal, to write the missing reports.
+pub fn run(
+    supervision: Supervision,
+    run: impl FnOnce(Link) -> Outcome,
+    complete: impl FnOnce(&Path, &Record),
+) -> Outcome {
+    let Supervision { lifeline, patience, keeps_journal } = supervision;
+    let ended = match guard::split(lifeline, patience).map_err(Failure::internal)? {
+        Side::Runner(link) => return run(link),
+        Side::Guard(guard) => guard.supervise(),
+    };
+    match ended {
+        GuardOutcome::RunnerExited { code, left } => {
+            terminal::stderr(|err| report_leftovers(err, &left))?;
+            Ok(ExitCode::from(code))
+        }
+        GuardOutcome::RunnerDied(died) => {
+            terminal::stderr(|err| report_death(err, &died, keeps_journal))?;
+            let hook_failed = died.hooks.iter().any(|hook| hook.problem.is_some());
+            let code = if hook_failed { exit::HOOK_FAILED } else { exit::RUNNER_DIED };
+            let recorded = died.journal.and_then(|journal| complete_run(&journal, complete));
+            Ok(recorded.unwrap_or(ExitCode::from(code)))
         }
     }
 }
 
-/// Writes the reports; the exit code that the journal gives, when it can be read
-/// and says how the run ended.
-fn close(close: &dyn Fn(&Path, &Record), journal: &Path) -> Option<ExitCode> {
+/// Returns the run's exit code if the journal records the runner's death.
+fn complete_run(journal: &Path, complete: impl FnOnce(&Path, &Record)) -> Option<ExitCode> {
     match journal::read(journal) {
         Ok(stored) => {
-            close(journal, &stored.record);
+            complete(journal, &stored.record);
             stored.record.runner_death().map(|_| exit::of_run(&stored.record))
         }
         Err(error) => {
-            let _ = Failure::own(error).show();
+            Failure::internal(error).print();
             None
         }
     }
 }
 
-/// Writes a report of a run that is over.
-pub fn finish(report: Result<Box<dyn Reporter>, Failure>, record: &Record) {
-    let written = report.and_then(|mut report| report.finish(record).map_err(Failure::own));
-    if let Err(failure) = written {
-        let _ = failure.show();
-    }
-}
-
-fn tell(err: &mut impl Write, died: &Recovery, kept: bool) -> io::Result<()> {
+fn report_death(err: &mut dyn Write, died: &Recovery, keeps_journal: bool) -> io::Result<()> {
     let (red, green, bold, reset) = ("\u{1b}[1;31m", "\u{1b}[32m", "\u{1b}[1m", "\u{1b}[0m");
     writeln!(err, "{red}error{reset}: the runner died: {}", died.reason)?;
     for hook in &died.hooks {
@@ -109,22 +79,23 @@ fn tell(err: &mut impl Write, died: &Recovery, kept: bool) -> io::Result<()> {
             }
         }
     }
-    tell_left(err, &died.left)?;
+    report_leftovers(err, &died.left)?;
     match (&died.journal, &died.problem) {
         (Some(journal), Some(problem)) => {
-            writeln!(err, "{bold}caused by{reset}: cannot close `{}`: {problem}", journal.display())
+            let journal = journal.display();
+            writeln!(err, "{bold}caused by{reset}: cannot complete `{journal}`: {problem}")
         }
-        (Some(_), None) if !kept => Ok(()),
+        (Some(_), None) if !keeps_journal => Ok(()),
         (Some(journal), None) => {
-            let folder = journal.parent().unwrap_or(journal);
-            writeln!(err, "{bold}hint{reset}: `rtf show {}` shows what was done", folder.display())
+            let dir = journal.parent().unwrap_or(journal).display();
+            writeln!(err, "{bold}hint{reset}: `rtf show {dir}` shows the run up to this point")
         }
         (None, _) => writeln!(err, "{bold}hint{reset}: nothing was started"),
     }
 }
 
-fn tell_left(err: &mut impl Write, left: &[LeakedProcess]) -> io::Result<()> {
-    for LeakedProcess { pid, command, owner } in left {
+fn report_leftovers(err: &mut dyn Write, leftovers: &[LeakedProcess]) -> io::Result<()> {
+    for LeakedProcess { pid, command, owner } in leftovers {
         let owner = owner.as_ref().map_or(String::new(), |owner| format!("  ({owner})"));
         writeln!(err, "  killed: {pid} {command}{owner}")?;
     }

@@ -21,7 +21,11 @@ pub fn file(path: &Path, journal: &Path, detail: bool) -> Result<ReportFile, Rep
     ReportFile::new("the result file", path, Box::new(write))
 }
 
-fn write(out: &mut dyn Write, journal: &Path, detail: bool) -> io::Result<()> {
+/// Writes the result file of a run from its journal.
+///
+/// # Errors
+/// The journal cannot be read, or `out` cannot be written.
+pub fn write(out: &mut dyn Write, journal: &Path, detail: bool) -> io::Result<()> {
     let mut problem = None;
     for damage in &journal::find_damage(journal).map_err(unreadable)? {
         writeln!(out, "the journal of this run is damaged: {damage}")?;

@@ -11,4 +11,4 @@ mod problems;
 mod summary;
 
 pub use console::{Console, ConsoleOptions};
-pub use file::file;
+pub use file::{file, write};

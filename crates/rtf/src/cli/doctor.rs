@@ -2,22 +2,22 @@
 
 use clap::{Args, ValueEnum};
 
-/// What to look at.
+/// Options of `rtf doctor`.
 #[derive(Debug, Args)]
 pub struct DoctorArgs {
-    /// Only these: fixture managers (`roslaunch`), or parts of rtf (`python`, `network`)
+    /// Check only these fixture managers (`roslaunch`) or parts of rtf (`python`, `network`)
     #[arg(value_name = "NAME")]
     pub names: Vec<String>,
 
-    /// The form of what is found
+    /// Output format
     #[arg(long, value_name = "FORMAT", default_value = "text")]
     pub format: DoctorFormat,
 }
 
-/// The form of what is found.
+/// The format of the findings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum DoctorFormat {
-    /// For people
+    /// Text for people
     Text,
     /// One JSON document
     Json,

@@ -1,13 +1,13 @@
-//! The forms in which a run is told.
+//! Output formats of a run.
 
 use std::path::PathBuf;
 
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-/// A report's format.
+/// The format of a report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
+pub enum ReportFormat {
     /// Plain text.
     Text,
     /// JUnit XML.
@@ -22,56 +22,56 @@ pub enum Format {
     Json,
 }
 
-/// What `--report` takes: reports that are made when the run is over.
-const REPORTS: [(&str, Format); 5] = [
-    ("junit", Format::Junit),
-    ("text", Format::Text),
-    ("tap", Format::Tap),
-    ("code-quality", Format::CodeQuality),
-    ("github", Format::Github),
+/// The formats of `--report`, whose reports are written when the run has ended.
+const REPORTS: [(&str, ReportFormat); 5] = [
+    ("junit", ReportFormat::Junit),
+    ("text", ReportFormat::Text),
+    ("tap", ReportFormat::Tap),
+    ("code-quality", ReportFormat::CodeQuality),
+    ("github", ReportFormat::Github),
 ];
 
-/// What standard output has of a run.
+/// The format of standard output.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Shown {
-    /// What happens, in words
+pub enum StdoutFormat {
+    /// Text for people
     #[default]
     Console,
-    /// The events, one a line, as in the journal
+    /// The event stream, one event per line, as in the journal
     Json,
     /// TAP 14
     Tap,
 }
 
-/// What a code host is told in its own words.
+/// The code host to print annotations for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Annotations {
-    /// As the host that runs this job understands it
+    /// The code host that runs this job, if any
     #[default]
     Auto,
-    /// Workflow commands, which mark places in the change
+    /// Workflow commands, which mark lines in the change
     Github,
-    /// Sections of the job's log
+    /// Collapsible sections of the job log
     Gitlab,
-    /// Nothing
+    /// No annotations
     None,
 }
 
 /// The parser of `rtf report --format`.
-pub fn format_parser() -> impl TypedValueParser<Value = Format> {
+pub fn format_parser() -> impl TypedValueParser<Value = ReportFormat> {
     let names = REPORTS.map(|(name, _)| name).into_iter().chain(["json"]);
-    PossibleValuesParser::new(names).map(|name| report_format(&name).unwrap_or(Format::Json))
+    PossibleValuesParser::new(names).map(|name| report_format(&name).unwrap_or(ReportFormat::Json))
 }
 
-fn report_format(name: &str) -> Option<Format> {
+fn report_format(name: &str) -> Option<ReportFormat> {
     REPORTS.iter().find(|(known, _)| *known == name).map(|(_, format)| *format)
 }
 
-/// Reads `junit=PATH`.
+/// Parses `junit=PATH`.
 ///
 /// # Errors
-/// What is wrong with it.
-pub fn parse_report(value: &str) -> Result<(Format, PathBuf), String> {
+/// The format is unknown, or the path is missing.
+pub fn parse_report(value: &str) -> Result<(ReportFormat, PathBuf), String> {
     let names = REPORTS.map(|(name, _)| format!("`{name}=PATH`")).join(", ");
     let expected = format!("expected {names}");
     let (name, path) = value.split_once('=').ok_or(expected.as_str())?;
@@ -85,7 +85,6 @@ pub fn parse_report(value: &str) -> Result<(Format, PathBuf), String> {
 
 #[cfg(test)]
 mod tests {
-    /// An `rtf.toml` takes what the command line takes.
     #[test]
     fn the_formats_of_a_configuration_are_those_of_the_command_line() {
         assert_eq!(super::REPORTS.map(|(name, _)| name), rtf_plan::config::REPORTS);

@@ -1,57 +1,57 @@
-//! Options of the verbs about past runs.
+//! Options of the verbs that read past runs.
 
 use std::path::PathBuf;
 
 use clap::Args;
 
 use super::formats::format_parser;
-use super::{Format, ResultsArgs};
+use super::{ReportFormat, ResultsArgs};
 
-/// Which run to show.
+/// Options of `rtf show`.
 #[derive(Debug, Args)]
 pub struct ShowArgs {
-    /// The run: `latest`, its name, its folder, or its journal
+    /// `latest`, or a run by name, directory or journal
     #[arg(default_value = "latest", value_name = "RUN")]
     pub run: String,
 
     #[command(flatten)]
     pub results: ResultsArgs,
 
-    /// Show every message, measurement and output
+    /// Print every message, measurement and output
     #[arg(short, long)]
     pub verbose: bool,
 }
 
-/// Which report to write.
+/// Options of `rtf report`.
 #[derive(Debug, Args)]
 pub struct ReportArgs {
-    /// The run: `latest`, its name, its folder, or its journal
+    /// `latest`, or a run by name, directory or journal
     #[arg(default_value = "latest", value_name = "RUN")]
     pub run: String,
 
     #[command(flatten)]
     pub results: ResultsArgs,
 
-    /// The report's format
+    /// Report format
     #[arg(long, value_parser = format_parser())]
-    pub format: Format,
+    pub format: ReportFormat,
 
-    /// Where to write it; standard output when it is left out
+    /// Output file [default: standard output]
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
 }
 
-/// Which runs to merge.
+/// Options of `rtf merge`.
 #[derive(Debug, Args)]
 pub struct MergeArgs {
-    /// The runs: their names, their folders, or their journals; no test may be in two of them
+    /// Runs, by name, directory or journal; no test may occur in two of them
     #[arg(required = true, value_name = "RUN")]
     pub runs: Vec<String>,
 
     #[command(flatten)]
     pub results: ResultsArgs,
 
-    /// Merge although parts are missing of those that `--shard` made
+    /// Merge even if shards are missing
     #[arg(long)]
     pub partial: bool,
 }

@@ -1,4 +1,4 @@
-//! How options' values are read, where clap alone does not tell what is wrong.
+//! Parsers of option values, with better error messages than clap's.
 
 use std::env::var_os;
 use std::ffi::OsStr;
@@ -8,7 +8,7 @@ use clap::builder::{PossibleValuesParser, Resettable, TypedValueParser};
 use clap::{Arg, Command};
 use rtf_process::fork_server::ForkMode;
 
-/// A variable that is set to nothing is one that is not set.
+/// Treats an empty environment variable as not set.
 pub fn unset_when_empty(command: Command) -> Command {
     let is_empty = |name: &OsStr| var_os(name).is_some_and(|value| value.is_empty());
     let clear = |arg: Arg| match arg.get_env().is_some_and(is_empty) {
@@ -18,17 +18,17 @@ pub fn unset_when_empty(command: Command) -> Command {
     command.mut_args(clear).mut_subcommands(unset_when_empty)
 }
 
-/// Clap's words for a zero tell the range.
+/// Reports the range for a zero, unlike clap's parser of `NonZeroU16`.
 pub fn jobs_parser() -> impl TypedValueParser<Value = NonZeroU16> {
     clap::value_parser!(u16).range(1..).try_map(NonZeroU16::try_from)
 }
 
-pub fn forks_parser() -> impl TypedValueParser<Value = ForkMode> {
-    PossibleValuesParser::new(["auto", "always", "never"]).map(|name| forks(&name))
+pub fn fork_mode_parser() -> impl TypedValueParser<Value = ForkMode> {
+    PossibleValuesParser::new(["auto", "always", "never"]).map(|name| parse_fork_mode(&name))
 }
 
-/// `auto`, `always` or `never`.
-pub fn forks(word: &str) -> ForkMode {
+/// Parses `auto`, `always` or `never`.
+pub fn parse_fork_mode(word: &str) -> ForkMode {
     match word {
         "always" => ForkMode::Always,
         "never" => ForkMode::Never,
@@ -36,18 +36,18 @@ pub fn forks(word: &str) -> ForkMode {
     }
 }
 
-/// Reads what decides a random order.
+/// Parses the seed of a random order.
 ///
 /// # Errors
-/// It is no number.
+/// It is not a number.
 pub fn parse_seed(value: &str) -> Result<u64, String> {
-    value.parse().map_err(|_| "expected a number, as an earlier run shows it".to_owned())
+    value.parse().map_err(|_| "expected a number, as printed by an earlier run".to_owned())
 }
 
-/// Reads `tolerance=0.02`.
+/// Parses `tolerance=0.02`.
 ///
 /// # Errors
-/// What is wrong with it.
+/// There is no `=`, or the name is invalid.
 pub fn parse_setting(value: &str) -> Result<(String, String), String> {
     match value.split_once('=') {
         Some((name, value)) if rtf_plan::config::is_name(name) => {

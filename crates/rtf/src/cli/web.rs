@@ -1,4 +1,4 @@
-//! Options about the browser's view of runs.
+//! Options of the web server.
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
@@ -9,22 +9,21 @@ use rtf_plan::suite::parse_duration;
 
 use super::ResultsArgs;
 
-/// Where the options about the browser's view stand in the help.
 const HEADING: &str = "Web";
-/// Where it is when nobody says so.
+/// The default address.
 const ADDRESS: &str = "127.0.0.1:8080";
-/// Its port when only the address is said.
+/// The port if only an address is given.
 const PORT: u16 = 8080;
 
-/// Whether and how a run is shown in a browser.
+/// How `rtf run` serves the run in a browser.
 #[derive(Debug, Args)]
 pub struct WebRunArgs {
-    /// Show the run live in a browser, on this address (127.0.0.1:8080) or the next free port
+    /// Show the run live in a browser, on ADDR:PORT (127.0.0.1:8080) or the next free port
     #[arg(help_heading = HEADING, long, value_name = "ADDR:PORT", value_parser = parse_address)]
     #[arg(num_args = 0..=1, require_equals = true, default_missing_value = ADDRESS)]
     pub web: Option<SocketAddr>,
 
-    /// Keep serving the run after it has ended, for this long or until Ctrl-C, like `10min`
+    /// Keep serving after the run has ended, for this time or until Ctrl-C: `10min`
     #[arg(help_heading = HEADING, long, value_name = "DURATION")]
     #[arg(value_parser = parse_duration)]
     pub web_linger: Option<Duration>,
@@ -34,8 +33,8 @@ pub struct WebRunArgs {
 }
 
 impl WebRunArgs {
-    /// An option that says how to do what is not done without `--web`.
-    pub fn without_effect(&self) -> Option<&'static str> {
+    /// An option that has no effect because `--web` is missing.
+    pub fn option_without_effect(&self) -> Option<&'static str> {
         let access = &self.access;
         let given = [
             ("--web-linger", self.web_linger.is_some()),
@@ -49,13 +48,13 @@ impl WebRunArgs {
     }
 }
 
-/// Which runs to show in a browser.
+/// Options of `rtf serve`.
 #[derive(Debug, Args)]
 pub struct ServeArgs {
     #[command(flatten)]
     pub results: ResultsArgs,
 
-    /// Where to listen; the next free port is taken when this one is not free
+    /// Address to listen on; if the port is in use, the next free port
     #[arg(help_heading = HEADING, long, value_name = "ADDR:PORT", default_value = ADDRESS)]
     #[arg(value_parser = parse_address)]
     pub web: SocketAddr,
@@ -64,26 +63,26 @@ pub struct ServeArgs {
     pub access: WebAccessArgs,
 }
 
-/// Who may see it.
+/// How the server authenticates clients.
 #[derive(Debug, Default, Args)]
 pub struct WebAccessArgs {
-    /// Read the token from a file, instead of making a new one
+    /// Read the access token from a file instead of generating one
     #[arg(help_heading = HEADING, long, value_name = "FILE")]
     pub web_token_file: Option<PathBuf>,
 
-    /// Let other machines connect: with the token, also for reading, and with TLS
+    /// Let other machines connect; requires TLS, and the token even for reading
     #[arg(help_heading = HEADING, long)]
     pub web_allow_remote: bool,
 
-    /// The certificate for TLS (PEM); beyond this machine one is made when none is given
+    /// TLS certificate (PEM); by default, rtf generates one if other machines may connect
     #[arg(help_heading = HEADING, long, value_name = "FILE", requires = "web_key")]
     pub web_cert: Option<PathBuf>,
 
-    /// The certificate's key (PEM)
+    /// Private key of the TLS certificate (PEM)
     #[arg(help_heading = HEADING, long, value_name = "FILE", requires = "web_cert")]
     pub web_key: Option<PathBuf>,
 
-    /// Another name under which the server is reached
+    /// Additional host name of the server
     #[arg(help_heading = HEADING, long = "web-host", value_name = "NAME")]
     pub web_hosts: Vec<String>,
 }

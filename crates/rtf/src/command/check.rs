@@ -1,28 +1,31 @@
-//! `rtf check`: every problem of suites and plug-ins; nothing is started.
+//! `rtf check`: reports every problem of suites and plug-ins.
 
-use std::io::Write;
 use std::process::ExitCode;
 
-use super::Outcome;
-use super::planning::{self, count};
-use crate::cli::CheckArgs;
-use crate::error::Failure;
+use clap::ArgMatches;
 
-/// Checks.
-pub fn run(args: &CheckArgs) -> Outcome {
-    let planned = planning::plan(&args.input, &args.results)?;
-    planned.show_warnings()?;
-    let plan = planned.plan;
-    let summary = [
+use super::Outcome;
+use crate::cli::InputArgs;
+use crate::diagnostics::count;
+use crate::request::{TestsRequest, config};
+use crate::{plan, terminal};
+
+/// Checks suites and plug-ins.
+pub fn run(mut args: InputArgs, matches: &ArgMatches) -> Outcome {
+    config::fill_results(&mut args, matches)?;
+    let request = TestsRequest::resolve(&args)?;
+    let planned = plan::plan(&request)?;
+    planned.print_warnings()?;
+    let plan = &planned.plan;
+    let mut summary = format!(
+        "{}, {}, {}: no errors",
         count(plan.suites.len(), "suite"),
         count(plan.fixtures as usize, "fixture"),
         count(plan.tests as usize, "test"),
-    ];
-    let warned = match planned.warnings.len() {
-        0 => String::new(),
-        many => format!(", {}", count(many, "warning")),
-    };
-    let written = writeln!(anstream::stdout(), "{}: no errors{warned}", summary.join(", "));
-    Failure::unless_reader_left(written)?;
+    );
+    if !planned.warnings.is_empty() {
+        summary += &format!(", {}", count(planned.warnings.len(), "warning"));
+    }
+    terminal::stdout(|out| writeln!(out, "{summary}"))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,6 +1,5 @@
-//! `rtf completions`: a shell's completions, on standard output.
+//! `rtf completions`: prints shell completions.
 
-use std::io::Write;
 use std::process::ExitCode;
 
 use clap::CommandFactory;
@@ -8,12 +7,12 @@ use clap_complete::Shell;
 
 use super::Outcome;
 use crate::cli::Cli;
-use crate::error::Failure;
+use crate::terminal;
 
-/// Prints the completions.
+/// Prints the completions of a shell.
 pub fn run(shell: Shell) -> Outcome {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "rtf", &mut script);
-    Failure::unless_reader_left(std::io::stdout().write_all(&script))?;
+    terminal::raw_stdout(|out| out.write_all(&script))?;
     Ok(ExitCode::SUCCESS)
 }

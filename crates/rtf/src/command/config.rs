@@ -1,7 +1,6 @@
-//! `rtf config show`: what holds for a suite, and where it comes from.
+//! `rtf config show`: prints the effective settings of a suite and their sources.
 
 use std::fmt::Write as _;
-use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -10,53 +9,51 @@ use rtf_plan::config::{
 };
 use rtf_plan::plan::RunnerEnvironment;
 use rtf_plan::suite::{self, SourceText, SuiteSettings};
+use rtf_report::escape;
 
-use super::{Outcome, planning};
+use super::Outcome;
 use crate::cli::ConfigArgs;
 use crate::error::Failure;
-use crate::settings;
+use crate::request::config::{absolute, request};
+use crate::{diagnostics, terminal};
 
-/// Comments begin in this column, where lines are short enough.
-const COMMENT: usize = 44;
+/// The column of comments.
+const COMMENT_COLUMN: usize = 44;
 
-/// Prints.
+/// Prints the effective settings.
 pub fn show(args: &ConfigArgs) -> Outcome {
-    let surroundings = RunnerEnvironment::from_current_process().map_err(Failure::own)?;
-    let path: std::path::PathBuf =
-        surroundings.current_dir.join(&args.input).components().collect();
+    let runner = RunnerEnvironment::from_current_process().map_err(Failure::internal)?;
+    let path = absolute(&runner.current_dir, &args.input);
     if !path.exists() {
-        let what = format!("there is no file or folder `{}`", args.input.display());
-        return Err(Failure::input(what));
+        let error = format!("there is no file or directory `{}`", args.input.display());
+        return Err(Failure::input(error));
     }
-    let asked = settings::asked(&args.profile);
-    let mut files = ConfigFiles::new(&surroundings.current_dir);
-    let folder = config::input_dir(&path);
-    let view = files.find_nearest(&folder).map(|file| ProfileView::new(file, &asked));
-    let run = RunConfig::collect([folder.as_path()].into_iter(), &asked, &mut files);
+    let request = request(&args.profile);
+    let mut files = ConfigFiles::new(&runner.current_dir);
+    let dir = config::input_dir(&path);
+    let view = files.find_nearest(&dir).map(|file| ProfileView::new(file, &request));
+    let run = RunConfig::collect([dir.as_path()].into_iter(), &request, &mut files);
     let mut problems = std::mem::take(&mut files.problems);
-    problems.extend(asked.check_profile(&files));
+    problems.extend(request.check_profile(&files));
     if !problems.is_empty() {
-        return Err(planning::refused(&problems, &files.sources())?);
+        return Err(diagnostics::refuse(&problems, &files.sources()));
     }
-    let suite = of_suite(&path, &args.input);
-    let mut text = head(view.as_ref(), &asked);
-    let question = SettingsQuery {
+    let suite = read_suite(&path, &args.input);
+    let mut text = header(view.as_ref(), &request);
+    let query = SettingsQuery {
         view,
         suite: suite.as_ref().map(|(source, suite)| (source, suite)),
         run: &run.values,
-        request: &asked,
-        user: &surroundings.variables,
+        request: &request,
+        user: &runner.variables,
     };
-    for shown in config::effective_settings(&question) {
-        text += &line(&shown);
-    }
-    let mut out = anstream::stdout().lock();
-    Failure::unless_reader_left(out.write_all(text.as_bytes()).and_then(|()| out.flush()))?;
+    text.extend(config::effective_settings(&query).iter().map(line));
+    terminal::raw_stdout(|out| out.write_all(text.as_bytes()))?;
     Ok(ExitCode::SUCCESS)
 }
 
-/// The suite's own values; its problems are `rtf check`'s.
-fn of_suite(path: &Path, name: &Path) -> Option<(SourceText, SuiteSettings)> {
+/// The settings in a suite file, whose problems `rtf check` reports.
+fn read_suite(path: &Path, name: &Path) -> Option<(SourceText, SuiteSettings)> {
     if !path.is_file() || !suite::is_suite_file(path) {
         return None;
     }
@@ -65,42 +62,37 @@ fn of_suite(path: &Path, name: &Path) -> Option<(SourceText, SuiteSettings)> {
     Some((source, settings))
 }
 
-fn head(view: Option<&ProfileView>, asked: &ConfigRequest) -> String {
+fn header(view: Option<&ProfileView>, request: &ConfigRequest) -> String {
     let Some(view) = view else { return "# no rtf.toml\n".to_owned() };
-    let mut text = format!("# {}\n", rtf_report::escape::line(view.file.source.name()));
+    let mut text = format!("# {}\n", escape::line(view.file.source.name()));
     if let Some((profile, _)) = &view.profile {
-        let from = match &view.file.profile {
-            Some(name) if asked.profile.is_none() => {
+        let origin = match &view.file.profile {
+            Some(name) if request.profile.is_none() => {
                 let label = view.file.source.label(name.span, "");
                 format!("{}:{}", label.file, label.line)
             }
             _ => "--profile or RTF_PROFILE".to_owned(),
         };
-        let values = vec![profile.clone()];
-        text += &line(&Setting {
-            key: "profile".to_owned(),
-            values,
-            origin: from,
-            overridden: Vec::new(),
-        });
+        let (key, values) = ("profile".to_owned(), vec![profile.clone()]);
+        text += &line(&Setting { key, values, origin, overridden: Vec::new() });
     }
     text
 }
 
-fn line(shown: &Setting) -> String {
-    let quoted = |text: &String| format!("\"{}\"", text.escape_debug());
-    let value = match shown.key.as_str() {
+fn line(setting: &Setting) -> String {
+    let quote = |text: &String| format!("\"{}\"", text.escape_debug());
+    let value = match setting.key.as_str() {
         "reports" => {
-            format!("[{}]", shown.values.iter().map(quoted).collect::<Vec<_>>().join(", "))
+            format!("[{}]", setting.values.iter().map(quote).collect::<Vec<_>>().join(", "))
         }
-        _ => shown.values.first().map(quoted).unwrap_or_default(),
+        _ => setting.values.first().map(quote).unwrap_or_default(),
     };
-    let mut text = format!("{} = {value}", shown.key);
-    let pad = COMMENT.saturating_sub(text.chars().count());
-    let _ = write!(text, "{:pad$}  # {}", "", shown.origin);
-    if !shown.overridden.is_empty() {
-        let _ = write!(text, ", over {}", shown.overridden.join(", "));
+    let mut text = format!("{} = {value}", setting.key);
+    let padding = COMMENT_COLUMN.saturating_sub(text.chars().count());
+    let _ = write!(text, "{:padding$}  # {}", "", setting.origin);
+    if !setting.overridden.is_empty() {
+        let _ = write!(text, ", over {}", setting.overridden.join(", "));
     }
     text.push('\n');
-    rtf_report::escape::block(&text).into_owned()
+    escape::block(&text).into_owned()
 }

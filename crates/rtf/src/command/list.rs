@@ -1,44 +1,47 @@
 //! `rtf list`: the tests that `rtf run` would run.
 
-use std::io::Write;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
+use clap::ArgMatches;
 use rtf_plan::plan::{Plan, SuitePlan, TestPlan};
 use rtf_report::escape;
 use serde::Serialize;
 
 use super::Outcome;
-use super::planning::{self, Planned};
 use crate::cli::{ListArgs, ListFormat};
-use crate::error::Failure;
+use crate::plan::{self, Planned};
+use crate::request::{TestsRequest, config};
+use crate::terminal;
 
-/// Lists.
-pub fn run(args: &ListArgs) -> Outcome {
-    show(&planning::plan(&args.input, &args.results)?, args.format)
+/// Lists tests.
+pub fn run(mut args: ListArgs, matches: &ArgMatches) -> Outcome {
+    config::fill_results(&mut args.input, matches)?;
+    let request = TestsRequest::resolve(&args.input)?;
+    let planned = plan::plan(&request)?;
+    print(&planned, args.format)
 }
 
-/// Lists the tests of a plan.
-pub fn show(planned: &Planned, format: ListFormat) -> Outcome {
-    planned.show_warnings()?;
-    let mut out = std::io::BufWriter::new(anstream::stdout().lock());
-    let written = match format {
-        ListFormat::Text => write(&planned.plan, &mut out),
-        ListFormat::Json => write_json(&planned.plan, &mut out),
-    };
-    Failure::unless_reader_left(written)?;
+/// Prints the tests of a plan.
+pub fn print(planned: &Planned, format: ListFormat) -> Outcome {
+    planned.print_warnings()?;
+    terminal::stdout(|out| match format {
+        ListFormat::Text => write(&planned.plan, out),
+        ListFormat::Json => write_json(&planned.plan, out),
+    })?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn each(plan: &Plan) -> impl Iterator<Item = (&SuitePlan, &TestPlan)> {
+fn tests(plan: &Plan) -> impl Iterator<Item = (&SuitePlan, &TestPlan)> {
     plan.suites.iter().flat_map(|suite| suite.tests.iter().map(move |test| (suite, test)))
 }
 
-fn write(plan: &Plan, out: &mut impl Write) -> std::io::Result<()> {
-    for (suite, test) in each(plan) {
+fn write(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
+    for (suite, test) in tests(plan) {
         let name = format!("{}/{}", suite.name, test.name);
         writeln!(out, "{}{}", escape::line(&name), notes(test))?;
     }
-    out.flush()
+    Ok(())
 }
 
 fn notes(test: &TestPlan) -> String {
@@ -56,18 +59,17 @@ fn notes(test: &TestPlan) -> String {
     if notes.is_empty() { String::new() } else { format!("  ({})", notes.join(", ")) }
 }
 
-/// All that is listed.
 #[derive(Serialize)]
-struct List<'p> {
-    tests: Vec<Listed<'p>>,
+struct TestList<'p> {
+    tests: Vec<ListedTest<'p>>,
 }
 
-/// A test, for other programs. `docs/running.md` says what the fields mean.
+/// A test; `docs/running.md` documents the fields.
 #[derive(Serialize)]
-struct Listed<'p> {
+struct ListedTest<'p> {
     suite: &'p str,
     name: &'p str,
-    /// What `rtf run` takes for it alone.
+    /// The argument with which `rtf run` runs only this test.
     select: Option<String>,
     file: &'p str,
     r#type: &'p str,
@@ -76,13 +78,13 @@ struct Listed<'p> {
     repetition: u32,
     critical: bool,
     exclusive: bool,
-    /// How many tests of its suite may run at once.
+    /// The number of tests of its suite that may run at once.
     parallel: u32,
 }
 
-fn write_json(plan: &Plan, out: &mut impl Write) -> std::io::Result<()> {
-    let tests = each(plan)
-        .map(|(suite, test)| Listed {
+fn write_json(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
+    let tests = tests(plan)
+        .map(|(suite, test)| ListedTest {
             suite: &suite.name,
             name: &test.name,
             select: (!suite.file.is_empty()).then(|| format!("{}::{}", suite.file, test.name)),
@@ -96,7 +98,6 @@ fn write_json(plan: &Plan, out: &mut impl Write) -> std::io::Result<()> {
             parallel: suite.parallel,
         })
         .collect();
-    serde_json::to_writer_pretty(&mut *out, &List { tests })?;
-    writeln!(out)?;
-    out.flush()
+    serde_json::to_writer_pretty(&mut *out, &TestList { tests })?;
+    writeln!(out)
 }

@@ -1,4 +1,4 @@
-//! `rtf man`: the manual pages, for `make install`.
+//! `rtf man`: writes the manual pages, for `make install`.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -10,8 +10,8 @@ use crate::cli::Cli;
 use crate::error::Failure;
 
 /// Writes `rtf.1` and one page for each verb.
-pub fn run(folder: &Path) -> Outcome {
-    std::fs::create_dir_all(folder).map_err(Failure::own)?;
-    clap_mangen::generate_to(Cli::command(), folder).map_err(Failure::own)?;
+pub fn run(dir: &Path) -> Outcome {
+    std::fs::create_dir_all(dir).map_err(Failure::internal)?;
+    clap_mangen::generate_to(Cli::command(), dir).map_err(Failure::internal)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,12 +1,12 @@
-//! `rtf merge`: makes one run of several, as of the parts that `--shard` made.
+//! `rtf merge`: merges several runs into one, for example the shards of `--shard`.
 //!
-//! The runs stay as they are. The new one has a journal of its own, from which
-//! everything else is made again, and copies of what tests attached.
+//! The runs stay as they are. The new run has a separate journal, from which its logs
+//! and its console output are created, and copies of the attachments.
 
 use std::fs::{self, File};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use clap::ArgMatches;
 use rtf_model::{Event, EventKind, Record, RunState};
 use rtf_report::console::{Console, ConsoleOptions};
 use rtf_report::journal::{self, Journal};
@@ -15,125 +15,120 @@ use rtf_report::merge::{self, Header, Part, Problem};
 use rtf_report::run_dir::{self, RunDir};
 use rtf_report::{ReportError, Reporter};
 
-use super::show::{find, unreadable};
-use super::{Outcome, again, show};
+use super::Outcome;
 use crate::cli::MergeArgs;
 use crate::error::Failure;
-use crate::exit;
+use crate::outputs::console_options;
+use crate::request::{config, past_run};
+use crate::{exit, terminal};
 
 /// A file that a test attached.
-struct Attached {
-    /// The run's folder.
-    folder: PathBuf,
-    /// Where it is there.
-    from: String,
-    /// Where it is in the new folder.
-    to: String,
+struct AttachedFile {
+    dir: PathBuf,
+    /// The path in the run directory.
+    source: String,
+    /// The path in the directory of the merged run.
+    target: String,
 }
 
-/// Merges, and shows what came of it.
-pub fn run(args: &MergeArgs) -> Outcome {
+/// Merges runs and prints the merged run.
+pub fn run(mut args: MergeArgs, matches: &ArgMatches) -> Outcome {
+    config::fill_past_results(&mut args.results, matches)?;
+    let results = &args.results.results;
     let mut parts = Vec::new();
     let mut attached = Vec::new();
     for (number, run) in args.runs.iter().enumerate() {
-        let path = find(&args.results, run)?;
-        let events = read(run, &path)?;
-        let folder = path.parent().unwrap_or(Path::new("."));
-        attached.extend(attachments(number, folder, &events));
+        let journal = past_run::find_journal(results, run)?;
+        let events = read_events(run, &journal)?;
+        let dir = journal.parent().unwrap_or(Path::new("."));
+        attached.extend(attached_files(number, dir, &events));
         parts.push(Part { name: run.clone(), events });
     }
-    let merged = merge::merge(parts, args.partial).map_err(|problems| refused(&problems))?;
-    let folder = run_dir::create(&args.results.results).map_err(|error| {
-        Failure::input(error).hint("choose another folder with `--results DIR`".to_owned())
+    let merged = merge::merge(parts, args.partial).map_err(|problems| refuse(&problems))?;
+    let dir = run_dir::create(results).map_err(|error| {
+        Failure::input(error).hint("choose another directory with `--results DIR`")
     })?;
-    for file in &attached {
-        file.copy(&folder)?;
-    }
+    attached.iter().try_for_each(|file| file.copy(&dir))?;
     let header = Header {
-        run: folder.name.clone(),
+        run: dir.name.clone(),
         rtf: env!("CARGO_PKG_VERSION").to_owned(),
         command: std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect(),
     };
-    let record = write(&merged.events(header), &folder).map_err(Failure::own)?;
+    let record = write(&merged.events(header), &dir).map_err(Failure::internal)?;
     Ok(exit::of_run(&record))
 }
 
-/// All events of a run that is over.
-fn read(run: &str, path: &Path) -> Result<Vec<Event>, Failure> {
+/// Reads a run that has ended.
+fn read_events(run: &str, journal: &Path) -> Result<Vec<Event>, Failure> {
     let mut events = Vec::new();
-    let stored = journal::read_with(path, |event, _| {
+    let stored = journal::read_with(journal, |event, _| {
         events.push(event.clone());
         Ok(())
     });
-    let stored = stored.map_err(unreadable)?;
-    show::refuse_damaged(run, &stored.record)?;
-    let goes_on = stored.record.state == RunState::Running
-        && File::open(path).is_ok_and(|journal| journal::is_written(&journal));
-    if goes_on {
-        return Err(Failure::input(format!("`{run}` goes on")).hint("wait for its end".to_owned()));
+    let stored = stored.map_err(past_run::unreadable)?;
+    past_run::refuse_damaged(run, &stored.record)?;
+    let is_active = stored.record.state == RunState::Running
+        && File::open(journal).is_ok_and(|journal| journal::is_written(&journal));
+    if is_active {
+        let error = format!("`{run}` is still running");
+        return Err(Failure::input(error).hint("wait until it has finished"));
     }
     Ok(events)
 }
 
-fn attachments(part: usize, folder: &Path, events: &[Event]) -> Vec<Attached> {
+fn attached_files(part: usize, dir: &Path, events: &[Event]) -> Vec<AttachedFile> {
     let paths = events.iter().filter_map(|event| match &event.kind {
         EventKind::Attached { attachment, .. } => Some(&attachment.path),
         _ => None,
     });
-    let attached = paths.filter_map(|from| {
-        let (folder, to) = (folder.to_owned(), merge::attachment_path(part, from)?);
-        Some(Attached { folder, from: from.clone(), to })
+    let files = paths.filter_map(|source| {
+        let (dir, target) = (dir.to_owned(), merge::attachment_path(part, source)?);
+        Some(AttachedFile { dir, source: source.clone(), target })
     });
-    attached.collect()
+    files.collect()
 }
 
-/// Tells every problem.
-fn refused(problems: &[Problem]) -> Failure {
-    let next = problems.iter().skip(1).map(Problem::hint).chain([None]);
-    for (problem, next) in problems.iter().zip(next) {
-        // The same hint for many is said once.
-        let hint = problem.hint().filter(|hint| next != Some(hint));
-        Failure::input(problem.clone()).hint(hint.map(str::to_owned)).show();
+/// Prints all problems.
+fn refuse(problems: &[Problem]) -> Failure {
+    let next_hints = problems.iter().skip(1).map(Problem::hint).chain([None]);
+    for (problem, next_hint) in problems.iter().zip(next_hints) {
+        // A hint of several consecutive problems is printed once.
+        let hint = problem.hint().filter(|hint| next_hint != Some(hint));
+        Failure::input(problem.clone()).maybe_hint(hint).print();
     }
-    Failure::told(exit::BAD_INPUT)
+    Failure::printed()
 }
 
-impl Attached {
-    fn copy(&self, into: &RunDir) -> Result<(), Failure> {
-        let Some(from) = self.file() else {
-            let what = self.folder.join(&self.from);
-            let mut err = anstream::stderr().lock();
-            let told =
-                writeln!(err, "warning: what a test attached is not there: {}", what.display());
-            return Failure::unless_reader_left(told);
+impl AttachedFile {
+    fn copy(&self, dir: &RunDir) -> Result<(), Failure> {
+        let Some(source) = self.resolve() else {
+            let path = self.dir.join(&self.source);
+            return terminal::stderr(|err| {
+                writeln!(err, "warning: missing attachment: {}", path.display())
+            });
         };
-        let to = into.path.join(&self.to);
-        let folder = to.parent().map_or(Ok(()), fs::create_dir_all);
-        let copied = folder.and_then(|()| fs::copy(from, &to));
+        let target = dir.path.join(&self.target);
+        let created = target.parent().map_or(Ok(()), fs::create_dir_all);
+        let copied = created.and_then(|()| fs::copy(source, &target));
         copied.map(drop).map_err(|source| {
-            Failure::own(ReportError { what: "what a test attached", path: to, source })
+            Failure::internal(ReportError { what: "the attachment", path: target, source })
         })
     }
 
-    /// The file itself: a run may come from elsewhere, and no link in it leads
-    /// to other files of this machine.
-    fn file(&self) -> Option<PathBuf> {
-        let root = self.folder.join("attachments").canonicalize().ok()?;
-        let file = self.folder.join(&self.from).canonicalize().ok()?;
-        (file.starts_with(root) && file.is_file()).then_some(file)
+    /// Refuses links to files outside of the attachments: the run may come from
+    /// another machine.
+    fn resolve(&self) -> Option<PathBuf> {
+        let attachments = self.dir.join("attachments").canonicalize().ok()?;
+        let file = self.dir.join(&self.source).canonicalize().ok()?;
+        (file.starts_with(attachments) && file.is_file()).then_some(file)
     }
 }
 
-/// Writes the journal, makes the logs of it, and shows it.
-fn write(events: &[Event], folder: &RunDir) -> Result<Record, ReportError> {
-    let mut journal = Journal::create(&folder.journal())?;
-    let mut logs = Logs::new(&folder.path);
-    let mut console = Console::stdout(ConsoleOptions {
-        folder: Some(folder.path.clone()),
-        progress: false,
-        rerun: again::command(),
-        ..ConsoleOptions::default()
-    });
+fn write(events: &[Event], dir: &RunDir) -> Result<Record, ReportError> {
+    let mut journal = Journal::create(&dir.journal())?;
+    let mut logs = Logs::new(&dir.path);
+    let options = ConsoleOptions { progress: false, ..console_options(&dir.path, false) };
+    let mut console = Console::stdout(options);
     let mut record = Record::default();
     let mut reporters: [&mut dyn Reporter; 3] = [&mut journal, &mut logs, &mut console];
     for event in events {

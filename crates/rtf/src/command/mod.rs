@@ -1,31 +1,37 @@
-//! One module a verb of the command line.
+//! The verbs. One function per verb shows its whole way:
+//!
+//! ```text
+//! arguments ─► request ───► plan ───► preflight ─► runner      rtf run
+//!   cli         │             │ ├► output                       rtf list, rtf check
+//!               │             │ └► watched files ─► rtf run     rtf watch
+//!               ├► journal of a past run ─► output              rtf show, report, merge
+//!               └► web server ─► rtf run --rerun                rtf serve
+//! ```
+//!
+//! Values go from left to right only: a stage reads the results of earlier stages and
+//! calls no earlier stage. Only [`crate::request`] fills in arguments from `rtf.toml` and
+//! past runs. [`crate::guarded`] forks before the request is resolved, so that the guard
+//! stays small; the stages from there on are those of the runner process.
+//! [`crate::testrunner`] goes the same way for the command line of
+//! robot-testing-framework 2.x, with another request.
 
-mod again;
 pub mod check;
-mod child;
-mod choosing;
 pub mod completions;
 pub mod config;
 pub mod doctor;
-pub mod job;
 pub mod list;
 pub mod locks;
 pub mod man;
 pub mod merge;
-pub mod output;
-pub mod planning;
 pub mod report;
-mod rerun;
-mod revision;
 pub mod run;
 pub mod serve;
 pub mod show;
 pub mod watch;
-pub mod web;
 
 use std::process::ExitCode;
 
 use crate::error::Failure;
 
-/// What a verb comes to: an exit code, or an error to be shown.
+/// The exit code of a verb, or an error to print.
 pub type Outcome = Result<ExitCode, Failure>;

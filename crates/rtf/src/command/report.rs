@@ -1,78 +1,73 @@
-//! `rtf report`: a report of a past run.
+//! `rtf report`: writes a report of a past run.
 
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
+use clap::ArgMatches;
 use rtf_report::journal::{self, JournalError};
 use rtf_report::{ReportError, output_file};
 
-use super::show::{find, print_damage, unreadable};
-use super::{Outcome, output};
-use crate::cli::{Format, ReportArgs};
+use super::Outcome;
+use crate::cli::{ReportArgs, ReportFormat};
 use crate::error::Failure;
-use crate::exit;
+use crate::request::{config, past_run};
+use crate::{exit, reports, terminal};
 
-const WHAT: &str = "the events";
-
-/// Writes the report. Its exit code is about the writing, not about the run; but
-/// a report of a damaged journal is not whole.
-pub fn run(args: &ReportArgs) -> Outcome {
-    let path = find(&args.results, &args.run)?;
-    let damages = journal::find_damage(&path).map_err(unreadable)?;
-    print_damage(&damages)?;
+/// Writes a report. The exit code is about the report, not about the run; it is 1 for
+/// a damaged journal, whose report is incomplete.
+pub fn run(mut args: ReportArgs, matches: &ArgMatches) -> Outcome {
+    config::fill_past_results(&mut args.results, matches)?;
+    let journal = past_run::find_journal(&args.results.results, &args.run)?;
+    let damages = journal::find_damage(&journal).map_err(past_run::unreadable)?;
+    terminal::stderr(|err| {
+        let (red, reset) = ("\u{1b}[1;31m", "\u{1b}[0m");
+        damages.iter().try_for_each(|damage| {
+            writeln!(err, "{red}error{reset}: the journal is damaged: {damage}")
+        })
+    })?;
     match args.format {
-        Format::Json => events(&path, args.output.as_deref())?,
-        _ => report(&path, args)?,
-    }
-    Ok(if damages.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(exit::FAILED) })
-}
-
-fn report(journal: &Path, args: &ReportArgs) -> Result<(), Failure> {
-    let record = journal::read(journal).map_err(unreadable)?.record;
-    match &args.output {
-        Some(output) => {
-            let report = output::open_report(args.format, output, journal.parent());
-            let mut report = report.map_err(elsewhere)?;
-            report.finish(&record).map_err(Failure::own)
+        ReportFormat::Json => {
+            let mut unreadable = None;
+            let written = write(&args, |out| copy_events(&journal, out, &mut unreadable));
+            unreadable.map_or(written, |error| Err(past_run::unreadable(error)))?;
         }
-        None => {
-            let mut out = io::stdout().lock();
-            let written = output::write(args.format, &mut out, &record, journal.parent());
-            Failure::unless_reader_left(written.and_then(|()| out.flush()))
+        format => {
+            let record = journal::read(&journal).map_err(past_run::unreadable)?.record;
+            write(&args, |out| reports::write(format, out, &record, journal.parent()))?;
         }
     }
+    Ok(ExitCode::from(if damages.is_empty() { exit::PASSED } else { exit::FAILED }))
 }
 
-fn elsewhere(failure: Failure) -> Failure {
-    failure.hint("choose another path with `-o PATH`".to_owned())
+fn write(
+    args: &ReportArgs,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Failure> {
+    let Some(path) = &args.output else { return terminal::raw_stdout(fill) };
+    let title = reports::title(args.format);
+    output_file::probe(title, path)
+        .map_err(|error| Failure::input(error).hint("choose another path with `-o PATH`"))?;
+    output_file::write(title, path, fill).map_err(Failure::internal)
 }
 
-/// The events themselves: the lines of the journal that can be read, as they are,
-/// so that damage can be found in the copy, too.
-fn events(journal: &Path, output: Option<&Path>) -> Result<(), Failure> {
-    match output {
-        None => {
-            let mut out = io::BufWriter::new(io::stdout().lock());
-            match copy(journal, &mut out) {
-                Ok(()) => Failure::unless_reader_left(out.flush()),
-                Err(JournalError::Report(error)) => Failure::unless_reader_left(Err(error.source)),
-                Err(error) => Err(unreadable(error)),
-            }
-        }
-        Some(path) => {
-            let mut events = Vec::new();
-            copy(journal, &mut events).map_err(unreadable)?;
-            let written = output_file::write(WHAT, path, |out| out.write_all(&events));
-            written.map_err(|error| elsewhere(Failure::input(error)))
-        }
-    }
-}
-
-fn copy(journal: &Path, out: &mut impl Write) -> Result<(), JournalError> {
-    let failed = |source| ReportError { what: WHAT, path: "standard output".into(), source };
+/// Copies the readable lines of the journal unchanged, so that damage is found in the
+/// copy, too.
+fn copy_events(
+    journal: &Path,
+    out: &mut dyn Write,
+    unreadable: &mut Option<JournalError>,
+) -> io::Result<()> {
+    let failed = |source| ReportError { what: "the events", path: "the output".into(), source };
     let copied = journal::read_lines(journal, |line| {
         out.write_all(line).and_then(|()| out.write_all(b"\n")).map_err(failed)
     });
-    copied.map(drop)
+    match copied {
+        Ok(_) => Ok(()),
+        Err(JournalError::Report(error)) => Err(error.source),
+        Err(error) => {
+            *unreadable = Some(error);
+            Err(io::ErrorKind::InvalidData.into())
+        }
+    }
 }

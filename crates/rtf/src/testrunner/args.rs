@@ -6,30 +6,30 @@ use std::path::{Path, PathBuf};
 use clap::{ArgAction, Parser, ValueEnum};
 use rtf_plan::plan::InputPath;
 
-/// The command line of robot-testing-framework 2.x, for the scripts that use it; `rtf run` does more
+/// The command line of robot-testing-framework 2.x, for existing scripts; `rtf run` has more options
 #[derive(Debug, Parser)]
 #[command(name = super::NAME, max_term_width = 100, args_override_self = true)]
 #[command(disable_version_flag = true, disable_help_flag = true)]
 #[command(override_usage = "robottestingframework-testrunner [OPTIONS] \
-    (--test NAME | --tests FOLDER | --suite FILE | --suites FOLDER)...")]
+    (--test NAME | --tests DIR | --suite FILE | --suites DIR)...")]
 pub struct Args {
     /// Run one plug-in
     #[arg(short, long, value_name = "NAME", allow_hyphen_values = true)]
     pub test: Option<PathBuf>,
 
-    /// Run the plug-ins of a folder
-    #[arg(long, value_name = "FOLDER", allow_hyphen_values = true)]
+    /// Run the plug-ins of a directory
+    #[arg(long, value_name = "DIR", allow_hyphen_values = true)]
     pub tests: Option<PathBuf>,
 
     /// Run one suite
     #[arg(short, long, value_name = "FILE", allow_hyphen_values = true)]
     pub suite: Option<PathBuf>,
 
-    /// Run the suites of a folder
-    #[arg(long, value_name = "FOLDER", allow_hyphen_values = true)]
+    /// Run the suites of a directory
+    #[arg(long, value_name = "DIR", allow_hyphen_values = true)]
     pub suites: Option<PathBuf>,
 
-    /// Write no result file and keep nothing
+    /// Write no result file and delete the results
     #[arg(long)]
     pub no_output: bool,
 
@@ -37,26 +37,26 @@ pub struct Args {
     #[arg(long)]
     pub no_summary: bool,
 
-    /// The result file [default: result.txt, or result.xml for junit]
+    /// Result file [default: result.txt, or result.xml for junit]
     #[arg(short, long, value_name = "FILE", allow_hyphen_values = true)]
     pub output: Option<PathBuf>,
 
-    /// The format of the result file: text or junit
+    /// Format of the result file: text or junit
     #[arg(long, value_name = "TYPE", default_value = "text", allow_hyphen_values = true)]
     #[arg(hide_possible_values = true)]
     pub output_type: OutputType,
 
-    /// The parameter string of --test
+    /// Parameter string of --test
     #[arg(short, long, value_name = "TEXT", default_value = "", allow_hyphen_values = true)]
     #[arg(hide_default_value = true)]
     pub param: String,
 
-    /// The environment string of --test
+    /// Environment string of --test
     #[arg(short, long, value_name = "TEXT", default_value = "", allow_hyphen_values = true)]
     #[arg(hide_default_value = true)]
     pub environment: String,
 
-    /// How often --test runs
+    /// Run --test N times
     #[arg(long, value_name = "N", default_value = "0", allow_hyphen_values = true)]
     #[arg(hide_default_value = true)]
     pub repetition: u32,
@@ -65,19 +65,19 @@ pub struct Args {
     #[arg(short, long)]
     pub web_reporter: bool,
 
-    /// The port of the page for the browser
+    /// Port of the web page
     #[arg(long, value_name = "PORT", default_value = "8080", allow_hyphen_values = true)]
     pub web_port: u16,
 
-    /// Search the folders inside of a folder too
+    /// Search directories recursively
     #[arg(short, long)]
     pub recursive: bool,
 
-    /// Tell the place in the source of each message
+    /// Print the source location of each message
     #[arg(short, long)]
     pub detail: bool,
 
-    /// Show all messages, not only failures and errors
+    /// Print all messages, not only failures and errors
     #[arg(short, long)]
     pub verbose: bool,
 
@@ -89,7 +89,7 @@ pub struct Args {
     #[arg(short = '?', long, action = ArgAction::Help)]
     pub help: Option<bool>,
 
-    /// What has no meaning
+    /// Words that are not options
     #[arg(hide = true)]
     pub ignored: Vec<OsString>,
 }
@@ -104,23 +104,20 @@ pub enum OutputType {
 }
 
 impl Args {
-    /// What is to be run. An empty value is none.
-    pub fn requests(&self) -> Vec<InputPath> {
-        let of = |path: &Option<PathBuf>, kind: fn(PathBuf) -> InputPath| {
-            path.clone().filter(|path| !path.as_os_str().is_empty()).map(kind)
-        };
-        [
-            of(&self.test, InputPath::Plugin),
-            of(&self.tests, InputPath::Plugins),
-            of(&self.suite, InputPath::Suite),
-            of(&self.suites, InputPath::Suites),
-        ]
-        .into_iter()
-        .flatten()
-        .collect()
+    /// The suites and plug-ins. An empty value counts as not given.
+    pub fn inputs(&self) -> Vec<InputPath> {
+        let given =
+            |path: &Option<PathBuf>| path.clone().filter(|path| !path.as_os_str().is_empty());
+        let inputs = [
+            given(&self.test).map(InputPath::Plugin),
+            given(&self.tests).map(InputPath::Plugins),
+            given(&self.suite).map(InputPath::Suite),
+            given(&self.suites).map(InputPath::Suites),
+        ];
+        inputs.into_iter().flatten().collect()
     }
 
-    /// Where the results go; `None`: nowhere.
+    /// The result file; `None` if no file is written.
     pub fn result_file(&self) -> Option<&Path> {
         if self.no_output {
             return None;

@@ -1,205 +1,197 @@
-//! `robottestingframework-testrunner`: the command line of
-//! robot-testing-framework 2.x, on top of the same engine as `rtf run`.
-//! `spec/testrunner.md` is the contract.
-//!
-//! It is the same program, called by another name.
+//! `robottestingframework-testrunner`: the command line of robot-testing-framework 2.x,
+//! for which `rtf` is called by this name. `spec/testrunner.md` specifies it.
 
 mod args;
 
-use std::io::{self, Write};
+use std::cell::Cell;
+use std::io;
+use std::net::{Ipv4Addr, SocketAddr};
 use std::num::NonZeroU16;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
 use std::time::Duration;
 
 use clap::Parser as _;
 use clap::error::ErrorKind;
-use rtf_engine::guard::Link;
 use rtf_engine::locks::LockOptions;
-use rtf_model::Record;
+use rtf_model::{Manifest, Record};
 use rtf_plan::plan::{Compatibility, Options, RunnerEnvironment};
 use rtf_process::fork_server::ForkMode;
-use rtf_report::journal::Journal;
-use rtf_report::junit;
-use rtf_report::logs::Logs;
 use rtf_report::predecessor::{self, Console, ConsoleOptions};
-use rtf_report::{Reporter, run_dir};
-use rtf_web::{Capabilities, Server};
+use rtf_report::run_dir::JOURNAL;
+use rtf_report::{ReportError, ReportFile};
 
+use crate::cli::{ReportFormat, WebAccessArgs};
 use crate::command::Outcome;
-use crate::command::job::Job;
-use crate::command::locks;
-use crate::command::output;
-use crate::command::planning;
-use crate::command::web::{self, Asks};
 use crate::error::Failure;
-use crate::exit;
-use crate::guarded::{Guarded, finish};
+use crate::guarded::{self, Supervision};
+use crate::request::{RunRequest, TestsRequest, WebRequest, locks_dir, web_settings};
+use crate::{exit, plan, preflight, reports, runner, terminal};
 use args::{Args, OutputType};
 
 /// The program's name.
 pub const NAME: &str = "robottestingframework-testrunner";
 
-/// The version whose command line this is: scripts ask for it.
+/// The version whose command line this is, which scripts ask for.
 const PREDECESSOR_VERSION: &str = "2.0.1";
 
-/// As for `rtf run`.
-const SHUTDOWN: Duration = Duration::from_secs(60);
+/// The default of `rtf run --shutdown-timeout`.
+const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Whether the program was called by this name.
 pub fn is_called() -> bool {
-    let called = std::env::args_os().next().unwrap_or_default();
-    Path::new(&called).file_stem().is_some_and(|stem| stem == NAME)
+    let program = std::env::args_os().next().unwrap_or_default();
+    Path::new(&program).file_stem().is_some_and(|stem| stem == NAME)
 }
 
-/// Runs; ends with 0 or 1, as the predecessor did.
+/// Runs; exits with 0 or 1, as the predecessor does.
 pub fn main() -> ExitCode {
-    let args = match Args::try_parse() {
-        Ok(args) => args,
+    let outcome = match Args::try_parse() {
+        Ok(args) if args.version => print_version(),
+        Ok(args) => run(&args),
         Err(error) => {
-            // Nobody is left to tell when standard error is closed.
+            // Standard error may be closed.
             let _ = error.print();
-            let helped = error.kind() == ErrorKind::DisplayHelp;
-            return ExitCode::from(if helped { exit::PASSED } else { exit::FAILED });
+            let is_help = error.kind() == ErrorKind::DisplayHelp;
+            Ok(ExitCode::from(if is_help { exit::PASSED } else { exit::FAILED }))
         }
     };
-    let code = run(&args).unwrap_or_else(|failure| failure.show());
+    let code = outcome.unwrap_or_else(|failure| failure.print());
     if code == ExitCode::from(exit::PASSED) { code } else { ExitCode::from(exit::FAILED) }
 }
 
-fn run(args: &Args) -> Outcome {
-    if args.version {
-        let version = env!("CARGO_PKG_VERSION");
-        let line = format!("{NAME} version {PREDECESSOR_VERSION} (compatible; rtf {version})");
-        Failure::unless_reader_left(writeln!(anstream::stdout(), "{line}"))?;
-        return Ok(ExitCode::SUCCESS);
-    }
-    if args.requests().is_empty() {
-        let hint = format!(
-            "name one with `--test`, `--tests`, `--suite` or `--suites`, see `{NAME} --help`"
-        );
-        return Err(Failure::input("no test and no suite is named").hint(hint));
-    }
-    Failure::unless_reader_left(warn(args))?;
-    let results = Results::new(args).map_err(Failure::own)?;
-    let runner = std::cell::Cell::new(false);
-    let run = |guard| {
-        runner.set(true);
-        perform(args, &results, guard)
-    };
-    let close = |journal: &Path, record: &Record| after_death(args, journal, record);
-    let (kept, lifeline, patience) = (results.scratch.is_none(), None, SHUTDOWN);
-    let outcome = Guarded { run, close: &close, kept, lifeline, patience }.watch();
-    // The guard is still there when the runner is not.
-    if !runner.get() {
-        results.clear();
-    }
-    outcome
+fn print_version() -> Outcome {
+    let version = env!("CARGO_PKG_VERSION");
+    terminal::stdout(|out| {
+        writeln!(out, "{NAME} version {PREDECESSOR_VERSION} (compatible; rtf {version})")
+    })?;
+    Ok(ExitCode::SUCCESS)
 }
 
-/// Tells what has no effect.
-fn warn(args: &Args) -> io::Result<()> {
-    let mut err = anstream::stderr().lock();
+fn check_args(args: &Args) -> Result<(), Failure> {
+    if args.inputs().is_empty() {
+        let hint = "add `--test`, `--tests`, `--suite` or `--suites`";
+        let hint = format!("{hint}; `{NAME} --help` explains them");
+        return Err(Failure::input("no test and no suite is given").hint(hint));
+    }
     for word in &args.ignored {
-        writeln!(err, "warning: `{}` is no option, and is ignored", word.to_string_lossy())?;
+        let word = word.to_string_lossy();
+        terminal::stderr(|err| writeln!(err, "warning: `{word}` is not an option, ignored"))?;
     }
     Ok(())
 }
 
-fn perform(args: &Args, results: &Results, guard: Link) -> Outcome {
-    let surroundings = RunnerEnvironment::from_current_process().map_err(Failure::own)?;
-    let mut options = Options::new(surroundings);
-    options.compatibility = Compatibility::Predecessor;
-    options.recursive = args.recursive;
-    options.param.clone_from(&args.param);
-    options.environment.clone_from(&args.environment);
-    options.repetitions = args.repetition.max(1);
-    let planned = planning::plan_requests(&args.requests(), &options)?;
-    planned.show_warnings()?;
-    result_file(args, Path::new(""))?;
-    let web = args.web_reporter.then(|| web::bind_loopback(args.web_port)).transpose();
-    let web =
-        web.map_err(|failure| failure.hint("choose another port with `--web-port N`".to_owned()))?;
-    let folder = run_dir::create(&results.folder).map_err(|error| {
-        Failure::input(error)
-            .hint("choose another folder with the variable `RTF_RESULTS`".to_owned())
-    })?;
-    let mut reporters: Vec<Box<dyn Reporter>> = vec![
-        Box::new(Journal::create(&folder.journal()).map_err(Failure::input)?),
-        Box::new(Logs::new(&folder.path)),
-    ];
-    let asks = Arc::new(Asks::new(SHUTDOWN));
-    let role = Capabilities::Runner(folder.name.clone(), asks.clone());
-    let web = web.map(|bound| web::serve(bound, &results.folder, role)).transpose()?;
-    reporters.extend(web.as_ref().map(|web| Box::new(web.live()) as Box<dyn Reporter>));
-    reporters.extend(result_file(args, &folder.journal())?);
-    let outlet = output::outlet()?;
-    reporters.push(Box::new(Console::over(&outlet, console_options(args))));
-    let job = Job {
-        planned: &planned,
-        folder: &folder,
-        forks: ForkMode::default(),
-        asks: &asks,
-        max_fail: None,
-        locks: LockOptions { dir: locks::folder(), limit: None },
-        jobs: NonZeroU16::MIN,
-        outlet: &outlet,
+fn run(args: &Args) -> Outcome {
+    check_args(args)?;
+    let results = ResultsDir::new(args).map_err(Failure::internal)?;
+    let supervision = Supervision {
+        lifeline: None,
+        patience: SHUTDOWN_TIMEOUT,
+        keeps_journal: !results.is_temporary,
     };
-    let ended = job.perform(reporters, guard);
-    // What is wrong with the server is not the run's.
-    drop(web.map(Server::stop));
-    ended
+    let is_runner = Cell::new(false);
+    let run = |guard| {
+        is_runner.set(true);
+        let request = request(args, &results.path)?;
+        let planned = plan::plan(&request.tests)?;
+        planned.print_warnings()?;
+        let report = open_result_file(args, &results.path).transpose().map_err(|error| {
+            Failure::input(error).hint("choose another path with `--output FILE`")
+        })?;
+        let prepared = preflight::prepare(&request, report.into_iter().collect(), |_, stdout| {
+            vec![Box::new(Console::over(stdout, console_options(args)))]
+        })?;
+        runner::run(&request, &planned, prepared, guard)
+    };
+    let outcome = guarded::run(supervision, run, |_, record| complete(args, &results.path, record));
+    // The guard needs the journal until the runner has ended.
+    if !is_runner.get() {
+        results.remove_if_temporary();
+    }
+    outcome
 }
 
-/// What the runner would have written at its end.
-fn after_death(args: &Args, journal: &Path, record: &Record) {
-    if let Some(file) = result_file(args, journal).transpose() {
-        finish(file, record);
+/// The request. Its manifest has no inputs: `--rerun` cannot rerun the run.
+fn request(args: &Args, results: &Path) -> Result<RunRequest, Failure> {
+    let runner = RunnerEnvironment::from_current_process().map_err(Failure::internal)?;
+    let options = Options {
+        compatibility: Compatibility::Predecessor,
+        recursive: args.recursive,
+        param: args.param.clone(),
+        environment: args.environment.clone(),
+        repetitions: args.repetition.max(1),
+        ..Options::new(runner)
+    };
+    let address = SocketAddr::from((Ipv4Addr::LOCALHOST, args.web_port));
+    Ok(RunRequest {
+        tests: TestsRequest {
+            inputs: args.inputs(),
+            options,
+            manifest: Manifest::default(),
+            shard: None,
+        },
+        results: results.to_owned(),
+        results_option: "the variable `RTF_RESULTS`",
+        web: args.web_reporter.then(|| WebRequest {
+            settings: web_settings(address, &WebAccessArgs::default()),
+            hint: Some("choose another port with `--web-port N`"),
+            linger: None,
+        }),
+        fork_mode: ForkMode::default(),
+        max_fail: None,
+        locks: LockOptions { dir: locks_dir(), limit: None },
+        jobs: NonZeroU16::MIN,
+        shutdown_timeout: SHUTDOWN_TIMEOUT,
+    })
+}
+
+/// Completes the result file and standard output after the runner died.
+fn complete(args: &Args, results: &Path, record: &Record) {
+    if let Some(file) = open_result_file(args, results) {
+        reports::finish(file, record);
     }
-    finish(Ok(Box::new(Console::stdout(console_options(args)))), record);
+    reports::finish(Ok(Console::stdout(console_options(args))), record);
 }
 
 fn console_options(args: &Args) -> ConsoleOptions {
     ConsoleOptions { verbose: args.verbose, detail: args.detail, summary: !args.no_summary }
 }
 
-/// Opens the result file; finds out whether it can be written.
-fn result_file(args: &Args, journal: &Path) -> Result<Option<Box<dyn Reporter>>, Failure> {
-    let Some(path) = args.result_file() else { return Ok(None) };
-    let file: Result<Box<dyn Reporter>, _> = match args.output_type {
-        OutputType::Text => {
-            predecessor::file(path, journal, args.detail).map(|file| Box::new(file) as _)
-        }
-        OutputType::Junit => junit::file(path, journal.parent()).map(|file| Box::new(file) as _),
+/// Opens the result file of the run in `results`, unless the user wants none.
+fn open_result_file(args: &Args, results: &Path) -> Option<Result<ReportFile, ReportError>> {
+    let path = args.result_file()?;
+    if args.output_type == OutputType::Junit {
+        return Some(reports::open(ReportFormat::Junit, path, results));
+    }
+    let (results, detail) = (results.to_owned(), args.detail);
+    let write = move |out: &mut dyn io::Write, record: &Record| {
+        let run = record.run.as_ref().map_or("", |started| &started.run);
+        predecessor::write(out, &results.join(run).join(JOURNAL), detail)
     };
-    file.map(Some).map_err(|error| {
-        Failure::input(error).hint("choose another path with `--output FILE`".to_owned())
-    })
+    Some(ReportFile::new("the result file", path, Box::new(write)))
 }
 
-/// Where runs are kept.
-struct Results {
-    folder: PathBuf,
-    /// A folder that is gone with the run.
-    scratch: Option<PathBuf>,
+/// The results directory.
+struct ResultsDir {
+    path: PathBuf,
+    is_temporary: bool,
 }
 
-impl Results {
+impl ResultsDir {
     fn new(args: &Args) -> io::Result<Self> {
         if args.no_output {
-            let folder = tempfile::Builder::new().prefix(NAME).tempdir()?.keep();
-            return Ok(Self { scratch: Some(folder.clone()), folder });
+            let dir = tempfile::Builder::new().prefix(NAME).tempdir()?;
+            return Ok(Self { path: dir.keep(), is_temporary: true });
         }
-        let given = std::env::var_os("RTF_RESULTS").filter(|folder| !folder.is_empty());
-        let folder = given.map_or_else(|| PathBuf::from("rtf-results"), PathBuf::from);
-        Ok(Self { folder, scratch: None })
+        let dir = std::env::var_os("RTF_RESULTS").filter(|dir| !dir.is_empty());
+        let path = dir.map_or_else(|| PathBuf::from("rtf-results"), PathBuf::from);
+        Ok(Self { path, is_temporary: false })
     }
 
-    fn clear(&self) {
-        if let Some(folder) = &self.scratch {
-            // What cannot be removed lies in the system's temporary folder.
-            let _ = std::fs::remove_dir_all(folder);
+    fn remove_if_temporary(&self) {
+        if self.is_temporary {
+            // A leftover is in the system's temporary directory.
+            let _ = std::fs::remove_dir_all(&self.path);
         }
     }
 }

@@ -50,13 +50,13 @@ fn numbers_and_durations() {
 fn options_that_need_others() {
     assert_snapshot!(refused(&folder(), &["run", "arm.xml", "--web-allow-remote"]), @"
     error: `--web-allow-remote` has no effect without `--web`
-    hint: give `--web`, too
+    hint: add `--web`
     ");
     assert_snapshot!(refused(&folder(), &["run", "arm.xml", "--rerun", "failed"]), @"
     error: `arm.xml` is not a journal: line 1: this is not an event: expected value at line 1 column 1
-    hint: with `--rerun`, FILE is a past run, or its journal
+    hint: with `--rerun`, FILE is a past run or its journal
     ");
-    assert_snapshot!(first(&["run", "arm.xml", "--shuffle=x"]), @"error: invalid value 'x' for '--shuffle[=<SEED>]': expected a number, as an earlier run shows it");
+    assert_snapshot!(first(&["run", "arm.xml", "--shuffle=x"]), @"error: invalid value 'x' for '--shuffle[=<SEED>]': expected a number, as printed by an earlier run");
 }
 
 #[test]

@@ -19,7 +19,7 @@ fn a_results_folder_that_cannot_be_written() {
     assert_snapshot!(refused(&folder, &["run", "EncoderTest.lua", "--results", "file/results"]), @"
     error: cannot create the results directory `file/results`
     caused by: Not a directory (os error 20)
-    hint: choose another folder with `--results DIR`
+    hint: choose another directory with `--results DIR`
     ");
     assert_eq!(std::fs::read_dir(folder.path()).expect("the folder").count(), 2);
 }

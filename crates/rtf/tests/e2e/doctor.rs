@@ -46,23 +46,23 @@ fn a_machine_without_anything() {
     rtf
       ok       dll             plug-ins in C and C++
                                [BIN]/rtf-host-native
-      missing  python          plug-ins in Python, all fixture managers of rtf
+      missing  python          plug-ins in Python, including all fixture managers of rtf
                                plug-ins of type `python` need `python3`, which is missing
-                               hint: Python 3.9 or later: `apt-get install python3`, or an active virtual environment; RTF_PYTHON names another one
-      missing  stacks          stack dumps of native code that hangs
-                               there is no program `gdb` or `eu-stack` on PATH
-                               hint: `apt-get install gdb`, or `apt-get install elfutils`
+                               hint: install Python 3.9 or later (`apt-get install python3`), activate a virtual environment, or set RTF_PYTHON to an interpreter
+      missing  stacks          stack dumps of hung native code
+                               neither `gdb` nor `eu-stack` is on PATH
+                               hint: `apt-get install gdb` or `apt-get install elfutils`
       missing  ssh             fixtures on other machines
-                               there is no program `ssh` on PATH
-                               hint: `apt-get install openssh-client`, or RTF_SSH names another program
+                               `ssh` is not on PATH
+                               hint: `apt-get install openssh-client`, or set RTF_SSH to another program
     fixtures
-      missing  ros2launch      a launch file of ROS 2
+      missing  ros2launch      runs a ROS 2 launch file
                                plug-ins of type `python` need `python3`, which is missing
-                               hint: `rtf doctor python` tells more
-                               there is no program `ros2` on PATH
-                               hint: ROS 2 from https://docs.ros.org, on Ubuntu 24.04 for example `apt-get install ros-jazzy-ros-base` with its repository; then `. /opt/ros/jazzy/setup.bash` before rtf
-                               the `python3` on PATH has no module `rclpy`, which --topic needs
-                               hint: it comes with ROS 2; without ROS 2 `pip install ros-rclpy ros-rmw-fastrtps-cpp ros-std-msgs`
+                               hint: see `rtf doctor python`
+                               `ros2` is not on PATH
+                               hint: install ROS 2 from https://docs.ros.org (on Ubuntu 24.04, for example, add its repository and `apt-get install ros-jazzy-ros-base`), then `. /opt/ros/jazzy/setup.bash` before starting rtf
+                               the `python3` on PATH has no module `rclpy` (only for --topic)
+                               hint: install ROS 2, or `pip install ros-rclpy ros-rmw-fastrtps-cpp ros-std-msgs`
     ----- stderr
     ");
 }
@@ -98,15 +98,15 @@ fn what_a_fixture_needs_is_there() {
     exit code 0
     ----- stdout
     rtf
-      ok       python          plug-ins in Python, all fixture managers of rtf
+      ok       python          plug-ins in Python, including all fixture managers of rtf
                                [FOLDER]/bin/python3 (Python 3.12.1)
-      ok       stacks          stack dumps of native code that hangs
+      ok       stacks          stack dumps of hung native code
                                [FOLDER]/bin/gdb
     fixtures
-      ok       ros2launch      a launch file of ROS 2
+      ok       ros2launch      runs a ROS 2 launch file
                                [FOLDER]/bin/ros2
-                               the `python3` on PATH has no module `rclpy`, which --topic needs
-                               hint: it comes with ROS 2; without ROS 2 `pip install ros-rclpy ros-rmw-fastrtps-cpp ros-std-msgs`
+                               the `python3` on PATH has no module `rclpy` (only for --topic)
+                               hint: install ROS 2, or `pip install ros-rclpy ros-rmw-fastrtps-cpp ros-std-msgs`
     ----- stderr
     ");
 }
@@ -120,16 +120,16 @@ fn a_host_that_does_not_start_is_as_good_as_none() {
     exit code 1
     ----- stdout
     fixtures
-      missing  orocos          a deployer of OROCOS RTT
+      missing  orocos          runs an OROCOS RTT deployer
                                [FOLDER]/bin/deployer-corba
                                `[FOLDER]/bin/python3` does not start: exit status: 1: No module named rtf
-                               hint: `rtf doctor python` tells more
-                               there is no program `omniNames` on PATH, which --own-names needs
+                               hint: see `rtf doctor python`
+                               `omniNames` is not on PATH (only for --own-names)
                                hint: `apt-get install omniorb-nameserver`
       missing  ros2shm         removes the shared memory of dead ROS 2 nodes
                                [ROOT]/fixtures
                                `[FOLDER]/bin/python3` does not start: exit status: 1: No module named rtf
-                               hint: `rtf doctor python` tells more
+                               hint: see `rtf doctor python`
     ----- stderr
     ");
 }
@@ -148,15 +148,15 @@ fn one_json_document() {
           "name": "orocos",
           "part": "fixture",
           "ok": false,
-          "about": "a deployer of OROCOS RTT",
+          "about": "runs an OROCOS RTT deployer",
           "found": [],
           "missing": [
             {
-              "what": "there is no program `deployer-gnulinux` or `deployer-corba` on PATH",
-              "install": "build https://github.com/orocos-toolchain, then `. env.sh` of its folder before rtf; no distribution has packages of it"
+              "what": "none of `deployer-gnulinux`, `deployer-corba` is on PATH",
+              "install": "build https://github.com/orocos-toolchain (no distribution packages it), then source its `env.sh` before starting rtf"
             },
             {
-              "what": "there is no program `omniNames` on PATH",
+              "what": "`omniNames` is not on PATH",
               "install": "`apt-get install omniorb-nameserver`",
               "for": "--own-names"
             }
@@ -166,7 +166,7 @@ fn one_json_document() {
           "name": "roscore",
           "part": "fixture",
           "ok": true,
-          "about": "the master of ROS 1",
+          "about": "runs the ROS 1 master",
           "found": [
             "[FOLDER]/bin/roscore"
           ],
@@ -205,8 +205,6 @@ fn an_unknown_name() {
     let folder = machine(&[]);
     let finished = doctor(&folder, &["rosluanch"]);
     assert_eq!(finished.code, Some(2));
-    assert!(
-        finished.stderr.starts_with("error: nothing is known of `rosluanch`\nhint: known are ")
-    );
+    assert!(finished.stderr.starts_with("error: unknown name `rosluanch`\nhint: known names are "));
     assert!(finished.stderr.contains(" roslaunch"), "{}", finished.stderr);
 }

@@ -164,5 +164,8 @@ fn a_command_that_cannot_be_executed_says_why() {
     let ran = &folder.journal().record.hooks[0].runs[0];
     let (problem, output) = (ran.problem(), &ran.output);
     assert_eq!(problem, Some("it ended with exit code 127"), "{output}");
-    assert!(output.contains("/park` cannot be executed: No such file"), "{output}");
+    assert!(
+        output.contains("cannot execute `") && output.contains("/park`: No such file"),
+        "{output}"
+    );
 }

@@ -75,7 +75,7 @@ fn two_who_compete_200_times_never_overlap_also_when_one_is_killed() {
     });
     assert_eq!(locks(&folder), "");
     let told = rtf(&folder, &["locks"]).stderr;
-    assert_eq!(String::from_utf8_lossy(&told), "nobody has a lock\n");
+    assert_eq!(String::from_utf8_lossy(&told), "no locks are held\n");
     assert!(nothing_left(&folder));
 }
 

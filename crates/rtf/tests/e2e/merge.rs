@@ -101,7 +101,7 @@ fn what_tests_attached_is_copied_and_nothing_else() {
     std::os::unix::fs::symlink(folder.path().join("secret"), &link).expect("a link");
     let finished = folder.rtf(&["merge", &runs[0], &runs[1]]);
     assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
-    assert!(finished.stderr.starts_with("warning: what a test attached is not there: "));
+    assert!(finished.stderr.starts_with("warning: missing attachment: "));
     let merged = newest(&folder, "rtf-results");
     let [first, second] = attached(&folder).try_into().expect("two files");
     assert_eq!(folder.read(&format!("{merged}/{first}")), "1,2\n");
@@ -152,7 +152,7 @@ fn what_cannot_be_merged_is_told_and_makes_nothing() {
     ----- stdout
     ----- stderr
     error: the journal of `damaged.jsonl` is damaged: line 2: this is not an event: expected value at line 1 column 1
-    hint: `rtf show damaged.jsonl` shows what can be read of it
+    hint: `rtf show damaged.jsonl` shows the readable part
     ");
 }
 
@@ -175,7 +175,11 @@ fn a_part_that_was_killed_makes_the_run_incomplete() {
     let second = newest(&folder, "rtf-results");
     let early = folder.rtf(&["merge", &first, &second]);
     assert_eq!(early.code, Some(2));
-    assert!(early.stderr.ends_with(" goes on\nhint: wait for its end\n"), "{}", early.stderr);
+    assert!(
+        early.stderr.ends_with(" is still running\nhint: wait until it has finished\n"),
+        "{}",
+        early.stderr
+    );
     running.kill_runner();
     assert_eq!(running.finish().code, Some(5));
     // The killed part comes first: its suite goes on with the other one.

@@ -65,7 +65,7 @@ fn the_failed_tests_are_run_again_as_a_new_run() {
     wait_until("the end of the second", || server(&web)["controlled"].is_null().then_some(()));
     let nothing = web.post_to(&second, "/rerun");
     assert_eq!(nothing.status, 409);
-    let said = format!("no test of `{second}` failed: nothing to run again");
+    let said = format!("no test of `{second}` failed: nothing to rerun");
     assert_eq!(nothing.json()["detail"], said);
     // What the runner says about the suite is passed on, and is no run.
     std::fs::remove_file(folder.path().join("arm.xml")).expect("the suite");

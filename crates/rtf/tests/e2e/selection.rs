@@ -92,9 +92,9 @@ fn nothing_chosen_is_red() {
     exit code 2
     ----- stdout
     ----- stderr
-    error: no test is chosen, of 3 tests
+    error: no test selected out of 3 tests
      |
-     = help: `rtf list` without these options shows all of them
+     = help: `rtf list` without these options lists all tests
 
     warning: no test has the tag `slwo`
      --> --filter:1:5
@@ -190,7 +190,7 @@ fn what_failed_is_run_again_with_what_it_had() {
     exit code 2
     ----- stdout
     ----- stderr
-    error: no test of `latest` was interrupted or skipped: nothing to run again
+    error: no test of `latest` was interrupted or skipped: nothing to rerun
     ");
 }
 

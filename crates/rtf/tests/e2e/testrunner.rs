@@ -264,27 +264,27 @@ fn version_and_help() {
     assert_snapshot!(folder.shown(&folder.testrunner(&["--help"])), @"
     exit code 0
     ----- stdout
-    The command line of robot-testing-framework 2.x, for the scripts that use it; `rtf run` does more
+    The command line of robot-testing-framework 2.x, for existing scripts; `rtf run` has more options
 
-    Usage: robottestingframework-testrunner [OPTIONS] (--test NAME | --tests FOLDER | --suite FILE | --suites FOLDER)...
+    Usage: robottestingframework-testrunner [OPTIONS] (--test NAME | --tests DIR | --suite FILE | --suites DIR)...
 
     Options:
       -t, --test <NAME>         Run one plug-in
-          --tests <FOLDER>      Run the plug-ins of a folder
+          --tests <DIR>         Run the plug-ins of a directory
       -s, --suite <FILE>        Run one suite
-          --suites <FOLDER>     Run the suites of a folder
-          --no-output           Write no result file and keep nothing
+          --suites <DIR>        Run the suites of a directory
+          --no-output           Write no result file and delete the results
           --no-summary          Print no summary
-      -o, --output <FILE>       The result file [default: result.txt, or result.xml for junit]
-          --output-type <TYPE>  The format of the result file: text or junit [default: text]
-      -p, --param <TEXT>        The parameter string of --test
-      -e, --environment <TEXT>  The environment string of --test
-          --repetition <N>      How often --test runs
+      -o, --output <FILE>       Result file [default: result.txt, or result.xml for junit]
+          --output-type <TYPE>  Format of the result file: text or junit [default: text]
+      -p, --param <TEXT>        Parameter string of --test
+      -e, --environment <TEXT>  Environment string of --test
+          --repetition <N>      Run --test N times
       -w, --web-reporter        Show the run in a browser
-          --web-port <PORT>     The port of the page for the browser [default: 8080]
-      -r, --recursive           Search the folders inside of a folder too
-      -d, --detail              Tell the place in the source of each message
-      -v, --verbose             Show all messages, not only failures and errors
+          --web-port <PORT>     Port of the web page [default: 8080]
+      -r, --recursive           Search directories recursively
+      -d, --detail              Print the source location of each message
+      -v, --verbose             Print all messages, not only failures and errors
           --version             Print the version
       -?, --help                Print this help
     ----- stderr
@@ -299,8 +299,8 @@ fn what_is_no_option() {
     exit code 1
     ----- stdout
     ----- stderr
-    error: no test and no suite is named
-    hint: name one with `--test`, `--tests`, `--suite` or `--suites`, see `robottestingframework-testrunner --help`
+    error: no test and no suite is given
+    hint: add `--test`, `--tests`, `--suite` or `--suites`; `robottestingframework-testrunner --help` explains them
     ");
     assert_snapshot!(folder.shown(&folder.testrunner(&["--tset", "Good.lua"])), @"
     exit code 1
@@ -310,7 +310,7 @@ fn what_is_no_option() {
 
       tip: a similar argument exists: '--test'
 
-    Usage: robottestingframework-testrunner [OPTIONS] (--test NAME | --tests FOLDER | --suite FILE | --suites FOLDER)...
+    Usage: robottestingframework-testrunner [OPTIONS] (--test NAME | --tests DIR | --suite FILE | --suites DIR)...
 
     For more information, try '--help'.
     ");
@@ -331,7 +331,7 @@ fn what_is_no_option() {
     Number of passed test cases  : 1
     Number of failed test cases  : 0
     ----- stderr
-    warning: `more` is no option, and is ignored
+    warning: `more` is not an option, ignored
     ");
 }
 

@@ -87,23 +87,23 @@ fn help_lists_the_exit_codes() {
     assert_snapshot!(lines.join("\n"), @"
     exit code 0
     ----- stdout
-    Tests of robots: plug-ins in any language, on top of fixtures that are watched while the tests run
+    Run tests on robots: plug-ins in any language, on fixtures that rtf monitors while the tests run
 
     Usage: rtf [OPTIONS] <COMMAND>
 
     Commands:
-      run          Run suites, plug-ins and folders
-      watch        Run again whenever a suite, a plug-in or an `rtf.toml` changes
-      check        Find every problem of suites and plug-ins, start nothing
-      list         List the tests that `run` would run
-      doctor       Tell what is missing on this machine, and how it is installed
-      locks        Show who has the locks of this machine, or wait for some
-      show         Show a past run, or what is there of one that was killed
+      run          Run suites and plug-ins
+      watch        Rerun the tests whenever a suite, a plug-in or an `rtf.toml` changes
+      check        Report every problem of suites and plug-ins without running them
+      list         List the tests that `rtf run` would run
+      doctor       Check this machine for missing dependencies
+      locks        List the locks that are held on this machine, or wait for locks
+      show         Show a past run, even if its runner was killed
       report       Write a report of a past run
-      merge        Make one run of several, as of the parts that `--shard` made
-      serve        Show runs in a browser, past ones and those that go on
-      config       Tell what `rtf.toml` and others set
-      completions  Print a shell's completions
+      merge        Merge several runs into one, for example the shards of `--shard`
+      serve        Show active and past runs in a browser
+      config       Show the configuration from `rtf.toml`, the command line and variables
+      completions  Print shell completions
       help         Print this message or the help of the given subcommand(s)
 
     Options:
@@ -127,10 +127,10 @@ fn help_lists_the_exit_codes() {
       0    everything passed
       1    a test did not pass, or a fixture collapsed or broke
       2    bad input, or no tests: nothing was started
-      3    rtf could not do its own work, for example write a report
-      4    a hook failed: the robot may not be in a safe state, whatever else happened
-      5    the runner died (SIGKILL, out of memory, a defect): its guard stopped everything
-      128+N  the run was ended by signal N (130 for Ctrl-C)
+      3    rtf itself failed, for example because it could not write a report
+      4    a hook failed: the robot may not be in a safe state
+      5    the runner died (SIGKILL, out of memory, a bug); its guard stopped everything
+      128+N  signal N ended the run (130 for Ctrl-C)
     ----- stderr
     ");
 }
@@ -143,82 +143,80 @@ fn help_of_run() {
     assert_snapshot!(folder.shown(&finished), @"
     exit code 0
     ----- stdout
-    Run suites, plug-ins and folders
+    Run suites and plug-ins
 
     Usage: rtf run [OPTIONS] [FILE]...
 
     Arguments:
-      [FILE]...  Suites (.xml), plug-ins, and folders of either
+      [FILE]...  Suites (.xml), plug-ins, and directories of either
 
     Options:
           --color <WHEN>                 When to use colours [default: auto] [possible values: auto,
                                          always, never]
-      -r, --recursive                    Descend into folders
-          --param <TEXT>                 The parameter string of plug-ins that are given by name
-          --environment <TEXT>           The environment string of plug-ins that are given by name
-          --repetition <N>               How often plug-ins that are given by name are run
-          --profile <NAME>               The profile of `rtf.toml` that holds: `real`, `sim`, `ci`, …
-                                         [env: RTF_PROFILE=]
-          --set <NAME=VALUE>             Set a parameter: suites find it as `${param:NAME}`, tests in
-                                         RTF_PARAM_NAME
-          --results <DIR>                The folder of the runs' folders [env: RTF_RESULTS=] [default:
-                                         rtf-results]
-          --format <FORMAT>              What standard output has of the run [default: console]
-                                         [possible values: console, json, tap]
+      -r, --recursive                    Search directories recursively
+          --param <TEXT>                 Parameter string of the plug-ins named by FILE
+          --environment <TEXT>           Environment string of the plug-ins named by FILE
+          --repetition <N>               Run the plug-ins named by FILE N times
+          --profile <NAME>               Use this profile of `rtf.toml`: `real`, `sim`, `ci`, … [env:
+                                         RTF_PROFILE=]
+          --set <NAME=VALUE>             Set a parameter, which suites read as `${param:NAME}` and tests
+                                         as RTF_PARAM_NAME
+          --results <DIR>                Results directory, with one directory per run [env:
+                                         RTF_RESULTS=] [default: rtf-results]
+          --format <FORMAT>              Format of standard output [default: console] [possible values:
+                                         console, json, tap]
           --report <FORMAT=PATH>         Also write a report: `junit=PATH`, `text=`, `tap=`,
                                          `code-quality=` or `github=`
-          --annotations <HOST>           Tell a code host, on standard error or in the log, what went
-                                         wrong [default: auto] [possible values: auto, github, gitlab,
+          --annotations <HOST>           Print annotations for a code host, on standard error or in the
+                                         job log [default: auto] [possible values: auto, github, gitlab,
                                          none]
-          --shutdown-timeout <DURATION>  How long tear-downs and hooks may take altogether, once a
-                                         signal ends the run; then what is left is killed [default: [TIME]]
-          --end-with-stdin               End the run, as SIGTERM does, when standard input ends: for
-                                         programs that start rtf, whose death it then notices
-      -v, --verbose                      Show every message, measurement and output as it comes
-      -j, --jobs <N>                     How many suites run at the same time, each with fixtures of its
-                                         own [default: 1]
-          --lock-timeout <DURATION>      How long a suite waits for the locks that it requires; for
-                                         ever, unless told
-          --fork <WHEN>                  Fork the hosts of C, C++, Lua and Python tests from one that is
-                                         ready: `auto` (from the second test on), `always`, or `never`
+          --shutdown-timeout <DURATION>  Time limit for all tear-downs and hooks after a signal; then
+                                         rtf kills all leftover processes [default: [TIME]]
+          --end-with-stdin               End the run, as SIGTERM does, when standard input closes: for
+                                         programs that start rtf
+      -v, --verbose                      Print every message, measurement and output as it arrives
+      -j, --jobs <N>                     Run up to N suites in parallel, each with separate fixtures
+                                         [default: 1]
+          --lock-timeout <DURATION>      How long a suite waits for its locks [default: no limit]
+          --fork <WHEN>                  Fork the hosts of C, C++, Lua and Python tests from a warm
+                                         host: `auto` (from the second test on), `always`, or `never`
                                          [env: RTF_FORK=] [default: auto]
       -h, --help                         Print help (see more with '--help')
       -V, --version                      Print version
 
-    Choosing tests:
-      -E, --filter <FILTER>   Only tests that this holds for: `tag(slow) & !type(lua)`; several add up
-          --rerun <WHICH>     Only those that failed, or were interrupted, in a past run: FILE is then
-                              the run, `latest` unless it is given. They get what that run gave them
-                              [possible values: failed, interrupted]
-          --shuffle[=<SEED>]  In a random order; the number that decides it is shown, and repeats it
-          --shard <N/OF>      Only one part of the tests, of several: `2/5`
-          --shard-by <WHAT>   What decides to which part a test belongs: its `hash`, its place in the
-                              `count`, or its `duration` in the run that follows as `duration=RUN`
-                              [default: hash]
-          --dry-run           Only list the tests that would be run
+    Test selection:
+      -E, --filter <FILTER>    Run only tests that match: `tag(slow) & !type(lua)`
+          --rerun <VERDICT>    Run only tests that failed or were interrupted in the past run FILE, by
+                               default `latest` [possible values: failed, interrupted]
+          --shuffle[=<SEED>]   Run tests in random order; to repeat an order, give the seed that its run
+                               printed
+          --shard <N/OF>       Run only one shard of the tests: `2/5` is the second of five
+          --shard-by <METHOD>  Assign tests to shards by `hash` of their names, by `count`, or by
+                               `duration=RUN`, the durations in a past run [default: hash]
+          --dry-run            List the selected tests without running them
 
-    Repeating tests:
+    Repetition:
           --repeat <N>             Run each test N times as often as its suite says
-          --for <DURATION>         Repeat all tests, round by round, until this time is over: `[TIME]`,
+          --for <DURATION>         Repeat all tests, round after round, until the time is up: `[TIME]`,
                                    `8h`
-          --retries <N>            Try a test that fails up to N times again, whatever its suite says
-          --flaky-result <RESULT>  What a test that passes only when it is tried again counts as
-                                   [default: pass] [possible values: pass, fail]
-          --max-fail <N>           Skip the rest as soon as N tests have not passed
-          --until-fail             Skip the rest as soon as a test has not passed
+          --retries <N>            Retry a failed test up to N times; overrides its suite
+          --flaky-result <RESULT>  Result of a test that passes only on a retry [default: pass]
+                                   [possible values: pass, fail]
+          --max-fail <N>           Skip the remaining tests after N tests have failed
+          --until-fail             Skip the remaining tests after the first failure, as `--max-fail 1`
 
     Web:
-          --web[=<ADDR:PORT>]      Show the run live in a browser, on this address (127.0.0.1:8080) or
-                                   the next free port
-          --web-linger <DURATION>  Keep serving the run after it has ended, for this long or until
-                                   Ctrl-C, like `10min`
-          --web-token-file <FILE>  Read the token from a file, instead of making a new one
-          --web-allow-remote       Let other machines connect: with the token, also for reading, and
-                                   with TLS
-          --web-cert <FILE>        The certificate for TLS (PEM); beyond this machine one is made when
-                                   none is given
-          --web-key <FILE>         The certificate's key (PEM)
-          --web-host <NAME>        Another name under which the server is reached
+          --web[=<ADDR:PORT>]      Show the run live in a browser, on ADDR:PORT (127.0.0.1:8080) or the
+                                   next free port
+          --web-linger <DURATION>  Keep serving after the run has ended, for this time or until Ctrl-C:
+                                   `10min`
+          --web-token-file <FILE>  Read the access token from a file instead of generating one
+          --web-allow-remote       Let other machines connect; requires TLS, and the token even for
+                                   reading
+          --web-cert <FILE>        TLS certificate (PEM); by default, rtf generates one if other
+                                   machines may connect
+          --web-key <FILE>         Private key of the TLS certificate (PEM)
+          --web-host <NAME>        Additional host name of the server
     ----- stderr
     ");
 }

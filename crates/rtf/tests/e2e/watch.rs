@@ -58,7 +58,7 @@ fn watch(folder: &Folder, args: &[&str]) -> Watcher {
 
 /// Waits until so many rounds have ended with this exit code.
 fn wait_for_rounds(folder: &Folder, code: u8, rounds: usize) {
-    let line = format!("rtf watch: exit code {code}; waiting for a change of ");
+    let line = format!("rtf watch: exit code {code}; waiting for changes in ");
     wait_until(&format!("{rounds} times {line}"), || {
         (folder.read("err").matches(&line).count() >= rounds).then_some(())
     });
@@ -106,7 +106,7 @@ fn a_changed_plugin_runs_again_and_nothing_else_does() {
     assert_eq!(watcher.finish(), Some(130), "nothing runs: it ends at once");
     let green: Vec<_> = runs(&folder).iter().map(Record::is_green).collect();
     assert_eq!(green, [true, false, true]);
-    assert_eq!(folder.read("err").matches("T.py changed; running again").count(), 2);
+    assert_eq!(folder.read("err").matches("T.py changed; rerunning").count(), 2);
     assert!(nothing_left(&folder));
 }
 
@@ -122,7 +122,7 @@ fn a_change_stops_the_run_and_starts_the_next_one() {
     let interrupted: Vec<_> = runs.iter().map(Record::interrupted).collect();
     assert_eq!(interrupted, [Some("SIGTERM"), None]);
     assert!(runs.iter().all(Record::is_complete));
-    assert!(folder.read("err").contains("T.py changed; stopping the run, then running again"));
+    assert!(folder.read("err").contains("T.py changed; stopping the run, then rerunning"));
     watcher.running().signal("TERM");
     assert_eq!(watcher.finish(), Some(143));
 }

@@ -163,7 +163,7 @@ fn another_port_is_taken_when_one_is_not_free() {
     assert_ne!(web.address.port(), port);
     assert_eq!(
         web.before,
-        [format!("web: port {port} is taken, port {} is used", web.address.port())]
+        [format!("web: port {port} is in use, using port {}", web.address.port())]
     );
     assert_eq!(web.running.finish().code, Some(0));
 }
@@ -176,7 +176,7 @@ fn the_predecessors_program_shows_its_run_at_the_port_that_it_is_told() {
     let given = ["-s", "first.xml", "-w", "--web-port", &port.to_string(), "--no-output"];
     let web = Web::of(folder.start_command(folder.testrunner_command(&given)));
     assert!(web.address.ip().is_loopback() && web.address.port() != port);
-    let used = format!("web: port {port} is taken, port {} is used", web.address.port());
+    let used = format!("web: port {port} is in use, using port {}", web.address.port());
     assert_eq!(web.before, [used]);
     let status = wait_until("a test that runs", || {
         let status = get(web.address, "/status").json();
@@ -218,8 +218,8 @@ fn what_is_not_allowed_starts_nothing() {
     exit code 2
     ----- stdout
     ----- stderr
-    error: there is no results folder `rtf-results`
-    hint: name one with `--results DIR`, or run something first
+    error: there is no results directory `rtf-results`
+    hint: choose another directory with `--results DIR`, or run something first
     ");
     assert!(!folder.path().join("rtf-results").exists());
 }

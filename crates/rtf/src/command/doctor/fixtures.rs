@@ -1,5 +1,5 @@
-//! What the fixture managers need that come with rtf. They say it themselves,
-//! in the table `needs.json` of their folder.
+//! Checks the dependencies of the fixture managers that come with rtf, which are listed
+//! in `needs.json` in their directory.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -9,15 +9,15 @@ use std::process::{Command, Stdio};
 use rtf_plan::plan::{HostPlan, RunnerEnvironment, find_in_path, shipped_fixtures_dir};
 use serde::Deserialize;
 
-use super::{Finding, Missing, Part, own};
+use super::{Component, Finding, Missing, components};
 
-/// The table, and the folder of the fixture managers.
+/// The fixture managers and their dependencies.
 pub struct Table {
-    folder: Option<PathBuf>,
+    dir: Option<PathBuf>,
     fixtures: BTreeMap<String, Needs>,
 }
 
-/// What one fixture manager needs.
+/// The dependencies of a fixture manager.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Needs {
@@ -25,111 +25,113 @@ struct Needs {
     needs: Vec<Need>,
 }
 
-/// One thing that it needs.
+/// A dependency.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Need {
-    /// Programs, one of which has to be there.
+    /// Programs, one of which is needed.
     #[serde(default)]
     programs: Vec<String>,
-    /// A module that the user's Python has to have.
+    /// A module of the Python that runs plug-ins.
     module: Option<String>,
     install: String,
-    /// What of the fixture needs it; without it: all of it.
+    /// The option that needs it; `None` if the fixture manager always does.
     #[serde(rename = "for")]
     purpose: Option<String>,
 }
 
 impl Table {
-    /// Reads it. A fixture manager that is not there is not in it.
-    pub fn read(surroundings: &RunnerEnvironment) -> io::Result<Self> {
-        let Some(folder) = shipped_fixtures_dir(surroundings) else {
-            return Ok(Self { folder: None, fixtures: BTreeMap::new() });
+    /// Reads the dependencies of the installed fixture managers.
+    pub fn read(runner: &RunnerEnvironment) -> io::Result<Self> {
+        let Some(dir) = shipped_fixtures_dir(runner) else {
+            return Ok(Self { dir: None, fixtures: BTreeMap::new() });
         };
-        let file = folder.join("needs.json");
-        let named = |error: &dyn std::fmt::Display| {
+        let file = dir.join("needs.json");
+        let failed = |error: &dyn std::fmt::Display| {
             io::Error::other(format!("cannot read `{}`: {error}", file.display()))
         };
-        let text = std::fs::read(&file).map_err(|error| named(&error))?;
+        let text = std::fs::read(&file).map_err(|error| failed(&error))?;
         let mut fixtures: BTreeMap<String, Needs> =
-            serde_json::from_slice(&text).map_err(|error| named(&error))?;
-        fixtures.retain(|name, _| folder.join(name).with_extension("py").is_file());
-        Ok(Self { folder: Some(folder), fixtures })
+            serde_json::from_slice(&text).map_err(|error| failed(&error))?;
+        fixtures.retain(|name, _| dir.join(name).with_extension("py").is_file());
+        Ok(Self { dir: Some(dir), fixtures })
     }
 
-    /// The fixture managers that are there.
+    /// The installed fixture managers.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.fixtures.keys().map(String::as_str)
     }
 
-    /// Looks at what is asked for.
-    pub fn look(
+    /// Checks the selected fixture managers.
+    pub fn check(
         &self,
-        surroundings: &RunnerEnvironment,
-        is_asked: &dyn Fn(&str) -> bool,
+        runner: &RunnerEnvironment,
+        is_selected: &dyn Fn(&str) -> bool,
     ) -> Vec<Finding> {
-        let asked: Vec<_> = self.fixtures.iter().filter(|(name, _)| is_asked(name)).collect();
-        if asked.is_empty() {
+        let selected: Vec<_> = self.fixtures.iter().filter(|(name, _)| is_selected(name)).collect();
+        if selected.is_empty() {
             return Vec::new();
         }
-        let python = own::python(surroundings);
-        let looked = asked.into_iter();
-        looked.map(|(name, needs)| self.finding(name, needs, &python, surroundings)).collect()
+        let python = components::check_python(runner);
+        let findings = selected.into_iter();
+        findings.map(|(name, needs)| self.check_one(name, needs, &python, runner)).collect()
     }
 
-    fn finding(
+    fn check_one(
         &self,
         name: &str,
         needs: &Needs,
         python: &Result<HostPlan, String>,
-        surroundings: &RunnerEnvironment,
+        runner: &RunnerEnvironment,
     ) -> Finding {
         let mut missing = Vec::new();
         let mut found = Vec::new();
-        if let Err(why) = python {
-            let install = "`rtf doctor python` tells more".to_owned();
-            missing.push(Missing { what: why.clone(), install, purpose: None });
+        if let Err(error) = python {
+            let install = "see `rtf doctor python`".to_owned();
+            missing.push(Missing { what: error.clone(), install, purpose: None });
         }
         for need in &needs.needs {
-            match need.look(python.as_ref().ok(), surroundings) {
-                Some(there) => found.push(there),
+            match need.find(python.as_ref().ok(), runner) {
+                Some(location) => found.push(location),
                 None => missing.push(Missing {
-                    what: need.what(),
+                    what: need.error(),
                     install: need.install.clone(),
                     purpose: need.purpose.clone(),
                 }),
             }
         }
         if needs.needs.is_empty() {
-            found.extend(self.folder.iter().map(|folder| folder.display().to_string()));
+            found.extend(self.dir.iter().map(|dir| dir.display().to_string()));
         }
         let ok = missing.iter().all(|missing| missing.purpose.is_some());
         let (name, about) = (name.to_owned(), needs.about.clone());
-        Finding { name, part: Part::Fixture, ok, about, found, missing }
+        Finding { name, part: Component::Fixture, ok, about, found, missing }
     }
 }
 
 impl Need {
-    /// What is there of it.
-    fn look(&self, python: Option<&HostPlan>, surroundings: &RunnerEnvironment) -> Option<String> {
+    /// The location of the dependency.
+    fn find(&self, python: Option<&HostPlan>, runner: &RunnerEnvironment) -> Option<String> {
         if let Some(module) = &self.module {
             let program = python?.command.first()?;
-            return imports(program, module).then(|| format!("{module} of {program}"));
+            return imports(program, module).then(|| format!("{module} in {program}"));
         }
-        let files = self.programs.iter().filter_map(|name| find_in_path(name, surroundings));
+        let files = self.programs.iter().filter_map(|name| find_in_path(name, runner));
         files.map(|file| file.display().to_string()).next()
     }
 
-    fn what(&self) -> String {
+    fn error(&self) -> String {
         if let Some(module) = &self.module {
             return format!("the `python3` on PATH has no module `{module}`");
         }
-        let names: Vec<_> = self.programs.iter().map(|name| format!("`{name}`")).collect();
-        format!("there is no program {} on PATH", names.join(" or "))
+        match self.programs.as_slice() {
+            [program] => format!("`{program}` is not on PATH"),
+            programs => format!("none of `{}` is on PATH", programs.join("`, `")),
+        }
     }
 }
 
-/// Whether the user's Python has a module.
+/// Whether a Python interpreter can import a module.
 fn imports(program: &str, module: &str) -> bool {
     let code = "import importlib, sys; importlib.import_module(sys.argv[1])";
     let mut command = Command::new(program);

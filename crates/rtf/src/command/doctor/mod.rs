@@ -1,11 +1,11 @@
-//! `rtf doctor`: what is missing on this machine, and how it is installed.
+//! `rtf doctor`: reports missing dependencies of this machine and how to install them.
 //!
-//! [`own`] looks at what rtf itself uses, [`fixtures`] at what the fixture
-//! managers need that come with it; [`show`] prints what was found.
+//! [`components`] checks the dependencies of rtf itself, [`fixtures`] those of the
+//! fixture managers that come with it; [`print`] prints the findings.
 
+mod components;
 mod fixtures;
-mod own;
-mod show;
+mod print;
 
 use std::process::ExitCode;
 
@@ -17,62 +17,61 @@ use crate::cli::{DoctorArgs, DoctorFormat};
 use crate::error::Failure;
 use crate::exit;
 
-/// What was found about one thing. `docs/doctor.md` says what the fields mean.
+/// The result of a check; `docs/doctor.md` documents the fields.
 #[derive(Debug, Serialize)]
 struct Finding {
     name: String,
-    part: Part,
-    /// All that it cannot do without is there.
+    part: Component,
+    /// Whether all mandatory dependencies were found.
     ok: bool,
-    /// What it is for.
+    /// The purpose of the component.
     about: String,
-    /// What is there.
     found: Vec<String>,
     missing: Vec<Missing>,
 }
 
-/// To what it belongs.
+/// A kind of component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-enum Part {
-    /// Without it nothing can be run.
+enum Component {
+    /// Every run needs it.
     Rtf,
-    /// Some suites use it.
+    /// Some suites need it.
     Optional,
     /// A fixture manager.
     Fixture,
 }
 
-/// What is not there.
+/// A missing dependency.
 #[derive(Debug, Serialize)]
 struct Missing {
     what: String,
-    /// How it is installed, or made possible.
+    /// How to install or enable it.
     install: String,
-    /// What of the fixture needs it, if not all does.
+    /// The option that needs it, if it is not mandatory.
     #[serde(rename = "for", skip_serializing_if = "Option::is_none")]
     purpose: Option<String>,
 }
 
-/// Looks, and tells. The exit code is 1 when something is missing: of what was
-/// asked for, or of what each run needs.
+/// Checks components. The exit code is 1 if one of `names` lacks a dependency; without
+/// names, if a component that every run needs does.
 pub fn run(args: &DoctorArgs) -> Outcome {
-    let surroundings = RunnerEnvironment::from_current_process().map_err(Failure::own)?;
-    let table = fixtures::Table::read(&surroundings).map_err(Failure::own)?;
-    let known: Vec<&str> = own::NAMES.into_iter().chain(table.names()).collect();
+    let runner = RunnerEnvironment::from_current_process().map_err(Failure::internal)?;
+    let table = fixtures::Table::read(&runner).map_err(Failure::internal)?;
+    let known: Vec<&str> = components::NAMES.into_iter().chain(table.names()).collect();
     if let Some(unknown) = args.names.iter().find(|name| !known.contains(&name.as_str())) {
-        let hint = format!("known are {}", known.join(", "));
-        return Err(Failure::input(format!("nothing is known of `{unknown}`")).hint(hint));
+        let hint = format!("known names are {}", known.join(", "));
+        return Err(Failure::input(format!("unknown name `{unknown}`")).hint(hint));
     }
-    let is_asked =
-        |name: &str| args.names.is_empty() || args.names.iter().any(|asked| asked == name);
-    let mut found = own::look(&surroundings, &is_asked);
-    found.extend(table.look(&surroundings, &is_asked));
+    let is_selected =
+        |name: &str| args.names.is_empty() || args.names.iter().any(|selected| selected == name);
+    let mut findings = components::check(&runner, &is_selected);
+    findings.extend(table.check(&runner, &is_selected));
     match args.format {
-        DoctorFormat::Text => show::text(&found),
-        DoctorFormat::Json => show::json(&found),
+        DoctorFormat::Text => print::text(&findings),
+        DoctorFormat::Json => print::json(&findings),
     }?;
-    let counts = |finding: &&Finding| !args.names.is_empty() || finding.part == Part::Rtf;
-    let is_well = found.iter().filter(counts).all(|finding| finding.ok);
-    Ok(ExitCode::from(if is_well { exit::PASSED } else { exit::FAILED }))
+    let counts = |finding: &&Finding| !args.names.is_empty() || finding.part == Component::Rtf;
+    let is_ok = findings.iter().filter(counts).all(|finding| finding.ok);
+    Ok(ExitCode::from(if is_ok { exit::PASSED } else { exit::FAILED }))
 }

@@ -1,227 +1,223 @@
-//! `rtf watch`: runs again whenever something changes that the run depends on.
+//! `rtf watch`: runs tests, and reruns them when a file changes that they depend on.
 //!
-//! Each round is this program again, as `rtf run` with the same options, so it
-//! has its own guard. [`files`] knows what is watched, [`debounce`] when changes
-//! count, [`rounds`] what is done about them; this module does it.
+//! Each run is a child process, `rtf run` with the same options, so that it has its own
+//! guard. [`watched`] finds the files, [`debounce`] decides when their changes are due,
+//! and [`state`] decides what to do; this module does it.
 
+mod child;
 mod debounce;
-mod files;
-mod round;
-mod rounds;
+mod state;
+mod watched;
 
 use std::collections::BTreeSet;
-use std::io::Write;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{ExitCode, ExitStatus};
 use std::time::{Duration, Instant};
 
+use clap::ArgMatches;
 use notify::{Event, RecommendedWatcher, RecursiveMode, Watcher as _};
 use rtf_engine::signal::Signals;
 use rtf_report::escape;
 use tokio::process::{Child, ChildStdin};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
-use self::debounce::Debounce;
-use self::files::Watched;
-use self::rounds::{Order, Rounds};
-use super::{Outcome, child, planning};
-use crate::cli::RunArgs;
+use self::debounce::{Debounce, FileChange};
+use self::state::{WatchAction, WatchState};
+use self::watched::Watched;
+use super::Outcome;
+use crate::cli::{InputArgs, RunArgs};
+use crate::diagnostics::count;
 use crate::error::Failure;
+use crate::request::config;
+use crate::{child_run, terminal};
 
 /// SIGTERM.
 const TERM: i32 = 15;
-/// How often is looked whether suites with mistakes are repaired: what is
-/// missing may come from anywhere.
-const EVERY: Duration = Duration::from_secs(1);
+/// How often suites with errors are checked: a missing file may appear anywhere.
+const RECHECK_INTERVAL: Duration = Duration::from_secs(1);
 
-/// Runs, and runs again, until a signal ends it.
-pub fn run(args: &RunArgs) -> Outcome {
-    // A round dies with the thread that started it: all is done in this one.
+/// Runs and reruns tests until a signal ends it.
+pub fn run(mut args: RunArgs, matches: &ArgMatches) -> Outcome {
+    config::fill_watched_results(&mut args.input, matches)?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-    runtime.map_err(Failure::own)?.block_on(async { Watch::new(args)?.rounds().await })
+    runtime.map_err(Failure::internal)?.block_on(async { Watch::new(&args.input)?.run().await })
 }
 
-type Told = notify::Result<Event>;
+type FileEvent = notify::Result<Event>;
 
 struct Watch<'a> {
-    args: &'a RunArgs,
-    begun: Instant,
+    args: &'a InputArgs,
+    /// The instant to which the times of `debounce` are relative.
+    epoch: Instant,
     watched: Watched,
-    /// When the suites were looked at.
-    looked: Instant,
-    /// Watches as long as it lives.
+    checked_at: Instant,
     watcher: Option<RecommendedWatcher>,
-    /// The folders that it watches. One that was made anew is another one.
-    folders: BTreeSet<(PathBuf, u64)>,
-    tell: UnboundedSender<Told>,
-    told: UnboundedReceiver<Told>,
+    /// The directories of `watcher`. Their inodes distinguish recreated directories.
+    dirs: BTreeSet<(PathBuf, u64)>,
+    event_sender: UnboundedSender<FileEvent>,
+    events: UnboundedReceiver<FileEvent>,
     debounce: Debounce,
-    state: Rounds,
+    state: WatchState,
     child: Option<Child>,
-    /// Its standard input, which it ends with; `wait` would close it at once.
+    /// The child's standard input, which `wait` would close.
     lifeline: Option<ChildStdin>,
     signals: Signals,
 }
 
-/// What happened.
 enum Input {
     Signal(i32),
-    Event(Told),
-    Ended(std::io::Result<ExitStatus>),
-    Due,
-    Look,
+    File(FileEvent),
+    RunEnded(io::Result<ExitStatus>),
+    ChangesDue,
+    RecheckDue,
 }
 
 impl<'a> Watch<'a> {
-    fn new(args: &'a RunArgs) -> Result<Self, Failure> {
-        let (tell, told) = unbounded_channel();
+    fn new(args: &'a InputArgs) -> Result<Self, Failure> {
+        let (event_sender, events) = unbounded_channel();
         Ok(Self {
             args,
-            begun: Instant::now(),
+            epoch: Instant::now(),
             watched: Watched::default(),
-            looked: Instant::now(),
+            checked_at: Instant::now(),
             watcher: None,
-            folders: BTreeSet::new(),
-            tell,
-            told,
+            dirs: BTreeSet::new(),
+            event_sender,
+            events,
             debounce: Debounce::default(),
-            state: Rounds::default(),
+            state: WatchState::default(),
             child: None,
             lifeline: None,
-            signals: Signals::install().map_err(Failure::own)?,
+            signals: Signals::install().map_err(Failure::internal)?,
         })
     }
 
-    async fn rounds(mut self) -> Outcome {
-        let first = Watched::look(self.args, &self.watched);
-        self.watch(first)?;
-        let mut order = self.state.changed();
+    async fn run(mut self) -> Outcome {
+        self.watch(Watched::find(self.args, &self.watched))?;
+        let mut action = self.state.files_changed();
         loop {
-            if let Some(code) = self.obey(order)? {
-                return Ok(ExitCode::from(code));
+            match action {
+                WatchAction::None | WatchAction::Wait | WatchAction::PassSignal => {}
+                WatchAction::Start => self.start()?,
+                WatchAction::Stop => self.signal(TERM),
+                WatchAction::Exit(code) => return Ok(ExitCode::from(code)),
             }
-            order = match self.next().await {
-                Input::Signal(number) => {
-                    let order = self.state.signal(u8::try_from(number).unwrap_or(0));
-                    if order == Order::Pass {
-                        self.signal(number);
-                    }
-                    order
-                }
-                Input::Event(told) => {
-                    self.note(told);
-                    Order::Nothing
-                }
-                Input::Ended(status) => {
-                    (self.child, self.lifeline) = (None, None);
-                    let code = round::code_of(status.map_err(Failure::own)?);
-                    let order = self.state.ended(code);
-                    if order == Order::Rest {
-                        let files = planning::count(self.watched.there(), "file");
-                        say(&format!("exit code {code}; waiting for a change of {files}"))?;
-                    }
-                    order
-                }
-                Input::Due => match self.debounce.take(self.begun.elapsed()) {
-                    Some(touched) => self.changed(&touched)?,
-                    None => Order::Nothing,
-                },
-                Input::Look => self.changed(&BTreeSet::new())?,
-            }
+            let input = self.next_input().await;
+            action = self.handle(input)?;
         }
     }
 
-    async fn next(&mut self) -> Input {
-        let due = self.debounce.due().map(|due| self.begun + due);
-        // Not a time from now on: what is read in the folders is told, too, and never ends.
-        let looks = self.watched.broken && self.debounce.is_empty() && self.child.is_none();
-        let look = looks.then(|| self.looked + EVERY);
+    async fn next_input(&mut self) -> Input {
+        let changes_due = self.debounce.due().map(|due| self.epoch + due);
+        // Relative to the last check: checks read the directories, which causes events.
+        let rechecks = self.watched.has_errors && self.debounce.is_empty() && self.child.is_none();
+        let recheck_due = rechecks.then(|| self.checked_at + RECHECK_INTERVAL);
         tokio::select! {
             (number, _) = self.signals.next() => Input::Signal(number),
-            // The other end is in `self`.
-            Some(told) = self.told.recv() => Input::Event(told),
-            status = end(&mut self.child) => Input::Ended(status),
-            () = until(due) => Input::Due,
-            () = until(look) => Input::Look,
+            // `self` owns a sender, so the channel is open.
+            Some(event) = self.events.recv() => Input::File(event),
+            status = wait(&mut self.child) => Input::RunEnded(status),
+            () = sleep_until(changes_due) => Input::ChangesDue,
+            () = sleep_until(recheck_due) => Input::RecheckDue,
         }
     }
 
-    /// Does what is to be done; the exit code when that is the end.
-    fn obey(&mut self, order: Order) -> Result<Option<u8>, Failure> {
-        match order {
-            Order::Nothing | Order::Rest | Order::Pass => {}
-            Order::Start => self.start()?,
-            Order::Stop => self.signal(TERM),
-            Order::Exit(code) => return Ok(Some(code)),
+    fn handle(&mut self, input: Input) -> Result<WatchAction, Failure> {
+        match input {
+            Input::Signal(number) => {
+                let action = self.state.signal(u8::try_from(number).unwrap_or(0));
+                if action == WatchAction::PassSignal {
+                    self.signal(number);
+                }
+                Ok(action)
+            }
+            Input::File(event) => {
+                self.record(event);
+                Ok(WatchAction::None)
+            }
+            Input::RunEnded(status) => {
+                (self.child, self.lifeline) = (None, None);
+                let code = child::exit_code(status.map_err(Failure::internal)?);
+                let action = self.state.run_ended(code);
+                if action == WatchAction::Wait {
+                    let files = count(self.watched.existing_files(), "file");
+                    report(&format!("exit code {code}; waiting for changes in {files}"))?;
+                }
+                Ok(action)
+            }
+            Input::ChangesDue => match self.debounce.take_due(self.epoch.elapsed()) {
+                Some(changed) => self.check(&changed),
+                None => Ok(WatchAction::None),
+            },
+            Input::RecheckDue => self.check(&BTreeSet::new()),
         }
-        Ok(None)
     }
 
     fn start(&mut self) -> Result<(), Failure> {
-        let mut child = round::start().map_err(Failure::own)?;
+        let mut child = child::start().map_err(Failure::internal)?;
         self.lifeline = child.stdin.take();
         self.child = Some(child);
         Ok(())
     }
 
     fn signal(&self, number: i32) {
-        if let Some(pid) = self.child.as_ref().and_then(|child| child::pid(child.id()?)) {
-            child::signal(pid, number);
+        if let Some(pid) = self.child.as_ref().and_then(|child| child_run::pid(child.id()?)) {
+            child_run::signal(pid, number);
         }
     }
 
-    fn note(&mut self, told: Told) {
-        let now = self.begun.elapsed();
-        match told {
+    fn record(&mut self, event: FileEvent) {
+        let now = self.epoch.elapsed();
+        match event {
             Ok(event) if !event.need_rescan() => {
-                for (file, touch) in self.watched.touches(&event) {
-                    self.debounce.note(&file, touch, now);
+                for (file, change) in self.watched.changes(&event) {
+                    self.debounce.record(&file, change, now);
                 }
             }
             // Events were lost.
             _ => {
                 for file in &self.watched.files {
-                    self.debounce.note(file, debounce::Touch::Attributes, now);
+                    self.debounce.record(file, FileChange::Attributes, now);
                 }
-                self.debounce.lost(now);
+                self.debounce.record_lost(now);
             }
         }
     }
 
-    /// Files changed, or may have.
-    fn changed(&mut self, touched: &BTreeSet<PathBuf>) -> Result<Order, Failure> {
-        let used = self.watched.uses(touched);
-        let now = Watched::look(self.args, &self.watched);
-        self.looked = Instant::now();
-        let other = now != self.watched;
-        if !used && !other {
-            return Ok(Order::Nothing);
+    /// Checks whether the tests have changed, because of these files or others.
+    fn check(&mut self, changed: &BTreeSet<PathBuf>) -> Result<WatchAction, Failure> {
+        let is_used = self.watched.uses(changed);
+        let current = Watched::find(self.args, &self.watched);
+        self.checked_at = Instant::now();
+        if !is_used && current == self.watched {
+            return Ok(WatchAction::None);
         }
-        self.watch(now)?;
-        let order = self.state.changed();
-        let what = match order {
-            Order::Start => "running again",
-            Order::Stop => "stopping the run, then running again",
-            _ => return Ok(order),
+        self.watch(current)?;
+        let action = self.state.files_changed();
+        let consequence = match action {
+            WatchAction::Start => "rerunning",
+            WatchAction::Stop => "stopping the run, then rerunning",
+            _ => return Ok(action),
         };
-        let name = touched.iter().find(|file| self.watched.files.contains(*file));
-        let name =
-            name.or_else(|| touched.first()).map_or("something".to_owned(), |file| shown(file));
-        say(&format!("{name} changed; {what}"))?;
-        Ok(order)
+        let used = changed.iter().find(|file| self.watched.files.contains(*file));
+        let file = used.or_else(|| changed.first()).map(|file| display(file));
+        let file = file.as_deref().unwrap_or("a file");
+        report(&format!("{file} changed; {consequence}"))?;
+        Ok(action)
     }
 
-    /// Watches the folders. What changed since the suites were read is seen:
-    /// they are read again once their folders are watched.
+    /// Watches the directories. Reads the suites once more when their directories are
+    /// watched, so that no change is missed.
     fn watch(&mut self, mut watched: Watched) -> Result<(), Failure> {
         loop {
-            let folders = watched.folders();
-            if self.watcher.is_none() || folders != self.folders {
-                self.watcher = Some(watcher(&self.tell, &folders)?);
-                self.folders = folders;
+            let dirs = watched.dirs();
+            if self.watcher.is_none() || dirs != self.dirs {
+                self.watcher = Some(watcher(&self.event_sender, &dirs)?);
+                self.dirs = dirs;
             }
             self.watched = watched;
-            watched = Watched::look(self.args, &self.watched);
+            watched = Watched::find(self.args, &self.watched);
             if watched == self.watched {
                 return Ok(());
             }
@@ -230,44 +226,44 @@ impl<'a> Watch<'a> {
 }
 
 fn watcher(
-    tell: &UnboundedSender<Told>,
-    folders: &BTreeSet<(PathBuf, u64)>,
+    sender: &UnboundedSender<FileEvent>,
+    dirs: &BTreeSet<(PathBuf, u64)>,
 ) -> Result<RecommendedWatcher, Failure> {
-    let tell = tell.clone();
-    // When nobody listens any more, the program ends.
-    let handler = move |told| drop(tell.send(told));
-    let mut watcher = notify::recommended_watcher(handler).map_err(Failure::own)?;
-    for (folder, _) in folders {
-        match watcher.watch(folder, RecursiveMode::NonRecursive) {
-            // It went in between, which the next look shows.
-            Err(_) if !folder.is_dir() => {}
-            watching => watching.map_err(Failure::own)?,
+    let sender = sender.clone();
+    // The receiver is dropped only when the program ends.
+    let handler = move |event| drop(sender.send(event));
+    let mut watcher = notify::recommended_watcher(handler).map_err(Failure::internal)?;
+    for (dir, _) in dirs {
+        match watcher.watch(dir, RecursiveMode::NonRecursive) {
+            // It has been removed, which the next check detects.
+            Err(_) if !dir.is_dir() => {}
+            result => result.map_err(Failure::internal)?,
         }
     }
     Ok(watcher)
 }
 
-async fn end(child: &mut Option<Child>) -> std::io::Result<ExitStatus> {
+async fn wait(child: &mut Option<Child>) -> io::Result<ExitStatus> {
     match child {
         Some(child) => child.wait().await,
         None => std::future::pending().await,
     }
 }
 
-async fn until(due: Option<Instant>) {
+async fn sleep_until(due: Option<Instant>) {
     match due {
         Some(due) => tokio::time::sleep_until(due.into()).await,
         None => std::future::pending().await,
     }
 }
 
-fn shown(file: &Path) -> String {
-    let current = std::env::current_dir().and_then(|folder| folder.canonicalize());
+/// The path relative to the current directory.
+fn display(file: &Path) -> String {
+    let current = std::env::current_dir().and_then(|dir| dir.canonicalize());
     let relative = current.ok().and_then(|current| file.strip_prefix(current).ok());
     escape::line(&relative.unwrap_or(file).to_string_lossy()).into_owned()
 }
 
-fn say(what: &str) -> Result<(), Failure> {
-    let mut err = anstream::stderr().lock();
-    Failure::unless_reader_left(writeln!(err, "rtf watch: {what}"))
+fn report(text: &str) -> Result<(), Failure> {
+    terminal::stderr(|err| writeln!(err, "rtf watch: {text}"))
 }

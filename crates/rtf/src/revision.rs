@@ -1,16 +1,16 @@
-//! The revision of the sources in a folder: what Git has checked out there. Git's
-//! files are read, no program is started.
+//! The Git revision of the sources in a directory, read from Git's files: Git may not be
+//! installed.
 
 use std::path::{Path, PathBuf};
 
 use rtf_model::Revision;
 
-/// The longest chain of references that is followed.
-const REFERENCES: usize = 5;
+/// The limit for chains of symbolic references.
+const MAX_REFERENCES: usize = 5;
 
-/// What is checked out in this folder, or in one above it.
-pub fn of(folder: &Path) -> Option<Revision> {
-    let git = folder.ancestors().find_map(|folder| git_folder(&folder.join(".git")))?;
+/// Finds the revision that is checked out in a directory or in one above it.
+pub fn find(dir: &Path) -> Option<Revision> {
+    let git = dir.ancestors().find_map(|dir| git_dir(&dir.join(".git")))?;
     let head = first_line(&git.join("HEAD"))?;
     let Some(reference) = head.strip_prefix("ref: ") else {
         return commit(&head).map(|commit| Revision { commit, branch: None });
@@ -19,8 +19,8 @@ pub fn of(folder: &Path) -> Option<Revision> {
     resolve(&git, reference).map(|commit| Revision { commit, branch })
 }
 
-/// The folder of a repository: itself, or where the file of a worktree leads.
-fn git_folder(path: &Path) -> Option<PathBuf> {
+/// The Git directory: `.git` itself, or the target of the file `.git` in a worktree.
+fn git_dir(path: &Path) -> Option<PathBuf> {
     if path.is_dir() {
         return Some(path.to_owned());
     }
@@ -32,19 +32,19 @@ fn resolve(git: &Path, reference: &str) -> Option<String> {
     let common = first_line(&git.join("commondir"));
     let common = common.map_or_else(|| git.to_owned(), |common| git.join(common));
     let mut reference = reference.to_owned();
-    for _ in 0..REFERENCES {
-        let own = first_line(&git.join(&reference));
-        let line = own.or_else(|| first_line(&common.join(&reference)));
+    for _ in 0..MAX_REFERENCES {
+        let in_worktree = first_line(&git.join(&reference));
+        let line = in_worktree.or_else(|| first_line(&common.join(&reference)));
         match line.as_deref().map(|line| (line, line.strip_prefix("ref: "))) {
             Some((_, Some(next))) => reference = next.to_owned(),
             Some((line, None)) => return commit(line),
-            None => return packed(&common, &reference),
+            None => return find_packed(&common, &reference),
         }
     }
     None
 }
 
-fn packed(common: &Path, reference: &str) -> Option<String> {
+fn find_packed(common: &Path, reference: &str) -> Option<String> {
     let text = std::fs::read_to_string(common.join("packed-refs")).ok()?;
     let mut lines = text.lines().filter_map(|line| line.split_once(' '));
     lines.find(|(_, name)| *name == reference).and_then(|(hash, _)| commit(hash))
@@ -71,7 +71,7 @@ mod tests {
         let temp = tempfile::tempdir().unwrap();
         let (top, deep) = (temp.path().join("top"), temp.path().join("top/a/b"));
         std::fs::create_dir_all(&deep).unwrap();
-        assert_eq!(git_folder(&top.join(".git")), None);
+        assert_eq!(git_dir(&top.join(".git")), None);
         let write = |name: &str, text: &str| {
             let path = temp.path().join(name);
             std::fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -82,16 +82,16 @@ mod tests {
             Some(Revision { commit: HASH.to_owned(), branch })
         };
         write("top/.git/HEAD", &format!("{HASH}\n"));
-        assert_eq!(of(&deep), found(None), "a commit alone");
+        assert_eq!(find(&deep), found(None), "a commit alone");
         write("top/.git/HEAD", "ref: refs/heads/arm/new\n");
-        assert_eq!(of(&deep), None, "a branch without a commit");
+        assert_eq!(find(&deep), None, "a branch without a commit");
         write("top/.git/packed-refs", &format!("# pack-refs\n{HASH} refs/heads/arm/new\n"));
-        assert_eq!(of(&deep), found(Some("arm/new")));
+        assert_eq!(find(&deep), found(Some("arm/new")));
         write("top/.git/refs/heads/arm/new", &format!("{HASH}\n"));
-        assert_eq!(of(&top), found(Some("arm/new")));
+        assert_eq!(find(&top), found(Some("arm/new")));
         write("tree/.git", "gitdir: ../top/.git/worktrees/tree\n");
         write("top/.git/worktrees/tree/HEAD", "ref: refs/heads/arm/new\n");
         write("top/.git/worktrees/tree/commondir", "../..\n");
-        assert_eq!(of(&temp.path().join("tree")), found(Some("arm/new")));
+        assert_eq!(find(&temp.path().join("tree")), found(Some("arm/new")));
     }
 }

@@ -1,4 +1,4 @@
-//! Diagnostics as text for people, in the form that rustc's have.
+//! Renders diagnostics as text, in the form of rustc's.
 
 use std::io::{self, Write};
 use std::ops::Range;
@@ -10,7 +10,7 @@ use rtf_plan::suite::SourceMap;
 #[cfg(test)]
 mod tests;
 
-/// Labels of one file that lie further apart than this have a snippet each.
+/// Labels of one file that are further apart get separate snippets.
 const NEAR_LINES: u32 = 50;
 
 /// Writes each diagnostic, followed by an empty line.
@@ -18,7 +18,7 @@ const NEAR_LINES: u32 = 50;
 /// # Errors
 /// `out` cannot be written.
 pub fn write(
-    out: &mut impl Write,
+    out: &mut dyn Write,
     diagnostics: &[Diagnostic],
     sources: &SourceMap,
     color: bool,
@@ -36,7 +36,7 @@ fn group<'a>(diagnostic: &'a Diagnostic, sources: &'a SourceMap) -> Group<'a> {
         Severity::Warning => Level::WARNING,
     };
     let mut group = Group::with_title(level.primary_title(printable(&diagnostic.message)));
-    for (number, labels) in near(&diagnostic.labels).into_iter().enumerate() {
+    for (number, labels) in nearby(&diagnostic.labels).into_iter().enumerate() {
         if let Some(snippet) = snippet(labels, number == 0, sources) {
             group = group.element(snippet);
         }
@@ -50,12 +50,12 @@ fn group<'a>(diagnostic: &'a Diagnostic, sources: &'a SourceMap) -> Group<'a> {
     group
 }
 
-/// Splits labels into runs that can share a snippet.
-fn near(labels: &[Label]) -> Vec<&[Label]> {
+/// Groups consecutive labels that can share a snippet.
+fn nearby(labels: &[Label]) -> Vec<&[Label]> {
     labels.chunk_by(|a, b| a.file == b.file && a.line.abs_diff(b.line) <= NEAR_LINES).collect()
 }
 
-/// The lines of a file that the labels of one run touch.
+/// The lines of a file that a group of labels spans.
 fn snippet<'a>(
     labels: &'a [Label],
     first: bool,
@@ -85,7 +85,7 @@ fn snippet<'a>(
     Some(snippet)
 }
 
-/// A label's range, cut to what the text has.
+/// A label's range, limited to the text.
 fn span(text: &str, label: &Label) -> Range<usize> {
     let cut = |offset: u64| {
         let offset = usize::try_from(offset).unwrap_or(usize::MAX);
@@ -95,9 +95,9 @@ fn span(text: &str, label: &Label) -> Range<usize> {
     start..cut(label.end).max(start)
 }
 
-/// A text without the characters that would steer a terminal: messages quote
-/// files and what other programs said.
+/// Replaces control characters, which could control the terminal: messages quote
+/// files and the output of other programs.
 fn printable(text: &str) -> String {
-    let steers = |c: char| c.is_control() && c != '\n' && c != '\t';
-    text.chars().map(|c| if steers(c) { '\u{fffd}' } else { c }).collect()
+    let is_unsafe = |c: char| c.is_control() && c != '\n' && c != '\t';
+    text.chars().map(|c| if is_unsafe(c) { '\u{fffd}' } else { c }).collect()
 }

@@ -1,21 +1,21 @@
-//! What users see of bad input, as it is printed. The end-to-end tests have
-//! the common mistakes; here is what is particular about showing them.
+//! Tests how problems of input are printed. The end-to-end tests cover common mistakes;
+//! these tests cover special cases of printing them.
 
 use std::path::PathBuf;
 
 use insta::assert_snapshot;
 use rtf_plan::plan::{self, InputPath, Options, PlanOutcome, RunnerEnvironment};
 
-/// A folder with suites, whose hosts do not exist and need not.
+/// A directory with suites, whose hosts do nothing.
 struct Bench {
-    folder: tempfile::TempDir,
+    dir: tempfile::TempDir,
     options: Options,
 }
 
 impl Bench {
     fn new() -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        let root = folder.path().canonicalize().unwrap();
+        let dir = tempfile::tempdir().unwrap();
+        let root = dir.path().canonicalize().unwrap();
         for host in ["bin/rtf-host-native", "bin/rtf-host-lua", "bin/python3"] {
             let file = root.join(host);
             std::fs::create_dir_all(file.parent().unwrap()).unwrap();
@@ -31,7 +31,7 @@ impl Bench {
             variables: variables.into_iter().collect(),
         };
         let options = Options::new(surroundings);
-        let bench = Self { folder, options };
+        let bench = Self { dir, options };
         bench.write("ArmTest.lua", "").write("SensorTest.so", "")
     }
 
@@ -44,17 +44,17 @@ impl Bench {
         plan::draft(&[InputPath::Any(PathBuf::from(name))], &self.options).unchecked()
     }
 
-    /// What is printed for the file `name`.
+    /// Returns the printed problems of the file `name`.
     fn shown(&self, name: &str) -> String {
         let outcome = self.outcome(name);
         let mut out = Vec::new();
         super::write(&mut out, &outcome.diagnostics, &outcome.sources, false).unwrap();
-        let root = self.folder.path().canonicalize().unwrap().display().to_string();
+        let root = self.dir.path().canonicalize().unwrap().display().to_string();
         String::from_utf8(out).unwrap().replace(&root, "[ROOT]")
     }
 }
 
-/// What is printed for a suite.
+/// Returns the printed problems of a suite.
 fn shown(text: &str) -> String {
     Bench::new().write("suite.xml", text).shown("suite.xml")
 }

@@ -1,0 +1,160 @@
+//! Options that name and select tests.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+use rtf_plan::select::Shard;
+use rtf_plan::suite::parse_duration;
+
+use super::values::{parse_seed, parse_setting};
+
+/// The inputs, and which of their tests to run how often. Options of `rtf check`.
+#[derive(Debug, Args)]
+pub struct InputArgs {
+    /// Suites (.xml), plug-ins, and directories of either
+    ///
+    /// Append `::` and the name of a test to a suite file to run only this test.
+    #[arg(required_unless_present = "rerun", value_name = "FILE")]
+    pub inputs: Vec<PathBuf>,
+
+    /// Search directories recursively
+    #[arg(short, long)]
+    pub recursive: bool,
+
+    /// Parameter string of the plug-ins named by FILE
+    #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
+    pub param: Option<String>,
+
+    /// Environment string of the plug-ins named by FILE
+    #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
+    pub environment: Option<String>,
+
+    /// Run the plug-ins named by FILE N times
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub repetition: Option<u32>,
+
+    #[command(flatten)]
+    pub profile: ProfileArgs,
+
+    #[command(flatten)]
+    pub results: ResultsArgs,
+
+    #[command(flatten)]
+    pub select: SelectArgs,
+
+    #[command(flatten)]
+    pub repeat: RepeatArgs,
+}
+
+/// The profile and parameters of `rtf.toml`.
+#[derive(Clone, Debug, Default, Args)]
+pub struct ProfileArgs {
+    /// Use this profile of `rtf.toml`: `real`, `sim`, `ci`, …
+    #[arg(long, value_name = "NAME", env = "RTF_PROFILE")]
+    pub profile: Option<String>,
+
+    /// Set a parameter, which suites read as `${param:NAME}` and tests as RTF_PARAM_NAME
+    #[arg(long, value_name = "NAME=VALUE", value_parser = parse_setting)]
+    pub set: Vec<(String, String)>,
+}
+
+/// Where runs are stored.
+#[derive(Debug, Args)]
+pub struct ResultsArgs {
+    /// Results directory, with one directory per run
+    #[arg(long, value_name = "DIR", default_value = "rtf-results", env = "RTF_RESULTS")]
+    pub results: PathBuf,
+}
+
+pub(super) const SELECTION: &str = "Test selection";
+
+/// Which tests to run, and in which order.
+#[derive(Clone, Debug, Default, Args)]
+pub struct SelectArgs {
+    /// Run only tests that match: `tag(slow) & !type(lua)`
+    ///
+    /// With several filters, a test runs if any of them matches it.
+    #[arg(help_heading = SELECTION, short = 'E', long = "filter", value_name = "FILTER")]
+    pub filters: Vec<String>,
+
+    /// Run only tests that failed or were interrupted in the past run FILE, by default `latest`
+    ///
+    /// The files, parameters, environment string and order are those of that run.
+    #[arg(help_heading = SELECTION, long, value_name = "VERDICT", value_delimiter = ',')]
+    pub rerun: Vec<RerunVerdict>,
+
+    /// Run tests in random order; to repeat an order, give the seed that its run printed
+    #[arg(help_heading = SELECTION, long, value_name = "SEED", value_parser = parse_seed)]
+    #[arg(num_args = 0..=1, require_equals = true)]
+    pub shuffle: Option<Option<u64>>,
+
+    /// Run only one shard of the tests: `2/5` is the second of five
+    #[arg(help_heading = SELECTION, long, value_name = "N/OF")]
+    pub shard: Option<Shard>,
+
+    /// Assign tests to shards by `hash` of their names, by `count`, or by `duration=RUN`,
+    /// the durations in a past run
+    #[arg(help_heading = SELECTION, long, value_name = "METHOD", requires = "shard")]
+    #[arg(default_value = "hash")]
+    pub shard_by: String,
+}
+
+const REPETITION: &str = "Repetition";
+
+/// How often each test is run.
+#[derive(Clone, Debug, Default, Args)]
+pub struct RepeatArgs {
+    /// Run each test N times as often as its suite says
+    #[arg(help_heading = REPETITION, long, value_name = "N")]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub repeat: Option<u32>,
+
+    /// Repeat all tests, round after round, until the time is up: `90s`, `8h`
+    #[arg(help_heading = REPETITION, long = "for", value_name = "DURATION")]
+    #[arg(value_parser = parse_duration)]
+    pub time: Option<Duration>,
+
+    /// Retry a failed test up to N times; overrides its suite
+    #[arg(help_heading = REPETITION, long, value_name = "N")]
+    #[arg(value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
+    pub retries: Option<u32>,
+
+    /// Result of a test that passes only on a retry [default: pass]
+    #[arg(help_heading = REPETITION, long, value_name = "RESULT")]
+    pub flaky_result: Option<FlakyResult>,
+
+    /// Skip the remaining tests after N tests have failed
+    #[arg(help_heading = REPETITION, long, value_name = "N")]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..))]
+    pub max_fail: Option<u32>,
+
+    /// Skip the remaining tests after the first failure, as `--max-fail 1`
+    #[arg(help_heading = REPETITION, long, conflicts_with = "max_fail")]
+    pub until_fail: bool,
+}
+
+impl RepeatArgs {
+    /// The number of failed tests after which the remaining tests are skipped.
+    pub fn max_fail(&self) -> Option<u32> {
+        if self.until_fail { Some(1) } else { self.max_fail }
+    }
+}
+
+/// The result of a test that passes only on a retry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FlakyResult {
+    /// The run can be green
+    Pass,
+    /// The run is not green
+    Fail,
+}
+
+/// The verdicts in a past run that `--rerun` selects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum RerunVerdict {
+    /// Tests whose verdict is not green
+    Failed,
+    /// Tests that were interrupted, skipped, or never started
+    Interrupted,
+}

@@ -1,0 +1,135 @@
+//! The command line: verbs and options, as the user gives them.
+
+mod doctor;
+mod formats;
+mod inputs;
+mod past;
+mod run;
+mod values;
+mod web;
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use rtf_plan::suite::parse_duration;
+
+pub use doctor::{DoctorArgs, DoctorFormat};
+pub use formats::{Annotations, ReportFormat, StdoutFormat, parse_report};
+pub use inputs::{FlakyResult, InputArgs, ProfileArgs, RepeatArgs, RerunVerdict, ResultsArgs};
+pub use past::{MergeArgs, ReportArgs, ShowArgs};
+pub use run::{ListArgs, ListFormat, RunArgs};
+pub use values::{parse_fork_mode, unset_when_empty};
+pub use web::{ServeArgs, WebAccessArgs, WebRunArgs};
+
+/// Run tests on robots: plug-ins in any language, on fixtures that rtf monitors
+/// while the tests run
+#[derive(Debug, Parser)]
+#[command(name = "rtf", version, propagate_version = true, max_term_width = 100)]
+#[command(after_long_help = AFTER_HELP)]
+pub struct Cli {
+    /// When to use colours
+    #[arg(long, value_name = "WHEN", default_value = "auto", global = true)]
+    pub color: Color,
+
+    #[command(subcommand)]
+    pub verb: Verb,
+}
+
+const AFTER_HELP: &str = "\
+Exit codes:
+  0    everything passed
+  1    a test did not pass, or a fixture collapsed or broke
+  2    bad input, or no tests: nothing was started
+  3    rtf itself failed, for example because it could not write a report
+  4    a hook failed: the robot may not be in a safe state
+  5    the runner died (SIGKILL, out of memory, a bug); its guard stopped everything
+  128+N  signal N ended the run (130 for Ctrl-C)";
+
+/// When to use colours.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Color {
+    /// On a terminal, unless `NO_COLOR` is set
+    #[default]
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
+}
+
+/// The verb.
+#[derive(Debug, Subcommand)]
+pub enum Verb {
+    /// Run suites and plug-ins
+    Run(RunArgs),
+    /// Rerun the tests whenever a suite, a plug-in or an `rtf.toml` changes
+    Watch(RunArgs),
+    /// Report every problem of suites and plug-ins without running them
+    Check(InputArgs),
+    /// List the tests that `rtf run` would run
+    List(ListArgs),
+    /// Check this machine for missing dependencies
+    Doctor(DoctorArgs),
+    /// List the locks that are held on this machine, or wait for locks
+    Locks(LocksArgs),
+    /// Show a past run, even if its runner was killed
+    Show(ShowArgs),
+    /// Write a report of a past run
+    Report(ReportArgs),
+    /// Merge several runs into one, for example the shards of `--shard`
+    Merge(MergeArgs),
+    /// Show active and past runs in a browser
+    Serve(ServeArgs),
+    /// Show the configuration from `rtf.toml`, the command line and variables
+    Config {
+        /// The verb
+        #[command(subcommand)]
+        verb: ConfigVerb,
+    },
+    /// Print shell completions
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Write the manual pages to a directory
+    #[command(hide = true)]
+    Man {
+        /// The directory
+        dir: PathBuf,
+    },
+}
+
+/// The verb of `rtf config`.
+#[derive(Debug, Subcommand)]
+pub enum ConfigVerb {
+    /// Print the effective settings of a suite and the source of each value
+    Show(ConfigArgs),
+}
+
+/// Options of `rtf config show`.
+#[derive(Debug, Args)]
+pub struct ConfigArgs {
+    /// A suite, a plug-in or a directory
+    #[arg(value_name = "FILE", default_value = ".")]
+    pub input: PathBuf,
+
+    #[command(flatten)]
+    pub profile: ProfileArgs,
+}
+
+/// Options of `rtf locks`.
+#[derive(Debug, Args)]
+pub struct LocksArgs {
+    /// Only these resources
+    #[arg(value_name = "NAME")]
+    pub names: Vec<String>,
+
+    /// Wait until the resources are free
+    #[arg(long, requires = "names")]
+    pub wait: bool,
+
+    /// How long to wait [default: no limit]
+    #[arg(long, value_name = "DURATION", value_parser = parse_duration, requires = "wait")]
+    pub timeout: Option<Duration>,
+}

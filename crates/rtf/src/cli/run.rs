@@ -1,0 +1,86 @@
+//! Options of `rtf run`, `rtf watch` and `rtf list`.
+
+use std::num::NonZeroU16;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+use rtf_plan::suite::parse_duration;
+use rtf_process::fork_server::ForkMode;
+
+use super::inputs::SELECTION;
+use super::values::{fork_mode_parser, jobs_parser};
+use super::{Annotations, InputArgs, ReportFormat, StdoutFormat, WebRunArgs, parse_report};
+
+/// Options of `rtf run` and `rtf watch`.
+#[derive(Debug, Args)]
+pub struct RunArgs {
+    #[command(flatten)]
+    pub input: InputArgs,
+
+    /// Format of standard output
+    #[arg(long, value_name = "FORMAT", default_value = "console")]
+    pub format: StdoutFormat,
+
+    /// Also write a report: `junit=PATH`, `text=`, `tap=`, `code-quality=` or `github=`
+    #[arg(long = "report", value_name = "FORMAT=PATH", value_parser = parse_report)]
+    pub reports: Vec<(ReportFormat, PathBuf)>,
+
+    /// Print annotations for a code host, on standard error or in the job log
+    #[arg(long, value_name = "HOST", default_value = "auto")]
+    pub annotations: Annotations,
+
+    /// Time limit for all tear-downs and hooks after a signal; then rtf kills all
+    /// leftover processes
+    #[arg(long, value_name = "DURATION", default_value = "60s", value_parser = parse_duration)]
+    pub shutdown_timeout: Duration,
+
+    /// End the run, as SIGTERM does, when standard input closes: for programs that start rtf
+    #[arg(long)]
+    pub end_with_stdin: bool,
+
+    /// Print every message, measurement and output as it arrives
+    #[arg(short, long)]
+    pub verbose: bool,
+
+    /// Run up to N suites in parallel, each with separate fixtures
+    #[arg(short, long, value_name = "N", default_value = "1", value_parser = jobs_parser())]
+    pub jobs: NonZeroU16,
+
+    /// How long a suite waits for its locks [default: no limit]
+    #[arg(long, value_name = "DURATION", value_parser = parse_duration)]
+    pub lock_timeout: Option<Duration>,
+
+    /// List the selected tests without running them
+    #[arg(help_heading = SELECTION, long)]
+    pub dry_run: bool,
+
+    /// Fork the hosts of C, C++, Lua and Python tests from a warm host: `auto` (from the
+    /// second test on), `always`, or `never`
+    #[arg(long, value_name = "WHEN", default_value = "auto", env = "RTF_FORK")]
+    #[arg(value_parser = fork_mode_parser(), hide_possible_values = true)]
+    pub fork: ForkMode,
+
+    #[command(flatten)]
+    pub web: WebRunArgs,
+}
+
+/// Options of `rtf list`.
+#[derive(Debug, Args)]
+pub struct ListArgs {
+    #[command(flatten)]
+    pub input: InputArgs,
+
+    /// Output format
+    #[arg(long, value_name = "FORMAT", default_value = "text")]
+    pub format: ListFormat,
+}
+
+/// The format of a list of tests.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ListFormat {
+    /// One test per line
+    Text,
+    /// One JSON document
+    Json,
+}

@@ -1,0 +1,60 @@
+//! `rtf serve`: shows active and past runs in a browser until a signal ends it.
+
+mod reruns;
+
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use rtf_engine::signal::Signals;
+use rtf_web::{Capabilities, ShutdownHandle};
+
+use self::reruns::Reruns;
+use super::Outcome;
+use crate::cli::ServeArgs;
+use crate::error::Failure;
+use crate::request::web_settings;
+use crate::{exit, terminal, web};
+
+/// Serves runs.
+pub fn run(args: &ServeArgs) -> Outcome {
+    let results = &args.results.results;
+    if !results.is_dir() {
+        let error = format!("there is no results directory `{}`", results.display());
+        let hint = "choose another directory with `--results DIR`, or run something first";
+        return Err(Failure::input(error).hint(hint));
+    }
+    let bound = web::bind(&web_settings(args.web, &args.access))?;
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let runtime = runtime.map_err(Failure::internal)?;
+    let reruns = Arc::new(Reruns::new(results.canonicalize().map_err(Failure::internal)?));
+    // From now on, a signal also ends the reruns.
+    let signals = {
+        let _context = runtime.enter();
+        Signals::install().map_err(Failure::internal)?
+    };
+    let server = web::serve(bound, results, Capabilities::Viewer(reruns.clone()))?;
+    let ender = server.ender();
+    let signals_thread = std::thread::Builder::new()
+        .name("signals".into())
+        .spawn(move || runtime.block_on(end_on_signal(signals, &reruns, ender)));
+    let signals_thread = signals_thread.map_err(Failure::internal)?;
+    server.wait().map_err(Failure::internal)?;
+    // Only this thread ends the server.
+    Ok(ExitCode::from(signals_thread.join().unwrap_or(exit::BROKEN)))
+}
+
+/// Waits for a signal, ends the active rerun and then the server, and returns the exit
+/// code.
+async fn end_on_signal(mut signals: Signals, reruns: &Reruns, ender: ShutdownHandle) -> u8 {
+    let (number, _) = signals.next().await;
+    let mut active = reruns.end(number);
+    while let Some(name) = active {
+        terminal::notice(format_args!("rtf serve: waiting for the run {name} to end"));
+        tokio::select! {
+            () = reruns.wait_until_idle() => break,
+            (number, _) = signals.next() => active = reruns.end(number),
+        }
+    }
+    ender.end();
+    exit::of_signal(number)
+}

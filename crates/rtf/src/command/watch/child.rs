@@ -1,0 +1,59 @@
+//! Starts a run: this program with the same options, as `rtf run`.
+
+use std::ffi::OsString;
+use std::io;
+use std::os::unix::process::ExitStatusExt;
+use std::process::ExitStatus;
+
+use tokio::process::{Child, Command};
+
+use crate::{child_run, exit};
+
+/// Starts a run, which ends with this process.
+pub fn start() -> io::Result<Child> {
+    let command = child_run::command(run_args(std::env::args_os().skip(1).collect()))?;
+    Command::from(command).spawn()
+}
+
+/// Replaces the verb `watch` by `run`.
+fn run_args(mut args: Vec<OsString>) -> Vec<OsString> {
+    let mut index = 0;
+    while let Some(arg) = args.get_mut(index) {
+        if arg == "--color" {
+            index += 1;
+        } else if !arg.to_string_lossy().starts_with('-') {
+            *arg = "run".into();
+            if !args.contains(&child_run::END_WITH_STDIN.into()) {
+                args.insert(index + 1, child_run::END_WITH_STDIN.into());
+            }
+            break;
+        }
+        index += 1;
+    }
+    args
+}
+
+/// The exit code, as shells report it.
+pub fn exit_code(status: ExitStatus) -> u8 {
+    let code = status.code().and_then(|code| u8::try_from(code).ok());
+    code.or_else(|| status.signal().map(exit::of_signal)).unwrap_or(exit::BROKEN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_run_has_the_same_options() {
+        let run = |text: &str| {
+            let args = run_args(text.split(' ').map(OsString::from).collect());
+            args.join(" ".as_ref()).into_string().unwrap_or_default()
+        };
+        assert_eq!(run("watch a.xml"), "run --end-with-stdin a.xml");
+        assert_eq!(
+            run("--color never watch -E all() watch"),
+            "--color never run --end-with-stdin -E all() watch"
+        );
+        assert_eq!(run("--color=watch watch watch"), "--color=watch run --end-with-stdin watch");
+    }
+}

@@ -1,0 +1,54 @@
+//! Requests to a run while it is running: signals, and the browser.
+
+use std::time::Duration;
+
+use rtf_engine::run::{Control, Stop, StopLevel};
+use rtf_model::{SuiteId, TestId};
+use tokio::sync::watch;
+
+/// The origin of a request from the browser, in verdicts.
+const BROWSER: &str = "a person, in the browser";
+
+/// Passes requests to a run.
+#[derive(Debug)]
+pub struct ControlChannels {
+    pub stops: watch::Sender<Option<Stop>>,
+    pub controls: watch::Sender<Vec<Control>>,
+    pub shutdown_timeout: Duration,
+}
+
+impl ControlChannels {
+    pub fn new(shutdown_timeout: Duration) -> Self {
+        let (stops, controls) = (watch::channel(None).0, watch::channel(Vec::new()).0);
+        Self { stops, controls, shutdown_timeout }
+    }
+
+    /// Whether a signal has ended the run.
+    pub fn is_interrupted(&self) -> bool {
+        self.stops.borrow().as_ref().is_some_and(|stop| stop.reason != BROWSER)
+    }
+}
+
+impl rtf_web::RunControl for ControlChannels {
+    fn stop_run(&self) {
+        self.stops.send_if_modified(|stop| {
+            // An earlier signal requests the same or more.
+            let is_first = stop.is_none();
+            if is_first {
+                let (level, limit) = (StopLevel::TearDown, self.shutdown_timeout);
+                *stop = Some(Stop { level, reason: BROWSER.to_owned(), limit });
+            }
+            is_first
+        });
+    }
+
+    fn stop_test(&self, test: TestId) {
+        let by = BROWSER.to_owned();
+        self.controls.send_modify(|controls| controls.push(Control::StopTest { test, by }));
+    }
+
+    fn skip_suite(&self, suite: SuiteId) {
+        let by = BROWSER.to_owned();
+        self.controls.send_modify(|controls| controls.push(Control::SkipSuite { suite, by }));
+    }
+}

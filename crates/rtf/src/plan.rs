@@ -1,0 +1,107 @@
+//! Request → plan, with every problem reported.
+
+use std::sync::Arc;
+
+use rtf_engine::verify;
+use rtf_model::{Diagnostic, Manifest, Severity};
+use rtf_plan::plan::{self, Plan, PlanDraft, PlanOutcome};
+use rtf_plan::select::{self, Selection, select};
+use rtf_plan::suite::{SourceMap, SourceText};
+
+use crate::diagnostics::{self, count};
+use crate::error::Failure;
+use crate::request::TestsRequest;
+
+/// A plan without errors.
+pub struct Planned {
+    pub plan: Arc<Plan>,
+    /// The number of tests before the selection; 0 if all were selected.
+    pub selected_from: u32,
+    /// The reporters of a run print them, other verbs print them themselves.
+    pub warnings: Vec<Diagnostic>,
+    sources: SourceMap,
+}
+
+impl Planned {
+    /// Prints the warnings.
+    pub fn print_warnings(&self) -> Result<(), Failure> {
+        diagnostics::print(&self.warnings, &self.sources)
+    }
+}
+
+/// Plans; prints all problems if one of them is an error.
+pub fn plan(request: &TestsRequest) -> Result<Planned, Failure> {
+    let Draft { plan, total, problems, sources } =
+        draft(request, |draft| verify::verify(draft, verify::DEFAULT_LIMIT));
+    let Some(mut plan) = plan else { return Err(diagnostics::refuse(&problems, &sources)) };
+    set_repetition(&mut plan, &request.manifest);
+    let selected_from = if plan.tests as usize == total { 0 } else { total };
+    Ok(Planned {
+        plan: Arc::new(plan),
+        selected_from: u32::try_from(selected_from).unwrap_or(u32::MAX),
+        warnings: problems,
+        sources,
+    })
+}
+
+/// A plan with its problems.
+pub struct Draft {
+    /// The selected tests; `None` if one of the problems is an error.
+    pub plan: Option<Plan>,
+    /// The number of tests before the selection.
+    total: usize,
+    pub problems: Vec<Diagnostic>,
+    sources: SourceMap,
+}
+
+/// Plans and prints nothing. `check` starts hosts to check the plug-ins, or does not.
+pub fn draft(request: &TestsRequest, check: impl FnOnce(PlanDraft) -> PlanOutcome) -> Draft {
+    let outcome = check(plan::draft(&request.inputs, &request.options));
+    let (mut problems, mut sources) = (outcome.diagnostics, outcome.sources);
+    let selection = selection(request, &mut problems, &mut sources);
+    let has_error = problems.iter().any(|problem| problem.severity == Severity::Error);
+    let Some(all) = outcome.plan.filter(|_| !has_error) else {
+        return Draft { plan: None, total: 0, problems, sources };
+    };
+    let selected = select(all, &selection);
+    problems.extend(selected.warnings);
+    let plan = Some(selected.plan).filter(|plan| plan.tests > 0);
+    if plan.is_none() {
+        let message = format!("no test selected out of {}", count(selected.total, "test"));
+        let hint = "`rtf list` without these options lists all tests";
+        problems.insert(0, Diagnostic::error("no-tests", message).hint(hint));
+    }
+    Draft { plan, total: selected.total, problems, sources }
+}
+
+/// Parses the filters; adds every mistake to the problems.
+fn selection(
+    request: &TestsRequest,
+    problems: &mut Vec<Diagnostic>,
+    sources: &mut SourceMap,
+) -> Selection {
+    let manifest = &request.manifest;
+    let mut filters = Vec::new();
+    for (number, text) in (1..).zip(&manifest.filters) {
+        let name = match manifest.filters.len() {
+            1 => "--filter".to_owned(),
+            _ => format!("--filter ({number})"),
+        };
+        let source = SourceText::new(name, text);
+        match select::parse(&source) {
+            Ok(filter) => filters.push(filter),
+            Err(problem) => problems.push(*problem),
+        }
+        sources.add(Arc::new(source));
+    }
+    let only = manifest.only.as_ref().map(|only| only.iter().cloned().collect());
+    Selection { filters, only, shuffle: manifest.shuffle, shard: request.shard.clone() }
+}
+
+fn set_repetition(plan: &mut Plan, manifest: &Manifest) {
+    let times = manifest.repeat.unwrap_or(1);
+    for test in plan.suites.iter_mut().flat_map(|suite| &mut suite.tests) {
+        test.repetitions = test.repetitions.saturating_mul(times);
+        test.retries.count = manifest.retries.unwrap_or(test.retries.count);
+    }
+}

@@ -1,0 +1,87 @@
+//! Reports of a run, in every format.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use rtf_model::Record;
+use rtf_report::{ReportError, ReportFile, Reporter, code_quality, github, junit, tap, text};
+
+use crate::cli::ReportFormat;
+use crate::error::Failure;
+
+/// Opens the reports of a run in `results`. They are written when the run has
+/// finished, but this function finds out whether that is possible.
+pub fn open_all(
+    reports: &[(ReportFormat, PathBuf)],
+    results: &Path,
+) -> Result<Vec<ReportFile>, Failure> {
+    let failure = |error: Box<dyn std::error::Error + Send + Sync>| {
+        Failure::input(error).hint("choose another path with `--report FORMAT=PATH`")
+    };
+    let mut opened = Vec::new();
+    for (index, (format, path)) in reports.iter().enumerate() {
+        if reports[..index].iter().any(|(_, earlier)| earlier == path) {
+            let error = format!("two reports would be written to `{}`", path.display());
+            return Err(failure(error.into()));
+        }
+        opened.push(open(*format, path, results).map_err(|error| failure(error.into()))?);
+    }
+    Ok(opened)
+}
+
+/// Opens a report of a run in `results`.
+pub fn open(format: ReportFormat, path: &Path, results: &Path) -> Result<ReportFile, ReportError> {
+    let results = results.to_owned();
+    let write = move |out: &mut dyn Write, record: &Record| {
+        let dir = record.run.as_ref().map(|started| results.join(&started.run));
+        write(format, out, record, dir.as_deref())
+    };
+    ReportFile::new(title(format), path, Box::new(write))
+}
+
+/// Writes an open report.
+pub fn finish(report: Result<impl Reporter, ReportError>, record: &Record) {
+    if let Err(error) = report.and_then(|mut report| report.finish(record)) {
+        Failure::internal(error).print();
+    }
+}
+
+/// Writes a report. `dir` is the run directory.
+pub fn write(
+    format: ReportFormat,
+    out: &mut dyn Write,
+    record: &Record,
+    dir: Option<&Path>,
+) -> io::Result<()> {
+    match format {
+        ReportFormat::Text => text::write(out, record),
+        ReportFormat::Junit => junit::write(out, record, dir),
+        ReportFormat::Tap => tap::write(out, record),
+        ReportFormat::CodeQuality => code_quality::write(out, record, repository().as_deref()),
+        ReportFormat::Github => github::write(out, record, repository().as_deref()),
+        ReportFormat::Json => Err(io::Error::other("a record contains no events")),
+    }
+}
+
+/// The name of a report in errors.
+pub fn title(format: ReportFormat) -> &'static str {
+    match format {
+        ReportFormat::Text => "the text report",
+        ReportFormat::Junit => "the JUnit report",
+        ReportFormat::Tap => "the TAP report",
+        ReportFormat::CodeQuality => "the code quality report",
+        ReportFormat::Github => "the annotations",
+        ReportFormat::Json => "the events",
+    }
+}
+
+/// The directory to which code hosts' file names are relative: their checkout, or else
+/// the repository that contains the current directory.
+fn repository() -> Option<PathBuf> {
+    let checkout = ["GITHUB_WORKSPACE", "CI_PROJECT_DIR"].into_iter().find_map(std::env::var_os);
+    if let Some(checkout) = checkout.filter(|dir| !dir.is_empty()) {
+        return Some(PathBuf::from(checkout));
+    }
+    let current = std::env::current_dir().ok()?;
+    current.ancestors().find(|dir| dir.join(".git").exists()).map(Path::to_owned)
+}

@@ -1,0 +1,194 @@
+//! Which tests to run, and how often. With `--rerun`, both come from a past run.
+
+use std::collections::HashMap;
+use std::hash::{BuildHasher, Hasher, RandomState};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use rtf_model::{Manifest, Record, TestId, Verdict};
+use rtf_plan::config::ConfigRequest;
+use rtf_plan::plan::{InputPath, Options, RunnerEnvironment};
+use rtf_plan::select::{Shard, ShardBy};
+
+use super::past_run;
+use crate::cli::{FlakyResult, InputArgs, RepeatArgs, RerunVerdict};
+use crate::error::Failure;
+
+/// The tests of a run.
+pub struct TestsRequest {
+    pub inputs: Vec<InputPath>,
+    /// The options of planning, with the directory that the inputs are relative to.
+    pub options: Options,
+    /// The request as the run's first event records it; it also has the filters, the
+    /// order and the repetitions.
+    pub manifest: Manifest,
+    /// The part of the selected tests to run.
+    pub shard: Option<Shard>,
+}
+
+impl TestsRequest {
+    /// Resolves the arguments, and reads the past runs that they name.
+    pub fn resolve(args: &InputArgs) -> Result<Self, Failure> {
+        let mut runner = RunnerEnvironment::from_current_process().map_err(Failure::internal)?;
+        let results = &args.results.results;
+        let shard = args.select.shard.clone();
+        let shard = shard.map(|shard| assign(shard, &args.select.shard_by, results)).transpose()?;
+        let mut manifest = if args.select.rerun.is_empty() {
+            manifest(args)
+        } else {
+            let (manifest, working_dir) = rerun_manifest(args, results)?;
+            runner.current_dir = working_dir;
+            manifest
+        };
+        manifest.filters.clone_from(&args.select.filters);
+        if let Some(seed) = args.select.shuffle {
+            manifest.shuffle = Some(seed.unwrap_or_else(random_seed));
+        }
+        set_repetition(&mut manifest, &args.repeat);
+        manifest.shard = shard.as_ref().map(|shard| format!("{}/{}", shard.index, shard.count));
+        let inputs = manifest.inputs.iter().map(|input| InputPath::Any(input.into())).collect();
+        Ok(Self { inputs, options: options(&manifest, runner), manifest, shard })
+    }
+}
+
+fn manifest(args: &InputArgs) -> Manifest {
+    Manifest {
+        inputs: args.inputs.iter().map(|path| path.to_string_lossy().into_owned()).collect(),
+        recursive: args.recursive,
+        param: args.param.clone(),
+        environment: args.environment.clone(),
+        repetition: args.repetition,
+        profile: args.profile.profile.clone(),
+        set: settings(args),
+        ..Manifest::default()
+    }
+}
+
+fn settings(args: &InputArgs) -> Vec<String> {
+    args.profile.set.iter().map(|(name, value)| format!("{name}={value}")).collect()
+}
+
+/// The manifest of a past run, restricted to the tests to rerun, and its working
+/// directory.
+fn rerun_manifest(args: &InputArgs, results: &Path) -> Result<(Manifest, PathBuf), Failure> {
+    let run = match args.inputs.as_slice() {
+        [] => "latest".to_owned(),
+        [run] => run.to_string_lossy().into_owned(),
+        [_, second, ..] => {
+            let error = format!("`--rerun` takes one run, `{}` is too many", second.display());
+            return Err(Failure::input(error));
+        }
+    };
+    let record =
+        past_run::read(results, &run).map_err(|failure| match Path::new(&run).is_file() {
+            true => failure.hint("with `--rerun`, FILE is a past run or its journal"),
+            false => failure,
+        })?;
+    let Some(started) = &record.run else {
+        return Err(Failure::input(format!("the journal of `{run}` has no first event")));
+    };
+    if started.manifest.inputs.is_empty() {
+        let error = format!("`{run}` does not record its inputs");
+        let hint = "it comes from an older rtf, from `robottestingframework-testrunner`, or from \
+                    `rtf merge` of runs with different inputs";
+        return Err(Failure::input(error).hint(hint));
+    }
+    let mut manifest = Manifest {
+        only: Some(tests_to_rerun(&record, &run, &args.select.rerun)?),
+        ..(*started.manifest).clone()
+    };
+    if let Some(profile) = &args.profile.profile {
+        manifest.profile = Some(profile.clone());
+    }
+    manifest.set.extend(settings(args));
+    Ok((manifest, PathBuf::from(&started.working_dir)))
+}
+
+fn tests_to_rerun(
+    record: &Record,
+    run: &str,
+    verdicts: &[RerunVerdict],
+) -> Result<Vec<(String, String)>, Failure> {
+    let tests = (0..).map(TestId).zip(&record.tests).filter(|(id, _)| {
+        let verdict = record.final_verdict(*id);
+        verdicts.iter().any(|wanted| wanted.matches(verdict))
+    });
+    let names: Vec<_> = tests.filter_map(|(_, test)| name(record, test)).collect();
+    if names.is_empty() {
+        let verdicts: Vec<_> = verdicts.iter().map(|wanted| wanted.verb()).collect();
+        let error = format!("no test of `{run}` {}: nothing to rerun", verdicts.join(" or "));
+        return Err(Failure::input(error));
+    }
+    Ok(names)
+}
+
+/// The names of a test's suite and of the test.
+fn name(record: &Record, test: &rtf_model::TestRecord) -> Option<(String, String)> {
+    let suite = record.suites.get(test.plan.suite.index())?;
+    Some((suite.plan.name.clone(), test.plan.name.clone()))
+}
+
+impl RerunVerdict {
+    fn matches(self, verdict: Verdict) -> bool {
+        let interrupted = matches!(verdict, Verdict::Interrupted | Verdict::Skipped);
+        match self {
+            Self::Failed => !verdict.is_green() && !interrupted,
+            Self::Interrupted => interrupted,
+        }
+    }
+
+    fn verb(self) -> &'static str {
+        match self {
+            Self::Failed => "failed",
+            Self::Interrupted => "was interrupted or skipped",
+        }
+    }
+}
+
+/// Adds the method that assigns tests to shards.
+fn assign(shard: Shard, method: &str, results: &Path) -> Result<Shard, Failure> {
+    let by = match method.split_once('=') {
+        None if method == "hash" => ShardBy::Hash,
+        None if method == "count" => ShardBy::Count,
+        Some(("duration", run)) => ShardBy::Duration(durations(&past_run::read(results, run)?)),
+        _ => {
+            let error =
+                format!("`--shard-by {method}`: expected `hash`, `count` or `duration=RUN`");
+            return Err(Failure::input(error));
+        }
+    };
+    Ok(Shard { by, ..shard })
+}
+
+fn durations(record: &Record) -> HashMap<(String, String), Duration> {
+    let tests = record.tests.iter();
+    tests.filter_map(|test| Some((name(record, test)?, test.duration()))).collect()
+}
+
+/// A number that is easy to type.
+fn random_seed() -> u64 {
+    RandomState::new().build_hasher().finish() % 1_000_000
+}
+
+fn set_repetition(manifest: &mut Manifest, args: &RepeatArgs) {
+    let for_ms = args.time.map(|time| u64::try_from(time.as_millis()).unwrap_or(u64::MAX));
+    manifest.repeat = args.repeat.or(manifest.repeat);
+    manifest.for_ms = for_ms.or(manifest.for_ms);
+    manifest.retries = args.retries.or(manifest.retries);
+    if let Some(result) = args.flaky_result {
+        manifest.flaky_fails = result == FlakyResult::Fail;
+    }
+}
+
+fn options(manifest: &Manifest, runner: RunnerEnvironment) -> Options {
+    let set = manifest.set.iter().filter_map(|text| text.split_once('='));
+    let params = set.map(|(name, value)| (name.to_owned(), value.to_owned())).collect();
+    Options {
+        recursive: manifest.recursive,
+        param: manifest.param.clone().unwrap_or_default(),
+        environment: manifest.environment.clone().unwrap_or_default(),
+        repetitions: manifest.repetition.unwrap_or(1),
+        config_request: ConfigRequest { profile: manifest.profile.clone(), params },
+        ..Options::new(runner)
+    }
+}

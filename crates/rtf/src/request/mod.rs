@@ -1,0 +1,121 @@
+//! Arguments → request: what the user asks for, with the values of `rtf.toml` and of
+//! past runs filled in. Everything after this stage reads the request only.
+
+pub mod config;
+mod inputs;
+pub mod past_run;
+
+use std::num::NonZeroU16;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use rtf_engine::locks::{self, LockOptions};
+use rtf_process::fork_server::ForkMode;
+use rtf_web::{Limits, Settings};
+
+use crate::cli::{Annotations, ReportFormat, RunArgs, StdoutFormat, WebAccessArgs};
+use crate::error::Failure;
+
+pub use inputs::TestsRequest;
+
+/// A run.
+pub struct RunRequest {
+    pub tests: TestsRequest,
+    pub results: PathBuf,
+    /// How to choose another results directory, for hints.
+    pub results_option: &'static str,
+    pub web: Option<WebRequest>,
+    pub fork_mode: ForkMode,
+    /// The number of failed tests after which the remaining tests are skipped.
+    pub max_fail: Option<u32>,
+    pub locks: LockOptions,
+    pub jobs: NonZeroU16,
+    /// How long the run may take to end after a signal or a request to stop.
+    pub shutdown_timeout: Duration,
+}
+
+/// What `rtf run` prints, and the reports that it writes.
+pub struct OutputRequest {
+    pub format: StdoutFormat,
+    pub verbose: bool,
+    /// Never [`Annotations::Auto`].
+    pub annotations: Annotations,
+    pub reports: Vec<(ReportFormat, PathBuf)>,
+    /// The results directory.
+    pub results: PathBuf,
+}
+
+/// The web server of a run.
+pub struct WebRequest {
+    pub settings: Settings,
+    /// How to choose another address, for hints.
+    pub hint: Option<&'static str>,
+    pub linger: Option<Duration>,
+}
+
+impl OutputRequest {
+    /// Resolves the arguments of `rtf run`, in which [`config`] has been filled in.
+    pub fn resolve(args: &RunArgs) -> Self {
+        Self {
+            format: args.format,
+            verbose: args.verbose,
+            annotations: detect_host(args.annotations),
+            reports: args.reports.clone(),
+            results: args.input.results.results.clone(),
+        }
+    }
+}
+
+impl RunRequest {
+    /// Resolves the arguments of `rtf run`, in which [`config`] has been filled in.
+    pub fn resolve(args: &RunArgs) -> Result<Self, Failure> {
+        if let Some(option) = args.web.option_without_effect() {
+            let error = format!("`{option}` has no effect without `--web`");
+            return Err(Failure::input(error).hint("add `--web`"));
+        }
+        Ok(Self {
+            tests: TestsRequest::resolve(&args.input)?,
+            results: args.input.results.results.clone(),
+            results_option: "`--results DIR`",
+            web: args.web.web.map(|address| WebRequest {
+                settings: web_settings(address, &args.web.access),
+                hint: None,
+                linger: args.web.web_linger,
+            }),
+            fork_mode: args.fork,
+            max_fail: args.input.repeat.max_fail(),
+            locks: LockOptions { dir: locks_dir(), limit: args.lock_timeout },
+            jobs: args.jobs,
+            shutdown_timeout: args.shutdown_timeout,
+        })
+    }
+}
+
+/// Resolves [`Annotations::Auto`].
+fn detect_host(annotations: Annotations) -> Annotations {
+    let is_true = |name: &str| std::env::var_os(name).is_some_and(|value| value == "true");
+    match annotations {
+        Annotations::Auto if is_true("GITHUB_ACTIONS") => Annotations::Github,
+        Annotations::Auto if is_true("GITLAB_CI") => Annotations::Gitlab,
+        Annotations::Auto => Annotations::None,
+        other => other,
+    }
+}
+
+/// The settings of a web server.
+pub fn web_settings(address: std::net::SocketAddr, args: &WebAccessArgs) -> Settings {
+    Settings {
+        address,
+        allow_remote: args.web_allow_remote,
+        token_file: args.web_token_file.clone(),
+        tls: args.web_cert.clone().zip(args.web_key.clone()),
+        hosts: args.web_hosts.clone(),
+        limits: Limits::default(),
+    }
+}
+
+/// The directory of this machine's locks.
+pub fn locks_dir() -> PathBuf {
+    let dir = std::env::var_os(locks::DIR_VARIABLE).filter(|dir| !dir.is_empty());
+    dir.map_or_else(|| PathBuf::from(locks::DEFAULT_DIR), PathBuf::from)
+}

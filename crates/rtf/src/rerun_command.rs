@@ -1,0 +1,44 @@
+//! The command that reruns a failed test, for the summary of a run.
+
+use std::sync::OnceLock;
+
+use rtf_model::{Record, TestId};
+use rtf_report::console::{RerunCommand, rerun_suite};
+
+/// A command that names the suite or the plug-in, with the options without which it
+/// would be another test.
+pub fn for_run() -> RerunCommand {
+    let options = OnceLock::new();
+    Box::new(move |record, test| {
+        let mut command = rerun_suite(record, test)?;
+        // The same for all tests of a run.
+        let (plugin_options, config_options) =
+            options.get_or_init(|| (plugin_options(record), config_options(record)));
+        if is_direct_plugin(record, test) {
+            command += plugin_options;
+        }
+        command += config_options;
+        Some(command)
+    })
+}
+
+fn is_direct_plugin(record: &Record, test: TestId) -> bool {
+    let suite = record.tests.get(test.index()).map(|test| test.plan.suite.index());
+    suite.and_then(|suite| record.suites.get(suite)).is_some_and(|suite| suite.plan.file.is_empty())
+}
+
+fn plugin_options(record: &Record) -> String {
+    let Some(run) = &record.run else { return String::new() };
+    let param = run.manifest.param.iter().map(|value| ("--param", value));
+    join(param.chain(run.manifest.environment.iter().map(|value| ("--environment", value))))
+}
+
+fn config_options(record: &Record) -> String {
+    let Some(run) = &record.run else { return String::new() };
+    let profile = run.manifest.profile.iter().map(|profile| ("--profile", profile));
+    join(profile.chain(run.manifest.set.iter().map(|setting| ("--set", setting))))
+}
+
+fn join<'r>(options: impl Iterator<Item = (&'static str, &'r String)>) -> String {
+    options.map(|(name, value)| format!(" {name} {}", shell_words::quote(value))).collect()
+}

@@ -1,0 +1,64 @@
+//! The web server of `rtf run --web` and `rtf serve`.
+
+use std::path::Path;
+use std::time::Duration;
+
+use rtf_engine::signal::Signals;
+use rtf_report::console::RerunCommand;
+use rtf_web::{BoundServer, Capabilities, ServeError, Server, Service, Settings, WrongToken};
+
+use crate::error::Failure;
+use crate::{rerun_command, terminal};
+
+const LABEL: &str = "\u{1b}[1mweb\u{1b}[0m";
+
+/// Binds the address.
+pub fn bind(settings: &Settings) -> Result<BoundServer, Failure> {
+    BoundServer::new(settings).map_err(failure)
+}
+
+/// Starts the server and prints its address.
+pub fn serve(bound: BoundServer, results: &Path, role: Capabilities) -> Result<Server, Failure> {
+    let rerun: fn() -> RerunCommand = rerun_command::for_run;
+    let wrong_token = Box::new(report_wrong_token);
+    let server = bound.serve(Service { results, role, rerun, wrong_token }).map_err(failure)?;
+    terminal::stderr(|err| {
+        if let Some(taken) = server.taken() {
+            let port = server.address().port();
+            writeln!(err, "{LABEL}: port {taken} is in use, using port {port}")?;
+        }
+        writeln!(err, "{LABEL}: {}", server.url())?;
+        match server.fingerprint() {
+            Some(sha) => writeln!(err, "{LABEL}: self-signed certificate, SHA-256 {sha}"),
+            None => Ok(()),
+        }
+    })?;
+    Ok(server)
+}
+
+/// Continues to serve for this time or until a signal.
+pub fn linger(server: &Server, time: Duration) -> Result<(), Failure> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    runtime.map_err(Failure::internal)?.block_on(async {
+        let mut signals = Signals::install().map_err(Failure::internal)?;
+        server.linger(time);
+        terminal::notice(format_args!(
+            "{LABEL}: the run has finished; serving it for {time:?}, or until Ctrl-C"
+        ));
+        tokio::select! {
+            _ = signals.next() => {}
+            () = tokio::time::sleep(time) => {}
+        }
+        Ok(())
+    })
+}
+
+fn report_wrong_token(WrongToken { client, count }: WrongToken) {
+    let times = if count > 1 { format!(", {count} times in a minute") } else { String::new() };
+    terminal::notice(format_args!("{LABEL}: wrong token from {client}{times}"));
+}
+
+fn failure(error: ServeError) -> Failure {
+    let hint = error.hint();
+    Failure::input(error).maybe_hint(hint)
+}
