@@ -8,9 +8,7 @@ use std::path::Path;
 use rtf_model::Record;
 use serde::Serialize;
 
-use crate::ReportError;
 use crate::finding::{self, Finding, Place, Rank, Roots};
-use crate::report_file::ReportFile;
 
 #[derive(Serialize)]
 struct Issue {
@@ -50,17 +48,6 @@ pub fn write(out: &mut dyn Write, record: &Record, repository: Option<&Path>) ->
     }
     serde_json::to_writer_pretty(&mut *out, &issues)?;
     out.write_all(b"\n")
-}
-
-/// Writes the report into a file at the end of the run.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn file(path: &Path, repository: Option<&Path>) -> Result<ReportFile, ReportError> {
-    let repository = repository.map(Path::to_owned);
-    let write =
-        move |out: &mut dyn Write, record: &Record| self::write(out, record, repository.as_deref());
-    ReportFile::new("the code quality report", path, Box::new(write))
 }
 
 fn issue(finding: &Finding, place: Place, number: u32) -> Issue {

@@ -6,9 +6,7 @@ use std::path::Path;
 
 use rtf_model::Record;
 
-use crate::ReportError;
 use crate::finding::{self, Finding, Rank, Roots};
-use crate::report_file::ReportFile;
 
 /// Writes a command for each finding. `repository` is the directory to which
 /// GitHub's file names are relative; `None`: the run's.
@@ -20,17 +18,6 @@ pub fn write(out: &mut dyn Write, record: &Record, repository: Option<&Path>) ->
         writeln!(out, "{}", command(&finding))?;
     }
     Ok(())
-}
-
-/// Writes the commands into a file at the end of the run.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn file(path: &Path, repository: Option<&Path>) -> Result<ReportFile, ReportError> {
-    let repository = repository.map(Path::to_owned);
-    let write =
-        move |out: &mut dyn Write, record: &Record| self::write(out, record, repository.as_deref());
-    ReportFile::new("the annotations", path, Box::new(write))
 }
 
 fn command(finding: &Finding) -> String {

@@ -17,7 +17,7 @@ use quick_junit::{Report, TestCase, TestSuite};
 use rtf_model::{LeakedProcess, Record, SuiteRecord};
 
 use crate::growth::{self, Within};
-use crate::{ReportError, ReportFile, escape, explain, words};
+use crate::{escape, explain, words};
 
 /// Writes the JUnit report of a record. `folder` is the run's directory,
 /// which contains the attachments.
@@ -28,18 +28,6 @@ pub fn write(out: &mut dyn Write, record: &Record, folder: Option<&Path>) -> io:
     // In memory first: an error of `out` (a closed pipe) then stays what it is.
     let xml = report(record, folder).to_string().map_err(io::Error::other)?;
     out.write_all(xml.as_bytes())
-}
-
-/// Writes the report into a file at the end of the run. `run_dir` is the run's directory,
-/// which contains the attachments.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn file(path: &Path, run_dir: Option<&Path>) -> Result<ReportFile, ReportError> {
-    let run_dir = run_dir.map(Path::to_owned);
-    let write =
-        move |out: &mut dyn Write, record: &Record| self::write(out, record, run_dir.as_deref());
-    ReportFile::new("the JUnit report", path, Box::new(write))
 }
 
 fn report(record: &Record, folder: Option<&Path>) -> Report {

@@ -8,11 +8,9 @@ mod points;
 mod yaml;
 
 use std::io::{self, Write};
-use std::path::Path;
 
 use rtf_model::{Event, EventKind, Record, SuiteRecord};
 
-use crate::report_file::ReportFile;
 use crate::stream::Stream;
 use crate::{ReportError, Reporter, escape, finding, words};
 
@@ -24,14 +22,6 @@ pub fn write(out: &mut dyn Write, record: &Record) -> io::Result<()> {
     let mut text = String::new();
     Walk::default().go_on(&mut text, record, true);
     out.write_all(text.as_bytes())
-}
-
-/// Writes the report into a file at the end of the run.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn file(path: &Path) -> Result<ReportFile, ReportError> {
-    ReportFile::new("the TAP report", path, Box::new(write))
 }
 
 /// Writes TAP during the run.

@@ -6,12 +6,11 @@ mod lines;
 mod tests;
 
 use std::io::{self, Write};
-use std::path::Path;
 
 use rtf_model::{Record, SuiteRecord, Verdict};
 
 use crate::growth::{self, Within};
-use crate::{ReportError, ReportFile, explain, prepared, words};
+use crate::{explain, prepared, words};
 use lines::Lines;
 
 /// Writes the text report of a record.
@@ -27,14 +26,6 @@ pub fn write(out: &mut dyn Write, record: &Record) -> io::Result<()> {
     }
     result(&mut lines, record);
     lines.write_to(out)
-}
-
-/// Writes the report into a file at the end of the run.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn file(path: &Path) -> Result<ReportFile, ReportError> {
-    ReportFile::new("the text report", path, Box::new(write))
 }
 
 fn head(lines: &mut Lines, record: &Record) {
