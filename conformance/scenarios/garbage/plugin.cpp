@@ -8,21 +8,20 @@
 
 #include <rtf/TestCase.hpp>
 
-// Writes to every socket of the process what no host may write: the channel is
-// one of them, and its number is not told.
+// Writes an invalid line to every socket of the process: one of them is the channel.
 class Garbage : public rtf::TestCase
 {
 public:
     void run() override
     {
         report("before the garbage");
-        DIR *folder = opendir("/proc/self/fd");
-        if (folder == nullptr) {
+        DIR *directory = opendir("/proc/self/fd");
+        if (directory == nullptr) {
             RTF_ERROR("cannot list the descriptors");
         }
         const char line[] = "this is not a message\n";
         const ssize_t length = static_cast<ssize_t>(std::strlen(line));
-        while (const dirent *entry = readdir(folder)) {
+        while (const dirent *entry = readdir(directory)) {
             const int descriptor = std::atoi(entry->d_name);
             struct stat status;
             const bool is_number = entry->d_name[0] != '.';
@@ -31,7 +30,7 @@ public:
                 RTF_ERROR("cannot write the garbage");
             }
         }
-        closedir(folder);
+        closedir(directory);
     }
 };
 

@@ -9,7 +9,7 @@ package body Plugin is
       procedure Wait is new Wait_Until (Never);
    begin
       Sleep (20.0);
-      Check (Current_Time - Start >= 20.0, "twenty seconds are over");
+      Check (Current_Time - Start >= 20.0, "twenty seconds have passed");
       Wait (10.0, "the door to open");
    end Run;
 

@@ -10,7 +10,7 @@ public:
     {
         const auto start = now();
         sleep(std::chrono::seconds(20));
-        RTF_CHECK(now() - start >= std::chrono::seconds(20), "twenty seconds are over");
+        RTF_CHECK(now() - start >= std::chrono::seconds(20), "twenty seconds have passed");
         wait_until([] { return false; }, std::chrono::seconds(10), "the door to open");
     }
 };

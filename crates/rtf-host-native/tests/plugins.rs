@@ -6,7 +6,7 @@ mod driver;
 
 use std::os::unix::process::ExitStatusExt;
 
-use driver::{Host, build, build_text, check, display, folder, run_test, start_test};
+use driver::{Host, build, build_text, check, dir, display, run_test, start_test};
 use serde_json::{Value, json};
 
 const SIGSEGV: i32 = 11;
@@ -134,7 +134,7 @@ fn a_fixture_is_notified_of_each_test() {
     let test = json!({"id": 3, "name": "Move", "repetition": 2, "attempt": 1});
     let passed = json!({"outcome": "passed"});
     assert_eq!(host.ask("test-started", json!({"test": test})), passed);
-    let keep = folder().join("kept-by-recorder");
+    let keep = dir().join("kept-by-recorder");
     let ends = json!({"test": test, "verdict": "failed", "reason": "far", "attachments_dir": keep});
     host.send(json!({"id": 1, "method": "test-finished", "params": ends}));
     let said: Vec<Value> = (0..4).map(|_| host.next().unwrap()).collect();
@@ -296,8 +296,8 @@ fn check_tells_what_is_wrong_with_a_file() {
             bad("old.c", "void robottestingframework_dll_factory(void) {}", &[]),
             "was built for robot-testing-framework 2: build it again",
         ),
-        (driver::folder().join("undefined.c"), "cannot be loaded: invalid ELF header"),
-        (driver::folder().join("nowhere.so"), "No such file or directory"),
+        (driver::dir().join("undefined.c"), "cannot be loaded: invalid ELF header"),
+        (driver::dir().join("nowhere.so"), "No such file or directory"),
     ];
     let mut files = vec![good.as_path(), test.as_path()];
     files.extend(rows.iter().map(|(file, _)| file.as_path()));
@@ -328,8 +328,8 @@ fn the_c_header_is_also_cpp11_and_every_header_stands_alone() {
     build_text("header_cpp11.cpp", header, &["-std=c++11"]);
     let mut count = 0;
     for part in ["rtf", "rtf/internal"] {
-        let folder = driver::root().join("sdk/cpp/include").join(part);
-        for entry in std::fs::read_dir(folder).unwrap() {
+        let dir = driver::root().join("sdk/cpp/include").join(part);
+        for entry in std::fs::read_dir(dir).unwrap() {
             let name = entry.unwrap().file_name().into_string().unwrap();
             if name.ends_with(".hpp") {
                 let text = format!("#include <{part}/{name}>\n");

@@ -8,7 +8,7 @@ mod driver;
 
 use std::path::PathBuf;
 
-use driver::{Host, build_text, folder, root, run_test};
+use driver::{Host, build_text, dir, root, run_test};
 use serde_json::{Value, json};
 
 /// A plug-in for generation 1, which needs only the include path of 1.x.
@@ -137,7 +137,7 @@ fn a_problem_that_a_fixture_has_between_its_steps_is_a_collapse() {
         "#,
         &[],
     );
-    let sign = folder().join("ThreadedRig.sign");
+    let sign = dir().join("ThreadedRig.sign");
     let _ = std::fs::remove_file(&sign);
     let mut host = Host::start();
     let plugin = json!({"file": library, "name": "rig", "args": [sign]});

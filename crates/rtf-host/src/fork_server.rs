@@ -8,7 +8,7 @@ use std::os::unix::net::UnixStream;
 
 use rtf_model::protocol::{FORK_SERVER_VARIABLE, ForkReply, ForkRequest};
 
-use self::unix::{Forked, Room};
+use self::unix::{Forked, InitialVariable};
 use crate::session::Session;
 
 /// The size limit of a request.
@@ -29,7 +29,7 @@ pub enum ForkError {
 #[derive(Debug)]
 pub(crate) struct ForkServer {
     socket: OwnedFd,
-    room: Room,
+    variable: InitialVariable,
     thread: unix::MainThread,
 }
 
@@ -37,18 +37,19 @@ impl ForkServer {
     /// The server, if the runner started this process as one. Called while the process has
     /// one thread.
     pub(crate) fn open() -> Result<Option<Self>, ForkError> {
-        let Some((value, room)) = Room::take(FORK_SERVER_VARIABLE) else { return Ok(None) };
+        let Some((value, variable)) = InitialVariable::take(FORK_SERVER_VARIABLE) else {
+            return Ok(None);
+        };
         let fd = value.split_whitespace().next().and_then(|word| word.strip_prefix("fd:"));
         let fd = fd.and_then(|number| number.parse().ok()).ok_or(ForkError::Malformed)?;
         let socket = unix::take_descriptor(fd)?;
-        Ok(Some(Self { socket, room, thread: unix::MainThread::examine()? }))
+        Ok(Some(Self { socket, variable, thread: unix::MainThread::read()? }))
     }
 
     /// Serves until the runner closes the socket, and returns `None`. In each forked
     /// process it returns the session with the runner.
     pub(crate) fn serve(self) -> Result<Option<Session>, ForkError> {
         let mut packet = vec![0; PACKET_BYTES];
-        unix::rehearse();
         loop {
             let (length, descriptors) = unix::receive(&self.socket, &mut packet)?;
             if length == 0 {
@@ -58,7 +59,7 @@ impl ForkServer {
                 Ok((request, [channel, stdout, stderr])) => match self.thread.fork() {
                     Ok(Forked::Child) => {
                         drop(self.socket);
-                        unix::become_host(&request, &self.room, &stdout, &stderr)?;
+                        unix::become_host(&request, &self.variable, &stdout, &stderr)?;
                         return Ok(Some(Session::over(UnixStream::from(channel))));
                     }
                     Ok(Forked::Parent(pid)) => ForkReply::Pid(pid),

@@ -1,5 +1,4 @@
 //! The texts for violated limits, which only the runner composes.
-#![expect(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 use rtf_model::Measurement;
 use serde_json::Value;

@@ -61,10 +61,10 @@ def test_a_plugin_may_have_any_name_and_leaves_nothing_behind(tmp_path: Path) ->
     assert [entry.name for entry in tmp_path.iterdir()] == ["arm test.v2"]
 
 
-def test_the_folder_of_the_plugin_is_searched_first_and_the_working_folder_is_not(
+def test_the_directory_of_the_plugin_is_searched_but_the_working_directory_is_not(
     tmp_path: Path,
 ) -> None:
-    # A host that looked into the working folder would find the wrong `json`.
+    # A host that searched the working directory would find the wrong `json`.
     (tmp_path / "json.py").write_text("raise RuntimeError('shadowed')\n")
     folder = tmp_path / "tests"
     folder.mkdir()
@@ -103,7 +103,7 @@ def test_what_cannot_be_carried_out_is_refused(
 ) -> None:
     host = Host(tmp_path)
     assert host.ask(method, params)["error"]["code"] == code
-    # The host goes on.
+    # The host continues.
     assert host.ask("tear-down-fixture", {})["result"] == {"outcome": "passed"}
 
 

@@ -65,7 +65,7 @@ class LoadingTest < HostTest
       ["initialize", { protocol: 2, rtf: "9.0.0" }] => -32_001 }.each do |request, code|
       host = self.host
       assert_equal code, host.ask(*request)["error"]["code"]
-      # The host goes on.
+      # The host continues.
       assert_equal({ "outcome" => "passed" }, host.ask("tear-down-fixture", {})["result"])
     end
   end

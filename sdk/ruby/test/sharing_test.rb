@@ -61,7 +61,7 @@ class SharingTest < HostTest
     two = arm("report([defined?(Left), defined?(helper)].inspect)")
     assert ask(host, 2, one)["continues"]
     assert ask(host, 3, two)["continues"]
-    # The same file is run anew.
+    # The same file runs again.
     assert ask(host, 2, one)["continues"]
     assert_equal ["mine", "[nil, nil]", "mine"], host.texts.map(&:last)
   end

@@ -19,9 +19,9 @@ const LIMIT: Duration = Duration::from_secs(60);
 /// While one host is started, its channel must not slip into another one.
 static STARTING: Mutex<()> = Mutex::new(());
 
-/// A host process, the runner's end of its channel, and its plug-in's folder.
+/// A host process, the runner's end of its channel, and its plug-in's directory.
 pub(crate) struct Host {
-    pub(crate) folder: TempDir,
+    pub(crate) dir: TempDir,
     pub(crate) seen: Vec<Value>,
     channel: UnixStream,
     lines: BufReader<UnixStream>,
@@ -30,14 +30,14 @@ pub(crate) struct Host {
 
 impl Host {
     pub(crate) fn start() -> Self {
-        let folder = TempDir::new().unwrap();
+        let dir = TempDir::new().unwrap();
         let (ours, theirs) = UnixStream::pair().unwrap();
         ours.set_read_timeout(Some(LIMIT)).unwrap();
         let guard = STARTING.lock().unwrap();
         fcntl_setfd(&theirs, FdFlags::empty()).unwrap();
         let process = Command::new(env!("CARGO_BIN_EXE_rtf-host-lua"))
             .env("RTF_CHANNEL", format!("fd:{}", theirs.as_raw_fd()))
-            .current_dir(folder.path())
+            .current_dir(dir.path())
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .spawn()
@@ -45,7 +45,7 @@ impl Host {
         drop(theirs);
         drop(guard);
         let lines = BufReader::new(ours.try_clone().unwrap());
-        let mut host = Self { folder, seen: Vec::new(), channel: ours, lines, process };
+        let mut host = Self { dir, seen: Vec::new(), channel: ours, lines, process };
         host.send(Some(0), "initialize", json!({"protocol": 1, "rtf": "0.1.0"}));
         host.answer();
         host
@@ -61,7 +61,7 @@ impl Host {
 
     /// Writes the plug-in and asks for a test or a fixture of it.
     pub(crate) fn start_plugin(&mut self, method: &str, source: &str) -> PathBuf {
-        let file = self.folder.path().join("plugin.lua");
+        let file = self.dir.path().join("plugin.lua");
         std::fs::write(&file, source).unwrap();
         let params = json!({
             "file": file, "name": "Arm", "param": "--rate 100", "args": ["--rate", "100"],

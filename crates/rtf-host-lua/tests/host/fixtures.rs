@@ -86,8 +86,8 @@ fn a_fixture_is_told_of_each_test() {
     let test = json!({"id": 3, "name": "Move", "repetition": 2, "attempt": 1});
     let passed = json!({"outcome": "passed"});
     assert_eq!(host.ask_with("test-started", json!({"test": test})), passed);
-    let folder = tempfile::tempdir().unwrap();
-    let keep = folder.path().join("kept");
+    let dir = tempfile::tempdir().unwrap();
+    let keep = dir.path().join("kept");
     let ends = json!({"test": test, "verdict": "failed", "reason": "far", "attachments_dir": keep});
     assert_eq!(host.ask_with("test-finished", ends), passed);
     assert_eq!(host.texts(), ["report: 3 Move 2.1 failed: far"]);

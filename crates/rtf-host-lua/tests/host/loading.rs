@@ -20,7 +20,7 @@ fn a_file_that_is_no_test_is_an_error() {
     ];
     for (source, reason) in cases {
         let (answer, host) = run(source);
-        let file = host.folder.path().join("plugin.lua");
+        let file = host.dir.path().join("plugin.lua");
         let reason = reason.replace("FILE", &file.to_string_lossy());
         assert_eq!(answer, json!({"outcome": "error"}));
         assert_eq!(host.problem().unwrap(), reason);
@@ -69,10 +69,10 @@ fn the_global_functions_stay_luas_own() {
 #[test]
 fn modules_beside_the_plugin_are_found() {
     let mut host = Host::start();
-    let folder = host.folder.path().join("arms");
-    std::fs::create_dir(&folder).unwrap();
-    std::fs::write(folder.join("init.lua"), "return { joints = 6 }").unwrap();
-    std::fs::write(host.folder.path().join("legs.lua"), "return { joints = 12 }").unwrap();
+    let dir = host.dir.path().join("arms");
+    std::fs::create_dir(&dir).unwrap();
+    std::fs::write(dir.join("init.lua"), "return { joints = 6 }").unwrap();
+    std::fs::write(host.dir.path().join("legs.lua"), "return { joints = 12 }").unwrap();
     host.start_plugin(
         "run-test",
         "function TestCase.run() rtf.report(require('arms').joints + require('legs').joints) end",
@@ -99,7 +99,7 @@ fn c_modules_load() {
 #[test]
 fn the_second_plugin_of_a_host_knows_nothing_of_the_first() {
     let mut host = Host::start();
-    let file = host.folder.path().join("plugin.lua");
+    let file = host.dir.path().join("plugin.lua");
     std::fs::write(&file, "rtf.report(left)\nleft = 'left'\nfunction TestCase.run() end").unwrap();
     for id in 1..=2 {
         host.send(
@@ -124,7 +124,7 @@ fn the_host_names_its_lua() {
 
 #[test]
 fn files_are_checked_without_running_them() {
-    let folder = TempDir::new().unwrap();
+    let dir = TempDir::new().unwrap();
     let files = [
         ("test.lua", "print('ran')\nfunction TestCase.run() end"),
         ("fixture.lua", "FixtureManager = {}"),
@@ -132,11 +132,11 @@ fn files_are_checked_without_running_them() {
         ("broken.lua", "x = 1\ny = = 2"),
     ];
     for (name, text) in files {
-        std::fs::write(folder.path().join(name), text).unwrap();
+        std::fs::write(dir.path().join(name), text).unwrap();
     }
     let names = files.iter().map(|(name, _)| *name).chain(["gone.lua"]);
     let mut command = Command::new(env!("CARGO_BIN_EXE_rtf-host-lua"));
-    let output = command.arg("--check").args(names).current_dir(folder.path()).output().unwrap();
+    let output = command.arg("--check").args(names).current_dir(dir.path()).output().unwrap();
     assert!(output.status.success());
     let lines = String::from_utf8(output.stdout).unwrap();
     let lines: Vec<Value> = lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();

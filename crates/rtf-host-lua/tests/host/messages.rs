@@ -83,7 +83,7 @@ fn wrong_use_is_an_error_at_the_line_that_does_it() {
 #[test]
 fn a_measurement_has_a_place_unit_and_limits() {
     let (_, host) = run_body("rtf.report(rtf.measure('error', 0.02, 'rad', nil, 0.05))");
-    let file = host.folder.path().join("plugin.lua");
+    let file = host.dir.path().join("plugin.lua");
     assert_eq!(
         *host.all("measured")[0],
         json!({"name": "error", "value": 0.02, "unit": "rad", "high": 0.05, "location": {"file": file, "line": 2}})
@@ -113,7 +113,7 @@ fn texts_are_never_cut_and_need_not_be_texts() {
 fn a_file_is_attached_by_its_full_path() {
     let (_, host) =
         run_body("io.open('trace.csv', 'w'):close() rtf.attach('trace.csv', nil, 'text/csv')");
-    let path = host.folder.path().join("trace.csv");
+    let path = host.dir.path().join("trace.csv");
     assert_eq!(
         *host.all("attached")[0],
         json!({"name": "trace.csv", "path": path, "media_type": "text/csv"})

@@ -63,7 +63,7 @@ fn a_raised_value_is_an_error_with_type_text_location_and_traceback() {
         let lines: Vec<_> = message["text"].as_str().unwrap().lines().collect();
         assert_eq!(lines[..2], [text, "stack traceback:"], "{line}");
         assert!(lines.iter().any(|line| line.contains("plugin.lua:2:")), "{lines:?}");
-        let file = host.folder.path().join("plugin.lua");
+        let file = host.dir.path().join("plugin.lua");
         assert_eq!(message["location"], json!({"file": file, "line": 2}), "{line}");
     }
 }

@@ -21,11 +21,11 @@ pub fn root() -> &'static Path {
     Path::new(ROOT)
 }
 
-/// The folder for what this test program builds.
-pub fn folder() -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("plugins");
-    std::fs::create_dir_all(&folder).unwrap();
-    folder
+/// The directory for what this test program builds.
+pub fn dir() -> PathBuf {
+    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("plugins");
+    std::fs::create_dir_all(&dir).unwrap();
+    dir
 }
 
 /// Compiles a source of the project. The warnings of the SDK's headers are errors.
@@ -35,7 +35,7 @@ pub fn build(source: &str) -> PathBuf {
 
 /// Compiles a source that stands in the test.
 pub fn build_text(name: &str, text: &str, options: &[&str]) -> PathBuf {
-    let source = folder().join(name);
+    let source = dir().join(name);
     std::fs::write(&source, text).unwrap();
     build_at(&source, options)
 }
@@ -45,7 +45,7 @@ fn build_at(source: &Path, options: &[&str]) -> PathBuf {
         Some("c") => ("cc", "-std=c99"),
         _ => ("c++", "-std=c++17"),
     };
-    let library = folder().join(source.file_name().unwrap()).with_extension("so");
+    let library = dir().join(source.file_name().unwrap()).with_extension("so");
     // Each one once: another test may be running it.
     static BUILT: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
     let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);

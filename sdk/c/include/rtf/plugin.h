@@ -24,14 +24,14 @@
 // The plug-in is a fixture: `setup`, `check`, `tear_down`.
 #define RTF_KIND_FIXTURE 2
 
-// A step ended: it did its work. Whether checks held, the host knows.
+// The step is complete. The host knows whether its checks held.
 #define RTF_DONE 0
 
-// A step ended: no, it failed. As `return false` in other languages.
+// The step failed, like `return false` in other languages.
 #define RTF_REFUSED 1
 
-// A step ended early, by an assertion or an error that was reported, or
-// because the host asked to stop.
+// An assertion or an error that was reported ended the step, or
+// a stop request did.
 #define RTF_STOPPED 2
 
 // A message for information only.
@@ -40,35 +40,35 @@
 // A check that held.
 #define RTF_MESSAGE_CHECK 1
 
-// A check or an assertion that did not hold: the robot is wrong.
+// A failed check or assertion: the robot is wrong.
 #define RTF_MESSAGE_FAILURE 2
 
-// The plug-in could not do its work: the bench is wrong.
+// An error: the bench is wrong.
 #define RTF_MESSAGE_ERROR 3
 
-// Some text in UTF-8; need not end with a zero. Other bytes are shown as `U+FFFD`.
+// A UTF-8 text, not necessarily terminated by zero. Invalid bytes become `U+FFFD`.
 typedef struct rtf_text {
-    // The first byte; may be null when `length` is 0.
+    // The first byte; may be null if `length` is 0.
     const char *data;
     // The number of bytes.
     size_t length;
 } rtf_text;
 
-// The numbers behind a near-equality check: one entry for a scalar.
+// The numbers of a near-equality check: one entry for a scalar.
 typedef struct rtf_comparison {
     // `sizeof(rtf_comparison)`.
     size_t size;
-    // What was expected.
+    // The expected numbers.
     const double *expected;
     // The number of entries of `expected`.
     size_t expected_count;
-    // What was found.
+    // The actual numbers.
     const double *got;
     // The number of entries of `got`.
     size_t got_count;
-    // The largest absolute difference that is accepted.
+    // The largest accepted absolute difference.
     double tolerance;
-    // The index with the largest difference; negative when there is none.
+    // The index with the largest difference; negative if there is none.
     int64_t worst;
 } rtf_comparison;
 
@@ -78,15 +78,15 @@ typedef struct rtf_message {
     size_t size;
     // `RTF_MESSAGE_REPORT`, `RTF_MESSAGE_CHECK`, `RTF_MESSAGE_FAILURE` or `RTF_MESSAGE_ERROR`.
     int32_t kind;
-    // Not 0: going on would be unsafe, the rest of the suite is skipped.
+    // Not 0: it is unsafe to continue, so the rest of the suite is skipped.
     int32_t critical;
     // The text, of any length.
     struct rtf_text text;
-    // The source file (`__FILE__`), null when unknown.
+    // The source file (`__FILE__`), null if unknown.
     const char *file;
-    // The line in it (`__LINE__`), 0 when unknown.
+    // The line in it (`__LINE__`), 0 if unknown.
     uint32_t line;
-    // The numbers behind it, null when there are none.
+    // The compared numbers, null if there are none.
     const struct rtf_comparison *comparison;
 } rtf_message;
 
@@ -94,31 +94,31 @@ typedef struct rtf_message {
 typedef struct rtf_measurement {
     // `sizeof(rtf_measurement)`.
     size_t size;
-    // What was measured.
+    // The name of the measurement.
     struct rtf_text name;
     // The value.
     double value;
     // Its unit, empty for a pure number.
     struct rtf_text unit;
-    // The smallest accepted value, null when there is no such limit.
+    // The smallest accepted value, null if there is no such limit.
     const double *low;
-    // The largest accepted value, null when there is no such limit.
+    // The largest accepted value, null if there is no such limit.
     const double *high;
-    // The source file, null when unknown.
+    // The source file, null if unknown.
     const char *file;
-    // The line in it, 0 when unknown.
+    // The line in it, 0 if unknown.
     uint32_t line;
 } rtf_measurement;
 
-// A file that is kept with the result.
+// A file to be added to the results.
 typedef struct rtf_attachment {
     // `sizeof(rtf_attachment)`.
     size_t size;
-    // Where it is. It is copied before the call returns.
+    // Its path. It is copied before the call returns.
     struct rtf_text path;
-    // The name under which reports show it; empty: the path's last part.
+    // Its name in reports; empty: the path's last part.
     struct rtf_text name;
-    // Its media type (`text/csv`), empty when unknown.
+    // Its media type (`text/csv`), empty if unknown.
     struct rtf_text media_type;
 } rtf_attachment;
 
@@ -132,43 +132,43 @@ typedef struct rtf_sample {
     double value;
     // Its unit, empty for a pure number.
     struct rtf_text unit;
-    // The smallest accepted value, null when there is no such limit.
+    // The smallest accepted value, null if there is no such limit.
     const double *low;
-    // The largest accepted value, null when there is no such limit.
+    // The largest accepted value, null if there is no such limit.
     const double *high;
-    // When, in seconds since the test's set-up began; null: now.
+    // The time in seconds since the test's set-up began; null: now.
     const double *time;
-    // The source file, null when unknown.
+    // The source file, null if unknown.
     const char *file;
-    // The line in it, 0 when unknown.
+    // The line in it, 0 if unknown.
     uint32_t line;
 } rtf_sample;
 
-// What the host does for a plug-in. Every function takes `context` first and
-// may be called from any thread, until the process ends.
+// The host's functions for a plug-in. Their first argument is `context`. They
+// may be called from any thread until the process ends.
 typedef struct rtf_host {
     // The host's `RTF_ABI_MAJOR`.
     uint32_t abi_major;
     // The host's `RTF_ABI_MINOR`.
     uint32_t abi_minor;
-    // The size of this table in the host. A field that lies beyond it is not there.
+    // The size of this table in the host. Fields beyond it do not exist.
     size_t size;
     // The first argument of the functions below.
     void *context;
-    // Reports something. A failure or an error decides the verdict, the first
-    // of them does.
+    // Sends a message. The first failure or error decides the
+    // verdict.
     void (*message)(void *context, const struct rtf_message *message);
-    // Records a number. Returns 1 when it is within its limits, else 0, which
+    // Records a number. Returns 1 if it is within its limits, otherwise 0, which
     // is a failure.
     int (*measure)(void *context, const struct rtf_measurement *measurement);
-    // Keeps a file with the result.
+    // Adds a file to the results.
     void (*attach)(void *context, const struct rtf_attachment *attachment);
-    // Reports that a fixture is not well any more.
+    // Reports that a fixture collapsed.
     void (*collapsed)(void *context, struct rtf_text reason);
-    // Returns 1 when the plug-in was asked to stop, else 0.
+    // Returns 1 if the plug-in was asked to stop, otherwise 0.
     int (*interrupted)(void *context);
-    // Sleeps. Returns 1 at once when the plug-in is asked to stop, else 0 after
-    // that many seconds.
+    // Sleeps. Returns 1 as soon as the plug-in is asked to stop, otherwise 0 after
+    // this time in seconds.
     int (*wait)(void *context, double seconds);
     // The plug-in's name in the suite.
     struct rtf_text (*name)(void *context);
@@ -178,14 +178,14 @@ typedef struct rtf_host {
     struct rtf_text (*environment)(void *context);
     // The repetition, from 1.
     uint32_t (*repetition)(void *context);
-    // Since 1.2: takes a sample of a signal. Returns 1 when it is within its
-    // limits, else 0, which is a failure. Only for tests.
+    // Since 1.2: takes a sample of a signal. Returns 1 if it is within its
+    // limits, otherwise 0, which is a failure. Only for tests.
     int (*sample)(void *context, const struct rtf_sample *sample);
 } rtf_host;
 
-// An attempt of a test, of which a fixture is told.
+// An attempt of a test.
 typedef struct rtf_test {
-    // The size of this structure in the host. A field that lies beyond it is not there.
+    // The size of this structure in the host. Fields beyond it do not exist.
     size_t size;
     // The test's number in the run.
     uint32_t id;
@@ -193,18 +193,18 @@ typedef struct rtf_test {
     uint32_t repetition;
     // The attempt at this repetition, from 1.
     uint32_t attempt;
-    // Always 0; room for what may come.
+    // Always 0; reserved.
     uint32_t reserved;
     // The test's name in the suite.
     struct rtf_text name;
-    // How it was judged: `passed`, `failed`, …; empty before it begins.
+    // Its verdict: `passed`, `failed`, …; empty before it starts.
     struct rtf_text verdict;
-    // Why it did not pass, else empty.
+    // The reason if it did not pass, otherwise empty.
     struct rtf_text reason;
 } rtf_test;
 
-// What a plug-in is, and how it is called. All functions are called on the
-// process's main thread, one at a time. No exception may leave them.
+// The plug-in's kind and functions. All functions are called on the
+// process's main thread, one at a time. They must not throw exceptions.
 typedef struct rtf_plugin_table {
     // `RTF_ABI_MAJOR`.
     uint32_t abi_major;
@@ -216,26 +216,26 @@ typedef struct rtf_plugin_table {
     int32_t kind;
     // The name of the class or module, for messages. May be null.
     const char *name;
-    // Makes the plug-in, which gets back the result as `self` from now on.
-    // Null means that this failed; say why in a message first.
+    // Creates the plug-in. The result is `self` of the other functions.
+    // Null means failure; send a message with the reason first.
     void *(*create)(const struct rtf_host *host);
-    // Ends it. Called once, after `tear_down`. May be null.
+    // Destroys it. Called once, after `tear_down`. May be null.
     void (*destroy)(void *self_);
-    // Called first, with arguments as `main` gets them: `argv[0]` is the
+    // Called first, with arguments like those of `main`: `argv[0]` is the
     // name, `argv[argc]` is null. May be null.
     int32_t (*setup)(void *self_, int argc, char **argv);
-    // The test itself, called when `setup` succeeded. Null in a fixture.
+    // Runs the test. Called if `setup` succeeded. Null in a fixture.
     int32_t (*run)(void *self_);
-    // Tells whether the fixture is well. Null in a test, and in a fixture that
-    // cannot tell.
+    // Checks whether the fixture works. Null in a test, and in a fixture
+    // without a check.
     int32_t (*check)(void *self_);
-    // Called last, whatever happened before. May be null.
+    // Called last, in any case. May be null.
     int32_t (*tear_down)(void *self_);
-    // Since 1.1: a test is about to begin. Only in fixtures, may be null; `test`
-    // and its texts are there until it returns.
+    // Since 1.1: called before a test starts. Only in fixtures, may be null; `test`
+    // and its texts are valid until it returns.
     int32_t (*test_started)(void *self_, const struct rtf_test *test);
-    // Since 1.1: a test was judged. What is reported, measured and attached
-    // meanwhile belongs to its result.
+    // Since 1.1: called after a test's verdict. Its reports, measurements and
+    // attachments belong to that test.
     int32_t (*test_finished)(void *self_, const struct rtf_test *test);
 } rtf_plugin_table;
 

@@ -5,7 +5,7 @@
 #                                  [OUTPUT_NAME <name>])
 #
 # Adds a plug-in: a module <name>.so without the prefix `lib`. <name> is the
-# target's name unless OUTPUT_NAME tells another. It is linked to
+# target's name by default. It is linked to
 # RobotTestingFramework::RTF; a project may link that again, in either signature
 # of target_link_libraries, which is therefore not called here.
 function(robottestingframework_add_plugin target)

@@ -1,11 +1,11 @@
 # robottestingframework_add_suite(NAME <name>
 #   [RobotTestingFramework_FIXTURE <plug-in> [<argument>…]]…
 #   [RobotTestingFramework_TEST <plug-in> TYPE <type> [ARGS [<argument>…]]…]…
-#   [CONFIGURATIONS <configuration>…] [WORKING_DIRECTORY <folder>]
+#   [CONFIGURATIONS <configuration>…] [WORKING_DIRECTORY <directory>]
 #   [OUTPUT <file>] [OUTPUT_TYPE text|junit] [DETAIL] [VERBOSE]
 #   [WEB_REPORTER] [WEB_PORT <port>])
 #
-# Writes the suite <name>-<configuration>.xml into the binary folder, with one
+# Writes the suite <name>-<configuration>.xml into the binary directory, with one
 # test for each ARGS, and adds a CTest test <name> that runs it. A plug-in is a
 # target or a name as in a suite.
 
@@ -37,7 +37,7 @@ function(_rtf_suite_line element type plugin param result)
 endfunction()
 
 # The lines of one RobotTestingFramework_TEST: its words are plug-in, TYPE, type,
-# then the words of each ARGS.
+# and the words of each ARGS.
 function(_rtf_suite_test words result)
   set(type "")
   set(params "")
@@ -90,8 +90,8 @@ function(_rtf_suite_element kind words result)
   set(${result} "${lines}" PARENT_SCOPE)
 endfunction()
 
-# What runs the suite: the predecessor's command line if this installation has
-# it, else the runner.
+# The program that runs the suite: the predecessor's command line if it is installed,
+# otherwise the runner.
 function(_rtf_suite_command file result)
   if(TARGET RobotTestingFramework::RTF_testrunner)
     set(command RobotTestingFramework::RTF_testrunner --suite "${file}")
@@ -135,9 +135,9 @@ function(robottestingframework_add_suite)
   set(options DETAIL VERBOSE WEB_REPORTER)
   set(values NAME WORKING_DIRECTORY WEB_PORT OUTPUT OUTPUT_TYPE)
   set(lines "")
-  set(state "") # what the next word belongs to
+  set(state "") # the argument to which the next word belongs
   set(words "")
-  foreach(word IN LISTS ARGN ITEMS CONFIGURATIONS) # the last one ends what is open
+  foreach(word IN LISTS ARGN ITEMS CONFIGURATIONS) # the last one ends the open argument
     string(REGEX REPLACE "^(RobotTestingFramework|RTF)_(FIXTURE|TEST)$" "\\2" kind "${word}")
     set(is_element FALSE)
     if(NOT kind STREQUAL word)

@@ -1,11 +1,11 @@
 # The Robot Testing Framework under the names of robot-testing-framework 2.x:
-# a project that was written for it builds without a change.
+# a project that was written for it builds unchanged.
 #
 #   find_package(RobotTestingFramework 2 REQUIRED COMPONENTS DLL)
 #   robottestingframework_add_plugin(ArmTest SOURCES ArmTest.cpp)
 #   target_link_libraries(ArmTest RobotTestingFramework::RTF RobotTestingFramework::RTF_dll)
 #
-# Components: DLL LUA PYTHON RUBY. All are there.
+# Components: DLL LUA PYTHON RUBY, all installed.
 # Targets
 #   RobotTestingFramework::RTF         the headers
 #   RobotTestingFramework::RTF_dll, ::RTF_lua, ::RTF_python, ::RTF_ruby
@@ -21,7 +21,7 @@
 #
 # The package `rtf` has the new names.
 
-# A project may ask for the behaviour of a CMake that is older than what is used here.
+# A project may set an older policy version than this file needs.
 cmake_policy(PUSH)
 cmake_policy(VERSION 3.16...3.25)
 

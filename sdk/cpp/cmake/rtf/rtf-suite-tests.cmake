@@ -1,8 +1,8 @@
-# Read by CTest, not by CMake: adds one CTest test for each test of a suite, which
-# `rtf list` knows once the plug-ins are built. What rtf_add_suite was told is in
-# these variables:
+# Read by CTest, not by CMake: adds one CTest test for each test of a suite, from
+# `rtf list`, after the plug-ins are built. These variables contain the arguments of
+# rtf_add_suite:
 #
-#   rtf_name rtf_cmake rtf_program rtf_suite rtf_environment rtf_folder rtf_configurations
+#   rtf_name rtf_cmake rtf_program rtf_suite rtf_environment rtf_directory rtf_configurations
 #   rtf_labels rtf_properties (a list of property, value, property, value …)
 
 cmake_policy(PUSH)
@@ -16,7 +16,7 @@ endif()
 # Adds a test that runs `select`: the suite, or one test of it.
 function(_rtf_suite_test name select labels)
   add_test("${name}" "${rtf_cmake}" -E env ${rtf_environment} "${rtf_program}" run "${select}")
-  set_tests_properties("${name}" PROPERTIES WORKING_DIRECTORY "${rtf_folder}" ${rtf_properties})
+  set_tests_properties("${name}" PROPERTIES WORKING_DIRECTORY "${rtf_directory}" ${rtf_properties})
   if(labels)
     set_tests_properties("${name}" PROPERTIES LABELS "${labels}")
   endif()
@@ -25,7 +25,7 @@ endfunction()
 execute_process(
   COMMAND "${rtf_cmake}" -E env ${rtf_environment}
           "${rtf_program}" list --format json "${rtf_suite}"
-  WORKING_DIRECTORY "${rtf_folder}"
+  WORKING_DIRECTORY "${rtf_directory}"
   RESULT_VARIABLE _rtf_code
   OUTPUT_VARIABLE _rtf_json
   ERROR_QUIET)
@@ -35,8 +35,7 @@ if(_rtf_code EQUAL 0 AND NOT CMAKE_VERSION VERSION_LESS 3.19)
 endif()
 
 if(_rtf_count EQUAL 0)
-  # The suite is not as it should be: to run it tells why. (Or this CTest is too
-  # old to read the list.)
+  # The suite is invalid: a run reports why. (Or this CTest is too old to read the list.)
   _rtf_suite_test("${rtf_name}" "${rtf_suite}" "${rtf_labels}")
 else()
   math(EXPR _rtf_last "${_rtf_count} - 1")

@@ -2,33 +2,33 @@
 #
 # Adds a plug-in, a module without the prefix `lib`.
 #
-# rtf_add_suite(<suite.xml> [NAME <name>] [PLUGINS <target>…] [PLUGIN_PATH <folder>…] <common>…)
+# rtf_add_suite(<suite.xml> [NAME <name>] [PLUGINS <target>…] [PLUGIN_PATH <directory>…] <common>…)
 #
 # Adds a CTest test <name>/<test> for each test of a suite, with the test's tags
-# as labels; CTest looks what there is when it is started. When the suite has a
-# mistake, for example a plug-in that is missing, there is one test <name>, which
-# fails and says why. Plug-ins are looked for where the PLUGINS are built, and in
-# the folders of PLUGIN_PATH. NAME is the file's name without its extension. Tests
-# of one suite do not run at once, unless RESOURCE_LOCK names something else than
-# the suite. With CMake before 3.19 there is one test <name> for the whole suite.
+# as labels; CTest finds the tests when it starts. For an invalid suite, for example
+# with a missing plug-in, there is one test <name>, which fails with the reason. The
+# plug-in path contains the directories in which the PLUGINS are built, and those of
+# PLUGIN_PATH. The default NAME is the file's name without its extension. Tests of one
+# suite do not run concurrently, unless RESOURCE_LOCK names something else than the
+# suite. With CMake before 3.19 there is one test <name> for the whole suite.
 #
 # rtf_add_test(<plug-in> [NAME <name>] [PARAM <text>] [ROBOT_ENVIRONMENT <text>]
 #              [CONFIGURATIONS <configuration>…] <common>…)
 #
 # Adds a CTest test that runs one plug-in: a target or a file. PARAM is its
-# parameter string, ROBOT_ENVIRONMENT what it gets as the suite's environment.
+# parameter string, ROBOT_ENVIRONMENT the suite's environment string.
 #
-# Both have in common
+# Common arguments
 #   LABELS <label>…          for ctest -L
-#   RESOURCE_LOCK <name>…    no two tests with the same one run at once
+#   RESOURCE_LOCK <name>…    tests with the same lock do not run concurrently
 #   TIMEOUT <seconds>        after which CTest kills it; the guard of rtf still
-#                            parks the robot and stops all that was started
+#                            parks the robot and stops all processes
 #   ENVIRONMENT <name=value>…
 #   CONFIGURATIONS <configuration>…
-#   WORKING_DIRECTORY <folder>   where rtf-results are put; the binary folder
-#   COST <number>, PROCESSORS <number>   as CTest knows them
+#   WORKING_DIRECTORY <directory>   for rtf-results; default: the binary directory
+#   COST <number>, PROCESSORS <number>   properties of CTest
 
-# Reads the words of both commands into arg_….
+# Parses the arguments of both commands into arg_….
 macro(_rtf_test_words command)
   cmake_parse_arguments(PARSE_ARGV 1 arg ""
     "NAME;PARAM;ROBOT_ENVIRONMENT;TIMEOUT;WORKING_DIRECTORY;COST;PROCESSORS"
@@ -49,7 +49,7 @@ function(rtf_add_plugin)
 endfunction()
 
 function(rtf_add_suite suite)
-  if(suite STREQUAL "NAME" OR "RTF_TEST" IN_LIST ARGN) # as RTF 1.x has it
+  if(suite STREQUAL "NAME" OR "RTF_TEST" IN_LIST ARGN) # the command of RTF 1.x
     robottestingframework_add_suite(${suite} ${ARGN})
     return()
   endif()
@@ -65,14 +65,14 @@ function(rtf_add_suite suite)
     set(arg_RESOURCE_LOCK "${arg_NAME}")
   endif()
 
-  set(folders ${arg_PLUGIN_PATH})
+  set(directories ${arg_PLUGIN_PATH})
   foreach(plugin IN LISTS arg_PLUGINS)
-    list(APPEND folders "$<TARGET_FILE_DIR:${plugin}>")
+    list(APPEND directories "$<TARGET_FILE_DIR:${plugin}>")
   endforeach()
-  string(REPLACE ";" ":" folders "${folders}")
+  string(REPLACE ";" ":" directories "${directories}")
   set(environment ${arg_ENVIRONMENT})
-  if(folders)
-    list(APPEND environment "RTF_PLUGIN_PATH=${folders}")
+  if(directories)
+    list(APPEND environment "RTF_PLUGIN_PATH=${directories}")
   endif()
   set(properties "")
   foreach(property RESOURCE_LOCK TIMEOUT COST PROCESSORS)
@@ -93,7 +93,7 @@ function(rtf_add_suite suite)
   set(content "")
   foreach(pair "rtf_name=${arg_NAME}" "rtf_cmake=${CMAKE_COMMAND}"
                "rtf_program=$<TARGET_FILE:rtf::runner>"
-               "rtf_suite=${file}" "rtf_folder=${arg_WORKING_DIRECTORY}")
+               "rtf_suite=${file}" "rtf_directory=${arg_WORKING_DIRECTORY}")
     string(REGEX REPLACE "^([a-z_]+)=(.*)$" "set(\\1 [==[\\2]==])\n" line "${pair}")
     string(APPEND content "${line}")
   endforeach()

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a parameter string to arguments.
+// Splits a parameter string into arguments.
 #ifndef ROBOTTESTINGFRAMEWORK_ARGUMENTS_H
 #define ROBOTTESTINGFRAMEWORK_ARGUMENTS_H
 
@@ -9,9 +9,8 @@
 namespace robottestingframework {
 namespace internal {
 
-// Splits at blanks and at double quotes, and only there; what stands between
-// two quotes is one argument, as spec/suite.md tells. Overwrites the blanks and
-// quotes behind the arguments with zeros.
+// Splits at blanks and at double quotes only; text between two quotes is one argument
+// (spec/suite.md). Overwrites the blanks and quotes after arguments with zeros.
 inline std::vector<char *> split(char *text)
 {
     const auto is_blank = [](char c) { return c == ' '; };
@@ -36,11 +35,11 @@ inline std::vector<char *> split(char *text)
     return arguments;
 }
 
-// Arguments as main() gets them, which own their text.
+// Arguments like those of main(), which own their text.
 class ArgumentList
 {
 public:
-    // With `first` before what the parameter string holds.
+    // With `first` before the arguments of the parameter string.
     ArgumentList(const std::string *first, const std::string &param) : param_(param)
     {
         param_.push_back('\0');
@@ -69,8 +68,8 @@ private:
 class Arguments
 {
 public:
-    // Splits a parameter string, which is changed. argv must have room for all
-    // arguments and a null behind them.
+    // Splits and changes a parameter string. argv must have space for all arguments and
+    // a null.
     static void parse(char *azParam, int *argc, char **argv)
     {
         const std::vector<char *> arguments = internal::split(azParam);

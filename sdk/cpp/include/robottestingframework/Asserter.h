@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the macros in TestAssert.h call.
+// The functions behind the macros in TestAssert.h.
 #ifndef ROBOTTESTINGFRAMEWORK_ASSERTER_H
 #define ROBOTTESTINGFRAMEWORK_ASSERTER_H
 
@@ -64,7 +64,7 @@ public:
         }
     }
 
-    // A failure of the test unless the condition holds; the test goes on.
+    // A failure of the test unless the condition holds; the test continues.
     static void testFail(bool condition, TestMessage msg, TestCase *testcase)
     {
         TestResult *const result = result_of(msg, testcase);
@@ -77,7 +77,7 @@ public:
         }
     }
 
-    // The same; when the condition holds this is reported.
+    // The same; also reports a condition that holds.
     static void testCheck(bool condition, TestMessage msg, TestCase *testcase)
     {
         if (condition) {
@@ -87,7 +87,7 @@ public:
         }
     }
 
-    // A text of any length as std::printf would write it.
+    // A text of any length in the format of std::printf.
     static std::string format(const char *msg, ...)
     {
         va_list arguments;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells a run on standard output as it happens.
+// Prints a run's events on standard output.
 #ifndef ROBOTTESTINGFRAMEWORK_CONSOLELISTENER_H
 #define ROBOTTESTINGFRAMEWORK_CONSOLELISTENER_H
 
@@ -21,11 +21,11 @@ namespace robottestingframework {
 class ConsoleListener : public TestListener
 {
 public:
-    // Verbose: with the place in the source of each message.
+    // Verbose: with the source location of each message.
     ConsoleListener(bool verbose = false) : verbose_(verbose), colours_(is_coloured()) {}
     ~ConsoleListener() override {}
 
-    // From now on only errors and failures are shown.
+    // From now on, prints only errors and failures.
     void hideUncriticalMessages() { terse_ = true; }
 
     void addReport(const Test *test, TestMessage msg) override
@@ -74,7 +74,7 @@ private:
 
     void tell(const char *colour, const char *kind, const Test *test, const TestMessage &message)
     {
-        std::cout << coloured(colour, kind) << internal::told_line(test, message) << std::endl;
+        std::cout << coloured(colour, kind) << internal::report_line(test, message) << std::endl;
         const std::string place = internal::place_line(message);
         if (verbose_ && !place.empty()) {
             std::cout << place << std::endl;

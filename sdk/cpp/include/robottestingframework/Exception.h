@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a test, a suite or a fixture ends early.
+// Exceptions that end a test, a suite or a fixture.
 #ifndef ROBOTTESTINGFRAMEWORK_EXCEPTION_H
 #define ROBOTTESTINGFRAMEWORK_EXCEPTION_H
 

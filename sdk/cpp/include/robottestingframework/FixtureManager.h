@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fixture: what tests stand on. Derive from it and override what is needed.
+// A fixture: derive from it, and override functions as needed.
 #ifndef ROBOTTESTINGFRAMEWORK_FIXTUREMANAGER_H
 #define ROBOTTESTINGFRAMEWORK_FIXTUREMANAGER_H
 
@@ -46,12 +46,12 @@ public:
     // Called after the tests, also when setup() failed.
     virtual void tearDown() {}
 
-    // Whether the fixture is well; called before each test.
+    // Whether the fixture works; called before each test.
     virtual bool check() { return true; }
 
     void setDispatcher(FixtureEvents *dispatcher) { dispatcher_ = dispatcher; }
 
-    // Takes the news of a collapse, from any thread.
+    // The recipient of a collapse, from any thread.
     FixtureEvents *getDispatcher() { return dispatcher_; }
 
     void setParam(const std::string param) { param_ = param; }

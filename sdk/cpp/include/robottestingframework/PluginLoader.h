@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gets a test out of a plug-in's file, whatever it is written in.
+// Loads a test from a plug-in's file, in any language.
 #ifndef ROBOTTESTINGFRAMEWORK_PLUGINLOADER_H
 #define ROBOTTESTINGFRAMEWORK_PLUGINLOADER_H
 
@@ -18,13 +18,13 @@ public:
     PluginLoader(const PluginLoader &) = delete;
     PluginLoader &operator=(const PluginLoader &) = delete;
 
-    // The test, which stays the loader's; null when there is none.
+    // The test, which the loader owns; null if there is none.
     virtual TestCase *open(const std::string filename) = 0;
 
-    // Ends the test.
+    // Destroys the test.
     virtual void close() = 0;
 
-    // Why the last open() failed.
+    // The reason why the last open() failed.
     virtual std::string getLastError() = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a collector keeps: one object for each thing that was reported.
+// The events of a collector: one object for each report.
 #ifndef ROBOTTESTINGFRAMEWORK_RESULTEVENT_H
 #define ROBOTTESTINGFRAMEWORK_RESULTEVENT_H
 
@@ -15,7 +15,7 @@ public:
     ResultEvent(const Test *test, TestMessage msg) : test_(test), message_(msg) {}
     virtual ~ResultEvent() = default;
 
-    // The test or suite; it must live as long as it is asked for.
+    // The test or suite, which must outlive this event.
     const Test *getTest() { return test_; }
     TestMessage &getMessage() { return message_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a runner can run: a test or a suite.
+// The base class of tests and suites.
 #ifndef ROBOTTESTINGFRAMEWORK_TEST_H
 #define ROBOTTESTINGFRAMEWORK_TEST_H
 
@@ -19,13 +19,13 @@ public:
     const std::string getDescription() const { return description_; }
     void setDescription(const std::string description) { description_ = description; }
 
-    // Runs it, and tells the result all that happens.
+    // Runs it, and adds all events to the result.
     virtual void run(TestResult &result) = 0;
 
-    // Asks it to stop. Called from another thread than run().
+    // Asks it to stop. Called from a different thread than run().
     virtual void interrupt() {}
 
-    // Whether the last run went well.
+    // Whether the last run succeeded.
     virtual bool succeeded() const = 0;
 
 protected:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checks and assertions, with file and line. A message is a std::string or a
-// literal. ASSERT ends the step by an exception; TEST goes on, and is used in
-// member functions of a test.
+// literal. ASSERT ends the step with an exception; after TEST, which is for member
+// functions of a test, the step continues.
 #ifndef ROBOTTESTINGFRAMEWORK_TESTASSERT_H
 #define ROBOTTESTINGFRAMEWORK_TESTASSERT_H
 
@@ -9,7 +9,7 @@
 
 #include "Asserter.h"
 
-// What the compiler shall say where this stands.
+// A warning of the compiler at this line.
 #if defined(__GNUC__)
 #define ROBOTTESTINGFRAMEWORK_INTERNAL_PRAGMA(x) _Pragma(#x)
 #define ROBOTTESTINGFRAMEWORK_COMPILER_MESSAGE(x) ROBOTTESTINGFRAMEWORK_INTERNAL_PRAGMA(message #x)
@@ -68,19 +68,19 @@
         ROBOTTESTINGFRAMEWORK_INTERNAL_SAID("reports", message),                                   \
         ROBOTTESTINGFRAMEWORK_INTERNAL_TEST))
 
-// A failure when the condition is false; the test goes on.
+// A failure when the condition is false; the test continues.
 #define ROBOTTESTINGFRAMEWORK_TEST_FAIL_IF_FALSE(condition, message)                               \
     (::robottestingframework::Asserter::testFail(                                                  \
         (condition), ROBOTTESTINGFRAMEWORK_INTERNAL_SAID("is false: " #condition, message),        \
         ROBOTTESTINGFRAMEWORK_INTERNAL_TEST))
 
-// A failure when the condition is true; the test goes on.
+// A failure when the condition is true; the test continues.
 #define ROBOTTESTINGFRAMEWORK_TEST_FAIL_IF_TRUE(condition, message)                                \
     (::robottestingframework::Asserter::testFail(                                                  \
         !(condition), ROBOTTESTINGFRAMEWORK_INTERNAL_SAID("is true: " #condition, message),        \
         ROBOTTESTINGFRAMEWORK_INTERNAL_TEST))
 
-// A failure when the condition is false, else a report; the test goes on.
+// A failure when the condition is false, else a report; the test continues.
 #define ROBOTTESTINGFRAMEWORK_TEST_CHECK(condition, message)                                       \
     (::robottestingframework::Asserter::testCheck(                                                 \
         (condition), ROBOTTESTINGFRAMEWORK_INTERNAL_SAID("checks", message),                       \

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is notified of a run as it happens. Overrides what it wants to know.
+// A listener for a run's events. Override functions as needed.
 #ifndef ROBOTTESTINGFRAMEWORK_TESTLISTENER_H
 #define ROBOTTESTINGFRAMEWORK_TESTLISTENER_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a test, a suite or a fixture says: a message, its detail, its place.
+// A message of a test, a suite or a fixture, with its detail and location.
 #ifndef ROBOTTESTINGFRAMEWORK_TESTMESSAGE_H
 #define ROBOTTESTINGFRAMEWORK_TESTMESSAGE_H
 
@@ -56,13 +56,13 @@ private:
     std::string file_;
     std::string message_;
     std::string detail_;
-    // Whether the message is a macro's own words, and the detail the user's.
+    // Whether the message is a macro's text, and the detail the user's.
     bool is_macro_ = false;
 };
 
 namespace internal {
 
-// What a macro says: how in its own words, the text in the user's.
+// A macro's message: its own text, and the user's as the detail.
 inline TestMessage said(const std::string &how, const std::string &text, const char *file, int line)
 {
     TestMessage message(how, text, file, static_cast<unsigned int>(line));
@@ -70,7 +70,7 @@ inline TestMessage said(const std::string &how, const std::string &text, const c
     return message;
 }
 
-// One line for people.
+// The message as one line.
 inline std::string text_of(const TestMessage &message)
 {
     if (message.detail_.empty()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Passes on to its listeners what tests and suites say. From any thread; one
-// listener is called at a time.
+// Passes the messages of tests and suites to its listeners. From any thread; calls one
+// listener at a time.
 #ifndef ROBOTTESTINGFRAMEWORK_TESTRESULT_H
 #define ROBOTTESTINGFRAMEWORK_TESTRESULT_H
 
@@ -26,7 +26,7 @@ public:
     TestResult(const TestResult &) = delete;
     TestResult &operator=(const TestResult &) = delete;
 
-    // The listener stays the caller's. They are called in the order of adding.
+    // The caller owns the listener. Listeners are called in the order of adding.
     void addListener(TestListener *listener)
     {
         const Lock lock(mutex_);
@@ -42,7 +42,7 @@ public:
                          listeners_.end());
     }
 
-    // Forgets the listeners.
+    // Removes the listeners.
     void reset()
     {
         const Lock lock(mutex_);
@@ -55,7 +55,7 @@ public:
         const Lock lock(mutex_);
         each([&](TestListener &listener) { listener.addReport(test, msg); });
     }
-    // An error or a failure, whoever adds it, makes its test or suite fail.
+    // An error or a failure from any caller makes its test or suite fail.
     void addError(const Test *test, TestMessage msg)
     {
         const Lock lock(mutex_);
@@ -105,7 +105,7 @@ public:
         each([](TestListener &listener) { listener.endTestRunner(); });
     }
 
-    // Whether an error or a failure was added for it since it started.
+    // Whether the test has an error or a failure since it started.
     bool hasProblem(const Test *test) const
     {
         const Lock lock(mutex_);
@@ -115,7 +115,7 @@ public:
 private:
     friend class TestSuite;
 
-    // A listener may itself tell something, or add a listener.
+    // A listener may add a message or a listener.
     using Mutex = std::recursive_mutex;
     using Lock = std::lock_guard<Mutex>;
 
@@ -131,7 +131,7 @@ private:
     mutable Mutex mutex_;
     std::vector<TestListener *> listeners_;
     std::set<const Test *> problems_;
-    // What the running suite has to say before a test of it ends.
+    // Called by the running suite before a test ends.
     std::function<void()> before_end_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps all that is reported of a run, and counts.
+// Stores and counts all reports of a run.
 #ifndef ROBOTTESTINGFRAMEWORK_TESTRESULTCOLLECTOR_H
 #define ROBOTTESTINGFRAMEWORK_TESTRESULTCOLLECTOR_H
 
@@ -22,7 +22,7 @@ public:
     TestResultCollector(const TestResultCollector &) = delete;
     TestResultCollector &operator=(const TestResultCollector &) = delete;
 
-    // Forgets everything.
+    // Removes everything.
     void reset()
     {
         for (ResultEvent *event : events_) {
@@ -34,7 +34,7 @@ public:
         suites_ = Counts();
     }
 
-    // The tests that began; each has passed or failed when it has ended.
+    // The tests that have started; each has passed or failed at its end.
     unsigned int testCount() { return tests_.begun; }
     unsigned int failedCount() { return tests_.failed; }
     unsigned int passedCount() { return tests_.passed; }
@@ -42,7 +42,7 @@ public:
     unsigned int failedSuiteCount() { return suites_.failed; }
     unsigned int passedSuiteCount() { return suites_.passed; }
 
-    // In the order in which it happened; owned by the collector.
+    // In the order of events; owned by the collector.
     EventResultContainer &getResults() { return events_; }
 
     void addReport(const Test *test, TestMessage msg) override

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs tests and suites one after the other, in this process.
+// Runs tests and suites in sequence, in this process.
 #ifndef ROBOTTESTINGFRAMEWORK_TESTRUNNER_H
 #define ROBOTTESTINGFRAMEWORK_TESTRUNNER_H
 
@@ -19,7 +19,7 @@ public:
     TestRunner() {}
     virtual ~TestRunner() {}
 
-    // Tests stay the caller's.
+    // The caller owns the tests.
     void addTest(Test *test) { tests_.push_back(test); }
     void removeTest(Test *test)
     {
@@ -43,8 +43,8 @@ public:
         result.endTestRunner();
     }
 
-    // What runs is asked to stop, and nothing else is run. From any thread, and
-    // from a signal handler as far as the running test's interrupt() allows it.
+    // Asks the running test to stop, and runs no further tests. From any thread, and
+    // from a signal handler if the running test's interrupt() allows it.
     void interrupt()
     {
         interrupted_ = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs tests in order on top of fixtures, in this process.
+// Runs tests in sequence with fixtures, in this process.
 #ifndef ROBOTTESTINGFRAMEWORK_TESTSUITE_H
 #define ROBOTTESTINGFRAMEWORK_TESTSUITE_H
 
@@ -35,7 +35,7 @@ public:
         tests_.erase(std::remove(tests_.begin(), tests_.end(), test), tests_.end());
     }
 
-    // Forgets tests and fixtures.
+    // Removes tests and fixtures.
     void reset()
     {
         tests_.clear();
@@ -243,7 +243,7 @@ private:
 
     std::vector<Test *> tests_;
     std::vector<FixtureManager *> fixtures_;
-    // How many fixtures, from the first on, are to be torn down.
+    // The number of fixtures, from the first on, to tear down.
     std::size_t up_ = 0;
     TestResult *result_ = nullptr;
     bool successful_ = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes what a collector has kept into a text file.
+// Writes a collector's events into a text file.
 #ifndef ROBOTTESTINGFRAMEWORK_TEXTOUTPUTTER_H
 #define ROBOTTESTINGFRAMEWORK_TEXTOUTPUTTER_H
 
@@ -19,15 +19,15 @@ namespace robottestingframework {
 class TextOutputter
 {
 public:
-    // Verbose: with the place in the source of each message.
+    // Verbose: with the source location of each message.
     TextOutputter(TestResultCollector &collector, bool verbose = false)
         : collector_(collector), verbose_(verbose)
     {
     }
     virtual ~TextOutputter() {}
 
-    // Summary: with the counts at the end. False: it could not be written, and
-    // the message, if one is given, tells why.
+    // Summary: with the counts at the end. False: it could not be written; the reason
+    // is in the message, if one is given.
     bool write(std::string filename, bool summary, TestMessage *errorMsg = nullptr)
     {
         errno = 0;
@@ -75,7 +75,7 @@ private:
 
     void tell(std::ostream &file, const char *kind, ResultEvent &event) const
     {
-        file << kind << internal::told_line(event.getTest(), event.getMessage()) << "\n";
+        file << kind << internal::report_line(event.getTest(), event.getMessage()) << "\n";
         const std::string place = internal::place_line(event.getMessage());
         if (verbose_ && !place.empty()) {
             file << place << "\n\n";

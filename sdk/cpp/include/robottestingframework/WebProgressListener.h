@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shows a run in a browser on this machine: http://127.0.0.1:<port>. The page
-// asks /events?from=N for what happened since its last question, in JSON. Clients
-// of robot-testing-framework 2.x have /status and /update, as spec/web.md tells.
+// polls /events?from=N for new events, in JSON. Clients of robot-testing-framework 2.x
+// use /status and /update (spec/web.md).
 #ifndef ROBOTTESTINGFRAMEWORK_WEBPROGRESSLISTENER_H
 #define ROBOTTESTINGFRAMEWORK_WEBPROGRESSLISTENER_H
 
@@ -26,8 +26,8 @@ namespace robottestingframework {
 class WebProgressListener : public TestListener
 {
 public:
-    // Port 0: a free one. Verbose: with the place in the source of each message.
-    // When it cannot listen it says so on standard error, and the run goes on.
+    // Port 0: any free port. Verbose: with the source location of each message. If it
+    // cannot listen, it prints an error on standard error, and the run continues.
     WebProgressListener(unsigned int port = 8080, bool verbose = false)
         : verbose_(verbose), server_(new internal::LoopbackServer(
                                  port, [this](const std::string &path) { return answer(path); }))
@@ -40,7 +40,7 @@ public:
     WebProgressListener(const WebProgressListener &) = delete;
     WebProgressListener &operator=(const WebProgressListener &) = delete;
 
-    // Where it listens; 0 when it does not.
+    // Its port; 0 if it does not listen.
     unsigned int port() const { return server_->port(); }
 
     void addReport(const Test *test, TestMessage msg) override
@@ -93,7 +93,7 @@ private:
         keep(kind, name, text, [&] { status_.reported(word, name, text); });
     }
 
-    // Both views of what happened change at once.
+    // Updates both views of the events at once.
     template <class Change>
     void keep(const char *kind, const std::string &name, const std::string &text, Change change)
     {
@@ -149,7 +149,7 @@ private:
     std::vector<std::string> events_;
     internal::WebStatus status_;
     bool running_ = false;
-    // Last: it may be asked as soon as it is there.
+    // Last member: it may get requests as soon as it exists.
     std::unique_ptr<internal::LoopbackServer> server_;
 };
 

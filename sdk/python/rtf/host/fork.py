@@ -115,10 +115,10 @@ class Server:
         return self._fork_twice()
 
     def _fork_twice(self) -> int:
-        """Make it with Python's own `fork`.
+        """Fork with `os.fork`, twice.
 
-        The process between the two ends at once, so that the kernel gives its
-        child to the runner, which is there for such orphans.
+        The process in between exits at once, so that its child becomes the child of the
+        runner, which is a child subreaper.
         """
         between = os.fork()
         if between == 0:
@@ -130,10 +130,10 @@ class Server:
                 return 0
             os.write(self._pid_writer, f"{child}\n".encode())
             os._exit(0)
-        # When it was waited for, its child has changed hands.
+        # After that, its child is the runner's.
         _, status = os.waitpid(between, 0)
         if status != 0:
-            raise RuntimeError("there cannot be a further process")
+            raise RuntimeError("cannot fork")
         return int(os.read(self._pid_reader, 64))
 
     def _become_host(self, request: dict[str, Any], descriptors: list[int]) -> int:

@@ -17,16 +17,16 @@ public:
     DllFixturePluginLoader() {}
     virtual ~DllFixturePluginLoader() {}
 
-    // The fixture, which stays the loader's; null when there is none.
+    // The fixture, which the loader owns; null if there is none.
     FixtureManager *open(const std::string filename)
     {
         return plugin_.open(filename, "robottestingframework_fixture_factory");
     }
 
-    // Ends the fixture.
+    // Destroys the fixture.
     void close() { plugin_.close(); }
 
-    // Why the last open() failed.
+    // The reason why the last open() failed.
     std::string getLastError() { return plugin_.error(); }
 
 private:

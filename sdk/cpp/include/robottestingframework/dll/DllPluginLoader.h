@@ -22,8 +22,8 @@ public:
     {
         TestCase *const test = plugin_.open(filename, "robottestingframework_dll_factory");
         if (test != nullptr && test->getName().empty()) {
-            const std::size_t folder = filename.find_last_of('/') + 1; // 0 without a folder
-            test->setName(filename.substr(folder, filename.find_last_of('.') - folder));
+            const std::size_t name = filename.find_last_of('/') + 1; // 0 without a directory
+            test->setName(filename.substr(name, filename.find_last_of('.') - name));
         }
         return test;
     }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a plug-in's library exports. Once in each library, one of:
+// The exports of a plug-in's library. Once in each library, one of:
 //   ROBOTTESTINGFRAMEWORK_PREPARE_PLUGIN(Class)          a TestCase
 //   ROBOTTESTINGFRAMEWORK_PREPARE_FIXTURE_PLUGIN(Class)  a FixtureManager
-// The runner's host asks rtf_plugin(), spec/plugin-abi.md; a program that loads
-// the plug-in by itself asks the factory.
+// The runner's host calls rtf_plugin() (spec/plugin-abi.md); other programs that load the
+// plug-in call the factory.
 #ifndef ROBOTTESTINGFRAMEWORK_PLUGIN_H
 #define ROBOTTESTINGFRAMEWORK_PLUGIN_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A library that is loaded while the program runs.
+// A library that is loaded at run time.
 #ifndef ROBOTTESTINGFRAMEWORK_SHAREDLIBRARY_H
 #define ROBOTTESTINGFRAMEWORK_SHAREDLIBRARY_H
 
@@ -22,7 +22,7 @@ public:
     SharedLibrary(const SharedLibrary &) = delete;
     SharedLibrary &operator=(const SharedLibrary &) = delete;
 
-    // False: error() tells why.
+    // False: error() has the reason.
     bool open(const char *filename)
     {
         close();
@@ -60,7 +60,7 @@ public:
         return error_;
     }
 
-    // Null when it is not there.
+    // Null if it does not exist.
     void *getSymbol(const char *symbolName)
     {
         if (handle_ == nullptr) {

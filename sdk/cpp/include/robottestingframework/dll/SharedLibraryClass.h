@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An object out of a library, which ends with this one.
+// An object of a library, destroyed with this one.
 #ifndef ROBOTTESTINGFRAMEWORK_SHAREDLIBRARYCLASS_H
 #define ROBOTTESTINGFRAMEWORK_SHAREDLIBRARYCLASS_H
 
@@ -28,7 +28,7 @@ public:
         return object_ != nullptr;
     }
 
-    // The last object of a factory ends it.
+    // The last object of a factory destroys the factory.
     virtual bool close()
     {
         if (object_ != nullptr) {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a library offers a C++ class to a program that loads it: a function, the
-// factory, fills in a structure of functions. Both sides must have been built
-// with these headers; the structure is not that of robot-testing-framework 2.x,
-// and its size tells them apart.
+// The export of a C++ class from a library: a function, the factory, fills in a structure
+// of functions. Both sides must be built with these headers; the structure differs from
+// that of robot-testing-framework 2.x in its size.
 #ifndef ROBOTTESTINGFRAMEWORK_SHAREDLIBRARYCLASSAPI_H
 #define ROBOTTESTINGFRAMEWORK_SHAREDLIBRARYCLASSAPI_H
 
@@ -57,7 +56,7 @@ struct Maker
     static void destroy(void *object) { delete static_cast<Base *>(object); }
     static int nothing(char *, int) { return 0; }
 
-    // Returns a number that only a whole structure has.
+    // Returns a number that only a complete structure has.
     static int fill(void *to, int length, int (*name)(char *, int), int (*base)(char *, int))
     {
         if (to == nullptr || length != static_cast<int>(sizeof(SharedLibraryClassApi))) {
@@ -86,7 +85,7 @@ struct Maker
 
 #define SHLIBPP_DEFAULT_FACTORY_NAME "shlibpp_default_factory"
 
-// A factory of that name which makes `classname`s, offered as `basename`s.
+// A factory with that name, which creates `classname`s as `basename`s.
 #define SHLIBPP_DEFINE_SHARED_SUBCLASS(factoryname, classname, basename)                           \
     SHLIBPP_SHARED_CLASS_FN int factoryname(void *api, int len)                                    \
     {                                                                                              \

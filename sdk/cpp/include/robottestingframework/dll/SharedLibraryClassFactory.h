@@ -17,7 +17,7 @@ public:
     {
     }
 
-    // Null when the factory is not valid, or could not make one.
+    // Null if the factory is invalid, or could not create an object.
     T *create() { return isValid() ? static_cast<T *>(getApi().create()) : nullptr; }
 
     void destroy(T *object)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opens a library and asks its factory for its functions.
+// Opens a library and gets its factory's functions.
 #ifndef ROBOTTESTINGFRAMEWORK_SHAREDLIBRARYFACTORY_H
 #define ROBOTTESTINGFRAMEWORK_SHAREDLIBRARYFACTORY_H
 
@@ -32,7 +32,7 @@ public:
     SharedLibraryFactory(const SharedLibraryFactory &) = delete;
     SharedLibraryFactory &operator=(const SharedLibraryFactory &) = delete;
 
-    // False: status and error tell why.
+    // False: status and error have the reason.
     bool open(const char *dll_name, const char *fn_name = nullptr)
     {
         forget();
@@ -66,7 +66,7 @@ public:
     std::string getClassName() const { return class_; }
     std::string getBaseClassName() const { return base_; }
 
-    // Takes the functions from a factory that is in the program already.
+    // Uses a factory of this program.
     bool useFactoryFunction(void *factory)
     {
         const auto fill = reinterpret_cast<int (*)(void *, int)>(factory);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a plug-in's functions are exported. SHLIBPP_FILTER_API may be defined or
-// not: they always are.
+// Exports a plug-in's functions, with or without SHLIBPP_FILTER_API.
 #ifndef ROBOTTESTINGFRAMEWORK_DLL_CONFIG_H
 #define ROBOTTESTINGFRAMEWORK_DLL_CONFIG_H
 

@@ -38,7 +38,7 @@ struct has_own_steps<T,
 class HostedTest
 {
 public:
-    // Which functions of its own the test's class has.
+    // Which functions the test's class overrides.
     struct Own
     {
         bool interrupt;

@@ -10,7 +10,7 @@
 namespace robottestingframework {
 namespace internal {
 
-// The length of the UTF-8 character that begins there; 0 when there is none.
+// The length of the UTF-8 character at this position; 0 if there is none.
 inline std::size_t utf8_length(const std::string &text, std::size_t at)
 {
     const auto byte = [&](std::size_t index) {
@@ -19,7 +19,7 @@ inline std::size_t utf8_length(const std::string &text, std::size_t at)
     const unsigned first = byte(at);
     const unsigned second = byte(at + 1);
     std::size_t length = first < 0x80 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
-    // Neither a lonely byte, nor a long form of a short character, nor half a pair.
+    // No lone continuation byte, no overlong form, no surrogate.
     const bool wrong = (first >= 0x80 && first < 0xC2) || first > 0xF4 ||
                        (first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) ||
                        (first == 0xF0 && second < 0x90) || (first == 0xF4 && second > 0x8F);
@@ -31,7 +31,7 @@ inline std::size_t utf8_length(const std::string &text, std::size_t at)
     return wrong ? 0 : length;
 }
 
-// The text in double quotes. What is no UTF-8 becomes U+FFFD.
+// The text in double quotes. Invalid UTF-8 becomes U+FFFD.
 inline std::string json_string(const std::string &text)
 {
     std::string json = "\"";

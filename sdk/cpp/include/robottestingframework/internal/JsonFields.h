@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a line of JSON that the runner has written.
+// Parses a line of JSON from the runner.
 #ifndef ROBOTTESTINGFRAMEWORK_INTERNAL_JSONFIELDS_H
 #define ROBOTTESTINGFRAMEWORK_INTERNAL_JSONFIELDS_H
 
@@ -13,13 +13,13 @@ namespace robottestingframework {
 namespace internal {
 
 // The strings and numbers of a JSON object by their paths: `message.location.line`.
-// Members of arrays are left out. Trusts that the line is JSON.
+// Without members of arrays. Expects valid JSON.
 class JsonFields
 {
 public:
     explicit JsonFields(const std::string &line) : text_(line) { value(std::string()); }
 
-    // Empty when there is no such field.
+    // Empty if there is no such field.
     const std::string &operator[](const std::string &path) { return fields_[path]; }
 
 private:
@@ -85,7 +85,7 @@ private:
         return result;
     }
 
-    // What stands for the letter behind a backslash; at_ is then on its last one.
+    // The character of an escape sequence; moves at_ to the end of the sequence.
     std::string escaped()
     {
         const std::string from = "bfnrt";

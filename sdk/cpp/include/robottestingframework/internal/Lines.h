@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines in which console and text file tell a run.
+// The lines of a run on the console and in text files.
 #ifndef ROBOTTESTINGFRAMEWORK_INTERNAL_LINES_H
 #define ROBOTTESTINGFRAMEWORK_INTERNAL_LINES_H
 
@@ -13,7 +13,7 @@ namespace robottestingframework {
 namespace internal {
 
 // (name) message: detail
-inline std::string told_line(const Test *test, const TestMessage &message)
+inline std::string report_line(const Test *test, const TestMessage &message)
 {
     std::string line = "(" + test->getName() + ") " + message.getMessage();
     if (!message.getDetail().empty()) {
@@ -22,7 +22,7 @@ inline std::string told_line(const Test *test, const TestMessage &message)
     return line;
 }
 
-// Where a message comes from; empty when that is not known.
+// The location of a message; empty if unknown.
 inline std::string place_line(const TestMessage &message)
 {
     if (message.getSourceFileName().empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An object out of a plug-in that this program has loaded.
+// An object of a plug-in that this program has loaded.
 #ifndef ROBOTTESTINGFRAMEWORK_INTERNAL_LOADEDPLUGIN_H
 #define ROBOTTESTINGFRAMEWORK_INTERNAL_LOADEDPLUGIN_H
 

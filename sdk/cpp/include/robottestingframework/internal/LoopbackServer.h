@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A web server for one page on this machine: it listens on 127.0.0.1 only,
-// answers GET, and closes each connection. An answer is written at once, with a short
-// head: clients of robot-testing-framework 2.x read once, and only some bytes.
+// answers GET, and closes each connection. It writes an answer in one call, with a short
+// head: clients of robot-testing-framework 2.x read only once, and few bytes.
 #ifndef ROBOTTESTINGFRAMEWORK_INTERNAL_LOOPBACKSERVER_H
 #define ROBOTTESTINGFRAMEWORK_INTERNAL_LOOPBACKSERVER_H
 
@@ -35,7 +35,7 @@ class LoopbackServer
 public:
     using Handler = std::function<Answer(const std::string &path)>;
 
-    // Port 0: a free one.
+    // Port 0: any free port.
     LoopbackServer(unsigned int port, Handler handler) : handler_(handler)
     {
         if (listen_on(port) && pipe(wake_) == 0) {
@@ -58,7 +58,7 @@ public:
     LoopbackServer(const LoopbackServer &) = delete;
     LoopbackServer &operator=(const LoopbackServer &) = delete;
 
-    // 0 when it does not listen; error() tells why.
+    // 0 if it does not listen; error() has the reason.
     unsigned int port() const { return port_; }
     const std::string &error() const { return error_; }
 
@@ -98,8 +98,8 @@ private:
         return true;
     }
 
-    // Whether the descriptor can be read; false when the time is over or the
-    // server ends.
+    // Whether the descriptor is readable; false after the timeout, or if the server
+    // stops.
     bool await(int descriptor, int milliseconds) const
     {
         pollfd both[2] = {{descriptor, POLLIN, 0}, {wake_[0], POLLIN, 0}};
@@ -131,7 +131,7 @@ private:
             request.append(part, static_cast<std::size_t>(count));
         }
         const Answer answer = decide(request);
-        // Nothing is taken for another type than it has: JSON is not, in any browser.
+        // Browsers must not guess another type: nosniff.
         const bool is_json = answer.type == "application/json";
         send_all(client, "HTTP/1.0 " + std::to_string(answer.status) +
                              (answer.status == 200 ? " OK" : " Refused") +
@@ -141,7 +141,7 @@ private:
                              "\r\n\r\n" + answer.body);
     }
 
-    // Whether the empty line has come; people who type a request end lines with \n.
+    // Whether the empty line has arrived; typed requests have lines with \n.
     static bool is_whole(const std::string &request)
     {
         return request.find("\r\n\r\n") != std::string::npos ||
@@ -153,8 +153,8 @@ private:
         if (request.compare(0, 4, "GET ") != 0) {
             return Answer{405, "text/plain", "only GET\n"};
         }
-        // Another site's page may name this machine by a name of its own. A browser
-        // always says the name; a program with HTTP/1.0 need not.
+        // A page of another site may resolve its name to this machine (DNS rebinding).
+        // Browsers always send the name; programs with HTTP/1.0 need not.
         const std::string host = header(request, "\nhost:");
         const std::string name = host.substr(0, host.find(':'));
         if (!host.empty() && name != "127.0.0.1" && name != "localhost") {

@@ -28,8 +28,8 @@ namespace internal {
 class Program
 {
 public:
-    // Runs it with its output in a file. The exit code; -1 with error() when it
-    // could not be started or a signal ended it.
+    // Runs it with its output in a file. Returns the exit code; -1 with error() if it
+    // could not be started or was killed by a signal.
     int run(std::vector<std::string> words, const std::string &output)
     {
         std::vector<char *> arguments;
@@ -58,7 +58,7 @@ public:
         return code;
     }
 
-    // From another thread: as Ctrl-C does.
+    // Interrupts it like Ctrl-C, from another thread.
     void interrupt()
     {
         const pid_t process = process_;
@@ -90,8 +90,8 @@ private:
     std::string error_;
 };
 
-// A folder that goes away with this object. Its path is empty when it could not
-// be made.
+// A temporary directory, removed with this object. Its path is empty if it could not
+// be created.
 class TemporaryFolder
 {
 public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A test in a scripting language. The runner runs it in the language's host, in
-// a process of its own, and what its journal tells is told to the result here.
+// A test in a scripting language. The runner runs it in the language's host, in a
+// separate process; this class adds the events of its journal to the result.
 #ifndef ROBOTTESTINGFRAMEWORK_INTERNAL_SCRIPTTEST_H
 #define ROBOTTESTINGFRAMEWORK_INTERNAL_SCRIPTTEST_H
 
@@ -16,7 +16,7 @@
 #include "JsonFields.h"
 #include "Program.h"
 
-// The program that runs scripts, which the CMake package tells.
+// The runner's path, which the CMake package defines.
 #ifndef ROBOTTESTINGFRAMEWORK_RUNNER
 #define ROBOTTESTINGFRAMEWORK_RUNNER "rtf"
 #endif
@@ -35,7 +35,7 @@ class ScriptTest : public TestCase
 public:
     explicit ScriptTest(const std::string &file) : TestCase(name_of(file)), file_(file) {}
 
-    // What is wrong with the script, empty when it can be run.
+    // The problem with the script, empty if it can run.
     std::string problem()
     {
         const TemporaryFolder folder;
@@ -102,7 +102,7 @@ private:
         }
     }
 
-    // What ended the test in another way than by a message of its own.
+    // Reports an end of the test that has no message.
     void judge(JsonFields &event)
     {
         const std::string verdict = event["verdict"];
@@ -121,7 +121,7 @@ private:
     Program program_;
 };
 
-// What the loaders of all scripting languages do.
+// The base class of all loaders of scripting languages.
 class ScriptLoader : public plugin::PluginLoader
 {
 public:

@@ -6,7 +6,7 @@
 namespace robottestingframework {
 namespace internal {
 
-// Asks for what is new once a second, and shows it as text, never as HTML.
+// Polls for events once a second, and shows them as text, never as HTML.
 inline const char *web_page()
 {
     return R"page(<!DOCTYPE html>

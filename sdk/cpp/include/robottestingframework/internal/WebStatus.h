@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the web listener of robot-testing-framework 2.x answered: /status, a JSON
-// object with the suite and the state of each of its tests, and /update, HTML of
-// what was reported. Both are one line of valid JSON, whatever names hold.
+// The answers of robot-testing-framework 2.x's web listener: /status, a JSON object
+// with the suite and the state of each test, and /update, HTML of the messages. Both
+// are one line of valid JSON for any names.
 #ifndef ROBOTTESTINGFRAMEWORK_INTERNAL_WEBSTATUS_H
 #define ROBOTTESTINGFRAMEWORK_INTERNAL_WEBSTATUS_H
 
@@ -105,7 +105,7 @@ private:
 
     std::string name_;
     std::vector<State> states_;
-    // How many tests of the suite have begun.
+    // The number of started tests of the suite.
     std::size_t next_ = 0;
     bool is_in_suite_ = false;
     std::deque<std::string> lines_;
