@@ -6,7 +6,7 @@ with System; use System;
 package body Plugin is
 
    overriding procedure Run (Self : in out Test) is
-      --  Reads memory that is not there, in C.
+      --  Reads unmapped memory, in C.
       function C_Length (Text : Address) return Interfaces.C.size_t
         with Import, Convention => C, External_Name => "strlen";
    begin

@@ -1,5 +1,5 @@
--- Lua cannot reach memory that is not there: the process gets the signal from
--- a child, whose parent it is.
+-- Lua cannot read unmapped memory: a child sends the signal to its parent, this
+-- process.
 function TestCase.run()
   rtf.report("before the crash")
   os.execute("kill -SEGV $PPID")

@@ -1,7 +1,7 @@
 require "fiddle"
 require "rtf"
 
-# Reads memory that is not there, in C.
+# Reads unmapped memory, in C.
 class Crash < RTF::TestCase
   def run
     report("before the crash")

@@ -12,8 +12,8 @@ package body Plugin is
      with Import, Convention => C, External_Name => "write";
 
    overriding procedure Run (Self : in out Test) is
-      --  Writes to every socket of the process what no host may write: the
-      --  channel is one of them, and its number is not told.
+      --  Writes an invalid line to every socket of the process: one of them is
+      --  the channel.
       Line   : constant String := "this is not a message" & ASCII.LF;
       Target : String (1 .. 64);
       Length : long;

@@ -1,4 +1,4 @@
-"""Which files are plug-ins, and what is said of those that are not."""
+"""Loading and checking of files."""
 
 from __future__ import annotations
 

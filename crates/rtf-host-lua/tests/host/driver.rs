@@ -141,7 +141,7 @@ impl Host {
         self.channel.shutdown(Shutdown::Write).unwrap();
     }
 
-    /// Waits for the end: how it ended, and what was printed.
+    /// Waits for the end of the process. Returns its status and its output.
     pub(crate) fn end(&mut self) -> (ExitStatus, String) {
         while self.read().is_some() {}
         let mut printed = String::new();

@@ -33,7 +33,7 @@ pub fn build(source: &str) -> PathBuf {
     build_at(&Path::new(ROOT).join(source), &[])
 }
 
-/// Compiles a source that stands in the test.
+/// Compiles a source text.
 pub fn build_text(name: &str, text: &str, options: &[&str]) -> PathBuf {
     let source = dir().join(name);
     std::fs::write(&source, text).unwrap();
