@@ -36,8 +36,8 @@ class FixturesTest < HostTest
       'error("no sim")' => "no sim", 'require(false, "up")' => "up" }.each do |line, problem|
       host, result = set_up("def setup(_) = #{line}\ndef tear_down = report(\"down\")")
       refute_equal "passed", result["outcome"], line
-      assert_equal problem ? nil : "setup returned false", result["reason"], line
-      assert_equal problem, host.problem.last
+      assert_equal [problem ? nil : "setup returned false"], [result["reason"]], line
+      assert_equal [problem], [host.problem.last], line
       host.ask("tear-down-fixture", {})
       assert_equal %w[report down], host.texts.last, line
     end
