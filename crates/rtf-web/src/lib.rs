@@ -3,11 +3,10 @@
 //! The server reads only journals, also that of the live run; see `spec/web.md`.
 //! [`BoundServer::serve`] serves in a separate thread. A request finds its run in
 //! [`runs`], which follows the run's journal with an [`index`]: a lean
-//! [`rtf_model::Record`] and the places of what it does not keep. [`api`] makes
-//! answers of it, [`feed`] a stream. [`access`] stands before all of it.
+//! [`rtf_model::Record`] and the positions of details in the journal. [`api`] creates
+//! responses from it, [`feed`] event streams. [`access`] checks every request.
 //!
-//! The server does not slow down the run, whose only part here is [`JournalNotifier`].
-//!
+//! The server does not slow down the run, which only contains its [`JournalNotifier`].
 
 mod access;
 mod api;

@@ -40,7 +40,6 @@ pub struct Server {
     /// Whether reading needs the token.
     token_to_read: bool,
     /// The remaining seconds of a server whose run has ended.
-
     #[serde(skip_serializing_if = "Option::is_none")]
     lingers_s: Option<u64>,
     /// The server's time of day, in seconds since 1970.
