@@ -218,7 +218,7 @@ fn a_shuffled_run_tells_its_seed_and_repeats_it() {
     let (first, seed) =
         (ran(&folder), folder.journal().record.run.expect("a run").manifest.shuffle);
     let option = format!("--shuffle={}", seed.expect("a seed"));
-    assert!(shown.stdout.starts_with(&format!("     chosen  {option}\n")), "{}", shown.stdout);
+    assert!(shown.stdout.starts_with(&format!("   selected  {option}\n")), "{}", shown.stdout);
     folder.rtf(&["run", &option, "arm.xml"]);
     assert_eq!(ran(&folder), first);
     let orders: BTreeSet<_> = (1..=9)
