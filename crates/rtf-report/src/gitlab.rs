@@ -29,7 +29,7 @@ impl Sections {
     }
 
     fn begin(&mut self, suite: SuiteId, at: Micros, record: &Record) -> Result<(), ReportError> {
-        // What was said before the suite stands before its section.
+        // Earlier output precedes the section.
         self.inner.idle(record)?;
         self.open = Some(suite);
         let name = record.suites.get(suite.index()).map_or("", |suite| suite.plan.name.as_str());

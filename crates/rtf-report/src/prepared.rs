@@ -1,11 +1,11 @@
-//! What a suite has for itself, line by line: console, text and logs tell it alike.
+//! The private resources of a suite, line by line, for console, text and logs.
 
 use rtf_model::{SuiteNetwork, SuitePrepared, SuiteVariable};
 
 use crate::escape;
 use crate::explain::{Sink, Tone};
 
-/// Tells all of it, and how a person joins in.
+/// Shows the private resources, and the command that joins the suite.
 pub(crate) fn show(prepared: &SuitePrepared, sink: Sink<'_>) {
     if let Some(SuiteNetwork { pid, user_namespace }) = prepared.network {
         let user = if user_namespace { ", with a user namespace" } else { "" };

@@ -40,7 +40,7 @@ impl Page {
         self.line(&format!("{:DETAIL$}{text}", ""));
     }
 
-    /// What is known of an item of a list at the end of the run.
+    /// A labelled fact of a list item at the end of the run.
     pub fn fact(&mut self, label: &str, text: &str) {
         let label = style::paint(style::DIM, &format!("{label:<6}"));
         self.line(&format!("    {label}  {text}"));

@@ -68,7 +68,7 @@ impl<'a> Roots<'a> {
     }
 }
 
-/// The path without `.` and `..`, as far as its text tells.
+/// The path without `.` and `..`, resolved lexically.
 fn normal(path: &Path) -> PathBuf {
     let mut normal = PathBuf::new();
     for part in path.components() {

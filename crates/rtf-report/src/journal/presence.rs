@@ -5,7 +5,7 @@ use std::fs::{self, File, Metadata};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What is known of the file since it was created.
+/// The identity of the file since it was created.
 #[derive(Debug)]
 pub(super) struct Presence {
     /// Absolute: the working directory may change.

@@ -40,7 +40,7 @@ impl Journal {
     /// # Errors
     /// The file exists or cannot be written.
     pub fn create(path: &Path) -> Result<Self, ReportError> {
-        // Whatever else happens to the file, nothing in it is overwritten.
+        // Append mode never overwrites existing data.
         let file = OpenOptions::new().append(true).create_new(true).open(path);
         let file = file.map_err(ReportError::at(WHAT, path))?;
         // Held until the runner ends, however it ends: see [`super::is_written`].
@@ -101,7 +101,7 @@ enum Landmark {
 
 fn landmark(kind: &EventKind) -> Landmark {
     match kind {
-        // A recorder reads what the test told until then.
+        // A recorder reads the events of the test at this point.
         EventKind::TestPhase { phase: Phase::Notify, .. } => Landmark::Now,
         EventKind::SuitePlanned(_)
         | EventKind::FixturePlanned(_)

@@ -12,13 +12,13 @@ use crate::words;
 /// More measurements or series than this would drown the page that shows them.
 const MEASUREMENTS: usize = 100;
 
-/// What is said of a test that did not end although the run did.
+/// The reason of a test that was running when the run ended.
 const CUT_SHORT: &str = "the run ended before the test did";
 
-/// What is said of a test that passed only when it was tried again, when that counts.
+/// The reason of a flaky test, if flaky tests fail.
 const FLAKY: &str = "it is flaky: it passed only after a retry";
 
-/// What is said of a test that did not begin although the run ended.
+/// The reason of a test that had not started when the run ended.
 const NOT_BEGUN: &str = "the run ended before the test started";
 
 /// The case of a test.

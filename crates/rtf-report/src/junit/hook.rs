@@ -12,7 +12,7 @@ pub(super) fn of(record: &Record, hook: &HookRecord) -> impl Iterator<Item = Tes
     hook.runs.iter().enumerate().map(move |(index, run)| {
         let earlier = hook.runs[..index].iter().filter(|r| r.trigger == run.trigger).count();
         let mut name = format!("hook {} ({})", hook.plan.name, run.trigger);
-        // A server tells cases apart by their names, from build to build.
+        // Servers identify cases by name, from build to build.
         if earlier > 0 {
             name += &format!(" {}", earlier + 1);
         }

@@ -92,8 +92,8 @@ fn text(text: &str) -> String {
     escape::block(text).into_owned()
 }
 
-/// Names what was left behind and killed, as properties; a case that passed
-/// also tells it on its standard error, which more servers show.
+/// Adds leaked processes as properties; a case that passed
+/// also has them in its standard error, which more servers show.
 fn leaked(case: &mut TestCase, left: &[LeakedProcess], passed: bool) {
     for process in left {
         case.add_property(("leaked", explain::process(process).as_str()));

@@ -1,4 +1,4 @@
-//! What the text report tells of a fixture.
+//! Fixtures in the text report.
 
 use rtf_model::{FixtureRecord, FixtureState};
 
@@ -7,7 +7,7 @@ use crate::explain;
 use crate::growth;
 use crate::words;
 
-/// All that is known of a fixture.
+/// Writes a fixture.
 pub(super) fn show(lines: &mut Lines, fixture: &FixtureRecord) {
     let plan = &fixture.plan;
     lines.fact(2, "fixture", &format!("{} ({})", plan.name, plan.plugin_type));

@@ -1,4 +1,4 @@
-//! What the text report tells of a hook.
+//! Hooks in the text report.
 
 use rtf_model::{HookRecord, HookRunRecord, Record, Trigger};
 
@@ -6,7 +6,7 @@ use super::lines::Lines;
 use crate::explain::{self, Extent};
 use crate::{cause, words};
 
-/// All that is known of a hook.
+/// Writes a hook.
 pub(super) fn show(lines: &mut Lines, record: &Record, hook: &HookRecord) {
     let on: Vec<_> = hook.plan.on.iter().map(|trigger| Trigger::as_str(*trigger)).collect();
     lines.fact(2, "hook", &format!("{} (on {})", hook.plan.name, on.join(", ")));

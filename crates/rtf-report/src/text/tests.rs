@@ -1,4 +1,4 @@
-//! What the text report tells of a test.
+//! Tests in the text report.
 
 use rtf_model::{AttemptRecord, MessageKind, Record, TestRecord};
 
@@ -6,7 +6,7 @@ use super::lines::Lines;
 use crate::explain::{self, Extent};
 use crate::{cause, escape, words};
 
-/// All that is known of a test.
+/// Writes a test.
 pub(super) fn show(lines: &mut Lines, record: &Record, test: &TestRecord) {
     let plan = &test.plan;
     lines.fact(2, "test", &format!("{} ({})", plan.name, plan.plugin_type));
