@@ -81,7 +81,7 @@ def main() -> int:
 
 @contextmanager
 def served(command: list[str], folder: Path) -> Iterator[tuple[str, str]]:
-    """The address and the token of a server that runs meanwhile."""
+    """The address and the token of a server that runs within the block."""
     with subprocess.Popen(
         command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
     ) as server:

@@ -240,7 +240,7 @@ pub struct TestFinishedParams {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Answer {
-    /// The outcome. For a test, its first failure or error decides.
+    /// The outcome. The runner takes the reason of a test from its first reported problem.
     pub outcome: Outcome,
     /// Why it did not pass.
     #[serde(default, skip_serializing_if = "Option::is_none")]
