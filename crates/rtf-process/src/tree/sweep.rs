@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use rtf_model::LeakedProcess;
 
 use super::{
-    OWN_TASKS, SIGKILL, STARTS, children_of, descendants, describe, has_known_environ,
+    OWN_TASKS, SIGKILL, STARTS, children_of, descendants, describe, has_known_environ, is_exiting,
     is_fork_server, is_own_child, is_stopped, is_zombie, unix,
 };
 
@@ -15,6 +15,9 @@ const SIGCONT: i32 = 18;
 const SIGSTOP: i32 = 19;
 /// How long a sweep continues while it finds new orphans.
 const SWEEP_LIMIT: Duration = Duration::from_millis(500);
+/// How long a sweep waits for exiting orphans, whose children are not orphans yet. The kernel
+/// needs long for a process with much memory.
+const EXIT_LIMIT: Duration = Duration::from_secs(5);
 /// The time between passes that found nothing.
 const PASS_INTERVAL: Duration = Duration::from_micros(200);
 /// The number of passes over a tree that grows while it is being stopped.
@@ -41,7 +44,7 @@ impl Effort {
 
 /// Repeats passes until enough of them found nothing new, or the limit has passed.
 pub(super) fn sweep_if(effort: Effort, belongs: impl Fn(i32) -> bool) -> Vec<LeakedProcess> {
-    let end = Instant::now() + SWEEP_LIMIT;
+    let start = Instant::now();
     let mut sweep = Sweep::default();
     let mut quiet = 0;
     loop {
@@ -49,11 +52,12 @@ pub(super) fn sweep_if(effort: Effort, belongs: impl Fn(i32) -> bool) -> Vec<Lea
         if quiet >= effort.quiet_passes() {
             break;
         }
-        if Instant::now() >= end {
+        let limit = if sweep.awaits_exit { EXIT_LIMIT } else { SWEEP_LIMIT };
+        if start.elapsed() >= limit {
             sweep.report_missed();
             break;
         }
-        if quiet > 0 {
+        if quiet > 0 || sweep.awaits_exit {
             std::thread::sleep(PASS_INTERVAL);
         }
     }
@@ -68,6 +72,10 @@ struct Sweep {
     zombies: HashSet<i32>,
     /// Orphans that belong to something else.
     others: HashSet<i32>,
+    /// Orphans that were stopped and whose owner is not known yet.
+    stopped: HashSet<i32>,
+    /// Whether the last pass found an orphan that is exiting.
+    awaits_exit: bool,
     passes: u32,
     /// The last process that ended before its scope could be read.
     missed: Option<i32>,
@@ -77,6 +85,7 @@ impl Sweep {
     /// Kills the orphans that belong to the scope. Returns whether there was a new process.
     fn pass(&mut self, belongs: &impl Fn(i32) -> bool) -> bool {
         self.passes += 1;
+        self.awaits_exit = false;
         let starts = STARTS.load(Ordering::SeqCst);
         let orphans = children_of(OWN_TASKS);
         // A process that is being started may appear as a dead orphan.
@@ -101,18 +110,19 @@ impl Sweep {
     /// Kills an orphan and everything below it if it belongs to the scope. Processes that
     /// keep replacing themselves are only caught if they are stopped first.
     fn examine(&mut self, pid: i32, belongs: &impl Fn(i32) -> bool) -> bool {
-        let stops = self.passes > 1 && !is_stopped(pid);
-        if stops {
+        if self.passes > 1 && !is_stopped(pid) {
             unix::signal_process(pid, SIGSTOP);
+            self.stopped.insert(pid);
         }
         if belongs(pid) {
             return self.kill(pid);
         }
         if is_zombie(pid) || !has_known_environ(pid) {
+            self.awaits_exit |= is_exiting(pid);
             return true;
         }
         self.others.insert(pid);
-        if stops {
+        if self.stopped.remove(&pid) {
             unix::signal_process(pid, SIGCONT);
         }
         false

@@ -11,7 +11,8 @@ use crate::support::{Folder, Journal, Random, Running, nothing_left, number, sen
 
 /// A simulator that prints all the time, and a daemon that detaches itself twice.
 const SIMULATOR: &str = "<fixture type='process' name='arm'>\
-    <command>sh -c 'echo $$ > arm.pid; (setsid sh -c \"sleep 1000 &amp; exec sleep 1000\" &amp;); echo up; while :; do echo tick; done'</command>\
+    <command>sh -c 'echo $$ > arm.pid; (setsid sh -c \"sleep 1000 &amp; touch started; exec sleep 1000\" &amp;); \
+     until test -e started; do sleep 0.01; done; echo up; while :; do echo tick; done'</command>\
     <ready log='up'/></fixture>";
 /// Parks only while the simulator is there.
 const PARK: &str = "<hook name='park' on='interrupt end'>\

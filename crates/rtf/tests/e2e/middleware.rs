@@ -57,7 +57,7 @@ fn every_process_finds_its_suites_ports_and_ids() {
 fn a_domain_of_the_users_shell_is_kept_and_said() {
     let (folder, told) = environment("", PROCESS, Some("77"));
     assert_eq!(domain_of(&folder), ("77".to_owned(), true));
-    assert!(told.contains("kept  ROS_DOMAIN_ID=77 of your environment"), "{told}");
+    assert!(told.contains("inherited  ROS_DOMAIN_ID=77 from your environment"), "{told}");
     assert!(told.contains("domain 77 port "), "{told}");
     assert!(!told.contains("ROS_AUTOMATIC_DISCOVERY_RANGE"), "{told}");
 }

@@ -93,8 +93,8 @@ fn a_rerun_has_the_same_profile_and_parameters() {
     folder.file("tests/Told.py", &format!("{TOLD}        self.fail('no')\n"));
     let args = ["tests/arm.xml::special", "--profile", "real", "--set", "n=4 5"];
     let finished = run(&folder, &args, &[]);
-    let again = "again   rtf run tests/arm.xml::special --profile real --set 'n=4 5'\n";
-    assert!(finished.stdout.contains(again), "{}", finished.stdout);
+    let rerun = "rerun   rtf run tests/arm.xml::special --profile real --set 'n=4 5'\n";
+    assert!(finished.stdout.contains(rerun), "{}", finished.stdout);
     let before = told(&folder.journal().record);
     assert_eq!(before, ["${param:x} 4 5|--robot icub|test|off|0.05|7"]);
     assert_eq!(run(&folder, &["--rerun", "failed"], &[]).code, Some(1));

@@ -86,7 +86,7 @@ fn the_command_that_runs_a_plug_in_again_has_its_parameters() {
     let run = folder.rtf(&["run", "fails.lua", "--param", "it's", "--environment=--robot icub"]);
     let lines = |text: &str| -> Vec<String> {
         text.lines()
-            .filter_map(|line| Some(line.split_once("again  ")?.1.trim().to_owned()))
+            .filter_map(|line| Some(line.split_once("rerun  ")?.1.trim().to_owned()))
             .collect()
     };
     let again = lines(&run.stdout);
