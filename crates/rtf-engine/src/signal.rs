@@ -34,7 +34,7 @@ pub async fn forward(
     guard: &Link,
     limit: Duration,
 ) -> io::Result<i32> {
-    let mut signals = Signals::install()?;
+    let mut signals = SignalListener::install()?;
     let mut requests = StopRequests::default();
     let mut heartbeats = tokio::time::interval(HEARTBEAT_INTERVAL);
     let mut died = Box::pin(guard.guard_died());
@@ -86,9 +86,9 @@ async fn until(moment: Option<Instant>) {
 
 /// The received signals that end a run.
 #[derive(Debug)]
-pub struct Signals([Signal; 3]);
+pub struct SignalListener([Signal; 3]);
 
-impl Signals {
+impl SignalListener {
     /// Installs the handlers.
     ///
     /// # Errors

@@ -24,10 +24,10 @@ pub(crate) struct LuaHost {
     /// A state that was prepared before there was a plug-in for it.
     ready: Option<PluginState>,
     files: CompiledFiles,
-    loaded: Option<Loaded>,
+    loaded: Option<LoadedScript>,
 }
 
-struct Loaded {
+struct LoadedScript {
     lua: Lua,
     /// `guard.call`: calls a function and returns how it ended.
     call: Function,
@@ -80,7 +80,7 @@ impl HostPlugin for LuaHost {
             sdk::inherit_predecessor(&lua, &table).map_err(unexpected)?;
         }
         let (style, args, param) = (compiled.style, plugin.args.clone(), plugin.param.clone());
-        self.loaded = Some(Loaded { lua, call, table, style, args, param });
+        self.loaded = Some(LoadedScript { lua, call, table, style, args, param });
         Ok(())
     }
 
@@ -127,7 +127,7 @@ impl HostPlugin for LuaHost {
     }
 }
 
-impl Loaded {
+impl LoadedScript {
     fn step(&self, step: Step) -> mlua::Result<StepEnd> {
         let function: Value = self.table.get(step.name())?;
         if function.is_nil() {

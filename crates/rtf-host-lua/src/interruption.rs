@@ -30,9 +30,9 @@ const SIGNAL: c_int = libc::SIGURG;
 static STATE: AtomicPtr<ffi::lua_State> = AtomicPtr::new(ptr::null_mut());
 static WANTS_STACK: AtomicBool = AtomicBool::new(false);
 static WANTS_STOP: AtomicBool = AtomicBool::new(false);
-static TARGET: OnceLock<Target> = OnceLock::new();
+static TARGET: OnceLock<InterruptTarget> = OnceLock::new();
 
-struct Target {
+struct InterruptTarget {
     session: Session,
     lua_thread: libc::pthread_t,
 }
@@ -46,7 +46,7 @@ unsafe extern "C" {
 pub(crate) fn start(session: &Session) {
     // SAFETY: returns the calling thread's own id.
     let lua_thread = unsafe { libc::pthread_self() };
-    TARGET.get_or_init(|| Target { session: session.clone(), lua_thread });
+    TARGET.get_or_init(|| InterruptTarget { session: session.clone(), lua_thread });
     // SAFETY: an all-zero sigaction is valid, and the handler is async-signal-safe.
     unsafe {
         let mut action: libc::sigaction = std::mem::zeroed();

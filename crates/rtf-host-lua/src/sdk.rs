@@ -100,7 +100,7 @@ fn functions(lua: &Lua) -> mlua::Result<Table> {
         session.message(message.0);
         Ok(())
     })?;
-    add(lua, &host, "measure", |session, measured: Measured| Ok(session.measure(measured.0)))?;
+    add(lua, &host, "measure", |session, measured: MeasureArgs| Ok(session.measure(measured.0)))?;
     add(lua, &host, "sample", |session, sampled: Sampled| Ok(sampled.send(session)))?;
     add(
         lua,
@@ -186,9 +186,9 @@ impl mlua::FromLuaMulti for Reported {
 }
 
 /// `name, value, unit, low, high, file, line`
-struct Measured(Measurement);
+struct MeasureArgs(Measurement);
 
-impl mlua::FromLuaMulti for Measured {
+impl mlua::FromLuaMulti for MeasureArgs {
     fn from_lua_multi(values: mlua::MultiValue, lua: &Lua) -> mlua::Result<Self> {
         type Arguments =
             (LuaString, f64, LuaString, Option<f64>, Option<f64>, Option<LuaString>, Option<u32>);

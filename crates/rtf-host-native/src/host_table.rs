@@ -17,14 +17,14 @@ use crate::abi::{
 /// The context of the functions: one per plug-in, never freed, because the plug-in's
 /// threads may still use it.
 #[derive(Debug)]
-struct Context {
+struct HostContext {
     session: Session,
     plugin: Plugin,
 }
 
 /// Makes the table for a plug-in.
 pub(crate) fn for_plugin(session: &Session, plugin: &Plugin) -> &'static rtf_host {
-    let context = Context { session: session.clone(), plugin: plugin.clone() };
+    let context = HostContext { session: session.clone(), plugin: plugin.clone() };
     let context = Box::into_raw(Box::new(context)).cast::<c_void>();
     Box::leak(Box::new(rtf_host {
         abi_major: RTF_ABI_MAJOR,
@@ -161,9 +161,9 @@ unsafe extern "C" fn repetition(context: *mut c_void) -> u32 {
 
 /// # Safety
 /// The pointer is the `context` of a table that [`for_plugin`] made.
-unsafe fn context(context: *mut c_void) -> &'static Context {
+unsafe fn context(context: *mut c_void) -> &'static HostContext {
     // SAFETY: it was made from such a box, which is never freed.
-    unsafe { &*context.cast::<Context>() }
+    unsafe { &*context.cast::<HostContext>() }
 }
 
 /// # Safety

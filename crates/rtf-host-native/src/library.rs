@@ -70,9 +70,9 @@ pub(crate) enum LibraryError {
 
 /// A loaded plug-in's table, valid until the process ends.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Table(pub(crate) &'static rtf_plugin_table);
+pub(crate) struct PluginTable(pub(crate) &'static rtf_plugin_table);
 
-impl Table {
+impl PluginTable {
     /// Loads a file and checks its table. Calls none of the plug-in's functions, but the
     /// loader runs constructors of static objects.
     pub(crate) fn load(file: &Path) -> Result<Self, LibraryError> {
@@ -143,7 +143,7 @@ impl Table {
 
 /// Checks whether a file can be loaded, for `--check`.
 pub(crate) fn check(file: &Path) -> CheckedFile {
-    match Table::load(file) {
+    match PluginTable::load(file) {
         Ok(table) => CheckedFile::good(file, Some(vec![word(table.kind()).to_owned()])),
         Err(error) => CheckedFile::bad(file, error.to_string(), None),
     }

@@ -11,17 +11,17 @@ use rtf_model::protocol::{
 
 use crate::abi::{RTF_DONE, RTF_REFUSED, RTF_STOPPED, rtf_plugin_table, rtf_test, rtf_text};
 use crate::host_table;
-use crate::library::{self, Lookup, Table};
+use crate::library::{self, Lookup, PluginTable};
 
 /// The native host with at most one plug-in.
 #[derive(Debug)]
 pub(crate) struct NativeHost {
     session: Session,
-    loaded: Option<Loaded>,
+    loaded: Option<LoadedPlugin>,
 }
 
 #[derive(Debug)]
-struct Loaded {
+struct LoadedPlugin {
     table: &'static rtf_plugin_table,
     this: *mut c_void,
     args: Vec<*mut c_char>,
@@ -56,7 +56,8 @@ impl HostPlugin for NativeHost {
 
     fn load(&mut self, kind: PluginKind, plugin: &Plugin) -> Result<(), LoadError> {
         let failed = |message: String| LoadError { message, location: None };
-        let table = Table::load(Path::new(&plugin.file)).and_then(|table| table.require(kind));
+        let table =
+            PluginTable::load(Path::new(&plugin.file)).and_then(|table| table.require(kind));
         let table = table.map_err(|error| failed(format!("`{}` {error}", plugin.file)))?.0;
         let args = arguments(plugin)
             .map_err(|_| failed("an argument holds a zero byte, which C cannot".to_owned()))?;
@@ -66,7 +67,7 @@ impl HostPlugin for NativeHost {
         if this.is_null() {
             return Err(failed(format!("`{}` could not be created", plugin.file)));
         }
-        self.loaded = Some(Loaded { table, this, args });
+        self.loaded = Some(LoadedPlugin { table, this, args });
         Ok(())
     }
 
@@ -75,7 +76,7 @@ impl HostPlugin for NativeHost {
     }
 
     fn subscriptions(&self) -> Vec<Subscription> {
-        let Some(Loaded { table, .. }) = &self.loaded else { return Vec::new() };
+        let Some(LoadedPlugin { table, .. }) = &self.loaded else { return Vec::new() };
         let started = table.test_started.map(|_| Subscription::TestStarted);
         let finished = table.test_finished.map(|_| Subscription::TestFinished);
         started.into_iter().chain(finished).collect()
@@ -96,7 +97,7 @@ impl HostPlugin for NativeHost {
     }
 }
 
-impl Loaded {
+impl LoadedPlugin {
     fn step(&mut self, step: Step) -> StepEnd {
         let code = if step == Step::Setup {
             let count = c_int::try_from(self.args.len() - 1).unwrap_or(c_int::MAX);

@@ -22,7 +22,7 @@ pub fn serve(session: &Session, host: impl HostPlugin) -> std::io::Result<()> {
     let reader = Reader::new(session, host.stack_dumper(), host.stopper());
     let process = rustix::process::getpid();
     let mut server =
-        Server { session, host, process, initialized: false, loaded: None, shared: None };
+        RequestLoop { session, host, process, initialized: false, loaded: None, shared: None };
     let Some((reader, first)) = server.before_plugins(reader) else {
         return Ok(());
     };
@@ -37,7 +37,7 @@ pub fn serve(session: &Session, host: impl HostPlugin) -> std::io::Result<()> {
     Ok(())
 }
 
-struct Server<'a, H> {
+struct RequestLoop<'a, H> {
     session: &'a Session,
     host: H,
     /// The process that serves the runner: a plug-in may fork.
@@ -48,7 +48,7 @@ struct Server<'a, H> {
     shared: Option<SharedHost>,
 }
 
-impl<H: HostPlugin> Server<'_, H> {
+impl<H: HostPlugin> RequestLoop<'_, H> {
     /// Carries out requests that need no plug-in, on this thread alone. Returns the first
     /// one that does, and the reader for a second thread.
     fn before_plugins(&mut self, mut reader: Reader) -> Option<(Reader, Incoming)> {

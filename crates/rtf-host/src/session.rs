@@ -39,10 +39,10 @@ pub enum OpenError {
 /// The connection to the runner. Cheap to clone; every function may be called
 /// from any thread.
 #[derive(Clone, Debug)]
-pub struct Session(Arc<Shared>);
+pub struct Session(Arc<SharedSession>);
 
 #[derive(Debug)]
-struct Shared {
+struct SharedSession {
     channel: Arc<UnixStream>,
     writer: Writer,
     /// Lock order: before the state.
@@ -90,7 +90,7 @@ impl Session {
     #[must_use]
     pub fn over(channel: UnixStream) -> Self {
         let channel = Arc::new(channel);
-        Self(Arc::new(Shared {
+        Self(Arc::new(SharedSession {
             writer: Writer::new(Arc::clone(&channel)),
             channel,
             sampling: Mutex::default(),

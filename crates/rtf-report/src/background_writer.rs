@@ -22,22 +22,22 @@ const STREAM_LIMIT: usize = 4 * 1024 * 1024;
 /// one handle keeps its order. [`Write::flush`] waits until everything is written.
 #[derive(Clone, Debug)]
 pub struct BackgroundWriter {
-    shared: Arc<Shared>,
+    shared: Arc<SharedBuffer>,
     /// How many bytes may wait before [`Write::write`] does.
     limit: usize,
     _handle: Arc<Handle>,
 }
 
 #[derive(Debug, Default)]
-struct Shared {
-    state: Mutex<State>,
+struct SharedBuffer {
+    state: Mutex<WriterState>,
     changed: Condvar,
     /// How many bytes are not written yet.
     waiting: AtomicUsize,
 }
 
 #[derive(Debug, Default)]
-struct State {
+struct WriterState {
     text: Vec<u8>,
     bar: Option<BarState>,
     /// The thread has taken something and is not done with it.
@@ -51,7 +51,7 @@ struct State {
 
 /// Ends the thread when it is dropped.
 #[derive(Debug)]
-struct Handle(Arc<Shared>);
+struct Handle(Arc<SharedBuffer>);
 
 impl Drop for Handle {
     fn drop(&mut self) {
@@ -60,13 +60,13 @@ impl Drop for Handle {
     }
 }
 
-impl Shared {
-    fn lock(&self) -> MutexGuard<'_, State> {
+impl SharedBuffer {
+    fn lock(&self) -> MutexGuard<'_, WriterState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Waits while a condition holds.
-    fn wait_while(&self, condition: impl Fn(&State) -> bool) -> MutexGuard<'_, State> {
+    fn wait_while(&self, condition: impl Fn(&WriterState) -> bool) -> MutexGuard<'_, WriterState> {
         let state = self.changed.wait_while(self.lock(), |state| condition(state));
         state.unwrap_or_else(PoisonError::into_inner)
     }
@@ -78,7 +78,7 @@ impl BackgroundWriter {
     /// # Errors
     /// The thread cannot be started.
     pub fn new(out: Box<dyn Write + Send>) -> io::Result<Self> {
-        let shared = Arc::new(Shared::default());
+        let shared = Arc::new(SharedBuffer::default());
         let ours = Arc::clone(&shared);
         thread::Builder::new().name("output".into()).spawn(move || write_all(&ours, out))?;
         let handle = Arc::new(Handle(Arc::clone(&shared)));
@@ -113,7 +113,7 @@ impl BackgroundWriter {
 impl Write for BackgroundWriter {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let waiting = &self.shared.waiting;
-        let is_full = |state: &State| {
+        let is_full = |state: &WriterState| {
             !state.is_over
                 && waiting.load(Ordering::Relaxed).saturating_add(bytes.len()) > self.limit
         };
@@ -130,7 +130,7 @@ impl Write for BackgroundWriter {
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        let is_busy = |state: &State| {
+        let is_busy = |state: &WriterState| {
             !state.is_over && (state.is_writing || !state.text.is_empty() || state.bar.is_some())
         };
         match self.shared.wait_while(is_busy).error.take() {
@@ -141,11 +141,11 @@ impl Write for BackgroundWriter {
 }
 
 /// The thread: writes what waits, until all handles are gone.
-fn write_all(shared: &Shared, mut out: Box<dyn Write + Send>) {
+fn write_all(shared: &SharedBuffer, mut out: Box<dyn Write + Send>) {
     let mut bar = Bar::hidden();
     loop {
         let is_idle =
-            |state: &State| state.text.is_empty() && state.bar.is_none() && !state.is_closed;
+            |state: &WriterState| state.text.is_empty() && state.bar.is_none() && !state.is_closed;
         let mut state = shared.wait_while(is_idle);
         if state.is_over || (state.text.is_empty() && state.bar.is_none()) {
             return;

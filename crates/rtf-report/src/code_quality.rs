@@ -8,7 +8,7 @@ use std::path::Path;
 use rtf_model::Record;
 use serde::Serialize;
 
-use crate::finding::{self, Finding, Place, Rank, Roots};
+use crate::finding::{self, Finding, Rank, RepositoryLocation, Roots};
 
 #[derive(Serialize)]
 struct Issue {
@@ -16,17 +16,17 @@ struct Issue {
     check_name: String,
     fingerprint: String,
     severity: &'static str,
-    location: Location,
+    location: IssueLocation,
 }
 
 #[derive(Serialize)]
-struct Location {
+struct IssueLocation {
     path: String,
-    lines: Lines,
+    lines: LineRange,
 }
 
 #[derive(Serialize)]
-struct Lines {
+struct LineRange {
     begin: u32,
 }
 
@@ -50,7 +50,7 @@ pub fn write(out: &mut dyn Write, record: &Record, repository: Option<&Path>) ->
     out.write_all(b"\n")
 }
 
-fn issue(finding: &Finding, place: Place, number: u32) -> Issue {
+fn issue(finding: &Finding, place: RepositoryLocation, number: u32) -> Issue {
     let severity = match finding.rank {
         Rank::Unsafe => "blocker",
         Rank::Bench => "critical",
@@ -68,7 +68,7 @@ fn issue(finding: &Finding, place: Place, number: u32) -> Issue {
         check_name: format!("rtf-{}", finding.kind),
         fingerprint: format!("{:032x}", hash(known.as_bytes())),
         severity,
-        location: Location { path: place.file, lines: Lines { begin: place.line.max(1) } },
+        location: IssueLocation { path: place.file, lines: LineRange { begin: place.line.max(1) } },
     }
 }
 

@@ -4,12 +4,12 @@ use std::io::Write;
 
 use rtf_model::{Event, LineSealer, Record};
 
-use crate::stream::Stream;
+use crate::stream::LineStream;
 use crate::{ReportError, Reporter};
 
 /// Writes each event as a line of JSON, exactly as the journal has it.
 pub struct EventStream {
-    stream: Stream,
+    stream: LineStream,
     sealer: LineSealer,
 }
 
@@ -17,7 +17,7 @@ impl EventStream {
     /// Writes to `out`.
     #[must_use]
     pub fn new(out: Box<dyn Write + Send>) -> Self {
-        Self { stream: Stream::new("the events", out), sealer: LineSealer::default() }
+        Self { stream: LineStream::new("the events", out), sealer: LineSealer::default() }
     }
 }
 

@@ -31,7 +31,7 @@ const GATHERING: Duration = Duration::from_micros(250);
 #[derive(Debug)]
 pub struct Fanout {
     handle: FanoutHandle,
-    thread: JoinHandle<Outcome>,
+    thread: JoinHandle<FanoutOutcome>,
 }
 
 /// Sends events to all reporters. Cheap to clone; events of one handle keep their order.
@@ -67,7 +67,7 @@ pub struct FanoutResult {
 }
 
 #[derive(Debug)]
-struct Outcome {
+struct FanoutOutcome {
     finished: FanoutResult,
     /// The first violation of the order of events, if the order is checked.
     disorder: Option<String>,
@@ -81,7 +81,7 @@ impl Fanout {
     pub fn start(reporters: Vec<Box<dyn Reporter>>) -> std::io::Result<Self> {
         let (sender, receiver) = mpsc::channel();
         let backlog = Arc::new(Backlog::default());
-        let state = State::new(reporters, Arc::clone(&backlog));
+        let state = FanoutState::new(reporters, Arc::clone(&backlog));
         let thread = thread::Builder::new().name("reports".into()).spawn(|| state.run(receiver))?;
         Ok(Self { handle: FanoutHandle { sender, backlog }, thread })
     }
@@ -127,7 +127,7 @@ fn panicked() -> ReportError {
     ReportError::at("a report", Path::new("its place"))(source)
 }
 
-struct State {
+struct FanoutState {
     record: Record,
     /// A reporter that failed is replaced by `None`.
     reporters: Vec<Option<Box<dyn Reporter>>>,
@@ -137,14 +137,14 @@ struct State {
     backlog: Arc<Backlog>,
 }
 
-impl Drop for State {
+impl Drop for FanoutState {
     /// No process waits for a thread that has ended.
     fn drop(&mut self) {
         self.backlog.close();
     }
 }
 
-impl State {
+impl FanoutState {
     fn new(reporters: Vec<Box<dyn Reporter>>, backlog: Arc<Backlog>) -> Self {
         Self {
             backlog,
@@ -156,7 +156,7 @@ impl State {
         }
     }
 
-    fn run(mut self, receiver: Receiver<Event>) -> Outcome {
+    fn run(mut self, receiver: Receiver<Event>) -> FanoutOutcome {
         loop {
             match receiver.try_recv() {
                 Ok(event) => self.report(&event),
@@ -174,7 +174,7 @@ impl State {
         }
         self.each(|reporter, record| reporter.finish(record));
         let (record, errors) = (take(&mut self.record), take(&mut self.errors));
-        Outcome { finished: FanoutResult { record, errors }, disorder: self.disorder.take() }
+        FanoutOutcome { finished: FanoutResult { record, errors }, disorder: self.disorder.take() }
     }
 
     fn report(&mut self, event: &Event) {

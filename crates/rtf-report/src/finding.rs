@@ -5,7 +5,7 @@ mod place;
 
 use rtf_model::{HookRunRecord, Record, Severity, SuiteRecord, TestRecord, Verdict};
 
-pub(crate) use place::{Place, Roots};
+pub(crate) use place::{RepositoryLocation, Roots};
 
 use crate::escape;
 use crate::explain::{self, Extent};
@@ -41,7 +41,7 @@ pub(crate) struct Finding {
     /// Everything that explains it, on one or more lines.
     pub text: String,
     /// Where to show it.
-    pub place: Option<Place>,
+    pub place: Option<RepositoryLocation>,
 }
 
 /// All findings: first the run, then hooks, fixtures and tests, so that a code
@@ -173,7 +173,7 @@ fn of_warning(warning: &rtf_model::Diagnostic, roots: &Roots<'_>) -> Finding {
     lines.extend(warning.notes.iter().map(|note| format!("note: {}", escape::block(note))));
     lines.extend(warning.hint.iter().map(|hint| format!("hint: {}", escape::block(hint))));
     let place = warning.labels.first().and_then(|label| {
-        Some(Place {
+        Some(RepositoryLocation {
             line: label.line,
             column: label.column,
             ..roots.place(&label.file, label.line)?

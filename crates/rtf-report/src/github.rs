@@ -49,11 +49,11 @@ fn property(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::finding::Place;
+    use crate::finding::RepositoryLocation;
 
     #[test]
     fn what_would_end_a_value_is_escaped() {
-        let place = Place { file: "a,b:c.py".to_owned(), line: 3, column: 0 };
+        let place = RepositoryLocation { file: "a,b:c.py".to_owned(), line: 3, column: 0 };
         let finding = Finding {
             rank: Rank::Robot,
             kind: "failed".to_owned(),

@@ -130,11 +130,11 @@ fn base(suite: &str, name: &str, ambiguous: bool, id: &str) -> String {
 #[derive(Debug)]
 pub struct Logs {
     folder: PathBuf,
-    open: HashMap<Source, Log>,
+    open: HashMap<Source, LogFile>,
 }
 
 #[derive(Debug)]
-struct Log {
+struct LogFile {
     path: PathBuf,
     file: BufWriter<File>,
 }
@@ -153,7 +153,7 @@ impl Logs {
             Entry::Vacant(entry) => {
                 let path = self.folder.join(log(record, output.source));
                 let file = create(&path).map_err(ReportError::at(WHAT, &path))?;
-                entry.insert(Log { path, file: BufWriter::new(file) })
+                entry.insert(LogFile { path, file: BufWriter::new(file) })
             }
         };
         log.print(output).map_err(ReportError::at(WHAT, &log.path))
@@ -186,7 +186,7 @@ fn create(path: &Path) -> std::io::Result<File> {
     OpenOptions::new().create(true).append(true).open(path)
 }
 
-impl Log {
+impl LogFile {
     fn print(&mut self, output: &Output) -> std::io::Result<()> {
         if output.omitted_bytes > 0 {
             write!(self.file, "\n[… {} bytes left out …]\n", output.omitted_bytes)?;
@@ -208,7 +208,8 @@ impl Reporter for Logs {
     }
 
     fn idle(&mut self, _record: &Record) -> Result<(), ReportError> {
-        let flushed = |log: &mut Log| log.file.flush().map_err(ReportError::at(WHAT, &log.path));
+        let flushed =
+            |log: &mut LogFile| log.file.flush().map_err(ReportError::at(WHAT, &log.path));
         self.open.values_mut().try_for_each(flushed)
     }
 

@@ -33,8 +33,8 @@ pub fn write(
 
 fn probe_io(path: &Path) -> io::Result<()> {
     match target(path)? {
-        Target::Direct => OpenOptions::new().write(true).open(path).map(drop),
-        Target::Replace { path, beside } => {
+        WriteTarget::Direct => OpenOptions::new().write(true).open(path).map(drop),
+        WriteTarget::Replace { path, beside } => {
             create_folder_of(&path)?;
             File::create_new(&beside)?;
             fs::remove_file(&beside)
@@ -44,8 +44,10 @@ fn probe_io(path: &Path) -> io::Result<()> {
 
 fn write_io(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     match target(path)? {
-        Target::Direct => fill_file(OpenOptions::new().write(true).open(path)?, fill).map(drop),
-        Target::Replace { path, beside } => {
+        WriteTarget::Direct => {
+            fill_file(OpenOptions::new().write(true).open(path)?, fill).map(drop)
+        }
+        WriteTarget::Replace { path, beside } => {
             create_folder_of(&path)?;
             let written = File::create_new(&beside)
                 .and_then(|file| fill_file(file, fill))
@@ -66,17 +68,17 @@ fn fill_file(file: File, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) ->
     writer.into_inner().map_err(io::IntoInnerError::into_error)
 }
 
-enum Target {
+enum WriteTarget {
     /// Written where it is.
     Direct,
     /// Written to `beside`, then renamed to `path`.
     Replace { path: PathBuf, beside: PathBuf },
 }
 
-fn target(path: &Path) -> io::Result<Target> {
+fn target(path: &Path) -> io::Result<WriteTarget> {
     let path = match fs::metadata(path) {
         Ok(found) if found.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
-        Ok(found) if !found.is_file() => return Ok(Target::Direct),
+        Ok(found) if !found.is_file() => return Ok(WriteTarget::Direct),
         // A link stays a link: the file that it leads to is replaced.
         Ok(_) => fs::canonicalize(path)?,
         Err(error) if error.kind() == io::ErrorKind::NotFound => path.to_owned(),
@@ -87,7 +89,7 @@ fn target(path: &Path) -> io::Result<Target> {
     temporary.push(name);
     temporary.push(format!(".{}.tmp", std::process::id()));
     let beside = path.with_file_name(temporary);
-    Ok(Target::Replace { path, beside })
+    Ok(WriteTarget::Replace { path, beside })
 }
 
 fn create_folder_of(path: &Path) -> io::Result<()> {

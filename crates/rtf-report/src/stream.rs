@@ -10,14 +10,14 @@ use crate::disconnect::UntilDisconnect;
 const PAGE: usize = 16 * 1024;
 
 /// Collects whole lines and writes them together.
-pub(crate) struct Stream {
+pub(crate) struct LineStream {
     what: &'static str,
     out: UntilDisconnect,
     /// What waits to be written: always whole lines.
     pub page: Vec<u8>,
 }
 
-impl Stream {
+impl LineStream {
     /// A stream to `out`; `what` names it in errors.
     pub fn new(what: &'static str, out: Box<dyn Write + Send>) -> Self {
         Self { what, out: UntilDisconnect::new(out), page: Vec::new() }

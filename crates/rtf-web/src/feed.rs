@@ -15,7 +15,7 @@ use serde_json::json;
 use tokio::sync::watch;
 
 use crate::app::blocking;
-use crate::index::{Lines, State};
+use crate::index::{LineReader, State};
 use crate::problem::Problem;
 use crate::runs::Run;
 
@@ -229,7 +229,7 @@ impl FeedPosition {
         let failed = crate::runs::unreadable;
         let stop = end.min(self.offset.saturating_add(BATCH));
         let journal = self.run.journal()?;
-        let mut lines = Lines::between(journal, self.offset, stop).map_err(failed)?;
+        let mut lines = LineReader::between(journal, self.offset, stop).map_err(failed)?;
         while let Some(line) = lines.next().map_err(failed)? {
             self.offset = line.end;
             let Ok(header) = serde_json::from_slice::<EventHeader>(line.text) else { continue };

@@ -7,7 +7,7 @@ use rtf_report::run_dir::LATEST;
 use serde::Serialize;
 
 use crate::app::{App, JsonText};
-use crate::index::{Index, Lines};
+use crate::index::{Index, LineReader};
 use crate::problem::Problem;
 use crate::runs::Run;
 
@@ -66,7 +66,7 @@ pub async fn update(State(app): State<App>) -> Result<JsonText, Problem> {
         let failed = crate::runs::unreadable;
         let end = index.offset();
         let start = index.positions().at(end.saturating_sub(END));
-        let mut lines = Lines::between(run.journal()?, start, end).map_err(failed)?;
+        let mut lines = LineReader::between(run.journal()?, start, end).map_err(failed)?;
         let mut shown = std::collections::VecDeque::new();
         while let Some(line) = lines.next().map_err(failed)? {
             let event = parse_event(line.text);

@@ -30,5 +30,5 @@ pub use api::{description, model};
 pub use capabilities::{Capabilities, FinishedRun, RerunRejected, RunControl, RunStarter};
 pub use connections::Limits;
 pub use journal_notifier::JournalNotifier;
-pub use server::{BoundServer, ServeError, Server, Service, Settings, ShutdownHandle};
+pub use server::{BoundServer, ServeError, Service, Settings, ShutdownHandle, WebServer};
 pub use tls::TlsError;

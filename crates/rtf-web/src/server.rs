@@ -17,7 +17,7 @@ use tokio::sync::{Semaphore, watch};
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::compression::{CompressionLayer, CompressionLevel};
 
-use crate::access::{self, Access, Hosts, Log, Rules, Secret, TokenError, WrongToken};
+use crate::access::{self, Access, AccessLog, Hosts, Rules, Secret, TokenError, WrongToken};
 use crate::app::App;
 use crate::capabilities::Capabilities;
 use crate::connections::{Limits, Listener, Peer};
@@ -122,7 +122,7 @@ pub struct BoundServer {
 
 /// A server that runs.
 #[derive(Debug)]
-pub struct Server {
+pub struct WebServer {
     address: SocketAddr,
     wanted: SocketAddr,
     token: String,
@@ -168,12 +168,12 @@ impl BoundServer {
     ///
     /// # Errors
     /// The thread cannot be started.
-    pub fn serve(self, service: Service<'_>) -> Result<Server, ServeError> {
+    pub fn serve(self, service: Service<'_>) -> Result<WebServer, ServeError> {
         let Self { listener, address, wanted, token, tls, hosts, remote, limits } = self;
         let Service { results, role, rerun, wrong_token } = service;
         let shown = token.text().to_owned();
         let rules = Rules { remote, tls: tls.is_some() };
-        let log = Log::start(wrong_token).map_err(ServeError::Start)?;
+        let log = AccessLog::start(wrong_token).map_err(ServeError::Start)?;
         let access = Access::new(token, hosts, rules, log)?;
         let (ending, ends) = watch::channel(false);
         let (grown, grows) = watch::channel(0);
@@ -194,7 +194,7 @@ impl BoundServer {
         let run = move || serve(listener, limits, tls, app);
         let thread = std::thread::Builder::new().name("web".into()).spawn(run);
         let thread = thread.map_err(ServeError::Start)?;
-        Ok(Server {
+        Ok(WebServer {
             address,
             wanted,
             token,
@@ -219,7 +219,7 @@ impl ShutdownHandle {
     }
 }
 
-impl Server {
+impl WebServer {
     /// The address to open, with the token.
     #[must_use]
     pub fn url(&self) -> String {

@@ -13,7 +13,7 @@ use rtf_engine::guard::{self, GuardOutcome, Link, Recovery, Side};
 use rtf_model::{LeakedProcess, Record};
 use rtf_report::journal;
 
-use crate::command::Outcome;
+use crate::command::VerbResult;
 use crate::error::Failure;
 use crate::{exit, terminal};
 
@@ -31,9 +31,9 @@ pub struct Supervision {
 /// guard's process with the journal, to write the missing reports.
 pub fn run(
     supervision: Supervision,
-    run: impl FnOnce(Link) -> Outcome,
+    run: impl FnOnce(Link) -> VerbResult,
     complete: impl FnOnce(&Path, &Record),
-) -> Outcome {
+) -> VerbResult {
     let Supervision { lifeline, patience, keeps_journal } = supervision;
     let ended = match guard::split(lifeline, patience).map_err(Failure::internal)? {
         Side::Runner(link) => return run(link),

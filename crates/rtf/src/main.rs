@@ -27,7 +27,7 @@ use std::process::ExitCode;
 
 use clap::{ArgMatches, CommandFactory, FromArgMatches};
 use cli::{Cli, Color, ConfigVerb, Verb};
-use command::Outcome;
+use command::VerbResult;
 use rtf_engine::guard;
 use rtf_process::{network, start_gate};
 
@@ -56,7 +56,7 @@ fn main() -> ExitCode {
     run(cli.verb, verb_matches).unwrap_or_else(|failure| failure.print())
 }
 
-fn run(verb: Verb, matches: &ArgMatches) -> Outcome {
+fn run(verb: Verb, matches: &ArgMatches) -> VerbResult {
     match verb {
         Verb::Run(args) => command::run::run(args, matches),
         Verb::Watch(args) => command::watch::run(args, matches),

@@ -8,7 +8,7 @@ use rtf_report::journal::Journal;
 use rtf_report::logs::Logs;
 use rtf_report::run_dir::{self, RunDir};
 use rtf_report::{ReportFile, Reporter};
-use rtf_web::{Capabilities, Server};
+use rtf_web::{Capabilities, WebServer};
 
 use crate::control::ControlChannels;
 use crate::error::Failure;
@@ -21,7 +21,7 @@ pub struct Prepared {
     /// The reporters, in the order in which they receive an event.
     pub reporters: Vec<Box<dyn Reporter>>,
     pub stdout: BackgroundWriter,
-    pub server: Option<Server>,
+    pub server: Option<WebServer>,
     pub control: Arc<ControlChannels>,
 }
 

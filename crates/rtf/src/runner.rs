@@ -7,15 +7,15 @@ use std::time::Duration;
 
 use rtf_engine::guard::Link;
 use rtf_engine::run::{EventSink, RunOptions, execute};
-use rtf_engine::signal::{self, Signals};
+use rtf_engine::signal::{self, SignalListener};
 use rtf_model::{EVENTS_VERSION, Event, Manifest, RunStarted, Source};
 use rtf_report::background_writer::BackgroundWriter;
 use rtf_report::run_dir::RunDir;
 use rtf_report::{Fanout, FanoutHandle, FanoutResult};
-use rtf_web::Server;
+use rtf_web::WebServer;
 use tokio::runtime::Runtime;
 
-use crate::command::Outcome;
+use crate::command::VerbResult;
 use crate::control::ControlChannels;
 use crate::error::Failure;
 use crate::plan::Planned;
@@ -24,7 +24,7 @@ use crate::request::RunRequest;
 use crate::{exit, revision, web};
 
 /// Runs, and serves the run for as long as requested.
-pub fn run(request: &RunRequest, planned: &Planned, prepared: Prepared, guard: Link) -> Outcome {
+pub fn run(request: &RunRequest, planned: &Planned, prepared: Prepared, guard: Link) -> VerbResult {
     let Prepared { dir, reporters, stdout, server, control } = prepared;
     let fanout = Fanout::start(reporters).map_err(Failure::internal)?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
@@ -44,7 +44,7 @@ pub fn run(request: &RunRequest, planned: &Planned, prepared: Prepared, guard: L
         web::linger(server, time)?;
     }
     // An error of the server does not concern the run.
-    drop(server.map(Server::stop));
+    drop(server.map(WebServer::stop));
     code
 }
 
@@ -117,7 +117,7 @@ fn run_plan(
 /// Waits until the reporters have finished. A signal ends only the wait for the reader
 /// of standard output.
 async fn finish_reports(fanout: Fanout, stdout: &BackgroundWriter) -> io::Result<FanoutResult> {
-    let mut signals = Signals::install()?;
+    let mut signals = SignalListener::install()?;
     let mut joined = tokio::task::spawn_blocking(|| fanout.join());
     let joined = tokio::select! {
         joined = &mut joined => joined,

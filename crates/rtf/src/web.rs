@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::time::Duration;
 
-use rtf_engine::signal::Signals;
+use rtf_engine::signal::SignalListener;
 use rtf_report::console::RerunCommand;
-use rtf_web::{BoundServer, Capabilities, ServeError, Server, Service, Settings, WrongToken};
+use rtf_web::{BoundServer, Capabilities, ServeError, Service, Settings, WebServer, WrongToken};
 
 use crate::error::Failure;
 use crate::{rerun_command, terminal};
@@ -18,7 +18,7 @@ pub fn bind(settings: &Settings) -> Result<BoundServer, Failure> {
 }
 
 /// Starts the server and prints its address.
-pub fn serve(bound: BoundServer, results: &Path, role: Capabilities) -> Result<Server, Failure> {
+pub fn serve(bound: BoundServer, results: &Path, role: Capabilities) -> Result<WebServer, Failure> {
     let rerun: fn() -> RerunCommand = rerun_command::for_run;
     let wrong_token = Box::new(report_wrong_token);
     let server = bound.serve(Service { results, role, rerun, wrong_token }).map_err(failure)?;
@@ -37,10 +37,10 @@ pub fn serve(bound: BoundServer, results: &Path, role: Capabilities) -> Result<S
 }
 
 /// Continues to serve for this time or until a signal.
-pub fn linger(server: &Server, time: Duration) -> Result<(), Failure> {
+pub fn linger(server: &WebServer, time: Duration) -> Result<(), Failure> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     runtime.map_err(Failure::internal)?.block_on(async {
-        let mut signals = Signals::install().map_err(Failure::internal)?;
+        let mut signals = SignalListener::install().map_err(Failure::internal)?;
         server.linger(time);
         terminal::notice(format_args!(
             "{LABEL}: the run has finished; serving it for {time:?}, or until Ctrl-C"

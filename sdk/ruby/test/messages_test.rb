@@ -1,7 +1,7 @@
 # frozen_string_literal: true
 
 require_relative "driver"
-require "rtf"
+require_relative "../lib/rtf"
 
 # Messages, measurements, samples and attachments.
 class MessagesTest < HostTest

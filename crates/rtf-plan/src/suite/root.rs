@@ -5,7 +5,7 @@ use rtf_model::Diagnostic;
 
 use super::reader::ElementReader;
 use super::schema::{self, check};
-use super::test::{self, Defaults};
+use super::test::{self, TestDefaults};
 use super::{
     DeclaredIsolation, DeclaredMiddleware, DeclaredSuite, Retries, SourceText, Spanned, clock, env,
     fixture, hook, port_reference, requires, xml,
@@ -45,7 +45,7 @@ fn not_a_suite(source: &SourceText, root: Node<'_, '_>) -> Diagnostic {
 
 fn read_suite(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> DeclaredSuite {
     check(reader, root, &schema::SUITE);
-    let defaults = Defaults {
+    let defaults = TestDefaults {
         limits: test::limits(reader, root, "test-"),
         after_collapse: test::after_collapse(reader, root).unwrap_or_default(),
         leaks: test::leaks(reader, root).unwrap_or_default(),

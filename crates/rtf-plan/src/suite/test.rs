@@ -12,7 +12,7 @@ use super::{
 
 /// The defaults that a suite declares for its tests.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Defaults {
+pub(super) struct TestDefaults {
     /// The limits.
     pub limits: DeclaredLimits,
     /// `after-collapse`.
@@ -27,7 +27,7 @@ pub(super) struct Defaults {
 pub(super) fn read(
     reader: &mut ElementReader<'_>,
     node: Node<'_, '_>,
-    defaults: Defaults,
+    defaults: TestDefaults,
 ) -> Option<DeclaredTest> {
     check(reader, node, &schema::TEST);
     let name = reader.word(node, "name");

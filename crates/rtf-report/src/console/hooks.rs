@@ -4,14 +4,19 @@
 use rtf_model::{HookId, HookRunRecord, Record};
 
 use super::live::{self, EXTENT};
-use super::page::Page;
+use super::page::ConsoleLines;
 use super::style::{self, BAD, BOLD, DIM, GOOD};
 use super::{ConsoleOptions, Verbosity};
 use crate::explain::{self, Tone};
 use crate::{cause, escape, logs, words};
 
 /// Shows the result of a run of a hook.
-pub(super) fn finished(page: &mut Page, options: &ConsoleOptions, record: &Record, id: HookId) {
+pub(super) fn finished(
+    page: &mut ConsoleLines,
+    options: &ConsoleOptions,
+    record: &Record,
+    id: HookId,
+) {
     let Some(hook) = record.hooks.get(id.index()) else { return };
     let Some(run) = hook.runs.last() else { return };
     let time = words::time(run.duration().unwrap_or_default());
@@ -33,7 +38,7 @@ fn title(record: &Record, id: HookId, run: &HookRunRecord) -> String {
 }
 
 fn failed(
-    page: &mut Page,
+    page: &mut ConsoleLines,
     options: &ConsoleOptions,
     record: &Record,
     which: (HookId, &HookRunRecord),
@@ -51,7 +56,7 @@ fn failed(
 }
 
 /// Lists the runs of hooks that failed.
-pub(super) fn summary(page: &mut Page, options: &ConsoleOptions, record: &Record) {
+pub(super) fn summary(page: &mut ConsoleLines, options: &ConsoleOptions, record: &Record) {
     if !record.hook_failed() {
         return;
     }

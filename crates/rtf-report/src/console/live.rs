@@ -5,7 +5,7 @@ use rtf_model::{
     Source, StopCause, SuiteId, SuitePrepared, TestFinished, TestId, Verdict,
 };
 
-use super::page::Page;
+use super::page::ConsoleLines;
 use super::style::{self, BAD, BOLD, DIM, LOUD};
 use super::{ConsoleOptions, Verbosity, hooks};
 use crate::explain::{self, Extent, Tone};
@@ -18,7 +18,12 @@ pub(super) const EXTENT: Extent = Extent { items: 10, stack_lines: 40 };
 const OUTPUT_LINES: usize = 20;
 
 /// Shows one event.
-pub(super) fn show(page: &mut Page, options: &ConsoleOptions, event: &Event, record: &Record) {
+pub(super) fn show(
+    page: &mut ConsoleLines,
+    options: &ConsoleOptions,
+    event: &Event,
+    record: &Record,
+) {
     let live = Live { options, record };
     let quiet = options.verbosity == Verbosity::Quiet;
     if record.events == 1 {
@@ -76,13 +81,13 @@ pub(super) fn show(page: &mut Page, options: &ConsoleOptions, event: &Event, rec
 }
 
 /// Shows which report is missing from now on, and why.
-pub(super) fn reporter_failed(page: &mut Page, error: &ReportError) {
+pub(super) fn reporter_failed(page: &mut ConsoleLines, error: &ReportError) {
     let what = format!("{} `{}`: {}", error.what, error.path.display(), error.source);
     page.remark((BAD, "NOT WRITTEN"), &escape::line(&what));
 }
 
 /// Shows damage of a past run's journal before its events.
-fn damage(page: &mut Page, record: &Record) {
+fn damage(page: &mut ConsoleLines, record: &Record) {
     if record.is_damaged() {
         page.remark((BAD, "DAMAGED"), "the journal of this run; what follows is incomplete:");
     }
@@ -92,7 +97,7 @@ fn damage(page: &mut Page, record: &Record) {
 }
 
 /// Shows how tests were selected, unless all tests run in their order.
-fn chosen(page: &mut Page, manifest: &Manifest) {
+fn chosen(page: &mut ConsoleLines, manifest: &Manifest) {
     let mut parts = Vec::new();
     if manifest.selected_from > 0 {
         parts.push(format!("from {}", words::count(manifest.selected_from.into(), "test")));
@@ -110,7 +115,7 @@ struct Live<'a> {
 }
 
 impl Live<'_> {
-    fn warning(&self, page: &mut Page) {
+    fn warning(&self, page: &mut ConsoleLines) {
         let Some(warning) = self.record.warnings.last() else { return };
         let place = warning.labels.first().map(|label| {
             format!("{}:{}:{}: ", escape::line(&label.file), label.line, label.column)
@@ -125,13 +130,13 @@ impl Live<'_> {
         }
     }
 
-    fn waiting(&self, page: &mut Page, id: SuiteId, lock: &str, held_by: &str) {
+    fn waiting(&self, page: &mut ConsoleLines, id: SuiteId, lock: &str, held_by: &str) {
         let suite = self.record.suites.get(id.index()).map_or("", |suite| &suite.plan.name);
         let text = format!("suite {suite} waits for `{lock}`, held by {held_by}");
         page.remark((LOUD, "waiting"), &escape::line(&text));
     }
 
-    fn suite(&self, page: &mut Page, id: SuiteId) {
+    fn suite(&self, page: &mut ConsoleLines, id: SuiteId) {
         let Some(suite) = self.record.suites.get(id.index()) else { return };
         let mut parts = vec![words::count(suite.tests.len() as u64, "test")];
         if !suite.fixtures.is_empty() {
@@ -150,7 +155,7 @@ impl Live<'_> {
     }
 
     /// The end of a suite, if suites run in parallel.
-    fn suite_over(&self, page: &mut Page, id: SuiteId) {
+    fn suite_over(&self, page: &mut ConsoleLines, id: SuiteId) {
         let Some(suite) = self.record.suites.get(id.index()) else { return };
         if self.record.runs_suites_in_parallel() {
             let took = suite.started.zip(suite.finished).map(|(start, end)| end.since(start));
@@ -160,7 +165,7 @@ impl Live<'_> {
     }
 
     /// The private resources of the suite, needed to find its processes.
-    fn prepared(&self, page: &mut Page, prepared: &SuitePrepared) {
+    fn prepared(&self, page: &mut ConsoleLines, prepared: &SuitePrepared) {
         let all = self.options.verbosity == Verbosity::Verbose;
         let kept = prepared.variables.iter().any(|variable| variable.inherited);
         let suite = match self.record.suites.get(prepared.suite.index()) {
@@ -195,14 +200,14 @@ impl Live<'_> {
         escape::line(&self.record.full_name(id)).into_owned()
     }
 
-    fn ready(&self, page: &mut Page, id: FixtureId) {
+    fn ready(&self, page: &mut ConsoleLines, id: FixtureId) {
         let Some(fixture) = self.record.fixture(id) else { return };
         let took = fixture.started.zip(fixture.ready).map(|(start, ready)| ready.since(start));
         let time = words::time(took.unwrap_or_default());
         page.entry((style::GOOD, "ready"), &time, &self.fixture(id));
     }
 
-    fn trouble(&self, page: &mut Page, word: &str, id: FixtureId, what: (&str, &[String])) {
+    fn trouble(&self, page: &mut ConsoleLines, word: &str, id: FixtureId, what: (&str, &[String])) {
         let (reason, log_tail) = what;
         page.remark((BAD, word), &self.fixture(id));
         explain::block(Tone::Bad, reason, "", &mut |tone, line| page.detail(tone, line));
@@ -210,7 +215,7 @@ impl Live<'_> {
     }
 
     /// A broken fixture that has collapsed has already shown its reason.
-    fn broken(&self, page: &mut Page, id: FixtureId, reason: &str) {
+    fn broken(&self, page: &mut ConsoleLines, id: FixtureId, reason: &str) {
         let told = self.record.fixture(id).and_then(|fixture| fixture.collapses.last());
         match told {
             Some((_, told)) if told == reason => {
@@ -222,7 +227,12 @@ impl Live<'_> {
     }
 
     /// A broken fixture has already shown its reason; its last lines are new.
-    fn stopped(&self, page: &mut Page, id: FixtureId, (problem, log_tail): (&str, &[String])) {
+    fn stopped(
+        &self,
+        page: &mut ConsoleLines,
+        id: FixtureId,
+        (problem, log_tail): (&str, &[String]),
+    ) {
         let broke = self.record.fixture(id).and_then(|fixture| fixture.broken.as_deref());
         if broke != Some(problem) {
             return self.trouble(page, "fixture", id, (problem, log_tail));
@@ -233,7 +243,7 @@ impl Live<'_> {
         }
     }
 
-    fn last_lines(&self, page: &mut Page, id: FixtureId, log_tail: &[String]) {
+    fn last_lines(&self, page: &mut ConsoleLines, id: FixtureId, log_tail: &[String]) {
         let sink = &mut |tone, line: &str| page.detail(tone, line);
         if !log_tail.is_empty() {
             sink(Tone::Plain, "last lines:");
@@ -244,7 +254,7 @@ impl Live<'_> {
         }
     }
 
-    fn fixture_message(&self, page: &mut Page, id: FixtureId, message: &Message) {
+    fn fixture_message(&self, page: &mut ConsoleLines, id: FixtureId, message: &Message) {
         let fails = matches!(message.kind, MessageKind::Failure | MessageKind::Error);
         if fails && self.options.verbosity < Verbosity::Verbose {
             page.remark((BAD, "fixture"), &self.fixture(id));
@@ -252,13 +262,13 @@ impl Live<'_> {
         }
     }
 
-    fn slow(&self, page: &mut Page, id: TestId, now: Micros) {
+    fn slow(&self, page: &mut ConsoleLines, id: TestId, now: Micros) {
         let attempt = self.record.tests.get(id.index()).and_then(|test| test.attempts.last());
         let time = attempt.map_or(String::new(), |a| words::time(now.since(a.started)));
         page.entry((LOUD, "slow"), &time, &format!("{} is still running", self.test(id)));
     }
 
-    fn stopping(&self, page: &mut Page, id: TestId, cause: StopCause, reason: &str) {
+    fn stopping(&self, page: &mut ConsoleLines, id: TestId, cause: StopCause, reason: &str) {
         let cause = match cause {
             StopCause::Timeout => "time-out",
             StopCause::Collapse => "collapse",
@@ -270,14 +280,14 @@ impl Live<'_> {
     }
 
     /// Leaked processes of a fixture. Those of tests and hooks are shown with their results.
-    fn left(&self, page: &mut Page, source: Source, processes: &[LeakedProcess]) {
+    fn left(&self, page: &mut ConsoleLines, source: Source, processes: &[LeakedProcess]) {
         if let Source::Fixture(id) = source {
             page.remark((LOUD, "leaked"), &self.fixture(id));
             explain::left(processes, &mut |tone, line| page.detail(tone, line));
         }
     }
 
-    fn finished(&self, page: &mut Page, finished: &TestFinished) {
+    fn finished(&self, page: &mut ConsoleLines, finished: &TestFinished) {
         let Some(test) = self.record.tests.get(finished.test.index()) else { return };
         let Some(attempt) = test.attempts.last() else { return };
         let mut name = self.test(finished.test);
@@ -312,7 +322,7 @@ impl Live<'_> {
         self.options.shown(&logs::log(self.record, source))
     }
 
-    fn skipped(&self, page: &mut Page, id: TestId, reason: &str) {
+    fn skipped(&self, page: &mut ConsoleLines, id: TestId, reason: &str) {
         let verdict = (style::of_verdict(Verdict::Skipped), Verdict::Skipped.as_str());
         let reason = words::first_line(cause::short(self.record, reason));
         page.entry(verdict, "", &format!("{}: {reason}", self.test(id)));
@@ -320,7 +330,7 @@ impl Live<'_> {
 }
 
 /// Shows leaked processes of a test or hook that succeeded.
-pub(super) fn leaked(page: &mut Page, name: &str, processes: &[LeakedProcess]) {
+pub(super) fn leaked(page: &mut ConsoleLines, name: &str, processes: &[LeakedProcess]) {
     if !processes.is_empty() {
         page.remark((LOUD, "leaked"), name);
         explain::left(processes, &mut |tone, line| page.detail(tone, line));

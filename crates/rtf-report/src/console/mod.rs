@@ -27,7 +27,7 @@ pub use options::{ConsoleOptions, RerunCommand, Verbosity, rerun_suite};
 use crate::background_writer::BackgroundWriter;
 use crate::disconnect::UntilDisconnect;
 use crate::{ReportError, Reporter, words};
-use page::Page;
+use page::ConsoleLines;
 use progress::Progress;
 use verbose::Verbose;
 
@@ -44,7 +44,7 @@ pub struct Console {
     /// The writer behind `out`, if it writes in the background.
     background: Option<BackgroundWriter>,
     bar: Bar,
-    page: Page,
+    page: ConsoleLines,
     written: Micros,
     progress: Progress,
     verbose: Verbose,
@@ -78,7 +78,7 @@ impl Console {
             out: UntilDisconnect::new(out),
             background: None,
             bar: Bar::hidden(),
-            page: Page::default(),
+            page: ConsoleLines::default(),
             written: Micros::default(),
             progress,
             verbose: Verbose::default(),

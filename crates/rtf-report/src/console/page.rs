@@ -10,9 +10,9 @@ const DETAIL: usize = 13;
 
 /// Lines that wait to be written.
 #[derive(Debug, Default)]
-pub(super) struct Page(String);
+pub(super) struct ConsoleLines(String);
 
-impl Page {
+impl ConsoleLines {
     /// A line as it is.
     pub fn line(&mut self, text: &str) {
         self.0 += text;

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use anstyle::Style;
 use rtf_model::{Phase, Record, TestId, Verdict};
 
-use super::page::Page;
+use super::page::ConsoleLines;
 use super::style::{self, BAD, BOLD, GOOD, LOUD};
 use super::{ConsoleOptions, hooks};
 use crate::growth::{self, Growing, Within};
@@ -23,7 +23,7 @@ const HISTOGRAM: usize = 10;
 const PROCESSES: usize = 50;
 
 /// Shows the summary.
-pub(super) fn show(page: &mut Page, options: &ConsoleOptions, record: &Record) {
+pub(super) fn show(page: &mut ConsoleLines, options: &ConsoleOptions, record: &Record) {
     hooks::summary(page, options, record);
     problems(page, record);
     failed(page, options, record);
@@ -41,7 +41,7 @@ pub(super) fn show(page: &mut Page, options: &ConsoleOptions, record: &Record) {
     result(page, record);
 }
 
-fn problems(page: &mut Page, record: &Record) {
+fn problems(page: &mut ConsoleLines, record: &Record) {
     let of_suite = |suite: &rtf_model::SuiteRecord| {
         let name = escape::line(&suite.plan.name).into_owned();
         let problems = record.fixture_problems(suite.plan.suite);
@@ -59,7 +59,7 @@ fn problems(page: &mut Page, record: &Record) {
     }
 }
 
-fn failed(page: &mut Page, options: &ConsoleOptions, record: &Record) {
+fn failed(page: &mut ConsoleLines, options: &ConsoleOptions, record: &Record) {
     let is_failed = |verdict: Verdict| !verdict.is_green() && verdict != Verdict::Skipped;
     let ids = record.tests.iter().map(|test| test.plan.test);
     let failed: Vec<_> = ids.filter(|id| is_failed(record.final_verdict(*id))).collect();
@@ -73,7 +73,7 @@ fn failed(page: &mut Page, options: &ConsoleOptions, record: &Record) {
     }
 }
 
-fn failed_test(page: &mut Page, options: &ConsoleOptions, record: &Record, id: TestId) {
+fn failed_test(page: &mut ConsoleLines, options: &ConsoleOptions, record: &Record, id: TestId) {
     let Some(test) = record.tests.get(id.index()) else { return };
     let verdict = record.final_verdict(id);
     let attempt = test.decisive_attempt();
@@ -106,7 +106,7 @@ fn failed_test(page: &mut Page, options: &ConsoleOptions, record: &Record, id: T
     }
 }
 
-fn skipped(page: &mut Page, record: &Record) {
+fn skipped(page: &mut ConsoleLines, record: &Record) {
     let mut reasons: BTreeMap<&str, Vec<TestId>> = BTreeMap::new();
     for test in &record.tests {
         if test.final_verdict() == Verdict::Skipped {
@@ -134,7 +134,7 @@ fn skipped(page: &mut Page, record: &Record) {
 }
 
 /// Tests that passed only after a retry, with the reasons of earlier failures.
-fn flaky(page: &mut Page, record: &Record) {
+fn flaky(page: &mut ConsoleLines, record: &Record) {
     let mut tests = record.tests.iter().filter(|test| test.is_flaky()).peekable();
     if tests.peek().is_none() {
         return;
@@ -155,7 +155,7 @@ fn flaky(page: &mut Page, record: &Record) {
 }
 
 /// Statistics of repeated tests.
-fn repeated(page: &mut Page, record: &Record) {
+fn repeated(page: &mut ConsoleLines, record: &Record) {
     let tests = record.tests.iter().filter_map(|test| Some((test, Repeated::of(test)?)));
     let mut tests = tests.peekable();
     if tests.peek().is_none() {
@@ -175,7 +175,7 @@ fn repeated(page: &mut Page, record: &Record) {
 }
 
 /// Fixtures and shared hosts whose resources grow.
-fn growing(page: &mut Page, record: &Record) {
+fn growing(page: &mut ConsoleLines, record: &Record) {
     let fixtures =
         record.suites.iter().flat_map(|suite| growth::fixtures(record, suite, Within::Run));
     grow(page, "fixtures that grow while tests are repeated:", fixtures.collect());
@@ -183,7 +183,7 @@ fn growing(page: &mut Page, record: &Record) {
     grow(page, "shared hosts that grow while tests are repeated:", hosts.collect());
 }
 
-fn grow(page: &mut Page, title: &str, growing: Vec<Growing>) {
+fn grow(page: &mut ConsoleLines, title: &str, growing: Vec<Growing>) {
     if growing.is_empty() {
         return;
     }
@@ -201,7 +201,7 @@ fn grow(page: &mut Page, title: &str, growing: Vec<Growing>) {
 }
 
 /// All leaked processes.
-fn killed(page: &mut Page, record: &Record) {
+fn killed(page: &mut ConsoleLines, record: &Record) {
     let left = record.leaked_processes();
     if left.is_empty() {
         return;
@@ -216,7 +216,7 @@ fn killed(page: &mut Page, record: &Record) {
     }
 }
 
-fn result(page: &mut Page, record: &Record) {
+fn result(page: &mut ConsoleLines, record: &Record) {
     let totals = record.final_totals();
     let counts = Verdict::ALL.into_iter().filter(|verdict| totals.of(*verdict) > 0);
     let counts: Vec<_> =

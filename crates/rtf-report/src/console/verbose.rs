@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use rtf_model::{Event, EventKind, FixtureId, HookId, Output, Record, Source, TestId};
 
-use super::page::Page;
+use super::page::ConsoleLines;
 use super::style::DIM;
 use crate::explain::{self, Tone};
 use crate::{escape, words};
@@ -52,7 +52,7 @@ impl Key {
 
 impl Verbose {
     /// Shows the details of an event; `live` shows the rest.
-    pub fn show(&mut self, page: &mut Page, event: &Event, record: &Record) {
+    pub fn show(&mut self, page: &mut ConsoleLines, event: &Event, record: &Record) {
         match &event.kind {
             EventKind::TestStarted { test, .. } => {
                 begin(page, record, Source::Test(*test), "start")
@@ -120,7 +120,7 @@ impl Verbose {
         }
     }
 
-    fn output(&mut self, page: &mut Page, output: &Output, record: &Record) {
+    fn output(&mut self, page: &mut ConsoleLines, output: &Output, record: &Record) {
         let key = Key::of(output);
         let partial = self.partial.entry(key).or_default();
         if output.omitted_bytes > 0 {
@@ -140,7 +140,7 @@ impl Verbose {
 
     /// Shows the incomplete lines of a suite, except those of tests
     /// that are still running: the rest of these lines may follow.
-    fn flush_suite(&mut self, page: &mut Page, record: &Record, source: Source) {
+    fn flush_suite(&mut self, page: &mut ConsoleLines, record: &Record, source: Source) {
         let suite = record.suite_of(source);
         let goes_on = |key: &Key| matches!(key, Key::Test(..)) && key.source() != source;
         let (now, later) = std::mem::take(&mut self.partial)
@@ -152,7 +152,7 @@ impl Verbose {
     }
 
     /// Shows incomplete lines.
-    pub fn flush(&mut self, page: &mut Page, record: &Record) {
+    pub fn flush(&mut self, page: &mut ConsoleLines, record: &Record) {
         for (key, text) in std::mem::take(&mut self.partial) {
             print(page, &key.name(record), &text);
         }
@@ -167,24 +167,24 @@ fn name(record: &Record, source: Source) -> String {
     }
 }
 
-fn begin(page: &mut Page, record: &Record, source: Source, word: &str) {
+fn begin(page: &mut ConsoleLines, record: &Record, source: Source, word: &str) {
     page.remark((DIM, word), &name(record, source));
 }
 
-fn lines_of(page: &mut Page, name: &str, lines: &[(Tone, String)]) {
+fn lines_of(page: &mut ConsoleLines, name: &str, lines: &[(Tone, String)]) {
     for (tone, line) in lines {
         page.detail(*tone, &format!("{name}: {line}"));
     }
 }
 
-fn print(page: &mut Page, name: &str, text: &str) {
+fn print(page: &mut ConsoleLines, name: &str, text: &str) {
     for line in text.lines() {
         page.detail(Tone::Dim, format!("{name} | {}", escape::block(line)).trim_end());
     }
 }
 
 /// Shows the signals of a test, one line each.
-fn sampled(page: &mut Page, record: &Record, test: TestId) {
+fn sampled(page: &mut ConsoleLines, record: &Record, test: TestId) {
     let attempt = record.tests.get(test.index()).and_then(|test| test.attempts.last());
     let lines = attempt.iter().flat_map(|attempt| &attempt.series).map(|series| {
         let tone = if series.outside == 0 { Tone::Plain } else { Tone::Bad };

@@ -6,7 +6,7 @@ use rtf_model::{Location, Record, SuiteRecord, TestRecord};
 
 /// A place in a file of the repository.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Place {
+pub(crate) struct RepositoryLocation {
     /// The file, from the repository's root, with `/`.
     pub file: String,
     /// The line, from 1; 0 when it is unknown.
@@ -31,7 +31,7 @@ impl<'a> Roots<'a> {
     }
 
     /// A place in a file; `None` when the file is not in the repository.
-    pub fn place(&self, file: &str, line: u32) -> Option<Place> {
+    pub fn place(&self, file: &str, line: u32) -> Option<RepositoryLocation> {
         if file.is_empty() {
             return None;
         }
@@ -39,17 +39,17 @@ impl<'a> Roots<'a> {
         let inside = absolute.strip_prefix(normal(self.repository)).ok()?;
         let parts: Vec<_> =
             inside.components().map(|part| part.as_os_str().to_string_lossy()).collect();
-        Some(Place { file: parts.join("/"), line, column: 0 })
+        Some(RepositoryLocation { file: parts.join("/"), line, column: 0 })
     }
 
     /// The file of a suite.
-    pub fn suite(&self, suite: &SuiteRecord) -> Option<Place> {
+    pub fn suite(&self, suite: &SuiteRecord) -> Option<RepositoryLocation> {
         self.place(&suite.plan.file, 0)
     }
 
     /// Where a test went wrong: the first failure with a place in the
     /// repository, else its suite's file, else its plug-in.
-    pub fn test(&self, record: &Record, test: &TestRecord) -> Option<Place> {
+    pub fn test(&self, record: &Record, test: &TestRecord) -> Option<RepositoryLocation> {
         let attempt = test.decisive_attempt();
         let failures = attempt.into_iter().flat_map(|attempt| attempt.failures());
         let violations = attempt.into_iter().flat_map(|attempt| attempt.violations());

@@ -12,13 +12,13 @@ const SIZE: usize = 128 * 1024;
 /// The serialiser writes many small pieces. Into a slice that costs much less than
 /// into a `Vec`, which may have to grow with each.
 #[derive(Debug)]
-pub(super) struct Page {
+pub(super) struct WriteBuffer {
     bytes: Vec<u8>,
     used: usize,
     sealer: LineSealer,
 }
 
-impl Page {
+impl WriteBuffer {
     pub fn new() -> Self {
         Self { bytes: vec![0; SIZE], used: 0, sealer: LineSealer::default() }
     }
@@ -114,7 +114,7 @@ mod tests {
     /// Also those that end where the page does.
     #[test]
     fn lines_of_any_length_are_whole() {
-        let (mut page, mut checker) = (Page::new(), LineChecker::default());
+        let (mut page, mut checker) = (WriteBuffer::new(), LineChecker::default());
         let lengths = [0, 10, SIZE / 2, SIZE, 5 * SIZE, 1];
         let at_the_end = (SIZE - 200..SIZE).step_by(3);
         for (seq, length) in (0..).zip(lengths.into_iter().chain(at_the_end)) {

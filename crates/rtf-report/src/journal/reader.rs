@@ -126,9 +126,9 @@ fn is_intact(path: &Path) -> io::Result<bool> {
     let mut checker = LineChecker::default();
     while let Some(found) = next_line(&mut file, &mut line)? {
         match found {
-            Line::Whole(line) if checker.check(line) == LineCheck::Intact => {}
+            RawLine::Whole(line) if checker.check(line) == LineCheck::Intact => {}
             // Whether a torn line is damage depends on what stands before it.
-            Line::Whole(_) | Line::Torn(_) => return Ok(false),
+            RawLine::Whole(_) | RawLine::Torn(_) => return Ok(false),
         }
     }
     Ok(true)
@@ -138,17 +138,20 @@ fn open(path: &Path) -> io::Result<BufReader<File>> {
     Ok(BufReader::with_capacity(64 * 1024, File::open(path)?))
 }
 
-enum Line<'a> {
+enum RawLine<'a> {
     /// A line without its end.
     Whole(&'a [u8]),
     /// What stands after the last end of a line.
     Torn(&'a [u8]),
 }
 
-fn next_line<'a>(file: &mut impl BufRead, text: &'a mut Vec<u8>) -> io::Result<Option<Line<'a>>> {
+fn next_line<'a>(
+    file: &mut impl BufRead,
+    text: &'a mut Vec<u8>,
+) -> io::Result<Option<RawLine<'a>>> {
     text.clear();
     let read = file.read_until(b'\n', text)?;
-    let line = || text.strip_suffix(b"\n").map_or(Line::Torn(text), Line::Whole);
+    let line = || text.strip_suffix(b"\n").map_or(RawLine::Torn(text), RawLine::Whole);
     Ok((read > 0).then(line))
 }
 
@@ -187,16 +190,16 @@ impl<'a, V: FnMut(&[u8], &Event, &Record) -> Result<(), ReportError>> Reading<'a
         let failed = |source| unreadable(path, source);
         while let Some(line) = next_line(&mut journal, &mut text).map_err(failed)? {
             match line {
-                Line::Whole(line) => self.line(line)?,
+                RawLine::Whole(line) => self.line(line)?,
                 // The only line of a journal whose runner was killed at once begins
                 // as an event does; anything else is another file.
-                Line::Torn(text) if self.lines.has_begun() || text.starts_with(b"{") => {
+                RawLine::Torn(text) if self.lines.has_begun() || text.starts_with(b"{") => {
                     self.stored.torn = true;
                     if !self.is_damage_known {
                         self.lines.record_incomplete_line(&mut self.stored.record);
                     }
                 }
-                Line::Torn(text) => self.line(text)?,
+                RawLine::Torn(text) => self.line(text)?,
             }
         }
         match (self.stored.record.events, self.stored.record.damages.first()) {

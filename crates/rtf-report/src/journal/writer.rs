@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use rtf_model::{Event, EventKind, Phase, Record};
 
-use super::page::Page;
+use super::page::WriteBuffer;
 use super::presence::Presence;
 use crate::{ReportError, Reporter};
 
@@ -25,7 +25,7 @@ pub struct Journal {
     path: PathBuf,
     file: File,
     /// Whole lines that are not in the file yet.
-    page: Page,
+    page: WriteBuffer,
     presence: Presence,
     /// How many bytes the file has.
     written: u64,
@@ -51,7 +51,7 @@ impl Journal {
         Ok(Self {
             path: path.to_owned(),
             file,
-            page: Page::new(),
+            page: WriteBuffer::new(),
             presence,
             written: 0,
             flushed: Instant::now(),

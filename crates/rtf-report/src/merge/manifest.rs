@@ -3,14 +3,14 @@
 use jiff::Timestamp;
 use rtf_model::Manifest;
 
-use super::{Part, Problem, count, started};
+use super::{MergeInput, MergeProblem, count, started};
 
 /// What the runs were asked for together.
 #[derive(Debug)]
-pub(super) struct Asked {
+pub(super) struct MergedManifest {
     pub manifest: Manifest,
     /// Parts of divisions that are not among the runs.
-    pub missing: Vec<Problem>,
+    pub missing: Vec<MergeProblem>,
 }
 
 /// Runs that were asked for the same but for their part.
@@ -23,7 +23,7 @@ struct Division {
 }
 
 /// Joins what the runs were asked for; `tests` is how many they have together.
-pub(super) fn join(parts: &[Part], tests: usize) -> Asked {
+pub(super) fn join(parts: &[MergeInput], tests: usize) -> MergedManifest {
     let divisions = divisions(parts);
     let missing = divisions.iter().filter_map(Division::missing).collect();
     let flaky_fails = divisions.iter().any(|division| division.manifest.flaky_fails);
@@ -34,10 +34,10 @@ pub(super) fn join(parts: &[Part], tests: usize) -> Asked {
     };
     let selected_from =
         if manifest.selected_from > count(tests) { manifest.selected_from } else { 0 };
-    Asked { manifest: Manifest { selected_from, ..manifest }, missing }
+    MergedManifest { manifest: Manifest { selected_from, ..manifest }, missing }
 }
 
-fn divisions(parts: &[Part]) -> Vec<Division> {
+fn divisions(parts: &[MergeInput]) -> Vec<Division> {
     let mut divisions: Vec<Division> = Vec::new();
     for run in parts.iter().filter_map(started) {
         let shard = run.manifest.shard.as_deref().and_then(|shard| shard.split_once('/'));
@@ -67,12 +67,12 @@ fn divisions(parts: &[Part]) -> Vec<Division> {
 impl Division {
     /// A part in which no test is makes no run: that all tests are there shows
     /// that none is missing. Filters hide how many there should be.
-    fn missing(&self) -> Option<Problem> {
+    fn missing(&self) -> Option<MergeProblem> {
         let of = self.of?;
         let all = self.manifest.filters.is_empty() && self.manifest.only.is_none();
         let parts: Vec<_> = (1..=of).filter(|part| !self.parts.contains(part)).collect();
         let complete = parts.is_empty() || (all && self.tests >= self.manifest.selected_from);
-        (!complete).then_some(Problem::Missing { parts, of })
+        (!complete).then_some(MergeProblem::Missing { parts, of })
     }
 }
 

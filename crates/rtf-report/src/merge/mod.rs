@@ -26,12 +26,12 @@ use rtf_model::{
 };
 
 use place::Ids;
-use plan::Plan;
-use suite::Suite;
+use plan::MergedPlan;
+use suite::MergedSuite;
 
 /// One of the runs.
 #[derive(Clone, Debug)]
-pub struct Part {
+pub struct MergeInput {
     /// What it is called, in words for people.
     pub name: String,
     /// Its events.
@@ -51,7 +51,7 @@ pub struct Header {
 
 /// Why runs cannot be merged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Problem {
+pub enum MergeProblem {
     /// A journal does not begin with `run-started`.
     #[error("the journal of `{run}` has no beginning")]
     NoBeginning {
@@ -87,7 +87,7 @@ pub enum Problem {
     },
 }
 
-impl Problem {
+impl MergeProblem {
     /// What to do about it.
     #[must_use]
     pub fn hint(&self) -> Option<&'static str> {
@@ -108,8 +108,8 @@ fn list(parts: &[u32], of: u32) -> String {
 /// Runs of which one can be made.
 #[derive(Debug)]
 pub struct Mergeable {
-    parts: Vec<Part>,
-    plan: Plan,
+    parts: Vec<MergeInput>,
+    plan: MergedPlan,
     manifest: Manifest,
 }
 
@@ -118,12 +118,12 @@ pub struct Mergeable {
 ///
 /// # Errors
 /// Every reason why not.
-pub fn merge(parts: Vec<Part>, partial: bool) -> Result<Mergeable, Vec<Problem>> {
+pub fn merge(parts: Vec<MergeInput>, partial: bool) -> Result<Mergeable, Vec<MergeProblem>> {
     let unreadable: Vec<_> = parts.iter().filter_map(|part| check(part).err()).collect();
     if !unreadable.is_empty() {
         return Err(unreadable);
     }
-    let (plan, mut problems) = Plan::join(&parts);
+    let (plan, mut problems) = MergedPlan::join(&parts);
     let asked = manifest::join(&parts, plan.tests.len());
     if !partial {
         problems.extend(asked.missing);
@@ -172,16 +172,16 @@ pub fn attachment_path(part: usize, path: &str) -> Option<String> {
 }
 
 /// A run that was killed may end anywhere; what is there has to be in order.
-fn check(part: &Part) -> Result<(), Problem> {
+fn check(part: &MergeInput) -> Result<(), MergeProblem> {
     if started(part).is_none() {
-        return Err(Problem::NoBeginning { run: part.name.clone() });
+        return Err(MergeProblem::NoBeginning { run: part.name.clone() });
     }
     let mut order = OrderChecker::default();
     let checked = part.events.iter().try_for_each(|event| order.check(event));
-    checked.map_err(|source| Problem::Order { run: part.name.clone(), source })
+    checked.map_err(|source| MergeProblem::Order { run: part.name.clone(), source })
 }
 
-fn started(part: &Part) -> Option<&RunStarted> {
+fn started(part: &MergeInput) -> Option<&RunStarted> {
     match part.events.first().map(|event| &event.kind) {
         Some(EventKind::RunStarted(run)) => Some(run),
         _ => None,
@@ -204,7 +204,7 @@ impl Merging {
         self.events.push(Event { seq: self.events.len() as u64, at: self.now, kind });
     }
 
-    fn all(&mut self, plan: &Plan, parts: Vec<Part>) {
+    fn all(&mut self, plan: &MergedPlan, parts: Vec<MergeInput>) {
         let mut taken = Taken::new(plan);
         for (number, part) in parts.into_iter().enumerate() {
             taken.take(part, &Ids { plan, part: number });
@@ -225,7 +225,7 @@ impl Merging {
 /// What the runs had, suite by suite, and how they ended.
 #[derive(Debug)]
 struct Taken {
-    suites: Vec<Suite>,
+    suites: Vec<MergedSuite>,
     /// Those that belong to no suite.
     warnings: Vec<Diagnostic>,
     interrupted: Option<String>,
@@ -234,14 +234,14 @@ struct Taken {
 }
 
 impl Taken {
-    fn new(plan: &Plan) -> Self {
-        let suites = plan.suites.iter().map(|plan| Suite::new(plan.suite)).collect();
+    fn new(plan: &MergedPlan) -> Self {
+        let suites = plan.suites.iter().map(|plan| MergedSuite::new(plan.suite)).collect();
         let (warnings, died, leaked) = (Vec::new(), Vec::new(), Vec::new());
         Self { suites, warnings, interrupted: None, died, leaked }
     }
 
     /// Hands a run's events to their suites.
-    fn take(&mut self, part: Part, ids: &Ids<'_>) {
+    fn take(&mut self, part: MergeInput, ids: &Ids<'_>) {
         ids.suites().for_each(|suite| self.suites[suite.index()].begin_piece());
         let (mut current, mut ended) = (None::<SuiteId>, false);
         for Event { at, mut kind, .. } in part.events {

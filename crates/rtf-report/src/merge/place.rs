@@ -3,12 +3,12 @@
 use rtf_model::{EventKind, FixtureId, HookId, Source, SuiteId, TestId};
 
 use super::attachment_path;
-use super::plan::Plan;
+use super::plan::MergedPlan;
 
 /// The ids of one run.
 #[derive(Debug)]
 pub(super) struct Ids<'a> {
-    pub plan: &'a Plan,
+    pub plan: &'a MergedPlan,
     /// The run's place.
     pub part: usize,
 }

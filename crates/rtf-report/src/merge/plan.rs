@@ -8,11 +8,11 @@ use rtf_model::{
     TestPlanned,
 };
 
-use super::{Part, Problem, count};
+use super::{MergeInput, MergeProblem, count};
 
 /// The plan, by the new ids.
 #[derive(Debug, Default)]
-pub(super) struct Plan {
+pub(super) struct MergedPlan {
     pub suites: Vec<SuitePlanned>,
     pub fixtures: Vec<FixturePlanned>,
     pub hooks: Vec<HookPlanned>,
@@ -51,9 +51,9 @@ impl Renumbered {
     }
 }
 
-impl Plan {
+impl MergedPlan {
     /// Joins; tells of tests that more than one run has.
-    pub fn join(parts: &[Part]) -> (Self, Vec<Problem>) {
+    pub fn join(parts: &[MergeInput]) -> (Self, Vec<MergeProblem>) {
         let mut joining = Joining::default();
         for (number, part) in parts.iter().enumerate() {
             joining.plan.maps.push(Map::default());
@@ -104,14 +104,14 @@ impl Plan {
 /// A plan that grows; its ids are not the last ones.
 #[derive(Default)]
 struct Joining {
-    plan: Plan,
+    plan: MergedPlan,
     /// The suites by their names and files.
     suites: HashMap<(String, String), SuiteId>,
     fixtures: HashMap<(SuiteId, String), FixtureId>,
     hooks: HashMap<(SuiteId, String), HookId>,
     /// With the run that has it.
     tests: HashMap<(SuiteId, String), usize>,
-    problems: Vec<Problem>,
+    problems: Vec<MergeProblem>,
 }
 
 impl Joining {
@@ -175,12 +175,12 @@ impl Joining {
         self.map().hooks.push(id);
     }
 
-    fn test(&mut self, plan: &TestPlanned, part: usize, parts: &[Part]) {
+    fn test(&mut self, plan: &TestPlanned, part: usize, parts: &[MergeInput]) {
         let suite = self.last_suite();
         let first = *self.tests.entry((suite, plan.name.clone())).or_insert(part);
         if first != part {
             let suite = &self.plan.suites[suite.index()].name;
-            self.problems.push(Problem::Twice {
+            self.problems.push(MergeProblem::Twice {
                 test: format!("{suite}/{}", plan.name),
                 first: parts[first].name.clone(),
                 second: parts[part].name.clone(),

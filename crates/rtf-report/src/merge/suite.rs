@@ -11,7 +11,7 @@ const DIED: &str = "the runner died";
 
 /// The events of a suite, with their new ids.
 #[derive(Debug)]
-pub(super) struct Suite {
+pub(super) struct MergedSuite {
     id: SuiteId,
     /// One for each run that has this suite.
     pieces: Vec<Piece>,
@@ -88,7 +88,7 @@ impl Lives {
     }
 }
 
-impl Suite {
+impl MergedSuite {
     /// A suite of which nothing is known yet.
     pub fn new(id: SuiteId) -> Self {
         Self { id, pieces: Vec::new() }

@@ -6,7 +6,7 @@ use std::path::Path;
 use anstyle::{AnsiColor, Style};
 use rtf_model::{Event, EventKind, Output, Record};
 
-use super::lines::{self, Line, Word};
+use super::lines::{self, ResultLine, Word};
 use super::summary;
 use crate::background_writer::BackgroundWriter;
 use crate::disconnect::UntilDisconnect;
@@ -17,7 +17,7 @@ const PAGE: usize = 16 * 1024;
 
 /// How much is shown.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct ConsoleOptions {
+pub struct ResultListOptions {
     /// All messages, not only failures and errors.
     pub verbose: bool,
     /// The places of messages in their sources.
@@ -27,8 +27,8 @@ pub struct ConsoleOptions {
 }
 
 /// Shows lines as they come.
-pub struct Console {
-    options: ConsoleOptions,
+pub struct ResultList {
+    options: ResultListOptions,
     out: UntilDisconnect,
     /// The writer behind `out`, if it writes in the background.
     background: Option<BackgroundWriter>,
@@ -39,16 +39,16 @@ pub struct Console {
     within_line: bool,
 }
 
-impl Console {
+impl ResultList {
     /// Writes to standard output, with colours if enabled.
     #[must_use]
-    pub fn stdout(options: ConsoleOptions) -> Self {
+    pub fn stdout(options: ResultListOptions) -> Self {
         Self::new(Box::new(anstream::AutoStream::auto(std::io::stdout())), options)
     }
 
     /// Writes through a background writer, for a run that must not wait.
     #[must_use]
-    pub fn over(writer: &BackgroundWriter, options: ConsoleOptions) -> Self {
+    pub fn over(writer: &BackgroundWriter, options: ResultListOptions) -> Self {
         let out: Box<dyn Write + Send> = Box::new(writer.clone());
         let choice = anstream::AutoStream::choice(&std::io::stdout());
         let out = Box::new(anstream::AutoStream::new(out, choice));
@@ -57,7 +57,7 @@ impl Console {
 
     /// Writes to `out`, with colour codes.
     #[must_use]
-    pub fn new(out: Box<dyn Write + Send>, options: ConsoleOptions) -> Self {
+    pub fn new(out: Box<dyn Write + Send>, options: ResultListOptions) -> Self {
         let (out, page) = (UntilDisconnect::new(out), String::new());
         Self { options, out, background: None, left_out: 0, page, within_line: false }
     }
@@ -81,7 +81,7 @@ impl Console {
         }
     }
 
-    fn line(&mut self, line: &Line) {
+    fn line(&mut self, line: &ResultLine) {
         let shown = matches!(line.word, Word::Warn | Word::Fail | Word::Error);
         if !shown && !self.options.verbose || line.word == Word::Info && self.leaves_out(1) {
             return;
@@ -99,7 +99,7 @@ impl Console {
     }
 
     fn progress(&mut self, text: &str) {
-        self.line(&Line { word: Word::Progress, text: text.to_owned(), place: None });
+        self.line(&ResultLine { word: Word::Progress, text: text.to_owned(), place: None });
     }
 
     /// What the plug-ins print, as it comes.
@@ -131,7 +131,7 @@ impl Console {
     }
 }
 
-impl Reporter for Console {
+impl Reporter for ResultList {
     fn event(&mut self, event: &Event, record: &Record) -> Result<(), ReportError> {
         match &event.kind {
             EventKind::RunStarted(_) => self.progress("Starting test runner."),

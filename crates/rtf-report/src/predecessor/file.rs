@@ -5,7 +5,7 @@ use std::path::Path;
 
 use rtf_model::Record;
 
-use super::lines::{self, Line};
+use super::lines::{self, ResultLine};
 use super::summary;
 use crate::journal::{self, JournalError};
 use crate::{ReportError, ReportFile};
@@ -51,7 +51,7 @@ fn unreadable(error: JournalError) -> io::Error {
     }
 }
 
-fn put_all(out: &mut dyn Write, lines: &[Line], detail: bool) -> io::Result<()> {
+fn put_all(out: &mut dyn Write, lines: &[ResultLine], detail: bool) -> io::Result<()> {
     for line in lines {
         writeln!(out, "{}{}", line.word.as_str(), line.text)?;
         if let Some(place) = line.place.as_ref().filter(|_| detail) {

@@ -37,7 +37,7 @@ impl Word {
 
 /// One line; a message may have several.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Line {
+pub(super) struct ResultLine {
     /// What it means.
     pub word: Word,
     /// What stands after the word.
@@ -46,7 +46,7 @@ pub(super) struct Line {
     pub place: Option<String>,
 }
 
-impl Line {
+impl ResultLine {
     fn progress(text: String) -> Self {
         Self { word: Word::Progress, text, place: None }
     }
@@ -59,7 +59,7 @@ impl Line {
 }
 
 /// The lines of one event; the record has taken it in already.
-pub(super) fn of(event: &Event, record: &Record) -> Vec<Line> {
+pub(super) fn of(event: &Event, record: &Record) -> Vec<ResultLine> {
     match &event.kind {
         EventKind::SuiteStarted { suite } => suite_line(record, *suite, "started..."),
         EventKind::SuiteFinished { suite } => {
@@ -82,7 +82,7 @@ pub(super) fn of(event: &Event, record: &Record) -> Vec<Line> {
         }
         EventKind::TestSkipped { test, reason } => {
             let name = problems::name(record, Source::Test(*test));
-            let skipped = Line::about(Word::Error, &name, &format!("skipped: {reason}"));
+            let skipped = ResultLine::about(Word::Error, &name, &format!("skipped: {reason}"));
             std::iter::once(skipped).chain(last_word(record, *test)).collect()
         }
         EventKind::TestRepeated { test, .. } => last_word(record, *test).into_iter().collect(),
@@ -91,16 +91,16 @@ pub(super) fn of(event: &Event, record: &Record) -> Vec<Line> {
 }
 
 /// The end of a test, once its last word is spoken.
-fn last_word(record: &Record, test: TestId) -> Option<Line> {
+fn last_word(record: &Record, test: TestId) -> Option<ResultLine> {
     let passed = record.verdict(test)?.is_green();
     Some(test_line(record, test, if passed { "passed!" } else { "failed!" }))
 }
 
 /// The lines after the last event: tests that an incomplete run left open.
-pub(super) fn left_open(record: &Record) -> Vec<Line> {
+pub(super) fn left_open(record: &Record) -> Vec<ResultLine> {
     let mut lines = Vec::new();
     if record.tests.is_empty() {
-        lines.push(Line::about(Word::Error, problems::RUNNER, "there are no tests"));
+        lines.push(ResultLine::about(Word::Error, problems::RUNNER, "there are no tests"));
     }
     for test in record.tests.iter().filter(|test| test.verdict().is_none()) {
         let why = if test.attempts.is_empty() {
@@ -108,26 +108,27 @@ pub(super) fn left_open(record: &Record) -> Vec<Line> {
         } else {
             "interrupted: the run ended before the test did"
         };
-        lines.push(Line::about(Word::Error, &test.plan.name, why));
+        lines.push(ResultLine::about(Word::Error, &test.plan.name, why));
         lines.push(test_line(record, test.plan.test, "failed!"));
     }
     lines
 }
 
-fn suite_line(record: &Record, id: SuiteId, what: &str) -> Vec<Line> {
+fn suite_line(record: &Record, id: SuiteId, what: &str) -> Vec<ResultLine> {
     // Plug-ins of the command line were in no suite.
     let suite = record.suites.get(id.index()).filter(|suite| summary::is_suite(suite));
     let name = |suite: &rtf_model::SuiteRecord| escape::line(&suite.plan.name).into_owned();
-    let line = suite.map(|suite| Line::progress(format!("Test suite {} {what}", name(suite))));
+    let line =
+        suite.map(|suite| ResultLine::progress(format!("Test suite {} {what}", name(suite))));
     line.into_iter().collect()
 }
 
-fn test_line(record: &Record, id: TestId, what: &str) -> Line {
+fn test_line(record: &Record, id: TestId, what: &str) -> ResultLine {
     let name = problems::name(record, Source::Test(id));
-    Line::progress(format!("Test case {} {what}", escape::line(&name)))
+    ResultLine::progress(format!("Test case {} {what}", escape::line(&name)))
 }
 
-fn of_message(about: &str, message: &Message) -> Line {
+fn of_message(about: &str, message: &Message) -> ResultLine {
     let (word, verb) = match message.kind {
         MessageKind::Report => (Word::Info, "reports: "),
         MessageKind::Check => (Word::Info, "checks: "),
@@ -135,16 +136,16 @@ fn of_message(about: &str, message: &Message) -> Line {
         MessageKind::Error => (Word::Error, ""),
     };
     let place = message.location.as_ref().map(place);
-    Line { place, ..Line::about(word, about, &format!("{verb}{}", message.text)) }
+    ResultLine { place, ..ResultLine::about(word, about, &format!("{verb}{}", message.text)) }
 }
 
-fn of_measurement(about: &str, measurement: &Measurement) -> Line {
+fn of_measurement(about: &str, measurement: &Measurement) -> ResultLine {
     let (word, text) = match measurement.problem() {
         Some(problem) => (Word::Fail, problem),
         None => (Word::Info, format!("{} = {}", measurement.name, measurement.value_with_unit())),
     };
     let place = measurement.location.as_ref().map(place);
-    Line { place, ..Line::about(word, about, &format!("measures: {text}")) }
+    ResultLine { place, ..ResultLine::about(word, about, &format!("measures: {text}")) }
 }
 
 /// `test.cpp at 12.`

@@ -5,7 +5,7 @@ use rtf_model::{
     EventKind, FixtureId, FixtureRecord, HookId, Record, Source, SuiteId, TestFinished, Verdict,
 };
 
-use super::lines::{Line, Word};
+use super::lines::{ResultLine, Word};
 use crate::explain;
 
 /// The runner, where a line is about nothing else.
@@ -22,7 +22,7 @@ pub(super) fn name(record: &Record, source: Source) -> String {
 }
 
 /// Why an attempt did not pass, unless the test said so itself.
-pub(super) fn of_attempt(record: &Record, finished: &TestFinished) -> Option<Line> {
+pub(super) fn of_attempt(record: &Record, finished: &TestFinished) -> Option<ResultLine> {
     if finished.verdict.is_green() {
         return None;
     }
@@ -35,14 +35,14 @@ pub(super) fn of_attempt(record: &Record, finished: &TestFinished) -> Option<Lin
     }
     let about = name(record, Source::Test(finished.test));
     Some(match finished.verdict {
-        Verdict::Failed => Line::about(Word::Fail, &about, reason),
-        Verdict::Error => Line::about(Word::Error, &about, reason),
-        verdict => Line::about(Word::Error, &about, &format!("{verdict}: {reason}")),
+        Verdict::Failed => ResultLine::about(Word::Fail, &about, reason),
+        Verdict::Error => ResultLine::about(Word::Error, &about, reason),
+        verdict => ResultLine::about(Word::Error, &about, &format!("{verdict}: {reason}")),
     })
 }
 
 /// The lines of an event of the bench.
-pub(super) fn of_bench(record: &Record, kind: &EventKind) -> Vec<Line> {
+pub(super) fn of_bench(record: &Record, kind: &EventKind) -> Vec<ResultLine> {
     let line = match kind {
         EventKind::FixtureStarting { fixture, attempt } if *attempt > 1 => {
             of_fixture(record, *fixture, |_| {
@@ -70,16 +70,18 @@ pub(super) fn of_bench(record: &Record, kind: &EventKind) -> Vec<Line> {
                 .iter()
                 .map(|process| {
                     let text = format!("left behind and killed: {}", explain::process(process));
-                    Line::about(Word::Warn, &about, &text)
+                    ResultLine::about(Word::Warn, &about, &text)
                 })
                 .collect();
         }
         EventKind::RunnerDied { reason, .. } => {
-            Some(Line::about(Word::Error, RUNNER, &format!("the runner died: {reason}")))
+            Some(ResultLine::about(Word::Error, RUNNER, &format!("the runner died: {reason}")))
         }
-        EventKind::RunFinished { interrupted: Some(reason) } => {
-            Some(Line::about(Word::Error, RUNNER, &format!("the run was interrupted: {reason}")))
-        }
+        EventKind::RunFinished { interrupted: Some(reason) } => Some(ResultLine::about(
+            Word::Error,
+            RUNNER,
+            &format!("the run was interrupted: {reason}"),
+        )),
         _ => None,
     };
     line.into_iter().collect()
@@ -89,10 +91,10 @@ fn of_fixture(
     record: &Record,
     id: FixtureId,
     tell: impl Fn(&FixtureRecord) -> Option<(Word, String)>,
-) -> Option<Line> {
+) -> Option<ResultLine> {
     let fixture = record.fixture(id)?;
     let (word, text) = tell(fixture)?;
-    Some(Line::about(word, &suite_name(record, fixture.plan.suite), &text))
+    Some(ResultLine::about(word, &suite_name(record, fixture.plan.suite), &text))
 }
 
 /// A failed tear-down. A failed set-up is reported when the fixture is broken.
@@ -109,7 +111,7 @@ fn broken(fixture: &FixtureRecord, reason: &str) -> String {
     }
 }
 
-fn of_hook(record: &Record, id: HookId, problem: Option<&str>) -> Option<Line> {
+fn of_hook(record: &Record, id: HookId, problem: Option<&str>) -> Option<ResultLine> {
     let hook = record.hooks.get(id.index())?;
     let run = hook.runs.last()?;
     let (name, on) = (&hook.plan.name, run.trigger);
@@ -117,7 +119,7 @@ fn of_hook(record: &Record, id: HookId, problem: Option<&str>) -> Option<Line> {
         Some(problem) => (Word::Error, format!("hook {name} on {on} failed: {problem}")),
         None => (Word::Info, format!("reports: hook {name} on {on} is done")),
     };
-    Some(Line::about(word, &suite_name(record, hook.plan.suite), &text))
+    Some(ResultLine::about(word, &suite_name(record, hook.plan.suite), &text))
 }
 
 fn suite_name(record: &Record, id: SuiteId) -> String {

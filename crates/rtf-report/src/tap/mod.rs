@@ -11,7 +11,7 @@ use std::io::{self, Write};
 
 use rtf_model::{Event, EventKind, Record, SuiteRecord};
 
-use crate::stream::Stream;
+use crate::stream::LineStream;
 use crate::{ReportError, Reporter, escape, finding, words};
 
 /// Writes the TAP report of a record that will not change any more.
@@ -26,7 +26,7 @@ pub fn write(out: &mut dyn Write, record: &Record) -> io::Result<()> {
 
 /// Writes TAP during the run.
 pub struct TapStream {
-    stream: Stream,
+    stream: LineStream,
     walk: Walk,
 }
 
@@ -34,7 +34,7 @@ impl TapStream {
     /// Writes to `out`.
     #[must_use]
     pub fn new(out: Box<dyn Write + Send>) -> Self {
-        Self { stream: Stream::new("TAP", out), walk: Walk::default() }
+        Self { stream: LineStream::new("TAP", out), walk: Walk::default() }
     }
 
     fn go_on(&mut self, record: &Record, over: bool) {

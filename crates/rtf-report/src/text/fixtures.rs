@@ -2,13 +2,13 @@
 
 use rtf_model::{FixtureRecord, FixtureState};
 
-use super::lines::Lines;
+use super::lines::TextLines;
 use crate::explain;
 use crate::growth;
 use crate::words;
 
 /// Writes a fixture.
-pub(super) fn show(lines: &mut Lines, fixture: &FixtureRecord) {
+pub(super) fn show(lines: &mut TextLines, fixture: &FixtureRecord) {
     let plan = &fixture.plan;
     lines.fact(2, "fixture", &format!("{} ({})", plan.name, plan.plugin_type));
     lines.at(4, &format!("state: {}", state(fixture.state)));

@@ -2,12 +2,12 @@
 
 use rtf_model::{HookRecord, HookRunRecord, Record, Trigger};
 
-use super::lines::Lines;
+use super::lines::TextLines;
 use crate::explain::{self, Extent};
 use crate::{cause, words};
 
 /// Writes a hook.
-pub(super) fn show(lines: &mut Lines, record: &Record, hook: &HookRecord) {
+pub(super) fn show(lines: &mut TextLines, record: &Record, hook: &HookRecord) {
     let on: Vec<_> = hook.plan.on.iter().map(|trigger| Trigger::as_str(*trigger)).collect();
     lines.fact(2, "hook", &format!("{} (on {})", hook.plan.name, on.join(", ")));
     if hook.runs.is_empty() {
@@ -18,7 +18,7 @@ pub(super) fn show(lines: &mut Lines, record: &Record, hook: &HookRecord) {
     }
 }
 
-fn show_run(lines: &mut Lines, record: &Record, (number, run): (usize, &HookRunRecord)) {
+fn show_run(lines: &mut TextLines, record: &Record, (number, run): (usize, &HookRunRecord)) {
     let how = match (run.problem().is_some(), run.duration()) {
         (_, None) => "it did not finish".to_owned(),
         (false, Some(took)) => format!("done after {}", words::time(took)),

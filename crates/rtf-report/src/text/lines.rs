@@ -7,9 +7,9 @@ use crate::explain::{self, Tone};
 
 /// Lines that wait to be written.
 #[derive(Debug, Default)]
-pub(super) struct Lines(String);
+pub(super) struct TextLines(String);
 
-impl Lines {
+impl TextLines {
     /// A line that needs no escaping.
     pub fn at(&mut self, indent: usize, text: &str) {
         if !text.is_empty() {

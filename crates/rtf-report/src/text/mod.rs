@@ -11,14 +11,14 @@ use rtf_model::{Record, SuiteRecord, Verdict};
 
 use crate::growth::{self, Within};
 use crate::{explain, prepared, words};
-use lines::Lines;
+use lines::TextLines;
 
 /// Writes the text report of a record.
 ///
 /// # Errors
 /// `out` cannot be written.
 pub fn write(out: &mut dyn Write, record: &Record) -> io::Result<()> {
-    let mut lines = Lines::default();
+    let mut lines = TextLines::default();
     head(&mut lines, record);
     lines.write_to(out)?;
     for suite in &record.suites {
@@ -28,7 +28,7 @@ pub fn write(out: &mut dyn Write, record: &Record) -> io::Result<()> {
     lines.write_to(out)
 }
 
-fn head(lines: &mut Lines, record: &Record) {
+fn head(lines: &mut TextLines, record: &Record) {
     if record.is_damaged() {
         lines.at(0, "the journal of this run is damaged, what follows is incomplete:");
         record.damages.iter().for_each(|damage| lines.fact(2, "damage", &damage.to_string()));
@@ -55,7 +55,7 @@ fn head(lines: &mut Lines, record: &Record) {
 }
 
 fn show_suite(
-    lines: &mut Lines,
+    lines: &mut TextLines,
     out: &mut dyn Write,
     record: &Record,
     suite: &SuiteRecord,
@@ -94,7 +94,7 @@ fn show_suite(
     lines.write_to(out)
 }
 
-fn result(lines: &mut Lines, record: &Record) {
+fn result(lines: &mut TextLines, record: &Record) {
     lines.at(0, "");
     if let Some(reason) = record.interrupted() {
         lines.fact(0, "interrupted", reason);

@@ -2,12 +2,12 @@
 
 use rtf_model::{AttemptRecord, MessageKind, Record, TestRecord};
 
-use super::lines::Lines;
+use super::lines::TextLines;
 use crate::explain::{self, Extent};
 use crate::{cause, escape, words};
 
 /// Writes a test.
-pub(super) fn show(lines: &mut Lines, record: &Record, test: &TestRecord) {
+pub(super) fn show(lines: &mut TextLines, record: &Record, test: &TestRecord) {
     let plan = &test.plan;
     lines.fact(2, "test", &format!("{} ({})", plan.name, plan.plugin_type));
     lines.fact(4, "plug-in", &plan.plugin);
@@ -28,7 +28,7 @@ pub(super) fn show(lines: &mut Lines, record: &Record, test: &TestRecord) {
     }
 }
 
-fn show_attempt(lines: &mut Lines, test: &TestRecord, attempt: &AttemptRecord) {
+fn show_attempt(lines: &mut TextLines, test: &TestRecord, attempt: &AttemptRecord) {
     let mut title = words::repetition(test, attempt);
     if attempt.attempt > 1 {
         title += &format!(", attempt {}", attempt.attempt);
@@ -51,7 +51,7 @@ fn show_attempt(lines: &mut Lines, test: &TestRecord, attempt: &AttemptRecord) {
     details(lines, attempt);
 }
 
-fn phases(lines: &mut Lines, attempt: &AttemptRecord) {
+fn phases(lines: &mut TextLines, attempt: &AttemptRecord) {
     let ends = attempt.phases.iter().skip(1).map(|(_, at)| *at);
     let ends = ends.chain(attempt.finished.as_ref().map(|(at, _)| *at));
     let took =
@@ -65,7 +65,7 @@ fn phases(lines: &mut Lines, attempt: &AttemptRecord) {
     }
 }
 
-fn details(lines: &mut Lines, attempt: &AttemptRecord) {
+fn details(lines: &mut TextLines, attempt: &AttemptRecord) {
     // Failures, violations, stacks and leaked processes come first,
     // then everything else.
     explain::explain(attempt, Extent::ALL, &mut |_, line| lines.at(6, line));

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use proptest::prelude::*;
 use rtf_model::{Event, EventKind, Micros, OrderChecker, Record, SuiteRecord, TestId, Verdict};
-use rtf_report::merge::{Header, Part, Problem, attachment_path, merge};
+use rtf_report::merge::{Header, MergeInput, MergeProblem, attachment_path, merge};
 
 use runs::{PARTS, Run, Suite, Test, Try, suites};
 
@@ -15,8 +15,8 @@ fn header() -> Header {
     Header { run, rtf, command: vec!["rtf".into(), "merge".into()] }
 }
 
-fn merged(parts: impl IntoIterator<Item = Vec<Event>>) -> Result<Record, Vec<Problem>> {
-    let part = |(number, events)| Part { name: format!("run-{number}"), events };
+fn merged(parts: impl IntoIterator<Item = Vec<Event>>) -> Result<Record, Vec<MergeProblem>> {
+    let part = |(number, events)| MergeInput { name: format!("run-{number}"), events };
     let events = merge((1..).zip(parts).map(part).collect(), false)?.events(header());
     let mut order = OrderChecker::default();
     events.iter().for_each(|event| order.check(event).unwrap());

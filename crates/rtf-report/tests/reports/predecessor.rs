@@ -6,14 +6,14 @@ use anstream::StripStream;
 use rtf_model::{EventKind, Record, Verdict};
 use rtf_report::Reporter;
 use rtf_report::journal;
-use rtf_report::predecessor::{self, Console, ConsoleOptions};
+use rtf_report::predecessor::{self, ResultList, ResultListOptions};
 
 use crate::support::*;
 
-fn console(name: &str, options: ConsoleOptions) -> String {
+fn console(name: &str, options: ResultListOptions) -> String {
     let paper = Paper::default();
     let plain = StripStream::new(Box::new(paper.clone()) as Box<dyn std::io::Write + Send>);
-    journal::replay(&stream_path(name), &mut Console::new(Box::new(plain), options)).unwrap();
+    journal::replay(&stream_path(name), &mut ResultList::new(Box::new(plain), options)).unwrap();
     paper.text()
 }
 
@@ -35,8 +35,8 @@ fn result_file() {
 
 #[test]
 fn quiet_and_talkative() {
-    let quiet = ConsoleOptions { summary: true, ..ConsoleOptions::default() };
-    let talkative = ConsoleOptions { verbose: true, detail: true, summary: false };
+    let quiet = ResultListOptions { summary: true, ..ResultListOptions::default() };
+    let talkative = ResultListOptions { verbose: true, detail: true, summary: false };
     for name in ["verdicts", "silent", "hooks", "nasty", "killed"] {
         insta::assert_snapshot!(format!("predecessor-quiet-{name}"), console(name, quiet));
         insta::assert_snapshot!(format!("predecessor-verbose-{name}"), console(name, talkative));

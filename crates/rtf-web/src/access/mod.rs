@@ -61,7 +61,7 @@ pub struct Access {
     remote: bool,
     tls: bool,
     guesses: Guesses,
-    log: Log,
+    log: AccessLog,
 }
 
 /// Maximum number of pending reports; further ones are dropped.
@@ -69,9 +69,9 @@ const REPORTS: usize = 16;
 
 /// Reports wrong tokens.
 #[derive(Debug)]
-pub struct Log(SyncSender<WrongToken>);
+pub struct AccessLog(SyncSender<WrongToken>);
 
-impl Log {
+impl AccessLog {
     /// Reports in a separate thread, because writing a report may block.
     ///
     /// # Errors
@@ -110,7 +110,12 @@ impl Access {
     ///
     /// # Errors
     /// The system has no random bytes.
-    pub fn new(token: Secret, hosts: Hosts, rules: Rules, log: Log) -> Result<Self, TokenError> {
+    pub fn new(
+        token: Secret,
+        hosts: Hosts,
+        rules: Rules,
+        log: AccessLog,
+    ) -> Result<Self, TokenError> {
         let (cookie, session) = (format!("rtf-{}", hosts.port()), Secret::random()?);
         let Rules { remote, tls } = rules;
         let guesses = Guesses::default();

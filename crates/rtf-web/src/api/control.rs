@@ -35,9 +35,9 @@ pub struct Started {
     run: String,
 }
 
-type Answer = Result<Response, Problem>;
+type ControlResult = Result<Response, Problem>;
 
-fn accepted<T: Serialize>(body: &T) -> Answer {
+fn accepted<T: Serialize>(body: &T) -> ControlResult {
     Ok((StatusCode::ACCEPTED, JsonText::of(body)?).into_response())
 }
 
@@ -46,7 +46,7 @@ async fn act(
     app: App,
     run: String,
     act: impl FnOnce(&dyn RunControl, &Index) -> Result<(), Problem> + Send + 'static,
-) -> Answer {
+) -> ControlResult {
     let role = app.role.clone();
     app.with_run(run, move |run| {
         let control = match &role {
@@ -79,7 +79,7 @@ fn over() -> Problem {
 /// Ends the run as SIGINT does.
 #[utoipa::path(post, path = "/runs/{run}/stop", tag = "control", params(("run" = String, Path)),
     responses((status = 202, body = Accepted), ChangeProblems))]
-pub async fn stop_run(State(app): State<App>, At(run): At<String>) -> Answer {
+pub async fn stop_run(State(app): State<App>, At(run): At<String>) -> ControlResult {
     let Capabilities::Viewer(starter) = app.role.clone() else {
         let stop = |control: &dyn RunControl, _: &Index| {
             control.stop_run();
@@ -101,7 +101,10 @@ pub async fn stop_run(State(app): State<App>, At(run): At<String>) -> Answer {
 #[utoipa::path(post, path = "/runs/{run}/tests/{test}/stop", tag = "control",
     params(("run" = String, Path), ("test" = u32, Path)),
     responses((status = 202, body = Accepted), ChangeProblems))]
-pub async fn stop_test(State(app): State<App>, At((run, test)): At<(String, u32)>) -> Answer {
+pub async fn stop_test(
+    State(app): State<App>,
+    At((run, test)): At<(String, u32)>,
+) -> ControlResult {
     act(app, run, move |control, index| {
         if !entry(&index.record().tests, test, "test")?.is_running() {
             return Err(Problem::conflict(format!("test {test} does not run")));
@@ -116,7 +119,10 @@ pub async fn stop_test(State(app): State<App>, At((run, test)): At<(String, u32)
 #[utoipa::path(post, path = "/runs/{run}/suites/{suite}/skip", tag = "control",
     params(("run" = String, Path), ("suite" = u32, Path)),
     responses((status = 202, body = Accepted), ChangeProblems))]
-pub async fn skip_suite(State(app): State<App>, At((run, suite)): At<(String, u32)>) -> Answer {
+pub async fn skip_suite(
+    State(app): State<App>,
+    At((run, suite)): At<(String, u32)>,
+) -> ControlResult {
     act(app, run, move |control, index| {
         if entry(&index.record().suites, suite, "suite")?.finished.is_some() {
             return Err(Problem::conflict(format!("suite {suite} is over")));
@@ -130,7 +136,7 @@ pub async fn skip_suite(State(app): State<App>, At((run, suite)): At<(String, u3
 /// Runs the tests of a past run that failed again, as a new run.
 #[utoipa::path(post, path = "/runs/{run}/rerun", tag = "control", params(("run" = String, Path)),
     responses((status = 202, body = Started), ChangeProblems))]
-pub async fn rerun(State(app): State<App>, At(run): At<String>) -> Answer {
+pub async fn rerun(State(app): State<App>, At(run): At<String>) -> ControlResult {
     let (role, runs) = (app.role.clone(), app.runs.clone());
     app.with_run(run, move |run| match role {
         Capabilities::Viewer(starter) => start(run, &runs, &*starter),
@@ -142,7 +148,7 @@ pub async fn rerun(State(app): State<App>, At(run): At<String>) -> Answer {
     .await
 }
 
-fn start(run: &Run, runs: &Runs, starter: &dyn RunStarter) -> Answer {
+fn start(run: &Run, runs: &Runs, starter: &dyn RunStarter) -> ControlResult {
     let folder = {
         let index = run.read()?;
         if !index.state().is_over() {

@@ -8,13 +8,13 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 
 use super::problems::Problems;
-use super::query::{Asked, At, Number, Page, words};
+use super::query::{At, Number, PageQuery, QueryParams, words};
 use super::types::{
     Attached, Attachments, Measured, Measurements, Messages, OutputPage, Printed, Said, Stack,
     Stacks,
 };
 use crate::app::{App, JsonText};
-use crate::index::Lines;
+use crate::index::LineReader;
 use crate::problem::Problem;
 use crate::runs::Run;
 
@@ -22,17 +22,17 @@ use crate::runs::Run;
 const PAGE_BYTES: usize = 1 << 20;
 
 pub(super) type Path3 = At<(String, u32, u32)>;
-pub(super) type Answer = Result<JsonText, Problem>;
+pub(super) type JsonResult = Result<JsonText, Problem>;
 
 /// Which part of the journal, and which page of it.
-pub(super) struct Part {
+pub(super) struct DetailQuery {
     pub(super) source: Source,
     pub(super) number: u32,
     pub(super) kind: &'static str,
-    pub(super) page: Page,
+    pub(super) page: PageQuery,
 }
 
-impl Part {
+impl DetailQuery {
     /// The entries of the page, and the number after which the next one starts.
     fn read<T>(
         &self,
@@ -76,7 +76,7 @@ impl Part {
         Ok(())
     }
 
-    fn lines(&self, run: &Run) -> Result<Lines, Problem> {
+    fn lines(&self, run: &Run) -> Result<LineReader, Problem> {
         let index = run.read()?;
         let Some(place) = index.positions().of(self.source, self.number) else {
             let (what, id) = match self.source {
@@ -91,7 +91,7 @@ impl Part {
         let end = place.end.unwrap_or(index.offset());
         let start = place.start.max(known);
         drop(index);
-        let lines = Lines::between(run.journal()?, start, end);
+        let lines = LineReader::between(run.journal()?, start, end);
         lines.map_err(crate::runs::unreadable)
     }
 }
@@ -114,9 +114,14 @@ pub struct Kinds {
 /// The kinds of messages.
 const KINDS: [&str; 4] = ["report", "check", "failure", "error"];
 
-async fn messages(app: App, run: String, (source, number): (Source, u32), kinds: Kinds) -> Answer {
-    let page = Page { after: kinds.after, limit: kinds.limit };
-    let part = Part { source, number, kind: "message", page };
+async fn messages(
+    app: App,
+    run: String,
+    (source, number): (Source, u32),
+    kinds: Kinds,
+) -> JsonResult {
+    let page = PageQuery { after: kinds.after, limit: kinds.limit };
+    let part = DetailQuery { source, number, kind: "message", page };
     let wanted = kinds.kind.map(|list| words("kind", &list, &KINDS)).transpose()?;
     app.with_run(run, move |run| {
         let (messages, next) = part.read(run, |event| {
@@ -138,8 +143,8 @@ async fn messages(app: App, run: String, (source, number): (Source, u32), kinds:
 pub async fn test_messages(
     State(app): State<App>,
     At((run, test, number)): Path3,
-    Asked(kinds): Asked<Kinds>,
-) -> Answer {
+    QueryParams(kinds): QueryParams<Kinds>,
+) -> JsonResult {
     messages(app, run, (Source::Test(TestId(test)), number), kinds).await
 }
 
@@ -151,8 +156,8 @@ pub async fn test_messages(
 pub async fn fixture_messages(
     State(app): State<App>,
     At((run, fixture, number)): Path3,
-    Asked(kinds): Asked<Kinds>,
-) -> Answer {
+    QueryParams(kinds): QueryParams<Kinds>,
+) -> JsonResult {
     messages(app, run, (Source::Fixture(FixtureId(fixture)), number), kinds).await
 }
 
@@ -163,22 +168,22 @@ pub async fn fixture_messages(
 pub async fn hook_messages(
     State(app): State<App>,
     At((run, hook, number)): Path3,
-    Asked(kinds): Asked<Kinds>,
-) -> Answer {
+    QueryParams(kinds): QueryParams<Kinds>,
+) -> JsonResult {
     messages(app, run, (Source::Hook(HookId(hook)), number), kinds).await
 }
 
 /// What an attempt of a test measured.
 #[utoipa::path(get, path = "/runs/{run}/tests/{test}/attempts/{number}/measurements",
     tag = "details",
-    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), Page),
+    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), PageQuery),
     responses((status = 200, body = Measurements), Problems))]
 pub async fn measurements(
     State(app): State<App>,
     At((run, test, number)): Path3,
-    Asked(page): Asked<Page>,
-) -> Answer {
-    let part = Part { source: Source::Test(TestId(test)), number, kind: "measured", page };
+    QueryParams(page): QueryParams<PageQuery>,
+) -> JsonResult {
+    let part = DetailQuery { source: Source::Test(TestId(test)), number, kind: "measured", page };
     app.with_run(run, move |run| {
         let (measurements, next) = part.read(run, |event| {
             let EventKind::Measured { measurement, .. } = event.kind else { return None };
@@ -193,14 +198,14 @@ pub async fn measurements(
 /// What an attempt of a test attached.
 #[utoipa::path(get, path = "/runs/{run}/tests/{test}/attempts/{number}/attachments",
     tag = "details",
-    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), Page),
+    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), PageQuery),
     responses((status = 200, body = Attachments), Problems))]
 pub async fn attachments(
     State(app): State<App>,
     At((run, test, number)): Path3,
-    Asked(page): Asked<Page>,
-) -> Answer {
-    let part = Part { source: Source::Test(TestId(test)), number, kind: "attached", page };
+    QueryParams(page): QueryParams<PageQuery>,
+) -> JsonResult {
+    let part = DetailQuery { source: Source::Test(TestId(test)), number, kind: "attached", page };
     app.with_run(run, move |run| {
         let (attachments, next) = part.read(run, |event| {
             let EventKind::Attached { attachment, .. } = event.kind else { return None };
@@ -214,14 +219,15 @@ pub async fn attachments(
 
 /// The stack dumps of an attempt that was killed.
 #[utoipa::path(get, path = "/runs/{run}/tests/{test}/attempts/{number}/stacks", tag = "details",
-    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), Page),
+    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), PageQuery),
     responses((status = 200, body = Stacks), Problems))]
 pub async fn stacks(
     State(app): State<App>,
     At((run, test, number)): Path3,
-    Asked(page): Asked<Page>,
-) -> Answer {
-    let part = Part { source: Source::Test(TestId(test)), number, kind: "stack-dumped", page };
+    QueryParams(page): QueryParams<PageQuery>,
+) -> JsonResult {
+    let part =
+        DetailQuery { source: Source::Test(TestId(test)), number, kind: "stack-dumped", page };
     app.with_run(run, move |run| {
         let (stacks, next) = part.read(run, |event| {
             let EventKind::StackDumped { text, .. } = event.kind else { return None };
@@ -232,8 +238,13 @@ pub async fn stacks(
     .await
 }
 
-async fn output(app: App, run: String, (source, number): (Source, u32), page: Page) -> Answer {
-    let part = Part { source, number, kind: "output", page };
+async fn output(
+    app: App,
+    run: String,
+    (source, number): (Source, u32),
+    page: PageQuery,
+) -> JsonResult {
+    let part = DetailQuery { source, number, kind: "output", page };
     app.with_run(run, move |run| {
         let (output, next) = part.read(run, |event| {
             let EventKind::Output(output) = event.kind else { return None };
@@ -248,37 +259,37 @@ async fn output(app: App, run: String, (source, number): (Source, u32), page: Pa
 
 /// What an attempt of a test printed.
 #[utoipa::path(get, path = "/runs/{run}/tests/{test}/attempts/{number}/output", tag = "details",
-    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), Page),
+    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), PageQuery),
     responses((status = 200, body = OutputPage), Problems))]
 pub async fn test_output(
     State(app): State<App>,
     At((run, test, number)): Path3,
-    Asked(page): Asked<Page>,
-) -> Answer {
+    QueryParams(page): QueryParams<PageQuery>,
+) -> JsonResult {
     output(app, run, (Source::Test(TestId(test)), number), page).await
 }
 
 /// What a fixture printed after one of its starts.
 #[utoipa::path(get, path = "/runs/{run}/fixtures/{fixture}/starts/{number}/output",
     tag = "details",
-    params(("run" = String, Path), ("fixture" = u32, Path), ("number" = u32, Path), Page),
+    params(("run" = String, Path), ("fixture" = u32, Path), ("number" = u32, Path), PageQuery),
     responses((status = 200, body = OutputPage), Problems))]
 pub async fn fixture_output(
     State(app): State<App>,
     At((run, fixture, number)): Path3,
-    Asked(page): Asked<Page>,
-) -> Answer {
+    QueryParams(page): QueryParams<PageQuery>,
+) -> JsonResult {
     output(app, run, (Source::Fixture(FixtureId(fixture)), number), page).await
 }
 
 /// What a run of a hook printed.
 #[utoipa::path(get, path = "/runs/{run}/hooks/{hook}/runs/{number}/output", tag = "details",
-    params(("run" = String, Path), ("hook" = u32, Path), ("number" = u32, Path), Page),
+    params(("run" = String, Path), ("hook" = u32, Path), ("number" = u32, Path), PageQuery),
     responses((status = 200, body = OutputPage), Problems))]
 pub async fn hook_output(
     State(app): State<App>,
     At((run, hook, number)): Path3,
-    Asked(page): Asked<Page>,
-) -> Answer {
+    QueryParams(page): QueryParams<PageQuery>,
+) -> JsonResult {
     output(app, run, (Source::Hook(HookId(hook)), number), page).await
 }

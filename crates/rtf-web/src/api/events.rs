@@ -12,7 +12,7 @@ use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
 
 use super::problems::Problems;
-use super::query::{Asked, At, Number};
+use super::query::{At, Number, QueryParams};
 use crate::app::App;
 use crate::feed::{Details, Feed};
 use crate::problem::Problem;
@@ -23,7 +23,7 @@ const SILENCE: Duration = Duration::from_secs(1);
 /// Which events.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
-pub struct Which {
+pub struct EventQuery {
     /// The number of the first event; the next one to come when it is left out.
     #[param(value_type = Option<u64>, maximum = 9_007_199_254_740_991_i64)]
     from: Option<Number>,
@@ -61,7 +61,7 @@ pub struct Sent {
 
 /// The events of a run as they happen.
 #[utoipa::path(get, path = "/runs/{run}/events", tag = "events",
-    params(("run" = String, Path), Which, Resumed),
+    params(("run" = String, Path), EventQuery, Resumed),
     responses(
         (status = 200, content_type = "text/event-stream", body = Sent),
         (status = 204, description = "the run is over, and nothing follows"),
@@ -69,7 +69,7 @@ pub struct Sent {
 pub async fn events(
     State(app): State<App>,
     At(run): At<String>,
-    Asked(which): Asked<Which>,
+    QueryParams(which): QueryParams<EventQuery>,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
     let details = Details::parse(which.details.as_deref().unwrap_or("all"))?;

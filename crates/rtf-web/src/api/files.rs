@@ -14,7 +14,7 @@ use super::ROOT;
 use super::problems::Problems;
 use super::query::At;
 use crate::app::App;
-use crate::index::Description;
+use crate::index::AttachmentInfo;
 use crate::problem::Problem;
 use crate::runs::Run;
 use crate::stream_file;
@@ -85,12 +85,12 @@ pub async fn file(
     let opened = app.with_run(run, move |run| {
         let file = open(run, &path)?;
         let said = run.read()?.attached().of(&path).cloned();
-        Ok((file, Kind::of(&path, said.as_ref())))
+        Ok((file, ServedType::of(&path, said.as_ref())))
     });
     let ((file, length), kind) = opened.await?;
     let mut response = match range(&headers, length) {
-        Asked::All => stream_file::body(file, 0..length, place)?.into_response(),
-        Asked::Part(start, end) => {
+        RangeRequest::All => stream_file::body(file, 0..length, place)?.into_response(),
+        RangeRequest::Part(start, end) => {
             let mut part = stream_file::body(file, start..end, place)?.into_response();
             *part.status_mut() = StatusCode::PARTIAL_CONTENT;
             let text = format!("bytes {start}-{}/{length}", end - 1);
@@ -98,7 +98,7 @@ pub async fn file(
             insert(part.headers_mut(), header::CONTENT_LENGTH, &(end - start).to_string());
             part
         }
-        Asked::Nothing => {
+        RangeRequest::Nothing => {
             let mut none = StatusCode::RANGE_NOT_SATISFIABLE.into_response();
             insert(none.headers_mut(), header::CONTENT_RANGE, &format!("bytes */{length}"));
             return Ok(none);
@@ -115,15 +115,15 @@ pub async fn file(
 
 /// What a file is to a browser.
 #[derive(Debug, PartialEq, Eq)]
-struct Kind {
+struct ServedType {
     name: String,
     media_type: String,
     shown: bool,
 }
 
-impl Kind {
+impl ServedType {
     /// The test's media type counts; without one, the ending of the name tells it.
-    fn of(path: &str, said: Option<&Description>) -> Self {
+    fn of(path: &str, said: Option<&AttachmentInfo>) -> Self {
         let guessed = |name: &str| mime_guess::from_path(name).first_raw();
         let given = said.map(|said| essence(&said.media_type)).filter(|kind| !kind.is_empty());
         let named = || said.and_then(|said| guessed(&said.name)).map(str::to_owned);
@@ -197,25 +197,27 @@ fn is_attachment(path: &str) -> bool {
 
 /// What a `Range` asks for.
 #[derive(Debug, PartialEq, Eq)]
-enum Asked {
+enum RangeRequest {
     All,
     Part(u64, u64),
     Nothing,
 }
 
 /// One range is understood; anything else is answered with the whole file.
-fn range(headers: &HeaderMap, length: u64) -> Asked {
+fn range(headers: &HeaderMap, length: u64) -> RangeRequest {
     let text = headers.get(header::RANGE).and_then(|value| value.to_str().ok());
-    let Some(range) = text.and_then(|text| text.strip_prefix("bytes=")) else { return Asked::All };
-    let Some((from, to)) = range.split_once('-') else { return Asked::All };
+    let Some(range) = text.and_then(|text| text.strip_prefix("bytes=")) else {
+        return RangeRequest::All;
+    };
+    let Some((from, to)) = range.split_once('-') else { return RangeRequest::All };
     let (from, to) = (from.trim().parse::<u64>(), to.trim().parse::<u64>());
     let (start, end) = match (from, to) {
         (Ok(from), Ok(to)) if from <= to => (from, to.saturating_add(1).min(length)),
         (Ok(from), Err(_)) if range.ends_with('-') => (from, length),
         (Err(_), Ok(last)) if range.starts_with('-') => (length.saturating_sub(last), length),
-        _ => return Asked::All,
+        _ => return RangeRequest::All,
     };
-    if start < end { Asked::Part(start, end) } else { Asked::Nothing }
+    if start < end { RangeRequest::Part(start, end) } else { RangeRequest::Nothing }
 }
 
 /// The journal as far as it is written.
@@ -265,8 +267,8 @@ mod tests {
     #[test]
     fn the_media_type_of_the_test_counts_and_the_name_has_an_extension() {
         let kind = |path: &str, name: &str, media_type: &str| {
-            let said = Description { name: name.into(), media_type: media_type.into() };
-            let Kind { name, media_type, shown } = Kind::of(path, Some(&said));
+            let said = AttachmentInfo { name: name.into(), media_type: media_type.into() };
+            let ServedType { name, media_type, shown } = ServedType::of(path, Some(&said));
             (name, media_type, shown)
         };
         for (path, name, said, wanted) in [
@@ -284,7 +286,7 @@ mod tests {
             let (shown_name, media_type, shown) = kind(path, name, said);
             assert_eq!((&*shown_name, &*media_type, shown), wanted, "{path}");
         }
-        assert_eq!(Kind::of("attachments/b.json", None).media_type, "application/json");
+        assert_eq!(ServedType::of("attachments/b.json", None).media_type, "application/json");
     }
 
     #[test]
@@ -294,13 +296,13 @@ mod tests {
             headers.insert(header::RANGE, HeaderValue::from_str(text).unwrap());
             range(&headers, 10)
         };
-        assert_eq!(asked("bytes=0-3"), Asked::Part(0, 4));
-        assert_eq!(asked("bytes=8-99"), Asked::Part(8, 10));
-        assert_eq!(asked("bytes=4-"), Asked::Part(4, 10));
-        assert_eq!(asked("bytes=-3"), Asked::Part(7, 10));
-        assert_eq!(asked("bytes=10-"), Asked::Nothing);
+        assert_eq!(asked("bytes=0-3"), RangeRequest::Part(0, 4));
+        assert_eq!(asked("bytes=8-99"), RangeRequest::Part(8, 10));
+        assert_eq!(asked("bytes=4-"), RangeRequest::Part(4, 10));
+        assert_eq!(asked("bytes=-3"), RangeRequest::Part(7, 10));
+        assert_eq!(asked("bytes=10-"), RangeRequest::Nothing);
         for odd in ["bytes=5-2", "bytes=0-1,4-5", "pages=1-2", "bytes=x-y", "bytes=-"] {
-            assert_eq!(asked(odd), Asked::All, "{odd}");
+            assert_eq!(asked(odd), RangeRequest::All, "{odd}");
         }
     }
 }

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 
 use super::problems::Problems;
-use super::query::{Asked, At, Number};
+use super::query::{At, Number, QueryParams};
 use crate::app::{App, JsonText};
 use crate::problem::Problem;
 use crate::stream_file;
@@ -38,7 +38,7 @@ pub enum Kind {
 /// Which part of it.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
-pub struct Which {
+pub struct LogQuery {
     /// The offset of its first byte. With this or `limit`, the answer is JSON.
     #[param(value_type = Option<u64>, maximum = 9_007_199_254_740_991_i64)]
     offset: Option<Number>,
@@ -82,13 +82,13 @@ fn path(record: &Record, kind: Kind, id: u32, number: u32) -> Option<PathBuf> {
 /// A log; with `offset` or `limit` a part of it, as JSON.
 #[utoipa::path(get, path = "/runs/{run}/logs/{kind}/{id}/{number}", tag = "files",
     params(("run" = String, Path), ("kind" = inline(Kind), Path), ("id" = u32, Path),
-        ("number" = u32, Path, description = "the attempt, start or run, from 1"), Which),
+        ("number" = u32, Path, description = "the attempt, start or run, from 1"), LogQuery),
     responses((status = 200, content(
         (LogPart = "application/json"), (String = "text/plain"))), Problems))]
 pub async fn log(
     State(app): State<App>,
     At((run, kind, id, number)): At<(String, Kind, u32, u32)>,
-    Asked(which): Asked<Which>,
+    QueryParams(which): QueryParams<LogQuery>,
 ) -> Result<Response, Problem> {
     let place = app.place_for_file();
     app.with_run(run, move |run| {
@@ -107,7 +107,7 @@ pub async fn log(
     .await
 }
 
-fn part(mut file: File, size: u64, which: &Which) -> Result<LogPart, Problem> {
+fn part(mut file: File, size: u64, which: &LogQuery) -> Result<LogPart, Problem> {
     let limit = which.limit.unwrap_or(PART);
     if !(4..=LARGEST_PART).contains(&limit) {
         let expected = format!("expected a number from 4 to {LARGEST_PART}");

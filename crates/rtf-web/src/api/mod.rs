@@ -44,7 +44,7 @@ const DESCRIPTION: &str = include_str!("../../../../schemas/openapi.json");
     modifiers(&Security),
     security((), ("token" = []), ("session" = [])),
 )]
-struct Description;
+struct ApiDescription;
 
 struct Security;
 
@@ -94,7 +94,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(control::stop_test))
         .routes(routes!(control::skip_suite))
         .routes(routes!(control::rerun));
-    OpenApiRouter::with_openapi(Description::openapi()).nest(ROOT, api)
+    OpenApiRouter::with_openapi(ApiDescription::openapi()).nest(ROOT, api)
 }
 
 /// The routes.

@@ -8,7 +8,7 @@ use super::types::{Fixture, Fixtures, Hook, Hooks, Suite, Suites};
 use crate::app::{App, JsonText};
 use crate::problem::Problem;
 
-type Answer = Result<JsonText, Problem>;
+type JsonResult = Result<JsonText, Problem>;
 
 /// The entry of a list with this id.
 pub fn entry<'a, T>(list: &'a [T], id: u32, what: &str) -> Result<&'a T, Problem> {
@@ -20,7 +20,7 @@ pub fn entry<'a, T>(list: &'a [T], id: u32, what: &str) -> Result<&'a T, Problem
 /// All suites.
 #[utoipa::path(get, path = "/runs/{run}/suites", tag = "plan", params(("run" = String, Path)),
     responses((status = 200, body = Suites), Problems))]
-pub async fn suites(State(app): State<App>, At(run): At<String>) -> Answer {
+pub async fn suites(State(app): State<App>, At(run): At<String>) -> JsonResult {
     app.read(run, |_, index| {
         let (record, over) = (index.record(), index.state().is_over());
         let suites = record.suites.iter().map(|suite| Suite::of(suite, record, over));
@@ -33,7 +33,7 @@ pub async fn suites(State(app): State<App>, At(run): At<String>) -> Answer {
 #[utoipa::path(get, path = "/runs/{run}/suites/{suite}", tag = "plan",
     params(("run" = String, Path), ("suite" = u32, Path)),
     responses((status = 200, body = Suite), Problems))]
-pub async fn suite(State(app): State<App>, At((run, suite)): At<(String, u32)>) -> Answer {
+pub async fn suite(State(app): State<App>, At((run, suite)): At<(String, u32)>) -> JsonResult {
     app.read(run, move |_, index| {
         let (record, over) = (index.record(), index.state().is_over());
         Ok(Suite::of(entry(&record.suites, suite, "suite")?, record, over))
@@ -44,7 +44,7 @@ pub async fn suite(State(app): State<App>, At((run, suite)): At<(String, u32)>) 
 /// All fixtures.
 #[utoipa::path(get, path = "/runs/{run}/fixtures", tag = "plan", params(("run" = String, Path)),
     responses((status = 200, body = Fixtures), Problems))]
-pub async fn fixtures(State(app): State<App>, At(run): At<String>) -> Answer {
+pub async fn fixtures(State(app): State<App>, At(run): At<String>) -> JsonResult {
     app.read(run, |_, index| {
         Ok(Fixtures { fixtures: index.record().fixtures.iter().map(Fixture::of).collect() })
     })
@@ -55,7 +55,7 @@ pub async fn fixtures(State(app): State<App>, At(run): At<String>) -> Answer {
 #[utoipa::path(get, path = "/runs/{run}/fixtures/{fixture}", tag = "plan",
     params(("run" = String, Path), ("fixture" = u32, Path)),
     responses((status = 200, body = Fixture), Problems))]
-pub async fn fixture(State(app): State<App>, At((run, id)): At<(String, u32)>) -> Answer {
+pub async fn fixture(State(app): State<App>, At((run, id)): At<(String, u32)>) -> JsonResult {
     app.read(run, move |_, index| Ok(Fixture::of(entry(&index.record().fixtures, id, "fixture")?)))
         .await
 }
@@ -63,7 +63,7 @@ pub async fn fixture(State(app): State<App>, At((run, id)): At<(String, u32)>) -
 /// All hooks.
 #[utoipa::path(get, path = "/runs/{run}/hooks", tag = "plan", params(("run" = String, Path)),
     responses((status = 200, body = Hooks), Problems))]
-pub async fn hooks(State(app): State<App>, At(run): At<String>) -> Answer {
+pub async fn hooks(State(app): State<App>, At(run): At<String>) -> JsonResult {
     app.read(run, |_, index| {
         Ok(Hooks { hooks: index.record().hooks.iter().map(Hook::of).collect() })
     })
@@ -74,6 +74,6 @@ pub async fn hooks(State(app): State<App>, At(run): At<String>) -> Answer {
 #[utoipa::path(get, path = "/runs/{run}/hooks/{hook}", tag = "plan",
     params(("run" = String, Path), ("hook" = u32, Path)),
     responses((status = 200, body = Hook), Problems))]
-pub async fn hook(State(app): State<App>, At((run, id)): At<(String, u32)>) -> Answer {
+pub async fn hook(State(app): State<App>, At((run, id)): At<(String, u32)>) -> JsonResult {
     app.read(run, move |_, index| Ok(Hook::of(entry(&index.record().hooks, id, "hook")?))).await
 }

@@ -14,7 +14,7 @@ pub struct At<T>(pub T);
 
 /// The query.
 #[derive(Debug)]
-pub struct Asked<T>(pub T);
+pub struct QueryParams<T>(pub T);
 
 impl<T: DeserializeOwned + Send, S: Send + Sync> FromRequestParts<S> for At<T> {
     type Rejection = Problem;
@@ -25,7 +25,7 @@ impl<T: DeserializeOwned + Send, S: Send + Sync> FromRequestParts<S> for At<T> {
     }
 }
 
-impl<T: DeserializeOwned + Send, S: Send + Sync> FromRequestParts<S> for Asked<T> {
+impl<T: DeserializeOwned + Send, S: Send + Sync> FromRequestParts<S> for QueryParams<T> {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
@@ -72,7 +72,7 @@ pub fn words(name: &str, list: &str, known: &[&str]) -> Result<Vec<String>, Prob
 /// A page of a list.
 #[derive(Clone, Copy, Debug, Default, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
-pub struct Page {
+pub struct PageQuery {
     /// The `next` of the page before.
     #[param(value_type = Option<u64>, maximum = 9_007_199_254_740_991_i64)]
     pub after: Option<Number>,
@@ -86,7 +86,7 @@ const PAGE: usize = 100;
 /// How many it may have.
 const LARGEST_PAGE: usize = 1000;
 
-impl Page {
+impl PageQuery {
     /// How many entries are wanted.
     ///
     /// # Errors

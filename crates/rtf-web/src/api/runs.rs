@@ -5,7 +5,7 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 
 use super::problems::Problems;
-use super::query::{Asked, At, limit};
+use super::query::{At, QueryParams, limit};
 use super::types::{RunInfo, RunList, Snapshot};
 use crate::app::{App, JsonText, blocking};
 use crate::problem::Problem;
@@ -17,7 +17,7 @@ const PAGE: usize = 50;
 /// Which runs.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
-pub struct Which {
+pub struct RunQuery {
     /// Only runs that are older than the one of this name.
     before: Option<String>,
     /// How many at most.
@@ -48,7 +48,7 @@ pub struct Which {
     until: Option<String>,
 }
 
-impl Which {
+impl RunQuery {
     fn filter(self) -> Result<RunFilter, Problem> {
         let is_hash = |text: &String| {
             (4..=64).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_hexdigit())
@@ -89,9 +89,12 @@ fn is_day(text: &str) -> bool {
 }
 
 /// All runs, the newest first.
-#[utoipa::path(get, path = "/runs", tag = "runs", params(Which),
+#[utoipa::path(get, path = "/runs", tag = "runs", params(RunQuery),
     responses((status = 200, body = RunList), Problems))]
-pub async fn list(State(app): State<App>, Asked(which): Asked<Which>) -> Result<JsonText, Problem> {
+pub async fn list(
+    State(app): State<App>,
+    QueryParams(which): QueryParams<RunQuery>,
+) -> Result<JsonText, Problem> {
     let limit = limit(which.limit, PAGE)?;
     let before = which.before.clone();
     let filter = which.filter()?;

@@ -6,9 +6,9 @@ use rtf_model::{EventKind, Samples, SignalOutline, SignalSummary, Source, TestId
 use serde::Deserialize;
 use utoipa::IntoParams;
 
-use super::details::{Answer, Part, Path3};
+use super::details::{DetailQuery, JsonResult, Path3};
 use super::problems::Problems;
-use super::query::{Asked, At, Page};
+use super::query::{At, PageQuery, QueryParams};
 use super::types::{Signal, Signals};
 use crate::app::{App, JsonText};
 use crate::problem::Problem;
@@ -48,11 +48,11 @@ impl Window {
 pub async fn series(
     State(app): State<App>,
     At((run, test, number)): Path3,
-    Asked(window): Asked<Window>,
-) -> Answer {
+    QueryParams(window): QueryParams<Window>,
+) -> JsonResult {
     let window = window.check()?;
-    let page = Page { after: None, limit: None };
-    let part = Part { source: Source::Test(TestId(test)), number, kind: "sampled", page };
+    let page = PageQuery { after: None, limit: None };
+    let part = DetailQuery { source: Source::Test(TestId(test)), number, kind: "sampled", page };
     app.with_run(run, move |run| {
         let mut all: Vec<(SignalSummary, SignalOutline)> = Vec::new();
         part.each(run, |event| {

@@ -7,7 +7,7 @@ use utoipa::IntoParams;
 
 use super::plan::entry;
 use super::problems::Problems;
-use super::query::{Asked, At, limit, words};
+use super::query::{At, QueryParams, limit, words};
 use super::types::{Attempt, Test, TestDetail, TestPage, TestState};
 use crate::app::{App, JsonText};
 use crate::problem::Problem;
@@ -85,7 +85,7 @@ impl Which {
 pub async fn list(
     State(app): State<App>,
     At(run): At<String>,
-    Asked(which): Asked<Which>,
+    QueryParams(which): QueryParams<Which>,
 ) -> Result<JsonText, Problem> {
     app.read(run, move |_, index| which.page(index.record(), index.state().is_over())).await
 }

@@ -14,7 +14,7 @@ pub struct Budget {
 
 /// Room for one connection; given back when it is dropped.
 #[derive(Debug)]
-pub struct Place {
+pub struct ConnectionSlot {
     budget: Budget,
     address: IpAddr,
 }
@@ -28,7 +28,7 @@ impl Budget {
 
     /// Room for one more connection of this address, if there is any.
     #[must_use]
-    pub fn take(&self, address: IpAddr) -> Option<Place> {
+    pub fn take(&self, address: IpAddr) -> Option<ConnectionSlot> {
         let mut used = self.used.lock().unwrap_or_else(PoisonError::into_inner);
         let total: usize = used.values().sum();
         let own = used.get(&address).copied().unwrap_or_default();
@@ -36,11 +36,11 @@ impl Budget {
             return None;
         }
         used.insert(address, own + 1);
-        Some(Place { budget: self.clone(), address })
+        Some(ConnectionSlot { budget: self.clone(), address })
     }
 }
 
-impl Drop for Place {
+impl Drop for ConnectionSlot {
     fn drop(&mut self) {
         let mut used = self.budget.used.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(own) = used.get_mut(&self.address) {

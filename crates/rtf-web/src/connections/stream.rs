@@ -10,7 +10,7 @@ use tokio::net::TcpStream;
 use tokio::time::{Instant, Sleep, sleep_until};
 
 use super::Limits;
-use super::budget::Place;
+use super::budget::ConnectionSlot;
 
 /// A connection within its limits. The first bytes are expected within the time
 /// for a head; after that, something has to be sent or received now and then.
@@ -18,7 +18,7 @@ use super::budget::Place;
 pub struct Limited {
     stream: TcpStream,
     /// Given back with the connection.
-    _place: Place,
+    _place: ConnectionSlot,
     idle: Duration,
     /// When the connection ends if nothing moves until then.
     due: Instant,
@@ -28,7 +28,7 @@ pub struct Limited {
 impl Limited {
     /// A new connection.
     #[must_use]
-    pub fn new(stream: TcpStream, place: Place, limits: &Limits) -> Self {
+    pub fn new(stream: TcpStream, place: ConnectionSlot, limits: &Limits) -> Self {
         let due = Instant::now() + limits.head;
         let timer = Box::pin(sleep_until(due));
         Self { stream, _place: place, idle: limits.idle, due, timer }

@@ -8,7 +8,7 @@ const BUFFER: usize = 64 * 1024;
 
 /// Reads lines one by one. An incomplete last line is ignored.
 #[derive(Debug)]
-pub struct Lines {
+pub struct LineReader {
     file: BufReader<File>,
     text: Vec<u8>,
     offset: u64,
@@ -17,7 +17,7 @@ pub struct Lines {
 
 /// One line.
 #[derive(Debug)]
-pub struct Line<'a> {
+pub struct IndexedLine<'a> {
     /// The text, without its line break.
     pub text: &'a [u8],
     /// The offset of its start.
@@ -26,7 +26,7 @@ pub struct Line<'a> {
     pub end: u64,
 }
 
-impl Lines {
+impl LineReader {
     /// The lines that start at `start` (a line does) and before `end`.
     ///
     /// # Errors
@@ -41,7 +41,7 @@ impl Lines {
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn next(&mut self) -> io::Result<Option<Line<'_>>> {
+    pub fn next(&mut self) -> io::Result<Option<IndexedLine<'_>>> {
         if self.offset >= self.end {
             return Ok(None);
         }
@@ -50,6 +50,6 @@ impl Lines {
         let Some(text) = self.text.strip_suffix(b"\n") else { return Ok(None) };
         let start = self.offset;
         self.offset += self.text.len() as u64;
-        Ok(Some(Line { text, start, end: self.offset }))
+        Ok(Some(IndexedLine { text, start, end: self.offset }))
     }
 }

@@ -15,8 +15,8 @@ use std::time::SystemTime;
 use rtf_model::{Damage, Record, RunState};
 use rtf_report::journal::{self, JournalLines};
 
-pub use attachments::{AttachmentIndex, Description};
-pub use lines::Lines;
+pub use attachments::{AttachmentIndex, AttachmentInfo};
+pub use lines::LineReader;
 pub use positions::Positions;
 
 /// The state of a run in the API.
@@ -96,7 +96,7 @@ impl Index {
         if length <= self.offset {
             return Ok(());
         }
-        let mut lines = Lines::between(self.file.try_clone()?, self.offset, u64::MAX)?;
+        let mut lines = LineReader::between(self.file.try_clone()?, self.offset, u64::MAX)?;
         while let Some(line) = lines.next()? {
             let taken = self.lines.read(line.text, &mut self.record);
             let newer = |error| io::Error::new(io::ErrorKind::InvalidData, error);

@@ -15,7 +15,7 @@ use rtf_report::journal::Journal;
 use rtf_report::logs::Logs;
 use rtf_web::{
     BoundServer, Capabilities, FinishedRun, JournalNotifier, Limits, RerunRejected, RunControl,
-    RunStarter, Server, Service, Settings, WrongToken,
+    RunStarter, Service, Settings, WebServer, WrongToken,
 };
 
 use crate::client::{self, Answer};
@@ -215,7 +215,7 @@ impl Writer {
 /// A server with a separate results directory.
 pub struct World {
     pub temp: tempfile::TempDir,
-    pub server: Server,
+    pub server: WebServer,
     pub asked: Arc<Asked>,
 }
 

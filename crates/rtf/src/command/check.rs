@@ -4,14 +4,14 @@ use std::process::ExitCode;
 
 use clap::ArgMatches;
 
-use super::Outcome;
+use super::VerbResult;
 use crate::cli::InputArgs;
 use crate::diagnostics::count;
 use crate::request::{TestsRequest, config};
 use crate::{plan, terminal};
 
 /// Checks suites and plug-ins.
-pub fn run(mut args: InputArgs, matches: &ArgMatches) -> Outcome {
+pub fn run(mut args: InputArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_results(&mut args, matches)?;
     let request = TestsRequest::resolve(&args)?;
     let planned = plan::plan(&request)?;

@@ -5,12 +5,12 @@ use std::process::ExitCode;
 use clap::CommandFactory;
 use clap_complete::Shell;
 
-use super::Outcome;
+use super::VerbResult;
 use crate::cli::Cli;
 use crate::terminal;
 
 /// Prints the completions of a shell.
-pub fn run(shell: Shell) -> Outcome {
+pub fn run(shell: Shell) -> VerbResult {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "rtf", &mut script);
     terminal::raw_stdout(|out| out.write_all(&script))?;

@@ -11,7 +11,7 @@ use rtf_plan::plan::RunnerEnvironment;
 use rtf_plan::suite::{self, SourceText, SuiteSettings};
 use rtf_report::escape;
 
-use super::Outcome;
+use super::VerbResult;
 use crate::cli::ConfigArgs;
 use crate::error::Failure;
 use crate::request::config::{absolute, request};
@@ -21,7 +21,7 @@ use crate::{diagnostics, terminal};
 const COMMENT_COLUMN: usize = 44;
 
 /// Prints the effective settings.
-pub fn show(args: &ConfigArgs) -> Outcome {
+pub fn show(args: &ConfigArgs) -> VerbResult {
     let runner = RunnerEnvironment::from_current_process().map_err(Failure::internal)?;
     let path = absolute(&runner.current_dir, &args.input);
     if !path.exists() {

@@ -8,14 +8,14 @@ use rtf_plan::plan::{Plan, SuitePlan, TestPlan};
 use rtf_report::escape;
 use serde::Serialize;
 
-use super::Outcome;
+use super::VerbResult;
 use crate::cli::{ListArgs, ListFormat};
 use crate::plan::{self, Planned};
 use crate::request::{TestsRequest, config};
 use crate::terminal;
 
 /// Lists tests.
-pub fn run(mut args: ListArgs, matches: &ArgMatches) -> Outcome {
+pub fn run(mut args: ListArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_results(&mut args.input, matches)?;
     let request = TestsRequest::resolve(&args.input)?;
     let planned = plan::plan(&request)?;
@@ -23,7 +23,7 @@ pub fn run(mut args: ListArgs, matches: &ArgMatches) -> Outcome {
 }
 
 /// Prints the tests of a plan.
-pub fn print(planned: &Planned, format: ListFormat) -> Outcome {
+pub fn print(planned: &Planned, format: ListFormat) -> VerbResult {
     planned.print_warnings()?;
     terminal::stdout(|out| match format {
         ListFormat::Text => write(&planned.plan, out),

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use rtf_engine::locks::{HeldLock, Locks};
 use rtf_report::escape;
 
-use super::Outcome;
+use super::VerbResult;
 use crate::cli::LocksArgs;
 use crate::error::Failure;
 use crate::{exit, request, terminal};
@@ -15,7 +15,7 @@ use crate::{exit, request, terminal};
 const INTERVAL: Duration = Duration::from_millis(50);
 
 /// Lists locks or waits for them; the exit code is 1 if they were not free in time.
-pub fn run(args: &LocksArgs) -> Outcome {
+pub fn run(args: &LocksArgs) -> VerbResult {
     let mut held = poll(args)?;
     let start = Instant::now();
     while args.wait && !held.is_empty() && args.timeout.is_none_or(|limit| start.elapsed() < limit)

@@ -5,12 +5,12 @@ use std::process::ExitCode;
 
 use clap::CommandFactory;
 
-use super::Outcome;
+use super::VerbResult;
 use crate::cli::Cli;
 use crate::error::Failure;
 
 /// Writes `rtf.1` and one page for each verb.
-pub fn run(dir: &Path) -> Outcome {
+pub fn run(dir: &Path) -> VerbResult {
     std::fs::create_dir_all(dir).map_err(Failure::internal)?;
     clap_mangen::generate_to(Cli::command(), dir).map_err(Failure::internal)?;
     Ok(ExitCode::SUCCESS)

@@ -11,11 +11,11 @@ use rtf_model::{Event, EventKind, Record, RunState};
 use rtf_report::console::{Console, ConsoleOptions};
 use rtf_report::journal::{self, Journal};
 use rtf_report::logs::Logs;
-use rtf_report::merge::{self, Header, Part, Problem};
+use rtf_report::merge::{self, Header, MergeInput, MergeProblem};
 use rtf_report::run_dir::{self, RunDir};
 use rtf_report::{ReportError, Reporter};
 
-use super::Outcome;
+use super::VerbResult;
 use crate::cli::MergeArgs;
 use crate::error::Failure;
 use crate::outputs::console_options;
@@ -32,7 +32,7 @@ struct AttachedFile {
 }
 
 /// Merges runs and prints the merged run.
-pub fn run(mut args: MergeArgs, matches: &ArgMatches) -> Outcome {
+pub fn run(mut args: MergeArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_past_results(&mut args.results, matches)?;
     let results = &args.results.results;
     let mut parts = Vec::new();
@@ -42,7 +42,7 @@ pub fn run(mut args: MergeArgs, matches: &ArgMatches) -> Outcome {
         let events = read_events(run, &journal)?;
         let dir = journal.parent().unwrap_or(Path::new("."));
         attached.extend(attached_files(number, dir, &events));
-        parts.push(Part { name: run.clone(), events });
+        parts.push(MergeInput { name: run.clone(), events });
     }
     let merged = merge::merge(parts, args.partial).map_err(|problems| refuse(&problems))?;
     let dir = run_dir::create(results).map_err(|error| {
@@ -89,8 +89,8 @@ fn attached_files(part: usize, dir: &Path, events: &[Event]) -> Vec<AttachedFile
 }
 
 /// Prints all problems.
-fn refuse(problems: &[Problem]) -> Failure {
-    let next_hints = problems.iter().skip(1).map(Problem::hint).chain([None]);
+fn refuse(problems: &[MergeProblem]) -> Failure {
+    let next_hints = problems.iter().skip(1).map(MergeProblem::hint).chain([None]);
     for (problem, next_hint) in problems.iter().zip(next_hints) {
         // A hint of several consecutive problems is printed once.
         let hint = problem.hint().filter(|hint| next_hint != Some(hint));

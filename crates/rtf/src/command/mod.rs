@@ -34,4 +34,4 @@ use std::process::ExitCode;
 use crate::error::Failure;
 
 /// The exit code of a verb, or an error to print.
-pub type Outcome = Result<ExitCode, Failure>;
+pub type VerbResult = Result<ExitCode, Failure>;

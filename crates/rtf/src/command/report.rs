@@ -8,7 +8,7 @@ use clap::ArgMatches;
 use rtf_report::journal::{self, JournalError};
 use rtf_report::{ReportError, output_file};
 
-use super::Outcome;
+use super::VerbResult;
 use crate::cli::{ReportArgs, ReportFormat};
 use crate::error::Failure;
 use crate::request::{config, past_run};
@@ -16,7 +16,7 @@ use crate::{exit, reports, terminal};
 
 /// Writes a report. The exit code is about the report, not about the run; it is 1 for
 /// a damaged journal, whose report is incomplete.
-pub fn run(mut args: ReportArgs, matches: &ArgMatches) -> Outcome {
+pub fn run(mut args: ReportArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_past_results(&mut args.results, matches)?;
     let journal = past_run::find_journal(&args.results.results, &args.run)?;
     let damages = journal::find_damage(&journal).map_err(past_run::unreadable)?;

@@ -4,7 +4,7 @@ use std::os::fd::AsFd;
 
 use clap::ArgMatches;
 
-use super::{Outcome, list};
+use super::{VerbResult, list};
 use crate::cli::{ListFormat, RunArgs};
 use crate::error::Failure;
 use crate::guarded::{self, Supervision};
@@ -12,7 +12,7 @@ use crate::request::{OutputRequest, RunRequest, config};
 use crate::{outputs, plan, preflight, reports, runner};
 
 /// Runs tests.
-pub fn run(mut args: RunArgs, matches: &ArgMatches) -> Outcome {
+pub fn run(mut args: RunArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_run(&mut args, matches)?;
     let output = OutputRequest::resolve(&args);
     let lifeline = args.end_with_stdin.then(|| std::io::stdin().as_fd().try_clone_to_owned());

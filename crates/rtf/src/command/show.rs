@@ -6,14 +6,14 @@ use clap::ArgMatches;
 use rtf_report::console::{Console, ConsoleOptions};
 use rtf_report::journal;
 
-use super::Outcome;
+use super::VerbResult;
 use crate::cli::ShowArgs;
 use crate::exit;
 use crate::outputs::console_options;
 use crate::request::{config, past_run};
 
 /// Prints a past run.
-pub fn run(mut args: ShowArgs, matches: &ArgMatches) -> Outcome {
+pub fn run(mut args: ShowArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_past_results(&mut args.results, matches)?;
     let journal = past_run::find_journal(&args.results.results, &args.run)?;
     let dir = journal.parent().unwrap_or(Path::new("."));

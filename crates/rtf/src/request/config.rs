@@ -22,7 +22,7 @@ pub fn request(args: &ProfileArgs) -> ConfigRequest {
 
 /// Fills in the arguments of `rtf run`.
 pub fn fill_run(args: &mut RunArgs, matches: &ArgMatches) -> Result<(), Failure> {
-    let defaults = Defaults::of_inputs(&args.input, matches)?.accepted()?;
+    let defaults = ConfigDefaults::of_inputs(&args.input, matches)?.accepted()?;
     defaults.fill_results(&mut args.input.results);
     defaults
         .fill("annotations", &mut args.annotations, |text| Annotations::from_str(text, false).ok());
@@ -47,14 +47,14 @@ pub fn fill_run(args: &mut RunArgs, matches: &ArgMatches) -> Result<(), Failure>
 
 /// Fills in the results directory of a verb that plans tests.
 pub fn fill_results(args: &mut InputArgs, matches: &ArgMatches) -> Result<(), Failure> {
-    Defaults::of_inputs(args, matches)?.accepted()?.fill_results(&mut args.results);
+    ConfigDefaults::of_inputs(args, matches)?.accepted()?.fill_results(&mut args.results);
     Ok(())
 }
 
 /// Fills in the results directory of `rtf watch`, unless `rtf.toml` has errors: each
 /// run reports them.
 pub fn fill_watched_results(args: &mut InputArgs, matches: &ArgMatches) -> Result<(), Failure> {
-    let defaults = Defaults::of_inputs(args, matches)?;
+    let defaults = ConfigDefaults::of_inputs(args, matches)?;
     if defaults.config.problems.is_empty() {
         defaults.fill_results(&mut args.results);
     }
@@ -65,7 +65,7 @@ pub fn fill_watched_results(args: &mut InputArgs, matches: &ArgMatches) -> Resul
 pub fn fill_past_results(results: &mut ResultsArgs, matches: &ArgMatches) -> Result<(), Failure> {
     let profile = std::env::var("RTF_PROFILE").ok().filter(|name| !name.is_empty());
     let mut defaults =
-        Defaults::find(&[], &ConfigRequest { profile, ..Default::default() }, matches)?;
+        ConfigDefaults::find(&[], &ConfigRequest { profile, ..Default::default() }, matches)?;
     // Problems of the run's settings concern only new runs.
     defaults.config.problems.clone_from(&defaults.files.problems);
     defaults.accepted()?.fill_results(results);
@@ -73,14 +73,14 @@ pub fn fill_past_results(results: &mut ResultsArgs, matches: &ArgMatches) -> Res
 }
 
 /// The values of `rtf.toml` for options.
-struct Defaults<'a> {
+struct ConfigDefaults<'a> {
     matches: &'a ArgMatches,
     current_dir: PathBuf,
     config: RunConfig,
     files: ConfigFiles,
 }
 
-impl<'a> Defaults<'a> {
+impl<'a> ConfigDefaults<'a> {
     fn of_inputs(args: &InputArgs, matches: &'a ArgMatches) -> Result<Self, Failure> {
         // With `--rerun`, the input is a run.
         let inputs = if args.select.rerun.is_empty() { args.inputs.as_slice() } else { &[] };

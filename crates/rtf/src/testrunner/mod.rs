@@ -17,12 +17,12 @@ use rtf_engine::locks::LockOptions;
 use rtf_model::{Manifest, Record};
 use rtf_plan::plan::{Compatibility, Options, RunnerEnvironment};
 use rtf_process::fork_server::ForkMode;
-use rtf_report::predecessor::{self, Console, ConsoleOptions};
+use rtf_report::predecessor::{self, ResultList, ResultListOptions};
 use rtf_report::run_dir::JOURNAL;
 use rtf_report::{ReportError, ReportFile};
 
 use crate::cli::{ReportFormat, WebAccessArgs};
-use crate::command::Outcome;
+use crate::command::VerbResult;
 use crate::error::Failure;
 use crate::guarded::{self, Supervision};
 use crate::request::{RunRequest, TestsRequest, WebRequest, locks_dir, web_settings};
@@ -60,7 +60,7 @@ pub fn main() -> ExitCode {
     if code == ExitCode::from(exit::PASSED) { code } else { ExitCode::from(exit::FAILED) }
 }
 
-fn print_version() -> Outcome {
+fn print_version() -> VerbResult {
     let version = env!("CARGO_PKG_VERSION");
     terminal::stdout(|out| {
         writeln!(out, "{NAME} version {PREDECESSOR_VERSION} (compatible; rtf {version})")
@@ -81,7 +81,7 @@ fn check_args(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-fn run(args: &Args) -> Outcome {
+fn run(args: &Args) -> VerbResult {
     check_args(args)?;
     let results = ResultsDir::new(args).map_err(Failure::internal)?;
     let supervision = Supervision {
@@ -99,7 +99,7 @@ fn run(args: &Args) -> Outcome {
             Failure::input(error).hint("choose another path with `--output FILE`")
         })?;
         let prepared = preflight::prepare(&request, report.into_iter().collect(), |_, stdout| {
-            vec![Box::new(Console::over(stdout, console_options(args)))]
+            vec![Box::new(ResultList::over(stdout, console_options(args)))]
         })?;
         runner::run(&request, &planned, prepared, guard)
     };
@@ -150,11 +150,11 @@ fn complete(args: &Args, results: &Path, record: &Record) {
     if let Some(file) = open_result_file(args, results) {
         reports::finish(file, record);
     }
-    reports::finish(Ok(Console::stdout(console_options(args))), record);
+    reports::finish(Ok(ResultList::stdout(console_options(args))), record);
 }
 
-fn console_options(args: &Args) -> ConsoleOptions {
-    ConsoleOptions { verbose: args.verbose, detail: args.detail, summary: !args.no_summary }
+fn console_options(args: &Args) -> ResultListOptions {
+    ResultListOptions { verbose: args.verbose, detail: args.detail, summary: !args.no_summary }
 }
 
 /// Opens the result file of the run in `results`, unless the user wants none.

@@ -7,7 +7,7 @@ use rtf_model::TestId;
 use rtf_model::protocol::{Request, Subscription};
 
 use super::context::Context;
-use super::fixture::{FixtureRun, FixtureStage};
+use super::fixture::{FixturePhase, FixtureRun};
 use super::io::{HostId, ProbeSelection};
 use rtf_plan::plan::SuitePlan;
 
@@ -33,28 +33,28 @@ impl<'p> FixtureGraph<'p> {
         self.runs.iter().position(|fixture| fixture.host() == Some(host))
     }
 
-    fn any(&self, stages: &[FixtureStage]) -> bool {
+    fn any(&self, stages: &[FixturePhase]) -> bool {
         self.runs.iter().any(|fixture| stages.contains(&fixture.stage()))
     }
 
-    fn all(&self, stage: FixtureStage) -> bool {
+    fn all(&self, stage: FixturePhase) -> bool {
         self.runs.iter().all(|fixture| fixture.stage() == stage)
     }
 
     pub fn any_failed(&self) -> bool {
-        self.any(&[FixtureStage::Failed])
+        self.any(&[FixturePhase::Failed])
     }
 
     pub fn any_stopping(&self) -> bool {
-        self.any(&[FixtureStage::Stopping, FixtureStage::Exiting])
+        self.any(&[FixturePhase::Stopping, FixturePhase::Exiting])
     }
 
     pub fn all_ready(&self) -> bool {
-        self.all(FixtureStage::Ready)
+        self.all(FixturePhase::Ready)
     }
 
     pub fn all_stopped(&self) -> bool {
-        self.all(FixtureStage::Stopped)
+        self.all(FixturePhase::Stopped)
     }
 
     pub fn any_started(&self) -> bool {
@@ -64,9 +64,9 @@ impl<'p> FixtureGraph<'p> {
     /// Starts every stopped fixture whose dependencies are ready; false if there is none.
     pub fn start_next(&mut self, cx: &mut Context<'_>) -> bool {
         let ready: Vec<bool> =
-            self.runs.iter().map(|fixture| fixture.stage() == FixtureStage::Ready).collect();
+            self.runs.iter().map(|fixture| fixture.stage() == FixturePhase::Ready).collect();
         let mut started = false;
-        for fixture in self.runs.iter_mut().filter(|run| run.stage() == FixtureStage::Stopped) {
+        for fixture in self.runs.iter_mut().filter(|run| run.stage() == FixturePhase::Stopped) {
             if fixture.plan().depends.iter().all(|needed| ready[*needed]) {
                 fixture.start(cx);
                 started = true;
@@ -77,7 +77,7 @@ impl<'p> FixtureGraph<'p> {
 
     /// Tears down failed fixtures and their dependents, as far as they may stop now.
     pub fn stop_failed(&mut self, cx: &mut Context<'_>) {
-        let failed = |fixture: &FixtureRun<'_>| fixture.stage() == FixtureStage::Failed;
+        let failed = |fixture: &FixtureRun<'_>| fixture.stage() == FixturePhase::Failed;
         let mut affected: Vec<bool> = self.runs.iter().map(failed).collect();
         // A chain of dependencies is no longer than the list.
         for _ in 0..self.runs.len() {
@@ -109,7 +109,7 @@ impl<'p> FixtureGraph<'p> {
     }
 
     fn may_stop(&self, index: usize) -> bool {
-        use FixtureStage::{Delayed, Failed, Ready, Starting, Stopped};
+        use FixturePhase::{Delayed, Failed, Ready, Starting, Stopped};
         let has_stopped = |fixture: &FixtureRun<'_>| fixture.stage() == Stopped;
         let mut others = self.runs.iter();
         matches!(self.runs[index].stage(), Delayed | Starting | Ready | Failed)
@@ -124,7 +124,7 @@ impl<'p> FixtureGraph<'p> {
     /// The suite's limit has passed: records it for fixtures whose tear-down has started,
     /// or for `all` that still have to be torn down.
     pub fn record_late_stop(&mut self, reason: &str, all: bool) {
-        use FixtureStage::{Exiting, Failed, Ready, Stopping};
+        use FixturePhase::{Exiting, Failed, Ready, Stopping};
         for fixture in &mut self.runs {
             match fixture.stage() {
                 Stopping | Exiting => fixture.record_late_stop(reason),
@@ -151,7 +151,7 @@ impl<'p> FixtureGraph<'p> {
         cx: &mut Context<'_>,
     ) -> Vec<(usize, u64)> {
         let all = self.runs.iter_mut().enumerate();
-        let ready = all.filter(|(_, fixture)| fixture.stage() == FixtureStage::Ready);
+        let ready = all.filter(|(_, fixture)| fixture.stage() == FixturePhase::Ready);
         ready.map(|(index, fixture)| (index, fixture.examine(probes, cx))).collect()
     }
 

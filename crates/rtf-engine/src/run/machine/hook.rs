@@ -5,7 +5,7 @@ use rtf_model::{EventKind, ExitStatus, LeakedProcess, Source, TestId, Trigger};
 
 use super::context::Context;
 use super::escalation::{KILL_WAIT, MAX_KILLS, SIGTERM, TERM_GRACE};
-use super::io::{Deadline, Effect, HostId, ProcessEvent, Program, Start, environment};
+use super::io::{Deadline, Effect, HostId, ProcessEvent, Program, StartRequest, environment};
 use super::output_capture::OutputCapture;
 use crate::hook::{HookJudgement, RUN_REQUEST, request, trigger_variables};
 use rtf_plan::plan::{HookBody, HookPlan, SuitePlan};
@@ -22,7 +22,7 @@ pub struct TriggeredHook {
 }
 
 #[derive(Debug)]
-pub struct HookProcess<'p> {
+pub struct RunningHook<'p> {
     plan: &'p HookPlan,
     host: HostId,
     judgement: HookJudgement,
@@ -31,7 +31,7 @@ pub struct HookProcess<'p> {
     output: OutputCapture,
 }
 
-impl<'p> HookProcess<'p> {
+impl<'p> RunningHook<'p> {
     pub fn start(suite: &'p SuitePlan, triggered: TriggeredHook, cx: &mut Context<'_>) -> Self {
         let plan = &suite.hooks[triggered.index];
         let (host, source) = (cx.next_host_id(), Source::Hook(plan.id));
@@ -136,7 +136,7 @@ fn started_event(plan: &HookPlan, triggered: &TriggeredHook) -> EventKind {
     }
 }
 
-fn process_start(suite: &SuitePlan, plan: &HookPlan, triggered: TriggeredHook) -> Start {
+fn process_start(suite: &SuitePlan, plan: &HookPlan, triggered: TriggeredHook) -> StartRequest {
     let what = match &plan.body {
         HookBody::Plugin(plugin) => Program::Host(plugin.host.clone()),
         HookBody::Command(command) => Program::Command(command.clone()),
@@ -144,5 +144,5 @@ fn process_start(suite: &SuitePlan, plan: &HookPlan, triggered: TriggeredHook) -
     let mut env = environment(suite, &plan.env, "hook", &plan.name);
     let test = triggered.test.as_ref().map(|(_, name)| name.as_str());
     env.extend(trigger_variables(triggered.trigger, &triggered.reason, test));
-    Start { what, env, folder: suite.folder.clone() }
+    StartRequest { what, env, folder: suite.folder.clone() }
 }

@@ -6,7 +6,7 @@ use rtf_model::protocol::TestAttempt;
 use rtf_model::{TestId, Trigger, Verdict};
 
 use super::context::Context;
-use super::hook::{HookProcess, TriggeredHook, report_not_run};
+use super::hook::{RunningHook, TriggeredHook, report_not_run};
 use super::io::{HostId, ProcessEvent};
 use crate::hook::{HOOK_KILLED, HOOK_NOT_RUN};
 use rtf_plan::plan::SuitePlan;
@@ -16,7 +16,7 @@ use rtf_plan::plan::SuitePlan;
 pub struct HookQueue<'p> {
     plan: &'p SuitePlan,
     queue: VecDeque<TriggeredHook>,
-    running: Option<HookProcess<'p>>,
+    running: Option<RunningHook<'p>>,
     /// Which were triggered since the last test started.
     triggered: Vec<bool>,
     is_killed: bool,
@@ -73,7 +73,7 @@ impl<'p> HookQueue<'p> {
         }
         if self.running.is_none() {
             self.running =
-                self.queue.pop_front().map(|hook| HookProcess::start(self.plan, hook, cx));
+                self.queue.pop_front().map(|hook| RunningHook::start(self.plan, hook, cx));
         }
         self.running.is_some()
     }

@@ -79,7 +79,7 @@ pub enum FixtureTimer {
 
 /// How to start a process.
 #[derive(Clone, Debug)]
-pub struct Start {
+pub struct StartRequest {
     /// The program.
     pub what: Program,
     /// Environment variables; later ones win.
@@ -123,7 +123,7 @@ pub enum Effect {
         /// Its owner.
         source: Source,
         /// How to start it.
-        start: Start,
+        start: StartRequest,
     },
     /// Assign a further test to a shared host.
     Join {
@@ -140,7 +140,7 @@ pub enum Effect {
     },
     /// Start these hosts ahead, for later `Spawn`s of the same. Hosts that were started
     /// ahead and are not in this list are no longer needed.
-    SpawnAhead(Vec<Start>),
+    SpawnAhead(Vec<StartRequest>),
     /// Send a request or a notification.
     Send(HostId, Option<u64>, Request),
     /// Close the channel: the host ends after the present request.

@@ -20,7 +20,7 @@ mod test;
 pub(crate) mod tests;
 
 pub use io::{
-    Deadline, Effect, FixtureTimer, HostId, Input, ProbeSelection, ProcessEvent, Program, Start,
-    Stop, StopLevel, TestTimer,
+    Deadline, Effect, FixtureTimer, HostId, Input, ProbeSelection, ProcessEvent, Program,
+    StartRequest, Stop, StopLevel, TestTimer,
 };
 pub use suite::SuiteMachine;

@@ -7,7 +7,7 @@ use tokio::sync::mpsc;
 use super::SuiteTask;
 use crate::guard::HookStart;
 use crate::run::context::attachments_dir;
-use crate::run::machine::{HostId, Program, Start};
+use crate::run::machine::{HostId, Program, StartRequest};
 use crate::run::probes;
 use rtf_plan::plan::{Leaks, ProcessPlan, TestPlan};
 use rtf_process::launch::Launch;
@@ -18,7 +18,7 @@ use rtf_process::start_gate;
 use rtf_process::task::{AttachedJob, ProcessJob, run_process, watch_attached};
 
 impl SuiteTask<'_> {
-    pub(super) fn spawn(&mut self, host: HostId, source: Source, start: Start) {
+    pub(super) fn spawn(&mut self, host: HostId, source: Source, start: StartRequest) {
         let (mut process, mut attached) = (None, None);
         match &start.what {
             Program::Host(_) | Program::Command(_) => {}
@@ -80,7 +80,7 @@ impl SuiteTask<'_> {
         self.is_repeated && outlives_test
     }
 
-    pub(super) fn spawn_ahead(&mut self, starts: Vec<Start>) {
+    pub(super) fn spawn_ahead(&mut self, starts: Vec<StartRequest>) {
         let mut before = std::mem::take(&mut self.prelaunched);
         for start in starts {
             let request = self.request(start, ProcessRole::Test);
@@ -100,7 +100,7 @@ impl SuiteTask<'_> {
     }
 
     /// Converts the start of a process. Only hosts of tests may be forked.
-    fn request(&self, start: Start, role: ProcessRole) -> SpawnRequest {
+    fn request(&self, start: StartRequest, role: ProcessRole) -> SpawnRequest {
         let mut can_fork = false;
         let run_dir = self.context.tasks.run_dir.to_string_lossy().into_owned();
         let mut env = vec![

@@ -8,17 +8,17 @@ use rtf_process::cgroup::Cgroups;
 use rtf_process::fork_server::ForkMode;
 use rtf_process::spawner::Spawner;
 
-use super::{Component, Finding, Missing};
+use super::{CheckResult, Component, Missing};
 
 /// The names of the components.
 pub const NAMES: [&str; 8] =
     ["dll", "lua", "python", "ruby", "stacks", "cgroups", "network", "ssh"];
 
 /// Checks the selected components.
-pub fn check(runner: &RunnerEnvironment, is_selected: &dyn Fn(&str) -> bool) -> Vec<Finding> {
+pub fn check(runner: &RunnerEnvironment, is_selected: &dyn Fn(&str) -> bool) -> Vec<CheckResult> {
     let hosts = installed_hosts(runner).into_iter();
     let hosts = hosts.filter(|(name, _)| is_selected(name));
-    let mut findings: Vec<Finding> = hosts.map(|(name, host)| check_host(name, host)).collect();
+    let mut findings: Vec<CheckResult> = hosts.map(|(name, host)| check_host(name, host)).collect();
     let others = NAMES.into_iter().filter(|name| is_selected(name));
     findings.extend(others.filter_map(|name| match name {
         "stacks" => Some(check_stacks(runner)),
@@ -37,7 +37,7 @@ pub fn check_python(runner: &RunnerEnvironment) -> Result<HostPlan, String> {
     start_host(python.map(|(_, host)| host).ok_or("rtf has no host for Python")?)
 }
 
-fn check_host(name: &str, host: LocatedHost) -> Finding {
+fn check_host(name: &str, host: LocatedHost) -> CheckResult {
     let (part, about, install) = match name {
         "dll" => (Component::Rtf, "plug-ins in C and C++", "reinstall rtf"),
         "lua" => (Component::Rtf, "plug-ins in Lua", "reinstall rtf"),
@@ -86,7 +86,7 @@ fn describe(plan: &HostPlan) -> String {
     }
 }
 
-fn check_stacks(runner: &RunnerEnvironment) -> Finding {
+fn check_stacks(runner: &RunnerEnvironment) -> CheckResult {
     let debuggers = ["gdb", "eu-stack"].iter();
     let found = debuggers.filter_map(|name| find_in_path(name, runner)).next();
     let found = found
@@ -97,7 +97,7 @@ fn check_stacks(runner: &RunnerEnvironment) -> Finding {
     finding("stacks", Component::Optional, about, found, install)
 }
 
-fn check_cgroups() -> Finding {
+fn check_cgroups() -> CheckResult {
     let found = match Cgroups::create() {
         Some(_) => Ok("rtf can create control groups (version 2)".to_owned()),
         None => Err("rtf cannot create control groups (version 2)".to_owned()),
@@ -108,7 +108,7 @@ fn check_cgroups() -> Finding {
     finding("cgroups", Component::Optional, about, found, install)
 }
 
-fn check_network() -> Finding {
+fn check_network() -> CheckResult {
     let check = || -> Result<(), String> {
         let mut builder = tokio::runtime::Builder::new_current_thread();
         let runtime = builder.enable_all().build().map_err(|error| error.to_string())?;
@@ -124,7 +124,7 @@ fn check_network() -> Finding {
     finding("network", Component::Optional, about, found, install)
 }
 
-fn check_ssh(runner: &RunnerEnvironment) -> Finding {
+fn check_ssh(runner: &RunnerEnvironment) -> CheckResult {
     let found = find_in_path("ssh", runner)
         .map(|file| file.display().to_string())
         .ok_or_else(|| "`ssh` is not on PATH".to_owned());
@@ -138,9 +138,9 @@ fn finding(
     about: &str,
     found: Result<String, String>,
     install: &str,
-) -> Finding {
+) -> CheckResult {
     let missing = |what: String| Missing { what, install: install.to_owned(), purpose: None };
-    Finding {
+    CheckResult {
         name: name.to_owned(),
         part,
         ok: found.is_ok(),

@@ -9,10 +9,10 @@ use std::process::{Command, Stdio};
 use rtf_plan::plan::{HostPlan, RunnerEnvironment, find_in_path, shipped_fixtures_dir};
 use serde::Deserialize;
 
-use super::{Component, Finding, Missing, components};
+use super::{CheckResult, Component, Missing, components};
 
 /// The fixture managers and their dependencies.
-pub struct Table {
+pub struct NeedsTable {
     dir: Option<PathBuf>,
     fixtures: BTreeMap<String, Needs>,
 }
@@ -40,7 +40,7 @@ struct Need {
     purpose: Option<String>,
 }
 
-impl Table {
+impl NeedsTable {
     /// Reads the dependencies of the installed fixture managers.
     pub fn read(runner: &RunnerEnvironment) -> io::Result<Self> {
         let Some(dir) = shipped_fixtures_dir(runner) else {
@@ -67,7 +67,7 @@ impl Table {
         &self,
         runner: &RunnerEnvironment,
         is_selected: &dyn Fn(&str) -> bool,
-    ) -> Vec<Finding> {
+    ) -> Vec<CheckResult> {
         let selected: Vec<_> = self.fixtures.iter().filter(|(name, _)| is_selected(name)).collect();
         if selected.is_empty() {
             return Vec::new();
@@ -83,7 +83,7 @@ impl Table {
         needs: &Needs,
         python: &Result<HostPlan, String>,
         runner: &RunnerEnvironment,
-    ) -> Finding {
+    ) -> CheckResult {
         let mut missing = Vec::new();
         let mut found = Vec::new();
         if let Err(error) = python {
@@ -105,7 +105,7 @@ impl Table {
         }
         let ok = missing.iter().all(|missing| missing.purpose.is_some());
         let (name, about) = (name.to_owned(), needs.about.clone());
-        Finding { name, part: Component::Fixture, ok, about, found, missing }
+        CheckResult { name, part: Component::Fixture, ok, about, found, missing }
     }
 }
 

@@ -12,14 +12,14 @@ use std::process::ExitCode;
 use rtf_plan::plan::RunnerEnvironment;
 use serde::Serialize;
 
-use super::Outcome;
+use super::VerbResult;
 use crate::cli::{DoctorArgs, DoctorFormat};
 use crate::error::Failure;
 use crate::exit;
 
 /// The result of a check; `docs/doctor.md` documents the fields.
 #[derive(Debug, Serialize)]
-struct Finding {
+struct CheckResult {
     name: String,
     part: Component,
     /// Whether all mandatory dependencies were found.
@@ -55,9 +55,9 @@ struct Missing {
 
 /// Checks components. The exit code is 1 if one of `names` lacks a dependency; without
 /// names, if a component that every run needs does.
-pub fn run(args: &DoctorArgs) -> Outcome {
+pub fn run(args: &DoctorArgs) -> VerbResult {
     let runner = RunnerEnvironment::from_current_process().map_err(Failure::internal)?;
-    let table = fixtures::Table::read(&runner).map_err(Failure::internal)?;
+    let table = fixtures::NeedsTable::read(&runner).map_err(Failure::internal)?;
     let known: Vec<&str> = components::NAMES.into_iter().chain(table.names()).collect();
     if let Some(unknown) = args.names.iter().find(|name| !known.contains(&name.as_str())) {
         let hint = format!("known names are {}", known.join(", "));
@@ -71,7 +71,7 @@ pub fn run(args: &DoctorArgs) -> Outcome {
         DoctorFormat::Text => print::text(&findings),
         DoctorFormat::Json => print::json(&findings),
     }?;
-    let counts = |finding: &&Finding| !args.names.is_empty() || finding.part == Component::Rtf;
+    let counts = |finding: &&CheckResult| !args.names.is_empty() || finding.part == Component::Rtf;
     let is_ok = findings.iter().filter(counts).all(|finding| finding.ok);
     Ok(ExitCode::from(if is_ok { exit::PASSED } else { exit::FAILED }))
 }

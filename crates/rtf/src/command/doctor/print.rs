@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use rtf_report::escape;
 use serde::Serialize;
 
-use super::{Component, Finding, Missing};
+use super::{CheckResult, Component, Missing};
 use crate::error::Failure;
 use crate::terminal;
 
@@ -13,11 +13,11 @@ use crate::terminal;
 const DETAILS: usize = 27;
 
 /// Prints text for people.
-pub fn text(findings: &[Finding]) -> Result<(), Failure> {
+pub fn text(findings: &[CheckResult]) -> Result<(), Failure> {
     terminal::stdout(|out| write(findings, out))
 }
 
-fn write(findings: &[Finding], out: &mut dyn Write) -> io::Result<()> {
+fn write(findings: &[CheckResult], out: &mut dyn Write) -> io::Result<()> {
     let (fixtures, components): (Vec<_>, Vec<_>) =
         findings.iter().partition(|finding| finding.part == Component::Fixture);
     for (title, findings) in [("rtf", components), ("fixtures", fixtures)] {
@@ -31,7 +31,7 @@ fn write(findings: &[Finding], out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-fn write_finding(finding: &Finding, out: &mut dyn Write) -> io::Result<()> {
+fn write_finding(finding: &CheckResult, out: &mut dyn Write) -> io::Result<()> {
     let (colour, word) =
         if finding.ok { ("\u{1b}[32m", "ok     ") } else { ("\u{1b}[31m", "missing") };
     let name = escape::line(&finding.name);
@@ -53,11 +53,11 @@ fn write_finding(finding: &Finding, out: &mut dyn Write) -> io::Result<()> {
 #[derive(Serialize)]
 struct Document<'f> {
     rtf: &'static str,
-    findings: &'f [Finding],
+    findings: &'f [CheckResult],
 }
 
 /// Prints one JSON document.
-pub fn json(findings: &[Finding]) -> Result<(), Failure> {
+pub fn json(findings: &[CheckResult]) -> Result<(), Failure> {
     let document = Document { rtf: env!("CARGO_PKG_VERSION"), findings };
     terminal::stdout(|out| {
         serde_json::to_writer_pretty(&mut *out, &document)?;

@@ -5,18 +5,18 @@ mod reruns;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use rtf_engine::signal::Signals;
+use rtf_engine::signal::SignalListener;
 use rtf_web::{Capabilities, ShutdownHandle};
 
 use self::reruns::Reruns;
-use super::Outcome;
+use super::VerbResult;
 use crate::cli::ServeArgs;
 use crate::error::Failure;
 use crate::request::web_settings;
 use crate::{exit, terminal, web};
 
 /// Serves runs.
-pub fn run(args: &ServeArgs) -> Outcome {
+pub fn run(args: &ServeArgs) -> VerbResult {
     let results = &args.results.results;
     if !results.is_dir() {
         let error = format!("there is no results directory `{}`", results.display());
@@ -30,7 +30,7 @@ pub fn run(args: &ServeArgs) -> Outcome {
     // From now on, a signal also ends the reruns.
     let signals = {
         let _context = runtime.enter();
-        Signals::install().map_err(Failure::internal)?
+        SignalListener::install().map_err(Failure::internal)?
     };
     let server = web::serve(bound, results, Capabilities::Viewer(reruns.clone()))?;
     let ender = server.ender();
@@ -45,7 +45,7 @@ pub fn run(args: &ServeArgs) -> Outcome {
 
 /// Waits for a signal, ends the active rerun and then the server, and returns the exit
 /// code.
-async fn end_on_signal(mut signals: Signals, reruns: &Reruns, ender: ShutdownHandle) -> u8 {
+async fn end_on_signal(mut signals: SignalListener, reruns: &Reruns, ender: ShutdownHandle) -> u8 {
     let (number, _) = signals.next().await;
     let mut active = reruns.end(number);
     while let Some(name) = active {

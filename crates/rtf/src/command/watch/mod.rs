@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 
 use clap::ArgMatches;
 use notify::{Event, RecommendedWatcher, RecursiveMode, Watcher as _};
-use rtf_engine::signal::Signals;
+use rtf_engine::signal::SignalListener;
 use rtf_report::escape;
 use tokio::process::{Child, ChildStdin};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
@@ -25,7 +25,7 @@ use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use self::debounce::{Debounce, FileChange};
 use self::state::{WatchAction, WatchState};
 use self::watched::Watched;
-use super::Outcome;
+use super::VerbResult;
 use crate::cli::{InputArgs, RunArgs};
 use crate::diagnostics::count;
 use crate::error::Failure;
@@ -38,7 +38,7 @@ const TERM: i32 = 15;
 const RECHECK_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Runs and reruns tests until a signal ends it.
-pub fn run(mut args: RunArgs, matches: &ArgMatches) -> Outcome {
+pub fn run(mut args: RunArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_watched_results(&mut args.input, matches)?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     runtime.map_err(Failure::internal)?.block_on(async { Watch::new(&args.input)?.run().await })
@@ -62,10 +62,10 @@ struct Watch<'a> {
     child: Option<Child>,
     /// The child's standard input, which `wait` would close.
     lifeline: Option<ChildStdin>,
-    signals: Signals,
+    signals: SignalListener,
 }
 
-enum Input {
+enum WatchInput {
     Signal(i32),
     File(FileEvent),
     RunEnded(io::Result<ExitStatus>),
@@ -89,11 +89,11 @@ impl<'a> Watch<'a> {
             state: WatchState::default(),
             child: None,
             lifeline: None,
-            signals: Signals::install().map_err(Failure::internal)?,
+            signals: SignalListener::install().map_err(Failure::internal)?,
         })
     }
 
-    async fn run(mut self) -> Outcome {
+    async fn run(mut self) -> VerbResult {
         self.watch(Watched::find(self.args, &self.watched))?;
         let mut action = self.state.files_changed();
         loop {
@@ -108,35 +108,35 @@ impl<'a> Watch<'a> {
         }
     }
 
-    async fn next_input(&mut self) -> Input {
+    async fn next_input(&mut self) -> WatchInput {
         let changes_due = self.debounce.due().map(|due| self.epoch + due);
         // Relative to the last check: checks read the directories, which causes events.
         let rechecks = self.watched.has_errors && self.debounce.is_empty() && self.child.is_none();
         let recheck_due = rechecks.then(|| self.checked_at + RECHECK_INTERVAL);
         tokio::select! {
-            (number, _) = self.signals.next() => Input::Signal(number),
+            (number, _) = self.signals.next() => WatchInput::Signal(number),
             // `self` owns a sender, so the channel is open.
-            Some(event) = self.events.recv() => Input::File(event),
-            status = wait(&mut self.child) => Input::RunEnded(status),
-            () = sleep_until(changes_due) => Input::ChangesDue,
-            () = sleep_until(recheck_due) => Input::RecheckDue,
+            Some(event) = self.events.recv() => WatchInput::File(event),
+            status = wait(&mut self.child) => WatchInput::RunEnded(status),
+            () = sleep_until(changes_due) => WatchInput::ChangesDue,
+            () = sleep_until(recheck_due) => WatchInput::RecheckDue,
         }
     }
 
-    fn handle(&mut self, input: Input) -> Result<WatchAction, Failure> {
+    fn handle(&mut self, input: WatchInput) -> Result<WatchAction, Failure> {
         match input {
-            Input::Signal(number) => {
+            WatchInput::Signal(number) => {
                 let action = self.state.signal(u8::try_from(number).unwrap_or(0));
                 if action == WatchAction::PassSignal {
                     self.signal(number);
                 }
                 Ok(action)
             }
-            Input::File(event) => {
+            WatchInput::File(event) => {
                 self.record(event);
                 Ok(WatchAction::None)
             }
-            Input::RunEnded(status) => {
+            WatchInput::RunEnded(status) => {
                 (self.child, self.lifeline) = (None, None);
                 let code = child::exit_code(status.map_err(Failure::internal)?);
                 let action = self.state.run_ended(code);
@@ -146,11 +146,11 @@ impl<'a> Watch<'a> {
                 }
                 Ok(action)
             }
-            Input::ChangesDue => match self.debounce.take_due(self.epoch.elapsed()) {
+            WatchInput::ChangesDue => match self.debounce.take_due(self.epoch.elapsed()) {
                 Some(changed) => self.check(&changed),
                 None => Ok(WatchAction::None),
             },
-            Input::RecheckDue => self.check(&BTreeSet::new()),
+            WatchInput::RecheckDue => self.check(&BTreeSet::new()),
         }
     }
 

@@ -13,7 +13,7 @@ use super::active_test::{ActiveTest, AttemptNumber};
 use super::shared_host::SharedHost;
 use super::soak::Soak;
 use crate::run::machine::context::Context;
-use crate::run::machine::io::{HostId, Start};
+use crate::run::machine::io::{HostId, StartRequest};
 use crate::run::machine::test::host::host_start;
 use crate::run::machine::test::{FinishedAttempt, TestRun};
 use rtf_plan::plan::SuitePlan;
@@ -248,7 +248,7 @@ impl<'p> Scheduler<'p> {
     }
 
     /// The hosts of the next attempts: further repetitions, then tests that have not begun.
-    pub fn hosts_ahead(&self) -> Vec<Start> {
+    pub fn hosts_ahead(&self) -> Vec<StartRequest> {
         if self.active.iter().any(|active| self.successor(active.plan, active.number).is_some()) {
             // The next test uses the shared host.
             return Vec::new();

@@ -6,7 +6,7 @@ use rtf_model::protocol::{Plugin, Request};
 use super::{AttemptState, TestRun};
 use crate::plugin_request::plugin;
 use crate::run::machine::context::Context;
-use crate::run::machine::io::{Effect, HostId, Program, Start, environment};
+use crate::run::machine::io::{Effect, HostId, Program, StartRequest, environment};
 use rtf_plan::plan::{SuitePlan, TestPlan};
 
 /// The number of the first `run-test` on a host's channel.
@@ -102,8 +102,8 @@ pub fn assign(
 }
 
 /// How the host of a test is started.
-pub fn host_start(suite: &SuitePlan, plan: &TestPlan) -> Start {
-    Start {
+pub fn host_start(suite: &SuitePlan, plan: &TestPlan) -> StartRequest {
+    StartRequest {
         what: Program::Host(plan.plugin.host.clone()),
         env: environment(suite, &plan.env, "test", &plan.name),
         folder: suite.folder.clone(),
