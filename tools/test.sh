@@ -131,7 +131,7 @@ sdk_ruby() {
   local file
   cd sdk/ruby
   for file in test/*_test.rb; do
-    ruby -w -Itest "$file"
+    ruby -w -Ilib -Itest "$file"
   done
   gem build --silent --output "$BUILD/robot-testing-framework.gem" \
     robot-testing-framework.gemspec

@@ -1,7 +1,7 @@
 # frozen_string_literal: true
 
 require_relative "driver"
-require_relative "../lib/rtf"
+require "rtf"
 
 # Messages, measurements, samples and attachments.
 class MessagesTest < HostTest
