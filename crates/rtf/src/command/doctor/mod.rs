@@ -1,7 +1,7 @@
 //! `rtf doctor`: reports missing dependencies of this machine and how to install them.
 //!
 //! [`components`] checks the dependencies of rtf itself, [`fixtures`] those of the
-//! fixture managers that come with it; [`print`] prints the findings.
+//! fixture managers that come with it; [`mod@print`] prints the findings.
 
 mod components;
 mod fixtures;
