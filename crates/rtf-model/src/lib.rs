@@ -15,7 +15,7 @@ mod ids;
 mod journal;
 mod manifest;
 mod order;
-mod prepared;
+mod private_resources;
 pub mod protocol;
 mod record;
 mod report;
@@ -35,7 +35,7 @@ pub use ids::{FixtureId, HookId, Micros, SuiteId, TestId};
 pub use journal::{Damage, EventCheck, LineCheck, LineChecker, LineSealer, StreamChecker};
 pub use manifest::{Manifest, Revision};
 pub use order::{OrderChecker, OrderError};
-pub use prepared::{SuiteNetwork, SuitePort, SuitePrepared, SuiteVariable};
+pub use private_resources::{SuiteNetwork, SuitePort, SuitePrepared, SuiteVariable};
 pub use record::{
     AttemptCounts, AttemptRecord, FixtureLife, FixtureRecord, FixtureState, HookRecord,
     HookRunRecord, HostRecord, Record, RunState, SignalSummary, SuiteRecord, TestRecord,

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use rtf_model::{Event, LineSealer, Record};
 
-use crate::stream::LineStream;
+use crate::stdout_stream::LineStream;
 use crate::{ReportError, Reporter};
 
 /// Writes each event as a line of JSON, exactly as the journal has it.

@@ -1,11 +1,11 @@
 //! The problems of a run, each with the best location in the sources:
 //! code hosts annotate changes with them.
 
-mod place;
+mod location;
 
 use rtf_model::{HookRunRecord, Record, Severity, SuiteRecord, TestRecord, Verdict};
 
-pub(crate) use place::{RepositoryLocation, Roots};
+pub(crate) use location::{RepositoryLocation, Roots};
 
 use crate::escape;
 use crate::explain::{self, Extent};

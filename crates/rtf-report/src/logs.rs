@@ -12,7 +12,7 @@ use rtf_model::{
     Event, EventKind, FixtureId, HookId, Output, Record, Source, SuiteId, SuitePrepared, TestId,
 };
 
-use crate::{ReportError, Reporter, prepared};
+use crate::{ReportError, Reporter, private_resources};
 
 const WHAT: &str = "a log";
 
@@ -163,7 +163,7 @@ impl Logs {
     fn prepared(&self, prepared: &SuitePrepared, record: &Record) -> Result<(), ReportError> {
         let path = self.folder.join(suite_log(record, prepared.suite));
         let mut text = String::new();
-        prepared::show(prepared, &mut |_, line| {
+        private_resources::show(prepared, &mut |_, line| {
             text += line;
             text.push('\n');
         });

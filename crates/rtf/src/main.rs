@@ -3,7 +3,6 @@
 //! [`command`] describes how a verb gets from its arguments, [`cli`], to its exit code,
 //! [`exit`].
 
-mod child_run;
 mod cli;
 mod command;
 mod control;
@@ -19,6 +18,7 @@ mod request;
 mod rerun_command;
 mod revision;
 mod runner;
+mod spawn_self;
 mod terminal;
 mod testrunner;
 mod web;

@@ -9,7 +9,7 @@ use super::page::ConsoleLines;
 use super::style::{self, BAD, BOLD, DIM, LOUD};
 use super::{ConsoleOptions, Verbosity, hooks};
 use crate::explain::{self, Extent, Tone};
-use crate::{ReportError, cause, escape, logs, prepared, words};
+use crate::{ReportError, cause, escape, logs, private_resources, words};
 
 /// How much of a failed test is shown; the reports contain everything.
 pub(super) const EXTENT: Extent = Extent { items: 10, stack_lines: 40 };
@@ -176,7 +176,7 @@ impl Live<'_> {
         };
         if all {
             page.remark((DIM, "prepared"), &format!("private resources of {suite}"));
-            prepared::show(prepared, &mut |tone, line| page.detail(tone, line));
+            private_resources::show(prepared, &mut |tone, line| page.detail(tone, line));
         } else if prepared.network.is_some() {
             let text = format!("{suite} has a private network; to join it:");
             page.remark((DIM, "isolated"), &text);
@@ -188,7 +188,7 @@ impl Live<'_> {
         if kept && !all {
             let whose =
                 if self.record.runs_suites_in_parallel() { suite + ": " } else { String::new() };
-            page.remark((LOUD, "inherited"), &(whose + &prepared::kept(prepared)));
+            page.remark((LOUD, "inherited"), &(whose + &private_resources::kept(prepared)));
         }
     }
 

@@ -10,7 +10,7 @@ use super::page::ConsoleLines;
 use super::style::{self, BAD, BOLD, GOOD, LOUD};
 use super::{ConsoleOptions, hooks};
 use crate::growth::{self, Growing, Within};
-use crate::repeated::Repeated;
+use crate::repetition_summary::Repeated;
 use crate::{cause, escape, explain, logs, words};
 
 /// Maximum number of skipped tests that are listed per reason.

@@ -11,7 +11,7 @@ use std::io::{self, Write};
 
 use rtf_model::{Event, EventKind, Record, SuiteRecord};
 
-use crate::stream::LineStream;
+use crate::stdout_stream::LineStream;
 use crate::{ReportError, Reporter, escape, finding, words};
 
 /// Writes the TAP report of a record that will not change any more.

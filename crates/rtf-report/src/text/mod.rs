@@ -10,7 +10,7 @@ use std::io::{self, Write};
 use rtf_model::{Record, SuiteRecord, Verdict};
 
 use crate::growth::{self, Within};
-use crate::{explain, prepared, words};
+use crate::{explain, private_resources, words};
 use lines::TextLines;
 
 /// Writes the text report of a record.
@@ -72,7 +72,7 @@ fn show_suite(
         lines.at(2, &format!("time: {}", words::time(end.since(start))));
     }
     if let Some(prepared) = &suite.prepared {
-        prepared::show(prepared, &mut |_, line| lines.at(2, line));
+        private_resources::show(prepared, &mut |_, line| lines.at(2, line));
     }
     for fixture in suite.fixtures.iter().filter_map(|id| record.fixture(*id)) {
         fixtures::show(lines, fixture);

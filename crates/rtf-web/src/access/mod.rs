@@ -4,7 +4,7 @@
 //! [`guard`] stands before every route.
 
 mod guesses;
-mod host;
+mod host_header;
 mod secret;
 
 use std::io;
@@ -17,7 +17,7 @@ use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
-pub use host::{Hosts, machine};
+pub use host_header::{Hosts, machine};
 pub use secret::{Secret, TokenError};
 
 use crate::api::ROOT;
@@ -204,7 +204,9 @@ impl Access {
             Problem::new(StatusCode::FORBIDDEN, detail)
         };
         match headers.get(header::ORIGIN) {
-            Some(origin) if !host::is_origin_of(origin, host, self.tls) => return Err(foreign()),
+            Some(origin) if !host_header::is_origin_of(origin, host, self.tls) => {
+                return Err(foreign());
+            }
             Some(_) => {}
             // Browsers always tell; a cookie alone proves nothing.
             None if who == Who::Session => return Err(foreign()),

@@ -4,8 +4,8 @@ use rtf_model::protocol::{Notification, Request};
 use rtf_model::{EventKind, ExitStatus, LeakedProcess, Source, TestId, Trigger};
 
 use super::context::Context;
-use super::escalation::{KILL_WAIT, MAX_KILLS, SIGTERM, TERM_GRACE};
 use super::io::{Deadline, Effect, HostId, ProcessEvent, Program, StartRequest, environment};
+use super::kill_escalation::{KILL_WAIT, MAX_KILLS, SIGTERM, TERM_GRACE};
 use super::output_capture::OutputCapture;
 use crate::hook::{HookJudgement, RUN_REQUEST, request, trigger_variables};
 use rtf_plan::plan::{HookBody, HookPlan, SuitePlan};

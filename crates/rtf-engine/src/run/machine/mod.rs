@@ -4,7 +4,6 @@
 //! carries out its effects.
 
 mod context;
-mod escalation;
 mod fixture;
 mod fixture_graph;
 mod hook;
@@ -12,6 +11,7 @@ mod hook_queue;
 mod host_replies;
 mod io;
 mod judge;
+mod kill_escalation;
 mod log_watch;
 mod output_capture;
 mod suite;

@@ -14,7 +14,7 @@ use rtf_web::{FinishedRun, RerunRejected};
 use rustix::process::{Pid, WaitId, WaitIdOptions};
 use tokio::sync::watch;
 
-use crate::child_run;
+use crate::spawn_self;
 
 /// SIGINT.
 const INT: i32 = 2;
@@ -127,7 +127,7 @@ impl ActiveRerun {
     /// Sends the run's name or its error, and waits until the run has ended.
     fn follow(&self, run: RerunProcess, result: &mpsc::Sender<StartResult>) -> io::Result<()> {
         let RerunProcess { mut child, lifeline, stdout, mut stderr } = run;
-        let pid = child_run::pid(child.id());
+        let pid = spawn_self::pid(child.id());
         {
             let mut state = self.state();
             state.process = pid;
@@ -170,7 +170,7 @@ impl RerunState {
         let Some(pid) = self.process else { return };
         if !self.is_stopped || is_repeated {
             self.is_stopped = true;
-            child_run::signal(pid, number);
+            spawn_self::signal(pid, number);
         }
     }
 }
@@ -185,9 +185,9 @@ struct RerunProcess {
 }
 
 fn start(results: &Path, run: &str, dir: &Path) -> io::Result<RerunProcess> {
-    let end_with_stdin = child_run::END_WITH_STDIN;
+    let end_with_stdin = spawn_self::END_WITH_STDIN;
     let options = ["run", end_with_stdin, "--color", "never", "--format", "json", "--results"];
-    let mut command = child_run::command(options)?;
+    let mut command = spawn_self::command(options)?;
     command.arg(results).args(["--rerun", "failed", "--", run]).current_dir(dir);
     let stderr = tempfile::tempfile()?;
     let mut child = command.stdout(Stdio::piped()).stderr(stderr.try_clone()?).spawn()?;

@@ -7,11 +7,11 @@ use std::process::ExitStatus;
 
 use tokio::process::{Child, Command};
 
-use crate::{child_run, exit};
+use crate::{exit, spawn_self};
 
 /// Starts a run, which ends with this process.
 pub fn start() -> io::Result<Child> {
-    let command = child_run::command(run_args(std::env::args_os().skip(1).collect()))?;
+    let command = spawn_self::command(run_args(std::env::args_os().skip(1).collect()))?;
     Command::from(command).spawn()
 }
 
@@ -23,8 +23,8 @@ fn run_args(mut args: Vec<OsString>) -> Vec<OsString> {
             index += 1;
         } else if !arg.to_string_lossy().starts_with('-') {
             *arg = "run".into();
-            if !args.contains(&child_run::END_WITH_STDIN.into()) {
-                args.insert(index + 1, child_run::END_WITH_STDIN.into());
+            if !args.contains(&spawn_self::END_WITH_STDIN.into()) {
+                args.insert(index + 1, spawn_self::END_WITH_STDIN.into());
             }
             break;
         }

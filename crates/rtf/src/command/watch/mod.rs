@@ -30,7 +30,7 @@ use crate::cli::{InputArgs, RunArgs};
 use crate::diagnostics::count;
 use crate::error::Failure;
 use crate::request::config;
-use crate::{child_run, terminal};
+use crate::{spawn_self, terminal};
 
 /// SIGTERM.
 const TERM: i32 = 15;
@@ -162,8 +162,8 @@ impl<'a> Watch<'a> {
     }
 
     fn signal(&self, number: i32) {
-        if let Some(pid) = self.child.as_ref().and_then(|child| child_run::pid(child.id()?)) {
-            child_run::signal(pid, number);
+        if let Some(pid) = self.child.as_ref().and_then(|child| spawn_self::pid(child.id()?)) {
+            spawn_self::signal(pid, number);
         }
     }
 

@@ -6,7 +6,7 @@ mod advance;
 mod attempts;
 #[cfg(debug_assertions)]
 mod deadline_invariant;
-mod examinations;
+mod fixture_examinations;
 mod scheduler;
 mod shared_host;
 mod soak;
@@ -23,7 +23,7 @@ use super::fixture_graph::FixtureGraph;
 use super::hook_queue::HookQueue;
 use super::io::{Deadline, Effect, HostId, Input, ProcessEvent};
 use crate::run::FailLimit;
-use examinations::Examinations;
+use fixture_examinations::Examinations;
 use rtf_plan::plan::{Preparation, SuitePlan};
 use scheduler::Scheduler;
 

@@ -8,8 +8,8 @@ use rtf_model::{EventKind, Phase, StopCause};
 
 use super::{AttemptState, TestRun};
 use crate::run::machine::context::Context;
-use crate::run::machine::escalation::{KILL_WAIT, MAX_KILLS, SIGTERM, TERM_GRACE};
 use crate::run::machine::io::{Effect, TestTimer};
+use crate::run::machine::kill_escalation::{KILL_WAIT, MAX_KILLS, SIGTERM, TERM_GRACE};
 
 /// A backstop: the task of the process gives up a stack dump earlier.
 const STACK_DUMP_LIMIT: Duration = Duration::from_secs(15);

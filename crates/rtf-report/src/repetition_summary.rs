@@ -1,4 +1,4 @@
-//! What many repetitions of a test come to: how many passed, and how long they took.
+//! Summarizes the repetitions of a test: how many passed, and how long they took.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! Where in the repository something is shown.
+//! Locations in the repository, for code hosts.
 
 use std::path::{Component, Path, PathBuf};
 

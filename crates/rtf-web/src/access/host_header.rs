@@ -1,5 +1,5 @@
-//! The names under which this server may be spoken to. A page of another name
-//! whose address leads here (DNS rebinding) is refused, and reads nothing.
+//! Checks the `Host` header: a page of another name whose address leads here (DNS rebinding) is
+//! refused, and reads nothing.
 
 use std::net::{IpAddr, SocketAddr};
 
