@@ -183,7 +183,7 @@ fn the_first_problem_that_is_reported_during_a_check_is_its_reason() {
     world.failure(FIXTURE, "no heartbeat\nwithin 2 s", false);
     world.failure(FIXTURE, "no torque", false);
     world.answer(FIXTURE, "failed");
-    assert_eq!(world.record.fixtures[0].collapses[0].1, "check failed: no heartbeat");
+    assert_eq!(world.record.fixtures[0].collapses[0].1, "check failed: no heartbeat\nwithin 2 s");
 }
 
 #[test]
