@@ -138,7 +138,7 @@ sdk_ruby() {
 }
 
 lint_language() {
-  files '*.md' Makefile .ci/run 'tools/*' 'benches/*' 'tests/install/*' 'tests/predecessor/*' 'crates/rtf-plan/src/*.rs' |
+  files '*.md' Makefile .ci/run 'tools/*' 'benches/*' 'tests/install/*' 'tests/predecessor/*' 'crates/*/src/*.rs' |
     grep -v -e '\.json$' -e '^tools/check_language.py$' | xargs -d '\n' tools/check_language.py
 }
 

@@ -1,7 +1,7 @@
 //! The hot paths, each alone and always the same: `rtf-counts WORK FOLDER`.
 //!
 //! `tools/counts.py` runs it below callgrind, which counts the instructions, and
-//! compares them with `benches/counts.json`. The folder is empty before.
+//! compares them with `benches/counts.json`. The directory is empty at the start.
 
 mod plan;
 mod protocol;

@@ -23,7 +23,7 @@ pub fn run(folder: &Path) -> Result<(), Box<dyn Error>> {
     let (suite, host) = (folder.join("counted.xml"), folder.join("rtf-host-lua"));
     std::fs::write(&suite, text)?;
     std::fs::write(folder.join("T.lua"), "TestCase = {}\n")?;
-    // Nothing is started: the planner only looks whether it is there.
+    // Nothing is started: the planner only checks that it exists.
     std::fs::write(&host, "")?;
     std::fs::set_permissions(&host, std::fs::Permissions::from_mode(0o755))?;
     let surroundings = RunnerEnvironment {

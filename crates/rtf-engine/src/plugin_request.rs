@@ -10,7 +10,7 @@ pub fn plugin(suite: &SuitePlan, name: &str, plan: &PluginPlan, repetition: u32)
         name: name.to_owned(),
         param: plan.param.clone(),
         args: plan.args.clone(),
-        environment: suite.environment.clone(),
+        environment: suite.settings.environment.clone(),
         repetition,
         is_last: false,
         end_marker: None,

@@ -3,7 +3,7 @@
 //! The run must not wait for a disk, and reporters must not need locks: one thread owns
 //! the record and all reporters, and a queue leads there. Handing an event over never
 //! waits, so that a fixture's collapse is dealt with even while the disk does not answer.
-//! Instead, [`FanoutHandle::backlog`] tells the run how much of one process waits, so that
+//! Instead, [`FanoutHandle::backlog`] returns how much output of one process waits, so that
 //! it reads no more from a plug-in that floods, which cannot fill the memory. Standard
 //! output has another thread: see [`crate::background_writer`].
 //!

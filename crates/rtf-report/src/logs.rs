@@ -112,7 +112,7 @@ fn path(mut name: String, attempt: u32) -> PathBuf {
 }
 
 /// `suite.name` where both are plain; otherwise made safe for every file
-/// system, and told apart from all others by the id after a `~`.
+/// system, and made unique by the id after a `~`.
 fn base(suite: &str, name: &str, ambiguous: bool, id: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     let safe = |text: &str| -> String {

@@ -113,7 +113,7 @@ fn html(event: &Event, record: &Record) -> Option<String> {
     })
 }
 
-/// As text between tags; without anything that JSON would escape in its turn.
+/// As text between tags; without characters that JSON would escape as well.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

@@ -213,7 +213,7 @@ impl BoundServer {
 pub struct ShutdownHandle(watch::Sender<bool>);
 
 impl ShutdownHandle {
-    /// Sends what is left to those who listen; the server ends then.
+    /// Sends the remaining events to the listeners; the server ends then.
     pub fn end(self) {
         self.0.send_replace(true);
     }
@@ -279,7 +279,7 @@ impl WebServer {
         self.thread.join().unwrap_or_else(|_| Err(io::Error::other("the server panicked")))
     }
 
-    /// Sends what is left to those who listen, and ends.
+    /// Sends the remaining events to the listeners, and ends.
     ///
     /// # Errors
     /// Why it had ended before.

@@ -101,7 +101,7 @@ fn selection(
 fn set_repetition(plan: &mut Plan, manifest: &Manifest) {
     let times = manifest.repeat.unwrap_or(1);
     for test in plan.suites.iter_mut().flat_map(|suite| &mut suite.tests) {
-        test.repetitions = test.repetitions.saturating_mul(times);
-        test.retries.count = manifest.retries.unwrap_or(test.retries.count);
+        test.settings.repetitions = test.settings.repetitions.saturating_mul(times);
+        test.settings.retries.count = manifest.retries.unwrap_or(test.settings.retries.count);
     }
 }

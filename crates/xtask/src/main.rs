@@ -1,5 +1,5 @@
 //! Makes what is generated from the code and kept in the repository, or with
-//! `--check` tells whether what is kept is what the code makes.
+//! `--check` compares the kept files with what the code makes.
 //!
 //! ```text
 //! cargo run -p xtask -- schemas [--check]    schemas/*.json, from rtf-model
@@ -37,7 +37,7 @@ fn main() -> ExitCode {
 
 fn tell(error: &dyn Error) {
     let mut err = std::io::stderr().lock();
-    // Where standard error is closed there is nobody to tell; the exit code does.
+    // Where standard error is closed, the exit code alone reports the problem.
     drop(writeln!(err, "error: {error}"));
     let mut cause = error.source();
     while let Some(error) = cause {

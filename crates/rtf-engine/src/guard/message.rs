@@ -135,7 +135,7 @@ pub struct HookSpec {
 impl HookSpec {
     /// Converts a planned hook.
     pub fn new(suite: &SuitePlan, plan: &HookPlan) -> Self {
-        let mut env = vec![(ENVIRONMENT_VARIABLE.to_owned(), suite.environment.clone())];
+        let mut env = vec![(ENVIRONMENT_VARIABLE.to_owned(), suite.settings.environment.clone())];
         env.extend(suite.env.iter().chain(&plan.env).cloned());
         env.push((OWNER_VARIABLE.to_owned(), format!("hook {}/{}", suite.name, plan.name)));
         let (command, plugin) = match &plan.body {

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use rtf_model::{SuitePort, SuitePrepared};
 
 use rtf_plan::plan::{
-    FixtureBody, HookBody, PluginPlan, Preparation, Probe, ProbeKind, ProcessPlan, SuitePlan,
+    FixtureBody, HookBody, PluginPlan, Preparation, Probe, ProbeKind, ProbePlans, ProcessPlan,
+    SuitePlan,
 };
 use rtf_plan::suite::port_reference;
 
@@ -51,18 +52,14 @@ impl Substitution<'_> {
     }
 
     fn suite(&self, plan: &mut SuitePlan) {
-        self.text(&mut plan.environment);
+        self.text(&mut plan.settings.environment);
         self.env(Arc::make_mut(&mut plan.env).as_mut_slice());
         for fixture in &mut plan.fixtures {
             self.env(&mut fixture.env);
             match &mut fixture.body {
                 FixtureBody::Plugin(plugin) => self.plugin(plugin),
                 FixtureBody::Process(process) => self.process(Arc::make_mut(process)),
-                FixtureBody::Attached(attached) => {
-                    let attached = Arc::make_mut(attached);
-                    self.probes(&mut attached.ready);
-                    self.probes(&mut attached.alive);
-                }
+                FixtureBody::Attached(probes) => self.probes(Arc::make_mut(probes)),
             }
         }
         for hook in &mut plan.hooks {
@@ -93,12 +90,11 @@ impl Substitution<'_> {
             self.text(&mut remote.host);
             self.texts(&mut remote.ssh);
         }
-        self.probes(&mut process.ready);
-        self.probes(&mut process.alive);
+        self.probes(&mut process.probes);
     }
 
-    fn probes(&self, probes: &mut [Probe]) {
-        probes.iter_mut().for_each(|probe| self.probe(probe));
+    fn probes(&self, probes: &mut ProbePlans) {
+        probes.ready.iter_mut().chain(&mut probes.alive).for_each(|probe| self.probe(probe));
     }
 
     fn probe(&self, probe: &mut Probe) {

@@ -9,7 +9,8 @@ use super::middleware::MiddlewareIds;
 use super::{join_command, port_substitution};
 use crate::run::machine::tests::world::{SECOND, suite};
 use rtf_plan::plan::{
-    FixtureBody, OwnMiddleware, Preparation, Probe, ProbeKind, ProcessPlan, RemotePlan, SuitePlan,
+    FixtureBody, OwnMiddleware, Preparation, Probe, ProbeKind, ProbePlans, ProcessPlan, RemotePlan,
+    SuitePlan,
 };
 
 fn ports() -> Vec<SuitePort> {
@@ -135,18 +136,20 @@ fn prepared() -> SuitePrepared {
 fn plan_of(text: &str) -> SuitePlan {
     let mut plan = suite(2, 1);
     let env = vec![("V".to_owned(), text.to_owned()), ("A".to_owned(), "written".to_owned())];
-    plan.environment = text.to_owned();
+    plan.settings.environment = text.to_owned();
     plan.env = Arc::new(env.clone());
     let probe = |kind| Probe { kind, every: SECOND, timeout: SECOND };
     plan.fixtures[1].body = FixtureBody::Process(Arc::new(ProcessPlan {
         command: vec!["sim".to_owned(), text.to_owned()],
-        ready: vec![
-            probe(ProbeKind::Tcp(text.to_owned())),
-            probe(ProbeKind::Http(text.to_owned())),
-            probe(ProbeKind::File(text.into())),
-            probe(ProbeKind::Command(vec!["ask".to_owned(), text.to_owned()])),
-        ],
-        alive: vec![probe(ProbeKind::Tcp(text.to_owned()))],
+        probes: ProbePlans {
+            ready: vec![
+                probe(ProbeKind::Tcp(text.to_owned())),
+                probe(ProbeKind::Http(text.to_owned())),
+                probe(ProbeKind::File(text.into())),
+                probe(ProbeKind::Command(vec!["ask".to_owned(), text.to_owned()])),
+            ],
+            alive: vec![probe(ProbeKind::Tcp(text.to_owned()))],
+        },
         stop_signal: 15,
         stop_grace: SECOND,
         stop_codes: Vec::new(),
@@ -168,7 +171,7 @@ fn ports_are_filled_in_everywhere() {
     let filled = plan_of("20003, ${port:sim}, ${HOME}");
     assert_eq!(format!("{:?}", plan.fixtures), format!("{:?}", filled.fixtures));
     assert_eq!(format!("{:?}", plan.tests), format!("{:?}", filled.tests));
-    assert_eq!(plan.environment, filled.environment);
+    assert_eq!(plan.settings.environment, filled.settings.environment);
     // What the suite sets comes last, and counts; what was kept is there already.
     let names: Vec<_> = plan.env.iter().map(|(name, value)| format!("{name}={value}")).collect();
     let expected = [

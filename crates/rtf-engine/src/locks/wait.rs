@@ -38,7 +38,7 @@ pub async fn wait(
     events: &Events,
     (stops, controls): (&mut watch::Receiver<Option<Stop>>, &mut Controls),
 ) -> Result<Vec<Lock>, String> {
-    if suite.requires.is_empty() {
+    if suite.settings.requires.is_empty() {
         return Ok(Vec::new());
     }
     let shown = options.dir.display();
@@ -46,7 +46,7 @@ pub async fn wait(
     let locks = Locks::open(&options.dir).map_err(cannot)?;
     let started = Instant::now();
     let mut acquired = Vec::new();
-    for resource in &suite.requires {
+    for resource in &suite.settings.requires {
         let mut reported = Vec::new();
         loop {
             if stops.borrow().is_some() || is_skipped(suite, controls) {
@@ -133,7 +133,8 @@ mod tests {
         let arm = RequiredResource { name: "arm".to_owned(), slots: 1 };
         let lock =
             Locks::open(&dir).unwrap().try_acquire(&arm, &LockOwner::default()).unwrap().unwrap();
-        let plan = SuitePlan { requires: vec![arm], ..suite(0, 1) };
+        let mut plan = suite(0, 1);
+        plan.settings.requires = vec![arm];
         let options = LockOptions { dir, limit: None };
         let events = Events::new("r".to_owned(), Arc::new(NullSink));
         let (_stop, mut stops) = watch::channel(None);

@@ -205,10 +205,10 @@ fn emit_planned(suite: &SuitePlan, timed: bool, events: &Events) {
         suite: suite.id,
         name: suite.name.clone(),
         file: suite.file.clone(),
-        description: suite.description.clone(),
-        environment: suite.environment.clone(),
-        tolerates_collapse: suite.tolerates_collapse,
-        parallel: suite.parallel,
+        description: suite.settings.description.clone(),
+        environment: suite.settings.environment.clone(),
+        tolerates_collapse: suite.settings.tolerates_collapse,
+        parallel: suite.settings.parallel,
     }));
     for fixture in &suite.fixtures {
         events.emit(EventKind::FixturePlanned(FixturePlanned {
@@ -242,7 +242,7 @@ fn planned(suite: &SuitePlan, test: &TestPlan, timed: bool) -> TestPlanned {
         name: test.name.clone(),
         plugin_type: test.plugin.plugin_type.to_string(),
         plugin: shown(&test.plugin.file),
-        repetitions: test.repetitions,
+        repetitions: test.settings.repetitions,
         timed,
         tags: test.tags.clone(),
     }

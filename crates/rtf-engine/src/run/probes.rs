@@ -4,13 +4,9 @@ use rtf_plan::plan;
 use rtf_process::network::Network;
 use rtf_process::probe::{ProbeSpec, ProbeTarget, Probes};
 
-pub(super) fn convert(
-    ready: &[plan::Probe],
-    alive: &[plan::Probe],
-    network: Option<Network>,
-) -> Probes {
+pub(super) fn convert(plan: &plan::ProbePlans, network: Option<Network>) -> Probes {
     let convert = |probes: &[plan::Probe]| probes.iter().filter_map(probe).collect();
-    Probes { ready: convert(ready), alive: convert(alive), network }
+    Probes { ready: convert(&plan.ready), alive: convert(&plan.alive), network }
 }
 
 fn probe(plan: &plan::Probe) -> Option<ProbeSpec> {

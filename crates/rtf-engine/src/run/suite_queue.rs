@@ -50,8 +50,8 @@ impl<'p> SuiteQueue<'p> {
 
     /// Whether no running suite occupies a resource that it requires.
     fn is_free(&self, suite: &SuitePlan) -> bool {
-        suite.requires.iter().all(|wanted| {
-            let all = self.running.iter().flat_map(|suite| &suite.requires);
+        suite.settings.requires.iter().all(|wanted| {
+            let all = self.running.iter().flat_map(|suite| &suite.settings.requires);
             let taken = all.filter(|other| other.name == wanted.name).count();
             u32::try_from(taken).is_ok_and(|taken| taken < wanted.slots)
         })
@@ -75,8 +75,9 @@ mod tests {
         (0..)
             .zip(requires)
             .map(|(id, words)| {
-                let requires = words.split_whitespace().map(resource).collect();
-                SuitePlan { id: SuiteId(id), requires, ..suite(0, 1) }
+                let mut suite = SuitePlan { id: SuiteId(id), ..suite(0, 1) };
+                suite.settings.requires = words.split_whitespace().map(resource).collect();
+                suite
             })
             .collect()
     }

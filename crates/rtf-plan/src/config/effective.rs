@@ -8,7 +8,7 @@ use super::profile_view::{ConfigRequest, ProfileView};
 use super::run_config::RunValue;
 use super::toml_reader::Entry;
 use crate::plan::defaults;
-use crate::suite::{SourceText, SuiteSettings};
+use crate::suite::{SharedSettings, SourceText};
 
 /// An effective setting.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -29,7 +29,7 @@ pub struct SettingsQuery<'a> {
     /// The nearest `rtf.toml`.
     pub view: Option<ProfileView>,
     /// The suite and its settings.
-    pub suite: Option<(&'a SourceText, &'a SuiteSettings)>,
+    pub suite: Option<(&'a SourceText, &'a SharedSettings)>,
     /// The settings of the run.
     pub run: &'a [RunValue],
     /// The command line.

@@ -9,7 +9,7 @@ use super::param_reference;
 use super::profile_view::{ConfigRequest, ProfileView};
 use crate::plan::defaults;
 use crate::suite::{
-    DeclaredLimits, DeclaredPlugin, DeclaredProbe, DeclaredProbeKind, DeclaredSuite, FixtureKind,
+    DeclaredLimits, DeclaredPlugin, DeclaredProbeKind, DeclaredProbes, DeclaredSuite, FixtureKind,
     HookKind, MAX_DURATION, SourceText, Span,
 };
 use crate::wording::nearest;
@@ -34,9 +34,10 @@ pub(crate) fn overlay_suite(
 }
 
 fn overlay_environment(suite: &mut DeclaredSuite, view: &ProfileView) {
-    let default = view.file.defaults.get("environment").filter(|_| suite.environment.is_empty());
+    let default =
+        view.file.defaults.get("environment").filter(|_| suite.settings.environment.is_empty());
     if let Some(entry) = view.profile_value("environment").or(default) {
-        suite.environment = entry.text().unwrap_or_default().to_owned();
+        suite.settings.environment = entry.text().unwrap_or_default().to_owned();
     }
 }
 
@@ -56,7 +57,7 @@ fn overlay_variables(env: &mut Vec<(String, String)>, view: &ProfileView) {
 /// A file can only lower the number: only the suite knows which tests may run concurrently.
 fn overlay_parallel(suite: &mut DeclaredSuite, view: &ProfileView) {
     let most = view.text("parallel").and_then(|text| text.parse().ok());
-    suite.parallel = suite.parallel.min(most.unwrap_or(u32::MAX));
+    suite.settings.parallel = suite.settings.parallel.min(most.unwrap_or(u32::MAX));
 }
 
 fn overlay_limits(suite: &mut DeclaredSuite, view: &ProfileView) {
@@ -74,8 +75,8 @@ fn overlay_limits(suite: &mut DeclaredSuite, view: &ProfileView) {
     for hook in &mut suite.hooks {
         hook.timeout = limit(hook.timeout, ("hook", defaults::HOOK), view, scale);
     }
-    let suite_limit = suite.timeout.or_else(|| view.duration("timeouts.suite"));
-    suite.timeout = suite_limit.map(|limit| scaled(limit, scale));
+    let suite_limit = suite.settings.timeout.or_else(|| view.duration("timeouts.suite"));
+    suite.settings.timeout = suite_limit.map(|limit| scaled(limit, scale));
 }
 
 /// The settings of plug-ins that are given directly.
@@ -184,7 +185,7 @@ struct ParamSubstitution<'a> {
 impl ParamSubstitution<'_> {
     fn run(mut self, suite: &mut DeclaredSuite) -> Vec<Diagnostic> {
         let span = suite.span;
-        self.text(&mut suite.environment, span);
+        self.text(&mut suite.settings.environment, span);
         self.env(&mut suite.env, span);
         for test in &mut suite.tests {
             self.env(&mut test.env, test.span);
@@ -197,11 +198,9 @@ impl ParamSubstitution<'_> {
                 FixtureKind::Process(process) => {
                     let span = process.command.span;
                     self.words(&mut process.command.value, span);
-                    self.probes(process.ready.iter_mut().chain(&mut process.alive));
+                    self.probes(&mut process.probes);
                 }
-                FixtureKind::Attached(attached) => {
-                    self.probes(attached.ready.iter_mut().chain(&mut attached.alive));
-                }
+                FixtureKind::Attached(probes) => self.probes(probes),
             }
         }
         for hook in &mut suite.hooks {
@@ -219,8 +218,8 @@ impl ParamSubstitution<'_> {
         self.problems
     }
 
-    fn probes<'p>(&mut self, probes: impl Iterator<Item = &'p mut DeclaredProbe>) {
-        for probe in probes {
+    fn probes(&mut self, probes: &mut DeclaredProbes) {
+        for probe in probes.ready.iter_mut().chain(&mut probes.alive) {
             match &mut probe.kind {
                 DeclaredProbeKind::Tcp(text)
                 | DeclaredProbeKind::Http(text)

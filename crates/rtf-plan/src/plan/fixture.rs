@@ -12,11 +12,11 @@ use super::plugin_search::base_name;
 use super::search_scope::SearchScope;
 use super::use_site::PluginRole;
 use super::{
-    AttachedPlan, FixtureBody, FixtureLimits, FixturePlan, Probe, ProbeKind, ProcessPlan,
-    RemotePlan, defaults, dependencies, middleware, program,
+    FixtureBody, FixtureLimits, FixturePlan, Probe, ProbeKind, ProbePlans, ProcessPlan, RemotePlan,
+    defaults, dependencies, middleware, program,
 };
 use crate::suite::{
-    self, DeclaredAttachment, DeclaredFixture, DeclaredProbeKind, DeclaredProcess, FixtureKind,
+    self, DeclaredFixture, DeclaredProbeKind, DeclaredProbes, DeclaredProcess, FixtureKind,
     SourceText, Spanned,
 };
 
@@ -86,16 +86,16 @@ fn plan(
             FixtureBody::Plugin(planner.plan(plugin, source, &fixture.env, role)?)
         }
         FixtureKind::Process(process) => {
-            let suite_scope = planner.scope();
+            let scope = planner.scope();
             let mut planner =
-                ProcessPlanner::new(source, suite_scope.with(&fixture.env), planner.context);
+                ProcessPlanner::new(source, scope.with(&fixture.env), planner.context);
             FixtureBody::Process(Arc::new(planner.plan(*process, check_every)))
         }
-        FixtureKind::Attached(attached) => {
-            let suite_scope = planner.scope();
+        FixtureKind::Attached(probes) => {
+            let scope = planner.scope();
             let mut planner =
-                ProcessPlanner::new(source, suite_scope.with(&fixture.env), planner.context);
-            FixtureBody::Attached(Arc::new(planner.plan_attached(attached, check_every)))
+                ProcessPlanner::new(source, scope.with(&fixture.env), planner.context);
+            FixtureBody::Attached(Arc::new(planner.plan_attached(probes, check_every)))
         }
     };
     Some(FixturePlan {
@@ -127,12 +127,7 @@ impl<'a> ProcessPlanner<'a> {
     }
 
     fn plan(&mut self, declared: DeclaredProcess, check_every: Option<Duration>) -> ProcessPlan {
-        let alive_every = check_every.unwrap_or(ALIVE_EVERY);
-        let mut probes = |probes: Vec<suite::DeclaredProbe>, every| {
-            probes.into_iter().map(|probe| self.probe(probe, every)).collect()
-        };
-        let ready = probes(declared.ready, READY_EVERY);
-        let alive = probes(declared.alive, alive_every);
+        let probes = self.probes(declared.probes, check_every);
         let remote =
             declared.host.map(|host| RemotePlan { ssh: self.ssh(&host), host: host.value });
         let command = match remote {
@@ -141,8 +136,7 @@ impl<'a> ProcessPlanner<'a> {
         };
         ProcessPlan {
             command,
-            ready,
-            alive,
+            probes,
             stop_signal: declared.stop_signal.unwrap_or(STOP_SIGNAL),
             stop_grace: declared.stop_grace.unwrap_or(STOP_GRACE),
             stop_codes: declared.stop_codes,
@@ -154,16 +148,12 @@ impl<'a> ProcessPlanner<'a> {
     /// probes also run as `<alive>` probes.
     fn plan_attached(
         &mut self,
-        declared: DeclaredAttachment,
+        declared: DeclaredProbes,
         check_every: Option<Duration>,
-    ) -> AttachedPlan {
-        let every = check_every.unwrap_or(ALIVE_EVERY);
+    ) -> ProbePlans {
         let intervals: Vec<_> = declared.ready.iter().map(|probe| probe.every).collect();
-        let mut probes = |probes: Vec<suite::DeclaredProbe>, every| -> Vec<Probe> {
-            probes.into_iter().map(|probe| self.probe(probe, every)).collect()
-        };
-        let mut ready = probes(declared.ready, READY_EVERY);
-        let mut alive = probes(declared.alive, every);
+        let every = check_every.unwrap_or(ALIVE_EVERY);
+        let ProbePlans { mut ready, mut alive } = self.probes(declared, check_every);
         let at = |probe: &Probe, every| Probe { every, ..probe.clone() };
         if alive.is_empty() {
             let both = ready.iter().zip(intervals);
@@ -171,7 +161,17 @@ impl<'a> ProcessPlanner<'a> {
         } else {
             ready.extend(alive.iter().map(|probe| at(probe, READY_EVERY)));
         }
-        AttachedPlan { ready, alive }
+        ProbePlans { ready, alive }
+    }
+
+    fn probes(&mut self, declared: DeclaredProbes, check_every: Option<Duration>) -> ProbePlans {
+        let mut plan = |probes: Vec<suite::DeclaredProbe>, every| {
+            probes.into_iter().map(|probe| self.probe(probe, every)).collect()
+        };
+        ProbePlans {
+            ready: plan(declared.ready, READY_EVERY),
+            alive: plan(declared.alive, check_every.unwrap_or(ALIVE_EVERY)),
+        }
     }
 
     fn probe(&mut self, declared: suite::DeclaredProbe, every: Duration) -> Probe {

@@ -15,8 +15,8 @@ use super::plugin_search::base_name;
 use super::search_scope::SearchScope;
 use super::use_site::PluginRole;
 use super::{
-    AfterCollapse, Compatibility, Isolation, Leaks, OwnMiddleware, Preparation, Retries, SuitePlan,
-    TestLimits, TestPlan, clock, defaults, fixture, hook, middleware,
+    Compatibility, Isolation, OwnMiddleware, Preparation, SuitePlan, SuiteSettings, TestLimits,
+    TestPlan, TestSettings, clock, defaults, fixture, hook, middleware,
 };
 use crate::config;
 use crate::suite::{
@@ -79,16 +79,10 @@ pub(super) fn plan_suite(
         name,
         file: file.name.clone(),
         folder: dir,
-        description: suite.description,
-        environment: suite.environment,
         env,
-        timeout: suite.timeout,
         isolate,
         preparation: Preparation::NotNeeded,
-        requires: suite.requires,
-        tolerates_collapse: suite.tolerates_collapse,
-        critical_stops_run: suite.critical_stops_run,
-        parallel: suite.parallel,
+        settings: suite.settings,
         clock,
         fixtures,
         hooks,
@@ -116,14 +110,8 @@ fn plan_tests(
             name,
             plugin,
             env: test.env,
-            repetitions: test.repetitions,
             limits: limits.get(test.limits),
-            after_collapse: test.after_collapse,
-            leaks: test.leaks,
-            retries: test.retries,
-            critical: test.critical,
-            exclusive: test.exclusive,
-            shared: test.shared,
+            settings: test.settings,
             tags,
         });
     }
@@ -192,6 +180,7 @@ pub(super) fn plan_direct_plugins(
     let dir = options.runner.current_dir.clone();
     let runner = &options.runner;
     let environment = if use_options { options.environment.as_str() } else { "" };
+    let repetitions = if use_options { options.repetitions.max(1) } else { 1 };
     let config::DirectPluginConfig { environment, env, limits } =
         context.direct_plugin_config(&dir, environment);
     let scope = SearchScope { suite_env: &env, ..SearchScope::of_runner(runner) };
@@ -206,14 +195,8 @@ pub(super) fn plan_direct_plugins(
             name: names.unique(base_name(&direct.file.name)),
             plugin,
             env: Vec::new(),
-            repetitions: if use_options { options.repetitions.max(1) } else { 1 },
             limits: Arc::clone(&limits),
-            after_collapse: AfterCollapse::default(),
-            leaks: Leaks::default(),
-            retries: Retries::default(),
-            critical: false,
-            exclusive: false,
-            shared: false,
+            settings: TestSettings { repetitions, ..TestSettings::default() },
             tags: Vec::new(),
         });
     }
@@ -222,16 +205,10 @@ pub(super) fn plan_direct_plugins(
         name: DIRECT_PLUGINS.to_owned(),
         file: String::new(),
         folder: dir,
-        description: String::new(),
-        environment,
         env: Arc::new(env),
-        timeout: None,
         isolate: Isolation::default(),
         preparation: Preparation::NotNeeded,
-        requires: Vec::new(),
-        tolerates_collapse: false,
-        critical_stops_run: false,
-        parallel: 1,
+        settings: SuiteSettings { environment, ..SuiteSettings::default() },
         clock: None,
         fixtures: Vec::new(),
         hooks: Vec::new(),

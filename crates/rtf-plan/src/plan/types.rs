@@ -6,7 +6,9 @@ use std::time::Duration;
 
 use rtf_model::{FixtureId, HookId, SuiteId, SuitePrepared, TestId, Trigger};
 
-pub use crate::suite::{AfterCollapse, Leaks, RequiredResource, Retries};
+pub use crate::suite::{
+    AfterCollapse, Leaks, RequiredResource, Retries, SuiteSettings, TestSettings,
+};
 
 /// The plan of a run. All input files are valid; only the outside world can still fail.
 #[derive(Clone, Debug, Default)]
@@ -56,26 +58,14 @@ pub struct SuitePlan {
     pub file: String,
     /// The working directory of its processes: the suite file's, or the current one.
     pub folder: PathBuf,
-    /// The description, white space folded.
-    pub description: String,
-    /// The environment string.
-    pub environment: String,
     /// Environment variables of all its processes, in order.
     pub env: Arc<Vec<(String, String)>>,
-    /// The limit for the whole suite, including set-up and tear-down of fixtures.
-    pub timeout: Option<Duration>,
     /// The private resources that it gets when it starts.
     pub isolate: Isolation,
     /// Whether it got them.
     pub preparation: Preparation,
-    /// Exclusive resources, sorted by name.
-    pub requires: Vec<RequiredResource>,
-    /// Whether the suite stays green when a fixture collapses.
-    pub tolerates_collapse: bool,
-    /// Whether a failed critical test or assertion ends the whole run, not only the suite.
-    pub critical_stops_run: bool,
-    /// The maximum number of tests that run at the same time.
-    pub parallel: u32,
+    /// The settings that need no name to be resolved.
+    pub settings: SuiteSettings,
     /// The simulated clock; `None` for the wall clock.
     pub clock: Option<ClockPlan>,
     /// The fixtures: each after its dependencies, otherwise in the order of the file.
@@ -90,7 +80,7 @@ impl SuitePlan {
     /// Checks whether any test has more than one repetition.
     #[must_use]
     pub fn repeats(&self) -> bool {
-        self.tests.iter().any(|test| test.repetitions > 1)
+        self.tests.iter().any(|test| test.settings.repetitions > 1)
     }
 }
 
@@ -182,7 +172,19 @@ pub enum FixtureBody {
     /// The built-in `type="process"`.
     Process(Arc<ProcessPlan>),
     /// A process that is already running, and is only monitored.
-    Attached(Arc<AttachedPlan>),
+    Attached(Arc<ProbePlans>),
+}
+
+impl FixtureBody {
+    /// Returns the probes of a process.
+    #[must_use]
+    pub fn probes(&self) -> Option<&ProbePlans> {
+        match self {
+            Self::Plugin(_) => None,
+            Self::Process(process) => Some(&process.probes),
+            Self::Attached(probes) => Some(probes),
+        }
+    }
 }
 
 /// The plan of a test.
@@ -196,22 +198,10 @@ pub struct TestPlan {
     pub plugin: PluginPlan,
     /// Environment variables in addition to the suite's.
     pub env: Vec<(String, String)>,
-    /// The number of repetitions, at least 1.
-    pub repetitions: u32,
     /// The limits of its phases; tests with equal limits share them.
     pub limits: Arc<TestLimits>,
-    /// The reaction to a fixture that collapses while the test runs.
-    pub after_collapse: AfterCollapse,
-    /// The reaction to leftover processes.
-    pub leaks: Leaks,
-    /// The retries after a failure.
-    pub retries: Retries,
-    /// Whether the rest of the suite is skipped unless the test passes.
-    pub critical: bool,
-    /// Whether no other test of the suite runs at the same time.
-    pub exclusive: bool,
-    /// Whether it may share a host with other tests.
-    pub shared: bool,
+    /// The settings that need no name to be resolved.
+    pub settings: TestSettings,
     /// The tags of the suite and of the test.
     pub tags: Vec<String>,
 }
@@ -290,10 +280,8 @@ pub struct HostPlan {
 pub struct ProcessPlan {
     /// The program, as an absolute path unless it is remote, and its arguments.
     pub command: Vec<String>,
-    /// The probes that must pass before it is ready; without probes, it is ready once started.
-    pub ready: Vec<Probe>,
-    /// The probes that must pass while it is ready.
-    pub alive: Vec<Probe>,
+    /// Its probes; without `ready` probes, it is ready once started.
+    pub probes: ProbePlans,
     /// The signal that stops it, by default 15 (SIGTERM).
     pub stop_signal: i32,
     /// The time between that signal and the kill.
@@ -313,9 +301,9 @@ pub struct RemotePlan {
     pub ssh: Vec<String>,
 }
 
-/// The plan of a fixture with `type="process"` and `attach="true"`.
-#[derive(Clone, Debug)]
-pub struct AttachedPlan {
+/// The probes of a process fixture.
+#[derive(Clone, Debug, Default)]
+pub struct ProbePlans {
     /// The probes that must pass before it is ready.
     pub ready: Vec<Probe>,
     /// The probes that must pass while it is ready.

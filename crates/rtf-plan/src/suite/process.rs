@@ -6,7 +6,7 @@ use rtf_model::Diagnostic;
 use super::reader::ElementReader;
 use super::schema::{self, check};
 use super::{
-    DeclaredAttachment, DeclaredProbe, DeclaredProbeKind, DeclaredProcess, Span, Spanned, command,
+    DeclaredProbe, DeclaredProbeKind, DeclaredProbes, DeclaredProcess, Span, Spanned, command,
     port_reference, probe, signal,
 };
 
@@ -14,8 +14,7 @@ use super::{
 pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> DeclaredProcess {
     let mut process = DeclaredProcess {
         command: Spanned::new(Vec::new(), Span::default()),
-        ready: Vec::new(),
-        alive: Vec::new(),
+        probes: DeclaredProbes::default(),
         stop_signal: None,
         stop_grace: None,
         stop_codes: Vec::new(),
@@ -29,8 +28,8 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Declar
                 reader.once(child, &mut command_seen);
                 process.command = command::read(reader, child);
             }
-            "ready" => process.ready.extend(probe::read(reader, child, &schema::READY)),
-            "alive" => process.alive.extend(probe::read(reader, child, &schema::ALIVE)),
+            "ready" => process.probes.ready.extend(probe::read(reader, child, &schema::READY)),
+            "alive" => process.probes.alive.extend(probe::read(reader, child, &schema::ALIVE)),
             "stop" => {
                 reader.once(child, &mut stop_seen);
                 check(reader, child, &schema::STOP);
@@ -45,7 +44,7 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Declar
         reader.missing(node, "a `<command>` for `type=\"process\"`");
     }
     if process.host.is_some() {
-        for probe in process.ready.iter().chain(&process.alive) {
+        for probe in process.probes.ready.iter().chain(&process.probes.alive) {
             report_local_file(reader, probe);
         }
     }
@@ -106,8 +105,8 @@ fn exit_codes(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Vec<i32> {
 }
 
 /// Reads the children of `<fixture type="process" attach="true">`.
-pub(super) fn attached(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> DeclaredAttachment {
-    let mut attached = DeclaredAttachment { ready: Vec::new(), alive: Vec::new() };
+pub(super) fn attached(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> DeclaredProbes {
+    let mut attached = DeclaredProbes::default();
     let mut probes = 0;
     for child in node.children().filter(Node::is_element) {
         let (schema, list) = match child.tag_name().name() {

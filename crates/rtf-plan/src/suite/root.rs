@@ -7,8 +7,8 @@ use super::reader::ElementReader;
 use super::schema::{self, check};
 use super::test::{self, TestDefaults};
 use super::{
-    DeclaredIsolation, DeclaredMiddleware, DeclaredSuite, Retries, SourceText, Spanned, clock, env,
-    fixture, hook, port_reference, requires, xml,
+    DeclaredIsolation, DeclaredMiddleware, DeclaredSuite, SourceText, Spanned, SuiteSettings,
+    TestSettings, clock, env, fixture, hook, port_reference, requires, xml,
 };
 
 /// Parses the text of a suite file and adds every problem to `problems`.
@@ -47,25 +47,26 @@ fn read_suite(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> DeclaredSui
     check(reader, root, &schema::SUITE);
     let defaults = TestDefaults {
         limits: test::limits(reader, root, "test-"),
-        after_collapse: test::after_collapse(reader, root).unwrap_or_default(),
-        leaks: test::leaks(reader, root).unwrap_or_default(),
-        retries: test::retries(reader, root, Retries::default()),
+        settings: test::inherited_settings(reader, root, TestSettings::default()),
     };
-    let mut suite = DeclaredSuite {
-        span: ElementReader::tag(root),
-        name: reader.word(root, "name"),
+    let settings = SuiteSettings {
         description: String::new(),
         environment: String::new(),
-        env: env::read(reader, root),
         timeout: reader.duration(root, "timeout"),
-        tags: test::values(reader.words(root, "tags")),
-        isolate: isolation(reader, root),
         requires: requires::read(reader, root),
         tolerates_collapse: reader.boolean(root, "tolerate-collapse").unwrap_or(false),
         critical_stops_run: reader
             .choice(root, "critical-stops", &[("suite", false), ("run", true)])
             .unwrap_or(false),
         parallel: reader.number(root, "parallel", 1).unwrap_or(1),
+    };
+    let mut suite = DeclaredSuite {
+        span: ElementReader::tag(root),
+        name: reader.word(root, "name"),
+        env: env::read(reader, root),
+        tags: test::values(reader.words(root, "tags")),
+        isolate: isolation(reader, root),
+        settings,
         clock: clock::read(reader, root),
         fixtures: Vec::new(),
         hooks: Vec::new(),
@@ -75,12 +76,13 @@ fn read_suite(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> DeclaredSui
         match node.tag_name().name() {
             "description" => {
                 let text = last_text(reader, node, "description");
-                suite.description = text.value.split_whitespace().collect::<Vec<_>>().join(" ");
+                suite.settings.description =
+                    text.value.split_whitespace().collect::<Vec<_>>().join(" ");
             }
             "environment" => {
                 let text = last_text(reader, node, "environment");
                 port_reference::check(reader, "<environment>", &text);
-                suite.environment = text.value;
+                suite.settings.environment = text.value;
             }
             "fixture" => suite.fixtures.extend(fixture::read(reader, node)),
             "hook" => suite.hooks.extend(hook::read(reader, node)),

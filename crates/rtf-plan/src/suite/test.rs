@@ -6,8 +6,8 @@ use rtf_model::Diagnostic;
 use super::reader::ElementReader;
 use super::schema::{self, check};
 use super::{
-    AfterCollapse, DeclaredLimits, DeclaredPlugin, DeclaredTest, Leaks, Retries, Spanned, env,
-    port_reference,
+    AfterCollapse, DeclaredLimits, DeclaredPlugin, DeclaredTest, Leaks, Retries, Spanned,
+    TestSettings, env, port_reference,
 };
 
 /// The defaults that a suite declares for its tests.
@@ -15,12 +15,8 @@ use super::{
 pub(super) struct TestDefaults {
     /// The limits.
     pub limits: DeclaredLimits,
-    /// `after-collapse`.
-    pub after_collapse: AfterCollapse,
-    /// `leaks`.
-    pub leaks: Leaks,
-    /// `retries` and `retry-delay`.
-    pub retries: Retries,
+    /// The settings.
+    pub settings: TestSettings,
 }
 
 /// Reads a `<test>`; `None` if it names no plug-in.
@@ -40,32 +36,19 @@ pub(super) fn read(
         slow: declared.slow.or(default.slow),
         grace: declared.grace.or(default.grace),
     };
-    let shared = is_shared(reader, node);
-    let repetitions = reader.number(node, "repetition", 1).unwrap_or(1);
-    let after_collapse = after_collapse(reader, node).unwrap_or(defaults.after_collapse);
-    let leaks = leaks(reader, node).unwrap_or(defaults.leaks);
-    let retries = retries(reader, node, defaults.retries);
-    let critical = reader.boolean(node, "critical").unwrap_or(false);
-    let exclusive = reader.boolean(node, "exclusive").unwrap_or(false);
+    let words = [("process", false), ("shared", true)];
+    let settings = TestSettings {
+        repetitions: reader.number(node, "repetition", 1).unwrap_or(1),
+        critical: reader.boolean(node, "critical").unwrap_or(false),
+        exclusive: reader.boolean(node, "exclusive").unwrap_or(false),
+        shared: reader.choice(node, "isolation", &words).unwrap_or(false),
+        ..inherited_settings(reader, node, defaults.settings)
+    };
     let tags = values(reader.words(node, "tags"));
     let env = env::read(reader, node);
     let plugin = plugin(reader, node)?;
     let span = ElementReader::tag(node);
-    Some(DeclaredTest {
-        span,
-        name,
-        plugin,
-        repetitions,
-        limits,
-        after_collapse,
-        leaks,
-        retries,
-        critical,
-        exclusive,
-        shared,
-        tags,
-        env,
-    })
+    Some(DeclaredTest { span, name, plugin, limits, settings, tags, env })
 }
 
 /// Reads the limits of tests; on `<suite>` their attributes have the prefix `test-`.
@@ -91,33 +74,28 @@ pub(super) fn limits(
     }
 }
 
-/// Reads `after-collapse` of `<suite>` or `<test>`.
-pub(super) fn after_collapse(
+/// Reads the settings that both `<suite>` and `<test>` can have.
+pub(super) fn inherited_settings(
     reader: &mut ElementReader<'_>,
     node: Node<'_, '_>,
-) -> Option<AfterCollapse> {
-    let words = [
+    default: TestSettings,
+) -> TestSettings {
+    let reactions = [
         ("rerun", AfterCollapse::Rerun),
         ("fail", AfterCollapse::Fail),
         ("skip", AfterCollapse::Skip),
     ];
-    reader.choice(node, "after-collapse", &words)
-}
-
-/// Reads `leaks` of `<suite>` or `<test>`.
-pub(super) fn leaks(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Leaks> {
-    reader.choice(node, "leaks", &[("report", Leaks::Report), ("fail", Leaks::Fail)])
-}
-
-/// Reads `retries` and `retry-delay` of `<suite>` or `<test>`.
-pub(super) fn retries(
-    reader: &mut ElementReader<'_>,
-    node: Node<'_, '_>,
-    default: Retries,
-) -> Retries {
-    Retries {
-        count: reader.number(node, "retries", 0).unwrap_or(default.count),
-        delay: reader.duration(node, "retry-delay").unwrap_or(default.delay),
+    let after_collapse = reader.choice(node, "after-collapse", &reactions);
+    let leaks = reader.choice(node, "leaks", &[("report", Leaks::Report), ("fail", Leaks::Fail)]);
+    let retries = Retries {
+        count: reader.number(node, "retries", 0).unwrap_or(default.retries.count),
+        delay: reader.duration(node, "retry-delay").unwrap_or(default.retries.delay),
+    };
+    TestSettings {
+        after_collapse: after_collapse.unwrap_or(default.after_collapse),
+        leaks: leaks.unwrap_or(default.leaks),
+        retries,
+        ..default
     }
 }
 
@@ -146,10 +124,4 @@ pub(super) fn plugin(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Opti
 /// Returns the texts without their positions.
 pub(super) fn values(words: Vec<Spanned<String>>) -> Vec<String> {
     words.into_iter().map(|word| word.value).collect()
-}
-
-/// Reads whether the test may share a host with other tests.
-fn is_shared(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> bool {
-    let words = [("process", false), ("shared", true)];
-    reader.choice(node, "isolation", &words).unwrap_or(false)
 }

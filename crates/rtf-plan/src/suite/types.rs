@@ -13,26 +13,14 @@ pub struct DeclaredSuite {
     pub span: Span,
     /// The name.
     pub name: Option<Spanned<String>>,
-    /// The description, white space folded.
-    pub description: String,
-    /// The environment string.
-    pub environment: String,
     /// Environment variables of all its processes, in order.
     pub env: Vec<(String, String)>,
-    /// The limit for the whole suite.
-    pub timeout: Option<Duration>,
     /// Tags of all its tests.
     pub tags: Vec<String>,
     /// The private resources that it requests.
     pub isolate: DeclaredIsolation,
-    /// Exclusive resources, sorted by name.
-    pub requires: Vec<RequiredResource>,
-    /// Whether the suite stays green when a fixture collapses.
-    pub tolerates_collapse: bool,
-    /// Whether a failed critical test or assertion ends the whole run, not only the suite.
-    pub critical_stops_run: bool,
-    /// The maximum number of tests that run at the same time.
-    pub parallel: u32,
+    /// The settings that need no name to be resolved.
+    pub settings: SuiteSettings,
     /// The simulated clock; `None` for the wall clock.
     pub clock: Option<DeclaredClock>,
     /// The fixtures, in order.
@@ -41,6 +29,39 @@ pub struct DeclaredSuite {
     pub hooks: Vec<DeclaredHook>,
     /// The tests, in order.
     pub tests: Vec<DeclaredTest>,
+}
+
+/// The settings of a suite in which no name has to be resolved.
+#[derive(Clone, Debug)]
+pub struct SuiteSettings {
+    /// The description, white space folded.
+    pub description: String,
+    /// The environment string.
+    pub environment: String,
+    /// The limit for the whole suite, including set-up and tear-down of fixtures.
+    pub timeout: Option<Duration>,
+    /// Exclusive resources, sorted by name.
+    pub requires: Vec<RequiredResource>,
+    /// Whether the suite stays green when a fixture collapses.
+    pub tolerates_collapse: bool,
+    /// Whether a failed critical test or assertion ends the whole run, not only the suite.
+    pub critical_stops_run: bool,
+    /// The maximum number of tests that run at the same time.
+    pub parallel: u32,
+}
+
+impl Default for SuiteSettings {
+    fn default() -> Self {
+        Self {
+            description: String::new(),
+            environment: String::new(),
+            timeout: None,
+            requires: Vec::new(),
+            tolerates_collapse: false,
+            critical_stops_run: false,
+            parallel: 1,
+        }
+    }
 }
 
 /// A resource that a limited number of suites can use at the same time.
@@ -118,10 +139,21 @@ pub struct DeclaredTest {
     pub name: Option<Spanned<String>>,
     /// The plug-in and its parameters.
     pub plugin: DeclaredPlugin,
-    /// The number of repetitions, at least 1.
-    pub repetitions: u32,
     /// The limits, including those of the suite.
     pub limits: DeclaredLimits,
+    /// The settings that need no name to be resolved.
+    pub settings: TestSettings,
+    /// The tags of the test itself.
+    pub tags: Vec<String>,
+    /// Environment variables in addition to the suite's.
+    pub env: Vec<(String, String)>,
+}
+
+/// The settings of a test in which no name has to be resolved.
+#[derive(Clone, Copy, Debug)]
+pub struct TestSettings {
+    /// The number of repetitions, at least 1.
+    pub repetitions: u32,
     /// The reaction to a fixture that collapses while the test runs.
     pub after_collapse: AfterCollapse,
     /// The reaction to leftover processes.
@@ -134,10 +166,20 @@ pub struct DeclaredTest {
     pub exclusive: bool,
     /// Whether it may share a host with other tests.
     pub shared: bool,
-    /// The tags of the test itself.
-    pub tags: Vec<String>,
-    /// Environment variables in addition to the suite's.
-    pub env: Vec<(String, String)>,
+}
+
+impl Default for TestSettings {
+    fn default() -> Self {
+        Self {
+            repetitions: 1,
+            after_collapse: AfterCollapse::default(),
+            leaks: Leaks::default(),
+            retries: Retries::default(),
+            critical: false,
+            exclusive: false,
+            shared: false,
+        }
+    }
 }
 
 /// The retries of a test after a failure.
@@ -236,12 +278,12 @@ pub enum FixtureKind {
     /// The built-in `type="process"`.
     Process(Box<DeclaredProcess>),
     /// The built-in `type="process"` with `attach="true"`.
-    Attached(DeclaredAttachment),
+    Attached(DeclaredProbes),
 }
 
-/// A `<fixture type="process" attach="true">`.
-#[derive(Clone, Debug)]
-pub struct DeclaredAttachment {
+/// The probes of a `<fixture type="process">`.
+#[derive(Clone, Debug, Default)]
+pub struct DeclaredProbes {
     /// The `<ready>` probes.
     pub ready: Vec<DeclaredProbe>,
     /// The `<alive>` probes.
@@ -253,10 +295,8 @@ pub struct DeclaredAttachment {
 pub struct DeclaredProcess {
     /// The program and its arguments; empty if they are missing, which was reported.
     pub command: Spanned<Vec<String>>,
-    /// The `<ready>` probes.
-    pub ready: Vec<DeclaredProbe>,
-    /// The `<alive>` probes.
-    pub alive: Vec<DeclaredProbe>,
+    /// The probes.
+    pub probes: DeclaredProbes,
     /// The signal that stops it.
     pub stop_signal: Option<i32>,
     /// The time between that signal and the kill.

@@ -52,7 +52,7 @@ fn shown(bench: &Bench, plan: &Plan) -> String {
         writeln!(out, "  {body}").unwrap();
     }
     for test in &suite.tests {
-        writeln!(out, "test {} {} leaks {:?}", test.id, test.name, test.leaks).unwrap();
+        writeln!(out, "test {} {} leaks {:?}", test.id, test.name, test.settings.leaks).unwrap();
     }
     out.replace(&bench.root.display().to_string(), "[ROOT]")
 }

@@ -43,12 +43,12 @@ fn plugins_given_directly_form_one_suite() {
     let suite = &plan.suites[2];
     assert_eq!(names(&plan, 2), ["A", "A#2"]);
     assert_eq!((suite.file.as_str(), bench.relative(&suite.folder).as_str()), ("", "cell"));
-    assert_eq!(suite.environment, "--robot r");
-    assert_eq!((suite.tests[0].repetitions, suite.tests[0].plugin.args.len()), (4, 2));
+    assert_eq!(suite.settings.environment, "--robot r");
+    assert_eq!((suite.tests[0].settings.repetitions, suite.tests[0].plugin.args.len()), (4, 2));
     assert_eq!((suite.tests[1].id.0, plan.tests), (3, 4));
     // The options do not apply to the suite's own tests.
     assert_eq!(
-        (plan.suites[0].tests[0].repetitions, plan.suites[0].tests[0].plugin.args.len()),
+        (plan.suites[0].tests[0].settings.repetitions, plan.suites[0].tests[0].plugin.args.len()),
         (1, 0)
     );
 }

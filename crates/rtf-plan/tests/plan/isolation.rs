@@ -73,7 +73,7 @@ fn ports_are_collected_and_not_replaced() {
     let rtf_plan::plan::FixtureBody::Process(process) = &suite.fixtures[0].body else {
         panic!("a process")
     };
-    let ProbeKind::Tcp(address) = &process.ready[0].kind else { panic!("a probe") };
+    let ProbeKind::Tcp(address) = &process.probes.ready[0].kind else { panic!("a probe") };
     assert_eq!(address, "127.0.0.1:${port:sim}");
 }
 

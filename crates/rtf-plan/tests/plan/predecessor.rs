@@ -81,12 +81,17 @@ fn plug_ins_come_first_and_options_apply_to_named_ones() {
         .iter()
         .map(|suite| {
             let test = &suite.tests[0];
-            (suite.file.as_str(), suite.environment.as_str(), test.repetitions, &*test.plugin.param)
+            (
+                suite.file.as_str(),
+                suite.settings.environment.as_str(),
+                test.settings.repetitions,
+                &*test.plugin.param,
+            )
         })
         .collect();
     assert_eq!(planned, [("", "--robot r", 4, "--n 3"), ("", "", 1, ""), ("sub/s.xml", "", 1, "")]);
     let unnamed = bench.plan_inputs(&inputs[1..]);
-    assert_eq!(unnamed.suites[0].tests[0].repetitions, 1);
+    assert_eq!(unnamed.suites[0].tests[0].settings.repetitions, 1);
     assert_eq!(bench.input_problems(&inputs[1..]), ["without-effect"; 3]);
 }
 

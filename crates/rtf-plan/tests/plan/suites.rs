@@ -24,7 +24,7 @@ fn a_suite_becomes_a_plan() {
     let suite = &plan.suites[0];
     assert_eq!((suite.name.as_str(), suite.file.as_str()), ("arm", "lib/arm.xml"));
     assert_eq!(bench.relative(&suite.folder), "cell/lib");
-    assert_eq!(suite.environment, "--robot r");
+    assert_eq!(suite.settings.environment, "--robot r");
     assert_eq!(names(&plan, 0), ["Arm", "Encoder", "again", "Arm#2"]);
     let (arm, encoder) = (&suite.tests[0], &suite.tests[1]);
     assert_eq!(bench.relative(&arm.plugin.file), "cell/lib/libArm.so");
@@ -74,11 +74,14 @@ fn fixtures_with_their_defaults() {
     let FixtureBody::Process(process) = &fixtures[0].body else { panic!("a process") };
     assert_eq!(process.command, [bench.path("cell/sim"), "--fast".to_owned()]);
     assert_eq!((process.stop_signal, process.stop_grace), (15, secs(5)));
-    let ProbeKind::File(file) = &process.ready[0].kind else { panic!("a file") };
+    let ProbeKind::File(file) = &process.probes.ready[0].kind else { panic!("a file") };
     assert_eq!(bench.relative(file), "cell/up");
-    assert_eq!(process.ready[1].every, Duration::from_millis(100));
-    assert_eq!((process.alive[0].every, process.alive[0].timeout), (secs(1), secs(1)));
-    let ProbeKind::Command(words) = &process.alive[0].kind else { panic!("a command") };
+    assert_eq!(process.probes.ready[1].every, Duration::from_millis(100));
+    assert_eq!(
+        (process.probes.alive[0].every, process.probes.alive[0].timeout),
+        (secs(1), secs(1))
+    );
+    let ProbeKind::Command(words) = &process.probes.alive[0].kind else { panic!("a command") };
     assert!(words[0].starts_with('/') && words[0].ends_with("/sh"), "{words:?}");
 }
 
@@ -113,7 +116,7 @@ fn middleware_is_probed_by_a_shipped_program() {
     };
     let program = "bin/python3 -E -S share/rtf/fixtures/rtf_fixtures/probe.py";
     assert_eq!(
-        planned(&process.ready[0]),
+        planned(&process.probes.ready[0]),
         (
             format!("{program} ros-topic /n${{port:n}}/x --timeout 3 --min-rate 2.5"),
             "ros-topic `/n${port:n}/x`".to_owned(),
@@ -121,7 +124,7 @@ fn middleware_is_probed_by_a_shipped_program() {
         )
     );
     assert_eq!(
-        planned(&process.alive[0]),
+        planned(&process.probes.alive[0]),
         (
             format!("{program} ros-node /talker --timeout 5"),
             "ros-node `/talker`".to_owned(),
@@ -129,7 +132,7 @@ fn middleware_is_probed_by_a_shipped_program() {
         )
     );
     // The ROS 2 probe needs packages of the user's Python.
-    let (command, subject, _) = planned(&process.alive[1]);
+    let (command, subject, _) = planned(&process.probes.alive[1]);
     let program = program.replace(" -E -S", "");
     assert_eq!(command, format!("{program} ros2-topic /chatter --timeout 5"));
     assert_eq!(subject, "ros2-topic `/chatter`");

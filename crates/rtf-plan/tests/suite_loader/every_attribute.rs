@@ -15,11 +15,11 @@ fn every_attribute_is_read() {
     let (suite, problems) = file("valid/everything.xml");
     assert!(problems.is_empty(), "{problems:#?}");
     let secs = Duration::from_secs;
-    assert_eq!(suite.timeout, Some(secs(5400)));
+    assert_eq!(suite.settings.timeout, Some(secs(5400)));
     assert_eq!(suite.tags, ["hardware", "slow"]);
-    assert!(suite.tolerates_collapse);
-    assert!(suite.critical_stops_run);
-    assert_eq!(suite.parallel, 4);
+    assert!(suite.settings.tolerates_collapse);
+    assert!(suite.settings.critical_stops_run);
+    assert_eq!(suite.settings.parallel, 4);
     let clock = suite.clock.unwrap();
     assert_eq!((clock.source, clock.backstop), (ClockSource::Ros, Some(20)));
     assert_eq!(
@@ -30,7 +30,7 @@ fn every_attribute_is_read() {
     assert_eq!(test.name.as_ref().unwrap().value, "reach");
     assert_eq!(test.plugin.name.value, "ReachTest");
     assert_eq!(test.plugin.param, "--n 3 \"a b\"");
-    assert_eq!(test.repetitions, 5);
+    assert_eq!(test.settings.repetitions, 5);
     assert_eq!(
         test.limits,
         DeclaredLimits {
@@ -42,13 +42,19 @@ fn every_attribute_is_read() {
             grace: Some(secs(15)),
         }
     );
-    assert_eq!((test.after_collapse, test.leaks), (AfterCollapse::Skip, Leaks::Report));
-    assert!(test.critical && test.exclusive);
+    assert_eq!(
+        (test.settings.after_collapse, test.settings.leaks),
+        (AfterCollapse::Skip, Leaks::Report)
+    );
+    assert!(test.settings.critical && test.settings.exclusive);
     assert_eq!(test.tags, ["reach", "slow"]);
     assert_eq!(test.env, [("SEED".to_owned(), "7".to_owned())]);
     let other = &suite.tests[1];
-    assert!(!other.critical && !other.exclusive);
-    assert_eq!((other.after_collapse, other.leaks), (AfterCollapse::Rerun, Leaks::Fail));
+    assert!(!other.settings.critical && !other.settings.exclusive);
+    assert_eq!(
+        (other.settings.after_collapse, other.settings.leaks),
+        (AfterCollapse::Rerun, Leaks::Fail)
+    );
     assert_eq!(
         other.limits,
         DeclaredLimits {
@@ -89,7 +95,7 @@ fn every_part_of_a_process_fixture_is_read() {
         probes.iter().map(kind).collect::<Vec<_>>()
     };
     assert_eq!(
-        kinds(&process.ready),
+        kinds(&process.probes.ready),
         [
             "127.0.0.1:17681",
             "http://127.0.0.1:8080/health",
@@ -102,7 +108,7 @@ fn every_part_of_a_process_fixture_is_read() {
         ]
     );
     assert_eq!(
-        kinds(&process.alive),
+        kinds(&process.probes.alive),
         [
             "python3|arm_client.py|time",
             "(?i)fatal",
@@ -111,8 +117,8 @@ fn every_part_of_a_process_fixture_is_read() {
             &probe("ros2-topic", "/joint_states", Some(0.5))
         ]
     );
-    assert_eq!(process.ready[0].every, Some(Duration::from_millis(50)));
-    assert_eq!(process.ready[0].timeout, Some(Duration::from_millis(500)));
+    assert_eq!(process.probes.ready[0].every, Some(Duration::from_millis(50)));
+    assert_eq!(process.probes.ready[0].timeout, Some(Duration::from_millis(500)));
     assert_eq!(suite.fixtures[0].depends, None);
     assert_eq!(suite.fixtures[0].restart_delay, Some(Duration::from_millis(500)));
     assert_eq!(suite.fixtures[1].depends.as_ref().unwrap()[0].value, "sim");

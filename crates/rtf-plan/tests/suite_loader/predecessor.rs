@@ -22,8 +22,8 @@ fn the_predecessors_files_load_unchanged() {
 fn a_predecessors_file_in_full() {
     let (suite, _) = file("legacy/basics.xml");
     assert_eq!(suite.name.unwrap().value, "Basic checks");
-    assert_eq!(suite.description, "Checking the basic features of the robot");
-    assert_eq!(suite.environment, "--robot simulator");
+    assert_eq!(suite.settings.description, "Checking the basic features of the robot");
+    assert_eq!(suite.settings.environment, "--robot simulator");
     let FixtureKind::Plugin(fixture) = &suite.fixtures[0].body else { panic!("a plug-in") };
     assert_eq!(fixture.name.value, "AppLauncher");
     assert_eq!(fixture.param, "--fixture launch-simulator.xml");

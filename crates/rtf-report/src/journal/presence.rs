@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 pub(super) struct Presence {
     /// Absolute: the working directory may change.
     path: PathBuf,
-    /// Which file it is, where the file system tells the same by path and by file.
+    /// Which file it is, where the file system reports the same one by path and by file.
     identity: Option<Identity>,
     /// Whether the file system counts the names of a file.
     counts_links: bool,

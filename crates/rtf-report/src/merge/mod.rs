@@ -38,7 +38,7 @@ pub struct MergeInput {
     pub events: Vec<Event>,
 }
 
-/// What is said of the merged run itself.
+/// The values of the merged run itself.
 #[derive(Clone, Debug)]
 pub struct Header {
     /// Its name.

@@ -52,7 +52,7 @@ impl Renumbered {
 }
 
 impl MergedPlan {
-    /// Joins; tells of tests that more than one run has.
+    /// Joins plans; returns a problem for each test that more than one run has.
     pub fn join(parts: &[MergeInput]) -> (Self, Vec<MergeProblem>) {
         let mut joining = Joining::default();
         for (number, part) in parts.iter().enumerate() {

@@ -6,7 +6,7 @@ use rtf_model::{EventKind, FixtureId, HookId, Micros, SuiteId};
 
 use super::Merging;
 
-/// What is said of fixtures and hooks that the death of a runner left open.
+/// The reason of fixtures and hooks that the death of a runner left open.
 const DIED: &str = "the runner died";
 
 /// The events of a suite, with their new ids.

@@ -1,4 +1,4 @@
-//! Lines about whatever is not green and that no plug-in said: the reasons of
+//! Lines about everything that is not green and that no plug-in reported: the reasons of
 //! verdicts, fixtures, hooks, the run itself.
 
 use rtf_model::{

@@ -87,7 +87,7 @@ impl Walk {
         if !self.planned {
             self.planned = true;
             *text += "TAP version 14\n";
-            // A bail-out ends a stream: here only what is said first.
+            // `Bail out!` would end the stream, so damage is a comment.
             if let Some(damage) = words::damage(record) {
                 *text += &format!("# {}\n", escape::line(&damage));
             }

@@ -52,7 +52,7 @@ impl<'a> Yaml<'a> {
     pub fn lines(&mut self, key: &str, lines: impl IntoIterator<Item = String>) {
         let lines: Vec<String> = lines.into_iter().collect();
         let Some(first) = lines.first() else { return };
-        // Its first line tells how far a block is indented.
+        // YAML takes a block's indentation from its first line.
         if first.is_empty() || first.starts_with([' ', '\t']) {
             return self.text(key, &lines.join("\n"));
         }

@@ -128,7 +128,7 @@ impl Access {
         self.remote
     }
 
-    /// Whether this is the token. After a wrong one, the client waits; the log tells.
+    /// Whether this is the token. After a wrong one, the client waits and the log has a line.
     async fn is_token(&self, client: IpAddr, guess: &str) -> bool {
         let Err(count) = self.guesses.attempt(client, || self.token.is(guess)).await else {
             return true;
@@ -269,7 +269,7 @@ fn is_data(path: &str) -> bool {
         || below("/update").is_some()
 }
 
-/// Whether this goes on a name: `/api` is no part of `/apiary`.
+/// Whether this continues a name: `/api` is not a prefix of `/apiary`.
 fn is_name(rest: &str) -> bool {
     !rest.is_empty() && !rest.starts_with('/')
 }

@@ -36,7 +36,7 @@ pub enum TokenError {
         /// Which.
         path: PathBuf,
     },
-    /// What stands in the file is no token.
+    /// The file's content is not a token.
     #[error("the token in `{}` is not one line of at least {SHORTEST} visible ASCII characters", path.display())]
     Weak {
         /// Which.
@@ -81,7 +81,7 @@ impl Secret {
     /// Whether this is it. Takes as long for every guess.
     #[must_use]
     pub fn is(&self, guess: &str) -> bool {
-        // Hashed, so that the length is not told either.
+        // Hashed, so that the time does not reveal the length either.
         Sha256::digest(&self.0).ct_eq(&Sha256::digest(guess)).into()
     }
 
@@ -93,7 +93,7 @@ impl Secret {
 }
 
 /// Whether others than the file's owner can read it. A pipe, as of a shell's
-/// `<(…)`, is nobody else's.
+/// `<(…)`, belongs to this process alone.
 #[cfg(unix)]
 fn others_may_read(file: &std::fs::Metadata) -> bool {
     use std::os::unix::fs::PermissionsExt;

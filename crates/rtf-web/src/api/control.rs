@@ -97,7 +97,7 @@ pub async fn stop_run(State(app): State<App>, At(run): At<String>) -> ControlRes
     .await
 }
 
-/// Stops a test that runs, and skips what is left of its repetitions.
+/// Stops a test that runs, and skips its remaining repetitions.
 #[utoipa::path(post, path = "/runs/{run}/tests/{test}/stop", tag = "control",
     params(("run" = String, Path), ("test" = u32, Path)),
     responses((status = 202, body = Accepted), ChangeProblems))]

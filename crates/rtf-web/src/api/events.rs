@@ -35,7 +35,7 @@ pub struct EventQuery {
     details: Option<String>,
 }
 
-/// Where a stream goes on that was cut.
+/// Where a stream that was cut continues.
 #[derive(IntoParams)]
 #[into_params(parameter_in = Header)]
 #[expect(dead_code, reason = "read from the headers; this describes it")]
@@ -45,7 +45,7 @@ pub struct Resumed {
     last_event_id: u64,
 }
 
-/// What is sent of a stream, again and again.
+/// One message of a stream.
 #[derive(ToSchema)]
 #[expect(dead_code, reason = "axum writes it; this describes it")]
 pub struct Sent {

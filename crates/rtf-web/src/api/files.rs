@@ -43,7 +43,7 @@ const SHOWN: [(&str, &str); 16] = [
     ("audio/webm", "weba"),
 ];
 
-/// Nothing of a file may do anything, whatever it is.
+/// A browser may run nothing that a file contains, of any type.
 const POLICY: HeaderValue = HeaderValue::from_static("sandbox; default-src 'none'");
 
 /// The address of a file in the run's directory.
@@ -122,7 +122,7 @@ struct ServedType {
 }
 
 impl ServedType {
-    /// The test's media type counts; without one, the ending of the name tells it.
+    /// The test's media type counts; without one, the ending of the name decides.
     fn of(path: &str, said: Option<&AttachmentInfo>) -> Self {
         let guessed = |name: &str| mime_guess::from_path(name).first_raw();
         let given = said.map(|said| essence(&said.media_type)).filter(|kind| !kind.is_empty());
@@ -177,7 +177,7 @@ fn insert(headers: &mut HeaderMap, name: header::HeaderName, value: &str) {
     }
 }
 
-/// Opens a file below `attachments/`, and nothing else, whatever the path says.
+/// Opens a file below `attachments/`, and no other file, for any path.
 fn open(run: &Run, path: &str) -> Result<(File, u64), Problem> {
     let none = || Problem::not_found(format!("there is no file `{path}` in this run"));
     if !is_attachment(path) {

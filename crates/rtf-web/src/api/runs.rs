@@ -24,7 +24,7 @@ pub struct RunQuery {
     #[param(minimum = 1, maximum = 1000, default = 50)]
     limit: Option<usize>,
     /// Runs with all of these words in their name, command, suites, commit, branch,
-    /// robot or profile, whatever the case.
+    /// robot or profile, in upper or lower case.
     q: Option<String>,
     /// Runs with this result, or still running.
     #[param(inline)]

@@ -32,7 +32,7 @@ pub struct Which {
     verdict: Option<String>,
     /// Tests with this tag.
     tag: Option<String>,
-    /// Tests with this in `suite/name`, whatever the case.
+    /// Tests with this in `suite/name`, in upper or lower case.
     q: Option<String>,
     /// The `next` of the page before.
     #[param(maximum = 4_294_967_295_i64)]

@@ -34,7 +34,7 @@ impl Limited {
         Self { stream, _place: place, idle: limits.idle, due, timer }
     }
 
-    /// Whatever was ready moved something; whatever was not may be late.
+    /// A call that was ready made progress; one that was not may be late.
     fn within_limits<T>(
         &mut self,
         context: &mut Context<'_>,

@@ -8,7 +8,7 @@ use rtf_plan::config::{
     self, ConfigFiles, ConfigRequest, ProfileView, RunConfig, Setting, SettingsQuery,
 };
 use rtf_plan::plan::RunnerEnvironment;
-use rtf_plan::suite::{self, SourceText, SuiteSettings};
+use rtf_plan::suite::{self, SharedSettings, SourceText};
 use rtf_report::escape;
 
 use super::VerbResult;
@@ -53,7 +53,7 @@ pub fn show(args: &ConfigArgs) -> VerbResult {
 }
 
 /// The settings in a suite file, whose problems `rtf check` reports.
-fn read_suite(path: &Path, name: &Path) -> Option<(SourceText, SuiteSettings)> {
+fn read_suite(path: &Path, name: &Path) -> Option<(SourceText, SharedSettings)> {
     if !path.is_file() || !suite::is_suite_file(path) {
         return None;
     }

@@ -46,13 +46,13 @@ fn write(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
 
 fn notes(test: &TestPlan) -> String {
     let mut notes = Vec::new();
-    if test.repetitions > 1 {
-        notes.push(format!("{} times", test.repetitions));
+    if test.settings.repetitions > 1 {
+        notes.push(format!("{} times", test.settings.repetitions));
     }
-    if test.critical {
+    if test.settings.critical {
         notes.push("critical".to_owned());
     }
-    if test.exclusive {
+    if test.settings.exclusive {
         notes.push("exclusive".to_owned());
     }
     notes.extend(test.tags.iter().map(|tag| format!("#{}", escape::line(tag))));
@@ -92,10 +92,10 @@ fn write_json(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
             r#type: &test.plugin.plugin_type,
             plugin: test.plugin.file.to_string_lossy().into_owned(),
             tags: &test.tags,
-            repetition: test.repetitions,
-            critical: test.critical,
-            exclusive: test.exclusive,
-            parallel: suite.parallel,
+            repetition: test.settings.repetitions,
+            critical: test.settings.critical,
+            exclusive: test.settings.exclusive,
+            parallel: suite.settings.parallel,
         })
         .collect();
     serde_json::to_writer_pretty(&mut *out, &TestList { tests })?;

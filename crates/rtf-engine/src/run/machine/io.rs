@@ -7,7 +7,7 @@ use std::time::Duration;
 use rtf_model::protocol::{OWNER_VARIABLE, Plugin, Request, StackSupport};
 use rtf_model::{EventKind, Source, TestId};
 
-use rtf_plan::plan::{AttachedPlan, HostPlan, ProcessPlan, SuitePlan};
+use rtf_plan::plan::{HostPlan, ProbePlans, ProcessPlan, SuitePlan};
 
 pub use crate::control::{Stop, StopLevel};
 pub use rtf_process::probe::ProbeSelection;
@@ -108,7 +108,7 @@ pub enum Program {
     Process(Arc<ProcessPlan>),
     /// Nothing: an attached fixture is only monitored. Monitoring ends when its channel is
     /// closed, or it is signalled or killed.
-    Attached(Arc<AttachedPlan>),
+    Attached(Arc<ProbePlans>),
     /// A command, without a channel.
     Command(Vec<String>),
 }

@@ -33,7 +33,7 @@ impl SuiteTask<'_> {
             None => self.launch(request),
         };
         if let Some(plan) = attached {
-            let probes = probes::convert(&plan.ready, &plan.alive, self.network.clone());
+            let probes = probes::convert(&plan, self.network.clone());
             let (job, spawner) = (AttachedJob { host, probes, launch }, self.spawner().clone());
             let watch = watch_attached(job, spawner, queue, self.inputs.clone());
             return drop(tokio::spawn(watch));
@@ -48,9 +48,7 @@ impl SuiteTask<'_> {
             attachments_dir: attachments_dir(source, host),
             is_grouped: self.is_grouped(source),
             is_measured: self.is_measured(source, process.as_deref()),
-            probes: process.map(|process| {
-                probes::convert(&process.ready, &process.alive, self.network.clone())
-            }),
+            probes: process.map(|process| probes::convert(&process.probes, self.network.clone())),
         };
         let tasks = self.context.tasks.clone();
         tokio::spawn(run_process(job, tasks, queue, self.inputs.clone()));
@@ -65,7 +63,9 @@ impl SuiteTask<'_> {
     /// tests whose leaks are failures, get one.
     fn is_grouped(&self, source: Source) -> bool {
         match source {
-            Source::Test(test) => self.test(test).is_some_and(|plan| plan.leaks == Leaks::Fail),
+            Source::Test(test) => {
+                self.test(test).is_some_and(|plan| plan.settings.leaks == Leaks::Fail)
+            }
             Source::Fixture(_) | Source::Hook(_) => true,
         }
     }
@@ -74,7 +74,7 @@ impl SuiteTask<'_> {
     fn is_measured(&self, source: Source, process: Option<&ProcessPlan>) -> bool {
         let outlives_test = match source {
             Source::Fixture(_) => process.is_none_or(|process| process.remote.is_none()),
-            Source::Test(test) => self.test(test).is_some_and(|plan| plan.shared),
+            Source::Test(test) => self.test(test).is_some_and(|plan| plan.settings.shared),
             Source::Hook(_) => false,
         };
         self.is_repeated && outlives_test
@@ -104,7 +104,7 @@ impl SuiteTask<'_> {
         let mut can_fork = false;
         let run_dir = self.context.tasks.run_dir.to_string_lossy().into_owned();
         let mut env = vec![
-            (ENVIRONMENT_VARIABLE.to_owned(), self.plan.environment.clone()),
+            (ENVIRONMENT_VARIABLE.to_owned(), self.plan.settings.environment.clone()),
             (RUN_DIR_VARIABLE.to_owned(), run_dir),
         ];
         env.extend(start.env);

@@ -57,7 +57,7 @@ pub struct Stack {
     pub text: String,
 }
 
-/// A piece of what was printed.
+/// A piece of a test's output.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Printed {
     /// The number of the event.
@@ -105,6 +105,6 @@ page!(
     Stacks, stacks: Stack
 );
 page!(
-    /// A page of what was printed.
+    /// A page of a test's output.
     OutputPage, output: Printed
 );

@@ -1,4 +1,4 @@
-//! What is known of a run as a whole.
+//! The description of a run as a whole.
 
 use std::collections::BTreeMap;
 
@@ -131,7 +131,7 @@ pub struct RunList {
 }
 
 impl RunInfo {
-    /// What is known of a run.
+    /// The description of a run.
     #[must_use]
     pub fn of(name: &str, index: &Index) -> Self {
         let record = index.record();

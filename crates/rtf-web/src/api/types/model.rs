@@ -1,6 +1,6 @@
 //! Stand-ins for the types of `rtf-model` in the API's description. Their schemas
 //! are those of the journal, which `cargo xtask schemas` puts in their place: the
-//! model does not know of this API.
+//! model does not depend on this API.
 
 use std::borrow::Cow;
 

@@ -18,10 +18,10 @@ pub struct Signal {
     pub name: String,
     /// Its unit, empty for a pure number.
     pub unit: String,
-    /// The smallest accepted value, as it was last told.
+    /// The smallest accepted value, as last reported.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub low: Option<f64>,
-    /// The largest accepted value, as it was last told.
+    /// The largest accepted value, as last reported.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub high: Option<f64>,
     /// How many samples there are.

@@ -23,7 +23,7 @@ pub struct Snapshot {
     /// Warnings.
     #[schema(value_type = Vec<model::Diagnostic>)]
     pub warnings: Vec<Diagnostic>,
-    /// What was left at the end and had to be killed, when the runner died.
+    /// The processes that a dead runner left and that were killed.
     #[schema(value_type = Vec<model::LeakedProcess>)]
     pub leaked: Vec<LeakedProcess>,
 }

@@ -17,7 +17,7 @@ use rtf_plan::plan::{AfterCollapse, TestPlan};
 fn is_retried(plan: &TestPlan, number: AttemptNumber, finished: &FinishedAttempt) -> bool {
     use Verdict::{Crashed, Error, Failed, TimedOut};
     matches!(finished.verdict, Failed | Error | Crashed | TimedOut)
-        && number.retries < plan.retries.count
+        && number.retries < plan.settings.retries.count
         && finished.critical.is_none()
 }
 
@@ -34,7 +34,7 @@ impl<'p> SuiteMachine<'p> {
         let continues = self.end_reason.is_none() && stopped.is_none();
         let has_collapsed = finished.verdict == Verdict::Collapsed;
         let retry = continues && is_retried(plan, number, finished);
-        let after = plan.after_collapse;
+        let after = plan.settings.after_collapse;
         let rerun = retry || (continues && has_collapsed && after == AfterCollapse::Rerun);
         let mut event = run.finished_event(finished, rerun);
         if has_collapsed && after == AfterCollapse::Skip {
@@ -52,7 +52,9 @@ impl<'p> SuiteMachine<'p> {
                 soak.exclude(test);
                 self.scheduler.remove(test);
             }
-            (Some(next), _) => self.set_next(test, next, retry.then_some(plan.retries.delay), cx),
+            (Some(next), _) => {
+                self.set_next(test, next, retry.then_some(plan.settings.retries.delay), cx)
+            }
             (None, _) => self.scheduler.remove(test),
         }
         if self.scheduler.hand_over_host(plan, run, cx) {
@@ -67,12 +69,12 @@ impl<'p> SuiteMachine<'p> {
         let (name, verdict) = (&plan.name, finished.verdict);
         let reason = match &finished.critical {
             Some(text) => format!("a critical assertion of `{name}` did not hold: {text}"),
-            None if plan.critical && !verdict.is_green() && !rerun => {
+            None if plan.settings.critical && !verdict.is_green() && !rerun => {
                 format!("the critical test `{name}` did not pass: it is {verdict}")
             }
             None => return,
         };
-        if self.plan.critical_stops_run {
+        if self.plan.settings.critical_stops_run {
             self.fails.stop(format!("suite `{}` ends the run: {reason}", self.plan.name));
         }
         self.end_early(reason);

@@ -117,7 +117,7 @@ impl<'p> SuiteMachine<'p> {
             Preparation::NotNeeded | Preparation::Refused(_) => {}
             Preparation::Done(prepared) => cx.emit(EventKind::SuitePrepared(prepared.clone())),
         }
-        if let Some(timeout) = self.plan.timeout {
+        if let Some(timeout) = self.plan.settings.timeout {
             cx.set(Deadline::Suite, timeout);
         }
     }
@@ -134,7 +134,7 @@ impl<'p> SuiteMachine<'p> {
                 exit: None,
                 rerun: false,
             }));
-            if plan.repetitions > 1 || self.scheduler.soak.is_timed() {
+            if plan.settings.repetitions > 1 || self.scheduler.soak.is_timed() {
                 cx.emit(EventKind::TestSkipped { test: plan.id, reason: reason.to_owned() });
             }
         }

@@ -198,11 +198,13 @@ impl<'p> Scheduler<'p> {
     /// Whether the next test may begin in addition to the active ones.
     fn has_free_slot(&self) -> bool {
         // Tests after a critical one depend on it.
-        let blocks = |active: &ActiveTest<'_>| active.plan.critical || active.plan.exclusive;
+        let blocks = |active: &ActiveTest<'_>| {
+            active.plan.settings.critical || active.plan.settings.exclusive
+        };
         let Some(plan) = self.suite.tests.get(self.next) else { return false };
-        self.active.len() < self.suite.parallel as usize
+        self.active.len() < self.suite.settings.parallel as usize
             && !self.active.iter().any(blocks)
-            && (!plan.exclusive || self.active.is_empty())
+            && (!plan.settings.exclusive || self.active.is_empty())
     }
 
     /// Makes the next test active; false if there is no free slot.
@@ -261,7 +263,7 @@ impl<'p> Scheduler<'p> {
         let next_round = if soak.is_timed() { &*self.suite.tests } else { &[] };
         let others = self.suite.tests[self.next..].iter().chain(next_round);
         let others = others.filter(|plan| soak.includes(plan.id));
-        let all = begun.chain(others.map(|plan| (plan, plan.repetitions)));
+        let all = begun.chain(others.map(|plan| (plan, plan.settings.repetitions)));
         let next = all
             .flat_map(|(plan, times)| std::iter::repeat_n(plan, HOSTS_AHEAD.min(times as usize)));
         next.take(HOSTS_AHEAD).map(|plan| host_start(self.suite, plan)).collect()

@@ -39,8 +39,10 @@ impl SharedHost<'_> {
 }
 
 fn can_share(one: &TestPlan, two: &TestPlan) -> bool {
-    let needs = (one.leaks, &one.env, &one.plugin.host);
-    one.shared && two.shared && needs == (two.leaks, &two.env, &two.plugin.host)
+    let needs = (one.settings.leaks, &one.env, &one.plugin.host);
+    one.settings.shared
+        && two.settings.shared
+        && needs == (two.settings.leaks, &two.env, &two.plugin.host)
 }
 
 impl<'p> Scheduler<'p> {
@@ -51,10 +53,10 @@ impl<'p> Scheduler<'p> {
         plan: &'p TestPlan,
         number: AttemptNumber,
     ) -> Option<(&'p TestPlan, AttemptNumber)> {
-        if !plan.shared || self.suite.parallel != 1 || self.soak.is_timed() {
+        if !plan.settings.shared || self.suite.settings.parallel != 1 || self.soak.is_timed() {
             return None;
         }
-        if let Some(next) = number.next(false, plan.repetitions) {
+        if let Some(next) = number.next(false, plan.settings.repetitions) {
             return Some((plan, next));
         }
         let index = plan.id.index() - self.suite.tests.first()?.id.index();

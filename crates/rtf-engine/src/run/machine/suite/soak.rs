@@ -36,13 +36,13 @@ impl Soak {
 
     /// The first attempt of a test in this round.
     pub fn first_attempt(&self, plan: &TestPlan) -> AttemptNumber {
-        let previous = plan.repetitions.saturating_mul(self.completed_rounds);
+        let previous = plan.settings.repetitions.saturating_mul(self.completed_rounds);
         AttemptNumber { repetition: previous.saturating_add(1), ..AttemptNumber::FIRST }
     }
 
     /// The last repetition of a test in this round.
     pub fn last_repetition(&self, plan: &TestPlan) -> u32 {
-        plan.repetitions.saturating_mul(self.completed_rounds.saturating_add(1))
+        plan.settings.repetitions.saturating_mul(self.completed_rounds.saturating_add(1))
     }
 
     pub fn record_start(&mut self, test: TestId, number: AttemptNumber) {

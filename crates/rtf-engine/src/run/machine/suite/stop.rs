@@ -9,7 +9,7 @@ use crate::run::machine::io::{Deadline, Stop, StopLevel};
 
 impl SuiteMachine<'_> {
     pub(super) fn on_suite_timeout(&mut self, cx: &mut Context<'_>) {
-        let limit = self.plan.timeout.unwrap_or_default();
+        let limit = self.plan.settings.timeout.unwrap_or_default();
         let reason = format!("the suite did not end within {limit:?}");
         self.hooks.trigger(Trigger::Timeout, &reason, self.scheduler.only_running_test());
         // A tear-down that takes too long is visible in no test.

@@ -118,7 +118,7 @@ fn plugin_of(suite: &SuitePlan, plan: &TestPlan, request: TestRequest) -> Plugin
     Plugin {
         is_last: request.is_last,
         // The task of the process fills in the marker.
-        end_marker: plan.shared.then(String::new),
+        end_marker: plan.settings.shared.then(String::new),
         ..plugin(suite, &plan.name, &plan.plugin, request.repetition)
     }
 }

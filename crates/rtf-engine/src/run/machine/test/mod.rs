@@ -151,7 +151,7 @@ impl<'p> TestRun<'p> {
         match parse_initialized(reply) {
             Ok(initialized) => {
                 self.stack = initialized.stack;
-                self.shares_host = self.plan.shared && initialized.supports_shared;
+                self.shares_host = self.plan.settings.shared && initialized.supports_shared;
             }
             Err(what) => self.on_protocol_error(what, cx),
         }

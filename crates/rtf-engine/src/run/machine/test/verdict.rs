@@ -51,7 +51,7 @@ impl TestRun<'_> {
         self.stopwatch = None;
         self.clear(TestTimer::Slow, cx);
         self.output.finish(cx);
-        self.leak = leak_problem(self.plan.leaks, &leaked);
+        self.leak = leak_problem(self.plan.settings.leaks, &leaked);
         cx.report_leaked(self.source(), leaked);
         (self.evidence.exit, self.evidence.released) = (exit, self.is_released);
         let (verdict, ..) = judge(&self.evidence, self.phase);

@@ -7,13 +7,13 @@ use rtf_model::{ExitStatus, TestId, Verdict};
 
 use super::world::{FIXTURE, SECOND, TEST, World, suite};
 use crate::run::machine::{Deadline, FixtureTimer, ProcessEvent};
-use rtf_plan::plan::{AttachedPlan, FixtureBody, Probe, ProbeKind, SuitePlan};
+use rtf_plan::plan::{FixtureBody, Probe, ProbeKind, ProbePlans, SuitePlan};
 
 fn plan() -> SuitePlan {
     let mut plan = suite(1, 2);
     let probe =
         Probe { kind: ProbeKind::Tcp("robot:5000".to_owned()), every: SECOND, timeout: SECOND };
-    let attached = AttachedPlan { ready: vec![probe.clone()], alive: vec![probe] };
+    let attached = ProbePlans { ready: vec![probe.clone()], alive: vec![probe] };
     plan.fixtures[0].body = FixtureBody::Attached(Arc::new(attached));
     plan.fixtures[0].restart_delay = SECOND;
     plan

@@ -122,13 +122,13 @@ proptest! {
         shared in any::<bool>(),
     ) {
         let mut plan = suite(fixtures, tests);
-        plan.parallel = if shared { 1 } else { parallel };
-        plan.tests.iter_mut().for_each(|test| test.shared = shared);
+        plan.settings.parallel = if shared { 1 } else { parallel };
+        plan.tests.iter_mut().for_each(|test| test.settings.shared = shared);
         if let Some(test) = plan.tests.get_mut(alone) {
-            test.exclusive = true;
+            test.settings.exclusive = true;
         }
         if let Some(test) = plan.tests.get_mut(alone / 2) {
-            test.critical = alone % 2 == 1;
+            test.settings.critical = alone % 2 == 1;
         }
         for fixture in &mut plan.fixtures {
             fixture.restarts = restarts;
@@ -137,10 +137,10 @@ proptest! {
                 fixture.depends.clear();
             }
         }
-        plan.tests[0].after_collapse = AfterCollapse::Rerun;
-        plan.tests[tests - 1].repetitions = 2;
+        plan.tests[0].settings.after_collapse = AfterCollapse::Rerun;
+        plan.tests[tests - 1].settings.repetitions = 2;
         let delay = if independent { SECOND } else { Duration::ZERO };
-        plan.tests[tests / 2].retries = Retries { count: restarts, delay };
+        plan.tests[tests / 2].settings.retries = Retries { count: restarts, delay };
         plan.hooks = vec![hook(0, &Trigger::ALL), hook(1, &[Trigger::End])];
         let mut world = World::new(&plan);
         world.start();
@@ -171,8 +171,12 @@ fn check_exclusive(world: &World<'_>, plan: &SuitePlan) {
                 let of = |id: &TestId| &plan.tests[id.index()];
                 assert!(!running.contains(test), "{:#?}", world.log);
                 for other in &running {
-                    assert!(!of(test).exclusive && !of(other).exclusive, "{:#?}", world.log);
-                    assert!(!of(other).critical || other > test, "{:#?}", world.log);
+                    assert!(
+                        !of(test).settings.exclusive && !of(other).settings.exclusive,
+                        "{:#?}",
+                        world.log
+                    );
+                    assert!(!of(other).settings.critical || other > test, "{:#?}", world.log);
                 }
                 if !begun.contains(test) {
                     assert!(begun.last().is_none_or(|last| last < test), "{:#?}", world.log);

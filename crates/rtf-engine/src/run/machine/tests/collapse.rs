@@ -80,7 +80,7 @@ fn after_the_restart_the_suite_continues() {
 #[test]
 fn a_rerun_keeps_both_attempts_and_the_last_one_counts() {
     let mut plan = suite(1, 1);
-    plan.tests[0].after_collapse = AfterCollapse::Rerun;
+    plan.tests[0].settings.after_collapse = AfterCollapse::Rerun;
     let mut world = World::running(&plan);
     world.collapse(FIXTURE, GONE);
     world.end(TEST, "interrupted");

@@ -100,7 +100,7 @@ fn check_is_called_while_a_test_runs() {
 #[test]
 fn the_limit_of_the_suite_ends_it_with_tear_down() {
     let mut plan = suite(1, 2);
-    plan.timeout = Some(SECOND);
+    plan.settings.timeout = Some(SECOND);
     let mut world = World::running(&plan);
     world.next_deadline();
     world.exit(TEST, ExitStatus::Code(0));

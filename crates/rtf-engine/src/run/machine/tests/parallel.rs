@@ -13,7 +13,7 @@ const OK: ExitStatus = ExitStatus::Code(0);
 
 fn plan(fixtures: usize, tests: usize, parallel: u32) -> SuitePlan {
     let mut plan = suite(fixtures, tests);
-    plan.parallel = parallel;
+    plan.settings.parallel = parallel;
     plan
 }
 
@@ -72,7 +72,7 @@ fn the_next_test_starts_as_soon_as_a_slot_is_free() {
 #[test]
 fn repetitions_of_a_test_never_overlap_and_keep_its_slot() {
     let mut plan = plan(0, 3, 2);
-    plan.tests[0].repetitions = 2;
+    plan.tests[0].settings.repetitions = 2;
     let mut world = started(&plan);
     assert_eq!(running(&world), [0, 1]);
     world.pass(0);
@@ -89,7 +89,7 @@ fn repetitions_of_a_test_never_overlap_and_keep_its_slot() {
 #[test]
 fn an_exclusive_test_runs_alone() {
     let mut plan = plan(0, 4, 3);
-    plan.tests[1].exclusive = true;
+    plan.tests[1].settings.exclusive = true;
     let mut world = started(&plan);
     assert_eq!(running(&world), [0]);
     world.pass(0);
@@ -105,8 +105,8 @@ fn an_exclusive_test_runs_alone() {
 #[test]
 fn a_collapse_interrupts_all_tests_and_each_has_its_after_collapse() {
     let mut plan = plan(1, 4, 3);
-    plan.tests[1].after_collapse = AfterCollapse::Rerun;
-    plan.tests[2].after_collapse = AfterCollapse::Skip;
+    plan.tests[1].settings.after_collapse = AfterCollapse::Rerun;
+    plan.tests[2].settings.after_collapse = AfterCollapse::Skip;
     plan.hooks = vec![hook(0, &[Trigger::Collapse])];
     let mut world = started(&plan);
     world.input(
@@ -225,7 +225,7 @@ fn after_a_critical_failure_running_tests_finish() {
 #[test]
 fn tests_after_a_critical_test_wait_for_it() {
     let mut plan = plan(0, 4, 3);
-    plan.tests[1].critical = true;
+    plan.tests[1].settings.critical = true;
     let mut world = started(&plan);
     assert_eq!(running(&world), [0, 1]);
     world.pass(0);
@@ -238,7 +238,7 @@ fn tests_after_a_critical_test_wait_for_it() {
 #[test]
 fn a_user_stops_one_test_and_the_others_continue() {
     let mut plan = plan(0, 3, 2);
-    plan.tests[1].repetitions = 2;
+    plan.tests[1].settings.repetitions = 2;
     let mut world = started(&plan);
     world.feed(Input::StopTest(TestId(1), "a user".to_owned()));
     interrupted(&mut world, 1);
@@ -252,7 +252,7 @@ fn a_user_stops_one_test_and_the_others_continue() {
 #[test]
 fn a_signal_and_the_suite_timeout_stop_all_tests() {
     let mut plan = plan(0, 3, 2);
-    plan.timeout = Some(SECOND);
+    plan.settings.timeout = Some(SECOND);
     for by_signal in [true, false] {
         let mut world = started(&plan);
         if by_signal {
@@ -310,7 +310,7 @@ fn each_test_has_its_own_deadlines() {
 #[test]
 fn a_delayed_retry_keeps_its_slot_and_blocks_no_test() {
     let mut plan = plan(0, 3, 2);
-    plan.tests[0].retries = Retries { count: 1, delay: 4 * SECOND };
+    plan.tests[0].settings.retries = Retries { count: 1, delay: 4 * SECOND };
     let mut world = started(&plan);
     fail(&mut world, 0, false);
     assert_eq!(running(&world), [1]);

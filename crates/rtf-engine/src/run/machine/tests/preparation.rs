@@ -10,8 +10,8 @@ use rtf_plan::plan::{Preparation, SuitePlan};
 fn refused() -> SuitePlan {
     let mut plan = suite(1, 2);
     plan.hooks = vec![hook(0, &Trigger::ALL)];
-    plan.tests[1].repetitions = 3;
-    plan.timeout = Some(super::world::SECOND);
+    plan.tests[1].settings.repetitions = 3;
+    plan.settings.timeout = Some(super::world::SECOND);
     plan.preparation = Preparation::Refused("no private network: refused".to_owned());
     plan
 }

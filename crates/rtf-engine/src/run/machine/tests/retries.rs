@@ -12,7 +12,7 @@ use rtf_plan::plan::{Retries, SuitePlan};
 
 fn plan(count: u32, delay: Duration) -> SuitePlan {
     let mut plan = suite(0, 2);
-    plan.tests[0].retries = Retries { count, delay };
+    plan.tests[0].settings.retries = Retries { count, delay };
     plan
 }
 
@@ -59,7 +59,7 @@ fn a_pass_at_the_second_attempt_is_flaky() {
 #[test]
 fn each_repetition_has_separate_retries() {
     let mut plan = plan(1, Duration::ZERO);
-    plan.tests[0].repetitions = 2;
+    plan.tests[0].settings.repetitions = 2;
     let mut world = World::started(&plan);
     fail(&mut world, false);
     world.pass(0);
@@ -123,7 +123,7 @@ fn a_critical_assertion_is_not_retried_and_each_attempt_triggers_hooks() {
 #[test]
 fn at_the_failure_limit_the_rest_is_skipped() {
     let mut plan = suite(1, 3);
-    plan.tests[0].repetitions = 3;
+    plan.tests[0].settings.repetitions = 3;
     let mut world = World::new(&plan);
     let fails = FailLimit::new(Some(1));
     world.machine = SuiteMachine::new(&plan, fails.clone());

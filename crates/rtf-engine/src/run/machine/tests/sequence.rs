@@ -71,7 +71,7 @@ fn when_the_second_set_up_fails_the_first_fixture_is_torn_down() {
 #[test]
 fn every_repetition_is_run() {
     let mut plan = suite(0, 1);
-    plan.tests[0].repetitions = 3;
+    plan.tests[0].settings.repetitions = 3;
     let mut world = World::started(&plan);
     for _ in 0..3 {
         assert_eq!(world.record.verdict(TestId(0)), None);

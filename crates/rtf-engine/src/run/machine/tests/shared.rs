@@ -39,7 +39,7 @@ impl World<'_> {
 
 fn shared(fixtures: usize, tests: usize) -> SuitePlan {
     let mut plan = suite(fixtures, tests);
-    plan.tests.iter_mut().for_each(|test| test.shared = true);
+    plan.tests.iter_mut().for_each(|test| test.settings.shared = true);
     plan
 }
 
@@ -88,7 +88,7 @@ fn a_host_is_assigned_the_next_test_while_the_present_one_runs() {
 #[test]
 fn resource_usage_is_reported_before_the_next_repetition() {
     let mut plan = shared(0, 1);
-    plan.tests[0].repetitions = 3;
+    plan.tests[0].settings.repetitions = 3;
     let mut world = World::started(&plan);
     initialized(&mut world, 0);
     for served in 1..=2 {

@@ -30,7 +30,7 @@ fn repetitions(world: &World<'_>, test: usize) -> Vec<u32> {
 #[test]
 fn a_round_that_started_in_time_is_completed() {
     let mut plan = suite(1, 2);
-    plan.tests[1].repetitions = 2;
+    plan.tests[1].settings.repetitions = 2;
     let mut world = timed(&plan, FailLimit::default());
     let fixture = Source::Fixture(FixtureId(0));
     world.answer(fixture, "passed");
@@ -94,7 +94,7 @@ fn a_test_that_fails_in_each_round_counts_once() {
 #[test]
 fn ctrl_c_ends_a_soak_and_a_pending_retry_is_skipped() {
     let mut plan = suite(0, 2);
-    plan.tests[1].retries = Retries { count: 3, delay: SECOND };
+    plan.tests[1].settings.retries = Retries { count: 3, delay: SECOND };
     let mut world = timed(&plan, FailLimit::default());
     world.pass(0);
     fail(&mut world, 1);
@@ -122,7 +122,7 @@ fn a_test_that_a_user_stopped_is_in_no_further_round() {
 #[test]
 fn a_round_of_parallel_tests_ends_with_the_last_one() {
     let mut plan = suite(0, 2);
-    plan.parallel = 2;
+    plan.settings.parallel = 2;
     let mut world = timed(&plan, FailLimit::default());
     world.pass(1);
     assert_eq!(repetitions(&world, 1), [1], "the other one is not over");

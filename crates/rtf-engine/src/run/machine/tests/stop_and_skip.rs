@@ -9,7 +9,7 @@ use rtf_plan::plan::SuitePlan;
 
 fn plan(repetitions: u32) -> SuitePlan {
     let mut plan = suite(1, 2);
-    plan.tests[0].repetitions = repetitions;
+    plan.tests[0].settings.repetitions = repetitions;
     plan.hooks = vec![hook(0, &[Trigger::Interrupt])];
     plan
 }
@@ -74,7 +74,7 @@ fn a_test_that_does_not_run_is_not_stopped() {
 #[test]
 fn a_stopped_test_that_also_collapses_is_not_rerun() {
     let mut plan = plan(2);
-    plan.tests[0].after_collapse = rtf_plan::plan::AfterCollapse::Rerun;
+    plan.tests[0].settings.after_collapse = rtf_plan::plan::AfterCollapse::Rerun;
     let mut world = World::running(&plan);
     world.exit(FIXTURE, ExitStatus::Signal(11));
     stop(&mut world, 0);

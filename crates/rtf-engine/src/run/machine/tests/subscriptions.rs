@@ -274,7 +274,7 @@ fn an_attachment_without_a_test_is_an_error_of_the_fixture() {
 #[test]
 fn notifications_of_parallel_tests_are_sent_one_by_one() {
     let mut plan = suite(1, 2);
-    plan.parallel = 2;
+    plan.settings.parallel = 2;
     let mut world = World::started(&plan);
     world.set_up_subscribed(0);
     world.answer(RECORDER, "passed");

@@ -4,7 +4,7 @@ use rtf_model::{EventKind, ExitStatus, Phase, TestId, Trigger, Verdict};
 
 use super::world::{FIXTURE, HOOK, TEST, World, hook, suite};
 use crate::run::machine::{Input, ProcessEvent, StopLevel};
-use rtf_plan::plan::{FixtureBody, ProcessPlan, SuitePlan};
+use rtf_plan::plan::{FixtureBody, ProbePlans, ProcessPlan, SuitePlan};
 
 fn wait(world: &mut World<'_>) {
     while !world.done {
@@ -85,8 +85,7 @@ fn process() -> SuitePlan {
     let mut plan = suite(1, 1);
     let process = ProcessPlan {
         command: vec!["sim".to_owned()],
-        ready: Vec::new(),
-        alive: Vec::new(),
+        probes: ProbePlans::default(),
         stop_signal: 15,
         stop_grace: super::world::SECOND,
         stop_codes: Vec::new(),
@@ -121,7 +120,7 @@ fn a_process_that_crashes_during_its_stop_has_a_problem() {
 #[test]
 fn a_suite_whose_tear_down_exceeds_its_limit_is_not_green() {
     let mut plan = suite(1, 1);
-    plan.timeout = Some(super::world::SECOND);
+    plan.settings.timeout = Some(super::world::SECOND);
     let mut world = World::started(&plan);
     world.ready(1);
     world.pass(0);
@@ -139,7 +138,7 @@ fn a_suite_whose_tear_down_exceeds_its_limit_is_not_green() {
 #[test]
 fn a_test_assigned_to_an_ending_host_gets_a_new_host() {
     let mut plan = suite(1, 2);
-    plan.tests.iter_mut().for_each(|test| test.shared = true);
+    plan.tests.iter_mut().for_each(|test| test.settings.shared = true);
     let mut world = World::started(&plan);
     world.ready(1);
     let host = super::shared::answer_and_continue(&mut world, 0);

@@ -12,24 +12,22 @@ use super::chaos::act;
 use super::world::{SECOND, World, hook, suite};
 use crate::run::machine::ProcessEvent;
 use rtf_plan::plan::{
-    AfterCollapse, AttachedPlan, ClockPlan, FixtureBody, ProcessPlan, Retries, SuitePlan,
+    AfterCollapse, ClockPlan, FixtureBody, ProbePlans, ProcessPlan, Retries, SuitePlan,
 };
 
 /// The last fixture is a plug-in, a process, or attached.
 fn body(kind: u8) -> Option<FixtureBody> {
-    let (ready, alive) = (Vec::new(), Vec::new());
     match kind {
         0 => None,
         1 => Some(FixtureBody::Process(Arc::new(ProcessPlan {
             command: vec!["sim".to_owned()],
-            ready,
-            alive,
+            probes: ProbePlans::default(),
             stop_signal: 15,
             stop_grace: SECOND,
             stop_codes: Vec::new(),
             remote: None,
         }))),
-        _ => Some(FixtureBody::Attached(Arc::new(AttachedPlan { ready, alive }))),
+        _ => Some(FixtureBody::Attached(Arc::default())),
     }
 }
 
@@ -47,8 +45,8 @@ fn plan(choices: &Choices) -> SuitePlan {
     let flag = |bit: u8| flags & (1 << bit) != 0;
     let mut plan = suite(fixtures, tests);
     let shared = flag(0);
-    plan.parallel = if shared { 1 } else { parallel };
-    plan.tests.iter_mut().for_each(|test| test.shared = shared);
+    plan.settings.parallel = if shared { 1 } else { parallel };
+    plan.tests.iter_mut().for_each(|test| test.settings.shared = shared);
     for fixture in &mut plan.fixtures {
         fixture.restart_delay = SECOND;
         fixture.restarts = 2;
@@ -60,11 +58,11 @@ fn plan(choices: &Choices) -> SuitePlan {
     if let (Some(fixture), Some(body)) = (plan.fixtures.last_mut(), body(kind)) {
         fixture.body = body;
     }
-    plan.timeout = flag(3).then_some(20 * SECOND);
+    plan.settings.timeout = flag(3).then_some(20 * SECOND);
     plan.clock = flag(4).then_some(ClockPlan { backstop: 10 });
-    plan.tests[0].after_collapse = AfterCollapse::Rerun;
-    plan.tests[tests - 1].repetitions = 2;
-    plan.tests[tests / 2].retries = Retries { count: 2, delay: SECOND };
+    plan.tests[0].settings.after_collapse = AfterCollapse::Rerun;
+    plan.tests[tests - 1].settings.repetitions = 2;
+    plan.tests[tests / 2].settings.retries = Retries { count: 2, delay: SECOND };
     plan.hooks = vec![hook(0, &Trigger::ALL), hook(1, &[Trigger::End])];
     plan
 }

@@ -103,7 +103,7 @@ impl<'p> World<'p> {
             description: String::new(),
             environment: String::new(),
             tolerates_collapse: false,
-            parallel: plan.parallel,
+            parallel: plan.settings.parallel,
         }));
         for fixture in &plan.fixtures {
             let (fixture, suite, name) = (fixture.id, plan.id, fixture.name.clone());
@@ -126,7 +126,7 @@ impl<'p> World<'p> {
                 name: test.name.clone(),
                 plugin_type: "dll".to_owned(),
                 plugin: String::new(),
-                repetitions: test.repetitions,
+                repetitions: test.settings.repetitions,
                 timed,
                 tags: Vec::new(),
             }));

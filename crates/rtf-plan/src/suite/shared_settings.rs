@@ -7,13 +7,13 @@ use roxmltree::Node;
 use super::{SourceText, Span, xml};
 
 /// Values and their spans by the keys of an `rtf.toml`: `environment`, `env.NAME`.
-pub type SuiteSettings = BTreeMap<String, (String, Span)>;
+pub type SharedSettings = BTreeMap<String, (String, Span)>;
 
 /// Returns the suite's environment string and its variables. Problems of the
 /// file are not reported here: [`parse`](super::parse) reports them.
 #[must_use]
-pub fn shared_settings(source: &SourceText) -> SuiteSettings {
-    let mut settings = SuiteSettings::new();
+pub fn shared_settings(source: &SourceText) -> SharedSettings {
+    let mut settings = SharedSettings::new();
     let mut problems = Vec::new();
     let Some(scan) = xml::prepare(source, &mut problems) else { return settings };
     let Some(document) = xml::parse(source, &scan.text, &mut problems) else { return settings };
