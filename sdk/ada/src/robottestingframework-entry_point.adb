@@ -98,15 +98,23 @@ package body RobotTestingFramework.Entry_Point is
          return ABI.Stopped;
    end Guarded;
 
-   function Create (Host_Table : ABI.Host_Access) return Address
-     with Convention => C;
+   --  A step without arguments, as C calls it.
+   generic
+      with function Step return Boolean;
+   function C_Step (Self : Address) return Result;
+
+   function C_Step (Self : Address) return Result is
+      pragma Unreferenced (Self);
+      function Guarded_Step is new Guarded (Step);
+   begin
+      return Guarded_Step;
+   end C_Step;
+
+   function Create (Host_Table : ABI.Host_Access) return Address with Convention => C;
    procedure Destroy (Self : Address) with Convention => C;
    function Set_Up
      (Self : Address; Count : Interfaces.C.int; Arguments : Address) return Result
      with Convention => C;
-   function Run (Self : Address) return Result with Convention => C;
-   function Check (Self : Address) return Result with Convention => C;
-   function Tear_Down (Self : Address) return Result with Convention => C;
    function Started (Self : Address; Test : not null access constant ABI.Test) return Result
      with Convention => C;
    function Finished (Self : Address; Test : not null access constant ABI.Test) return Result
@@ -149,22 +157,10 @@ package body RobotTestingFramework.Entry_Point is
       TestCase.Current.Run;
       return True;
    end Do_Run;
-   function Guarded_Run is new Guarded (Do_Run);
-
-   function Run (Self : Address) return Result is
-      pragma Unreferenced (Self);
-   begin
-      return Guarded_Run;
-   end Run;
+   function Run is new C_Step (Do_Run) with Convention => C;
 
    function Do_Check return Boolean is (FixtureManager.Current.Check);
-   function Guarded_Check is new Guarded (Do_Check);
-
-   function Check (Self : Address) return Result is
-      pragma Unreferenced (Self);
-   begin
-      return Guarded_Check;
-   end Check;
+   function Check is new C_Step (Do_Check) with Convention => C;
 
    --  The test of the notification, during one call.
    Notified : access constant ABI.Test;
@@ -211,13 +207,7 @@ package body RobotTestingFramework.Entry_Point is
       end if;
       return True;
    end Do_Tear_Down;
-   function Guarded_Tear_Down is new Guarded (Do_Tear_Down);
-
-   function Tear_Down (Self : Address) return Result is
-      pragma Unreferenced (Self);
-   begin
-      return Guarded_Tear_Down;
-   end Tear_Down;
+   function Tear_Down is new C_Step (Do_Tear_Down) with Convention => C;
 
    Table : aliased ABI.Plugin_Table :=
      (Size      => ABI.Plugin_Table'Size / System.Storage_Unit,

@@ -1,7 +1,15 @@
 // Requests to the server that the page came from (spec/web.md).
 
 import type { RunFilter } from './run-filter';
-import type { ApiRoot, Attempt, RunInfo, Snapshot, Started, Test } from './api-types';
+import type {
+    ApiRoot,
+    Attempt,
+    MeasurementEntry,
+    RunInfo,
+    Snapshot,
+    Started,
+    Test,
+} from './api-types';
 
 const BASE = '/api/v1';
 
@@ -97,21 +105,27 @@ export const test = (run: string, id: number, signal: AbortSignal | null = null)
         signal,
     );
 
+/** The first 1000 measurements of an attempt. */
+export async function measurements(run: string, test: number, attempt: number) {
+    const route = ['runs', run, 'tests', test, 'attempts', attempt, 'measurements'];
+    const page = await get<{ measurements: MeasurementEntry[] }>(path(route, { limit: 1000 }));
+    return page.measurements;
+}
+
 export const signIn = (token: string) => request('/session', { method: 'POST', body: { token } });
 
 export const signOut = () => request('/session', { method: 'DELETE' });
 
-export const stopRun = (run: string) =>
-    request(path(['runs', run, 'stop']), { method: 'POST', body: {} });
+const post = (parts: (string | number)[]) => request(path(parts), { method: 'POST', body: {} });
+
+export const stopRun = (run: string) => post(['runs', run, 'stop']);
 
 /** Reruns the failed tests of a past run; returns the new run's name. */
 export async function rerun(run: string): Promise<string> {
-    const asked = await request(path(['runs', run, 'rerun']), { method: 'POST', body: {} });
+    const asked = await post(['runs', run, 'rerun']);
     return ((await asked.json()) as Started).run;
 }
 
-export const stopTest = (run: string, id: number) =>
-    request(path(['runs', run, 'tests', id, 'stop']), { method: 'POST', body: {} });
+export const stopTest = (run: string, id: number) => post(['runs', run, 'tests', id, 'stop']);
 
-export const skipSuite = (run: string, id: number) =>
-    request(path(['runs', run, 'suites', id, 'skip']), { method: 'POST', body: {} });
+export const skipSuite = (run: string, id: number) => post(['runs', run, 'suites', id, 'skip']);

@@ -1,6 +1,7 @@
 // The vocabulary of a run, as in the event stream (spec/events.md).
 
 import type { Event } from '../generated/event';
+import type { Totals } from './api-types';
 
 export type {
     Attachment,
@@ -22,8 +23,6 @@ export type {
 
 export type Verdict = Extract<Event, { type: 'test-finished' }>['verdict'];
 export type Phase = Extract<Event, { type: 'test-phase' }>['phase'];
-export type Trigger = Extract<Event, { type: 'hook-started' }>['trigger'];
-export type Source = Extract<Event, { type: 'output' }>['source'];
 
 /** Every verdict, in the order in which summaries list them. */
 export const VERDICTS = [
@@ -56,14 +55,7 @@ export function phaseName(phase: Phase): string {
     return phase === 'setup' ? 'set-up' : phase;
 }
 
-/** Whether two sources are the same. */
-export function isSame(a: Source, b: Source): boolean {
-    return sourceKey(a) === sourceKey(b);
-}
-
-/** A source as a key: `test 3`. */
-export function sourceKey(source: Source): string {
-    if ('test' in source) return `test ${source.test}`;
-    if ('fixture' in source) return `fixture ${source.fixture}`;
-    return `hook ${source.hook}`;
+/** The number of tests in this state. */
+export function testsIn(state: TestState, totals: Totals): number {
+    return state === 'running' || state === 'pending' ? totals[state] : totals.verdicts[state];
 }

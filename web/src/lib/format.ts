@@ -1,4 +1,4 @@
-// Numbers, times and sizes for display.
+// Numbers and times for display.
 
 /** A duration in microseconds: `0.8 ms`, `12.3 s`, `4 min 05 s`, `2 h 03 min`. */
 export function duration(micros: number): string {
@@ -62,19 +62,6 @@ export function axisLabels(values: readonly number[], step: number): string[] {
     }
     const digits = Math.min(15, Math.max(1, Math.ceil(Math.log10(largest / step)) + 1));
     return values.map((value) => number(Number(value.toPrecision(digits))));
-}
-
-/** A size in bytes: `12 B`, `3.4 kB`. */
-export function size(bytes: number): string {
-    if (bytes < 1000) return `${bytes} B`;
-    const units = ['kB', 'MB', 'GB', 'TB'];
-    let value = bytes;
-    let unit = -1;
-    while (value >= 999.5 && unit < units.length - 1) {
-        value /= 1000;
-        unit += 1;
-    }
-    return `${value.toFixed(value < 10 ? 1 : 0)} ${units[unit]}`;
 }
 
 /** A count with its noun: `1 test`, `12 000 tests`. */

@@ -25,6 +25,11 @@ export interface Series {
     violations: number;
 }
 
+/** The name of a series with its unit. */
+export function titleOf({ name, unit }: Series): string {
+    return unit === '' ? name : `${name} (${unit})`;
+}
+
 /**
  * Entries of the same name and unit, in the order of the names' first entries; their
  * times are counted from `zero` on.

@@ -4,6 +4,7 @@
 import type { TestState } from './event';
 import { marks, spans, type Mark, type Span } from './record/fixture';
 import type { RunRecord } from './record/record';
+import type { Shown } from './route';
 
 export type BarState = TestState | Span['state'] | 'hook' | 'hook-failed';
 
@@ -14,7 +15,7 @@ export interface Bar {
     state: BarState;
     label: string;
     /** The target of a click. */
-    target: { what: 'test' | 'fixture' | 'hook'; id: number; attempt: number | null };
+    target: Exclude<Shown, { what: 'overview' }>;
 }
 
 export interface Lane {
@@ -62,7 +63,7 @@ export function lanes(record: RunRecord): Lane[] {
                 bars: spans(fixture).map((span) => ({
                     ...span,
                     label: `${fixture.name}: ${span.state}`,
-                    target: { what: 'fixture', id: fixture.id, attempt: null },
+                    target: { what: 'fixture', id: fixture.id },
                 })),
                 marks: marks(fixture),
             })),
@@ -78,7 +79,7 @@ export function lanes(record: RunRecord): Lane[] {
                         to: run.finished ?? null,
                         state: run.problem === undefined ? 'hook' : 'hook-failed',
                         label: `${hook.name} on ${run.trigger}: ${run.reason}`,
-                        target: { what: 'hook', id: hook.id, attempt: null },
+                        target: { what: 'hook', id: hook.id },
                     })),
                     marks: [],
                 })),

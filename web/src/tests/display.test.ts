@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import { compareRuns } from '../lib/compare';
 import { groupFailures } from '../lib/failures';
-import { axisLabels, clock, count, duration, grouped, limits, number, size } from '../lib/format';
+import { axisLabels, clock, count, duration, grouped, limits, number } from '../lib/format';
 import { OutputRows } from '../lib/output';
 import { phaseTimes, setUpAfter } from '../lib/phases';
 import { padded } from '../lib/plot';
@@ -25,7 +25,6 @@ describe('numbers and times', () => {
         [number(0.1), '0.1'],
         [limits(95, 105), '95 … 105'],
         [limits(null, 0), '≤ 0'],
-        [size(1_234_567), '1.2 MB'],
         [count(1, 'test'), '1 test'],
         [grouped(1234567), '1\u202f234\u202f567'],
     ])('%s', (shown, expected) => expect(shown).toBe(expected));

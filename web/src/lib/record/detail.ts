@@ -10,7 +10,7 @@ import type {
     StackEntry,
 } from '../api-types';
 import { address } from '../api';
-import type { Event, LeakedProcess, Measurement } from '../event';
+import type { Event, Measurement } from '../event';
 
 export interface Lists {
     messages: MessageEntry[];
@@ -34,7 +34,7 @@ export function emptyLists(): Lists {
 }
 
 /** Adds an event of this source to its list. */
-export function addToLists(lists: Lists, event: Event, run: string): LeakedProcess[] {
+export function addToLists(lists: Lists, event: Event, run: string): void {
     const { seq, at } = event;
     switch (event.type) {
         case 'message':
@@ -60,10 +60,7 @@ export function addToLists(lists: Lists, event: Event, run: string): LeakedProce
             append(lists.output, { seq, at, stream, text, ...gap });
             break;
         }
-        case 'processes-leaked':
-            return event.processes;
     }
-    return [];
 }
 
 /** Pages and events may overlap: a known entry is dropped. */

@@ -25,14 +25,20 @@ struct Measurement
     std::optional<double> high;
 };
 
-inline bool measure(Location here, const Measurement &measured)
+inline void check_limits(Location here, const Measurement &measured)
 {
     for (const std::optional<double> &limit : {measured.low, measured.high}) {
         if (limit && std::isnan(*limit)) {
             error(here, "a limit of " + std::string(measured.name) + " is not a number");
         }
     }
-    rtf_measurement message;
+}
+
+// An `rtf_measurement` or `rtf_sample`. It refers to `measured`, which must outlive it.
+template <class Message>
+Message to_message(Location here, const Measurement &measured)
+{
+    Message message;
     message.size = sizeof message;
     message.name = to_text(measured.name);
     message.value = measured.value;
@@ -41,6 +47,13 @@ inline bool measure(Location here, const Measurement &measured)
     message.high = measured.high ? &*measured.high : nullptr;
     message.file = here.file;
     message.line = here.line;
+    return message;
+}
+
+inline bool measure(Location here, const Measurement &measured)
+{
+    check_limits(here, measured);
+    const auto message = to_message<rtf_measurement>(here, measured);
     return host().measure(host().context, &message) != 0;
 }
 

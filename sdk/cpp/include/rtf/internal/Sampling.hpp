@@ -25,25 +25,13 @@ inline bool sample(Location here, const Measurement &taken, std::optional<Second
         error(here, "this rtf is too old for samples: its plug-in interface is 1." +
                         std::to_string(table.abi_minor));
     }
-    for (const std::optional<double> &limit : {taken.low, taken.high}) {
-        if (limit && std::isnan(*limit)) {
-            error(here, "a limit of " + std::string(taken.name) + " is not a number");
-        }
-    }
+    check_limits(here, taken);
     const double at = time ? time->count() : 0;
     if (!std::isfinite(at)) {
         error(here, "the time of a sample of " + std::string(taken.name) + " is not finite");
     }
-    rtf_sample message;
-    message.size = sizeof message;
-    message.name = to_text(taken.name);
-    message.value = taken.value;
-    message.unit = to_text(taken.unit);
-    message.low = taken.low ? &*taken.low : nullptr;
-    message.high = taken.high ? &*taken.high : nullptr;
+    auto message = to_message<rtf_sample>(here, taken);
     message.time = time ? &at : nullptr;
-    message.file = here.file;
-    message.line = here.line;
     return table.sample(table.context, &message) != 0;
 }
 
