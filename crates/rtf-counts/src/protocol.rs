@@ -30,6 +30,7 @@ pub fn run() -> Result<(), Box<dyn Error>> {
             location: Some(Location { file: "EncoderTest.cpp".into(), line: 42 }),
             comparison: None,
             critical: false,
+            case: None,
         };
         let answer = Answer {
             outcome: Outcome::Passed,

@@ -56,6 +56,7 @@ fn before() -> Vec<EventKind> {
             environment: String::new(),
             tolerates_collapse: false,
             parallel: 1,
+            skips_fail: false,
         }),
     ];
     kinds.extend((0..TESTS).map(|test| {
@@ -68,6 +69,8 @@ fn before() -> Vec<EventKind> {
             repetitions: 1,
             tags: vec!["quick".into()],
             timed: false,
+            expected: None,
+            parameters: Vec::new(),
         })
     }));
     kinds.push(EventKind::SuiteStarted { suite: SUITE });
@@ -86,7 +89,8 @@ fn test(number: u32) -> Vec<EventKind> {
         let kind = if failed && is_last { MessageKind::Failure } else { MessageKind::Report };
         let text = format!("joint {report} is at {number}");
         let location = Some(Location { file: "T.lua".into(), line: report });
-        let message = Message { kind, text, location, comparison: None, critical: false };
+        let message =
+            Message { kind, text, location, comparison: None, critical: false, case: None };
         kinds.push(EventKind::Message { source, message, test: None });
     }
     let text = format!("a line of test {number}\n");

@@ -15,5 +15,7 @@ pub fn plugin(suite: &SuitePlan, name: &str, plan: &PluginPlan, repetition: u32)
         is_last: false,
         end_marker: None,
         attachments_dir: None,
+        cases: Vec::new(),
+        parameters: Vec::new(),
     }
 }

@@ -47,7 +47,13 @@ impl HostPlugin for LuaHost {
     fn describe(&self) -> Initialized {
         let host = format!("lua {}", interruption::lua_release());
         let stack = StackSupport::Message;
-        Initialized { protocol: PROTOCOL_VERSION, host, stack, supports_shared: true }
+        Initialized {
+            protocol: PROTOCOL_VERSION,
+            host,
+            stack,
+            supports_shared: true,
+            selects_cases: false,
+        }
     }
 
     fn idle(&mut self) {

@@ -156,6 +156,7 @@ fn attach(
         name: name.map(LuaString::to_string_lossy).or_else(own_name).unwrap_or_default(),
         path: full.to_string_lossy().into_owned(),
         media_type: media_type.map(LuaString::to_string_lossy).unwrap_or_default(),
+        case: None,
     });
     attached.err().map(|error| format!("`{}` cannot be attached: {error}", full.display()))
 }
@@ -181,6 +182,7 @@ impl mlua::FromLuaMulti for Reported {
             location: location(file.as_ref(), line),
             comparison: comparison.map(|numbers| comparison_of(&numbers)).transpose()?,
             critical: critical.unwrap_or(false),
+            case: None,
         }))
     }
 }
@@ -200,6 +202,7 @@ impl mlua::FromLuaMulti for MeasureArgs {
             low: low.and_then(finite),
             high: high.and_then(finite),
             location: location(file.as_ref(), line),
+            case: None,
         }))
     }
 }

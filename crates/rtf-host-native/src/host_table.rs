@@ -63,6 +63,7 @@ unsafe extern "C" fn message(context: *mut c_void, message: *const rtf_message) 
             location: location(message.file, message.line),
             comparison: message.comparison.as_ref().map(|numbers| comparison(numbers)),
             critical: message.critical != 0,
+            case: None,
         });
     }
 }
@@ -78,6 +79,7 @@ unsafe extern "C" fn measure(context: *mut c_void, measurement: *const rtf_measu
             low: measurement.low.as_ref().copied().filter(|low| *low != f64::NEG_INFINITY),
             high: measurement.high.as_ref().copied().filter(|high| *high != f64::INFINITY),
             location: location(measurement.file, measurement.line),
+            case: None,
         });
         c_int::from(holds)
     }
@@ -113,11 +115,20 @@ unsafe extern "C" fn attach(context: *mut c_void, attachment: *const rtf_attachm
         }
         let media_type = text(attachment.media_type);
         let session = &self::context(context).session;
-        if let Err(error) = session.attach(Attachment { name, path: path.clone(), media_type }) {
+        if let Err(error) =
+            session.attach(Attachment { name, path: path.clone(), media_type, case: None })
+        {
             let text = format!("`{path}` cannot be attached: {error}");
             let kind = MessageKind::Error;
             let (location, comparison) = (None, None);
-            session.message(Message { kind, text, location, comparison, critical: false });
+            session.message(Message {
+                kind,
+                text,
+                location,
+                comparison,
+                critical: false,
+                case: None,
+            });
         }
     }
 }

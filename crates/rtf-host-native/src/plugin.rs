@@ -46,7 +46,13 @@ impl HostPlugin for NativeHost {
     fn describe(&self) -> Initialized {
         let host = concat!("native ", env!("CARGO_PKG_VERSION")).to_owned();
         let stack = StackSupport::None;
-        Initialized { protocol: PROTOCOL_VERSION, host, stack, supports_shared: true }
+        Initialized {
+            protocol: PROTOCOL_VERSION,
+            host,
+            stack,
+            supports_shared: true,
+            selects_cases: false,
+        }
     }
 
     fn idle(&mut self) {

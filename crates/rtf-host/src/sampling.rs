@@ -156,6 +156,7 @@ impl Sample<'_> {
             high: self.high,
             location,
             points: vec![point],
+            case: None,
         }
     }
 

@@ -264,6 +264,13 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
 
     fn error(&self, text: String, location: Option<rtf_model::Location>) {
         let kind = MessageKind::Error;
-        self.session.message(Message { kind, text, location, comparison: None, critical: false });
+        self.session.message(Message {
+            kind,
+            text,
+            location,
+            comparison: None,
+            critical: false,
+            case: None,
+        });
     }
 }

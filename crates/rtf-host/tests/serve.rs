@@ -27,6 +27,7 @@ impl Script {
             location: None,
             comparison: None,
             critical: false,
+            case: None,
         });
     }
 
@@ -40,7 +41,15 @@ impl Script {
                 let value = rest.parse().ok();
                 let (name, unit) = ("rate".to_owned(), "Hz".to_owned());
                 let (low, high) = (Some(1.0), Some(2.0));
-                self.session.measure(Measurement { name, value, unit, low, high, location: None });
+                self.session.measure(Measurement {
+                    name,
+                    value,
+                    unit,
+                    low,
+                    high,
+                    location: None,
+                    case: None,
+                });
             }
             "sample" => {
                 let (value, time) = rest.split_once('@').unwrap_or((rest, ""));
@@ -58,7 +67,9 @@ impl Script {
             "attach" => {
                 let (name, path) = rest.split_once('@').unwrap();
                 let (name, path) = (name.to_owned(), path.to_owned());
-                self.session.attach(Attachment { name, path, media_type: String::new() }).unwrap();
+                self.session
+                    .attach(Attachment { name, path, media_type: String::new(), case: None })
+                    .unwrap();
             }
             "fork" => {
                 // SAFETY: the child only takes a sample and ends, in this thread.
@@ -81,7 +92,13 @@ impl Script {
 impl HostPlugin for Script {
     fn describe(&self) -> Initialized {
         let stack = StackSupport::Message;
-        Initialized { protocol: 1, host: "script 1".into(), stack, supports_shared: true }
+        Initialized {
+            protocol: 1,
+            host: "script 1".into(),
+            stack,
+            supports_shared: true,
+            selects_cases: false,
+        }
     }
 
     fn load(&mut self, _kind: PluginKind, plugin: &Plugin) -> Result<(), LoadError> {
@@ -382,7 +399,14 @@ fn a_text_longer_than_a_line_arrives_in_several_messages() {
     let thread = std::thread::spawn(move || {
         let kind = MessageKind::Report;
         let (location, comparison) = (None, None);
-        session.message(Message { kind, text: sent, location, comparison, critical: false });
+        session.message(Message {
+            kind,
+            text: sent,
+            location,
+            comparison,
+            critical: false,
+            case: None,
+        });
     });
     let mut arrived = String::new();
     for line in BufReader::new(ours).lines() {

@@ -16,6 +16,7 @@ fn violations_are_described_as_in_the_conformance_vectors() {
             low: case["low"].as_f64(),
             high: case["high"].as_f64(),
             location: None,
+            case: None,
         };
         assert_eq!(measurement.problem().as_deref(), case["problem"].as_str(), "{case}");
     }

@@ -3,12 +3,16 @@
 //! [`crate::OrderChecker`] checks the order of events; `spec/events.md`
 //! describes it.
 
+mod case;
+mod expected;
 mod planned;
 mod process;
 mod test;
 
 use serde::{Deserialize, Serialize};
 
+pub use self::case::{CaseFinished, CaseStart, CaseStarted, Parameter};
+pub use self::expected::{ExpectedFailure, Significance};
 pub use self::planned::{
     FixturePlanned, HookPlanned, RunStarted, SuitePlanned, TestPlanned, Trigger,
 };
@@ -166,6 +170,17 @@ pub enum EventKind {
         /// The file, in the run's directory.
         attachment: Attachment,
     },
+    /// A test announces top-level cases that it is going to run.
+    CasesPlanned {
+        /// The test.
+        test: TestId,
+        /// Their names, unique in the attempt.
+        names: Vec<String>,
+    },
+    /// A case of a test starts. `case-finished` is the matching end.
+    CaseStarted(Box<CaseStarted>),
+    /// A case has finished.
+    CaseFinished(CaseFinished),
     /// A process printed output.
     Output(Output),
     /// A test has exceeded its `slow` limit. It continues.

@@ -40,6 +40,11 @@ id!(
 );
 
 id!(
+    /// A case of an attempt of a test. Numbered from 1 in the order in which they start.
+    CaseId
+);
+
+id!(
     /// A hook of a run. Numbered from 0 over all suites, in the order of the plan.
     HookId
 );

@@ -27,19 +27,19 @@ mod verdict;
 pub use clock::parse_clock;
 pub use diagnostic::{Diagnostic, Label, Severity};
 pub use event::{
-    Event, EventKind, ExitStatus, FixturePlanned, HookPlanned, LeakedProcess, Output, Phase,
-    RunStarted, Source, StopCause, Stream, SuitePlanned, TestFinished, TestPlanned, Trigger,
-    signal_name,
+    CaseFinished, CaseStart, CaseStarted, Event, EventKind, ExitStatus, ExpectedFailure,
+    FixturePlanned, HookPlanned, LeakedProcess, Output, Parameter, Phase, RunStarted, Significance,
+    Source, StopCause, Stream, SuitePlanned, TestFinished, TestPlanned, Trigger, signal_name,
 };
-pub use ids::{FixtureId, HookId, Micros, SuiteId, TestId};
+pub use ids::{CaseId, FixtureId, HookId, Micros, SuiteId, TestId};
 pub use journal::{Damage, EventCheck, LineCheck, LineChecker, LineSealer, StreamChecker};
 pub use manifest::{Manifest, Revision};
 pub use order::{OrderChecker, OrderError};
 pub use private_resources::{SuiteNetwork, SuitePort, SuitePrepared, SuiteVariable};
 pub use record::{
-    AttemptCounts, AttemptRecord, FixtureLife, FixtureRecord, FixtureState, HookRecord,
-    HookRunRecord, HostRecord, Record, RunState, SignalSummary, SuiteRecord, TestRecord,
-    TestTotals,
+    AttemptCases, AttemptCounts, AttemptRecord, CaseRecord, FixtureLife, FixtureRecord,
+    FixtureState, HookRecord, HookRunRecord, HostRecord, PlannedCases, Record, RunState,
+    SignalSummary, SuiteRecord, TestRecord, TestTotals,
 };
 pub use report::{
     Attachment, Comparison, Location, Measurement, Message, MessageKind, format_number,

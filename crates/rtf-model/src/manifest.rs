@@ -42,6 +42,9 @@ pub struct Manifest {
     /// The shard: `2/5`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shard: Option<String>,
+    /// Whether a test or a case that skips itself makes the run red.
+    #[serde(skip_serializing_if = "is_default")]
+    pub no_skips: bool,
     /// Number of retries of each failed test; overrides the suites.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub retries: Option<u32>,

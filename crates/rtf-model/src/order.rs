@@ -1,6 +1,7 @@
 //! The grammar of an event stream: which event may follow which one.
 
 mod attempts;
+mod cases;
 mod concurrency;
 mod progress;
 mod shared_hosts;
@@ -111,16 +112,30 @@ impl OrderChecker {
                 self.start_test(*test, (*repetition, *attempt))
             }
             EventKind::TestPhase { test, phase: Phase::Notify } => self.judge_test(*test),
+            EventKind::CasesPlanned { test, .. } => self.before_verdict(*test),
+            EventKind::CaseStarted(started) => self.start_case(started),
+            EventKind::CaseFinished(end) => self.finish_case(end.test, end.case),
+            EventKind::Sampled { test, samples } => {
+                self.inside_test(*test)?;
+                self.inside_case(*test, samples.case)
+            }
             EventKind::TestPhase { test, .. }
-            | EventKind::Sampled { test, .. }
             | EventKind::TestSlow { test }
             | EventKind::TestStopping { test, .. } => self.inside_test(*test),
-            EventKind::Measured { test, fixture, .. }
-            | EventKind::Attached { test, fixture, .. } => {
-                self.inside_both(fixture.map(Source::Fixture), Source::Test(*test))
+            EventKind::Measured { test, fixture, measurement } => {
+                self.inside_both(fixture.map(Source::Fixture), Source::Test(*test))?;
+                self.inside_case(*test, measurement.case)
             }
-            EventKind::Message { source, test, .. } => {
-                self.inside_both(test.map(Source::Test), *source)
+            EventKind::Attached { test, fixture, attachment } => {
+                self.inside_both(fixture.map(Source::Fixture), Source::Test(*test))?;
+                self.inside_case(*test, attachment.case)
+            }
+            EventKind::Message { source, test, message } => {
+                self.inside_both(test.map(Source::Test), *source)?;
+                match source {
+                    Source::Test(id) => self.inside_case(*id, message.case),
+                    Source::Fixture(_) | Source::Hook(_) => Ok(()),
+                }
             }
             EventKind::StackDumped { source, .. } | EventKind::ProcessesLeaked { source, .. } => {
                 self.inside(*source)

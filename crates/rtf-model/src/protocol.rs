@@ -9,7 +9,10 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Attachment, Measurement, Message, Outcome, Phase, Samples, TestId, Verdict};
+use crate::{
+    Attachment, CaseId, CaseStart, Measurement, Message, Outcome, Parameter, Phase, Samples,
+    TestId, Verdict,
+};
 
 /// The protocol version of this crate. Runner and host must agree on it.
 pub const PROTOCOL_VERSION: u32 = 1;
@@ -139,6 +142,9 @@ pub struct Initialized {
     /// Whether it supports [`Plugin::end_marker`].
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub supports_shared: bool,
+    /// Whether it supports [`Plugin::cases`].
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub selects_cases: bool,
 }
 
 /// How the runner gets a stack dump of a host that hangs.
@@ -185,6 +191,37 @@ pub struct Plugin {
     /// The directory for a test's attachments. The host creates it when it is needed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attachments_dir: Option<String>,
+    /// A test's values of a matrix.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parameters: Vec<Parameter>,
+    /// The cases that a test runs; empty: all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cases: Vec<CaseSelector>,
+}
+
+/// Selects cases by their path: names joined with `/`.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum CaseSelector {
+    /// The case with this path, the cases in it, and those that contain it.
+    Equals(String),
+    /// Each case whose path contains this text.
+    Contains(String),
+}
+
+impl CaseSelector {
+    /// Whether the case with this path runs.
+    #[must_use]
+    pub fn selects(&self, path: &str) -> bool {
+        let contains = |outer: &str, inner: &str| {
+            inner.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+        };
+        match self {
+            Self::Equals(wanted) => contains(wanted, path) || contains(path, wanted),
+            Self::Contains(text) => path.contains(text.as_str()),
+        }
+    }
 }
 
 /// The events of tests that a fixture can subscribe to.
@@ -277,6 +314,24 @@ pub enum Notification {
     Collapsed {
         /// Why, as text.
         reason: String,
+    },
+    /// A test announces top-level cases that it is going to run.
+    CasesPlanned {
+        /// Their names.
+        names: Vec<String>,
+    },
+    /// A test starts a case.
+    CaseStarted(CaseStart),
+    /// A case has finished.
+    CaseFinished {
+        /// The case.
+        case: CaseId,
+        /// The result, if no message reports it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        outcome: Option<Outcome>,
+        /// The reason for this outcome.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        reason: Option<String>,
     },
     /// The stacks of the host's threads.
     Stack {

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::CaseId;
+
 /// A location in a plug-in's source.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -55,6 +57,9 @@ pub struct Message {
     /// Whether it is unsafe to continue: the rest of the suite is skipped.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub critical: bool,
+    /// The case in which it was reported.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub case: Option<CaseId>,
 }
 
 /// The numbers behind a near-equality check of a scalar (one entry) or a vector.
@@ -100,6 +105,9 @@ pub struct Measurement {
     /// Where in the plug-in it was taken.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub location: Option<Location>,
+    /// The case in which it was reported.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub case: Option<CaseId>,
 }
 
 impl Measurement {
@@ -189,4 +197,7 @@ pub struct Attachment {
     /// Its media type (`image/png`), empty if unknown.
     #[serde(default)]
     pub media_type: String,
+    /// The case in which it was reported.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub case: Option<CaseId>,
 }

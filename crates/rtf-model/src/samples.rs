@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::report::is_within;
-use crate::{Location, Measurement, format_rounded};
+use crate::{CaseId, Location, Measurement, format_rounded};
 
 /// A batch of samples of one signal, in the order in which they were taken, with the
 /// limits that each of them must keep. A host sends a signal in batches.
@@ -24,6 +24,9 @@ pub struct Samples {
     /// Where in the plug-in they were taken.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub location: Option<Location>,
+    /// The case in which it was reported.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub case: Option<CaseId>,
     /// Each sample: its time in seconds since the test's set-up began, and its
     /// value; `null` when that is not a finite number, which no limit accepts.
     pub points: Vec<(f64, Option<f64>)>,
@@ -57,6 +60,7 @@ impl Samples {
             low: self.low,
             high: self.high,
             location: self.location.clone(),
+            case: self.case,
         }
     }
 }

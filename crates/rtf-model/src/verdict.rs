@@ -22,7 +22,7 @@ pub enum Verdict {
     TimedOut,
     /// A fixture collapsed while the test ran.
     Collapsed,
-    /// The test was never started.
+    /// The test was never started, or it skipped itself.
     Skipped,
     /// The user stopped the run while the test ran.
     Interrupted,
@@ -56,6 +56,26 @@ impl Verdict {
         }
     }
 
+    /// Whether it is neither `passed` nor `skipped`.
+    #[must_use]
+    pub fn is_problem(self) -> bool {
+        self.severity() > 0
+    }
+
+    /// How bad it is, for the comparison of a test with its cases: 0 for `passed`.
+    #[must_use]
+    pub fn severity(self) -> u8 {
+        match self {
+            Self::Passed | Self::Skipped => 0,
+            Self::Failed => 1,
+            Self::Error => 2,
+            Self::Interrupted => 3,
+            Self::Collapsed => 4,
+            Self::TimedOut => 5,
+            Self::Crashed => 6,
+        }
+    }
+
     /// Whether a run with this final verdict can be green.
     #[must_use]
     pub fn is_green(self) -> bool {
@@ -82,4 +102,6 @@ pub enum Outcome {
     Error,
     /// The plug-in stopped early because it was asked to.
     Interrupted,
+    /// The test, or the case, skipped itself.
+    Skipped,
 }

@@ -95,9 +95,13 @@ pub fn decode_other(line: &[u8]) -> Option<Result<HostMessage, String>> {
     let decoded = decode(line);
     match &decoded {
         Ok(HostMessage::Reply(..)) => None,
-        Ok(HostMessage::Notification(Notification::Phase { .. } | Notification::Stack { .. })) => {
-            None
-        }
+        Ok(HostMessage::Notification(
+            Notification::Phase { .. }
+            | Notification::Stack { .. }
+            | Notification::CasesPlanned { .. }
+            | Notification::CaseStarted(_)
+            | Notification::CaseFinished { .. },
+        )) => None,
         Ok(HostMessage::Notification(_)) | Err(_) => Some(decoded),
     }
 }

@@ -76,6 +76,7 @@ fn before() -> Vec<EventKind> {
             environment: String::new(),
             tolerates_collapse: false,
             parallel: 1,
+            skips_fail: false,
         }),
         EventKind::TestPlanned(TestPlanned {
             test: TEST,
@@ -86,6 +87,8 @@ fn before() -> Vec<EventKind> {
             repetitions: 1,
             timed: false,
             tags: Vec::new(),
+            expected: None,
+            parameters: Vec::new(),
         }),
         EventKind::SuiteStarted { suite: SUITE },
         EventKind::TestStarted { test: TEST, repetition: 1, attempt: 1 },
@@ -99,6 +102,7 @@ fn report(number: u64) -> EventKind {
         location: None,
         comparison: None,
         critical: false,
+        case: None,
     };
     EventKind::Message { source: Source::Test(TEST), message, test: None }
 }

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::{ExpectedFailure, Parameter};
 use crate::{FixtureId, HookId, Manifest, SuiteId, TestId};
 
 /// The first event of a run.
@@ -49,6 +50,9 @@ pub struct SuitePlanned {
     /// Whether a collapse of a fixture leaves the suite green.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub tolerates_collapse: bool,
+    /// Whether a test or a case that skips itself makes the run red.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub skips_fail: bool,
     /// Maximum number of its tests that run at the same time.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub parallel: u32,
@@ -154,6 +158,12 @@ pub struct TestPlanned {
     /// The tags given in the suite.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
+    /// Its values of a matrix.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parameters: Vec<Parameter>,
+    /// Its known failure.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expected: Option<Box<ExpectedFailure>>,
 }
 
 impl TestPlanned {

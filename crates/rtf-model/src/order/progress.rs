@@ -1,5 +1,6 @@
 //! The progress of the run, its suites, fixtures and tests in an event stream.
 
+use super::cases::CaseProgress;
 use crate::SuiteId;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,12 +51,14 @@ pub(super) struct TestProgress {
     pub rerun: bool,
     /// It was skipped, or will not be repeated.
     pub ended: bool,
+    pub cases: CaseProgress,
 }
 
 impl TestProgress {
     pub fn new(suite: SuiteId, repetitions: Option<u32>) -> Self {
         let (open, judged, rerun, ended) = (false, false, false, false);
-        Self { suite, repetitions, open, judged, last: None, rerun, ended }
+        let cases = CaseProgress::default();
+        Self { suite, repetitions, open, judged, last: None, rerun, ended, cases }
     }
 
     /// Whether its verdict is final.

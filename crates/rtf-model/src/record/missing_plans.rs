@@ -36,6 +36,7 @@ pub(super) fn suite(index: u32) -> SuiteRecord {
         description: String::new(),
         environment: String::new(),
         tolerates_collapse: false,
+        skips_fail: false,
         parallel: 1,
     })
 }
@@ -64,5 +65,7 @@ pub(super) fn test(index: u32, suite: SuiteId) -> TestRecord {
         repetitions: 1,
         timed: false,
         tags: Vec::new(),
+        parameters: Vec::new(),
+        expected: None,
     })
 }

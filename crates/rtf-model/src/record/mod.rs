@@ -3,6 +3,7 @@
 //! [`Record::apply`] is the only place that counts. The console's summary, the
 //! JUnit file and every other report read a `Record`; none keeps separate state.
 
+mod case;
 mod counts;
 mod fixture;
 mod hook;
@@ -14,6 +15,7 @@ pub(crate) mod source;
 mod suite;
 mod test;
 
+pub use case::{AttemptCases, CaseRecord, PlannedCases};
 pub use counts::AttemptCounts;
 pub use fixture::{FixtureLife, FixtureRecord, FixtureState};
 pub use hook::{HookRecord, HookRunRecord};
@@ -24,8 +26,8 @@ pub use suite::SuiteRecord;
 pub use test::{AttemptRecord, TestRecord};
 
 use crate::{
-    Damage, Diagnostic, Event, EventKind, FixtureId, HookId, Micros, RunStarted, Source, SuiteId,
-    TestId, Verdict,
+    Damage, Diagnostic, Event, EventKind, FixtureId, HookId, Micros, RunStarted, Significance,
+    Source, SuiteId, TestId, Verdict,
 };
 
 /// The state of a run.
@@ -99,6 +101,7 @@ pub struct Record {
     /// [`Damage::KEPT`]. A record of a damaged journal cannot be trusted.
     pub damages: Vec<Damage>,
     lean: bool,
+    passed_cases_kept: u64,
 }
 
 impl Record {
@@ -190,7 +193,7 @@ impl Record {
         match source::source_of(kind) {
             Some(Source::Test(id)) => {
                 if let Some(test) = self.tests.get_mut(id.index()) {
-                    test.apply(at, kind, self.lean);
+                    test.apply(at, kind, self.lean, &mut self.passed_cases_kept);
                 }
             }
             Some(Source::Fixture(id)) => {
@@ -366,9 +369,26 @@ impl Record {
         !self.is_damaged()
             && self.state == RunState::Finished { interrupted: None }
             && !self.tests.is_empty()
-            && self.tests.iter().all(|test| test.verdict().is_some_and(Verdict::is_green))
+            && self.tests.iter().all(|test| test.verdict().is_some() && self.is_test_green(test))
             && !(self.flaky_fails() && self.tests.iter().any(TestRecord::is_flaky))
             && self.suites.iter().all(|s| self.suite_problems(s.plan.suite).is_empty())
+    }
+
+    /// Whether a test does not make the run red: it passed, its failure is known, or it
+    /// skipped itself. One that has not finished is not green.
+    #[must_use]
+    pub fn is_test_green(&self, test: &TestRecord) -> bool {
+        let suite = self.suites.get(test.plan.suite.index());
+        let skips_fail = suite.is_some_and(|suite| suite.plan.skips_fail)
+            || self.run.as_ref().is_some_and(|run| run.manifest.no_skips);
+        match test.significance() {
+            Significance::Expected | Significance::Quarantined => true,
+            Significance::UnexpectedPass => false,
+            Significance::SkippedItself => !skips_fail,
+            Significance::Counts => {
+                test.final_verdict().is_green() && !(skips_fail && test.has_skipped_cases())
+            }
+        }
     }
 
     /// Whether a test that passed only after a retry counts as failed.

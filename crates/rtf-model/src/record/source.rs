@@ -16,6 +16,7 @@ pub(crate) fn source_of(kind: &EventKind) -> Option<Source> {
         }
         EventKind::TestStarted { test, .. }
         | EventKind::TestPhase { test, .. }
+        | EventKind::CasesPlanned { test, .. }
         | EventKind::Measured { test, .. }
         | EventKind::Sampled { test, .. }
         | EventKind::Attached { test, .. }
@@ -23,6 +24,8 @@ pub(crate) fn source_of(kind: &EventKind) -> Option<Source> {
         | EventKind::TestStopping { test, .. }
         | EventKind::TestRepeated { test, .. }
         | EventKind::TestSkipped { test, .. } => Some(Source::Test(*test)),
+        EventKind::CaseStarted(started) => Some(Source::Test(started.test)),
+        EventKind::CaseFinished(end) => Some(Source::Test(end.test)),
         EventKind::TestFinished(finished) => Some(Source::Test(finished.test)),
         EventKind::Message { source, test, .. } => Some(test.map_or(*source, Source::Test)),
         EventKind::StackDumped { source, .. }

@@ -2,11 +2,12 @@
 
 use std::time::Duration;
 
+use super::case::AttemptCases;
 use super::counts::{AttemptCounts, is_detail};
 use super::signal::SignalSummary;
 use crate::{
     Attachment, EventKind, LeakedProcess, Measurement, Message, MessageKind, Micros, Phase,
-    TestFinished, TestPlanned, Verdict,
+    Significance, TestFinished, TestPlanned, Verdict,
 };
 
 /// The state of one test.
@@ -41,6 +42,8 @@ pub struct AttemptRecord {
     pub messages_omitted: u64,
     /// How much it reported, kept or not.
     pub counts: AttemptCounts,
+    /// Its cases.
+    pub cases: AttemptCases,
     /// Its measurements.
     pub measurements: Vec<Measurement>,
     /// The signals that it sampled.
@@ -55,6 +58,8 @@ pub struct AttemptRecord {
     pub leaked: Vec<LeakedProcess>,
     /// Whether it took longer than its `slow` limit.
     pub slow: bool,
+    /// Whether it was asked to stop.
+    pub stopped: bool,
     kept: [u32; 4],
     lean: bool,
 }
@@ -65,7 +70,13 @@ impl TestRecord {
     }
 
     /// `lean`: see [`super::Record::lean`].
-    pub(super) fn apply(&mut self, at: Micros, kind: &EventKind, lean: bool) {
+    pub(super) fn apply(
+        &mut self,
+        at: Micros,
+        kind: &EventKind,
+        lean: bool,
+        passed_cases_kept: &mut u64,
+    ) {
         match kind {
             EventKind::TestStarted { repetition, attempt, .. } => {
                 let attempt = AttemptRecord::new(*repetition, *attempt, at);
@@ -78,7 +89,12 @@ impl TestRecord {
             }
             kind => {
                 if let Some(attempt) = self.attempts.last_mut() {
-                    attempt.apply(at, kind);
+                    match kind {
+                        EventKind::CaseFinished(end) => {
+                            attempt.cases.finish(at, end, passed_cases_kept);
+                        }
+                        kind => attempt.apply(at, kind),
+                    }
                 }
             }
         }
@@ -108,25 +124,27 @@ impl TestRecord {
     /// not pass, or the last attempt.
     #[must_use]
     pub fn decisive_attempt(&self) -> Option<&AttemptRecord> {
-        self.deciding_attempts()
-            .find(|attempt| attempt.verdict().is_some_and(|verdict| !verdict.is_green()))
+        let first = |wanted: fn(Verdict) -> bool| {
+            self.deciding_attempts().find(|attempt| attempt.verdict().is_some_and(wanted))
+        };
+        first(Verdict::is_problem)
+            .or_else(|| first(|verdict| verdict == Verdict::Skipped))
             .or(self.attempts.last())
     }
 
     /// The final verdict, `None` until it is known.
     #[must_use]
     pub fn verdict(&self) -> Option<Verdict> {
-        let failed =
-            || self.deciding_attempts().filter_map(AttemptRecord::verdict).find(|v| !v.is_green());
+        let decisive = || self.decisive_attempt().and_then(AttemptRecord::verdict);
         if self.skipped.is_some() {
-            return Some(failed().unwrap_or(Verdict::Skipped));
+            return Some(decisive().filter(|v| v.is_problem()).unwrap_or(Verdict::Skipped));
         }
         let last = self.attempts.last()?;
         let (_, finished) = last.finished.as_ref()?;
         if finished.rerun || self.is_open_ended || last.repetition < self.plan.repetitions {
             return None;
         }
-        Some(failed().unwrap_or(Verdict::Passed))
+        decisive()
     }
 
     /// The final verdict in a run that has ended, see [`super::Record::final_verdict`].
@@ -137,6 +155,25 @@ impl TestRecord {
         } else {
             Verdict::Interrupted
         })
+    }
+
+    /// What its final verdict means for a run that has ended.
+    #[must_use]
+    pub fn significance(&self) -> Significance {
+        let verdict = self.final_verdict();
+        // The runner skips a test, or an attempt during which a fixture collapsed.
+        let skipped_itself = |attempt: &AttemptRecord| self.skipped.is_none() && !attempt.stopped;
+        if verdict == Verdict::Skipped && self.decisive_attempt().is_some_and(skipped_itself) {
+            return Significance::SkippedItself;
+        }
+        let expected = self.plan.expected.as_deref();
+        expected.map_or(Significance::Counts, |expected| expected.significance(verdict))
+    }
+
+    /// Whether a case of a deciding attempt skipped itself.
+    #[must_use]
+    pub fn has_skipped_cases(&self) -> bool {
+        self.deciding_attempts().any(|attempt| attempt.cases.of(Verdict::Skipped) > 0)
     }
 
     /// Whether it passed after an earlier attempt had failed. (An
@@ -178,6 +215,7 @@ impl AttemptRecord {
             messages: Vec::new(),
             messages_omitted: 0,
             counts: AttemptCounts::default(),
+            cases: AttemptCases::default(),
             measurements: Vec::new(),
             series: Vec::new(),
             attachments: Vec::new(),
@@ -185,6 +223,7 @@ impl AttemptRecord {
             stacks: Vec::new(),
             leaked: Vec::new(),
             slow: false,
+            stopped: false,
             kept: [0; 4],
             lean: false,
         }
@@ -207,7 +246,10 @@ impl AttemptRecord {
                 }
                 self.output += &output.text;
             }
+            EventKind::CasesPlanned { names, .. } => self.cases.plan(names),
+            EventKind::CaseStarted(started) => self.cases.start(at, &started.start),
             EventKind::TestSlow { .. } => self.slow = true,
+            EventKind::TestStopping { .. } => self.stopped = true,
             EventKind::StackDumped { text, .. } => self.stacks.push(text.clone()),
             EventKind::ProcessesLeaked { processes, .. } => {
                 self.leaked.extend_from_slice(processes)

@@ -221,7 +221,10 @@ fn numbers_have_no_gaps_and_time_does_not_run_backwards() {
 fn sampled() -> EventKind {
     let name = "elbow".to_owned();
     let (unit, low, high, location, points) = (String::new(), None, None, None, Vec::new());
-    EventKind::Sampled { test: TEST, samples: Samples { name, unit, low, high, location, points } }
+    EventKind::Sampled {
+        test: TEST,
+        samples: Samples { name, unit, low, high, location, points, case: None },
+    }
 }
 
 #[test]

@@ -21,8 +21,14 @@ fn run(repetitions: u32, body: impl IntoIterator<Item = EventKind>) -> Record {
 }
 
 fn message(kind: MessageKind) -> EventKind {
-    let message =
-        Message { kind, text: "x".into(), location: None, comparison: None, critical: false };
+    let message = Message {
+        kind,
+        text: "x".into(),
+        location: None,
+        comparison: None,
+        critical: false,
+        case: None,
+    };
     EventKind::Message { source: Source::Test(TEST), message, test: None }
 }
 
@@ -249,6 +255,7 @@ fn a_measurement_is_rounded_unless_it_is_outside_its_limits() {
         low: Some(12.999_999_999_999_998),
         high: Some(high),
         location: None,
+        case: None,
     };
     let shown = measured(14.993_230_922_134_464, 20.0).for_display();
     assert_eq!(shown, ("14.9932 deg".to_owned(), "13 … 20".to_owned()));

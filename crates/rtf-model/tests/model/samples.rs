@@ -13,6 +13,7 @@ fn elbow(high: Option<f64>, points: &[(f64, Option<f64>)]) -> Samples {
         high,
         location: None,
         points: points.to_vec(),
+        case: None,
     }
 }
 

@@ -33,6 +33,7 @@ pub fn suite(id: u32) -> EventKind {
         environment: String::new(),
         tolerates_collapse: false,
         parallel: 1,
+        skips_fail: false,
     })
 }
 
@@ -55,6 +56,8 @@ pub fn test(id: u32, suite: u32, repetitions: u32) -> EventKind {
         repetitions,
         timed: false,
         tags: Vec::new(),
+        expected: None,
+        parameters: Vec::new(),
     })
 }
 

@@ -108,6 +108,9 @@ fn landmark(kind: &EventKind) -> Landmark {
         | EventKind::HookPlanned(_)
         | EventKind::TestPlanned(_)
         | EventKind::TestPhase { .. }
+        | EventKind::CasesPlanned { .. }
+        | EventKind::CaseStarted(_)
+        | EventKind::CaseFinished(_)
         | EventKind::Message { .. }
         | EventKind::Measured { .. }
         | EventKind::Sampled { .. }

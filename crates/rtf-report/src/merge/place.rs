@@ -59,6 +59,9 @@ impl Ids<'_> {
             | EventKind::TestStopping { test, .. }
             | EventKind::TestRepeated { test, .. }
             | EventKind::TestSkipped { test, .. } => Some(self.test(test)),
+            EventKind::CasesPlanned { test, .. } => Some(self.test(test)),
+            EventKind::CaseStarted(started) => Some(self.test(&mut started.test)),
+            EventKind::CaseFinished(end) => Some(self.test(&mut end.test)),
             EventKind::TestFinished(finished) => Some(self.test(&mut finished.test)),
             EventKind::Measured { test, fixture, .. } => {
                 if let Some(fixture) = fixture {

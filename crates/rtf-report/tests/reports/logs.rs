@@ -89,6 +89,8 @@ fn names_that_look_alike_get_files_of_their_own() {
             repetitions: 2,
             timed: false,
             tags: Vec::new(),
+            expected: None,
+            parameters: Vec::new(),
         }));
     }
     for (seq, kind) in (0..).zip(events) {

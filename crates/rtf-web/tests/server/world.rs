@@ -128,6 +128,7 @@ impl Writer {
             environment: String::new(),
             tolerates_collapse: false,
             parallel: 1,
+            skips_fail: false,
         }));
         for (id, name) in (0..).zip(tests) {
             self.emit(EventKind::TestPlanned(TestPlanned {
@@ -139,6 +140,8 @@ impl Writer {
                 repetitions: 1,
                 timed: false,
                 tags: Vec::new(),
+                expected: None,
+                parameters: Vec::new(),
             }));
         }
         self.emit(EventKind::SuiteStarted { suite: SuiteId(0) });
@@ -151,7 +154,8 @@ impl Writer {
     pub fn say(&mut self, kind: MessageKind, text: &str) {
         let source = Source::Test(TEST);
         let text = text.to_owned();
-        let message = Message { kind, text, location: None, comparison: None, critical: false };
+        let message =
+            Message { kind, text, location: None, comparison: None, critical: false, case: None };
         self.emit(EventKind::Message { source, message, test: None });
     }
 
@@ -163,7 +167,8 @@ impl Writer {
     pub fn measure(&mut self, value: f64, high: f64) {
         let (name, unit) = ("settling".to_owned(), "s".to_owned());
         let (value, high) = (Some(value), Some(high));
-        let measurement = Measurement { name, value, unit, low: None, high, location: None };
+        let measurement =
+            Measurement { name, value, unit, low: None, high, location: None, case: None };
         self.emit(EventKind::Measured { test: TEST, fixture: None, measurement });
     }
 
@@ -173,7 +178,7 @@ impl Writer {
         let time = |(n, value): (usize, &f64)| (from + 0.5 * n as f64, Some(*value));
         let points = values.iter().enumerate().map(time).collect();
         let (low, high, location) = (None, Some(1.5), None);
-        let samples = Samples { name, unit, low, high, location, points };
+        let samples = Samples { name, unit, low, high, location, points, case: None };
         self.emit(EventKind::Sampled { test: TEST, samples });
     }
 
@@ -188,7 +193,7 @@ impl Writer {
         std::fs::create_dir_all(self.folder.join("attachments")).unwrap();
         std::fs::write(self.folder.join(&path), what).unwrap();
         let (name, media_type) = (name.to_owned(), media_type.to_owned());
-        let attachment = Attachment { name, path, media_type };
+        let attachment = Attachment { name, path, media_type, case: None };
         self.emit(EventKind::Attached { test: TEST, fixture: None, attachment });
     }
 

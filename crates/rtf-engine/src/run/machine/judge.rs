@@ -17,13 +17,37 @@ pub struct TestProblem {
 #[derive(Debug, Default)]
 pub struct Evidence {
     pub stopped: Option<(StopCause, String, Phase)>,
+    /// The first problem outside of cases.
     pub first_problem: Option<TestProblem>,
+    /// The first of the worst problems in cases.
+    pub case_problem: Option<TestProblem>,
     /// The host's answer to `run-test`.
     pub answer: Option<Result<Answer, RpcError>>,
     /// `None` if the process never started or is still alive.
     pub exit: Option<ExitStatus>,
     /// Whether its host stays alive for further tests.
     pub released: bool,
+}
+
+impl TestProblem {
+    /// Keeps the worse of two problems, the first one if they are equally bad.
+    pub fn keep_worse(kept: &mut Option<Self>, other: Self) {
+        let severity = |problem: &Self| problem.verdict.severity();
+        if kept.as_ref().is_none_or(|kept| severity(&other) > severity(kept)) {
+            *kept = Some(other);
+        }
+    }
+}
+
+impl Evidence {
+    /// The worse of the problems inside and outside of cases.
+    fn problem(&self) -> Option<TestProblem> {
+        let mut problem = self.first_problem.clone();
+        if let Some(in_case) = &self.case_problem {
+            TestProblem::keep_worse(&mut problem, in_case.clone());
+        }
+        problem
+    }
 }
 
 /// Decides verdict, reason, and the phase in which they were decided.
@@ -49,14 +73,14 @@ pub fn judge(evidence: &Evidence, last_phase: Phase) -> (Verdict, Option<String>
 
 fn judge_without_answer(evidence: &Evidence, phase: Phase) -> (Verdict, Option<String>, Phase) {
     if evidence.exit.is_none() {
-        let problem = evidence.first_problem.as_ref();
-        let reason = problem.map_or("the host could not be started", |p| &p.reason);
-        return (Verdict::Error, Some(reason.to_owned()), phase);
+        let problem = evidence.problem();
+        let reason = problem.map_or("the host could not be started".to_owned(), |p| p.reason);
+        return (Verdict::Error, Some(reason), phase);
     }
     let status = status_of(evidence.exit);
     let mut reason =
         format!("the test's process ended in {phase} with {status} before the test was over");
-    if let Some(problem) = &evidence.first_problem {
+    if let Some(problem) = evidence.problem() {
         reason += &format!("; before that: {}", problem.reason);
     }
     (Verdict::Crashed, Some(reason), phase)
@@ -68,8 +92,11 @@ fn judge_answer(
     last_phase: Phase,
 ) -> (Verdict, Option<String>, Phase) {
     let clean = evidence.released || evidence.exit == Some(ExitStatus::Code(0));
-    let problem = evidence.first_problem.clone().or_else(|| problem_of(answer, last_phase));
+    let problem = evidence.problem().or_else(|| problem_of(answer, last_phase));
     match problem {
+        None if clean && answer.outcome == Outcome::Skipped => {
+            (Verdict::Skipped, answer.reason.clone(), last_phase)
+        }
         None if clean => (Verdict::Passed, None, last_phase),
         None => {
             let status = status_of(evidence.exit);
@@ -88,7 +115,7 @@ fn judge_answer(
 
 fn problem_of(answer: &Answer, phase: Phase) -> Option<TestProblem> {
     let (verdict, default) = match answer.outcome {
-        Outcome::Passed => return None,
+        Outcome::Passed | Outcome::Skipped => return None,
         Outcome::Failed => (Verdict::Failed, "the test failed without a reason"),
         Outcome::Error => (Verdict::Error, "the test ended in an error without a reason"),
         Outcome::Interrupted => (Verdict::Error, "the test stopped without a request"),

@@ -21,6 +21,7 @@ fn stream() -> Vec<Event> {
         environment: String::new(),
         tolerates_collapse: false,
         parallel: 1,
+        skips_fail: false,
     };
     let test = |id| TestPlanned {
         test: TestId(id),
@@ -31,6 +32,8 @@ fn stream() -> Vec<Event> {
         repetitions: 1,
         timed: false,
         tags: Vec::new(),
+        expected: None,
+        parameters: Vec::new(),
     };
     let mut kinds = vec![
         EventKind::RunStarted(started),

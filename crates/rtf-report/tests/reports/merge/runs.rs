@@ -132,6 +132,7 @@ impl Run {
             environment: String::new(),
             tolerates_collapse: number == 0,
             parallel: 1,
+            skips_fail: false,
         }));
         for place in 0..suite.fixtures {
             self.push(EventKind::FixturePlanned(FixturePlanned {
@@ -161,6 +162,8 @@ impl Run {
                 repetitions: test.repetitions.len() as u32,
                 timed: false,
                 tags: Vec::new(),
+                expected: None,
+                parameters: Vec::new(),
             }));
         }
         let tests = tests.into_iter().map(|(_, test)| test).collect();
@@ -263,7 +266,14 @@ impl Run {
         for number in 0..tried.messages {
             let (source, text) = (Source::Test(test), format!("message {number}"));
             let kind = MessageKind::Report;
-            let message = Message { kind, text, location: None, comparison: None, critical: false };
+            let message = Message {
+                kind,
+                text,
+                location: None,
+                comparison: None,
+                critical: false,
+                case: None,
+            };
             self.push(EventKind::Message { source, message, test: None });
         }
         if let Some(value) = tried.measured {
@@ -274,12 +284,14 @@ impl Run {
                 low: None,
                 high: Some(5.0),
                 location: None,
+                case: None,
             };
             self.push(EventKind::Measured { test, fixture: None, measurement });
             let attachment = Attachment {
                 name: "plot".into(),
                 path: format!("attachments/{test}/1/plot.png"),
                 media_type: "image/png".into(),
+                case: None,
             };
             self.push(EventKind::Attached { test, fixture: None, attachment });
         }

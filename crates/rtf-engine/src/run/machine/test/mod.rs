@@ -1,5 +1,6 @@
 //! One attempt of a test, from its start to the end of its process.
 
+mod cases;
 pub mod host;
 mod notifications;
 mod stop;
@@ -16,6 +17,7 @@ use crate::run::machine::host_replies::{parse_answer, parse_initialized};
 use crate::run::machine::io::{Deadline, Effect, HostId, ProcessEvent, TestTimer};
 use crate::run::machine::judge::Evidence;
 use crate::run::machine::output_capture::OutputCapture;
+use cases::OpenCases;
 use host::{HostChoice, TestRequest};
 use rtf_plan::plan::{SuitePlan, TestPlan};
 use rtf_process::codec::INITIALIZE;
@@ -48,6 +50,7 @@ pub struct TestRun<'p> {
     has_fixtures: bool,
     leak: Option<String>,
     output: OutputCapture,
+    cases: OpenCases,
     /// The critical assertion that failed.
     critical: Option<String>,
     finished: Option<FinishedAttempt>,
@@ -83,6 +86,7 @@ impl<'p> TestRun<'p> {
             has_fixtures: !suite.fixtures.is_empty(),
             leak: None,
             output: OutputCapture::new(Source::Test(plan.id)),
+            cases: OpenCases::default(),
             critical: None,
             finished: None,
         }
@@ -120,7 +124,8 @@ impl<'p> TestRun<'p> {
                 self.on_exit(None, Vec::new(), cx);
             }
             ProcessEvent::Notified(notification) => self.on_notification(notification, cx),
-            ProcessEvent::Attached(Ok(attachment)) => {
+            ProcessEvent::Attached(Ok(mut attachment)) => {
+                attachment.case = self.cases.open(attachment.case);
                 cx.emit(EventKind::Attached { test: self.plan.id, fixture: None, attachment });
             }
             ProcessEvent::Attached(Err(reason)) => self.report_error(reason, cx),

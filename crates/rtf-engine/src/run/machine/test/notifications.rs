@@ -1,7 +1,7 @@
 //! Handles the notifications of a test: phases, messages, measurements and samples.
 
 use rtf_model::protocol::Notification;
-use rtf_model::{EventKind, Message, MessageKind, Phase, Verdict};
+use rtf_model::{CaseId, EventKind, Message, MessageKind, Phase, Verdict};
 
 use super::TestRun;
 use crate::run::machine::context::{Context, error_message};
@@ -13,15 +13,22 @@ impl TestRun<'_> {
         match notification {
             Notification::Phase { phase } => self.enter_phase(phase, cx),
             Notification::Message(message) => self.report(message, cx),
-            Notification::Measured(measurement) => {
-                let problem = measurement.problem();
+            Notification::Measured(mut measurement) => {
+                measurement.case = self.cases.open(measurement.case);
+                let problem = (measurement.problem(), measurement.case);
                 self.record(problem, EventKind::Measured { test, fixture: None, measurement }, cx);
             }
-            Notification::Sampled(samples) => {
-                let problem = samples.problem();
+            Notification::Sampled(mut samples) => {
+                samples.case = self.cases.open(samples.case);
+                let problem = (samples.problem(), samples.case);
                 self.record(problem, EventKind::Sampled { test, samples }, cx);
             }
             Notification::Stack { text } => self.on_stack_dump(text, cx),
+            Notification::CasesPlanned { names } => self.plan_cases(names, cx),
+            Notification::CaseStarted(start) => self.start_case(start, cx),
+            Notification::CaseFinished { case, outcome, reason } => {
+                self.finish_case(case, outcome, reason, cx);
+            }
             Notification::Attached(_) => {}
             Notification::Collapsed { .. } => {
                 self.on_protocol_error("sent `collapsed`, which is for fixtures".to_owned(), cx);
@@ -49,11 +56,15 @@ impl TestRun<'_> {
         self.set_phase_limit(limit, slow, cx);
     }
 
-    fn report(&mut self, message: Message, cx: &mut Context<'_>) {
-        match message.kind {
-            MessageKind::Failure => self.record_problem(Verdict::Failed, message.text.clone()),
-            MessageKind::Error => self.record_problem(Verdict::Error, message.text.clone()),
-            MessageKind::Report | MessageKind::Check => {}
+    fn report(&mut self, mut message: Message, cx: &mut Context<'_>) {
+        message.case = self.cases.open(message.case);
+        let verdict = match message.kind {
+            MessageKind::Failure => Some(Verdict::Failed),
+            MessageKind::Error => Some(Verdict::Error),
+            MessageKind::Report | MessageKind::Check => None,
+        };
+        if let Some(verdict) = verdict {
+            self.record_case_problem(message.case, verdict, message.text.clone());
         }
         if message.critical && message.kind != MessageKind::Check && self.critical.is_none() {
             self.critical = Some(message.text.clone());
@@ -61,13 +72,28 @@ impl TestRun<'_> {
         cx.emit(EventKind::Message { source: self.source(), message, test: None });
     }
 
-    fn record(&mut self, problem: Option<String>, result: EventKind, cx: &mut Context<'_>) {
-        problem.into_iter().for_each(|problem| self.record_problem(Verdict::Failed, problem));
+    fn record(
+        &mut self,
+        (problem, case): (Option<String>, Option<CaseId>),
+        result: EventKind,
+        cx: &mut Context<'_>,
+    ) {
+        if let Some(problem) = problem {
+            self.record_case_problem(case, Verdict::Failed, problem);
+        }
         cx.emit(result);
     }
 
     pub(super) fn report_error(&mut self, text: String, cx: &mut Context<'_>) {
         self.report(error_message(text), cx);
+    }
+
+    /// Records the first failure or error of a case, or of the test outside of cases.
+    fn record_case_problem(&mut self, case: Option<CaseId>, verdict: Verdict, reason: String) {
+        match case.and_then(|case| self.cases.get_mut(case)) {
+            Some(case) => case.record(TestProblem { verdict, reason, phase: self.phase }),
+            None => self.record_problem(verdict, reason),
+        }
     }
 
     /// Records the first failure or error. Only `run` can show that the robot is wrong;

@@ -56,7 +56,7 @@ impl TestRun<'_> {
         (self.evidence.exit, self.evidence.released) = (exit, self.is_released);
         let (verdict, ..) = judge(&self.evidence, self.phase);
         let may_have_collapsed = self.has_fixtures && self.evidence.stopped.is_none();
-        self.state = match (may_have_collapsed, verdict.is_green()) {
+        self.state = match (may_have_collapsed, !verdict.is_problem()) {
             (false, _) => AttemptState::Ended,
             (true, true) => AttemptState::AwaitsExamination,
             (true, false) => AttemptState::AwaitsCollapse,
@@ -97,8 +97,10 @@ impl TestRun<'_> {
         }
         self.clear(TestTimer::Limit, cx);
         self.clear(TestTimer::Slow, cx);
+        self.close_cases(cx);
         let (mut verdict, mut reason, phase) = judge(&self.evidence, self.phase);
-        if let (Verdict::Passed, Some(problem)) = (verdict, self.leak.take()) {
+        let late_problem = self.leak.take().or_else(|| self.cases.not_run_problem());
+        if let (Verdict::Passed, Some(problem)) = (verdict, late_problem) {
             verdict = Verdict::Error;
             reason = Some(problem);
         }

@@ -76,7 +76,8 @@ pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool)
         11 | 12 => world.exit(source, ExitStatus::Code(0)),
         13 => {
             let (kind, text, critical) = (MessageKind::Failure, "no".to_owned(), choice > 240);
-            let message = Message { kind, text, location: None, comparison: None, critical };
+            let message =
+                Message { kind, text, location: None, comparison: None, critical, case: None };
             world.feed(notify(Notification::Message(message)));
         }
         14 => drop((!world.deadlines.is_empty()).then(|| world.next_deadline())),

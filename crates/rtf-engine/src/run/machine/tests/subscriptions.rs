@@ -37,7 +37,8 @@ fn notified<'p>(plan: &'p rtf_plan::plan::SuitePlan) -> World<'p> {
 
 fn report(world: &mut World<'_>, kind: MessageKind, text: &str) {
     let (location, comparison) = (None, None);
-    let message = Message { kind, text: text.to_owned(), location, comparison, critical: false };
+    let message =
+        Message { kind, text: text.to_owned(), location, comparison, critical: false, case: None };
     world.input(RECORDER, ProcessEvent::Notified(Notification::Message(message)));
 }
 
@@ -46,6 +47,7 @@ fn attach(world: &mut World<'_>) {
         name: "run.mcap".to_owned(),
         path: "attachments/fixture-0/1/1-run.mcap".to_owned(),
         media_type: String::new(),
+        case: None,
     };
     world.input(RECORDER, ProcessEvent::Attached(Ok(attachment)));
 }
@@ -60,7 +62,7 @@ fn results_that_a_fixture_sends_at_a_tests_end_belong_to_the_test() {
     attach(&mut world);
     let (value, low, high, location) = (Some(3.5), None, None, None);
     let (name, unit) = ("size".to_owned(), "MB".to_owned());
-    let measurement = Measurement { name, value, unit, low, high, location };
+    let measurement = Measurement { name, value, unit, low, high, location, case: None };
     world.input(RECORDER, ProcessEvent::Notified(Notification::Measured(measurement)));
     let samples = r#"{"name":"speed","points":[[0,1]]}"#;
     let samples = serde_json::from_str(samples).unwrap();

@@ -104,6 +104,7 @@ impl<'p> World<'p> {
             environment: String::new(),
             tolerates_collapse: false,
             parallel: plan.settings.parallel,
+            skips_fail: false,
         }));
         for fixture in &plan.fixtures {
             let (fixture, suite, name) = (fixture.id, plan.id, fixture.name.clone());
@@ -129,6 +130,8 @@ impl<'p> World<'p> {
                 repetitions: test.settings.repetitions,
                 timed,
                 tags: Vec::new(),
+                expected: None,
+                parameters: Vec::new(),
             }));
         }
     }

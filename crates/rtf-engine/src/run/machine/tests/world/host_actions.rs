@@ -73,8 +73,14 @@ impl<'p> World<'p> {
 
     pub fn failure(&mut self, source: Source, text: &str, critical: bool) {
         let kind = MessageKind::Failure;
-        let message =
-            Message { kind, text: text.to_owned(), location: None, comparison: None, critical };
+        let message = Message {
+            kind,
+            text: text.to_owned(),
+            location: None,
+            comparison: None,
+            critical,
+            case: None,
+        };
         self.input(source, ProcessEvent::Notified(Notification::Message(message)));
     }
 

@@ -1,0 +1,214 @@
+//! The cases of a test: judges each one, and finishes those that the test leaves open.
+
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use rtf_model::{
+    CaseFinished, CaseId, CaseStart, CaseStarted, Diagnostic, EventKind, Outcome, Phase,
+    PlannedCases, Verdict,
+};
+
+use super::TestRun;
+use crate::run::machine::context::Context;
+use crate::run::machine::judge::{TestProblem, judge};
+
+/// The number of names that a problem lists.
+const NAMES_SHOWN: usize = 3;
+
+/// A case that has started and not finished.
+#[derive(Debug)]
+pub(super) struct OpenCase {
+    id: CaseId,
+    parent: Option<CaseId>,
+    /// Its name, after those of the cases that contain it.
+    path: String,
+    first_problem: Option<TestProblem>,
+    /// The first of the worst problems in the cases that it contains.
+    inner_problem: Option<TestProblem>,
+}
+
+/// The open cases of an attempt.
+#[derive(Debug, Default)]
+pub(super) struct OpenCases {
+    started: u32,
+    open: Vec<OpenCase>,
+    /// How many cases with the same parent and name have started, by a hash of both.
+    names: HashMap<u64, u32>,
+    planned_names: HashMap<u64, u32>,
+    planned: PlannedCases,
+    announced: usize,
+}
+
+impl OpenCase {
+    /// Records the first problem that is reported in the case.
+    pub fn record(&mut self, problem: TestProblem) {
+        self.first_problem.get_or_insert(problem);
+    }
+
+    /// Returns its worst problem, and whether it is that of an inner case.
+    fn take_problem(&mut self) -> Option<(TestProblem, bool)> {
+        let (own, inner) = (self.first_problem.take(), self.inner_problem.take());
+        let own_severity = own.as_ref().map(|own| own.verdict.severity());
+        let is_inner = |inner: &TestProblem| Some(inner.verdict.severity()) > own_severity;
+        match inner.filter(is_inner) {
+            Some(inner) => Some((inner, true)),
+            None => own.map(|own| (own, false)),
+        }
+    }
+}
+
+impl OpenCases {
+    /// Returns the case if it is open.
+    pub fn open(&self, case: Option<CaseId>) -> Option<CaseId> {
+        case.filter(|case| self.open.iter().any(|open| open.id == *case))
+    }
+
+    pub fn get_mut(&mut self, case: CaseId) -> Option<&mut OpenCase> {
+        self.open.iter_mut().rfind(|open| open.id == case)
+    }
+
+    /// Why a test that would pass does not: planned cases did not run.
+    pub fn not_run_problem(&self) -> Option<String> {
+        let missing = self.planned.len();
+        if missing == 0 {
+            return None;
+        }
+        let names: Vec<_> =
+            self.planned.names().take(NAMES_SHOWN).map(|name| format!("`{name}`")).collect();
+        let dots = if missing > NAMES_SHOWN { ", …" } else { "" };
+        let (all, names) = (self.announced, names.join(", "));
+        Some(format!("{missing} of {all} planned cases did not run: {names}{dots}"))
+    }
+}
+
+/// Makes a name unique: the second one becomes `NAME#2`.
+fn unique(counts: &mut HashMap<u64, u32>, parent: Option<CaseId>, name: String) -> (String, bool) {
+    let mut hasher = DefaultHasher::new();
+    (parent, &name).hash(&mut hasher);
+    let count = counts.entry(hasher.finish()).or_default();
+    *count += 1;
+    if *count == 1 { (name, false) } else { (format!("{name}#{count}"), true) }
+}
+
+impl TestRun<'_> {
+    pub(super) fn plan_cases(&mut self, names: Vec<String>, cx: &mut Context<'_>) {
+        if self.evidence.answer.is_some() {
+            return self.on_protocol_error("planned cases after the test's end".to_owned(), cx);
+        }
+        let counts = &mut self.cases.planned_names;
+        let names: Vec<_> = names.into_iter().map(|name| unique(counts, None, name).0).collect();
+        self.cases.announced += names.len();
+        self.cases.planned.announce(names.iter().cloned());
+        cx.emit(EventKind::CasesPlanned { test: self.plan.id, names });
+    }
+
+    pub(super) fn start_case(&mut self, mut start: CaseStart, cx: &mut Context<'_>) {
+        if self.phase != Phase::Run || self.evidence.answer.is_some() {
+            let what = format!("started the case `{}` in {}", start.name, self.phase);
+            return self.on_protocol_error(what, cx);
+        }
+        let cases = &mut self.cases;
+        if start.case.0 != cases.started + 1 {
+            let what = format!("started case {} after case {}", start.case, cases.started);
+            return self.on_protocol_error(what, cx);
+        }
+        cases.started += 1;
+        start.parent = cases.open(start.parent);
+        if start.name.trim().is_empty() {
+            start.name = format!("case {}", start.case);
+        }
+        let (name, is_repeated) = unique(&mut cases.names, start.parent, start.name);
+        let parent = start.parent.and_then(|id| cases.get_mut(id));
+        let path = parent.map_or(name.clone(), |parent| format!("{}/{name}", parent.path));
+        if start.parent.is_none() {
+            cases.planned.start(&name);
+        }
+        if is_repeated {
+            let message =
+                format!("two cases of `{}` have one name; one is `{path}`", self.plan.name);
+            cx.emit(EventKind::Warning {
+                diagnostic: Diagnostic::warning("repeated-case", message),
+            });
+        }
+        let (id, parent) = (start.case, start.parent);
+        cases.open.push(OpenCase { id, parent, path, first_problem: None, inner_problem: None });
+        let started = CaseStarted { test: self.plan.id, start: CaseStart { name, ..start } };
+        cx.emit(EventKind::CaseStarted(Box::new(started)));
+    }
+
+    pub(super) fn finish_case(
+        &mut self,
+        case: CaseId,
+        outcome: Option<Outcome>,
+        reason: Option<String>,
+        cx: &mut Context<'_>,
+    ) {
+        if self.cases.open(Some(case)).is_none() {
+            return self.on_protocol_error(format!("finished case {case}, which is not open"), cx);
+        }
+        if self.cases.open.iter().any(|open| open.parent == Some(case)) {
+            let what = format!("finished case {case} before a case that it contains");
+            return self.on_protocol_error(what, cx);
+        }
+        let verdict = match outcome {
+            None | Some(Outcome::Passed) => Verdict::Passed,
+            Some(Outcome::Failed) => Verdict::Failed,
+            Some(Outcome::Error) => Verdict::Error,
+            Some(Outcome::Interrupted) => Verdict::Interrupted,
+            Some(Outcome::Skipped) => Verdict::Skipped,
+        };
+        self.end_case(case, (verdict, reason), cx);
+    }
+
+    /// Finishes the cases that the test left open, the innermost first.
+    pub(super) fn close_cases(&mut self, cx: &mut Context<'_>) {
+        if self.cases.open.is_empty() {
+            return;
+        }
+        let (verdict, reason, _) = judge(&self.evidence, self.phase);
+        let ended = self.evidence.stopped.is_some() || verdict == Verdict::Crashed;
+        while let Some(open) = self.cases.open.last() {
+            let has_problem = open.first_problem.is_some() || open.inner_problem.is_some();
+            let result = match (ended, has_problem) {
+                (true, _) => (verdict, reason.clone()),
+                (false, true) => (Verdict::Passed, None),
+                (false, false) => {
+                    (Verdict::Error, Some("the test ended before the case".to_owned()))
+                }
+            };
+            self.end_case(open.id, result, cx);
+        }
+    }
+
+    /// Judges a case: by its first problem, an inner problem, or `result` if that is worse.
+    fn end_case(
+        &mut self,
+        case: CaseId,
+        (mut verdict, mut reason): (Verdict, Option<String>),
+        cx: &mut Context<'_>,
+    ) {
+        let Some(index) = self.cases.open.iter().rposition(|open| open.id == case) else { return };
+        let mut open = self.cases.open.remove(index);
+        let (test, phase, mut is_inner) = (self.plan.id, self.phase, false);
+        if let Some((problem, inner)) = open.take_problem()
+            && problem.verdict.severity() >= verdict.severity()
+        {
+            (verdict, reason, is_inner) = (problem.verdict, Some(problem.reason), inner);
+        }
+        let end = CaseFinished { test, case, verdict, reason: reason.clone() };
+        cx.emit(EventKind::CaseFinished(end));
+        if !verdict.is_problem() {
+            return;
+        }
+        let reason = match reason {
+            Some(reason) if is_inner => reason,
+            Some(reason) => format!("case `{}`: {reason}", open.path),
+            None => format!("case `{}` is {verdict}", open.path),
+        };
+        let outer = match open.parent.and_then(|parent| self.cases.get_mut(parent)) {
+            Some(parent) => &mut parent.inner_problem,
+            None => &mut self.evidence.case_problem,
+        };
+        TestProblem::keep_worse(outer, TestProblem { verdict, reason, phase });
+    }
+}

@@ -1,0 +1,60 @@
+//! Events about cases: named results inside an attempt of a test.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{CaseId, Location, TestId, Verdict};
+
+/// A named value: of a matrix, or of a case.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Parameter {
+    /// The name.
+    pub name: String,
+    /// The value as text.
+    pub value: String,
+}
+
+/// A case of a test starts, as its host announces it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct CaseStart {
+    /// The case: 1 for the first one of an attempt, and one more for each further one.
+    pub case: CaseId,
+    /// Its name, unique in its parent.
+    pub name: String,
+    /// The case that contains it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub parent: Option<CaseId>,
+    /// Its parameters.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parameters: Vec<Parameter>,
+    /// Where in the plug-in it starts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub location: Option<Location>,
+}
+
+/// A case of a running test starts. [`CaseFinished`] is the matching end.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct CaseStarted {
+    /// The test.
+    pub test: TestId,
+    /// The case.
+    #[serde(flatten)]
+    pub start: CaseStart,
+}
+
+/// A case has finished. Matches [`CaseStarted`].
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct CaseFinished {
+    /// The test.
+    pub test: TestId,
+    /// The case.
+    pub case: CaseId,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Why it did not pass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}

@@ -1,0 +1,65 @@
+//! Cases: each starts and finishes once, inside its parent and its test.
+
+use super::{OrderChecker, Rule, ensure};
+use crate::{CaseId, CaseStarted, TestId};
+
+/// The open cases of an attempt.
+#[derive(Clone, Debug, Default)]
+pub(super) struct CaseProgress {
+    started: u32,
+    open: Vec<(CaseId, Option<CaseId>)>,
+}
+
+impl CaseProgress {
+    fn is_open(&self, case: CaseId) -> bool {
+        self.open.iter().any(|(open, _)| *open == case)
+    }
+}
+
+impl OrderChecker {
+    pub(super) fn start_case(&mut self, started: &CaseStarted) -> Rule {
+        let id = started.test;
+        self.before_verdict(id)?;
+        let cases = &mut self.test(id)?.cases;
+        let start = &started.start;
+        cases.started += 1;
+        ensure(start.case.0 == cases.started, || format!("test {id}: case out of order"))?;
+        ensure(start.parent.is_none_or(|parent| cases.is_open(parent)), || {
+            format!("test {id}: case {} starts in a case that is not open", start.case)
+        })?;
+        cases.open.push((start.case, start.parent));
+        Ok(())
+    }
+
+    pub(super) fn finish_case(&mut self, id: TestId, case: CaseId) -> Rule {
+        self.before_verdict(id)?;
+        let cases = &mut self.test(id)?.cases;
+        let position = cases.open.iter().rposition(|(open, _)| *open == case);
+        let position = position.ok_or_else(|| format!("test {id}: case {case} is not open"))?;
+        ensure(!cases.open.iter().any(|(_, parent)| *parent == Some(case)), || {
+            format!("test {id}: case {case} finishes before a case in it")
+        })?;
+        cases.open.remove(position);
+        Ok(())
+    }
+
+    pub(super) fn before_verdict(&mut self, id: TestId) -> Rule {
+        self.inside_test(id)?;
+        ensure(!self.test(id)?.judged, || format!("test {id} has a case after its verdict"))
+    }
+
+    /// A report belongs to an open case, if it belongs to one.
+    pub(super) fn inside_case(&mut self, id: TestId, case: Option<CaseId>) -> Rule {
+        let Some(case) = case else { return Ok(()) };
+        ensure(self.test(id)?.cases.is_open(case), || {
+            format!("test {id}: case {case} reports and is not open")
+        })
+    }
+
+    pub(super) fn all_cases_finished(&mut self, id: TestId) -> Rule {
+        let cases = &mut self.test(id)?.cases;
+        ensure(cases.open.is_empty(), || format!("test {id} ends before its cases"))?;
+        cases.started = 0;
+        Ok(())
+    }
+}

@@ -1,0 +1,165 @@
+//! The cases of an attempt of a test.
+
+use std::collections::VecDeque;
+
+use crate::{CaseFinished, CaseId, CaseStart, Micros, Verdict};
+
+/// The state of one case.
+#[derive(Clone, Debug)]
+pub struct CaseRecord {
+    /// How it started.
+    pub start: CaseStart,
+    /// Its name, after the names of the cases that contain it: `Arm/Moves`.
+    pub path: String,
+    /// When it started.
+    pub started: Micros,
+    /// When it finished, its verdict, and the reason.
+    pub finished: Option<(Micros, Verdict, Option<String>)>,
+}
+
+impl CaseRecord {
+    /// Number of cases that contain it.
+    #[must_use]
+    pub fn depth(&self) -> usize {
+        // The name itself may contain a slash.
+        let parents = self.path.len().saturating_sub(self.start.name.len());
+        self.path[..parents].matches('/').count()
+    }
+
+    /// The verdict, `None` while it runs.
+    #[must_use]
+    pub fn verdict(&self) -> Option<Verdict> {
+        self.finished.as_ref().map(|(_, verdict, _)| *verdict)
+    }
+
+    /// Why it did not pass.
+    #[must_use]
+    pub fn reason(&self) -> Option<&str> {
+        self.finished.as_ref().and_then(|(_, _, reason)| reason.as_deref())
+    }
+
+    /// Its duration, `None` while it runs.
+    #[must_use]
+    pub fn duration(&self) -> Option<std::time::Duration> {
+        self.finished.as_ref().map(|(at, ..)| at.since(self.started))
+    }
+}
+
+/// The announced cases of an attempt that have not started.
+#[derive(Clone, Debug, Default)]
+pub struct PlannedCases(VecDeque<String>);
+
+impl PlannedCases {
+    /// Adds announced names.
+    pub fn announce(&mut self, names: impl IntoIterator<Item = String>) {
+        self.0.extend(names);
+    }
+
+    /// Removes a top-level case that starts.
+    pub fn start(&mut self, name: &str) {
+        // Cases usually start in the order of their announcement.
+        let announced = self.0.iter().position(|planned| planned == name);
+        announced.and_then(|index| self.0.remove(index));
+    }
+
+    /// Number of cases that have not started.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether all announced cases have started.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The names, in the order of their announcement.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.0.iter().map(String::as_str)
+    }
+}
+
+/// The cases of an attempt: all that did not pass, and passed ones up to a limit.
+#[derive(Clone, Debug, Default)]
+pub struct AttemptCases {
+    kept: Vec<CaseRecord>,
+    not_run: PlannedCases,
+    counts: [u64; Verdict::ALL.len()],
+    omitted: u64,
+}
+
+impl AttemptCases {
+    /// Maximum number of passed cases that a [`super::Record`] keeps.
+    pub const PASSED_KEPT: u64 = 100_000;
+
+    /// The cases that are kept, in the order in which they started.
+    #[must_use]
+    pub fn kept(&self) -> &[CaseRecord] {
+        &self.kept
+    }
+
+    /// The case with this id, if it is kept.
+    #[must_use]
+    pub fn get(&self, id: CaseId) -> Option<&CaseRecord> {
+        let index = self.kept.binary_search_by_key(&id, |case| case.start.case).ok()?;
+        self.kept.get(index)
+    }
+
+    /// The announced cases that have not started.
+    #[must_use]
+    pub fn not_run(&self) -> &PlannedCases {
+        &self.not_run
+    }
+
+    /// Number of finished cases with this verdict, kept or not.
+    #[must_use]
+    pub fn of(&self, verdict: Verdict) -> u64 {
+        self.counts[verdict as usize]
+    }
+
+    /// Number of passed cases that are counted and not kept; the journal has them.
+    #[must_use]
+    pub fn omitted(&self) -> u64 {
+        self.omitted
+    }
+
+    /// Number of cases: finished, open, and planned.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.kept.len() as u64 + self.omitted + self.not_run.len() as u64
+    }
+
+    pub(super) fn plan(&mut self, names: &[String]) {
+        self.not_run.announce(names.iter().cloned());
+    }
+
+    pub(super) fn start(&mut self, at: Micros, start: &CaseStart) {
+        let parent = start.parent.and_then(|parent| self.get(parent));
+        let path = match parent {
+            Some(parent) => format!("{}/{}", parent.path, start.name),
+            None => start.name.clone(),
+        };
+        if start.parent.is_none() {
+            self.not_run.start(&start.name);
+        }
+        self.kept.push(CaseRecord { start: start.clone(), path, started: at, finished: None });
+    }
+
+    /// `passed_kept`: the number of passed cases that the run's record keeps.
+    pub(super) fn finish(&mut self, at: Micros, end: &CaseFinished, passed_kept: &mut u64) {
+        let Ok(index) = self.kept.binary_search_by_key(&end.case, |case| case.start.case) else {
+            return;
+        };
+        self.counts[end.verdict as usize] += 1;
+        if end.verdict == Verdict::Passed {
+            if *passed_kept >= Self::PASSED_KEPT {
+                self.omitted += 1;
+                self.kept.remove(index);
+                return;
+            }
+            *passed_kept += 1;
+        }
+        self.kept[index].finished = Some((at, end.verdict, end.reason.clone()));
+    }
+}
