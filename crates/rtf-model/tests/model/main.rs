@@ -1,5 +1,6 @@
 //! Streams of events: which are legal, and what is known after them.
 
+mod cases;
 mod concurrency;
 mod hooks;
 mod order;

@@ -21,6 +21,8 @@ pub struct Evidence {
     pub first_problem: Option<TestProblem>,
     /// The first of the worst problems in cases.
     pub case_problem: Option<TestProblem>,
+    /// The path of the innermost case that was open when the process ended.
+    pub open_case: Option<String>,
     /// The host's answer to `run-test`.
     pub answer: Option<Result<Answer, RpcError>>,
     /// `None` if the process never started or is still alive.
@@ -78,8 +80,12 @@ fn judge_without_answer(evidence: &Evidence, phase: Phase) -> (Verdict, Option<S
         return (Verdict::Error, Some(reason), phase);
     }
     let status = status_of(evidence.exit);
+    let place = match &evidence.open_case {
+        Some(case) => format!("case `{case}`"),
+        None => phase.to_string(),
+    };
     let mut reason =
-        format!("the test's process ended in {phase} with {status} before the test was over");
+        format!("the test's process ended in {place} with {status} before the test was over");
     if let Some(problem) = evidence.problem() {
         reason += &format!("; before that: {}", problem.reason);
     }

@@ -39,10 +39,25 @@ pub(super) struct OpenCases {
     announced: usize,
 }
 
+/// The result of a case apart from its reported problems.
+#[derive(Debug)]
+enum CaseResult {
+    /// As its host reports it.
+    OfCase(Verdict, Option<String>),
+    /// The test was stopped or its process ended, which is no problem of the case alone.
+    OfTest(Verdict, Option<String>),
+}
+
 impl OpenCase {
     /// Records the first problem that is reported in the case.
     pub fn record(&mut self, problem: TestProblem) {
         self.first_problem.get_or_insert(problem);
+    }
+
+    /// Names the case in a problem's reason.
+    fn describe(&self, problem: TestProblem) -> TestProblem {
+        let reason = format!("case `{}`: {}", self.path, problem.reason);
+        TestProblem { reason, ..problem }
     }
 
     /// Returns its worst problem, and whether it is that of an inner case.
@@ -157,23 +172,22 @@ impl TestRun<'_> {
             Some(Outcome::Interrupted) => Verdict::Interrupted,
             Some(Outcome::Skipped) => Verdict::Skipped,
         };
-        self.end_case(case, (verdict, reason), cx);
+        self.end_case(case, CaseResult::OfCase(verdict, reason), cx);
     }
 
     /// Finishes the cases that the test left open, the innermost first.
     pub(super) fn close_cases(&mut self, cx: &mut Context<'_>) {
-        if self.cases.open.is_empty() {
-            return;
-        }
+        self.evidence.open_case = self.cases.open.last().map(|open| open.path.clone());
         let (verdict, reason, _) = judge(&self.evidence, self.phase);
         let ended = self.evidence.stopped.is_some() || verdict == Verdict::Crashed;
         while let Some(open) = self.cases.open.last() {
             let has_problem = open.first_problem.is_some() || open.inner_problem.is_some();
             let result = match (ended, has_problem) {
-                (true, _) => (verdict, reason.clone()),
-                (false, true) => (Verdict::Passed, None),
+                (true, _) => CaseResult::OfTest(verdict, reason.clone()),
+                (false, true) => CaseResult::OfCase(Verdict::Passed, None),
                 (false, false) => {
-                    (Verdict::Error, Some("the test ended before the case".to_owned()))
+                    let reason = "the test ended before the case".to_owned();
+                    CaseResult::OfCase(Verdict::Error, Some(reason))
                 }
             };
             self.end_case(open.id, result, cx);
@@ -181,34 +195,36 @@ impl TestRun<'_> {
     }
 
     /// Judges a case: by its first problem, an inner problem, or `result` if that is worse.
-    fn end_case(
-        &mut self,
-        case: CaseId,
-        (mut verdict, mut reason): (Verdict, Option<String>),
-        cx: &mut Context<'_>,
-    ) {
+    fn end_case(&mut self, case: CaseId, result: CaseResult, cx: &mut Context<'_>) {
         let Some(index) = self.cases.open.iter().rposition(|open| open.id == case) else { return };
         let mut open = self.cases.open.remove(index);
-        let (test, phase, mut is_inner) = (self.plan.id, self.phase, false);
-        if let Some((problem, inner)) = open.take_problem()
+        let (test, phase) = (self.plan.id, self.phase);
+        let (is_of_test, mut verdict, mut reason) = match result {
+            CaseResult::OfCase(verdict, reason) => (false, verdict, reason),
+            CaseResult::OfTest(verdict, reason) => (true, verdict, reason),
+        };
+        let problem = open.take_problem();
+        if let Some((problem, _)) = &problem
             && problem.verdict.severity() >= verdict.severity()
         {
-            (verdict, reason, is_inner) = (problem.verdict, Some(problem.reason), inner);
+            (verdict, reason) = (problem.verdict, Some(problem.reason.clone()));
         }
-        let end = CaseFinished { test, case, verdict, reason: reason.clone() };
-        cx.emit(EventKind::CaseFinished(end));
-        if !verdict.is_problem() {
-            return;
+        let outer = match (problem, is_of_test) {
+            (Some((problem, true)), _) => Some(problem),
+            (Some((problem, false)), _) => Some(open.describe(problem)),
+            (None, false) if verdict.is_problem() => {
+                let reason = reason.clone().unwrap_or_else(|| format!("it is {verdict}"));
+                Some(open.describe(TestProblem { verdict, reason, phase }))
+            }
+            (None, _) => None,
+        };
+        cx.emit(EventKind::CaseFinished(CaseFinished { test, case, verdict, reason }));
+        if let Some(problem) = outer {
+            let kept = match open.parent.and_then(|parent| self.cases.get_mut(parent)) {
+                Some(parent) => &mut parent.inner_problem,
+                None => &mut self.evidence.case_problem,
+            };
+            TestProblem::keep_worse(kept, problem);
         }
-        let reason = match reason {
-            Some(reason) if is_inner => reason,
-            Some(reason) => format!("case `{}`: {reason}", open.path),
-            None => format!("case `{}` is {verdict}", open.path),
-        };
-        let outer = match open.parent.and_then(|parent| self.cases.get_mut(parent)) {
-            Some(parent) => &mut parent.inner_problem,
-            None => &mut self.evidence.case_problem,
-        };
-        TestProblem::keep_worse(outer, TestProblem { verdict, reason, phase });
     }
 }

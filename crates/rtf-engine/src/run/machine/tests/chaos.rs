@@ -6,7 +6,8 @@ use std::time::Duration;
 use proptest::prelude::*;
 use rtf_model::protocol::{Notification, Reply};
 use rtf_model::{
-    EventKind, ExitStatus, Message, MessageKind, Phase, Source, TestId, Trigger, Verdict,
+    CaseId, CaseStart, EventKind, ExitStatus, Message, MessageKind, Phase, Source, TestId, Trigger,
+    Verdict,
 };
 
 use super::world::{SECOND, World, hook, suite};
@@ -74,6 +75,16 @@ pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool)
         9 => world.feed(notify(Notification::Collapsed { reason: "gone".to_owned() })),
         10 => world.exit(source, ExitStatus::Signal(9)),
         11 | 12 => world.exit(source, ExitStatus::Code(0)),
+        13 if choice / 16 % 4 == 1 => {
+            let (case, name) = (CaseId(1 + u32::from(choice / 64)), "pose".to_owned());
+            let parent = (choice > 128).then_some(CaseId(1));
+            let start = CaseStart { case, name, parent, parameters: Vec::new(), location: None };
+            world.feed(notify(Notification::CaseStarted(start)));
+        }
+        13 if choice / 16 % 4 == 3 => {
+            let (case, outcome, reason) = (CaseId(1 + u32::from(choice / 128)), None, None);
+            world.feed(notify(Notification::CaseFinished { case, outcome, reason }));
+        }
         13 => {
             let (kind, text, critical) = (MessageKind::Failure, "no".to_owned(), choice > 240);
             let message =

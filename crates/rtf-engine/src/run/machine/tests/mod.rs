@@ -1,6 +1,7 @@
 //! The state machine with invented times: no processes, no sleeps.
 
 mod attached;
+mod cases;
 mod chaos;
 mod clock;
 mod collapse;

@@ -1,0 +1,201 @@
+//! Cases inside a test, tests that skip themselves, and known failures.
+
+use crate::order::check;
+use crate::record::record;
+use crate::support::*;
+use rtf_model::{
+    AttemptCases, CaseFinished, CaseId, CaseStart, CaseStarted, EventKind, ExpectedFailure,
+    Message, MessageKind, Phase, Record, Significance, Source, StopCause, TestPlanned, Verdict,
+};
+
+fn case(number: u32, name: &str, parent: Option<u32>) -> EventKind {
+    let (case, parent) = (CaseId(number), parent.map(CaseId));
+    let name = name.to_owned();
+    let start = CaseStart { case, name, parent, parameters: Vec::new(), location: None };
+    EventKind::CaseStarted(Box::new(CaseStarted { test: TEST, start }))
+}
+
+fn case_ends(number: u32, verdict: Verdict) -> EventKind {
+    let reason = verdict.is_problem().then(|| format!("{verdict} for a reason"));
+    EventKind::CaseFinished(CaseFinished { test: TEST, case: CaseId(number), verdict, reason })
+}
+
+fn report(case: u32) -> EventKind {
+    let (kind, text, case) = (MessageKind::Report, "x".to_owned(), Some(CaseId(case)));
+    let message = Message { kind, text, location: None, comparison: None, critical: false, case };
+    EventKind::Message { source: Source::Test(TEST), message, test: None }
+}
+
+fn judged() -> EventKind {
+    EventKind::TestPhase { test: TEST, phase: Phase::Notify }
+}
+
+fn body(middle: impl IntoIterator<Item = EventKind>) -> Vec<EventKind> {
+    let end = [finished(Verdict::Passed)];
+    let all = opened(1).into_iter().chain([started(1, 1)]).chain(middle).chain(end);
+    all.chain(closed()).collect()
+}
+
+#[test]
+fn nested_and_overlapping_cases_are_legal() {
+    let passed = Verdict::Passed;
+    let nested = [
+        EventKind::CasesPlanned { test: TEST, names: vec!["a".into(), "z".into()] },
+        case(1, "a", None),
+        case(2, "b", Some(1)),
+        case(3, "c", None),
+        report(2),
+        case_ends(2, passed),
+        case_ends(1, passed),
+        report(3),
+        case_ends(3, passed),
+    ];
+    check(&stream(body(nested))).unwrap();
+}
+
+#[test]
+fn cases_out_of_order_are_illegal() {
+    let passed = Verdict::Passed;
+    let streams: [(&str, Vec<EventKind>); 8] = [
+        ("case out of order", vec![case(2, "a", None)]),
+        ("starts in a case that is not open", vec![case(1, "a", Some(7))]),
+        ("case 1 is not open", vec![case_ends(1, passed)]),
+        ("is not open", vec![case(1, "a", None), case_ends(1, passed), case_ends(1, passed)]),
+        ("finishes before a case in it", {
+            vec![case(1, "a", None), case(2, "b", Some(1)), case_ends(1, passed)]
+        }),
+        ("reports and is not open", vec![report(1)]),
+        ("ends before its cases", vec![case(1, "a", None)]),
+        ("after its verdict", vec![judged(), case(1, "a", None)]),
+    ];
+    for (rule, events) in streams {
+        let error = check(&stream(body(events))).unwrap_err();
+        assert!(error.contains(rule), "{error} is not {rule}");
+    }
+}
+
+#[test]
+fn the_numbers_of_cases_begin_again_with_each_attempt() {
+    let attempts = [
+        started(1, 1),
+        case(1, "a", None),
+        case_ends(1, Verdict::Failed),
+        rerun(Verdict::Failed),
+        started(1, 2),
+        case(1, "a", None),
+        case_ends(1, Verdict::Passed),
+        finished(Verdict::Passed),
+    ];
+    let kinds: Vec<_> = opened(1).into_iter().chain(attempts).chain(closed()).collect();
+    check(&stream(kinds.clone())).unwrap();
+    let record = record(kinds);
+    let attempts = &record.tests[0].attempts;
+    assert_eq!(attempts[0].cases.of(Verdict::Failed), 1);
+    assert_eq!(attempts[1].cases.of(Verdict::Passed), 1);
+}
+
+#[test]
+fn a_record_knows_paths_durations_and_cases_that_did_not_run() {
+    let events = [
+        EventKind::CasesPlanned { test: TEST, names: vec!["a/b".into(), "lost".into()] },
+        case(1, "a/b", None),
+        case(2, "c", Some(1)),
+        case_ends(2, Verdict::Failed),
+        case_ends(1, Verdict::Passed),
+    ];
+    let record = record(body(events));
+    let cases = &record.tests[0].attempts[0].cases;
+    let inner = cases.get(CaseId(2)).unwrap();
+    assert_eq!((&*inner.path, inner.verdict()), ("a/b/c", Some(Verdict::Failed)));
+    assert_eq!(inner.reason(), Some("failed for a reason"));
+    assert_eq!(inner.duration(), Some(std::time::Duration::from_millis(1)));
+    assert_eq!(cases.not_run().names().collect::<Vec<_>>(), ["lost"]);
+    assert_eq!(cases.total(), 3);
+}
+
+/// Memory stays bounded; nothing that did not pass is lost.
+#[test]
+fn passed_cases_beyond_a_limit_are_only_counted() {
+    let mut record = Record::default();
+    for event in stream(opened(1).into_iter().chain([started(1, 1)])) {
+        record.apply(&event);
+    }
+    let most = u32::try_from(AttemptCases::PASSED_KEPT).unwrap();
+    let events = (1..=most + 10).flat_map(|number| {
+        let verdict = if number > most + 5 { Verdict::Failed } else { Verdict::Passed };
+        [case(number, "pose", None), case_ends(number, verdict)]
+    });
+    stream(events).iter().for_each(|event| record.apply(event));
+    let cases = &record.tests[0].attempts[0].cases;
+    assert_eq!((cases.of(Verdict::Passed), cases.of(Verdict::Failed)), (100_005, 5));
+    assert_eq!((cases.kept().len(), cases.omitted()), (100_005, 5));
+}
+
+fn marked(expected: Option<ExpectedFailure>, verdict: Verdict) -> Record {
+    let mut kinds = body([]);
+    for kind in &mut kinds {
+        if let EventKind::TestPlanned(TestPlanned { expected: mark, .. }) = kind {
+            *mark = expected.clone().map(Box::new);
+        }
+        if let EventKind::TestFinished(end) = kind {
+            end.verdict = verdict;
+        }
+    }
+    record(kinds)
+}
+
+#[test]
+fn known_failures_decide_which_verdicts_are_green() {
+    use Significance::{Counts, Expected, Quarantined, SkippedItself, UnexpectedPass};
+    use Verdict::{Crashed, Failed, Passed, Skipped};
+    let expected = ExpectedFailure { verdicts: vec![Failed], ..ExpectedFailure::default() };
+    let quarantined = ExpectedFailure { quarantined: true, ..expected.clone() };
+    let expired = ExpectedFailure { expired: true, ..quarantined.clone() };
+    let rows = [
+        (None, [Counts, Counts, Counts], [true, false, false]),
+        (Some(expected), [UnexpectedPass, Expected, Counts], [false, true, false]),
+        (Some(quarantined), [Quarantined, Quarantined, Counts], [true, true, false]),
+        (Some(expired), [Counts, Counts, Counts], [true, false, false]),
+    ];
+    for (mark, significances, greens) in rows {
+        for (index, verdict) in [Passed, Failed, Crashed].into_iter().enumerate() {
+            let record = marked(mark.clone(), verdict);
+            assert_eq!(record.tests[0].significance(), significances[index], "{mark:?} {verdict}");
+            assert_eq!(record.is_green(), greens[index], "{mark:?} {verdict}");
+        }
+        let record = marked(mark, Skipped);
+        assert_eq!((record.tests[0].significance(), record.is_green()), (SkippedItself, true));
+    }
+}
+
+#[test]
+fn skips_are_red_where_the_suite_or_the_run_requests_it() {
+    let skipped_case = [case(1, "a", None), case_ends(1, Verdict::Skipped)];
+    for in_suite in [false, true] {
+        let mut kinds = body(skipped_case.clone());
+        assert!(record(kinds.clone()).is_green());
+        for kind in &mut kinds {
+            match kind {
+                EventKind::SuitePlanned(plan) => plan.skips_fail = in_suite,
+                EventKind::RunStarted(run) => run.manifest.no_skips = !in_suite,
+                _ => {}
+            }
+        }
+        assert!(!record(kinds).is_green());
+    }
+}
+
+/// With `after-collapse="skip"`, the runner skips an attempt that it has stopped.
+#[test]
+fn a_test_that_the_runner_skips_is_not_green() {
+    let (cause, reason) = (StopCause::Collapse, "gone".to_owned());
+    let mut kinds = body([EventKind::TestStopping { test: TEST, cause, reason }]);
+    for kind in &mut kinds {
+        if let EventKind::TestFinished(end) = kind {
+            end.verdict = Verdict::Skipped;
+        }
+    }
+    let record = record(kinds);
+    assert_eq!(record.tests[0].significance(), Significance::Counts);
+    assert!(!record.is_green());
+}
