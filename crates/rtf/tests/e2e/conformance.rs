@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use rtf_model::{
-    AttemptRecord, Event, EventKind, ExitStatus, Record, SuiteId, TestRecord, Verdict,
+    AttemptRecord, CaseRecord, Event, EventKind, ExitStatus, Record, SuiteId, TestId, TestRecord,
+    Verdict,
 };
 use serde_json::{Value, json};
 
@@ -200,6 +201,7 @@ fn check_scenario(
     let attempt = test.attempts.last().expect("an attempt");
     let told = told(events, suite.plan.suite, record, temp);
     let mut problems = compare_told(scenario, &expected, &told);
+    problems.extend(compare_cases(scenario, &expected, &finished_cases(events, scenarios, attempt)));
     problems.extend(check_before(scenario, mode, &record.tests[before_it.index()]));
     let mut after = "passed";
     for line in &expected {
@@ -248,6 +250,7 @@ fn expectations(scenario: &str, language: &str, mode: Mode) -> Vec<Value> {
 /// What the scenario's test told, in order, as in `expect.jsonl`.
 fn told(events: &[Event], suite: SuiteId, record: &Record, temp: &Folder) -> Vec<Value> {
     let test = record.suites[suite.index()].tests[1];
+    let attempt = record.tests[test.index()].attempts.last().expect("an attempt");
     let mut told = Vec::new();
     for event in events {
         match &event.kind {
@@ -256,6 +259,8 @@ fn told(events: &[Event], suite: SuiteId, record: &Record, temp: &Folder) -> Vec
             {
                 let mut line = serde_json::to_value(message).expect("a message");
                 line["message"] = line["kind"].take();
+                let case = message.case.and_then(|case| attempt.cases.get(case));
+                line["case"] = json!(case.map(|case| &case.path));
                 told.push(line);
             }
             EventKind::Measured { test: of, measurement, .. } if *of == test => {
@@ -318,6 +323,41 @@ fn compare_told(scenario: &str, expected: &[Value], told: &[Value]) -> Vec<Strin
     problems
 }
 
+/// The cases of the scenario's test, in the order in which they finished.
+fn finished_cases(events: &[Event], test: TestId, attempt: &AttemptRecord) -> Vec<Value> {
+    let finished = events.iter().filter_map(|event| match &event.kind {
+        EventKind::CaseFinished(end) if end.test == test => attempt.cases.get(end.case),
+        _ => None,
+    });
+    let line = |case: &CaseRecord| {
+        let (verdict, parameters) = (case.verdict(), &case.start.parameters);
+        json!({
+            "case": case.path, "verdict": verdict, "reason": case.reason(),
+            "parameters": parameters,
+        })
+    };
+    finished.map(line).collect()
+}
+
+fn compare_cases(scenario: &str, expected: &[Value], finished: &[Value]) -> Vec<String> {
+    let expected: Vec<&Value> = expected.iter().filter(|line| is_case(line)).collect();
+    let mut problems = Vec::new();
+    if expected.len() != finished.len() {
+        problems.push(format!("{scenario}: expected {} cases, got {finished:#?}", expected.len()));
+    }
+    for (expected, finished) in expected.iter().zip(finished) {
+        if let Some(problem) = mismatch(expected, finished) {
+            problems.push(format!("{scenario}: {problem} in {finished}"));
+        }
+    }
+    problems
+}
+
+/// Whether a line of `expect.jsonl` describes a finished case.
+fn is_case(line: &Value) -> bool {
+    line.get("case").is_some() && line.get("verdict").is_some()
+}
+
 /// The first entry of `expected` that `found` does not have.
 fn mismatch(expected: &Value, found: &Value) -> Option<String> {
     let entries = expected.as_object().expect("an object");
@@ -342,7 +382,12 @@ fn same(a: &Value, b: &Value) -> bool {
 }
 
 fn check_fact(line: &Value, attempt: &AttemptRecord) -> Option<String> {
-    if line.get("verdict").is_some() {
+    if let Some(expected) = line.get("not_run").and_then(Value::as_u64) {
+        let not_run = attempt.cases.not_run();
+        return (not_run.len() as u64 != expected)
+            .then(|| format!("expected {expected} cases that did not run, got {not_run:?}"));
+    }
+    if line.get("verdict").is_some() && !is_case(line) {
         let (_, finished) = attempt.finished.as_ref()?;
         let found = serde_json::to_value(finished).expect("a finish");
         return mismatch(line, &found).map(|problem| format!("{problem} in {found}"));
@@ -360,7 +405,7 @@ fn check_fact(line: &Value, attempt: &AttemptRecord) -> Option<String> {
     None
 }
 
-fn check_output(line: &Value, events: &[Event], test: rtf_model::TestId) -> Vec<String> {
+fn check_output(line: &Value, events: &[Event], test: TestId) -> Vec<String> {
     let outputs = events.iter().filter_map(|event| match &event.kind {
         EventKind::Output(output) if output.source == rtf_model::Source::Test(test) => Some(output),
         _ => None,
