@@ -119,6 +119,32 @@ function rtf.sample(name, value, unit, low, high, time) end
 ---@return boolean within Whether all samples were.
 function rtf.sample_for(name, seconds, rate, read, unit, low, high) end
 
+---Runs the body as a case: a named result of the test. An assertion, an error or `skip` ends
+---the case, and the test continues after it.
+---@param name any
+---@param parameters table<any, any> Can be omitted.
+---@param body fun()
+---@overload fun(name: any, body: fun())
+function rtf.case(name, parameters, body) end
+
+---Ends the case, or without one the test, as skipped. Allowed in `setup` and `run`.
+---@param reason any
+function rtf.skip(reason) end
+
+---Announces top-level cases: reports show which of them did not run, and a test that would
+---pass without having run them all is an error.
+---@param names any[]
+function rtf.plan_cases(names) end
+
+---The test's value of a matrix. An unknown name is an error.
+---@param name string
+---@return string
+function rtf.parameter(name) end
+
+---All values of the matrix.
+---@return table<string, string>
+function rtf.parameters() end
+
 ---Adds a copy of a complete file to the results. The file may be deleted afterwards.
 ---@param path string
 ---@param name? string The default is the file's name.

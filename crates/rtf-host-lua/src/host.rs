@@ -52,7 +52,7 @@ impl HostPlugin for LuaHost {
             host,
             stack,
             supports_shared: true,
-            selects_cases: false,
+            selects_cases: true,
         }
     }
 

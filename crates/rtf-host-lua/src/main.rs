@@ -11,6 +11,7 @@
 #![no_main]
 #![expect(unsafe_code, reason = "the program's entry point is C's")]
 
+mod cases;
 mod check;
 mod chunk;
 mod clock;

@@ -10,6 +10,7 @@ use rtf_host::{Sample, Session};
 use rtf_model::protocol::Plugin;
 use rtf_model::{Attachment, Comparison, Location, Measurement, Message, MessageKind};
 
+use crate::cases;
 use crate::chunk::SdkChunk;
 use crate::clock::Clock;
 
@@ -87,6 +88,7 @@ fn about(lua: &Lua, plugin: &Plugin) -> mlua::Result<Table> {
     about.set("param", plugin.param.as_str())?;
     about.set("environment", plugin.environment.as_str())?;
     about.set("repetition", plugin.repetition)?;
+    about.set("parameters", cases::parameters(lua, plugin)?)?;
     Ok(about)
 }
 
@@ -118,11 +120,13 @@ fn functions(lua: &Lua) -> mlua::Result<Table> {
         let duration = Duration::try_from_secs_f64(seconds.max(0.0)).unwrap_or(LONGEST);
         Ok(session.wait(duration.min(LONGEST)))
     })?;
+    cases::add_functions(lua, &host)?;
     add(lua, &host, "interrupted", |session, (): ()| Ok(session.interrupted()))?;
     Ok(host)
 }
 
-fn add<A, R>(
+/// Adds a function of the session.
+pub(crate) fn add<A, R>(
     lua: &Lua,
     host: &Table,
     name: &str,
@@ -261,7 +265,7 @@ fn comparison_of(numbers: &Table) -> mlua::Result<Comparison> {
     })
 }
 
-fn location(file: Option<&LuaString>, line: Option<u32>) -> Option<Location> {
+pub(crate) fn location(file: Option<&LuaString>, line: Option<u32>) -> Option<Location> {
     Some(Location { file: file?.to_string_lossy(), line: line.unwrap_or(0) })
 }
 

@@ -9,7 +9,7 @@ use std::ffi::{c_char, c_int, c_void};
 /// The version that a plug-in and its host must share.
 pub const RTF_ABI_MAJOR: u32 = 1;
 /// Counts the fields that were appended since the major version began.
-pub const RTF_ABI_MINOR: u32 = 2;
+pub const RTF_ABI_MINOR: u32 = 3;
 
 /// The plug-in is a test: `setup`, `run`, `tear_down`.
 pub const RTF_KIND_TEST: i32 = 1;
@@ -143,6 +143,34 @@ pub struct rtf_attachment {
     pub media_type: rtf_text,
 }
 
+/// A named value.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct rtf_parameter {
+    /// The name.
+    pub name: rtf_text,
+    /// The value.
+    pub value: rtf_text,
+}
+
+/// A case of a test: a named result.
+#[repr(C)]
+#[derive(Debug)]
+pub struct rtf_case {
+    /// `sizeof(rtf_case)`.
+    pub size: usize,
+    /// Its name.
+    pub name: rtf_text,
+    /// Its parameters, may be null if `parameter_count` is 0.
+    pub parameters: *const rtf_parameter,
+    /// The number of entries of `parameters`.
+    pub parameter_count: usize,
+    /// The source file, null if unknown.
+    pub file: *const c_char,
+    /// The line in it, 0 if unknown.
+    pub line: u32,
+}
+
 /// An attempt of a test.
 #[repr(C)]
 #[derive(Debug)]
@@ -205,6 +233,21 @@ pub struct rtf_host {
     /// Since 1.2: takes a sample of a signal. Returns 1 if it is within its
     /// limits, otherwise 0, which is a failure. Only for tests.
     pub sample: unsafe extern "C" fn(context: *mut c_void, sample: *const rtf_sample) -> c_int,
+    /// Since 1.3: starts a case on this thread. Returns 1 if its body runs. Returns 0 if it
+    /// is not selected or not allowed: then neither run the body nor call `case_end`.
+    pub case_begin: unsafe extern "C" fn(context: *mut c_void, test_case: *const rtf_case) -> c_int,
+    /// Since 1.3: finishes the innermost case of this thread. `result` is `RTF_DONE`, or
+    /// `RTF_STOPPED` if an assertion, an error or a skip ended it.
+    pub case_end: unsafe extern "C" fn(context: *mut c_void, result: i32),
+    /// Since 1.3: announces top-level cases.
+    pub plan_cases:
+        unsafe extern "C" fn(context: *mut c_void, names: *const rtf_text, count: usize),
+    /// Since 1.3: skips the innermost case of this thread, or without one the test. Then
+    /// return from it with `RTF_STOPPED`.
+    pub skip: unsafe extern "C" fn(context: *mut c_void, reason: rtf_text),
+    /// Since 1.3: the test's values of a matrix, `count` of them.
+    pub parameters:
+        unsafe extern "C" fn(context: *mut c_void, count: *mut usize) -> *const rtf_parameter,
 }
 
 /// The plug-in's kind and functions. All functions are called on the

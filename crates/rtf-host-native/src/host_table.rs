@@ -4,14 +4,14 @@
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::time::Duration;
 
-use ::rtf_host::{Sample, Session};
+use ::rtf_host::{CaseEnd, Sample, Session};
 use rtf_model::protocol::Plugin;
-use rtf_model::{Attachment, Comparison, Location, Measurement, Message, MessageKind};
+use rtf_model::{Attachment, Comparison, Location, Measurement, Message, MessageKind, Parameter};
 
 use crate::abi::{
-    RTF_ABI_MAJOR, RTF_ABI_MINOR, RTF_MESSAGE_CHECK, RTF_MESSAGE_ERROR, RTF_MESSAGE_FAILURE,
-    RTF_MESSAGE_REPORT, rtf_attachment, rtf_comparison, rtf_host, rtf_measurement, rtf_message,
-    rtf_sample, rtf_text,
+    RTF_ABI_MAJOR, RTF_ABI_MINOR, RTF_DONE, RTF_MESSAGE_CHECK, RTF_MESSAGE_ERROR,
+    RTF_MESSAGE_FAILURE, RTF_MESSAGE_REPORT, rtf_attachment, rtf_case, rtf_comparison, rtf_host,
+    rtf_measurement, rtf_message, rtf_parameter, rtf_sample, rtf_text,
 };
 
 /// The context of the functions: one per plug-in, never freed, because the plug-in's
@@ -19,12 +19,18 @@ use crate::abi::{
 #[derive(Debug)]
 struct HostContext {
     session: Session,
-    plugin: Plugin,
+    plugin: &'static Plugin,
+    /// The test's values of a matrix. They refer to `plugin`.
+    parameters: Vec<rtf_parameter>,
 }
 
 /// Makes the table for a plug-in.
 pub(crate) fn for_plugin(session: &Session, plugin: &Plugin) -> &'static rtf_host {
-    let context = HostContext { session: session.clone(), plugin: plugin.clone() };
+    let plugin: &'static Plugin = Box::leak(Box::new(plugin.clone()));
+    let entry =
+        |own: &'static Parameter| rtf_parameter { name: lend(&own.name), value: lend(&own.value) };
+    let parameters = plugin.parameters.iter().map(entry).collect();
+    let context = HostContext { session: session.clone(), plugin, parameters };
     let context = Box::into_raw(Box::new(context)).cast::<c_void>();
     Box::leak(Box::new(rtf_host {
         abi_major: RTF_ABI_MAJOR,
@@ -42,6 +48,11 @@ pub(crate) fn for_plugin(session: &Session, plugin: &Plugin) -> &'static rtf_hos
         environment,
         repetition,
         sample,
+        case_begin,
+        case_end,
+        plan_cases,
+        skip,
+        parameters: self::parameters,
     }))
 }
 
@@ -170,6 +181,49 @@ unsafe extern "C" fn repetition(context: *mut c_void) -> u32 {
     unsafe { self::context(context) }.plugin.repetition.max(1)
 }
 
+unsafe extern "C" fn case_begin(context: *mut c_void, test_case: *const rtf_case) -> c_int {
+    // SAFETY: the pointers are valid by spec/plugin-abi.md.
+    unsafe {
+        let case = &*test_case;
+        let parameters = slice(case.parameters, case.parameter_count);
+        let parameters = parameters
+            .iter()
+            .map(|own| Parameter { name: text(own.name), value: text(own.value) })
+            .collect();
+        let location = location(case.file, case.line);
+        let session = &self::context(context).session;
+        c_int::from(session.begin_case(text(case.name), parameters, location))
+    }
+}
+
+unsafe extern "C" fn case_end(context: *mut c_void, result: i32) {
+    let end = if result == RTF_DONE { CaseEnd::Done } else { CaseEnd::Stopped };
+    // SAFETY: the context is that of the table.
+    unsafe { self::context(context) }.session.end_case(end);
+}
+
+unsafe extern "C" fn plan_cases(context: *mut c_void, names: *const rtf_text, count: usize) {
+    // SAFETY: the pointers are valid by spec/plugin-abi.md.
+    unsafe {
+        let names = slice(names, count).iter().map(|name| text(*name)).collect();
+        self::context(context).session.plan_cases(names);
+    }
+}
+
+unsafe extern "C" fn skip(context: *mut c_void, reason: rtf_text) {
+    // SAFETY: the pointers are valid by spec/plugin-abi.md.
+    unsafe { self::context(context).session.skip(&text(reason)) }
+}
+
+unsafe extern "C" fn parameters(context: *mut c_void, count: *mut usize) -> *const rtf_parameter {
+    // SAFETY: the pointers are valid by spec/plugin-abi.md.
+    unsafe {
+        let parameters = &self::context(context).parameters;
+        *count = parameters.len();
+        parameters.as_ptr()
+    }
+}
+
 /// # Safety
 /// The pointer is the `context` of a table that [`for_plugin`] made.
 unsafe fn context(context: *mut c_void) -> &'static HostContext {
@@ -219,12 +273,19 @@ unsafe fn comparison(numbers: &rtf_comparison) -> Comparison {
 /// # Safety
 /// `numbers` points to `count` numbers, or `count` is 0.
 unsafe fn list(numbers: *const f64, count: usize) -> Vec<Option<f64>> {
-    if count == 0 || numbers.is_null() {
-        return Vec::new();
+    // SAFETY: the caller's promise.
+    unsafe { slice(numbers, count) }.iter().copied().map(finite).collect()
+}
+
+/// # Safety
+/// `data` points to `count` entries that are valid as long as the caller uses the slice, or
+/// it is null.
+unsafe fn slice<'a, T>(data: *const T, count: usize) -> &'a [T] {
+    if count == 0 || data.is_null() {
+        return &[];
     }
     // SAFETY: the caller's promise.
-    let numbers = unsafe { std::slice::from_raw_parts(numbers, count) };
-    numbers.iter().copied().map(finite).collect()
+    unsafe { std::slice::from_raw_parts(data, count) }
 }
 
 fn finite(value: f64) -> Option<f64> {

@@ -51,7 +51,7 @@ impl HostPlugin for NativeHost {
             host,
             stack,
             supports_shared: true,
-            selects_cases: false,
+            selects_cases: true,
         }
     }
 

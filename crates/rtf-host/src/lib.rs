@@ -8,6 +8,7 @@
 //!
 //! This crate knows no language: the host loads and calls the plug-in.
 
+mod cases;
 mod check;
 mod decode;
 mod fork_server;
@@ -22,6 +23,7 @@ mod shared_host;
 mod unix;
 mod writer;
 
+pub use cases::CaseEnd;
 pub use check::{CheckedFile, check, files_to_check};
 pub use plugin::{HostPlugin, LoadError, PluginKind, Reaction, Step, StepEnd, TestNotification};
 pub use program::HostProgram;

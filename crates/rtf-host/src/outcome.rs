@@ -7,10 +7,11 @@
 use rtf_model::Outcome;
 use rtf_model::protocol::Answer;
 
-/// The first problem of a request, if there is one.
+/// The first problem of a request, or why the test skipped itself.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RequestOutcome {
     first: Option<(Outcome, Option<String>)>,
+    skip_reason: Option<String>,
 }
 
 impl RequestOutcome {
@@ -24,13 +25,27 @@ impl RequestOutcome {
         self.first.get_or_insert_with(|| (outcome, Some(reason.to_owned())));
     }
 
+    /// Records that the test skipped itself. A problem has precedence.
+    pub(crate) fn skip(&mut self, reason: &str) {
+        self.skip_reason.get_or_insert_with(|| reason.to_owned());
+    }
+
+    /// Records that a function stopped. Without a problem or a skip, it is an error: the
+    /// plug-in must not pass.
+    pub(crate) fn record_stopped(&mut self, reason: &str) {
+        if self.skip_reason.is_none() {
+            self.record(Outcome::Error, reason);
+        }
+    }
+
     pub(crate) fn has_passed(&self) -> bool {
-        self.first.is_none()
+        self.first.is_none() && self.skip_reason.is_none()
     }
 
     /// The answer, after which the next request begins.
     pub(crate) fn take_answer(&mut self) -> Answer {
-        let (outcome, reason) = self.first.take().unwrap_or((Outcome::Passed, None));
+        let skipped = self.skip_reason.take().map(|reason| (Outcome::Skipped, Some(reason)));
+        let (outcome, reason) = self.first.take().or(skipped).unwrap_or((Outcome::Passed, None));
         Answer { outcome, reason, subscriptions: Vec::new(), continues: false }
     }
 }

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use rtf_model::protocol::Notification;
-use rtf_model::{Location, Samples};
+use rtf_model::{CaseId, Location, Samples};
 use rustix::process::{Pid, getpid};
 
 use crate::writer::Writer;
@@ -68,8 +68,8 @@ impl Sampling {
         (self.began, self.has_failed) = (Some(Instant::now()), false);
     }
 
-    /// Adds a sample, and returns whether it is within its limits.
-    pub(crate) fn add(&mut self, sample: &Sample<'_>) -> bool {
+    /// Adds a sample of a case, and returns whether it is within its limits.
+    pub(crate) fn add(&mut self, sample: &Sample<'_>, case: Option<CaseId>) -> bool {
         self.drop_inherited();
         let now = Instant::now();
         let oldest = *self.oldest.get_or_insert(now);
@@ -80,13 +80,13 @@ impl Sampling {
         );
         // The last one with that name: other limits need another batch.
         let batch = self.batches.iter_mut().rev().find(|batch| batch.name == sample.name);
-        let count = match batch.filter(|batch| sample.fits(batch)) {
+        let count = match batch.filter(|batch| batch.case == case && sample.fits(batch)) {
             Some(batch) => {
                 batch.points.push(point);
                 batch.points.len()
             }
             None => {
-                self.batches.push(sample.batch(point));
+                self.batches.push(Samples { case, ..sample.batch(point) });
                 1
             }
         };

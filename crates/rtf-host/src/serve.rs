@@ -3,7 +3,7 @@
 use rtf_model::protocol::{
     Initialize, PROTOCOL_VERSION, Plugin, Request, RpcError, VERSION_MISMATCH,
 };
-use rtf_model::{Message, MessageKind, Outcome, Phase};
+use rtf_model::{Outcome, Phase};
 use rustix::process::Pid;
 
 use crate::decode::{INVALID_REQUEST, Incoming};
@@ -69,7 +69,7 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
     fn handle(&mut self, incoming: Incoming) -> bool {
         match incoming {
             Incoming::Refused { id, error } => {
-                self.session.skip();
+                self.session.end_without_plugin();
                 self.session.refuse(id, error);
                 false
             }
@@ -80,12 +80,12 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
     /// Carries out a request; true if it was the last one.
     fn carry_out(&mut self, id: Option<u64>, request: Request) -> bool {
         if let Request::Initialize(initialize) = request {
-            self.session.skip();
+            self.session.end_without_plugin();
             self.initialize(id, &initialize);
             return false;
         }
         if !self.initialized {
-            self.session.skip();
+            self.session.end_without_plugin();
             let message = "the first request must be `initialize`".to_owned();
             self.session.refuse(id, RpcError { code: INVALID_REQUEST, message });
             return false;
@@ -158,6 +158,7 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
         if !self.load(PluginKind::Test, plugin) {
             return;
         }
+        self.session.begin_attempt(&plugin.cases);
         self.session.phase(Phase::Setup);
         self.step(Step::Setup);
         if self.session.has_passed() {
@@ -215,7 +216,7 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
                 true
             }
             Err(error) => {
-                self.error(error.message, error.location);
+                self.session.error(error.message, error.location);
                 false
             }
         }
@@ -243,12 +244,10 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
         match end {
             StepEnd::Done => {}
             StepEnd::Refused => self.session.record(refused, &format!("{step} returned false")),
-            // Decides only if the plug-in reported nothing: it must not pass.
             StepEnd::Stopped => {
-                let reason = format!("{step} stopped without a reason");
-                self.session.record(Outcome::Error, &reason);
+                self.session.record_stopped(&format!("{step} stopped without a reason"));
             }
-            StepEnd::Broken(text, location) => self.error(text, location),
+            StepEnd::Broken(text, location) => self.session.error(text, location),
         }
     }
 
@@ -260,17 +259,5 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
             self.session.flush();
             unix::exit_now(0);
         }
-    }
-
-    fn error(&self, text: String, location: Option<rtf_model::Location>) {
-        let kind = MessageKind::Error;
-        self.session.message(Message {
-            kind,
-            text,
-            location,
-            comparison: None,
-            critical: false,
-            case: None,
-        });
     }
 }

@@ -7,10 +7,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use rtf_model::protocol::{Answer, CHANNEL_VARIABLE, Notification, Reply, RpcError};
-use rtf_model::{Attachment, Measurement, Message, MessageKind, Outcome, Phase};
+use rtf_model::protocol::{Answer, CHANNEL_VARIABLE, CaseSelector, Notification, Reply, RpcError};
+use rtf_model::{
+    Attachment, CaseId, CaseStart, Location, Measurement, Message, MessageKind, Outcome, Parameter,
+    Phase,
+};
 use serde::Serialize;
 
+use crate::cases::{CaseEnd, CaseError, Cases};
 use crate::decode::Incoming;
 use crate::outcome::RequestOutcome;
 use crate::sampling::{Sample, Sampling};
@@ -47,6 +51,8 @@ struct SharedSession {
     writer: Writer,
     /// Lock order: before the state.
     sampling: Mutex<Sampling>,
+    /// Lock order: before the samples.
+    cases: Cases,
     state: Mutex<SessionState>,
     changed: Condvar,
     stop: AtomicBool,
@@ -94,6 +100,7 @@ impl Session {
             writer: Writer::new(Arc::clone(&channel)),
             channel,
             sampling: Mutex::default(),
+            cases: Cases::default(),
             state: Mutex::default(),
             changed: Condvar::new(),
             stop: AtomicBool::new(false),
@@ -102,7 +109,8 @@ impl Session {
 
     /// Sends a message of the plug-in. A failure or an error is a problem of the present
     /// request.
-    pub fn message(&self, message: Message) {
+    pub fn message(&self, mut message: Message) {
+        message.case = self.0.cases.current();
         match message.kind {
             MessageKind::Report | MessageKind::Check => {}
             MessageKind::Failure => self.record_reported(Outcome::Failed),
@@ -113,7 +121,8 @@ impl Session {
 
     /// Sends a measurement and returns whether it is within its limits; outside
     /// them it is a failure.
-    pub fn measure(&self, measurement: Measurement) -> bool {
+    pub fn measure(&self, mut measurement: Measurement) -> bool {
+        measurement.case = self.0.cases.current();
         let is_within = measurement.is_within_limits();
         if !is_within {
             self.record_reported(Outcome::Failed);
@@ -126,8 +135,9 @@ impl Session {
     /// is a failure. It is sent in a batch: at the latest before the next other message,
     /// before a wait, and before the answer.
     pub fn sample(&self, sample: &Sample<'_>) -> bool {
+        let case = self.0.cases.current();
         let mut sampling = self.sampling();
-        let is_within = sampling.add(sample);
+        let is_within = sampling.add(sample, case);
         if !is_within {
             self.record_reported(Outcome::Failed);
         }
@@ -149,6 +159,7 @@ impl Session {
             std::io::copy(&mut source, &mut std::fs::File::create(&copy)?)?;
             attachment.path = copy.to_string_lossy().into_owned();
         }
+        attachment.case = self.0.cases.current();
         self.notify(&Notification::Attached(attachment));
         Ok(())
     }
@@ -170,6 +181,55 @@ impl Session {
     /// Sets the directory for copies of attached files.
     pub(crate) fn set_attachments_dir(&self, dir: Option<&str>) {
         self.state().attachments_dir = dir.map(PathBuf::from);
+    }
+
+    /// Starts a case of the test on the calling thread. Returns whether its body runs; if
+    /// not, it is not selected, or not allowed here, or the test is stopping. Otherwise call
+    /// [`Self::end_case`] after the body.
+    pub fn begin_case(
+        &self,
+        name: String,
+        parameters: Vec<Parameter>,
+        location: Option<Location>,
+    ) -> bool {
+        let start = CaseStart { case: CaseId(0), name, parent: None, parameters, location };
+        let send = |started: &Notification| self.notify_case(started);
+        self.allowed(self.0.cases.begin(start, self.interrupted(), send)).unwrap_or(false)
+    }
+
+    /// Finishes the innermost case of the calling thread.
+    pub fn end_case(&self, end: CaseEnd) {
+        let send = |finished: &Notification| self.notify_case(finished);
+        self.allowed(self.0.cases.end(end, self.interrupted(), send));
+    }
+
+    /// Announces top-level cases.
+    pub fn plan_cases(&self, names: Vec<String>) {
+        self.allowed(self.0.cases.plan(names, |planned| self.notify_case(planned)));
+    }
+
+    /// Skips the innermost case of the calling thread, or the test if it has none. The
+    /// plug-in then leaves the case or the step.
+    pub fn skip(&self, reason: &str) {
+        if self.allowed(self.0.cases.skip(reason)) == Some(true) {
+            self.state().outcome.skip(reason);
+        }
+    }
+
+    /// Reports a call that is not allowed here as an error of the plug-in.
+    fn allowed<T>(&self, result: Result<T, CaseError>) -> Option<T> {
+        result.map_err(|error| self.error(error.to_string(), None)).ok()
+    }
+
+    /// Reports an error of the plug-in that it did not report itself.
+    pub(crate) fn error(&self, text: String, location: Option<Location>) {
+        let (kind, comparison) = (MessageKind::Error, None);
+        self.message(Message { kind, text, location, comparison, critical: false, case: None });
+    }
+
+    /// Begins an attempt of a test with these selected cases, on the calling thread.
+    pub(crate) fn begin_attempt(&self, cases: &[CaseSelector]) {
+        self.0.cases.begin_attempt(cases);
     }
 
     /// Reports that the fixture collapsed.
@@ -273,6 +333,7 @@ impl Session {
 
     /// Announces a phase of the test.
     pub(crate) fn phase(&self, phase: Phase) {
+        self.0.cases.set_phase(phase);
         self.notify(&Notification::Phase { phase });
         if phase == Phase::Setup {
             self.sampling().begin();
@@ -289,9 +350,15 @@ impl Session {
         self.state().outcome.record(outcome, reason);
     }
 
+    /// Records that a function stopped. It decides only if the plug-in reported nothing.
+    pub(crate) fn record_stopped(&self, reason: &str) {
+        self.state().outcome.record_stopped(reason);
+    }
+
     /// Records that the runner gets a problem of the present request, if there is one:
     /// threads of a fixture also report between requests.
     fn record_reported(&self, outcome: Outcome) {
+        self.0.cases.record_problem();
         let mut state = self.state();
         if state.busy {
             state.outcome.record_reported(outcome);
@@ -308,6 +375,7 @@ impl Session {
 
     /// Ends the present request and returns its answer.
     pub(crate) fn conclude(&self) -> Answer {
+        self.0.cases.end_attempt();
         let mut state = self.state();
         state.busy = false;
         state.stop_reason = None;
@@ -316,7 +384,7 @@ impl Session {
     }
 
     /// Ends a request that concerned no plug-in. A stop request for the next one stays.
-    pub(crate) fn skip(&self) {
+    pub(crate) fn end_without_plugin(&self) {
         self.state().busy = false;
     }
 
@@ -342,6 +410,12 @@ impl Session {
     fn notify(&self, notification: &Notification) {
         self.flush();
         self.0.writer.notify(notification);
+    }
+
+    /// Sends a notification about cases; false if it is too long.
+    fn notify_case(&self, notification: &Notification) -> bool {
+        self.flush();
+        self.0.writer.send(None, notification)
     }
 
     fn sampling(&self) -> MutexGuard<'_, Sampling> {

@@ -10,8 +10,14 @@ const SOURCE: &str = "crates/rtf-host-native/src/abi.rs";
 const HEADER: &str = "sdk/c/include/rtf/plugin.h";
 
 /// The types that the closing lines and plug-ins use; those inside them follow.
-const TYPES: [&str; 5] =
-    ["rtf_plugin_table", "rtf_message", "rtf_measurement", "rtf_sample", "rtf_attachment"];
+const TYPES: [&str; 6] = [
+    "rtf_plugin_table",
+    "rtf_message",
+    "rtf_measurement",
+    "rtf_sample",
+    "rtf_attachment",
+    "rtf_case",
+];
 
 const OPENING: &str = "\
 /* The binary interface of the Robot Testing Framework's native plug-ins.

@@ -14,7 +14,10 @@ local function send(kind, message, comparison, critical)
   host.message(kind, tostring(message), file, line, comparison, critical)
 end
 
--- Ends the step. The problem was reported before, so a pcall in the plug-in does not turn
+-- Whether a critical assertion has failed: it ends the test, not only its case.
+local is_critical = false
+
+-- Ends the step, or the innermost case. The problem was reported before, so a pcall in the plug-in does not turn
 -- a failure into a pass.
 local function unwind()
   error(stop, 0)
@@ -39,6 +42,7 @@ end
 function rtf.require_critical(condition, message)
   send(condition and "check" or "failure", message, nil, not condition)
   if not condition then
+    is_critical = true
     unwind()
   end
 end
@@ -183,6 +187,74 @@ function rtf.sample_for(name, seconds, rate, read, unit, low, high)
   end
   sleep(seconds - watch())
   return all_within
+end
+
+-- The parameters of a case as pairs, by name.
+local function pairs_of(parameters)
+  local all = {}
+  for name, value in pairs(parameters) do
+    all[#all + 1] = { tostring(name), text.value(value) }
+  end
+  table.sort(all, function(a, b) return a[1] < b[1] end)
+  return all
+end
+
+function rtf.case(name, parameters, body)
+  if body == nil then
+    parameters, body = {}, parameters
+  end
+  if type(parameters) ~= "table" or type(body) ~= "function" then
+    error("case takes a name, a table of parameters that can be omitted, and a function", 2)
+  end
+  local file, line = guard.location(2)
+  if not host.case_begin(tostring(name), pairs_of(parameters), file, line) then
+    return
+  end
+  local ended, problem, problem_file, problem_line = guard.call(body)
+  if ended == "broken" then
+    host.message("error", problem, problem_file, problem_line, nil, false)
+  end
+  host.case_end(ended == "done")
+  if ended ~= "done" and (is_critical or host.interrupted()) then
+    unwind()
+  end
+end
+
+function rtf.skip(reason)
+  host.skip(tostring(reason))
+  unwind()
+end
+
+function rtf.plan_cases(names)
+  if type(names) ~= "table" then
+    error(("plan_cases takes a table of names, not %s"):format(tostring(names)), 2)
+  end
+  local planned = {}
+  for index, name in ipairs(names) do
+    planned[index] = tostring(name)
+  end
+  host.plan_cases(planned)
+end
+
+function rtf.parameter(name)
+  local known = {}
+  for index, parameter in ipairs(host.plugin.parameters) do
+    if parameter[1] == name then
+      return parameter[2]
+    end
+    known[index] = parameter[1]
+  end
+  local list = #known > 0 and table.concat(known, ", ") or "none"
+  send("error", ('there is no parameter "%s"; this test has %s'):format(tostring(name), list))
+  unwind()
+end
+
+function rtf.parameters()
+  local all = {}
+  for _, parameter in ipairs(host.plugin.parameters) do
+    all[parameter[1]] = parameter[2]
+  end
+  return all
 end
 
 function rtf.attach(path, name, media_type)

@@ -201,7 +201,11 @@ fn check_scenario(
     let attempt = test.attempts.last().expect("an attempt");
     let told = told(events, suite.plan.suite, record, temp);
     let mut problems = compare_told(scenario, &expected, &told);
-    problems.extend(compare_cases(scenario, &expected, &finished_cases(events, scenarios, attempt)));
+    problems.extend(compare_cases(
+        scenario,
+        &expected,
+        &finished_cases(events, scenarios, attempt),
+    ));
     problems.extend(check_before(scenario, mode, &record.tests[before_it.index()]));
     let mut after = "passed";
     for line in &expected {

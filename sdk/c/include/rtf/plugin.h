@@ -16,7 +16,7 @@
 #define RTF_ABI_MAJOR 1
 
 // Counts the fields that were appended since the major version began.
-#define RTF_ABI_MINOR 2
+#define RTF_ABI_MINOR 3
 
 // The plug-in is a test: `setup`, `run`, `tear_down`.
 #define RTF_KIND_TEST 1
@@ -144,6 +144,30 @@ typedef struct rtf_sample {
     uint32_t line;
 } rtf_sample;
 
+// A named value.
+typedef struct rtf_parameter {
+    // The name.
+    struct rtf_text name;
+    // The value.
+    struct rtf_text value;
+} rtf_parameter;
+
+// A case of a test: a named result.
+typedef struct rtf_case {
+    // `sizeof(rtf_case)`.
+    size_t size;
+    // Its name.
+    struct rtf_text name;
+    // Its parameters, may be null if `parameter_count` is 0.
+    const struct rtf_parameter *parameters;
+    // The number of entries of `parameters`.
+    size_t parameter_count;
+    // The source file, null if unknown.
+    const char *file;
+    // The line in it, 0 if unknown.
+    uint32_t line;
+} rtf_case;
+
 // The host's functions for a plug-in. Their first argument is `context`. They
 // may be called from any thread until the process ends.
 typedef struct rtf_host {
@@ -181,6 +205,19 @@ typedef struct rtf_host {
     // Since 1.2: takes a sample of a signal. Returns 1 if it is within its
     // limits, otherwise 0, which is a failure. Only for tests.
     int (*sample)(void *context, const struct rtf_sample *sample);
+    // Since 1.3: starts a case on this thread. Returns 1 if its body runs. Returns 0 if it
+    // is not selected or not allowed: then neither run the body nor call `case_end`.
+    int (*case_begin)(void *context, const struct rtf_case *test_case);
+    // Since 1.3: finishes the innermost case of this thread. `result` is `RTF_DONE`, or
+    // `RTF_STOPPED` if an assertion, an error or a skip ended it.
+    void (*case_end)(void *context, int32_t result);
+    // Since 1.3: announces top-level cases.
+    void (*plan_cases)(void *context, const struct rtf_text *names, size_t count);
+    // Since 1.3: skips the innermost case of this thread, or without one the test. Then
+    // return from it with `RTF_STOPPED`.
+    void (*skip)(void *context, struct rtf_text reason);
+    // Since 1.3: the test's values of a matrix, `count` of them.
+    const struct rtf_parameter *(*parameters)(void *context, size_t *count);
 } rtf_host;
 
 // An attempt of a test.

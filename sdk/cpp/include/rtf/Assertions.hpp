@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checks and assertions for tests and fixtures, with file and line, for any function of
 // a plug-in. A text is anything that converts to std::string_view. A check returns its
-// result as a bool, and the step continues; a failed REQUIRE, FAIL and ERROR end the step.
+// result as a bool, and the step continues; a failed REQUIRE, FAIL and ERROR end the step, or
+// the innermost case.
 #ifndef RTF_ASSERTIONS_HPP
 #define RTF_ASSERTIONS_HPP
 
+#include <rtf/internal/Cases.hpp>
 #include <rtf/internal/Message.hpp>
 #include <rtf/internal/Near.hpp>
 #include <rtf/internal/Wait.hpp>
@@ -27,6 +29,14 @@
 
 // RTF_ERROR(text): the bench is wrong.
 #define RTF_ERROR(...) ::rtf::internal::error(RTF_HERE, __VA_ARGS__)
+
+// RTF_SKIP(reason): ends the innermost case of this thread, or without one the test, as
+// skipped.
+#define RTF_SKIP(...) ::rtf::internal::skip(RTF_HERE, __VA_ARGS__)
+
+// RTF_CASE("joint 3", {{"joint", 3}}) { ... }; is a named result of its test. The body is a
+// lambda that captures by reference: `return` leaves the case. The parameters can be omitted.
+#define RTF_CASE(...) ::rtf::internal::Case(RTF_HERE, __VA_ARGS__) + [&]
 
 // RTF_CHECK_NEAR(got, expected, tolerance, what): numbers, or ranges of numbers
 // or of ranges; expected may be a list in braces.

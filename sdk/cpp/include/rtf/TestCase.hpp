@@ -4,12 +4,16 @@
 #define RTF_TESTCASE_HPP
 
 #include <chrono>
+#include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <rtf/Declare.hpp>
 #include <rtf/Plugin.hpp>
+#include <rtf/internal/Cases.hpp>
 #include <rtf/internal/Sampling.hpp>
 
 namespace rtf {
@@ -41,6 +45,32 @@ protected:
     {
         const internal::Measurement signal{name, 0, unit, low, high};
         return internal::sample_for(here, signal, duration, rate, std::forward<Read>(read));
+    }
+
+    // Ends the innermost case of this thread, or without one the test, as skipped.
+    [[noreturn]] void skip(std::string_view reason, Location here = Location::current()) const
+    {
+        internal::skip(here, reason);
+    }
+
+    // Announces top-level cases: reports show which of them did not run, and a test that
+    // would pass without having run them all is an error.
+    void plan_cases(const std::vector<std::string> &names,
+                    Location here = Location::current()) const
+    {
+        internal::plan_cases(here, names);
+    }
+
+    // The test's value of a matrix. An unknown name is an error.
+    std::string parameter(std::string_view name, Location here = Location::current()) const
+    {
+        return internal::parameter(here, name);
+    }
+
+    // All values of the matrix.
+    std::map<std::string, std::string> parameters(Location here = Location::current()) const
+    {
+        return internal::parameters(here);
     }
 };
 

@@ -3,17 +3,10 @@
 #ifndef RTF_INTERNAL_ENTRY_HPP
 #define RTF_INTERNAL_ENTRY_HPP
 
-#include <cstdlib>
-#include <exception>
-#include <memory>
-#include <string>
 #include <string_view>
 #include <type_traits>
-#include <typeinfo>
 
-#include <cxxabi.h>
-
-#include <rtf/internal/Message.hpp>
+#include <rtf/internal/Exceptions.hpp>
 
 namespace rtf {
 
@@ -23,36 +16,14 @@ struct Test;
 
 namespace internal {
 
-// The name of the present exception's type.
-inline std::string exception_type()
-{
-    const std::type_info *type = abi::__cxa_current_exception_type();
-    if (type == nullptr) {
-        return "unknown type";
-    }
-    int status = 0;
-    const std::unique_ptr<char, void (*)(void *)> name(
-        abi::__cxa_demangle(type->name(), nullptr, nullptr, &status), std::free);
-    return name ? name.get() : type->name();
-}
-
-// Reports an error without a location.
-inline void report_error(const std::string &text)
-{
-    send(RTF_MESSAGE_ERROR, text, Location{nullptr, 0});
-}
-
 // Calls a step, and reports its exception as an error.
 template <class Step>
 int32_t guarded(Step &&step) noexcept
 {
     try {
         return step() ? RTF_DONE : RTF_REFUSED;
-    } catch (const Stop &) {
-    } catch (const std::exception &exception) {
-        report_error(exception_type() + ": " + exception.what());
     } catch (...) {
-        report_error("exception of type " + exception_type());
+        report_exception();
     }
     return RTF_STOPPED;
 }

@@ -11,10 +11,12 @@
 namespace rtf {
 namespace internal {
 
-// Ends a step after a failed assertion, an error, or a stop request. Not a
-// std::exception: a plug-in that catches those must not swallow it.
+// Ends a case or a step after a failed assertion, an error, a skip, or a stop request. Not
+// a std::exception: a plug-in that catches those must not swallow it.
 struct Stop
 {
+    // A critical assertion or a stop request: not only the innermost case ends.
+    bool ends_test = false;
 };
 
 enum class Critical { no, yes };
@@ -55,7 +57,7 @@ inline void require_critical(Location here, bool holds, std::string_view text)
 {
     if (!holds) {
         send(RTF_MESSAGE_FAILURE, text, here, nullptr, Critical::yes);
-        throw Stop();
+        throw Stop{true};
     }
     send(RTF_MESSAGE_CHECK, text, here);
 }

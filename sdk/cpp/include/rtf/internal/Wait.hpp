@@ -26,7 +26,7 @@ constexpr Seconds kPoll = std::chrono::milliseconds(10);
 inline void pause(Seconds duration)
 {
     if (host().wait(host().context, duration.count()) != 0) {
-        throw Stop();
+        throw Stop{true};
     }
 }
 

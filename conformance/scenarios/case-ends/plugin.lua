@@ -1,0 +1,13 @@
+function TestCase.run()
+  rtf.case("assertion", function()
+    rtf.require(false, "it moves")
+    rtf.report("never")
+  end)
+  rtf.case("error", function()
+    rtf.error("no bench")
+  end)
+  rtf.case("exception", function()
+    error("surprise")
+  end)
+  rtf.case("after", function() end)
+end

@@ -1,0 +1,12 @@
+function TestCase.run()
+  rtf.case("joint 0", { joint = 0 }, function()
+    rtf.report("moved")
+  end)
+  rtf.case("joint 1", function()
+    rtf.check(false, "joint 1 moves")
+    rtf.report("still here")
+  end)
+  rtf.case("joint 2", function()
+    rtf.check(true, "joint 2 moves")
+  end)
+end

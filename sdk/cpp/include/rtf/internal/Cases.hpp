@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cases, skipping, and a test's values of a matrix.
+#ifndef RTF_INTERNAL_CASES_HPP
+#define RTF_INTERNAL_CASES_HPP
+
+#include <cstddef>
+#include <initializer_list>
+#include <map>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include <rtf/internal/Exceptions.hpp>
+#include <rtf/internal/Number.hpp>
+
+namespace rtf {
+namespace internal {
+
+// The host's table, if it has the functions of version 1.3.
+inline const rtf_host &host_with_cases(Location here)
+{
+    const rtf_host &table = host();
+    if (table.size < offsetof(rtf_host, parameters) + sizeof table.parameters) {
+        error(here, "this rtf is too old for cases: its plug-in interface is 1." +
+                        std::to_string(table.abi_minor));
+    }
+    return table;
+}
+
+// A parameter of a case: its value is a number, a bool or a text.
+struct CaseParameter
+{
+    template <class T>
+    CaseParameter(std::string_view name_, const T &value_) : name(name_), value(last_value(value_))
+    {
+        static_assert(std::is_arithmetic_v<T> || std::is_convertible_v<const T &, std::string_view>,
+                      "a parameter is a number, a bool or a text");
+    }
+
+    std::string_view name;
+    std::string value;
+};
+
+// A case without its body, which `+` runs: see RTF_CASE.
+class Case
+{
+public:
+    Case(Location here, std::string_view name, std::initializer_list<CaseParameter> parameters = {})
+        : here_(here), name_(name)
+    {
+        for (const CaseParameter &parameter : parameters) {
+            names_.push_back(parameter.name);
+            values_.push_back(parameter.value);
+        }
+    }
+
+    template <class Body>
+    void operator+(Body &&body) const
+    {
+        const rtf_host &table = host_with_cases(here_);
+        if (!begin(table)) {
+            return;
+        }
+        int32_t result = RTF_DONE;
+        bool ends_test = false;
+        try {
+            body();
+        } catch (...) {
+            result = RTF_STOPPED;
+            ends_test = report_exception();
+        }
+        table.case_end(table.context, result);
+        if (ends_test) {
+            throw Stop{true};
+        }
+    }
+
+private:
+    bool begin(const rtf_host &table) const
+    {
+        std::vector<rtf_parameter> parameters;
+        for (std::size_t index = 0; index < names_.size(); ++index) {
+            parameters.push_back(rtf_parameter{to_text(names_[index]), to_text(values_[index])});
+        }
+        rtf_case message;
+        message.size = sizeof message;
+        message.name = to_text(name_);
+        message.parameters = parameters.data();
+        message.parameter_count = parameters.size();
+        message.file = here_.file;
+        message.line = here_.line;
+        return table.case_begin(table.context, &message) != 0;
+    }
+
+    Location here_;
+    std::string_view name_;
+    std::vector<std::string_view> names_;
+    std::vector<std::string> values_;
+};
+
+[[noreturn]] inline void skip(Location here, std::string_view reason)
+{
+    const rtf_host &table = host_with_cases(here);
+    table.skip(table.context, to_text(reason));
+    throw Stop();
+}
+
+inline void plan_cases(Location here, const std::vector<std::string> &names)
+{
+    std::vector<rtf_text> texts;
+    texts.reserve(names.size());
+    for (const std::string &name : names) {
+        texts.push_back(to_text(name));
+    }
+    const rtf_host &table = host_with_cases(here);
+    table.plan_cases(table.context, texts.data(), texts.size());
+}
+
+inline std::map<std::string, std::string> parameters(Location here)
+{
+    const rtf_host &table = host_with_cases(here);
+    std::size_t count = 0;
+    const rtf_parameter *first = table.parameters(table.context, &count);
+    std::map<std::string, std::string> all;
+    for (std::size_t index = 0; index < count; ++index) {
+        all.emplace(from_text(first[index].name), from_text(first[index].value));
+    }
+    return all;
+}
+
+inline std::string parameter(Location here, std::string_view name)
+{
+    const rtf_host &table = host_with_cases(here);
+    std::size_t count = 0;
+    const rtf_parameter *first = table.parameters(table.context, &count);
+    std::string known;
+    for (std::size_t index = 0; index < count; ++index) {
+        const std::string own = from_text(first[index].name);
+        if (own == name) {
+            return from_text(first[index].value);
+        }
+        known += (index == 0 ? "" : ", ") + own;
+    }
+    error(here, "there is no parameter \"" + std::string(name) + "\"; this test has " +
+                    (count == 0 ? "none" : known));
+}
+
+} // namespace internal
+} // namespace rtf
+
+#endif
