@@ -251,7 +251,8 @@ step 'sdk python' sdk_python
 step 'sdk ruby' sdk_ruby
 step 'fixtures python' fixtures_python
 # Also builds the plug-ins in sdk/c and sdk/cpp, with cc and c++.
-step 'rust tests' cargo test --workspace --locked --no-fail-fast
+# `nohup make test` passes an ignored SIGHUP on, and `rtf` respects it; some tests send SIGHUP.
+step 'rust tests' env --default-signal=HUP cargo test --workspace --locked --no-fail-fast
 step 'web api' web_api
 step 'build release' tools/build.sh
 step 'instruction counts' tools/counts.py "$TARGET/release/rtf-counts"
