@@ -1,4 +1,4 @@
-"""A test that reports a million times."""
+"""A test that reports a million times, and one with 100 000 cases."""
 
 from __future__ import annotations
 
@@ -9,22 +9,31 @@ from measuring.bench import PREDECESSOR, Bench
 from measuring.model import Group, Limit, Line, Samples, Work
 
 COUNT = 1_000_000
+CASES = 100_000
 RATE = "events/s"
+CASE_RATE = "cases/s"
 MEMORY = "MB"
 
 RTF = "rtf"
 OLD = "predecessor"
+WITH_CASES = "cases"
 
 
 def group(bench: Bench) -> Group:
     """The predecessor keeps them in memory and writes them at the end."""
     missing = "" if bench.predecessor else f"{PREDECESSOR} is missing"
-    works = (Work(RTF, rtf(bench)), Work(OLD, predecessor(bench), missing))
+    works = (
+        Work(RTF, rtf(bench)),
+        Work(OLD, predecessor(bench), missing),
+        Work(WITH_CASES, cases(bench)),
+    )
     rate = Limit(300_000, at_least=True, required=False)
     memory = Limit(100, required=False)
+    cases_rate = Limit(150_000, at_least=True)
     lines = (
         Line("1 M reports, journal and console", RTF, RATE, OLD, rate),
         Line("1 M reports, memory", RTF, MEMORY, OLD, memory),
+        Line("100 000 cases, journal and console", WITH_CASES, CASE_RATE, limit=cases_rate),
     )
     return Group("reports", works, lines, rounds=3)
 
@@ -38,6 +47,19 @@ def rtf(bench: Bench) -> Callable[[], Samples]:
             run.expect("message", COUNT)
             launched = run.launched
         return {RATE: [COUNT / launched.seconds], MEMORY: [launched.children[0].rss_mb]}
+
+    return work
+
+
+def cases(bench: Bench) -> Callable[[], Samples]:
+    """The journal must have each of them from its start to its verdict."""
+    file = suite.write(bench, "cases", [f'<test type="dll" param="{CASES}">Cases</test>'])
+
+    def work() -> Samples:
+        with suite.Run(bench, file) as run:
+            run.expect("case-started", CASES)
+            run.expect("case-finished", CASES, '"verdict":"passed"')
+            return {CASE_RATE: [CASES / run.launched.seconds]}
 
     return work
 
