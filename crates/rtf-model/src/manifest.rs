@@ -36,6 +36,9 @@ pub struct Manifest {
     /// In a rerun: the selected tests, by suite name and test name.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub only: Option<Vec<(String, String)>>,
+    /// In a rerun: the selected cases of tests of `only`, by suite name, test name and paths.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub only_cases: Vec<(String, String, Vec<String>)>,
     /// The seed of the random order.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shuffle: Option<u64>,

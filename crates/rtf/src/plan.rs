@@ -1,8 +1,10 @@
 //! Request → plan, with every problem reported.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use rtf_engine::verify;
+use rtf_model::protocol::CaseSelector;
 use rtf_model::{Diagnostic, Manifest, Severity};
 use rtf_plan::plan::{self, Plan, PlanDraft, PlanOutcome};
 use rtf_plan::select::{self, Selection, select};
@@ -64,9 +66,10 @@ pub fn draft(request: &TestsRequest, check: impl FnOnce(PlanDraft) -> PlanOutcom
         return Draft { plan: None, total: 0, problems, sources };
     };
     let selected = select(all, &selection);
-    problems.extend(selected.warnings);
-    let plan = Some(selected.plan).filter(|plan| plan.tests > 0);
-    if plan.is_none() {
+    problems.extend(selected.problems);
+    let has_error = problems.iter().any(|problem| problem.severity == Severity::Error);
+    let plan = Some(selected.plan).filter(|plan| plan.tests > 0 && !has_error);
+    if plan.is_none() && !has_error {
         let message = format!("no test selected out of {}", count(selected.total, "test"));
         let hint = "`rtf list` without these options lists all tests";
         problems.insert(0, Diagnostic::error("no-tests", message).hint(hint));
@@ -94,7 +97,16 @@ fn selection(
         }
         sources.add(Arc::new(source));
     }
-    let only = manifest.only.as_ref().map(|only| only.iter().cloned().collect());
+    let only = manifest.only.as_ref().map(|only| {
+        let mut only: HashMap<_, _> =
+            only.iter().cloned().map(|names| (names, Vec::new())).collect();
+        for (suite, test, cases) in &manifest.only_cases {
+            if let Some(selectors) = only.get_mut(&(suite.clone(), test.clone())) {
+                selectors.extend(cases.iter().cloned().map(CaseSelector::Equals));
+            }
+        }
+        only
+    });
     Selection { filters, only, shuffle: manifest.shuffle, shard: request.shard.clone() }
 }
 

@@ -209,7 +209,7 @@ fn emit_planned(suite: &SuitePlan, timed: bool, events: &Events) {
         environment: suite.settings.environment.clone(),
         tolerates_collapse: suite.settings.tolerates_collapse,
         parallel: suite.settings.parallel,
-        skips_fail: false,
+        skips_fail: suite.settings.skips_fail,
     }));
     for fixture in &suite.fixtures {
         events.emit(EventKind::FixturePlanned(FixturePlanned {
@@ -246,8 +246,8 @@ fn planned(suite: &SuitePlan, test: &TestPlan, timed: bool) -> TestPlanned {
         repetitions: test.settings.repetitions,
         timed,
         tags: test.tags.clone(),
-        expected: None,
-        parameters: Vec::new(),
+        parameters: test.parameters.clone(),
+        expected: test.expected.clone(),
     }
 }
 

@@ -13,6 +13,7 @@ mod keys;
 mod overlay;
 mod param_reference;
 mod profile_view;
+mod quarantine;
 mod run_config;
 mod toml_reader;
 mod unknown_profile;
@@ -22,8 +23,9 @@ pub use file::{ConfigFile, ConfigFiles};
 pub use keys::REPORTS;
 pub use param_reference::is_name;
 pub use profile_view::{ConfigRequest, ProfileView};
+pub use quarantine::Quarantine;
 pub use run_config::{RunConfig, RunValue, input_dir};
 pub use toml_reader::{Entry, Layer};
 
 pub(crate) use overlay::{DirectPluginConfig, direct_plugin_config, overlay_suite};
-pub(crate) use param_reference::sample;
+pub(crate) use param_reference::{sample, variable};

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::time::Duration;
 
-use rtf_model::Diagnostic;
+use rtf_model::{Diagnostic, Parameter};
 
 use super::param_reference;
 use super::profile_view::{ConfigRequest, ProfileView};
@@ -28,7 +28,9 @@ pub(crate) fn overlay_suite(
         overlay_limits(suite, view);
         overlay_parallel(suite, view);
     }
-    let problems = ParamSubstitution { params: &params, source, problems: Vec::new() }.run(suite);
+    let substitution =
+        ParamSubstitution { params: &params, source, own: Vec::new(), problems: Vec::new() };
+    let problems = substitution.run(suite);
     suite.env.splice(0..0, params.variables());
     problems
 }
@@ -179,6 +181,8 @@ impl Params<'_> {
 struct ParamSubstitution<'a> {
     params: &'a Params<'a>,
     source: &'a SourceText,
+    /// The values of the test's matrix, which take precedence.
+    own: Vec<Parameter>,
     problems: Vec<Diagnostic>,
 }
 
@@ -188,9 +192,17 @@ impl ParamSubstitution<'_> {
         self.text(&mut suite.settings.environment, span);
         self.env(&mut suite.env, span);
         for test in &mut suite.tests {
+            let combination = test.combination.as_ref();
+            self.own = combination.map(|it| it.parameters.clone()).unwrap_or_default();
+            let reported = self.problems.len();
             self.env(&mut test.env, test.span);
             self.plugin(&mut test.plugin);
+            if combination.is_some_and(|combination| !combination.is_first) {
+                // The first combination has the same ones.
+                self.problems.truncate(reported);
+            }
         }
+        self.own.clear();
         for fixture in &mut suite.fixtures {
             self.env(&mut fixture.env, fixture.span);
             match &mut fixture.body {
@@ -250,7 +262,10 @@ impl ParamSubstitution<'_> {
             return;
         }
         let mut missing = Vec::new();
-        let value = |name: &str| self.params.get(name);
+        let value = |name: &str| {
+            let own = self.own.iter().find(|own| own.name == name);
+            own.map(|own| own.value.clone()).or_else(|| self.params.get(name))
+        };
         *text = param_reference::expand(text, value, &mut |name| missing.push(name.to_owned()));
         for name in missing {
             self.problems.push(self.unknown(&name, span));

@@ -6,6 +6,7 @@ use std::time::Duration;
 use rtf_model::Diagnostic;
 
 use super::file::{ConfigFile, ConfigFiles};
+use super::quarantine::Quarantine;
 use super::toml_reader::{Entry, Layer};
 use super::unknown_profile::suggest_profile;
 use crate::suite::parse_duration;
@@ -91,6 +92,12 @@ impl ProfileView {
         self.profile_value(key).or_else(|| self.file.defaults.get(key))
     }
 
+    /// Returns the quarantines of the profile, then those of the file.
+    pub fn quarantines(&self) -> impl Iterator<Item = &Quarantine> {
+        let profile = self.profile_layer().into_iter().flat_map(|layer| &layer.quarantines);
+        profile.chain(&self.file.defaults.quarantines)
+    }
+
     /// Returns the text of a value.
     #[must_use]
     pub fn text(&self, key: &str) -> Option<&str> {
@@ -110,9 +117,9 @@ impl ProfileView {
             let name = entry.key.strip_prefix(table)?.strip_prefix('.')?;
             Some((name, entry))
         };
-        let profile = self.profile_layer().into_iter().flat_map(|layer| &layer.0);
+        let profile = self.profile_layer().into_iter().flat_map(|layer| &layer.entries);
         let is_default = |entry: &&Entry| self.profile_value(&entry.key).is_none();
-        let defaults = self.file.defaults.0.iter().filter(is_default);
+        let defaults = self.file.defaults.entries.iter().filter(is_default);
         defaults.chain(profile).filter_map(inside)
     }
 }

@@ -4,12 +4,15 @@ use rtf_model::Diagnostic;
 use toml::de::{DeTable, DeValue};
 
 use super::keys::{KEYS, NameKind, REPORTS, ValueFormat};
+use super::quarantine::{self, QUARANTINE, Quarantine};
 use super::unknown_profile::suggest_profile;
 use crate::suite::{SourceText, Span, Spanned, is_reserved, parse_duration};
 use crate::wording::{nearest, quoted};
 
-type TomlKey<'a> = toml::Spanned<toml::de::DeString<'a>>;
-type TomlValue<'a> = toml::Spanned<DeValue<'a>>;
+/// A key and its position.
+pub(super) type TomlKey<'a> = toml::Spanned<toml::de::DeString<'a>>;
+/// A value and its position.
+pub(super) type TomlValue<'a> = toml::Spanned<DeValue<'a>>;
 
 /// One value of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,13 +27,18 @@ pub struct Entry {
 
 /// The values of a file or of one of its profiles.
 #[derive(Clone, Debug, Default)]
-pub struct Layer(pub Vec<Entry>);
+pub struct Layer {
+    /// The settings.
+    pub entries: Vec<Entry>,
+    /// The quarantines.
+    pub quarantines: Vec<Quarantine>,
+}
 
 impl Layer {
     /// Returns the value of a key.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<&Entry> {
-        self.0.iter().find(|entry| entry.key == key)
+        self.entries.iter().find(|entry| entry.key == key)
     }
 }
 
@@ -84,12 +92,16 @@ pub(super) fn parse(source: &SourceText, problems: &mut Vec<Diagnostic>) -> Pars
     parsed
 }
 
-struct TomlReader<'a> {
-    source: &'a SourceText,
-    problems: &'a mut Vec<Diagnostic>,
+/// Reads the values of a file.
+pub(super) struct TomlReader<'a> {
+    /// The text of the file.
+    pub source: &'a SourceText,
+    /// The problems found so far.
+    pub problems: &'a mut Vec<Diagnostic>,
 }
 
-fn span<T>(value: &toml::Spanned<T>) -> Span {
+/// Returns the position of a key or a value.
+pub(super) fn span<T>(value: &toml::Spanned<T>) -> Span {
     Span::new(value.span())
 }
 
@@ -114,6 +126,10 @@ impl TomlReader<'_> {
         layer: &mut Layer,
     ) {
         let name = key.get_ref().as_ref();
+        if prefix.is_empty() && name == QUARANTINE {
+            let found = quarantine::read(self, value);
+            return layer.quarantines.extend(found);
+        }
         let Some((_, form)) = keys.iter().find(|(known, _)| *known == name) else {
             return self.unknown(key, prefix, keys);
         };
@@ -132,7 +148,7 @@ impl TomlReader<'_> {
             }
             (form, _) => {
                 if let Some(values) = self.values(&whole, value, *form) {
-                    layer.0.push(Entry { key: whole, values, span: span(key) });
+                    layer.entries.push(Entry { key: whole, values, span: span(key) });
                 }
             }
         }
@@ -228,13 +244,14 @@ impl TomlReader<'_> {
         match scalar(value.get_ref()) {
             Some(text) => {
                 let values = vec![Spanned::new(text, span(value))];
-                layer.0.push(Entry { key: whole, values, span: span(key) });
+                layer.entries.push(Entry { key: whole, values, span: span(key) });
             }
             None => self.wrong(&whole, value, "a text, a number, `true` or `false`"),
         }
     }
 
-    fn wrong(&mut self, key: &str, value: &TomlValue<'_>, expected: &str) {
+    /// Reports an invalid value.
+    pub fn wrong(&mut self, key: &str, value: &TomlValue<'_>, expected: &str) {
         let problem = Diagnostic::error("invalid-value", format!("`{key}` has to be {expected}"));
         self.problems.push(problem.label(self.source.label(span(value), "")));
     }
@@ -243,7 +260,7 @@ impl TomlReader<'_> {
         let name = key.get_ref().as_ref();
         let mut known: Vec<&str> = keys.iter().map(|(known, _)| *known).collect();
         if prefix.is_empty() {
-            known.extend(["profile", "default-profile"]);
+            known.extend([QUARANTINE, "profile", "default-profile"]);
         }
         let label = self.source.label(span(key), "");
         let problem = Diagnostic::error("unknown-key", format!("unknown key `{prefix}{name}`"))

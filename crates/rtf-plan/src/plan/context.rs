@@ -6,7 +6,8 @@ use std::sync::Arc;
 use rtf_model::Diagnostic;
 
 use super::checks::PluginChecks;
-use super::{Compatibility, HostPlan, Options};
+use super::quarantines::Quarantines;
+use super::{Compatibility, HostPlan, Options, SuitePlan};
 use crate::config::{self, ConfigFiles, ProfileView};
 use crate::suite::{DeclaredSuite, SourceText};
 
@@ -20,6 +21,8 @@ pub(super) struct PlanContext<'a> {
     pub checks: PluginChecks,
     /// The `rtf.toml` files.
     pub files: ConfigFiles,
+    /// The quarantines of those files.
+    pub quarantines: Quarantines,
     hosts: Vec<Arc<HostPlan>>,
 }
 
@@ -31,7 +34,8 @@ impl<'a> PlanContext<'a> {
             Compatibility::Predecessor => ConfigFiles::disabled(),
         };
         let (problems, checks) = (Vec::new(), PluginChecks::default());
-        Self { options, problems, checks, files, hosts: Vec::new() }
+        let quarantines = Quarantines::default();
+        Self { options, problems, checks, files, quarantines, hosts: Vec::new() }
     }
 
     /// Overlays the nearest `rtf.toml` on a suite.
@@ -61,6 +65,13 @@ impl<'a> PlanContext<'a> {
             environment,
             (config_request, &runner.variables),
         )
+    }
+
+    /// Marks the quarantined tests of a suite whose files are in `dir`.
+    pub fn quarantine(&mut self, dir: &Path, suite: &mut SuitePlan) {
+        if let Some(view) = self.profile_view(dir) {
+            self.quarantines.apply(&view, suite, self.options.today);
+        }
     }
 
     fn profile_view(&mut self, dir: &Path) -> Option<ProfileView> {

@@ -9,12 +9,13 @@ use rtf_model::{Diagnostic, Severity};
 use super::checks::{CheckAnswer, CheckGroup, PluginChecks};
 use super::context::{PlanContext, parent_dir};
 use super::inputs::{self, InputFile, ResolvedInput};
+use super::matrix::MatrixExpander;
+use super::named_tests;
 use super::names::UniqueNames;
 use super::suite::{DirectPlugin, plan_direct_plugins, plan_suite};
 use super::{Compatibility, InputPath, Options, Plan, SuitePlan};
 use crate::config;
 use crate::suite::{self, SourceMap, SourceText};
-use crate::wording::suggest;
 
 /// The result of planning.
 #[derive(Debug)]
@@ -90,7 +91,7 @@ pub fn draft(inputs: &[InputPath], options: &Options) -> PlanDraft {
             ResolvedInput::Suite { file, only } => {
                 let mut suite = suite_from_file(&mut context, &file, &mut sources);
                 if let Some(suite) = suite.as_mut().filter(|_| !only.is_empty()) {
-                    context.problems.extend(retain_tests(suite, &only));
+                    context.problems.extend(named_tests::retain(suite, &only));
                 }
                 suites.extend(suite);
             }
@@ -121,7 +122,13 @@ fn add_direct_plugins(
         }
     };
     let groups = groups.iter().filter(|group| !group.is_empty());
-    let planned: Vec<_> = groups.map(|group| plan_direct_plugins(context, group)).collect();
+    let planned: Vec<_> = groups
+        .map(|group| {
+            let mut plan = plan_direct_plugins(context, group);
+            context.quarantine(&options.runner.current_dir, &mut plan);
+            plan
+        })
+        .collect();
     suites.splice(index..index, planned);
 }
 
@@ -137,6 +144,7 @@ fn report_config_problems(
         context.files.find_nearest(&config::input_dir(&path));
     }
     context.problems.append(&mut context.files.problems);
+    context.problems.append(&mut context.quarantines.warnings(context.options.today));
     context.problems.extend(config_request.check_profile(&context.files));
     sources.append(context.files.sources());
 }
@@ -159,29 +167,18 @@ fn suite_from_file(
     let before = context.problems.len();
     let mut suite = suite::parse(&source, &mut context.problems);
     if let Some(suite) = &mut suite {
-        context.configure(&parent_dir(&file.path), &source, suite);
+        let dir = parent_dir(&file.path);
+        let tests = std::mem::take(&mut suite.tests);
+        suite.tests =
+            MatrixExpander::new(&dir, &source, &mut context.problems, sources).expand(tests);
+        context.configure(&dir, &source, suite);
     }
-    let plan = suite.map(|suite| plan_suite(context, file, &source, suite));
+    let mut plan = suite.map(|suite| plan_suite(context, file, &source, suite));
+    if let Some(plan) = &mut plan {
+        context.quarantine(&parent_dir(&file.path), plan);
+    }
     add_if_used(sources, &source, &context.problems[before..]);
     plan
-}
-
-/// Removes all but the named tests and reports unknown names.
-fn retain_tests(suite: &mut SuitePlan, only: &[String]) -> Vec<Diagnostic> {
-    let names: Vec<&str> = suite.tests.iter().map(|test| test.name.as_str()).collect();
-    let unknown = only.iter().filter(|name| !names.contains(&name.as_str()));
-    let problems = unknown.map(|name| {
-        let message = format!("there is no test `{name}` in `{}`", suite.file);
-        let problem = Diagnostic::error("unknown-test", message);
-        let problem = suggest(problem, name, names.iter().copied());
-        match problem.hint {
-            Some(_) => problem,
-            None => problem.hint(format!("`rtf list {}` shows its tests", suite.file)),
-        }
-    });
-    let problems = problems.collect();
-    suite.tests.retain(|test| only.contains(&test.name));
-    problems
 }
 
 /// Adds a text if a diagnostic refers to it, or if a plug-in check may still do so.

@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use jiff::Zoned;
+use jiff::civil::Date;
+
 use super::RunnerEnvironment;
 use crate::config::ConfigRequest;
 
@@ -65,6 +68,8 @@ pub struct Options {
     pub runner: RunnerEnvironment,
     /// The profile and the parameters.
     pub config_request: ConfigRequest,
+    /// The local day on which the run starts, which known failures are compared with.
+    pub today: Date,
 }
 
 impl Options {
@@ -79,6 +84,7 @@ impl Options {
             compatibility: Compatibility::default(),
             runner,
             config_request: ConfigRequest::default(),
+            today: Zoned::now().date(),
         }
     }
 

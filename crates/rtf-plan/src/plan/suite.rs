@@ -12,15 +12,17 @@ use super::inputs::InputFile;
 use super::names::UniqueNames;
 use super::plugin_planner::PluginPlanner;
 use super::plugin_search::base_name;
-use super::search_scope::SearchScope;
+use super::search_scope::{SearchScope, search_variables};
 use super::use_site::PluginRole;
 use super::{
-    Compatibility, Isolation, OwnMiddleware, Preparation, SuitePlan, SuiteSettings, TestLimits,
-    TestPlan, TestSettings, clock, defaults, fixture, hook, middleware,
+    CaseSelection, Compatibility, Isolation, OwnMiddleware, PluginPlan, Preparation, SuitePlan,
+    SuiteSettings, TestLimits, TestPlan, TestSettings, clock, defaults, fixture, hook,
+    known_failure, matrix, middleware,
 };
 use crate::config;
 use crate::suite::{
     DeclaredLimits, DeclaredMiddleware, DeclaredSuite, DeclaredTest, FixtureKind, SourceText,
+    split_param,
 };
 
 /// The name of the suite of the plug-ins that are given directly.
@@ -64,7 +66,8 @@ pub(super) fn plan_suite(
     let isolate = isolation(&suite);
     let env = Arc::new(suite.env);
     let name = suite.name.map(|name| name.value).unwrap_or_else(|| stem(&file.path));
-    let declared = suite.tests.iter().map(|test| test.name.as_ref());
+    let named = suite.tests.iter().filter(|test| is_first_of_matrix(test));
+    let declared = named.map(|test| test.name.as_ref());
     let mut names = UniqueNames::reserve("test", declared, source, &mut context.problems);
     let fallback_dir = fallback_dir.as_deref();
     let scope = SearchScope { runner, dir: &dir, fallback_dir, suite_env: &env, own_env: &[] };
@@ -98,24 +101,51 @@ fn plan_tests(
     (suite_tags, tests): (&[String], Vec<DeclaredTest>),
 ) -> Vec<TestPlan> {
     let (mut limits, mut plans) = (SharedLimits::default(), Vec::with_capacity(tests.len()));
+    let today = planner.context.options.today;
+    // The name and the plug-in of the present test; the combinations of a matrix share them.
+    let (mut base, mut shared): (Arc<str>, Option<PluginPlan>) = (Arc::from(""), None);
     for test in tests {
-        let declared = test.name.as_ref().map(|name| name.value.clone());
-        let name = declared.unwrap_or_else(|| names.unique(base_name(&test.plugin.name.value)));
+        let is_first = is_first_of_matrix(&test);
+        if is_first {
+            let declared = test.name.as_ref().map(|name| name.value.clone());
+            let unique = || names.unique(base_name(&test.plugin.name.value));
+            base = declared.unwrap_or_else(unique).into();
+            let failure = test.known_failure.as_ref();
+            let warning = failure.and_then(|it| known_failure::warn_of_end(it, today, source));
+            planner.context.problems.extend(warning);
+        }
         let (tags, env) = (tags(suite_tags, &test), &test.env);
-        let Some(plugin) = planner.plan(test.plugin, source, env, PluginRole::Test) else {
-            continue;
-        };
+        if is_first || !search_variables(env).is_empty() {
+            shared = planner.plan(test.plugin, source, env, PluginRole::Test);
+        } else if let Some(plugin) = &mut shared {
+            plugin.args = split_param(&test.plugin.param);
+            plugin.param = test.plugin.param;
+        }
+        let Some(plugin) = shared.clone() else { continue };
+        let parameters = test.combination.map(|combination| combination.parameters);
+        let failure = test.known_failure.as_ref();
         plans.push(TestPlan {
             id: TestId(0),
-            name,
+            name: match &parameters {
+                Some(parameters) => names.unique(&matrix::combination_name(&base, parameters)),
+                None => base.to_string(),
+            },
+            matrix: parameters.is_some().then(|| Arc::clone(&base)),
+            parameters: parameters.unwrap_or_default(),
             plugin,
             env: test.env,
             limits: limits.get(test.limits),
             settings: test.settings,
             tags,
+            expected: failure.map(|it| Box::new(known_failure::expect(it, today))),
+            cases: CaseSelection::default(),
         });
     }
     plans
+}
+
+fn is_first_of_matrix(test: &DeclaredTest) -> bool {
+    test.combination.as_ref().is_none_or(|combination| combination.is_first)
 }
 
 /// Determines the private resources of a suite, as specified in `spec/suite.md`.
@@ -198,6 +228,10 @@ pub(super) fn plan_direct_plugins(
             limits: Arc::clone(&limits),
             settings: TestSettings { repetitions, ..TestSettings::default() },
             tags: Vec::new(),
+            matrix: None,
+            parameters: Vec::new(),
+            expected: None,
+            cases: CaseSelection::default(),
         });
     }
     SuitePlan {

@@ -4,7 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use rtf_model::{FixtureId, HookId, SuiteId, SuitePrepared, TestId, Trigger};
+use rtf_model::protocol::CaseSelector;
+use rtf_model::{
+    ExpectedFailure, FixtureId, HookId, Parameter, SuiteId, SuitePrepared, TestId, Trigger,
+};
 
 pub use crate::suite::{
     AfterCollapse, Leaks, RequiredResource, Retries, SuiteSettings, TestSettings,
@@ -204,6 +207,64 @@ pub struct TestPlan {
     pub settings: TestSettings,
     /// The tags of the suite and of the test.
     pub tags: Vec<String>,
+    /// The name of the test of whose matrix it is a combination: `Move` of
+    /// `Move[joint=0]`.
+    pub matrix: Option<Arc<str>>,
+    /// Its values of the matrix.
+    pub parameters: Vec<Parameter>,
+    /// Its known failure.
+    pub expected: Option<Box<ExpectedFailure>>,
+    /// The cases that it runs.
+    pub cases: CaseSelection,
+}
+
+impl TestPlan {
+    /// Restricts the test to cases. It then has a separate process: only the first test of a
+    /// shared host knows whether the host can select cases.
+    pub fn select_cases(&mut self, cases: CaseSelection) {
+        self.settings.shared = false;
+        self.cases = cases;
+    }
+}
+
+/// The cases that a test runs.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct CaseSelection {
+    /// The selectors, of which a case must match one; empty for all cases.
+    pub selectors: Vec<CaseSelector>,
+    /// The origin of the selectors.
+    pub origin: CaseSelectionOrigin,
+}
+
+impl CaseSelection {
+    /// Checks whether the host must be able to select cases.
+    #[must_use]
+    pub fn needs_support(&self) -> bool {
+        !self.selectors.is_empty() && self.origin != CaseSelectionOrigin::Rerun
+    }
+
+    /// Returns the paths of the cases that must exist.
+    pub fn required_paths(&self) -> impl Iterator<Item = &str> {
+        let is_required = self.origin != CaseSelectionOrigin::Filter;
+        self.selectors.iter().filter(move |_| is_required).filter_map(|selector| match selector {
+            CaseSelector::Equals(path) => Some(path.as_str()),
+            CaseSelector::Contains(_) => None,
+        })
+    }
+}
+
+/// The origin of a selection of cases, which determines the reaction if the host cannot
+/// select cases, or if the test has no such case.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CaseSelectionOrigin {
+    /// A filter: an error if the host cannot select cases.
+    #[default]
+    Filter,
+    /// The user named the case: an error in both situations.
+    Named,
+    /// A rerun of failed cases: a host that cannot select cases runs all of them; a case
+    /// that does not exist is an error.
+    Rerun,
 }
 
 /// The limits of a test's phases.

@@ -1,7 +1,10 @@
 //! The syntax tree of the filter language.
 
+use std::borrow::Cow;
+
 use regex::Regex;
 use rtf_model::Label;
+use rtf_model::protocol::CaseSelector;
 
 use crate::plan::{SuitePlan, TestPlan};
 
@@ -20,6 +23,47 @@ pub enum Filter {
     Or(Box<Filter>, Box<Filter>),
     /// Tests with a value of the subject that matches.
     Has(Subject, Matcher),
+    /// Of every test, the cases that match. The parser refuses this condition inside
+    /// [`Filter::Not`], and on both sides of [`Filter::And`].
+    Case(CaseSelector),
+}
+
+/// The result of a filter for a test.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FilterMatch {
+    /// The test is not selected.
+    None,
+    /// The test is selected with all its cases.
+    All,
+    /// The test is selected with the cases that match any of these selectors.
+    Cases(Vec<CaseSelector>),
+}
+
+impl FilterMatch {
+    fn new(matches: bool) -> Self {
+        if matches { Self::All } else { Self::None }
+    }
+
+    /// Returns the union of two results.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::All, _) | (_, Self::All) => Self::All,
+            (Self::None, one) | (one, Self::None) => one,
+            (Self::Cases(mut cases), Self::Cases(more)) => {
+                cases.extend(more);
+                Self::Cases(cases)
+            }
+        }
+    }
+
+    fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::All, one) | (one, Self::All) => one,
+            // The parser refuses two conditions on cases.
+            (Self::None, _) | (_, Self::None) | (Self::Cases(_), Self::Cases(_)) => Self::None,
+        }
+    }
 }
 
 /// The property of a test that a filter compares.
@@ -35,11 +79,13 @@ pub enum Subject {
     Name,
     /// Its suite's file, as the user named it.
     File,
+    /// The names of its matrix's parameters (`joint`), and their values (`joint=0`).
+    Param,
 }
 
 /// All subjects, in the order of their discriminants.
-pub const SUBJECTS: [Subject; 5] =
-    [Subject::Tag, Subject::Type, Subject::Suite, Subject::Name, Subject::File];
+pub const SUBJECTS: [Subject; 6] =
+    [Subject::Tag, Subject::Type, Subject::Suite, Subject::Name, Subject::File, Subject::Param];
 
 /// A comparison with a value.
 #[derive(Clone, Debug)]
@@ -71,6 +117,7 @@ impl Subject {
             Self::Suite => "suite",
             Self::Name => "name",
             Self::File => "file",
+            Self::Param => "param",
         }
     }
 
@@ -80,46 +127,90 @@ impl Subject {
         match self {
             Self::Suite => "suite",
             Self::File => "suite file",
+            Self::Param => "parameter",
             other => other.word(),
         }
     }
 
-    /// Checks whether a bare text is compared with the whole value: true for tags
-    /// and types; of names, users often know only a part.
+    /// Checks whether a bare text is compared with the whole value: true for tags,
+    /// types and parameters; of names, users often know only a part.
     #[must_use]
     pub fn is_whole_word(self) -> bool {
-        matches!(self, Self::Tag | Self::Type)
+        matches!(self, Self::Tag | Self::Type | Self::Param)
     }
 }
 
 impl<'p> Candidate<'p> {
     /// Calls `visit` with each value of a subject.
-    pub fn for_each_value(self, subject: Subject, mut visit: impl FnMut(&'p str)) {
+    pub fn for_each_value(self, subject: Subject, mut visit: impl FnMut(Cow<'p, str>)) {
         match subject {
-            Subject::Tag => self.test.tags.iter().for_each(|tag| visit(tag)),
-            Subject::Type => visit(&self.test.plugin.plugin_type),
-            Subject::Suite => visit(&self.suite.name),
-            Subject::Name => visit(&self.test.name),
-            Subject::File => visit(&self.suite.file),
+            Subject::Tag => self.test.tags.iter().for_each(|tag| visit(tag.into())),
+            Subject::Type => visit(Cow::Borrowed(&self.test.plugin.plugin_type)),
+            Subject::Suite => visit(Cow::Borrowed(&self.suite.name)),
+            Subject::Name => visit(Cow::Borrowed(&self.test.name)),
+            Subject::File => visit(Cow::Borrowed(&self.suite.file)),
+            Subject::Param => self.test.parameters.iter().for_each(|parameter| {
+                visit(Cow::Borrowed(&parameter.name));
+                visit(format!("{}={}", parameter.name, parameter.value).into());
+            }),
         }
     }
 }
 
 impl Filter {
-    /// Checks whether the filter matches a test.
+    /// Applies the filter to a test.
     #[must_use]
-    pub fn matches(&self, candidate: &Candidate<'_>) -> bool {
+    pub fn apply(&self, candidate: &Candidate<'_>) -> FilterMatch {
         match self {
-            Self::All => true,
-            Self::None => false,
-            Self::Not(inner) => !inner.matches(candidate),
-            Self::And(left, right) => left.matches(candidate) && right.matches(candidate),
-            Self::Or(left, right) => left.matches(candidate) || right.matches(candidate),
+            Self::All => FilterMatch::All,
+            Self::None => FilterMatch::None,
+            Self::Not(inner) => FilterMatch::new(inner.apply(candidate) == FilterMatch::None),
+            Self::And(left, right) => left.apply(candidate).and(right.apply(candidate)),
+            Self::Or(left, right) => left.apply(candidate).or(right.apply(candidate)),
             Self::Has(subject, matcher) => {
                 let mut found = false;
-                candidate.for_each_value(*subject, |value| found |= matcher.matches(value));
-                found
+                candidate.for_each_value(*subject, |value| found |= matcher.matches(&value));
+                FilterMatch::new(found)
             }
+            Self::Case(selector) => FilterMatch::Cases(vec![selector.clone()]),
+        }
+    }
+
+    /// Checks whether the filter can match a test of the suite, whatever the test's own
+    /// properties are.
+    #[must_use]
+    pub fn can_match(&self, suite: &SuitePlan) -> bool {
+        self.known_match(suite) != Some(false)
+    }
+
+    /// Returns the result as far as the suite determines it.
+    fn known_match(&self, suite: &SuitePlan) -> Option<bool> {
+        match self {
+            Self::All => Some(true),
+            Self::None => Some(false),
+            Self::Not(inner) => inner.known_match(suite).map(|matches| !matches),
+            Self::And(left, right) => match (left.known_match(suite), right.known_match(suite)) {
+                (Some(false), _) | (_, Some(false)) => Some(false),
+                (left, right) => left.zip(right).map(|_| true),
+            },
+            Self::Or(left, right) => match (left.known_match(suite), right.known_match(suite)) {
+                (Some(true), _) | (_, Some(true)) => Some(true),
+                (left, right) => left.zip(right).map(|_| false),
+            },
+            Self::Has(Subject::Suite, matcher) => Some(matcher.matches(&suite.name)),
+            Self::Has(Subject::File, matcher) => Some(matcher.matches(&suite.file)),
+            Self::Has(..) | Self::Case(_) => None,
+        }
+    }
+
+    /// Checks whether it has a condition on cases.
+    #[must_use]
+    pub fn has_cases(&self) -> bool {
+        match self {
+            Self::Not(inner) => inner.has_cases(),
+            Self::And(left, right) | Self::Or(left, right) => left.has_cases() || right.has_cases(),
+            Self::Case(_) => true,
+            Self::All | Self::None | Self::Has(..) => false,
         }
     }
 
@@ -132,7 +223,7 @@ impl Filter {
                 right.for_each_equals(visit);
             }
             Self::Has(subject, Matcher::Equals(text, label)) => visit(*subject, text, label),
-            Self::All | Self::None | Self::Has(..) => {}
+            Self::All | Self::None | Self::Has(..) | Self::Case(_) => {}
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Selects and orders the tests of a plan.
 //!
-//! A selection removes and reorders tests; it never changes one. A suite without
+//! A selection removes and reorders tests, and selects cases of them; it changes nothing
+//! else of a test. A suite without
 //! selected tests does not run, and neither do its fixtures.
 //!
 //! - [`filter`]: the syntax tree of the filter language.
@@ -11,17 +12,19 @@ pub mod filter;
 mod parse;
 mod shard;
 
-use std::collections::{BTreeSet, HashSet};
+use std::borrow::Cow;
+use std::collections::{BTreeSet, HashMap};
 use std::hash::Hasher;
 
 use rtf_model::Diagnostic;
+use rtf_model::protocol::CaseSelector;
 use siphasher::sip::SipHasher13;
 
-pub use filter::Filter;
+pub use filter::{Filter, FilterMatch};
 pub use parse::parse;
 pub use shard::{Shard, ShardBy};
 
-use crate::plan::{Plan, SuitePlan, TestPlan};
+use crate::plan::{CaseSelection, CaseSelectionOrigin, Plan, SuitePlan, TestPlan};
 use crate::wording::suggest;
 use filter::Candidate;
 
@@ -30,8 +33,9 @@ use filter::Candidate;
 pub struct Selection {
     /// Selects a test if any filter matches it; without filters, selects all.
     pub filters: Vec<Filter>,
-    /// Further restricts the selection to these names of suites and tests.
-    pub only: Option<HashSet<(String, String)>>,
+    /// Further restricts the selection to these names of suites and tests, and to these
+    /// cases of them; no cases: all.
+    pub only: Option<HashMap<(String, String), Vec<CaseSelector>>>,
     /// The seed for a random order of suites, and of the tests of each.
     pub shuffle: Option<u64>,
     /// One part of the selected tests.
@@ -45,25 +49,36 @@ pub struct Selected {
     pub plan: Plan,
     /// The number of tests before the selection.
     pub total: usize,
-    /// Warnings about values in filters that no test has.
-    pub warnings: Vec<Diagnostic>,
+    /// Warnings about values in filters that no test has, and an error if a test has two
+    /// selections of cases.
+    pub problems: Vec<Diagnostic>,
 }
 
 /// Applies a selection.
 #[must_use]
 pub fn select(plan: Plan, selection: &Selection) -> Selected {
-    let warnings = warn_of_unknown_values(&plan, &selection.filters);
+    let mut problems = warn_of_unknown_values(&plan, &selection.filters);
     let total = plan.suites.iter().map(|suite| suite.tests.len()).sum();
     let mut suites = plan.suites;
-    retain(&mut suites, |suite, test| {
-        let candidate = Candidate { suite, test };
-        let filters = &selection.filters;
-        let is_named = |only: &HashSet<(String, String)>| {
-            only.contains(&(suite.name.clone(), test.name.clone()))
-        };
-        (filters.is_empty() || filters.iter().any(|filter| filter.matches(&candidate)))
-            && selection.only.as_ref().is_none_or(is_named)
-    });
+    let mut conflict = None;
+    for suite in &mut suites {
+        let mut tests = std::mem::take(&mut suite.tests);
+        tests.retain_mut(|test| {
+            let Some(selections) = selection.apply(&Candidate { suite, test }) else {
+                return false;
+            };
+            for cases in selections {
+                if test.cases.selectors.is_empty() {
+                    test.select_cases(cases);
+                } else {
+                    conflict.get_or_insert_with(|| test.name.clone());
+                }
+            }
+            true
+        });
+        suite.tests = tests;
+    }
+    problems.extend(conflict.map(|test| conflicting_cases(&test)));
     if let Some(shard) = &selection.shard {
         shard.apply(&mut suites);
     }
@@ -71,7 +86,38 @@ pub fn select(plan: Plan, selection: &Selection) -> Selected {
         shuffle(&mut suites, seed);
     }
     suites.retain(|suite| !suite.tests.is_empty());
-    Selected { plan: Plan::new(suites), total, warnings }
+    Selected { plan: Plan::new(suites), total, problems }
+}
+
+impl Selection {
+    /// Returns the selections of cases if the test is selected; none for all cases.
+    fn apply(&self, candidate: &Candidate<'_>) -> Option<Vec<CaseSelection>> {
+        let mut selections = Vec::new();
+        let applied = self.filters.iter().map(|filter| filter.apply(candidate));
+        match applied.reduce(FilterMatch::or).unwrap_or(FilterMatch::All) {
+            FilterMatch::None => return None,
+            FilterMatch::All => {}
+            FilterMatch::Cases(selectors) => {
+                let origin = CaseSelectionOrigin::Filter;
+                selections.push(CaseSelection { selectors, origin });
+            }
+        }
+        if let Some(only) = &self.only {
+            let key = (candidate.suite.name.clone(), candidate.test.name.clone());
+            let selectors = only.get(&key)?.clone();
+            if !selectors.is_empty() {
+                let origin = CaseSelectionOrigin::Rerun;
+                selections.push(CaseSelection { selectors, origin });
+            }
+        }
+        Some(selections)
+    }
+}
+
+fn conflicting_cases(test: &str) -> Diagnostic {
+    let message = format!("two selections of cases apply to the test `{test}`");
+    Diagnostic::error("conflicting-cases", message)
+        .hint("name the cases with `::`, or with a `case` filter, not with both")
 }
 
 /// Keeps the tests for which `keep` returns true.
@@ -106,7 +152,7 @@ fn hash(seed: u64, suite: &str, test: &str) -> u64 {
 /// Warns about values in filters that no test has: a misspelt tag selects no
 /// test, and with `!` all of them.
 fn warn_of_unknown_values(plan: &Plan, filters: &[Filter]) -> Vec<Diagnostic> {
-    let mut known: [BTreeSet<&str>; filter::SUBJECTS.len()] = Default::default();
+    let mut known: [BTreeSet<Cow<'_, str>>; filter::SUBJECTS.len()] = Default::default();
     for suite in &plan.suites {
         for test in &suite.tests {
             for (subject, values) in filter::SUBJECTS.iter().zip(&mut known) {
@@ -125,7 +171,7 @@ fn warn_of_unknown_values(plan: &Plan, filters: &[Filter]) -> Vec<Diagnostic> {
             }
             let message = format!("no test has the {} `{value}`", subject.noun());
             let warning = Diagnostic::warning("unknown-word", message).label(label.clone());
-            warnings.push(suggest(warning, value, known.iter().copied()));
+            warnings.push(suggest(warning, value, known.iter().map(AsRef::as_ref)));
         });
     }
     warnings

@@ -4,19 +4,28 @@
 //! filter    = term { ("|" | "or") term }
 //! term      = factor { ("&" | "and") factor }
 //! factor    = ("!" | "not") factor | "(" filter ")" | condition
-//! condition = "all()" | "none()" | subject "(" matcher ")"
-//! subject   = "tag" | "type" | "suite" | "name" | "file"
+//! condition = "all()" | "none()" | subject "(" matcher ")" | "case(" cases ")"
+//! subject   = "tag" | "type" | "suite" | "name" | "file" | "param"
 //! matcher   = "=" text | "~" text | "/" regex "/" | text
+//! cases     = "=" text | "~" text | text
 //! ```
+//!
+//! Cases are not known before a test runs: its host selects them, and can only select
+//! the union of several. So `case` cannot be negated, and not be combined with another
+//! `case` by `&`.
 //!
 //! A text ends before the closing parenthesis. Blanks around it are ignored, and
 //! `\` escapes the next character.
 
 use rtf_model::Diagnostic;
+use rtf_model::protocol::CaseSelector;
 
 use super::filter::{Filter, Matcher, SUBJECTS, Subject};
 use crate::suite::{SourceText, Span};
 use crate::wording::suggest;
+
+/// The conditions that are not a [`Subject`].
+const OTHER_CONDITIONS: [&str; 3] = ["case", "all", "none"];
 
 /// The maximum nesting depth of parentheses and negations.
 const MAX_DEPTH: usize = 100;
@@ -56,7 +65,13 @@ impl Parser<'_> {
     fn term(&mut self) -> Parsed<Filter> {
         let mut left = self.factor()?;
         while self.take("&") || self.take_word("and") {
-            left = Filter::And(Box::new(left), Box::new(self.factor()?));
+            let start = self.after_blanks();
+            let right = self.factor()?;
+            if left.has_cases() && right.has_cases() {
+                let what = "`&` cannot combine two conditions on cases";
+                return Err(self.problem(start..self.at, what).hint("use `|`").into());
+            }
+            left = Filter::And(Box::new(left), Box::new(right));
         }
         Ok(left)
     }
@@ -68,7 +83,12 @@ impl Parser<'_> {
         }
         let start = self.after_blanks();
         let factor = if self.take("!") || self.take_word("not") {
-            Filter::Not(Box::new(self.factor()?))
+            let inner = self.factor()?;
+            if inner.has_cases() {
+                let problem = self.problem(start..self.at, "`case` cannot be negated");
+                return Err(problem.hint("select the other cases instead").into());
+            }
+            Filter::Not(Box::new(inner))
         } else if self.take("(") {
             let inner = self.filter()?;
             if !self.take(")") {
@@ -97,7 +117,7 @@ impl Parser<'_> {
         }
         self.at = end;
         let subject = SUBJECTS.into_iter().find(|subject| subject.word() == word);
-        if subject.is_none() && word != "all" && word != "none" {
+        if subject.is_none() && !OTHER_CONDITIONS.contains(&word) {
             return Err(self.unknown_condition(start, word).into());
         }
         if !self.take("(") {
@@ -109,6 +129,7 @@ impl Parser<'_> {
         let filter = match subject {
             Some(subject) => Filter::Has(subject, self.matcher(subject)?),
             None if word == "all" => Filter::All,
+            None if word == "case" => Filter::Case(self.cases()?),
             None => Filter::None,
         };
         if self.take(")") {
@@ -123,11 +144,12 @@ impl Parser<'_> {
     fn unknown_condition(&self, start: usize, word: &str) -> Diagnostic {
         let what = format!("there is no condition `{word}`");
         let problem = self.problem(start..start + word.len(), &what);
-        let words = SUBJECTS.map(Subject::word).into_iter().chain(["all", "none"]);
+        let words = SUBJECTS.map(Subject::word).into_iter().chain(OTHER_CONDITIONS);
         let problem = suggest(problem, word, words);
         match problem.hint {
             Some(_) => problem,
-            None => problem.note("the conditions are tag, type, suite, name, file, all and none"),
+            None => problem
+                .note("the conditions are tag, type, suite, name, file, param, case, all and none"),
         }
     }
 
@@ -148,6 +170,24 @@ impl Parser<'_> {
         } else {
             Ok(Matcher::Contains(text))
         }
+    }
+
+    fn cases(&mut self) -> Parsed<CaseSelector> {
+        let start = self.after_blanks();
+        if self.take("/") {
+            let problem = self.problem(start..self.at, "`case` has no regular expressions");
+            return Err(problem.hint("`case(~text)` selects cases that contain a text").into());
+        }
+        let equals = self.take("=");
+        if !equals {
+            self.take("~");
+        }
+        let (text, _) = self.text();
+        if text.is_empty() {
+            let problem = self.problem(start..self.at.max(start + 1), "expected a case");
+            return Err(problem.into());
+        }
+        Ok(if equals { CaseSelector::Equals(text) } else { CaseSelector::Contains(text) })
     }
 
     /// Parses up to the closing slash; `\/` is a slash.

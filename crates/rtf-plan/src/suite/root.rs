@@ -58,6 +58,9 @@ fn read_suite(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> DeclaredSui
         critical_stops_run: reader
             .choice(root, "critical-stops", &[("suite", false), ("run", true)])
             .unwrap_or(false),
+        skips_fail: reader
+            .choice(root, "skips", &[("pass", false), ("fail", true)])
+            .unwrap_or(false),
         parallel: reader.number(root, "parallel", 1).unwrap_or(1),
     };
     let mut suite = DeclaredSuite {

@@ -36,6 +36,7 @@ pub(super) const SUITE: ElementSchema = ElementSchema {
         "clock",
         "clock-backstop",
         "tolerate-collapse",
+        "skips",
         "after-collapse",
         "leaks",
         "retries",
@@ -73,8 +74,11 @@ pub(super) const TEST: ElementSchema = ElementSchema {
         "critical",
         "exclusive",
         "isolation",
+        "expect",
+        "issue",
+        "until",
     ],
-    elements: &["env"],
+    elements: &["env", "matrix", "matrix-exclude"],
     text: true,
 };
 
@@ -146,6 +150,10 @@ pub(super) const HOOK: ElementSchema = ElementSchema {
 
 /// `<env>`.
 pub(super) const ENV: ElementSchema = leaf("env", &["name", "value"]);
+/// `<matrix>`.
+pub(super) const MATRIX: ElementSchema = leaf("matrix", &["name", "values", "values-from"]);
+/// `<matrix-exclude>`, whose attributes are the parameters of its test.
+pub(super) const MATRIX_EXCLUDE: ElementSchema = leaf("matrix-exclude", &[]);
 /// `<ready>`.
 pub(super) const READY: ElementSchema = leaf(
     "ready",
@@ -211,6 +219,15 @@ pub(super) fn check(reader: &mut ElementReader<'_>, node: Node<'_, '_>, schema: 
             reader.report(unknown_attribute(name, schema).label(label(reader, span, schema)));
         }
     }
+    check_content(reader, node, schema);
+}
+
+/// Reports child elements and text that `schema` does not contain.
+pub(super) fn check_content(
+    reader: &mut ElementReader<'_>,
+    node: Node<'_, '_>,
+    schema: &ElementSchema,
+) {
     for child in node.children() {
         if child.is_element() {
             let name = child.tag_name();

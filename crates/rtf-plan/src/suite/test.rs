@@ -7,7 +7,7 @@ use super::reader::ElementReader;
 use super::schema::{self, check};
 use super::{
     AfterCollapse, DeclaredLimits, DeclaredPlugin, DeclaredTest, Leaks, Retries, Spanned,
-    TestSettings, env, port_reference,
+    TestSettings, env, known_failure, matrix, port_reference,
 };
 
 /// The defaults that a suite declares for its tests.
@@ -46,9 +46,23 @@ pub(super) fn read(
     };
     let tags = values(reader.words(node, "tags"));
     let env = env::read(reader, node);
+    let known_failure = known_failure::read(reader, node);
+    let matrix = matrix::read(reader, node);
     let plugin = plugin(reader, node)?;
     let span = ElementReader::tag(node);
-    Some(DeclaredTest { span, name, plugin, limits, settings, tags, env })
+    let combination = None;
+    Some(DeclaredTest {
+        span,
+        name,
+        plugin,
+        limits,
+        settings,
+        tags,
+        env,
+        known_failure,
+        matrix,
+        combination,
+    })
 }
 
 /// Reads the limits of tests; on `<suite>` their attributes have the prefix `test-`.

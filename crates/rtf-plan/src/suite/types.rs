@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use rtf_model::Trigger;
+use jiff::civil::Date;
+use rtf_model::{Parameter, Trigger, Verdict};
 
 use super::{Span, Spanned};
 
@@ -46,6 +47,8 @@ pub struct SuiteSettings {
     pub tolerates_collapse: bool,
     /// Whether a failed critical test or assertion ends the whole run, not only the suite.
     pub critical_stops_run: bool,
+    /// Whether a test or a case that skips itself makes the run red.
+    pub skips_fail: bool,
     /// The maximum number of tests that run at the same time.
     pub parallel: u32,
 }
@@ -59,6 +62,7 @@ impl Default for SuiteSettings {
             requires: Vec::new(),
             tolerates_collapse: false,
             critical_stops_run: false,
+            skips_fail: false,
             parallel: 1,
         }
     }
@@ -147,6 +151,61 @@ pub struct DeclaredTest {
     pub tags: Vec<String>,
     /// Environment variables in addition to the suite's.
     pub env: Vec<(String, String)>,
+    /// Its known failure.
+    pub known_failure: Option<DeclaredKnownFailure>,
+    /// The values with which it runs; `None` for a test without a matrix.
+    pub matrix: Option<DeclaredMatrix>,
+    /// The combination of the matrix, once the planner has expanded it.
+    pub combination: Option<Combination>,
+}
+
+/// A known failure: in a suite `expect`, in an `rtf.toml` `[[quarantine]]`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DeclaredKnownFailure {
+    /// The verdicts that it covers.
+    pub verdicts: Vec<Verdict>,
+    /// The issue: a URL or a text.
+    pub issue: Option<String>,
+    /// Why the test fails.
+    pub reason: Option<String>,
+    /// The last day on which it applies.
+    pub until: Option<Spanned<Date>>,
+}
+
+/// The matrix of a test.
+#[derive(Clone, Debug, Default)]
+pub struct DeclaredMatrix {
+    /// Its dimensions, in order.
+    pub dimensions: Vec<MatrixDimension>,
+    /// The excluded combinations.
+    pub excludes: Vec<MatrixExclude>,
+}
+
+/// A `<matrix>`.
+#[derive(Clone, Debug)]
+pub enum MatrixDimension {
+    /// One parameter and its values.
+    Values(Spanned<String>, Vec<String>),
+    /// A CSV file, whose header row names the parameters.
+    File(Spanned<String>),
+}
+
+/// A `<matrix-exclude>`: excludes the combinations that have all of these values.
+#[derive(Clone, Debug)]
+pub struct MatrixExclude {
+    /// The position of the tag.
+    pub span: Span,
+    /// The names and values of parameters.
+    pub values: Vec<(Spanned<String>, String)>,
+}
+
+/// A combination of a matrix.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Combination {
+    /// Whether it is the first one of its test.
+    pub is_first: bool,
+    /// The values, in the order of the matrix.
+    pub parameters: Vec<Parameter>,
 }
 
 /// The settings of a test in which no name has to be resolved.

@@ -124,6 +124,10 @@ pub struct RepeatArgs {
     #[arg(help_heading = REPETITION, long, value_name = "RESULT")]
     pub flaky_result: Option<FlakyResult>,
 
+    /// Fail the run if a test or a case skips itself
+    #[arg(help_heading = REPETITION, long)]
+    pub no_skips: bool,
+
     /// Skip the remaining tests after N tests have failed
     #[arg(help_heading = REPETITION, long, value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u32).range(1..))]

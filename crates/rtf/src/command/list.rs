@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::ArgMatches;
+use rtf_model::{ExpectedFailure, Parameter};
 use rtf_plan::plan::{Plan, SuitePlan, TestPlan};
 use rtf_report::escape;
 use serde::Serialize;
@@ -55,8 +56,30 @@ fn notes(test: &TestPlan) -> String {
     if test.settings.exclusive {
         notes.push("exclusive".to_owned());
     }
+    if let Some(expected) = &test.expected {
+        notes.push(known_failure(expected));
+    }
     notes.extend(test.tags.iter().map(|tag| format!("#{}", escape::line(tag))));
     if notes.is_empty() { String::new() } else { format!("  ({})", notes.join(", ")) }
+}
+
+/// Describes a known failure: `expected to be failed until 2027-01-31: #12`.
+fn known_failure(expected: &ExpectedFailure) -> String {
+    let mut text = match expected {
+        ExpectedFailure { expired: true, until: Some(until), .. } => {
+            format!("known failure, expired after {until}")
+        }
+        expected => {
+            let verdicts: Vec<_> = expected.verdicts.iter().map(ToString::to_string).collect();
+            let verb = if expected.quarantined { "quarantined" } else { "expected" };
+            let until = expected.until.as_ref().map(|until| format!(" until {until}"));
+            format!("{verb}: {}{}", verdicts.join(" or "), until.unwrap_or_default())
+        }
+    };
+    for detail in expected.issue.iter().chain(&expected.reason) {
+        text += &format!(", {}", escape::line(detail));
+    }
+    text
 }
 
 #[derive(Serialize)]
@@ -80,6 +103,12 @@ struct ListedTest<'p> {
     exclusive: bool,
     /// The number of tests of its suite that may run at once.
     parallel: u32,
+    /// Its values of a matrix.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    parameters: &'p [Parameter],
+    /// Its known failure.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    expected: Option<&'p ExpectedFailure>,
 }
 
 fn write_json(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
@@ -96,6 +125,8 @@ fn write_json(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
             critical: test.settings.critical,
             exclusive: test.settings.exclusive,
             parallel: suite.settings.parallel,
+            parameters: &test.parameters,
+            expected: test.expected.as_deref(),
         })
         .collect();
     serde_json::to_writer_pretty(&mut *out, &TestList { tests })?;

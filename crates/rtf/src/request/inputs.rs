@@ -10,7 +10,7 @@ use rtf_plan::config::ConfigRequest;
 use rtf_plan::plan::{InputPath, Options, RunnerEnvironment};
 use rtf_plan::select::{Shard, ShardBy};
 
-use super::past_run;
+use super::{failed_cases, past_run};
 use crate::cli::{FlakyResult, InputArgs, RepeatArgs, RerunVerdict};
 use crate::error::Failure;
 
@@ -93,10 +93,8 @@ fn rerun_manifest(args: &InputArgs, results: &Path) -> Result<(Manifest, PathBuf
                     `rtf merge` of runs with different inputs";
         return Err(Failure::input(error).hint(hint));
     }
-    let mut manifest = Manifest {
-        only: Some(tests_to_rerun(&record, &run, &args.select.rerun)?),
-        ..(*started.manifest).clone()
-    };
+    let (only, only_cases) = tests_to_rerun(&record, &run, &args.select.rerun)?;
+    let mut manifest = Manifest { only: Some(only), only_cases, ..(*started.manifest).clone() };
     if let Some(profile) = &args.profile.profile {
         manifest.profile = Some(profile.clone());
     }
@@ -104,22 +102,30 @@ fn rerun_manifest(args: &InputArgs, results: &Path) -> Result<(Manifest, PathBuf
     Ok((manifest, PathBuf::from(&started.working_dir)))
 }
 
+/// The tests to rerun, and the cases of those of which only some cases failed.
 fn tests_to_rerun(
     record: &Record,
     run: &str,
     verdicts: &[RerunVerdict],
-) -> Result<Vec<(String, String)>, Failure> {
-    let tests = (0..).map(TestId).zip(&record.tests).filter(|(id, _)| {
-        let verdict = record.final_verdict(*id);
-        verdicts.iter().any(|wanted| wanted.matches(verdict))
-    });
-    let names: Vec<_> = tests.filter_map(|(_, test)| name(record, test)).collect();
+) -> Result<(Vec<(String, String)>, Vec<(String, String, Vec<String>)>), Failure> {
+    let (mut names, mut cases) = (Vec::new(), Vec::new());
+    for (id, test) in (0..).map(TestId).zip(&record.tests) {
+        let verdict = record.final_verdict(id);
+        if !verdicts.iter().any(|wanted| wanted.matches(verdict)) {
+            continue;
+        }
+        let Some((suite, test_name)) = name(record, test) else { continue };
+        if let Some(paths) = failed_cases::of_test(test) {
+            cases.push((suite.clone(), test_name.clone(), paths));
+        }
+        names.push((suite, test_name));
+    }
     if names.is_empty() {
         let verdicts: Vec<_> = verdicts.iter().map(|wanted| wanted.verb()).collect();
         let error = format!("no test of `{run}` {}: nothing to rerun", verdicts.join(" or "));
         return Err(Failure::input(error));
     }
-    Ok(names)
+    Ok((names, cases))
 }
 
 /// The names of a test's suite and of the test.
@@ -175,6 +181,7 @@ fn set_repetition(manifest: &mut Manifest, args: &RepeatArgs) {
     manifest.repeat = args.repeat.or(manifest.repeat);
     manifest.for_ms = for_ms.or(manifest.for_ms);
     manifest.retries = args.retries.or(manifest.retries);
+    manifest.no_skips |= args.no_skips;
     if let Some(result) = args.flaky_result {
         manifest.flaky_fails = result == FlakyResult::Fail;
     }

@@ -2,6 +2,7 @@
 //! past runs filled in. Everything after this stage reads the request only.
 
 pub mod config;
+mod failed_cases;
 mod inputs;
 pub mod past_run;
 

@@ -11,6 +11,7 @@ use rtf_model::{
 use super::TestRun;
 use crate::run::machine::context::Context;
 use crate::run::machine::judge::{TestProblem, judge};
+use rtf_plan::plan::CaseSelection;
 
 /// The number of names that a problem lists.
 const NAMES_SHOWN: usize = 3;
@@ -37,6 +38,8 @@ pub(super) struct OpenCases {
     planned_names: HashMap<u64, u32>,
     planned: PlannedCases,
     announced: usize,
+    /// The paths of selected cases that have not started.
+    awaited: Vec<String>,
 }
 
 /// The result of a case apart from its reported problems.
@@ -73,6 +76,11 @@ impl OpenCase {
 }
 
 impl OpenCases {
+    pub fn new(selection: &CaseSelection) -> Self {
+        let awaited = selection.required_paths().map(str::to_owned).collect();
+        Self { awaited, ..Self::default() }
+    }
+
     /// Returns the case if it is open.
     pub fn open(&self, case: Option<CaseId>) -> Option<CaseId> {
         case.filter(|case| self.open.iter().any(|open| open.id == *case))
@@ -86,7 +94,7 @@ impl OpenCases {
     pub fn not_run_problem(&self) -> Option<String> {
         let missing = self.planned.len();
         if missing == 0 {
-            return None;
+            return self.awaited.first().map(|path| format!("the test has no case `{path}`"));
         }
         let names: Vec<_> =
             self.planned.names().take(NAMES_SHOWN).map(|name| format!("`{name}`")).collect();
@@ -138,6 +146,7 @@ impl TestRun<'_> {
         if start.parent.is_none() {
             cases.planned.start(&name);
         }
+        cases.awaited.retain(|awaited| *awaited != path);
         if is_repeated {
             let message =
                 format!("two cases of `{}` have one name; one is `{path}`", self.plan.name);

@@ -119,6 +119,8 @@ fn plugin_of(suite: &SuitePlan, plan: &TestPlan, request: TestRequest) -> Plugin
         is_last: request.is_last,
         // The task of the process fills in the marker.
         end_marker: plan.settings.shared.then(String::new),
+        parameters: plan.parameters.clone(),
+        cases: plan.cases.selectors.clone(),
         ..plugin(suite, &plan.name, &plan.plugin, request.repetition)
     }
 }

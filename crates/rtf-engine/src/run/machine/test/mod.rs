@@ -86,7 +86,7 @@ impl<'p> TestRun<'p> {
             has_fixtures: !suite.fixtures.is_empty(),
             leak: None,
             output: OutputCapture::new(Source::Test(plan.id)),
-            cases: OpenCases::default(),
+            cases: OpenCases::new(&plan.cases),
             critical: None,
             finished: None,
         }
@@ -157,6 +157,10 @@ impl<'p> TestRun<'p> {
             Ok(initialized) => {
                 self.stack = initialized.stack;
                 self.shares_host = self.plan.settings.shared && initialized.supports_shared;
+                if !initialized.selects_cases && self.plan.cases.needs_support() {
+                    let reason = format!("{} cannot select cases", initialized.host);
+                    self.stop(StopCause::Protocol, reason, cx);
+                }
             }
             Err(what) => self.on_protocol_error(what, cx),
         }

@@ -88,5 +88,9 @@ fn test(index: usize) -> TestPlan {
         limits: Arc::new(limits),
         settings: TestSettings::default(),
         tags: Vec::new(),
+        matrix: None,
+        parameters: Vec::new(),
+        expected: None,
+        cases: CaseSelection::default(),
     }
 }
