@@ -56,4 +56,10 @@ impl ExpectedFailure {
             (_, true) => Significance::Quarantined,
         }
     }
+
+    /// Whether this verdict is a known failure, which does not count.
+    #[must_use]
+    pub fn covers(&self, verdict: Verdict) -> bool {
+        !self.expired && verdict.is_problem() && self.verdicts.contains(&verdict)
+    }
 }

@@ -12,13 +12,18 @@ use crate::run::machine::io::Deadline;
 use crate::run::machine::test::{FinishedAttempt, TestRun};
 use rtf_plan::plan::{AfterCollapse, TestPlan};
 
+fn is_known_failure(plan: &TestPlan, verdict: Verdict) -> bool {
+    plan.expected.as_ref().is_some_and(|expected| expected.covers(verdict))
+}
+
 /// A collapse is not retried, since it has a separate rule; nothing follows a failed
-/// critical assertion.
+/// critical assertion. A known failure needs no second attempt.
 fn is_retried(plan: &TestPlan, number: AttemptNumber, finished: &FinishedAttempt) -> bool {
     use Verdict::{Crashed, Error, Failed, TimedOut};
     matches!(finished.verdict, Failed | Error | Crashed | TimedOut)
         && number.retries < plan.settings.retries.count
         && finished.critical.is_none()
+        && !is_known_failure(plan, finished.verdict)
 }
 
 impl<'p> SuiteMachine<'p> {
@@ -40,7 +45,9 @@ impl<'p> SuiteMachine<'p> {
         if has_collapsed && after == AfterCollapse::Skip {
             event.verdict = Verdict::Skipped;
         }
-        self.fails.count(&event);
+        if !is_known_failure(plan, event.verdict) {
+            self.fails.count(&event);
+        }
         cx.emit(EventKind::TestFinished(event));
         self.is_checked = self.close_examination(test);
         self.end_if_critical(plan, finished, rerun);
@@ -69,7 +76,11 @@ impl<'p> SuiteMachine<'p> {
         let (name, verdict) = (&plan.name, finished.verdict);
         let reason = match &finished.critical {
             Some(text) => format!("a critical assertion of `{name}` did not hold: {text}"),
-            None if plan.settings.critical && !verdict.is_green() && !rerun => {
+            None if plan.settings.critical
+                && !verdict.is_green()
+                && !is_known_failure(plan, verdict)
+                && !rerun =>
+            {
                 format!("the critical test `{name}` did not pass: it is {verdict}")
             }
             None => return,

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use insta::assert_snapshot;
-use rtf_model::{ExitStatus, Phase, Source, TestId, Verdict};
+use rtf_model::{ExitStatus, ExpectedFailure, Phase, Source, TestId, Verdict};
 
 use super::world::{SECOND, TEST, World, hook, suite};
 use crate::run::FailLimit;
@@ -165,4 +165,23 @@ fn failures_of_another_suite_end_a_suite_after_its_test() {
     let why = Some("1 test has not passed (--max-fail 1)");
     assert_eq!(other.record.tests[1].skipped.as_deref(), why);
     assert_eq!(other.record.totals().of(Verdict::Skipped), 2);
+}
+
+/// A known failure is neither retried nor counted for `--max-fail`, and the suite continues
+/// although the test is critical.
+#[test]
+fn a_known_failure_has_no_consequences() {
+    let mut plan = suite(0, 2);
+    plan.tests[0].settings.retries = Retries { count: 3, delay: Duration::ZERO };
+    plan.tests[0].settings.critical = true;
+    let verdicts = vec![Verdict::Failed];
+    plan.tests[0].expected = Some(Box::new(ExpectedFailure { verdicts, ..Default::default() }));
+    let mut world = World::running(&plan);
+    world.failure(TEST, "the elbow drifts", false);
+    world.end(TEST, "failed");
+    world.pass(1);
+    world.finish();
+    assert_eq!(world.record.tests[0].attempts.len(), 1);
+    assert_eq!(world.record.verdict(TestId(1)), Some(Verdict::Passed));
+    assert!(world.record.is_green());
 }

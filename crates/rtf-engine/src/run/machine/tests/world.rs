@@ -104,7 +104,7 @@ impl<'p> World<'p> {
             environment: String::new(),
             tolerates_collapse: false,
             parallel: plan.settings.parallel,
-            skips_fail: false,
+            skips_fail: plan.settings.skips_fail,
         }));
         for fixture in &plan.fixtures {
             let (fixture, suite, name) = (fixture.id, plan.id, fixture.name.clone());
@@ -130,7 +130,7 @@ impl<'p> World<'p> {
                 repetitions: test.settings.repetitions,
                 timed,
                 tags: Vec::new(),
-                expected: None,
+                expected: test.expected.clone(),
                 parameters: Vec::new(),
             }));
         }
