@@ -2,10 +2,11 @@
 //! use the same lines with their own style and indentation.
 
 use rtf_model::{
-    AttemptRecord, Comparison, HookRunRecord, LeakedProcess, Measurement, Message, MessageKind,
-    SignalSummary,
+    AttemptRecord, CaseId, Comparison, HookRunRecord, LeakedProcess, Measurement, Message,
+    MessageKind, SignalSummary,
 };
 
+use crate::cases::{CaseProblems, CaseResult, TestCases};
 use crate::{escape, words};
 
 /// The style of a line.
@@ -37,24 +38,56 @@ impl Extent {
 pub(crate) type Sink<'a> = &'a mut dyn FnMut(Tone, &str);
 
 /// Explains why an attempt did not pass: reason, failures, measurements and signals
-/// outside their limits, stacks. Output and leaked processes are not included.
+/// outside their limits, stacks. Output and leaked processes are not included, nor is
+/// what was reported in a case.
 pub(crate) fn explain(attempt: &AttemptRecord, extent: Extent, sink: Sink<'_>) {
     let reason = attempt.finished.as_ref().and_then(|(_, finished)| finished.reason.as_deref());
     if let Some(reason) = reason.filter(|reason| !is_told_with_its_place(attempt, reason)) {
         block(Tone::Bad, reason, "", sink);
     }
-    let failures = attempt.failures().count();
-    attempt.failures().take(extent.items).for_each(|failure| message(failure, sink));
-    left_out(failures, extent.items, "failure", sink);
-    let violations = attempt.violations().count();
-    for violation in attempt.violations().take(extent.items) {
-        sink(Tone::Bad, &measurement(violation));
-    }
-    left_out(violations, extent.items, "measurement", sink);
+    let failures = attempt.failures().filter(|failure| !is_in_case(attempt, failure.case));
+    let violations = attempt.violations().filter(|value| !is_in_case(attempt, value.case));
+    problems(&failures.collect::<Vec<_>>(), &violations.collect::<Vec<_>>(), extent, sink);
     attempt.series.iter().filter(|s| s.outside > 0).for_each(|s| sink(Tone::Bad, &series(s)));
     for stack in &attempt.stacks {
         self::stack(stack, extent, sink);
     }
+}
+
+/// Explains why a case did not pass: its reason, failures, and measurements outside
+/// their limits.
+pub(crate) fn case(cases: &TestCases<'_>, case: &CaseResult<'_>, extent: Extent, sink: Sink<'_>) {
+    let none = CaseProblems::default();
+    let reported = cases.problems(case).unwrap_or(&none);
+    case_problems(case.reason(), reported, extent, sink);
+}
+
+/// The reason of a case, unless it is one of its problems, and these problems.
+pub(crate) fn case_problems(
+    reason: &str,
+    reported: &CaseProblems<'_>,
+    extent: Extent,
+    sink: Sink<'_>,
+) {
+    let is_told = reported.failures.iter().any(|failure| failure.text == reason)
+        || reported.violations.iter().any(|value| value.problem().as_deref() == Some(reason));
+    if !is_told {
+        block(Tone::Bad, reason, "", sink);
+    }
+    problems(&reported.failures, &reported.violations, extent, sink);
+}
+
+fn problems(failures: &[&Message], violations: &[&Measurement], extent: Extent, sink: Sink<'_>) {
+    failures.iter().take(extent.items).for_each(|failure| message(failure, sink));
+    left_out(failures.len(), extent.items, "failure", sink);
+    for violation in violations.iter().take(extent.items) {
+        sink(Tone::Bad, &measurement(violation));
+    }
+    left_out(violations.len(), extent.items, "measurement", sink);
+}
+
+fn is_in_case(attempt: &AttemptRecord, case: Option<CaseId>) -> bool {
+    case.is_some_and(|case| attempt.cases.get(case).is_some())
 }
 
 /// Explains why a run of a hook failed: problem, failures, stacks,

@@ -2,8 +2,9 @@
 //! code hosts annotate changes with them.
 
 mod location;
+mod test;
 
-use rtf_model::{HookRunRecord, Record, Severity, SuiteRecord, TestRecord, Verdict};
+use rtf_model::{HookRunRecord, Record, Severity, SuiteRecord};
 
 pub(crate) use location::{RepositoryLocation, Roots};
 
@@ -50,7 +51,7 @@ pub(crate) fn all(record: &Record, roots: &Roots<'_>) -> Vec<Finding> {
     let mut findings: Vec<Finding> = of_run(record, roots).into_iter().collect();
     findings.extend(record.suites.iter().flat_map(|suite| of_hooks(record, suite, roots)));
     findings.extend(record.suites.iter().flat_map(|suite| of_fixtures(record, suite, roots)));
-    findings.extend(record.tests.iter().filter_map(|test| of_test(record, test, roots)));
+    findings.extend(record.tests.iter().flat_map(|test| test::of(record, test, roots)));
     findings.extend(record.warnings.iter().map(|warning| of_warning(warning, roots)));
     findings
 }
@@ -137,35 +138,6 @@ fn of_fixtures(record: &Record, suite: &SuiteRecord, roots: &Roots<'_>) -> Vec<F
             })
         })
         .collect()
-}
-
-fn of_test(record: &Record, test: &TestRecord, roots: &Roots<'_>) -> Option<Finding> {
-    let verdict = test.final_verdict();
-    let rank = match verdict {
-        Verdict::Failed => Rank::Robot,
-        // The reason why it was skipped is a separate finding.
-        Verdict::Skipped => return None,
-        verdict if verdict.is_green() => return None,
-        _ => Rank::Bench,
-    };
-    let about = record.full_name(test.plan.test);
-    let mut lines = Vec::new();
-    if let Some(attempt) = test.decisive_attempt() {
-        let sink = &mut |_, line: &str| lines.push(line.to_owned());
-        explain::explain(attempt, EXTENT, sink);
-        explain::left(&attempt.leaked, sink);
-    }
-    if lines.is_empty() {
-        lines.push(escape::block(test.reason().unwrap_or(verdict.as_str())).into_owned());
-    }
-    Some(Finding {
-        rank,
-        kind: verdict.as_str().to_owned(),
-        title: format!("{} {verdict}", escape::line(&about)),
-        text: lines.join("\n"),
-        place: roots.test(record, test),
-        about,
-    })
 }
 
 fn of_warning(warning: &rtf_model::Diagnostic, roots: &Roots<'_>) -> Finding {

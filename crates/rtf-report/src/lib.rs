@@ -13,6 +13,7 @@
 
 pub mod background_writer;
 mod backlog;
+mod cases;
 mod cause;
 pub mod code_quality;
 pub mod console;
@@ -27,6 +28,7 @@ pub mod gitlab;
 mod growth;
 pub mod journal;
 pub mod junit;
+mod known_failure;
 pub mod logs;
 pub mod merge;
 pub mod output_file;

@@ -1,4 +1,4 @@
-//! The command that reruns a failed test, for the summary of a run.
+//! The command that reruns a failed test or case, for the summary of a run.
 
 use std::sync::OnceLock;
 
@@ -9,8 +9,8 @@ use rtf_report::console::{RerunCommand, rerun_suite};
 /// would be another test.
 pub fn for_run() -> RerunCommand {
     let options = OnceLock::new();
-    Box::new(move |record, test| {
-        let mut command = rerun_suite(record, test)?;
+    Box::new(move |record, test, case| {
+        let mut command = rerun_suite(record, test, case)?;
         // The same for all tests of a run.
         let (plugin_options, config_options) =
             options.get_or_init(|| (plugin_options(record), config_options(record)));

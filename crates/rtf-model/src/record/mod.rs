@@ -378,9 +378,7 @@ impl Record {
     /// skipped itself. One that has not finished is not green.
     #[must_use]
     pub fn is_test_green(&self, test: &TestRecord) -> bool {
-        let suite = self.suites.get(test.plan.suite.index());
-        let skips_fail = suite.is_some_and(|suite| suite.plan.skips_fail)
-            || self.run.as_ref().is_some_and(|run| run.manifest.no_skips);
+        let skips_fail = self.skips_fail(test);
         match test.significance() {
             Significance::Expected | Significance::Quarantined => true,
             Significance::UnexpectedPass => false,
@@ -389,6 +387,14 @@ impl Record {
                 test.final_verdict().is_green() && !(skips_fail && test.has_skipped_cases())
             }
         }
+    }
+
+    /// Whether the run is red if the test, or a case of it, skips itself.
+    #[must_use]
+    pub fn skips_fail(&self, test: &TestRecord) -> bool {
+        let suite = self.suites.get(test.plan.suite.index());
+        suite.is_some_and(|suite| suite.plan.skips_fail)
+            || self.run.as_ref().is_some_and(|run| run.manifest.no_skips)
     }
 
     /// Whether a test that passed only after a retry counts as failed.

@@ -2,12 +2,12 @@
 
 use rtf_model::{
     Event, EventKind, FixtureId, LeakedProcess, Manifest, Message, MessageKind, Micros, Record,
-    Source, StopCause, SuiteId, SuitePrepared, TestFinished, TestId, Verdict,
+    Source, StopCause, SuiteId, SuitePrepared, TestId, Verdict,
 };
 
 use super::page::ConsoleLines;
 use super::style::{self, BAD, BOLD, DIM, LOUD};
-use super::{ConsoleOptions, Verbosity, hooks};
+use super::{ConsoleOptions, Verbosity, hooks, results};
 use crate::explain::{self, Extent, Tone};
 use crate::{ReportError, cause, escape, logs, private_resources, words};
 
@@ -66,7 +66,8 @@ pub(super) fn show(
             page.remark((LOUD, "stack"), &live.fixture(*fixture));
             explain::stack(text, EXTENT, &mut |tone, line| page.detail(tone, line));
         }
-        EventKind::TestFinished(finished) => live.finished(page, finished),
+        EventKind::CaseFinished(end) => results::case_finished(page, options, record, end),
+        EventKind::TestFinished(end) => results::test_finished(page, options, record, end),
         EventKind::TestSkipped { test, reason } if !quiet => live.skipped(page, *test, reason),
         EventKind::HookFinished { hook, .. } => hooks::finished(page, options, record, *hook),
         EventKind::RunnerDied { reason, leaked } => {
@@ -248,7 +249,7 @@ impl Live<'_> {
         if !log_tail.is_empty() {
             sink(Tone::Plain, "last lines:");
             explain::printed(log_tail.iter().map(String::as_str), sink);
-            if let Some(log) = self.log(Source::Fixture(id)) {
+            if let Some(log) = self.options.shown(&logs::log(self.record, Source::Fixture(id))) {
                 sink(Tone::Dim, &format!("full log: {log}"));
             }
         }
@@ -285,41 +286,6 @@ impl Live<'_> {
             page.remark((LOUD, "leaked"), &self.fixture(id));
             explain::left(processes, &mut |tone, line| page.detail(tone, line));
         }
-    }
-
-    fn finished(&self, page: &mut ConsoleLines, finished: &TestFinished) {
-        let Some(test) = self.record.tests.get(finished.test.index()) else { return };
-        let Some(attempt) = test.attempts.last() else { return };
-        let mut name = self.test(finished.test);
-        match test.repetitions() {
-            None => name += &format!(" ({})", attempt.repetition),
-            Some(1) => {}
-            Some(all) => name += &format!(" ({} of {all})", attempt.repetition),
-        }
-        if attempt.attempt > 1 {
-            name += &format!(", attempt {}", attempt.attempt);
-        }
-        if finished.rerun {
-            name += ", will be retried";
-        }
-        let green = finished.verdict.is_green();
-        if !green || self.options.verbosity > Verbosity::Quiet {
-            let verdict = (style::of_verdict(finished.verdict), finished.verdict.as_str());
-            page.entry(verdict, &words::time(attempt.duration().unwrap_or_default()), &name);
-        }
-        if green {
-            return leaked(page, &name, &attempt.leaked);
-        }
-        let sink = &mut |tone, line: &str| page.detail(tone, line);
-        explain::explain(attempt, EXTENT, sink);
-        explain::left(&attempt.leaked, sink);
-        if !attempt.output.is_empty() && self.options.verbosity < Verbosity::Verbose {
-            output(&attempt.output, self.log(Source::Test(finished.test)), sink);
-        }
-    }
-
-    fn log(&self, source: Source) -> Option<String> {
-        self.options.shown(&logs::log(self.record, source))
     }
 
     fn skipped(&self, page: &mut ConsoleLines, id: TestId, reason: &str) {

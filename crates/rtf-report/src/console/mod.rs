@@ -5,11 +5,13 @@
 //! a [`BackgroundWriter`] writes both; if it cannot keep up with the
 //! messages, the console omits detail and shows how much.
 
+mod case_summary;
 mod hooks;
 mod live;
 mod options;
 mod page;
 mod progress;
+mod results;
 mod style;
 mod summary;
 mod verbose;

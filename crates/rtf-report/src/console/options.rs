@@ -18,8 +18,9 @@ pub enum Verbosity {
     Verbose,
 }
 
-/// Returns the command that reruns a test, `None` if there is none.
-pub type RerunCommand = Box<dyn Fn(&Record, TestId) -> Option<String> + Send>;
+/// Returns the command that reruns a test, or only its case with this path; `None` if
+/// there is none.
+pub type RerunCommand = Box<dyn Fn(&Record, TestId, Option<&str>) -> Option<String> + Send>;
 
 /// Options of the console.
 pub struct ConsoleOptions {
@@ -53,15 +54,16 @@ impl Default for ConsoleOptions {
     }
 }
 
-/// `rtf run SUITE::TEST`, or `rtf run PLUGIN` for a plug-in given on the command line.
+/// `rtf run SUITE::TEST` or `rtf run SUITE::TEST/CASE`, or `rtf run PLUGIN` for a plug-in
+/// given on the command line.
 #[must_use]
-pub fn rerun_suite(record: &Record, test: TestId) -> Option<String> {
+pub fn rerun_suite(record: &Record, test: TestId, case: Option<&str>) -> Option<String> {
     let test = record.tests.get(test.index())?;
     let suite = record.suites.get(test.plan.suite.index())?;
-    let what = if suite.plan.file.is_empty() {
-        test.plan.plugin.clone()
-    } else {
-        format!("{}::{}", suite.plan.file, test.plan.name)
+    let what = match case {
+        _ if suite.plan.file.is_empty() => test.plan.plugin.clone(),
+        None => format!("{}::{}", suite.plan.file, test.plan.name),
+        Some(case) => format!("{}::{}/{case}", suite.plan.file, test.plan.name),
     };
     (!what.is_empty()).then(|| format!("rtf run {}", words::quoted(&what)))
 }

@@ -46,6 +46,12 @@ impl ConsoleLines {
         self.line(&format!("    {label}  {text}"));
     }
 
+    /// A labelled fact of an inner list item at the end of the run.
+    pub fn inner_fact(&mut self, label: &str, text: &str) {
+        let label = style::paint(style::DIM, &format!("{label:<6}"));
+        self.line(&format!("      {label}  {text}"));
+    }
+
     /// How many bytes wait.
     pub fn len(&self) -> usize {
         self.0.len()

@@ -4,14 +4,15 @@
 use std::collections::BTreeMap;
 
 use anstyle::Style;
-use rtf_model::{Phase, Record, TestId, Verdict};
+use rtf_model::{Phase, Record, Significance, TestId, TestRecord, Verdict};
 
 use super::page::ConsoleLines;
 use super::style::{self, BAD, BOLD, GOOD, LOUD};
-use super::{ConsoleOptions, hooks};
+use super::{ConsoleOptions, case_summary, hooks};
+use crate::cases::{CaseTotals, TestCases};
 use crate::growth::{self, Growing, Within};
 use crate::repetition_summary::Repeated;
-use crate::{cause, escape, explain, logs, words};
+use crate::{cause, escape, explain, known_failure, logs, words};
 
 /// Maximum number of skipped tests that are listed per reason.
 const NAMES: usize = 5;
@@ -27,10 +28,13 @@ pub(super) fn show(page: &mut ConsoleLines, options: &ConsoleOptions, record: &R
     hooks::summary(page, options, record);
     problems(page, record);
     failed(page, options, record);
+    case_summary::unexpected(page, options, record);
+    case_summary::known(page, record);
     flaky(page, record);
     repeated(page, record);
     growing(page, record);
     skipped(page, record);
+    case_summary::skipped(page, record);
     killed(page, record);
     page.line("");
     if let Some(folder) = &options.folder {
@@ -60,36 +64,83 @@ fn problems(page: &mut ConsoleLines, record: &Record) {
 }
 
 fn failed(page: &mut ConsoleLines, options: &ConsoleOptions, record: &Record) {
-    let is_failed = |verdict: Verdict| !verdict.is_green() && verdict != Verdict::Skipped;
-    let ids = record.tests.iter().map(|test| test.plan.test);
-    let failed: Vec<_> = ids.filter(|id| is_failed(record.final_verdict(*id))).collect();
+    let failed: Vec<_> = record.tests.iter().filter(|test| is_failed(record, test)).collect();
     if failed.is_empty() {
         return;
     }
     page.line("");
     page.line(&style::paint(BOLD, "tests that did not pass:"));
-    for id in failed {
-        failed_test(page, options, record, id);
+    for test in failed {
+        failed_test(page, options, record, test);
     }
 }
 
-fn failed_test(page: &mut ConsoleLines, options: &ConsoleOptions, record: &Record, id: TestId) {
-    let Some(test) = record.tests.get(id.index()) else { return };
-    let verdict = record.final_verdict(id);
+/// Whether a test did not pass. The runner's skips and unexpected passes are listed
+/// separately.
+fn is_failed(record: &Record, test: &TestRecord) -> bool {
+    let is_listed = match test.significance() {
+        Significance::UnexpectedPass => false,
+        Significance::SkippedItself => true,
+        _ => test.final_verdict() != Verdict::Skipped,
+    };
+    is_listed && !record.is_test_green(test)
+}
+
+fn failed_test(
+    page: &mut ConsoleLines,
+    options: &ConsoleOptions,
+    record: &Record,
+    test: &TestRecord,
+) {
+    let id = test.plan.test;
     let attempt = test.decisive_attempt();
-    let finished = attempt.and_then(|attempt| attempt.finished.as_ref());
+    let cases = TestCases::of(test);
+    failed_title(page, record, test);
+    // The reason is that of a case, which is listed.
+    let is_told = cases.as_ref().is_some_and(|cases| !cases.has_test_problem(test));
+    let red_reason = known_failure::red_reason(record, test);
+    match red_reason.as_deref().or(test.reason()) {
+        Some(reason) if red_reason.is_some() || !is_told => {
+            page.fact("reason", &words::first_line(reason));
+        }
+        None if !record.is_complete() => page.fact("reason", "the run ended before the test did"),
+        _ => {}
+    }
+    if !is_told {
+        first_problem(page, test);
+    }
+    case_summary::mark(page, test);
+    if let Some(attempt) = attempt.filter(|attempt| !attempt.output.is_empty()) {
+        let log = logs::attempt_log(record, id, (attempt.repetition, attempt.attempt));
+        options.shown(&log).into_iter().for_each(|log| page.fact("log", &log));
+    }
+    if let Some(command) = (options.rerun)(record, id, None) {
+        page.fact("rerun", &escape::line(&command));
+    }
+    if let Some(cases) = &cases {
+        case_summary::failed_cases(page, options, record, (test, cases));
+    }
+}
+
+/// `  arm/MoveTest  failed in set-up`.
+fn failed_title(page: &mut ConsoleLines, record: &Record, test: &TestRecord) {
+    let finished = test.decisive_attempt().and_then(|attempt| attempt.finished.as_ref());
     let phase = finished.map(|(_, finished)| finished.phase).filter(|phase| *phase != Phase::Run);
+    let verdict = test.final_verdict();
+    let phase = phase.filter(|_| verdict.is_problem());
     let phase = phase.map_or(String::new(), |phase| format!(" in {phase}"));
-    let name = style::paint(BOLD, &escape::line(&record.full_name(id)));
+    let name = style::paint(BOLD, &escape::line(&record.full_name(test.plan.test)));
     let verdict = style::paint(style::of_verdict(verdict), verdict.as_str());
     page.line(&format!("  {name}  {verdict}{phase}"));
-    match test.reason() {
-        Some(reason) => page.fact("reason", &words::first_line(reason)),
-        None if !record.is_complete() => page.fact("reason", "the run ended before the test did"),
-        None => {}
-    }
+}
+
+/// Shows the first failure of an attempt without an end, and the location of the first
+/// problem.
+fn first_problem(page: &mut ConsoleLines, test: &TestRecord) {
+    let attempt = test.decisive_attempt();
     let first = attempt.and_then(|attempt| attempt.failures().next());
-    if let (None, Some(failure)) = (finished, first) {
+    let is_open = attempt.is_none_or(|attempt| attempt.finished.is_none());
+    if let (true, Some(failure)) = (is_open, first) {
         page.fact("before", &words::first_line(&failure.text));
     }
     let violation = attempt.and_then(|attempt| attempt.violations().next());
@@ -97,19 +148,13 @@ fn failed_test(page: &mut ConsoleLines, options: &ConsoleOptions, record: &Recor
     if let Some(location) = place.or(violation.and_then(|v| v.location.as_ref())) {
         page.fact("at", &escape::line(&location.to_string()));
     }
-    if let Some(attempt) = attempt.filter(|attempt| !attempt.output.is_empty()) {
-        let log = logs::attempt_log(record, id, (attempt.repetition, attempt.attempt));
-        options.shown(&log).into_iter().for_each(|log| page.fact("log", &log));
-    }
-    if let Some(command) = (options.rerun)(record, id) {
-        page.fact("rerun", &escape::line(&command));
-    }
 }
 
 fn skipped(page: &mut ConsoleLines, record: &Record) {
     let mut reasons: BTreeMap<&str, Vec<TestId>> = BTreeMap::new();
     for test in &record.tests {
-        if test.final_verdict() == Verdict::Skipped {
+        let skipped_itself = test.significance() == Significance::SkippedItself;
+        if test.final_verdict() == Verdict::Skipped && !skipped_itself {
             let reason = test.skipped.as_deref();
             let reason = reason.unwrap_or("the run ended before the test started");
             reasons.entry(reason).or_default().push(test.plan.test);
@@ -121,15 +166,21 @@ fn skipped(page: &mut ConsoleLines, record: &Record) {
     page.line("");
     page.line(&style::paint(BOLD, "skipped tests:"));
     for (reason, tests) in reasons {
-        let count = words::count(tests.len() as u64, "test");
-        let reason = words::first_line(cause::short(record, reason));
-        page.line(&format!("  {}: {reason}", style::paint(LOUD, &count)));
-        for id in tests.iter().take(NAMES) {
-            page.line(&format!("    {}", escape::line(&record.full_name(*id))));
-        }
-        if tests.len() > NAMES {
-            page.line(&format!("    … and {} more", tests.len() - NAMES));
-        }
+        let name = |id: &TestId| escape::line(&record.full_name(*id)).into_owned();
+        let names: Vec<_> = tests.iter().map(name).collect();
+        skipped_names(page, "test", cause::short(record, reason), &names);
+    }
+}
+
+/// Lists tests or cases that were skipped for one reason.
+pub(super) fn skipped_names(page: &mut ConsoleLines, noun: &str, reason: &str, names: &[String]) {
+    let count = style::paint(LOUD, &words::count(names.len() as u64, noun));
+    page.line(&format!("  {count}: {}", words::first_line(reason)));
+    for name in names.iter().take(NAMES) {
+        page.line(&format!("    {name}"));
+    }
+    if names.len() > NAMES {
+        page.line(&format!("    … and {} more", names.len() - NAMES));
     }
 }
 
@@ -217,15 +268,22 @@ fn killed(page: &mut ConsoleLines, record: &Record) {
 }
 
 fn result(page: &mut ConsoleLines, record: &Record) {
-    let totals = record.final_totals();
-    let counts = Verdict::ALL.into_iter().filter(|verdict| totals.of(*verdict) > 0);
-    let counts: Vec<_> =
-        counts.map(|verdict| format!("{} {verdict}", totals.of(verdict))).collect();
-    let tests = words::count(u64::from(totals.planned), "test");
+    let tests = words::count(record.tests.len() as u64, "test");
     let suites = words::count(record.suites.len() as u64, "suite");
     let time = words::time(record.last_at.as_duration());
     let (style, word) = outcome(record);
-    let counts = if counts.is_empty() { String::new() } else { format!(": {}", counts.join(", ")) };
+    let counts = match test_counts(record) {
+        counts if counts.is_empty() => counts,
+        counts => format!(": {counts}"),
+    };
+    let totals = CaseTotals::of_run(record);
+    let (cases, case_counts) = match totals.total {
+        0 => (String::new(), String::new()),
+        total => {
+            let counts = format!("; cases: {}", totals.describe());
+            (format!(", {}", words::count(total, "case")), counts)
+        }
+    };
     let flaky = match record.tests.iter().filter(|test| test.is_flaky()).count() {
         0 => String::new(),
         flaky => format!(" ({flaky} flaky)"),
@@ -235,8 +293,20 @@ fn result(page: &mut ConsoleLines, record: &Record) {
         0 => String::new(),
         failed => format!("; {} failed", words::count(failed as u64, "hook")),
     };
-    let rest = format!("{tests} in {suites}, {time}{counts}{flaky}{hooks}");
+    let rest = format!("{tests}{cases} in {suites}, {time}{counts}{flaky}{case_counts}{hooks}");
     page.line(&format!("{}  {rest}", style::paint(style, &word)));
+}
+
+/// `9 passed, 1 failed, 1 expected`.
+fn test_counts(record: &Record) -> String {
+    let words = Verdict::ALL.map(Verdict::as_str).into_iter().chain(["expected", "quarantined"]);
+    let mut counts: Vec<_> = words.map(|word| (word, 0_u32)).collect();
+    for test in &record.tests {
+        let word = known_failure::word(test);
+        counts.iter_mut().filter(|(counted, _)| *counted == word).for_each(|(_, n)| *n += 1);
+    }
+    let counts = counts.iter().filter(|(_, count)| *count > 0);
+    counts.map(|(word, count)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
 }
 
 /// The result as a word, with its reason.

@@ -3,10 +3,14 @@
 
 use std::collections::BTreeMap;
 
-use rtf_model::{Event, EventKind, FixtureId, HookId, Output, Record, Source, TestId};
+use rtf_model::{
+    CaseFinished, CaseId, Event, EventKind, FixtureId, HookId, Output, Record, Source, TestId,
+    Verdict,
+};
 
 use super::page::ConsoleLines;
-use super::style::DIM;
+use super::results;
+use super::style::{DIM, GOOD, LOUD};
 use crate::explain::{self, Tone};
 use crate::{escape, words};
 
@@ -73,12 +77,14 @@ impl Verbose {
             EventKind::Message { source, message, .. } => {
                 let mut lines = Vec::new();
                 explain::message(message, &mut |tone, line| lines.push((tone, line.to_owned())));
-                lines_of(page, &name(record, *source), &lines);
+                lines_of(page, &name_in_case(record, *source, message.case), &lines);
             }
+            EventKind::CaseFinished(end) => case_finished(page, record, end),
             EventKind::Measured { test, fixture, measurement } => {
                 let tone = if measurement.is_within_limits() { Tone::Plain } else { Tone::Bad };
                 let lines = [(tone, explain::measurement(measurement))];
-                lines_of(page, &name(record, teller(*test, *fixture)), &lines);
+                let name = name_in_case(record, teller(*test, *fixture), measurement.case);
+                lines_of(page, &name, &lines);
             }
             EventKind::Attached { test, fixture, attachment } => {
                 let text = format!(
@@ -86,7 +92,8 @@ impl Verbose {
                     escape::line(&attachment.name),
                     escape::line(&attachment.path)
                 );
-                lines_of(page, &name(record, teller(*test, *fixture)), &[(Tone::Plain, text)]);
+                let name = name_in_case(record, teller(*test, *fixture), attachment.case);
+                lines_of(page, &name, &[(Tone::Plain, text)]);
             }
             EventKind::Output(output) => self.output(page, output, record),
             EventKind::TestFinished(finished) => {
@@ -111,6 +118,7 @@ impl Verbose {
         match &event.kind {
             EventKind::Message { message, .. } => Some(lines(&message.text).max(1)),
             EventKind::Measured { .. } | EventKind::Attached { .. } => Some(1),
+            EventKind::CaseFinished(end) if !end.verdict.is_problem() => Some(1),
             EventKind::Output(output) => {
                 // The next piece would not continue this line.
                 self.partial.remove(&Key::of(output));
@@ -164,6 +172,34 @@ fn name(record: &Record, source: Source) -> String {
         Source::Test(id) => escape::line(&record.full_name(id)).into_owned(),
         Source::Fixture(id) => format!("fixture {}", escape::line(&record.fixture_name(id))),
         Source::Hook(id) => format!("hook {}", escape::line(&record.full_hook_name(id))),
+    }
+}
+
+/// The name of a source, with the case in which it reports.
+fn name_in_case(record: &Record, source: Source, case: Option<CaseId>) -> String {
+    let name = name(record, source);
+    let (Source::Test(test), Some(case)) = (source, case) else { return name };
+    let attempt = record.tests.get(test.index()).and_then(|test| test.attempts.last());
+    match attempt.and_then(|attempt| attempt.cases.get(case)) {
+        Some(case) => format!("{name}/{}", escape::line(&case.path)),
+        None => name,
+    }
+}
+
+/// Shows a case that passed or skipped itself; others are always shown.
+fn case_finished(page: &mut ConsoleLines, record: &Record, end: &CaseFinished) {
+    let word = match end.verdict {
+        Verdict::Passed => (GOOD, "passed"),
+        Verdict::Skipped => (LOUD, "skipped"),
+        _ => return,
+    };
+    let Some(test) = record.tests.get(end.test.index()) else { return };
+    let case = test.attempts.last().and_then(|attempt| attempt.cases.get(end.case));
+    if let Some(case) = case {
+        results::case_line(page, record, test, (case, word));
+    }
+    if let Some(reason) = &end.reason {
+        page.detail(Tone::Dim, &words::first_line(reason));
     }
 }
 

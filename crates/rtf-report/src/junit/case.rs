@@ -1,190 +1,171 @@
-//! A declared test as a JUnit case.
+//! The cases of a test as JUnit test cases.
 
+use std::collections::HashMap;
 use std::path::Path;
 
-use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestRerun};
-use rtf_model::{AttemptRecord, Record, TestRecord, Verdict};
+use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus};
+use rtf_model::{
+    Attachment, AttemptRecord, CaseId, Measurement, Record, Significance, TestRecord, Verdict,
+};
 
-use super::{text, time};
+use super::{test, text, time};
+use crate::cases::{CaseResult, TestCases};
 use crate::explain::{self, Extent};
-use crate::words;
+use crate::{known_failure, words};
 
-/// More measurements or series than this would drown the page that shows them.
+/// Maximum number of measurements of a case.
 const MEASUREMENTS: usize = 100;
 
-/// The reason of a test that was running when the run ended.
-const CUT_SHORT: &str = "the run ended before the test did";
-
-/// The reason of a flaky test, if flaky tests fail.
-const FLAKY: &str = "it is flaky: it passed only after a retry";
-
-/// The reason of a test that had not started when the run ended.
-const NOT_BEGUN: &str = "the run ended before the test started";
-
-/// The case of a test.
-pub(super) fn of(record: &Record, test: &TestRecord, folder: Option<&Path>) -> TestCase {
-    let mut case = TestCase::new(text(&test.plan.name), status(record, test));
+/// The test cases of a test: one without cases, or with a problem outside of them, has its
+/// own.
+pub(super) fn of(record: &Record, test: &TestRecord, folder: Option<&Path>) -> Vec<TestCase> {
+    let Some(cases) = TestCases::of(test) else { return vec![test::of(record, test, folder)] };
+    let has_test_case = has_own_test_case(test, &cases);
+    let mut junit = Vec::with_capacity(cases.results.len() + 1);
+    if has_test_case {
+        junit.push(test::of(record, test, folder));
+    }
     let suite = record.suites.get(test.plan.suite.index()).map_or("", |s| &s.plan.name);
-    case.set_classname(text(suite));
-    case.set_time(test.duration());
-    if let Some(first) = test.attempts.first() {
-        case.timestamp = time::at(record, first.started);
-    }
-    properties(&mut case, test);
-    let left: Vec<_> = test.attempts.iter().flat_map(|a| a.leaked.iter().cloned()).collect();
-    super::leaked(&mut case, &left, test.final_verdict() == Verdict::Passed);
-    let out = system_out(test, folder);
-    if !out.is_empty() {
-        case.set_system_out(out);
-    }
-    case
-}
-
-fn status(record: &Record, test: &TestRecord) -> TestCaseStatus {
-    let verdict = test.final_verdict();
-    let mut status = match verdict {
-        Verdict::Passed => return passed(record, test),
-        Verdict::Skipped => TestCaseStatus::skipped(),
-        verdict => TestCaseStatus::non_success(kind(verdict)),
-    };
-    let unspoken = if test.attempts.is_empty() { NOT_BEGUN } else { CUT_SHORT };
-    let reason = if test.verdict().is_some() { test.reason() } else { Some(unspoken) };
-    let reason = reason.unwrap_or(verdict.as_str());
-    status.set_message(text(reason.lines().next().unwrap_or_default()));
-    status.set_type(verdict.as_str());
-    status.set_description(description(record, test, reason));
-    status
-}
-
-fn kind(verdict: Verdict) -> NonSuccessKind {
-    match verdict {
-        Verdict::Failed => NonSuccessKind::Failure,
-        _ => NonSuccessKind::Error,
-    }
-}
-
-/// A pass names the attempts that did not, as flaky runs.
-fn passed(record: &Record, test: &TestRecord) -> TestCaseStatus {
-    if test.is_flaky() && record.flaky_fails() {
-        let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-        status.set_message(FLAKY);
-        status.set_type("flaky");
-        status.set_description(description(record, test, FLAKY));
-        return status;
-    }
-    let mut status = TestCaseStatus::success();
-    for attempt in &test.attempts {
-        let Some((_, finished)) = &attempt.finished else { continue };
-        if finished.verdict.is_green() {
-            continue;
+    let name = text(&format!("{suite}.{}", test.plan.name));
+    let details = Details::of(test);
+    // One test case has the output and the properties of the test.
+    let mut bearer = None;
+    for case in cases.results.iter().filter(|case| is_listed(case)) {
+        let status = status(record, test, &cases, case);
+        if case.is_problem() && bearer.is_none() {
+            bearer = Some(junit.len());
         }
-        let mut rerun = TestRerun::new(kind(finished.verdict));
-        rerun.timestamp = time::at(record, attempt.started);
-        rerun.set_time(attempt.duration().unwrap_or_default());
-        rerun.set_type(finished.verdict.as_str());
-        rerun.set_message(text(finished.reason.as_deref().unwrap_or_default()));
-        rerun.set_description(explained(attempt));
-        status.add_rerun(rerun);
+        let mut one = TestCase::new(text(case.path), status);
+        one.set_classname(name.as_str());
+        one.set_time(case.duration);
+        if let Some(record_of_case) = case.record {
+            one.timestamp = time::at(record, record_of_case.started);
+        }
+        details.add(&mut one, case, folder);
+        junit.push(one);
     }
-    status
+    let bearer = bearer.unwrap_or(0);
+    if let Some(bearer) = junit.get_mut(bearer).filter(|_| !has_test_case) {
+        bear(bearer, test, folder);
+    }
+    if let (Some(first), true) = (junit.first_mut(), cases.omitted > 0) {
+        first.add_property(("omitted-passed-cases", cases.omitted.to_string().as_str()));
+    }
+    junit
 }
 
-/// Everything that explains the verdict: each attempt that did not pass, and
-/// before them the reason when it is none of theirs.
-fn description(record: &Record, test: &TestRecord, reason: &str) -> String {
-    let attempts = test.attempts.iter().filter(|a| a.verdict() != Some(Verdict::Passed));
-    let mut reasons = attempts.clone().filter_map(|a| a.finished.as_ref()?.1.reason.as_deref());
-    let mut lines = Vec::new();
-    if reasons.all(|told| told != reason) {
-        lines.push(text(reason));
-    }
-    for attempt in attempts {
-        lines.extend([title(test, attempt), explained(attempt)]);
-    }
-    // A test that was skipped for a broken fixture has its cause in the fixture's case.
-    if test.attempts.iter().any(|a| a.verdict() == Some(Verdict::Collapsed)) {
-        lines.extend(fixture_tails(record, test));
-    }
-    lines.retain(|line| !line.is_empty());
-    lines.join("\n")
+/// Whether a case is more than the cases that it contains.
+fn is_listed(case: &CaseResult<'_>) -> bool {
+    !case.is_container || case.is_problem() || case.verdict() == Some(Verdict::Skipped)
 }
 
-fn title(test: &TestRecord, attempt: &AttemptRecord) -> String {
-    let mut title = words::repetition(test, attempt);
-    title += &format!(", attempt {}", attempt.attempt);
-    let Some((_, finished)) = &attempt.finished else { return title + ": it did not finish" };
-    title += &format!(": {} in {}", finished.verdict, finished.phase);
-    if let Some(exit) = finished.exit {
-        title += &format!(", {exit}");
-    }
-    title
+fn has_own_test_case(test: &TestRecord, cases: &TestCases<'_>) -> bool {
+    let is_explained = match test.significance() {
+        Significance::UnexpectedPass | Significance::SkippedItself => false,
+        _ => test.final_verdict() != Verdict::Skipped && !cases.has_test_problem(test),
+    };
+    !is_explained || test.is_flaky() || cases.results.is_empty()
 }
 
-fn explained(attempt: &AttemptRecord) -> String {
+/// Adds the output and the properties of a test to the test case of one of its cases.
+fn bear(case: &mut TestCase, test: &TestRecord, folder: Option<&Path>) {
+    let own = case.system_out.take();
+    test::add_details(case, test, folder);
+    if let Some(own) = own {
+        let out = case.system_out.as_ref().map_or("", |out| out.as_str());
+        let separator = if out.is_empty() || out.ends_with('\n') { "" } else { "\n" };
+        let all = format!("{out}{separator}{}", own.as_str());
+        case.set_system_out(all);
+    }
+    let Some(attempt) = test.decisive_attempt() else { return };
+    let ending = test::ending(test, attempt);
+    if let TestCaseStatus::NonSuccess { description, .. } = &mut case.status
+        && !ending.is_empty()
+    {
+        let before = description.as_ref().map_or("", |text| text.as_str());
+        *description = Some(format!("{before}\n{ending}").into());
+    }
+}
+
+fn status(
+    record: &Record,
+    test: &TestRecord,
+    cases: &TestCases<'_>,
+    case: &CaseResult<'_>,
+) -> TestCaseStatus {
+    let Some(verdict) = case.verdict() else {
+        let mut status = TestCaseStatus::skipped();
+        let reason = test.reason().unwrap_or("the run ended before the test did");
+        status.set_message(text(&format!("did not run: {}", words::first_line(reason))));
+        return status;
+    };
+    let (mut status, message) = match verdict {
+        Verdict::Passed => return TestCaseStatus::success(),
+        Verdict::Skipped if known_failure::has_red_cases(record, test) => {
+            let message = format!("it skipped itself, and skips fail: {}", case.reason());
+            (TestCaseStatus::non_success(NonSuccessKind::Failure), message)
+        }
+        Verdict::Skipped => (TestCaseStatus::skipped(), case.reason().to_owned()),
+        _ if known_failure::is_known(test) => {
+            (TestCaseStatus::skipped(), known_failure::describe(test))
+        }
+        verdict => (TestCaseStatus::non_success(test::kind(verdict)), case.reason().to_owned()),
+    };
+    status.set_message(text(message.lines().next().unwrap_or_default()));
+    status.set_type(verdict.as_str());
     let mut lines = Vec::new();
     let sink = &mut |_, line: &str| lines.push(line.to_owned());
-    explain::explain(attempt, Extent::ALL, sink);
-    explain::left(&attempt.leaked, sink);
-    lines.join("\n")
+    explain::case(cases, case, Extent::ALL, sink);
+    status.set_description(lines.join("\n"));
+    status
 }
 
-/// The last lines of the fixtures that are to blame.
-fn fixture_tails(record: &Record, test: &TestRecord) -> Vec<String> {
-    let mut lines = Vec::new();
-    let suite = record.suites.get(test.plan.suite.index());
-    let ids = suite.map_or(&[][..], |suite| &suite.fixtures);
-    for fixture in ids.iter().filter_map(|id| record.fixture(*id)) {
-        if !fixture.log_tail.is_empty() {
-            lines.push(text(&format!("the last lines of fixture {}:", fixture.plan.name)));
-            let tail = fixture.log_tail.iter().map(String::as_str);
-            explain::printed(tail, &mut |_, line| lines.push(line.to_owned()));
+/// Measurements and attachments by the attempt and the case in which they were reported.
+#[derive(Default)]
+struct Details<'r> {
+    measurements: HashMap<(usize, CaseId), Vec<&'r Measurement>>,
+    attachments: HashMap<(usize, CaseId), Vec<&'r Attachment>>,
+}
+
+impl<'r> Details<'r> {
+    fn of(test: &'r TestRecord) -> Self {
+        let mut details = Self::default();
+        for (number, attempt) in test.deciding_attempts().enumerate() {
+            details.add_attempt(number, attempt);
         }
+        details
     }
-    lines
-}
 
-fn properties(case: &mut TestCase, test: &TestRecord) {
-    case.add_property(("plugin", text(&test.plan.plugin).as_str()));
-    for tag in &test.plan.tags {
-        case.add_property(("tag", text(tag).as_str()));
-    }
-    let measurements = test.deciding_attempts().flat_map(|attempt| &attempt.measurements);
-    for measurement in measurements.take(MEASUREMENTS) {
-        let name = text(&format!("measurement.{}", measurement.name));
-        let mut value = measurement.value_with_unit();
-        let limits = measurement.limits();
-        if !limits.is_empty() {
-            value += &format!(" ({limits})");
-        }
-        case.add_property((name, text(&value)));
-    }
-    let series = test.deciding_attempts().flat_map(|attempt| &attempt.series);
-    for series in series.take(MEASUREMENTS) {
-        let name = text(&format!("series.{}", series.name));
-        case.add_property((name, text(&series.summary())));
-    }
-}
-
-/// What the attempts printed and attached. `[[ATTACHMENT|path]]` is how both
-/// Jenkins and GitLab find files.
-fn system_out(test: &TestRecord, folder: Option<&Path>) -> String {
-    let mut out = String::new();
-    for attempt in &test.attempts {
-        if !attempt.output.is_empty() {
-            if test.attempts.len() > 1 {
-                out += &title(test, attempt);
-                out.push('\n');
+    fn add_attempt(&mut self, number: usize, attempt: &'r AttemptRecord) {
+        for measurement in &attempt.measurements {
+            if let Some(case) = measurement.case {
+                self.measurements.entry((number, case)).or_default().push(measurement);
             }
-            out += &text(&attempt.output);
         }
-        let Some(folder) = folder else { continue };
-        for attachment in attempt.attachments.iter().map(|attachment| folder.join(&attachment.path))
-        {
-            if !out.is_empty() && !out.ends_with('\n') {
-                out.push('\n');
+        for attachment in &attempt.attachments {
+            if let Some(case) = attachment.case {
+                self.attachments.entry((number, case)).or_default().push(attachment);
             }
-            out += &format!("[[ATTACHMENT|{}]]\n", text(&attachment.display().to_string()));
         }
     }
-    out
+
+    fn add(&self, junit: &mut TestCase, case: &CaseResult<'_>, folder: Option<&Path>) {
+        let Some(key) = case.key() else { return };
+        let measurements = self.measurements.get(&key).into_iter().flatten();
+        for measurement in measurements.take(MEASUREMENTS) {
+            test::add_measurement(junit, measurement);
+        }
+        for parameter in case.record.iter().flat_map(|record| &record.start.parameters) {
+            let name = text(&format!("parameter.{}", parameter.name));
+            junit.add_property((name, text(&parameter.value)));
+        }
+        let attachments = self.attachments.get(&key).into_iter().flatten();
+        let mut out = String::new();
+        if let Some(folder) = folder {
+            attachments.for_each(|attachment| test::attach(&mut out, folder, attachment));
+        }
+        if !out.is_empty() {
+            junit.set_system_out(out);
+        }
+    }
 }

@@ -1,13 +1,14 @@
 //! The record of a run as a JUnit XML file, as Jenkins and GitLab read it.
 //!
-//! Each declared test is a case, also when it was skipped or when the run died
-//! before it, and so is each run of a hook. What JUnit has no word for (a fixture that collapsed, a run that
+//! Each declared test is a test case, also when it was skipped or when the run died
+//! before it, and so is each run of a hook. A test with cases has one for each of them. What JUnit has no word for (a fixture that collapsed, a run that
 //! was interrupted) becomes a further case with an error, so that no server
 //! shows as green what was not.
 
 mod case;
 mod hook;
 mod problems;
+mod test;
 mod time;
 
 use std::io::{self, Write};
@@ -51,7 +52,7 @@ fn test_suite(record: &Record, suite: &SuiteRecord, folder: Option<&Path>) -> Te
     }
     properties(&mut junit, record, suite);
     for test in suite.tests.iter().filter_map(|id| record.tests.get(id.index())) {
-        junit.add_test_case(case::of(record, test, folder));
+        junit.add_test_cases(case::of(record, test, folder));
     }
     for hook in suite.hooks.iter().filter_map(|id| record.hooks.get(id.index())) {
         junit.add_test_cases(hook::of(record, hook));

@@ -27,10 +27,11 @@ pub(super) fn join(parts: &[MergeInput], tests: usize) -> MergedManifest {
     let divisions = divisions(parts);
     let missing = divisions.iter().filter_map(Division::missing).collect();
     let flaky_fails = divisions.iter().any(|division| division.manifest.flaky_fails);
+    let no_skips = divisions.iter().any(|division| division.manifest.no_skips);
     // What was asked for in different ways cannot be asked for again as one.
     let manifest = match divisions.as_slice() {
         [one] => one.manifest.clone(),
-        _ => Manifest { flaky_fails, ..Manifest::default() },
+        _ => Manifest { flaky_fails, no_skips, ..Manifest::default() },
     };
     let selected_from =
         if manifest.selected_from > count(tests) { manifest.selected_from } else { 0 };

@@ -131,6 +131,7 @@ impl Joining {
             // What a run did not tolerate, no merge makes tolerable.
             let merged = &mut self.plan.suites[id.index()];
             merged.tolerates_collapse &= plan.tolerates_collapse;
+            merged.skips_fail |= plan.skips_fail;
             merged.parallel = merged.parallel.max(plan.parallel);
             id
         } else {

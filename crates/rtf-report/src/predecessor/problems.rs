@@ -2,11 +2,12 @@
 //! verdicts, fixtures, hooks, the run itself.
 
 use rtf_model::{
-    EventKind, FixtureId, FixtureRecord, HookId, Record, Source, SuiteId, TestFinished, Verdict,
+    EventKind, FixtureId, FixtureRecord, HookId, Record, Significance, Source, SuiteId,
+    TestFinished, Verdict,
 };
 
 use super::lines::{ResultLine, Word};
-use crate::explain;
+use crate::{explain, known_failure};
 
 /// The runner, where a line is about nothing else.
 pub(super) const RUNNER: &str = "runner";
@@ -23,10 +24,12 @@ pub(super) fn name(record: &Record, source: Source) -> String {
 
 /// Why an attempt did not pass, unless the test said so itself.
 pub(super) fn of_attempt(record: &Record, finished: &TestFinished) -> Option<ResultLine> {
+    let test = record.tests.get(finished.test.index())?;
+    let attempt = test.attempts.last()?;
     if finished.verdict.is_green() {
-        return None;
+        let red_reason = test.verdict().and_then(|_| known_failure::red_reason(record, test))?;
+        return Some(ResultLine::about(Word::Fail, &test.plan.name, &red_reason));
     }
-    let attempt = record.tests.get(finished.test.index())?.attempts.last()?;
     let reason = finished.reason.as_deref().unwrap_or(finished.verdict.as_str());
     let said = attempt.failures().any(|message| message.text == reason)
         || attempt.violations().any(|m| m.problem().as_deref() == Some(reason));
@@ -34,11 +37,35 @@ pub(super) fn of_attempt(record: &Record, finished: &TestFinished) -> Option<Res
         return None;
     }
     let about = name(record, Source::Test(finished.test));
+    if let Some(line) = of_known(record, finished, (&about, reason)) {
+        return Some(line);
+    }
     Some(match finished.verdict {
         Verdict::Failed => ResultLine::about(Word::Fail, &about, reason),
         Verdict::Error => ResultLine::about(Word::Error, &about, reason),
         verdict => ResultLine::about(Word::Error, &about, &format!("{verdict}: {reason}")),
     })
+}
+
+/// A result that 2.x had no word for: a known failure, or a test that skipped itself.
+fn of_known(
+    record: &Record,
+    finished: &TestFinished,
+    (about, reason): (&str, &str),
+) -> Option<ResultLine> {
+    let test = record.tests.get(finished.test.index())?;
+    let expected = test.plan.expected.as_deref();
+    let significance = expected.map(|expected| expected.significance(finished.verdict));
+    let stopped = test.attempts.last().is_some_and(|attempt| attempt.stopped);
+    match (significance, finished.verdict) {
+        (Some(Significance::Expected | Significance::Quarantined), _) => {
+            Some(ResultLine::about(Word::Warn, about, &format!("known failure: {reason}")))
+        }
+        (_, Verdict::Skipped) if !stopped && !record.skips_fail(test) => {
+            Some(ResultLine::about(Word::Info, about, &format!("reports: skipped: {reason}")))
+        }
+        _ => None,
+    }
 }
 
 /// The lines of an event of the bench.

@@ -1,6 +1,6 @@
 //! The block of counts at the end.
 
-use rtf_model::{Record, SuiteId, SuiteRecord};
+use rtf_model::{Record, SuiteId, SuiteRecord, TestId};
 
 use crate::words;
 
@@ -14,8 +14,12 @@ pub(super) fn is_suite(suite: &SuiteRecord) -> bool {
 pub(super) fn suite_passed(record: &Record, id: SuiteId) -> bool {
     let tests = record.suites.get(id.index()).map_or(&[][..], |suite| &suite.tests);
     !tests.is_empty()
-        && tests.iter().all(|test| record.final_verdict(*test).is_green())
+        && tests.iter().all(|id| is_green(record, *id))
         && record.suite_problems(id).is_empty()
+}
+
+fn is_green(record: &Record, id: TestId) -> bool {
+    record.tests.get(id.index()).is_some_and(|test| record.is_test_green(test))
 }
 
 /// The block, with an empty line before it.
@@ -27,8 +31,7 @@ pub(super) fn of(record: &Record, title: &str) -> String {
         let passed = suites.iter().filter(|s| suite_passed(record, s.plan.suite)).count();
         block += &counts("suites", suites.len(), passed);
     }
-    let ids = record.tests.iter().map(|test| test.plan.test);
-    let passed = ids.filter(|id| record.final_verdict(*id).is_green()).count();
+    let passed = record.tests.iter().filter(|test| record.is_test_green(test)).count();
     block + &counts("cases", record.tests.len(), passed)
 }
 

@@ -1,9 +1,11 @@
 //! The record of a run as TAP 14 (the Test Anything Protocol): a subtest for
-//! each suite, and in it a test point for each test, with YAML diagnostics.
+//! each suite, and in it a test point for each test, with YAML diagnostics. The cases of
+//! a test are a subtest of its point.
 //!
 //! What is live and what is written afterwards are the same bytes: both walk
 //! over the record in the order of the plan, as far as it is known.
 
+mod cases;
 mod points;
 mod yaml;
 
@@ -126,7 +128,7 @@ impl Walk {
             if test.verdict().is_none() && !over {
                 return false;
             }
-            points::test(text, index + 1, test);
+            points::test(text, index + 1, record, test);
             *written = index + 1;
         }
         if suite.finished.is_none() && !over {

@@ -2,35 +2,60 @@
 
 use std::time::Duration;
 
-use rtf_model::{Location, Record, SuiteRecord, TestRecord, Verdict};
+use rtf_model::{Location, Record, Significance, SuiteRecord, TestRecord, Verdict};
 
+use super::cases;
 use super::yaml::Yaml;
+use crate::cases::TestCases;
 use crate::explain::{self, Extent};
-use crate::{escape, words};
+use crate::{escape, known_failure, words};
 
 /// A subtest is written four columns further in than its parent.
-const SUBTEST: usize = 4;
+pub(super) const SUBTEST: usize = 4;
 
 /// Maximum number of output lines.
 const OUTPUT_LINES: usize = 50;
 
 /// The point of a test, in its suite's subtest.
-pub(super) fn test(text: &mut String, number: usize, test: &TestRecord) {
+pub(super) fn test(text: &mut String, number: usize, record: &Record, test: &TestRecord) {
     let verdict = test.final_verdict();
     let indent = " ".repeat(SUBTEST);
     let name = description(&test.plan.name);
-    if verdict == Verdict::Skipped {
-        let unspoken = "the run ended before the test started";
+    let cases = TestCases::of(test);
+    if let Some(cases) = &cases {
+        cases::subtest(text, record, test, cases);
+    }
+    let red_reason = known_failure::red_reason(record, test);
+    if verdict == Verdict::Skipped && red_reason.is_none() {
+        let unspoken = match test.significance() {
+            Significance::SkippedItself => "",
+            _ => "the run ended before the test started",
+        };
         let reason = test.reason().unwrap_or(unspoken);
-        *text += &format!("{indent}ok {number} - {name} # SKIP {}\n", description(reason));
+        let line = format!("{indent}ok {number} - {name} # SKIP {}", description(reason));
+        *text += line.trim_end();
+        text.push('\n');
         return;
     }
-    let ok = if verdict.is_green() { "ok" } else { "not ok" };
-    *text += &format!("{indent}{ok} {number} - {name}\n");
+    let is_known = known_failure::is_known(test);
+    let is_ok = verdict.is_green() && red_reason.is_none();
+    let ok = if is_ok { "ok" } else { "not ok" };
+    let todo = match is_known {
+        true => format!(" # TODO {}", description(&known_failure::describe(test))),
+        false => String::new(),
+    };
+    *text += &format!("{indent}{ok} {number} - {name}{todo}\n");
     let mut yaml = Yaml::new(text, SUBTEST);
     yaml.number("duration_ms", millis(test.duration()));
-    if !verdict.is_green() {
+    if let Some(reason) = &red_reason {
+        yaml.text("verdict", verdict.as_str());
+        yaml.text("severity", "fail");
+        yaml.text("message", reason);
+    } else if !verdict.is_green() {
         explained(&mut yaml, test, verdict);
+    }
+    if let Some(cases) = &cases {
+        yaml.text("cases", &cases.totals().describe());
     }
     let measurements = test.deciding_attempts().flat_map(|attempt| &attempt.measurements);
     // The others are among the details.
@@ -70,7 +95,7 @@ fn explained(yaml: &mut Yaml<'_>, test: &TestRecord, verdict: Verdict) {
 pub(super) fn suite(text: &mut String, number: usize, record: &Record, suite: &SuiteRecord) {
     let tests = || suite.tests.iter().filter_map(|id| record.tests.get(id.index()));
     let problems = record.suite_problems(suite.plan.suite);
-    let passed = tests().filter(|test| test.final_verdict().is_green()).count();
+    let passed = tests().filter(|test| record.is_test_green(test)).count();
     let total = tests().count();
     let well = suite.finished.is_some() && passed == total && problems.is_empty();
     let ok = if well { "ok" } else { "not ok" };
@@ -88,11 +113,11 @@ pub(super) fn suite(text: &mut String, number: usize, record: &Record, suite: &S
     yaml.end();
 }
 
-fn millis(duration: Duration) -> f64 {
+pub(super) fn millis(duration: Duration) -> f64 {
     duration.as_micros() as f64 / 1000.0
 }
 
 /// One line in which `#` does not begin a directive.
-fn description(text: &str) -> String {
+pub(super) fn description(text: &str) -> String {
     escape::line(text).replace('\\', "\\\\").replace('#', "\\#")
 }

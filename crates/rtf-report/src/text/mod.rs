@@ -1,5 +1,6 @@
 //! The whole record of a run as plain text, for reading and for comparing.
 
+mod cases;
 mod fixtures;
 mod hooks;
 mod lines;
@@ -9,8 +10,9 @@ use std::io::{self, Write};
 
 use rtf_model::{Record, SuiteRecord, Verdict};
 
+use crate::cases::CaseTotals;
 use crate::growth::{self, Within};
-use crate::{explain, private_resources, words};
+use crate::{explain, known_failure, private_resources, words};
 use lines::TextLines;
 
 /// Writes the text report of a record.
@@ -113,6 +115,14 @@ fn result(lines: &mut TextLines, record: &Record) {
     lines.at(0, &format!("tests: {}", totals.planned));
     for verdict in Verdict::ALL.into_iter().filter(|verdict| totals.of(*verdict) > 0) {
         lines.at(2, &format!("{verdict}: {}", totals.of(verdict)));
+    }
+    let known = record.tests.iter().filter(|test| known_failure::is_known(test)).count();
+    if known > 0 {
+        lines.at(2, &format!("known failures among them: {known}"));
+    }
+    let cases = CaseTotals::of_run(record);
+    if cases.total > 0 {
+        lines.at(0, &format!("cases: {} ({})", cases.total, cases.describe()));
     }
     let failed = record.failed_hooks().count();
     if failed > 0 {

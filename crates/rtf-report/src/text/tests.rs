@@ -1,10 +1,11 @@
 //! Tests in the text report.
 
-use rtf_model::{AttemptRecord, MessageKind, Record, TestRecord};
+use rtf_model::{AttemptRecord, MessageKind, Parameter, Record, TestRecord};
 
+use super::cases;
 use super::lines::TextLines;
 use crate::explain::{self, Extent};
-use crate::{cause, escape, words};
+use crate::{cause, escape, known_failure, words};
 
 /// Writes a test.
 pub(super) fn show(lines: &mut TextLines, record: &Record, test: &TestRecord) {
@@ -14,6 +15,8 @@ pub(super) fn show(lines: &mut TextLines, record: &Record, test: &TestRecord) {
     lines.fact(4, "tags", &plan.tags.join(" "));
     let verdict = test.final_verdict();
     lines.at(4, &format!("verdict: {verdict}"));
+    parameters(lines, 4, &plan.parameters);
+    mark(lines, record, test);
     if let Some(reason) = test.reason() {
         lines.fact(4, "reason", cause::short(record, reason));
     } else if !record.is_complete() && test.verdict().is_none() {
@@ -26,6 +29,22 @@ pub(super) fn show(lines: &mut TextLines, record: &Record, test: &TestRecord) {
     if let Some(reason) = test.skipped.as_deref().filter(|_| !test.attempts.is_empty()) {
         lines.fact(4, "the rest was skipped", cause::short(record, reason));
     }
+}
+
+/// How the verdict counts, if otherwise than that of other tests.
+fn mark(lines: &mut TextLines, record: &Record, test: &TestRecord) {
+    if known_failure::is_known(test) {
+        lines.at(4, &format!("counts as: {}", known_failure::word(test)));
+    } else if let Some(reason) = known_failure::red_reason(record, test) {
+        lines.fact(4, "counts as failed", &reason);
+    }
+    let facts = test.plan.expected.as_deref().map(known_failure::facts);
+    facts.iter().flatten().for_each(|(label, text)| lines.fact(4, label, text));
+}
+
+pub(super) fn parameters(lines: &mut TextLines, indent: usize, parameters: &[Parameter]) {
+    let pair = |parameter: &Parameter| format!("{}={}", parameter.name, parameter.value);
+    lines.fact(indent, "parameters", &parameters.iter().map(pair).collect::<Vec<_>>().join(", "));
 }
 
 fn show_attempt(lines: &mut TextLines, test: &TestRecord, attempt: &AttemptRecord) {
@@ -70,10 +89,12 @@ fn details(lines: &mut TextLines, attempt: &AttemptRecord) {
     // then everything else.
     explain::explain(attempt, Extent::ALL, &mut |_, line| lines.at(6, line));
     explain::left(&attempt.leaked, &mut |_, line| lines.at(6, line));
+    cases::show(lines, attempt);
     let others = attempt
         .messages
         .iter()
-        .filter(|message| matches!(message.kind, MessageKind::Report | MessageKind::Check));
+        .filter(|message| matches!(message.kind, MessageKind::Report | MessageKind::Check))
+        .filter(|message| !cases::is_in_case(attempt, message.case));
     for message in others {
         explain::message(message, &mut |_, line| lines.at(6, line));
     }
@@ -82,12 +103,18 @@ fn details(lines: &mut TextLines, attempt: &AttemptRecord) {
         lines.at(6, &format!("… and {} more {more} in the journal", attempt.messages_omitted));
     }
     for measurement in attempt.measurements.iter().filter(|m| m.is_within_limits()) {
+        if cases::is_in_case(attempt, measurement.case) {
+            continue;
+        }
         lines.at(6, &explain::measurement(measurement));
     }
     for series in attempt.series.iter().filter(|series| series.outside == 0) {
         lines.at(6, &explain::series(series));
     }
     for attachment in &attempt.attachments {
+        if cases::is_in_case(attempt, attachment.case) {
+            continue;
+        }
         let name = escape::line(&attachment.name);
         lines.fact(6, "attached", &format!("{name}: {}", attachment.path));
     }

@@ -41,7 +41,7 @@ fn the_last_line_is_the_result() {
 fn a_failed_test_is_named_with_the_command_that_runs_it_again() {
     let text = console("nasty", ConsoleOptions::default());
     assert!(text.contains(r"rtf run 'my '\''odd'\'' <suite>.xml::"), "{text}");
-    let none = ConsoleOptions { rerun: Box::new(|_, _| None), ..ConsoleOptions::default() };
+    let none = ConsoleOptions { rerun: Box::new(|_, _, _| None), ..ConsoleOptions::default() };
     assert!(!console("nasty", none).contains("rtf run"));
 }
 

@@ -103,7 +103,7 @@ pub async fn test(
         let test = entry(&index.record().tests, test, "test")?;
         let attempts = test.attempts.iter().zip(1..).map(|(a, number)| Attempt::of(a, number));
         let attempts = attempts.collect();
-        let command = rerun()(index.record(), test.plan.test);
+        let command = rerun()(index.record(), test.plan.test, None);
         Ok(TestDetail { test: Test::of(test, index.state().is_over()), attempts, command })
     })
     .await

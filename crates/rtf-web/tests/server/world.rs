@@ -230,7 +230,7 @@ fn served<'a>(results: &'a Path, role: Capabilities, asked: &Arc<Asked>) -> Serv
         asked.1.lock().unwrap().push((wrong.client, wrong.count));
     });
     let rerun: fn() -> RerunCommand =
-        || Box::new(|_, test| Some(format!("rtf run suite.xml::{test}")));
+        || Box::new(|_, test, _| Some(format!("rtf run suite.xml::{test}")));
     Service { results, role, rerun, wrong_token }
 }
 

@@ -1,0 +1,287 @@
+//! The cases of a test over all its repetitions, as reports list them.
+//!
+//! Like a test's verdict, that of a case is the first one that is a problem, of the last
+//! attempt of each repetition.
+
+mod live;
+
+use std::collections::{HashMap, HashSet};
+use std::time::Duration;
+
+use rtf_model::{
+    AttemptRecord, CaseId, CaseRecord, Location, Measurement, Message, Record, TestRecord, Verdict,
+};
+
+pub(crate) use live::{has_inner_problem, problem_count};
+
+/// The reason of a case that was running when the run ended.
+const CUT_SHORT: &str = "the run ended before the case did";
+
+/// The cases of a test.
+#[derive(Debug)]
+pub(crate) struct TestCases<'r> {
+    /// In the order in which they started; those that did not run are last.
+    pub results: Vec<CaseResult<'r>>,
+    /// Number of passed cases that the record does not keep.
+    pub omitted: u64,
+    problems: HashMap<(usize, CaseId), CaseProblems<'r>>,
+}
+
+/// The result of one case.
+#[derive(Debug)]
+pub(crate) struct CaseResult<'r> {
+    /// Its name, after those of the cases that contain it.
+    pub path: &'r str,
+    /// Its record; `None` if it did not run.
+    pub record: Option<&'r CaseRecord>,
+    /// The duration in all repetitions.
+    pub duration: Duration,
+    /// The index of the case that contains it.
+    pub parent: Option<usize>,
+    /// Whether it contains cases.
+    pub is_container: bool,
+    /// Whether its problem is not only that of a case that it contains.
+    pub is_own_problem: bool,
+    /// The deciding attempt to which `record` belongs, from 0.
+    attempt: usize,
+}
+
+/// The problems that were reported in a case.
+#[derive(Debug, Default)]
+pub(crate) struct CaseProblems<'r> {
+    pub failures: Vec<&'r Message>,
+    pub violations: Vec<&'r Measurement>,
+}
+
+/// Number of cases by result.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct CaseTotals {
+    pub total: u64,
+    pub not_run: u64,
+    counts: [u64; Verdict::ALL.len()],
+}
+
+impl CaseResult<'_> {
+    /// The verdict in a run that has ended; `None` if it did not run.
+    pub fn verdict(&self) -> Option<Verdict> {
+        self.record.map(|record| record.verdict().unwrap_or(Verdict::Interrupted))
+    }
+
+    /// Whether it has a problem that no inner case has.
+    pub fn is_problem(&self) -> bool {
+        self.is_own_problem
+    }
+
+    /// Why it did not pass.
+    pub fn reason(&self) -> &str {
+        match (self.record, self.verdict()) {
+            (Some(record), _) if record.finished.is_none() => CUT_SHORT,
+            (Some(record), Some(verdict)) => record.reason().unwrap_or(verdict.as_str()),
+            _ => "did not run",
+        }
+    }
+
+    /// The deciding attempt in which it ran, from 0, and its id.
+    pub fn key(&self) -> Option<(usize, CaseId)> {
+        self.record.map(|record| (self.attempt, record.start.case))
+    }
+
+    fn severity(&self) -> u8 {
+        self.verdict().map_or(0, Verdict::severity)
+    }
+
+    /// Of several repetitions, the first one with the highest rank decides.
+    fn rank(&self) -> u8 {
+        match self.verdict() {
+            Some(verdict) if verdict.is_problem() => 2,
+            Some(Verdict::Skipped) => 1,
+            _ => 0,
+        }
+    }
+}
+
+impl<'r> TestCases<'r> {
+    /// The cases of a test, `None` if it has none.
+    pub fn of(test: &'r TestRecord) -> Option<Self> {
+        let attempts: Vec<_> = test.deciding_attempts().collect();
+        if attempts.iter().all(|attempt| attempt.cases.total() == 0) {
+            return None;
+        }
+        let (mut results, not_run) = match attempts.as_slice() {
+            [attempt] => one_attempt(attempt),
+            attempts => several_attempts(attempts),
+        };
+        let problems = problems(&attempts);
+        let has_reports =
+            |result: &CaseResult<'_>| result.key().is_some_and(|key| problems.contains_key(&key));
+        // A case comes after the one that contains it.
+        let mut worst_inner = vec![0; results.len()];
+        for index in (0..results.len()).rev() {
+            let severity = results[index].severity();
+            let is_worse = severity > worst_inner[index] || has_reports(&results[index]);
+            results[index].is_own_problem = severity > 0 && is_worse;
+            if let Some(parent) = results[index].parent {
+                results[parent].is_container = true;
+                worst_inner[parent] = worst_inner[parent].max(severity);
+            }
+        }
+        results.extend(not_run.into_iter().map(CaseResult::not_run));
+        let omitted = attempts.iter().map(|attempt| attempt.cases.omitted()).max().unwrap_or(0);
+        Some(Self { results, omitted, problems })
+    }
+
+    /// The failures and violated limits that were reported in a case.
+    pub fn problems(&self, case: &CaseResult<'_>) -> Option<&CaseProblems<'r>> {
+        self.problems.get(&case.key()?)
+    }
+
+    /// The locations of the problems of a case, and then that of the case.
+    pub fn locations<'a>(
+        &'a self,
+        case: &'a CaseResult<'r>,
+    ) -> impl Iterator<Item = &'r Location> + 'a {
+        let problems = self.problems(case).into_iter();
+        let reported = problems.flat_map(|problems| {
+            let failures = problems.failures.iter().map(|failure| failure.location.as_ref());
+            failures.chain(problems.violations.iter().map(|violation| violation.location.as_ref()))
+        });
+        let start = case.record.map(|record| record.start.location.as_ref());
+        reported.chain(start).flatten()
+    }
+
+    /// Number of cases by result.
+    pub fn totals(&self) -> CaseTotals {
+        let mut totals = CaseTotals::default();
+        for result in &self.results {
+            match result.verdict() {
+                Some(verdict) => totals.counts[verdict as usize] += 1,
+                None => totals.not_run += 1,
+            }
+        }
+        totals.counts[Verdict::Passed as usize] += self.omitted;
+        totals.total = self.results.len() as u64 + self.omitted;
+        totals
+    }
+
+    /// Whether the test has a problem that none of its cases has.
+    pub fn has_test_problem(&self, test: &TestRecord) -> bool {
+        let verdict = test.final_verdict();
+        let worst = self.results.iter().map(CaseResult::severity).max().unwrap_or(0);
+        if !verdict.is_problem() || verdict.severity() > worst {
+            return verdict.is_problem();
+        }
+        let Some(attempt) = test.decisive_attempt() else { return true };
+        let reports = attempt.failures().any(|failure| failure.case.is_none())
+            || attempt.violations().any(|violation| violation.case.is_none());
+        // The runner names the case in the reason.
+        let by_case = test.reason().is_some_and(|reason| reason.starts_with("case `"));
+        matches!(verdict, Verdict::Failed | Verdict::Error) && (reports || !by_case)
+    }
+}
+
+impl<'r> CaseResult<'r> {
+    fn new(record: &'r CaseRecord, attempt: usize, parent: Option<usize>) -> Self {
+        let (path, duration) = (record.path.as_str(), record.duration().unwrap_or_default());
+        let (is_container, is_own_problem) = (false, false);
+        let record = Some(record);
+        Self { path, record, duration, parent, is_container, is_own_problem, attempt }
+    }
+
+    fn not_run(path: &'r str) -> Self {
+        Self {
+            path,
+            record: None,
+            duration: Duration::ZERO,
+            parent: None,
+            is_container: false,
+            is_own_problem: false,
+            attempt: 0,
+        }
+    }
+}
+
+/// The results of an attempt, and the names of the cases that did not run.
+type Results<'r> = (Vec<CaseResult<'r>>, Vec<&'r str>);
+
+fn one_attempt(attempt: &AttemptRecord) -> Results<'_> {
+    let kept = attempt.cases.kept();
+    let index = |id: CaseId| kept.binary_search_by_key(&id, |case| case.start.case).ok();
+    let parent = |case: &CaseRecord| case.start.parent.and_then(index);
+    let results = kept.iter().map(|case| CaseResult::new(case, 0, parent(case))).collect();
+    (results, attempt.cases.not_run().names().collect())
+}
+
+fn several_attempts<'r>(attempts: &[&'r AttemptRecord]) -> Results<'r> {
+    let mut results: Vec<CaseResult<'r>> = Vec::new();
+    let mut indices: HashMap<&str, usize> = HashMap::new();
+    for (number, attempt) in attempts.iter().enumerate() {
+        for case in attempt.cases.kept() {
+            let parent = case.start.parent.and_then(|id| attempt.cases.get(id));
+            let parent = parent.and_then(|parent| indices.get(parent.path.as_str()).copied());
+            let result = CaseResult::new(case, number, parent);
+            let index = *indices.entry(result.path).or_insert(results.len());
+            match results.get_mut(index) {
+                None => results.push(result),
+                Some(before) => {
+                    let duration = before.duration + result.duration;
+                    if result.rank() > before.rank() {
+                        *before = result;
+                    }
+                    before.duration = duration;
+                }
+            }
+        }
+    }
+    let names = attempts.iter().flat_map(|attempt| attempt.cases.not_run().names());
+    let mut seen = HashSet::new();
+    let not_run = names.filter(|name| !indices.contains_key(name) && seen.insert(*name)).collect();
+    (results, not_run)
+}
+
+fn problems<'r>(attempts: &[&'r AttemptRecord]) -> HashMap<(usize, CaseId), CaseProblems<'r>> {
+    let mut problems: HashMap<_, CaseProblems<'r>> = HashMap::new();
+    for (number, attempt) in attempts.iter().enumerate() {
+        for failure in attempt.failures() {
+            if let Some(case) = failure.case {
+                problems.entry((number, case)).or_default().failures.push(failure);
+            }
+        }
+        for violation in attempt.violations() {
+            if let Some(case) = violation.case {
+                problems.entry((number, case)).or_default().violations.push(violation);
+            }
+        }
+    }
+    problems
+}
+
+impl CaseTotals {
+    /// Number of cases with this verdict.
+    pub fn of(&self, verdict: Verdict) -> u64 {
+        self.counts[verdict as usize]
+    }
+
+    /// Number of cases of all tests of a run.
+    pub fn of_run(record: &Record) -> Self {
+        let mut totals = Self::default();
+        let cases = record.tests.iter().filter_map(TestCases::of);
+        cases.for_each(|cases| totals += cases.totals());
+        totals
+    }
+
+    /// `6 passed, 1 crashed, 33 did not run`; empty without cases.
+    pub fn describe(&self) -> String {
+        let by_verdict = Verdict::ALL.map(|verdict| (self.of(verdict), verdict.as_str()));
+        let counts = by_verdict.into_iter().chain([(self.not_run, "did not run")]);
+        let counts = counts.filter(|(count, _)| *count > 0);
+        counts.map(|(count, word)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
+    }
+}
+
+impl std::ops::AddAssign for CaseTotals {
+    fn add_assign(&mut self, other: Self) {
+        self.total += other.total;
+        self.not_run += other.not_run;
+        self.counts.iter_mut().zip(other.counts).for_each(|(count, other)| *count += other);
+    }
+}

@@ -1,0 +1,136 @@
+//! Cases, known failures and skips in the summary.
+
+use std::collections::BTreeMap;
+
+use rtf_model::{Record, Significance, TestRecord, Verdict};
+
+use super::page::ConsoleLines;
+use super::style::{self, BAD, BOLD, LOUD};
+use super::{ConsoleOptions, summary};
+use crate::cases::{CaseResult, TestCases};
+use crate::{escape, known_failure, words};
+
+/// Maximum number of cases that are listed per test.
+const CASES: usize = 20;
+
+/// Lists the cases of a test that did not pass.
+pub(super) fn failed_cases(
+    page: &mut ConsoleLines,
+    options: &ConsoleOptions,
+    record: &Record,
+    (test, cases): (&TestRecord, &TestCases<'_>),
+) {
+    let failed: Vec<_> = cases.results.iter().filter(|case| case.is_problem()).collect();
+    for case in failed.iter().take(CASES) {
+        failed_case(page, options, record, (test, cases, case));
+    }
+    if failed.len() > CASES {
+        page.line(&format!("    … and {} more cases that did not pass", failed.len() - CASES));
+    }
+    if known_failure::has_red_cases(record, test) {
+        let skipped = cases.results.iter().filter(|case| case.verdict() == Some(Verdict::Skipped));
+        for case in skipped.take(CASES) {
+            failed_case(page, options, record, (test, cases, case));
+        }
+    }
+    let not_run = cases.totals().not_run;
+    if not_run > 0 {
+        page.line(&format!("    {} did not run", words::count(not_run, "case")));
+    }
+}
+
+fn failed_case(
+    page: &mut ConsoleLines,
+    options: &ConsoleOptions,
+    record: &Record,
+    (test, cases, case): (&TestRecord, &TestCases<'_>, &CaseResult<'_>),
+) {
+    let verdict = case.verdict().unwrap_or(Verdict::Skipped);
+    let name = style::paint(BOLD, &escape::line(case.path));
+    let verdict = style::paint(style::of_verdict(verdict), verdict.as_str());
+    page.line(&format!("    case {name}  {verdict}"));
+    page.inner_fact("reason", &words::first_line(case.reason()));
+    if let Some(location) = cases.locations(case).next() {
+        page.inner_fact("at", &escape::line(&location.to_string()));
+    }
+    if let Some(command) = (options.rerun)(record, test.plan.test, Some(case.path)) {
+        page.inner_fact("rerun", &escape::line(&command));
+    }
+}
+
+/// Lists tests that passed although a failure is expected.
+pub(super) fn unexpected(page: &mut ConsoleLines, options: &ConsoleOptions, record: &Record) {
+    let is_unexpected = |test: &&TestRecord| test.significance() == Significance::UnexpectedPass;
+    let mut tests = record.tests.iter().filter(is_unexpected).peekable();
+    if tests.peek().is_none() {
+        return;
+    }
+    page.line("");
+    page.line(&style::paint(BOLD, "tests that passed although a failure is expected:"));
+    for test in tests {
+        let name = escape::line(&record.full_name(test.plan.test)).into_owned();
+        page.line(&format!("  {}", style::paint(BAD, &name)));
+        let advice = known_failure::red_reason(record, test).unwrap_or_default();
+        page.fact("reason", &words::first_line(&advice));
+        mark(page, test);
+        if let Some(command) = (options.rerun)(record, test.plan.test, None) {
+            page.fact("rerun", &escape::line(&command));
+        }
+    }
+}
+
+/// Lists known failures.
+pub(super) fn known(page: &mut ConsoleLines, record: &Record) {
+    let mut tests = record.tests.iter().filter(|test| known_failure::is_known(test)).peekable();
+    if tests.peek().is_none() {
+        return;
+    }
+    page.line("");
+    page.line(&style::paint(BOLD, "known failures, which do not make the run red:"));
+    for test in tests {
+        let name = style::paint(LOUD, &escape::line(&record.full_name(test.plan.test)));
+        let (word, verdict) = (known_failure::word(test), test.final_verdict());
+        page.line(&format!("  {name}  {word} ({verdict})"));
+        page.fact("reason", &words::first_line(test.reason().unwrap_or(verdict.as_str())));
+        mark(page, test);
+        if let Some(cases) = TestCases::of(test) {
+            page.fact("cases", &cases.totals().describe());
+        }
+    }
+}
+
+/// Shows why a failure is known, and until when.
+pub(super) fn mark(page: &mut ConsoleLines, test: &TestRecord) {
+    let facts = test.plan.expected.as_deref().map(known_failure::facts);
+    facts.iter().flatten().for_each(|(label, text)| page.fact(label, text));
+}
+
+/// Lists tests and cases that skipped themselves.
+pub(super) fn skipped(page: &mut ConsoleLines, record: &Record) {
+    let mut reasons: BTreeMap<(&str, &str), Vec<String>> = BTreeMap::new();
+    for test in &record.tests {
+        let name = || escape::line(&record.full_name(test.plan.test)).into_owned();
+        if test.significance() == Significance::SkippedItself {
+            let reason = test.reason().unwrap_or("without a reason");
+            reasons.entry((reason, "test")).or_default().push(name());
+        }
+        if !test.has_skipped_cases() {
+            continue;
+        }
+        let cases = TestCases::of(test);
+        let results = cases.iter().flat_map(|cases| &cases.results);
+        for case in results.filter(|case| case.verdict() == Some(Verdict::Skipped)) {
+            let reason = case.record.and_then(|case| case.reason()).unwrap_or("without a reason");
+            let name = format!("{}/{}", name(), escape::line(case.path));
+            reasons.entry((reason, "case")).or_default().push(name);
+        }
+    }
+    if reasons.is_empty() {
+        return;
+    }
+    page.line("");
+    page.line(&style::paint(BOLD, "skipped themselves:"));
+    for ((reason, noun), names) in reasons {
+        summary::skipped_names(page, noun, reason, &names);
+    }
+}

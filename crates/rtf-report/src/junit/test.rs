@@ -1,0 +1,244 @@
+//! A declared test as a JUnit test case.
+
+use std::path::Path;
+
+use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestRerun};
+use rtf_model::{
+    Attachment, AttemptRecord, Measurement, Record, Significance, TestRecord, Verdict,
+};
+
+use super::{text, time};
+use crate::explain::{self, Extent};
+use crate::{known_failure, words};
+
+/// More measurements or series than this would drown the page that shows them.
+const MEASUREMENTS: usize = 100;
+
+/// The reason of a test that was running when the run ended.
+const CUT_SHORT: &str = "the run ended before the test did";
+
+/// The reason of a flaky test, if flaky tests fail.
+const FLAKY: &str = "it is flaky: it passed only after a retry";
+
+/// The reason of a test that had not started when the run ended.
+const NOT_BEGUN: &str = "the run ended before the test started";
+
+/// The test case of a test.
+pub(super) fn of(record: &Record, test: &TestRecord, folder: Option<&Path>) -> TestCase {
+    let mut case = TestCase::new(text(&test.plan.name), status(record, test));
+    let suite = record.suites.get(test.plan.suite.index()).map_or("", |s| &s.plan.name);
+    case.set_classname(text(suite));
+    case.set_time(test.duration());
+    if let Some(first) = test.attempts.first() {
+        case.timestamp = time::at(record, first.started);
+    }
+    add_details(&mut case, test, folder);
+    case
+}
+
+/// Adds properties, leaked processes, output and attachments of a test.
+pub(super) fn add_details(case: &mut TestCase, test: &TestRecord, folder: Option<&Path>) {
+    properties(case, test);
+    let left: Vec<_> = test.attempts.iter().flat_map(|a| a.leaked.iter().cloned()).collect();
+    super::leaked(case, &left, test.final_verdict() == Verdict::Passed);
+    let out = system_out(test, folder);
+    if !out.is_empty() {
+        case.set_system_out(out);
+    }
+}
+
+/// Explains an attempt without its cases: how it ended, and its own problems.
+pub(super) fn ending(test: &TestRecord, attempt: &AttemptRecord) -> String {
+    let explained = explained(attempt);
+    if explained.is_empty() { explained } else { format!("{}\n{explained}", title(test, attempt)) }
+}
+
+fn status(record: &Record, test: &TestRecord) -> TestCaseStatus {
+    let verdict = test.final_verdict();
+    if known_failure::is_known(test) {
+        return known(record, test);
+    }
+    if let Some(reason) = known_failure::red_reason(record, test) {
+        return red(record, test, &reason);
+    }
+    let mut status = match verdict {
+        Verdict::Passed => return passed(record, test),
+        Verdict::Skipped => TestCaseStatus::skipped(),
+        verdict => TestCaseStatus::non_success(kind(verdict)),
+    };
+    let unspoken = if test.attempts.is_empty() { NOT_BEGUN } else { CUT_SHORT };
+    let reason = if test.verdict().is_some() { test.reason() } else { Some(unspoken) };
+    let reason = reason.unwrap_or(verdict.as_str());
+    status.set_message(text(reason.lines().next().unwrap_or_default()));
+    status.set_type(verdict.as_str());
+    status.set_description(description(record, test, reason));
+    status
+}
+
+/// A known failure is skipped, as in pytest: no server has a word for it.
+fn known(record: &Record, test: &TestRecord) -> TestCaseStatus {
+    let mut status = TestCaseStatus::skipped();
+    status.set_message(text(&known_failure::describe(test)));
+    status.set_type(test.final_verdict().as_str());
+    status.set_description(description(record, test, test.reason().unwrap_or_default()));
+    status
+}
+
+/// A test that passed or skipped itself, and makes the run red.
+fn red(record: &Record, test: &TestRecord, reason: &str) -> TestCaseStatus {
+    let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+    status.set_message(text(reason));
+    status.set_type(match test.significance() {
+        Significance::UnexpectedPass => "unexpected-pass",
+        _ => Verdict::Skipped.as_str(),
+    });
+    status.set_description(description(record, test, reason));
+    status
+}
+
+pub(super) fn kind(verdict: Verdict) -> NonSuccessKind {
+    match verdict {
+        Verdict::Failed => NonSuccessKind::Failure,
+        _ => NonSuccessKind::Error,
+    }
+}
+
+/// A pass names the attempts that did not, as flaky runs.
+fn passed(record: &Record, test: &TestRecord) -> TestCaseStatus {
+    if test.is_flaky() && record.flaky_fails() {
+        let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+        status.set_message(FLAKY);
+        status.set_type("flaky");
+        status.set_description(description(record, test, FLAKY));
+        return status;
+    }
+    let mut status = TestCaseStatus::success();
+    for attempt in &test.attempts {
+        let Some((_, finished)) = &attempt.finished else { continue };
+        if finished.verdict.is_green() {
+            continue;
+        }
+        let mut rerun = TestRerun::new(kind(finished.verdict));
+        rerun.timestamp = time::at(record, attempt.started);
+        rerun.set_time(attempt.duration().unwrap_or_default());
+        rerun.set_type(finished.verdict.as_str());
+        rerun.set_message(text(finished.reason.as_deref().unwrap_or_default()));
+        rerun.set_description(explained(attempt));
+        status.add_rerun(rerun);
+    }
+    status
+}
+
+/// Everything that explains the verdict: each attempt that did not pass, and
+/// before them the reason when it is none of theirs.
+fn description(record: &Record, test: &TestRecord, reason: &str) -> String {
+    let attempts = test.attempts.iter().filter(|a| a.verdict() != Some(Verdict::Passed));
+    let mut reasons = attempts.clone().filter_map(|a| a.finished.as_ref()?.1.reason.as_deref());
+    let mut lines = Vec::new();
+    if reasons.all(|told| told != reason) {
+        lines.push(text(reason));
+    }
+    for attempt in attempts {
+        lines.extend([title(test, attempt), explained(attempt)]);
+    }
+    // A test that was skipped for a broken fixture has its cause in the fixture's case.
+    if test.attempts.iter().any(|a| a.verdict() == Some(Verdict::Collapsed)) {
+        lines.extend(fixture_tails(record, test));
+    }
+    lines.retain(|line| !line.is_empty());
+    lines.join("\n")
+}
+
+fn title(test: &TestRecord, attempt: &AttemptRecord) -> String {
+    let mut title = words::repetition(test, attempt);
+    title += &format!(", attempt {}", attempt.attempt);
+    let Some((_, finished)) = &attempt.finished else { return title + ": it did not finish" };
+    title += &format!(": {} in {}", finished.verdict, finished.phase);
+    if let Some(exit) = finished.exit {
+        title += &format!(", {exit}");
+    }
+    title
+}
+
+fn explained(attempt: &AttemptRecord) -> String {
+    let mut lines = Vec::new();
+    let sink = &mut |_, line: &str| lines.push(line.to_owned());
+    explain::explain(attempt, Extent::ALL, sink);
+    explain::left(&attempt.leaked, sink);
+    lines.join("\n")
+}
+
+/// The last lines of the fixtures that are to blame.
+fn fixture_tails(record: &Record, test: &TestRecord) -> Vec<String> {
+    let mut lines = Vec::new();
+    let suite = record.suites.get(test.plan.suite.index());
+    let ids = suite.map_or(&[][..], |suite| &suite.fixtures);
+    for fixture in ids.iter().filter_map(|id| record.fixture(*id)) {
+        if !fixture.log_tail.is_empty() {
+            lines.push(text(&format!("the last lines of fixture {}:", fixture.plan.name)));
+            let tail = fixture.log_tail.iter().map(String::as_str);
+            explain::printed(tail, &mut |_, line| lines.push(line.to_owned()));
+        }
+    }
+    lines
+}
+
+fn properties(case: &mut TestCase, test: &TestRecord) {
+    case.add_property(("plugin", text(&test.plan.plugin).as_str()));
+    for tag in &test.plan.tags {
+        case.add_property(("tag", text(tag).as_str()));
+    }
+    let measurements = test.deciding_attempts().flat_map(|attempt| {
+        let is_own = |id| attempt.cases.get(id).is_none();
+        attempt.measurements.iter().filter(move |m| m.case.is_none_or(is_own))
+    });
+    for measurement in measurements.take(MEASUREMENTS) {
+        add_measurement(case, measurement);
+    }
+    let series = test.deciding_attempts().flat_map(|attempt| &attempt.series);
+    for series in series.take(MEASUREMENTS) {
+        let name = text(&format!("series.{}", series.name));
+        case.add_property((name, text(&series.summary())));
+    }
+}
+
+/// Adds a measurement as a property.
+pub(super) fn add_measurement(case: &mut TestCase, measurement: &Measurement) {
+    let name = text(&format!("measurement.{}", measurement.name));
+    let mut value = measurement.value_with_unit();
+    let limits = measurement.limits();
+    if !limits.is_empty() {
+        value += &format!(" ({limits})");
+    }
+    case.add_property((name, text(&value)));
+}
+
+/// What the attempts printed and attached.
+fn system_out(test: &TestRecord, folder: Option<&Path>) -> String {
+    let mut out = String::new();
+    for attempt in &test.attempts {
+        if !attempt.output.is_empty() {
+            if test.attempts.len() > 1 {
+                out += &title(test, attempt);
+                out.push('\n');
+            }
+            out += &text(&attempt.output);
+        }
+        let Some(folder) = folder else { continue };
+        // The attachments of a case are in its own test case.
+        let is_kept = |a: &&Attachment| a.case.is_none_or(|id| attempt.cases.get(id).is_none());
+        for attachment in attempt.attachments.iter().filter(is_kept) {
+            attach(&mut out, folder, attachment);
+        }
+    }
+    out
+}
+
+/// Adds a file as both Jenkins and GitLab find it.
+pub(super) fn attach(out: &mut String, folder: &Path, attachment: &Attachment) {
+    if !out.is_empty() && !out.ends_with('\n') {
+        out.push('\n');
+    }
+    let path = folder.join(&attachment.path);
+    *out += &format!("[[ATTACHMENT|{}]]\n", text(&path.display().to_string()));
+}
