@@ -45,7 +45,7 @@ pub(crate) fn explain(attempt: &AttemptRecord, extent: Extent, sink: Sink<'_>) {
     if let Some(reason) = reason.filter(|reason| !is_told_with_its_place(attempt, reason)) {
         block(Tone::Bad, reason, "", sink);
     }
-    let failures = attempt.failures().filter(|failure| !is_in_case(attempt, failure.case));
+    let failures = own_failures(attempt);
     let violations = attempt.violations().filter(|value| !is_in_case(attempt, value.case));
     problems(&failures.collect::<Vec<_>>(), &violations.collect::<Vec<_>>(), extent, sink);
     attempt.series.iter().filter(|s| s.outside > 0).for_each(|s| sink(Tone::Bad, &series(s)));
@@ -84,6 +84,11 @@ fn problems(failures: &[&Message], violations: &[&Measurement], extent: Extent, 
         sink(Tone::Bad, &measurement(violation));
     }
     left_out(violations.len(), extent.items, "measurement", sink);
+}
+
+/// The failures that were not reported in a case.
+pub(crate) fn own_failures(attempt: &AttemptRecord) -> impl Iterator<Item = &Message> {
+    attempt.failures().filter(|failure| !is_in_case(attempt, failure.case))
 }
 
 fn is_in_case(attempt: &AttemptRecord, case: Option<CaseId>) -> bool {

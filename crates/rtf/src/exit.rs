@@ -37,3 +37,31 @@ pub fn of_run(record: &Record) -> ExitCode {
 pub fn of_signal(number: i32) -> u8 {
     u8::try_from(128 + number).unwrap_or(BROKEN)
 }
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a test that cannot continue fails")]
+
+    use std::path::Path;
+
+    use super::*;
+
+    /// The golden table, with which console, JUnit and TAP agree as well.
+    #[test]
+    fn the_exit_code_of_each_verdict_with_each_mark() {
+        let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("../rtf-report/tests");
+        let table = std::fs::read_to_string(dir.join("golden/verdicts.txt")).unwrap();
+        let rows: Vec<_> = table.lines().filter(|line| !line.starts_with('#')).collect();
+        let stream = dir.join("streams/known-failures.jsonl");
+        let all = rtf_report::journal::read(&stream).unwrap().record;
+        assert_eq!(rows.len(), all.tests.len());
+        for (row, test) in rows.iter().zip(&all.tests) {
+            let mut one = all.clone();
+            one.tests = vec![test.clone()];
+            let columns: Vec<_> = row.split_whitespace().take(2).collect();
+            let code = format!("{:?}", of_run(&one));
+            let wanted = format!("{:?}", ExitCode::from(columns[1].parse::<u8>().unwrap()));
+            assert_eq!((columns[0], code), (test.plan.name.as_str(), wanted));
+        }
+    }
+}

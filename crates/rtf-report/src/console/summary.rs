@@ -138,7 +138,7 @@ fn failed_title(page: &mut ConsoleLines, record: &Record, test: &TestRecord) {
 /// problem.
 fn first_problem(page: &mut ConsoleLines, test: &TestRecord) {
     let attempt = test.decisive_attempt();
-    let first = attempt.and_then(|attempt| attempt.failures().next());
+    let first = attempt.and_then(|attempt| explain::own_failures(attempt).next());
     let is_open = attempt.is_none_or(|attempt| attempt.finished.is_none());
     if let (true, Some(failure)) = (is_open, first) {
         page.fact("before", &words::first_line(&failure.text));

@@ -4,6 +4,8 @@ use std::path::{Component, Path, PathBuf};
 
 use rtf_model::{Location, Record, SuiteRecord, TestRecord};
 
+use crate::explain;
+
 /// A place in a file of the repository.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct RepositoryLocation {
@@ -51,7 +53,8 @@ impl<'a> Roots<'a> {
     /// repository, else its suite's file, else its plug-in.
     pub fn test(&self, record: &Record, test: &TestRecord) -> Option<RepositoryLocation> {
         let attempt = test.decisive_attempt();
-        let failures = attempt.into_iter().flat_map(|attempt| attempt.failures());
+        let own = attempt.into_iter().flat_map(explain::own_failures);
+        let failures = own.chain(attempt.into_iter().flat_map(|attempt| attempt.failures()));
         let violations = attempt.into_iter().flat_map(|attempt| attempt.violations());
         let series = attempt.into_iter().flat_map(|attempt| &attempt.series);
         let series = series.filter(|series| series.outside > 0);

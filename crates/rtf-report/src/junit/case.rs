@@ -11,7 +11,7 @@ use rtf_model::{
 use super::{test, text, time};
 use crate::cases::{CaseResult, TestCases};
 use crate::explain::{self, Extent};
-use crate::{known_failure, words};
+use crate::{escape, known_failure, words};
 
 /// Maximum number of measurements of a case.
 const MEASUREMENTS: usize = 100;
@@ -35,7 +35,7 @@ pub(super) fn of(record: &Record, test: &TestRecord, folder: Option<&Path>) -> V
         if case.is_problem() && bearer.is_none() {
             bearer = Some(junit.len());
         }
-        let mut one = TestCase::new(text(case.path), status);
+        let mut one = TestCase::new(escape::line(case.path), status);
         one.set_classname(name.as_str());
         one.set_time(case.duration);
         if let Some(record_of_case) = case.record {
@@ -82,8 +82,12 @@ fn bear(case: &mut TestCase, test: &TestRecord, folder: Option<&Path>) {
     if let TestCaseStatus::NonSuccess { description, .. } = &mut case.status
         && !ending.is_empty()
     {
-        let before = description.as_ref().map_or("", |text| text.as_str());
-        *description = Some(format!("{before}\n{ending}").into());
+        let mut all = description.as_ref().map_or("", |text| text.as_str()).to_owned();
+        let reasons = all.clone();
+        for line in ending.lines().filter(|line| reasons.lines().all(|told| told != *line)) {
+            all += &format!("\n{line}");
+        }
+        *description = Some(all.into());
     }
 }
 
@@ -94,10 +98,7 @@ fn status(
     case: &CaseResult<'_>,
 ) -> TestCaseStatus {
     let Some(verdict) = case.verdict() else {
-        let mut status = TestCaseStatus::skipped();
-        let reason = test.reason().unwrap_or("the run ended before the test did");
-        status.set_message(text(&format!("did not run: {}", words::first_line(reason))));
-        return status;
+        return not_run(test);
     };
     let (mut status, message) = match verdict {
         Verdict::Passed => return TestCaseStatus::success(),
@@ -117,6 +118,18 @@ fn status(
     let sink = &mut |_, line: &str| lines.push(line.to_owned());
     explain::case(cases, case, Extent::ALL, sink);
     status.set_description(lines.join("\n"));
+    status
+}
+
+fn not_run(test: &TestRecord) -> TestCaseStatus {
+    let mut status = TestCaseStatus::skipped();
+    let reason = test.reason().unwrap_or("the run ended before the test did");
+    // A test that would have passed has no other reason than this.
+    let message = match reason.contains("planned cases did not run") {
+        true => "did not run".to_owned(),
+        false => format!("did not run: {}", words::first_line(reason)),
+    };
+    status.set_message(message);
     status
 }
 

@@ -75,7 +75,8 @@ fn explained(yaml: &mut Yaml<'_>, test: &TestRecord, verdict: Verdict) {
         if test.verdict().is_some() { test.reason().unwrap_or_default() } else { unspoken },
     );
     let Some(attempt) = test.decisive_attempt() else { return };
-    let mut locations = attempt.failures().filter_map(|failure| failure.location.as_ref());
+    let failures = explain::own_failures(attempt).chain(attempt.failures());
+    let mut locations = failures.filter_map(|failure| failure.location.as_ref());
     if let Some(Location { file, line }) = locations.next() {
         yaml.place(file, *line);
     }
@@ -95,9 +96,10 @@ fn explained(yaml: &mut Yaml<'_>, test: &TestRecord, verdict: Verdict) {
 pub(super) fn suite(text: &mut String, number: usize, record: &Record, suite: &SuiteRecord) {
     let tests = || suite.tests.iter().filter_map(|id| record.tests.get(id.index()));
     let problems = record.suite_problems(suite.plan.suite);
-    let passed = tests().filter(|test| record.is_test_green(test)).count();
+    let passed = tests().filter(|test| test.final_verdict().is_green()).count();
     let total = tests().count();
-    let well = suite.finished.is_some() && passed == total && problems.is_empty();
+    let are_green = tests().all(|test| record.is_test_green(test));
+    let well = suite.finished.is_some() && are_green && problems.is_empty();
     let ok = if well { "ok" } else { "not ok" };
     *text += &format!("{ok} {number} - {}\n", description(&suite.plan.name));
     let mut yaml = Yaml::new(text, 0);

@@ -1,5 +1,6 @@
 //! What other programs read from the JUnit report.
 
+use crate::golden;
 use crate::support::*;
 use junit_parser::{TestCase, TestStatus, TestSuites};
 use rtf_model::{Record, Verdict};
@@ -16,8 +17,15 @@ fn case<'a>(suites: &'a TestSuites, name: &str) -> &'a TestCase {
     cases(suites).find(|case| case.original_name == name).unwrap()
 }
 
-/// What a server must count, from the record.
-fn wanted(record: &Record) -> (u64, u64, u64, u64) {
+/// What a server must count: tests, failures, errors, skipped; by hand for the streams
+/// whose tests have cases or known failures.
+fn wanted(name: &str, record: &Record) -> (u64, u64, u64, u64) {
+    match name {
+        // By test: its cases without containers, and its own result, if it has one.
+        "cases" => return (40 + 4 + (1 + 1) + 2 + 2 + (3 + 1) + (1 + 1) + (1 + 1), 5, 2, 37),
+        "known-failures" => return golden::totals(),
+        _ => {}
+    }
     let totals = record.final_totals();
     let broken_fixtures = record.fixtures.iter().filter(|fixture| {
         let suite = &record.suites[fixture.plan.suite.index()];
@@ -44,7 +52,7 @@ fn there_is_a_case_for_each_declared_test_and_each_problem_beside_them() {
         let record = record(&name);
         let junit = parsed(&junit(&name));
         let told = (junit.tests, junit.failures, junit.errors, junit.skipped);
-        assert_eq!(told, wanted(&record), "{name}: the totals");
+        assert_eq!(told, wanted(&name, &record), "{name}: the totals");
         let counted = |is: fn(&TestStatus) -> bool| {
             cases(&junit).filter(|case| is(&case.status)).count() as u64
         };
@@ -55,7 +63,7 @@ fn there_is_a_case_for_each_declared_test_and_each_problem_beside_them() {
             counted(TestStatus::is_error),
             counted(TestStatus::is_skipped),
         );
-        assert_eq!(of_cases, wanted(&record), "{name}: the cases");
+        assert_eq!(of_cases, wanted(&name, &record), "{name}: the cases");
         let is_green = all > 0 && counted(TestStatus::is_success) == all;
         assert_eq!(is_green, record.is_green(), "{name}: green");
     }

@@ -5,6 +5,7 @@
 mod background_writer;
 mod console;
 mod fanout;
+mod golden;
 mod hosts;
 mod journal;
 mod junit;

@@ -41,7 +41,7 @@ fn console() {
 
 #[test]
 fn quiet_console() {
-    for name in ["verdicts", "silent", "collapse-restart", "hooks", "leaked", "prepared"] {
+    for name in ["verdicts", "silent", "collapse-restart", "hooks", "leaked", "prepared", "cases"] {
         insta::assert_snapshot!(format!("quiet-{name}"), plain(name, Verbosity::Quiet));
     }
 }
@@ -58,6 +58,7 @@ fn verbose_console() {
         "prepared",
         "side-by-side",
         "parallel",
+        "cases",
     ];
     for name in names {
         insta::assert_snapshot!(format!("verbose-{name}"), plain(name, Verbosity::Verbose));
