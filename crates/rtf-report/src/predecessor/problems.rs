@@ -2,7 +2,7 @@
 //! verdicts, fixtures, hooks, the run itself.
 
 use rtf_model::{
-    EventKind, FixtureId, FixtureRecord, HookId, Record, Significance, Source, SuiteId,
+    CaseId, EventKind, FixtureId, FixtureRecord, HookId, Record, Significance, Source, SuiteId,
     TestFinished, Verdict,
 };
 
@@ -31,8 +31,13 @@ pub(super) fn of_attempt(record: &Record, finished: &TestFinished) -> Option<Res
         return Some(ResultLine::about(Word::Fail, &test.plan.name, &red_reason));
     }
     let reason = finished.reason.as_deref().unwrap_or(finished.verdict.as_str());
-    let said = attempt.failures().any(|message| message.text == reason)
-        || attempt.violations().any(|m| m.problem().as_deref() == Some(reason));
+    // The reason of a problem in a case begins with the name of the case.
+    let is_said = |text: &str, case: Option<CaseId>| match reason.strip_suffix(text) {
+        Some(start) => start.is_empty() || case.is_some() && start.starts_with("case `"),
+        None => false,
+    };
+    let said = attempt.failures().any(|message| is_said(&message.text, message.case))
+        || attempt.violations().any(|m| m.problem().is_some_and(|text| is_said(&text, m.case)));
     if said {
         return None;
     }
