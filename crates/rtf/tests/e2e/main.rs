@@ -16,6 +16,7 @@ mod bad_outputs;
 mod bad_plugins;
 mod bad_suites;
 mod blocked_console;
+mod cases;
 mod chaos;
 mod chaos_hosts;
 mod ci_formats;
