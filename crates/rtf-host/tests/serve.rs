@@ -97,7 +97,7 @@ impl HostPlugin for Script {
             host: "script 1".into(),
             stack,
             supports_shared: true,
-            selects_cases: true,
+            selects_cases: false,
         }
     }
 
