@@ -66,6 +66,7 @@ impl Host {
         let params = json!({
             "file": file, "name": "Arm", "param": "--rate 100", "args": ["--rate", "100"],
             "environment": "--robot sim", "repetition": 3, "is_last": method == "run-test",
+            "parameters": [{"name": "joint", "value": "3"}, {"name": "side", "value": "left"}],
         });
         self.send(Some(1), method, params);
         file
