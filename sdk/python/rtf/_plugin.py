@@ -136,7 +136,7 @@ class Plugin:
         if session.task.attachments_dir:
             full = _attachment.copy(full, name, session.task.attachments_dir)
         params: dict[str, object] = {"name": name, "path": full, "media_type": media_type or ""}
-        session.notify("attached", params)
+        session.notify_in_case("attached", params)
 
 
 def limit_of(name: str, limit: float | None) -> float | None:

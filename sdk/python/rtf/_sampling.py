@@ -24,13 +24,14 @@ BATCH_AGE_SECONDS = 0.1
 
 
 class Batch:
-    """Samples of one signal with the same limits."""
+    """Samples of one signal with the same limits and in the same case."""
 
-    __slots__ = ("place", "points", "signal")
+    __slots__ = ("case", "place", "points", "signal")
 
-    def __init__(self, signal: Signal) -> None:
+    def __init__(self, signal: Signal, case: int | None) -> None:
         """Start an empty batch at the plug-in's present line."""
         self.signal = signal
+        self.case = case
         self.place = _location.caller()
         self.points: list[tuple[float, float]] = []
 
@@ -38,7 +39,7 @@ class Batch:
         """Return the parameters of `sampled`."""
         name, unit, low, high = self.signal
         place = self.place.as_json() if self.place is not None else None
-        fields = {"low": low, "high": high, "location": place}
+        fields = {"low": low, "high": high, "location": place, "case": self.case}
         given = {key: value for key, value in fields.items() if value is not None}
         return {"name": name, "unit": unit, **given, "points": self.points}
 
@@ -66,7 +67,9 @@ class Sampling:
         """Start the time of a test: its set-up begins."""
         self._began = time.monotonic()
 
-    def add(self, signal: Signal, value: float, at: float | None, *, is_within: bool) -> None:
+    def add(
+        self, signal: Signal, value: float, at: float | None, *, case: int | None, is_within: bool
+    ) -> None:
         """Add a sample, and send the batches that are due."""
         now = time.monotonic()
         if at is None:
@@ -75,8 +78,8 @@ class Sampling:
             if not self._batches:
                 self._oldest = now
             batch = self._open.get(signal[0])
-            if batch is None or batch.signal != signal:
-                batch = self._open[signal[0]] = Batch(signal)
+            if batch is None or batch.signal != signal or batch.case != case:
+                batch = self._open[signal[0]] = Batch(signal, case)
                 self._batches.append(batch)
             batch.points.append((at, value))
             full = len(batch.points) >= BATCH_SAMPLES or len(self._batches) >= BATCH_SAMPLES

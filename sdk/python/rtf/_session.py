@@ -11,7 +11,9 @@ import os
 import threading
 
 from rtf import _location
+from rtf._cases import Cases
 from rtf._sampling import Sampling
+from rtf._stop import AssertionEnded
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
     from typing import Protocol
 
     from rtf._sampling import Notify, Signal
+    from rtf._task import Task
 
     class Announce(Protocol):
         """Announces a phase to the runner; `held` delays it until the next line."""
@@ -38,6 +41,7 @@ class RequestState:
         """Start without a problem and without a stop request."""
         # The outcome of the first problem, and its reason if no message reports it.
         self._first: tuple[str, str | None] | None = None
+        self._skip_reason: str | None = None
         self._stop = threading.Event()
         self._stop_reason = ""
         self._is_signal_announced = False
@@ -47,13 +51,19 @@ class RequestState:
         if self._first is None:
             self._first = (outcome, reason)
 
+    def skip(self, reason: str) -> None:
+        """Record that the test skips itself; a problem has precedence."""
+        if self._skip_reason is None:
+            self._skip_reason = reason
+
     def has_passed(self) -> bool:
-        """Whether there is no problem so far."""
-        return self._first is None
+        """Whether there is no problem and no skip so far."""
+        return self._first is None and self._skip_reason is None
 
     def answer(self) -> dict[str, object]:
         """Return the answer to the request."""
-        outcome, reason = self._first or ("passed", None)
+        skipped = ("passed" if self._skip_reason is None else "skipped", self._skip_reason)
+        outcome, reason = self._first or skipped
         return {"outcome": outcome} if reason is None else {"outcome": outcome, "reason": reason}
 
     def request_stop(self, reason: str) -> None:
@@ -88,36 +98,6 @@ class RequestState:
         return self._stop_reason
 
 
-class Task:
-    """The parameters of a plug-in."""
-
-    def __init__(self, params: dict[str, object]) -> None:
-        """Read the parameters of `run-test` or `set-up-fixture`."""
-        self.file = _text_of(params, "file")
-        self.name = _text_of(params, "name")
-        self.param = _text_of(params, "param", "")
-        self.environment = _text_of(params, "environment", "")
-        args = params.get("args", [])
-        repetition = params.get("repetition", 0)
-        if not isinstance(args, list) or not all(isinstance(arg, str) for arg in args):
-            raise TypeError("`args` is not a list of texts")
-        if not isinstance(repetition, int):
-            raise TypeError("`repetition` is not a whole number")
-        self.args: list[str] = args
-        self.repetition = repetition
-        self.last = params.get("is_last", False) is True
-        self.attachments_dir = _text_of(params, "attachments_dir", "")
-        # Ends the test's output in a host that continues with the next test.
-        self.end_marker = _text_of(params, "end_marker", "")
-
-
-def _text_of(params: dict[str, object], name: str, default: str | None = None) -> str:
-    value = params.get(name, default)
-    if not isinstance(value, str):
-        raise TypeError(f"`{name}` is missing or not a text")
-    return value
-
-
 class Session:
     """The connection between one plug-in and the runner."""
 
@@ -128,6 +108,9 @@ class Session:
         self.task = task
         self.request = request
         self.sampling = Sampling(notify)
+        self.cases = Cases(self.notify)
+        # The announced step of a test; empty in a fixture.
+        self.phase = ""
         self._notify = notify
         self._announce = announce
 
@@ -136,9 +119,17 @@ class Session:
         self.sampling.send()
         self._notify(method, params)
 
+    def notify_in_case(self, method: str, params: dict[str, object]) -> None:
+        """Send a notification that belongs to the present case, if any."""
+        case = self.cases.current()
+        if case is not None:
+            params["case"] = case
+        self.notify(method, params)
+
     def announce(self, phase: str, *, held: bool = False) -> None:
         """Announce a phase, after the samples that were taken before."""
         self.sampling.send()
+        self.phase = phase
         self._announce(phase, held=held)
 
     def message(self, kind: str, text: str, **more: object) -> None:
@@ -148,7 +139,7 @@ class Session:
         if isinstance(place, _location.Location):
             params["location"] = place.as_json()
         params.update((key, value) for key, value in more.items() if value)
-        self.notify("message", params)
+        self.notify_in_case("message", params)
 
     def failure(self, text: str, **more: object) -> None:
         """Send a failure."""
@@ -164,19 +155,31 @@ class Session:
         place = _location.caller()
         if place is not None:
             params["location"] = place.as_json()
-        self.notify("measured", params)
+        self.notify_in_case("measured", params)
         return self._is_within(value, low, high)
 
     def sampled(self, signal: Signal, value: float, at: float | None) -> bool:
         """Add a sample, and return whether it is within its limits."""
         is_within = self._is_within(value, *signal[2:])
-        self.sampling.add(signal, value, at, is_within=is_within)
+        self.sampling.add(signal, value, at, case=self.cases.current(), is_within=is_within)
         return is_within
 
     def error(self, text: str, **more: object) -> None:
         """Send an error."""
         self.request.record("error")
         self.message("error", text, **more)
+
+    def skip(self, reason: str) -> None:
+        """Skip the innermost case of this thread, or without one the test."""
+        case = self.cases.innermost()
+        if case is not None:
+            case.skip(reason)
+        elif self.phase in {"setup", "run"}:
+            self.request.skip(reason)
+        else:
+            text = "`skip` is allowed in `setup` and `run` only"
+            self.error(text)
+            raise AssertionEnded(text)
 
     def _is_within(self, value: float, low: float | None, high: float | None) -> bool:
         is_within = (low is None or value >= low) and (high is None or value <= high)

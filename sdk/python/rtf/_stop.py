@@ -23,5 +23,13 @@ class AssertionEnded(StepEnded):
     """An assertion failed, or the plug-in called ``fail`` or ``error``."""
 
 
+class CriticalAssertionEnded(AssertionEnded):
+    """A critical assertion failed. Ends the test, not only the case."""
+
+
+class Skipped(StepEnded):
+    """The test or the case skips itself."""
+
+
 class Interrupted(StepEnded):
     """The runner asked the plug-in to stop."""

@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 
 from rtf import _clock, _session
+from rtf._cases import Case
 from rtf._near import Comparison
 from rtf._plugin import Plugin, limit_of
-from rtf._stop import AssertionEnded
+from rtf._stop import AssertionEnded, CriticalAssertionEnded, Skipped
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, Callable
+    from collections.abc import Iterable
+    from typing import Any, Callable, NoReturn
 
 
 class TestCase(Plugin):
@@ -34,6 +36,40 @@ class TestCase(Plugin):
 
     def tearDown(self) -> None:
         """Restore the initial state. Always called."""
+
+    def case(self, name: object, /, **parameters: object) -> Case:
+        """Open a case, a named result inside the test: `with self.case("joint 3", joint=3):`.
+
+        An assertion, an error, an exception or `skip` ends the case, and the test continues
+        after it. The body does not run if the case is not selected; in a function with
+        `contextlib.contextmanager`, do not `yield` in it.
+        """
+        return Case(_session.current(), str(name), parameters)
+
+    def plan_cases(self, names: Iterable[object]) -> None:
+        """Announce the names of cases that the test is going to run."""
+        if isinstance(names, str):
+            raise TypeError("`plan_cases` needs a list of names, not a text")
+        session = _session.current()
+        session.cases.plan([name for name in map(str, names) if session.task.selects(name)])
+
+    def skip(self, reason: object) -> NoReturn:
+        """End the innermost case, otherwise the test, as skipped: the bench lacks something."""
+        _session.current().skip(str(reason))
+        raise Skipped(str(reason))
+
+    @property
+    def parameters(self) -> dict[str, str]:
+        """The test's values of a matrix."""
+        return dict(_session.current().task.parameters)
+
+    def parameter(self, name: str) -> str:
+        """Return the test's value of a matrix; an unknown name is an error."""
+        known = _session.current().task.parameters
+        if name not in known:
+            has = ", ".join(known) or "none"
+            self.error(f'there is no parameter "{name}"; this test has {has}')
+        return known[name]
 
     def sample(  # noqa: PLR0913, PLR0917 - the arguments of `measure`, and the time
         self,
@@ -91,7 +127,7 @@ class TestCase(Plugin):
         """Assert that it is safe to continue: if not, the rest of the suite is skipped."""
         if not condition:
             _session.current().failure(str(text), critical=True)
-            raise AssertionEnded(str(text))
+            raise CriticalAssertionEnded(str(text))
         _session.current().message("check", str(text))
 
     def check_near(self, got: Any, expected: Any, tolerance: float, what: object) -> bool:

@@ -121,6 +121,7 @@ def test_initialize_comes_first_and_names_the_interpreter(tmp_path: Path) -> Non
         "host": f"python {version}",
         "stack": "none",
         "supports_shared": True,
+        "selects_cases": True,
     }
 
 

@@ -15,9 +15,10 @@ import threading
 from _thread import start_new_thread
 from queue import SimpleQueue
 
-from rtf import _session
-from rtf._session import RequestState, Session, Task
+from rtf import _exceptions, _session
+from rtf._session import RequestState, Session
 from rtf._stop import StepEnded
+from rtf._task import Task
 from rtf.host import channel, shared_host, steps
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
@@ -256,7 +257,13 @@ class Host:
         self._is_initialized = True
         name = sys.implementation.name.replace("cpython", "python")
         host = f"{name} {'.'.join(map(str, sys.version_info[:3]))}"
-        return {"protocol": PROTOCOL_VERSION, "host": host, "stack": stack, "supports_shared": True}
+        return {
+            "protocol": PROTOCOL_VERSION,
+            "host": host,
+            "stack": stack,
+            "supports_shared": True,
+            "selects_cases": True,
+        }
 
     def _enter(self, task: Task, request: Request) -> Session:
         if not task.end_marker:
@@ -285,7 +292,7 @@ def _report_thread_exception(raised: threading.ExceptHookArgs) -> None:
     session = _session.running()
     problem = raised.exc_value
     if session is not None and problem is not None and not isinstance(problem, StepEnded):
-        steps.report_exception(session, problem)
+        _exceptions.report(session, problem)
 
 
 def prepare() -> None:

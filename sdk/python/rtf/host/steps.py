@@ -6,9 +6,9 @@ import os
 import signal
 import sys
 
-from rtf import _location, _session
+from rtf import _exceptions, _session
 from rtf._fixture import FixtureManager, Test
-from rtf._stop import Error, Interrupted, StepEnded
+from rtf._stop import Interrupted, StepEnded
 from rtf._test import TestCase
 from rtf.host import load
 
@@ -153,33 +153,12 @@ def _guard(session: Session, function: Callable[[], object]) -> None:
     except BaseException as problem:  # noqa: BLE001 - also KeyboardInterrupt and the plug-in's own
         # A library that replaced the signal handler raises KeyboardInterrupt.
         if not (isinstance(problem, KeyboardInterrupt) and session.request.stop_requested()):
-            report_exception(session, problem)
+            _exceptions.report(session, problem)
     if os.getpid() != process:
         # A forked child returned from the plug-in; its parent serves the runner.
         _flush_output()
         session.sampling.send()
         os._exit(0)
-
-
-def report_exception(session: Session, problem: BaseException) -> None:
-    """Report an exception as an error, with its type, text, location and traceback.
-
-    An `rtf.Error` is reported by its text alone.
-    """
-    place = _location.of_exception(problem.__traceback__, session.task.file)
-    if isinstance(problem, Error):
-        session.error(str(problem), location=place)
-        return
-    import traceback  # noqa: PLC0415 - slow to import, and most tests raise nothing
-
-    reason = "".join(traceback.format_exception_only(type(problem), problem)).strip()
-    if isinstance(problem, SyntaxError):
-        reason = f"{type(problem).__name__}: {problem.msg}"
-        place = _location.Location(problem.filename or session.task.file, problem.lineno or 0)
-    trace = _location.without_host(problem.__traceback__)
-    lines = traceback.format_exception(type(problem), problem, trace)
-    text = f"{reason}\n{''.join(lines).rstrip()}" if trace else reason
-    session.error(text, location=place)
 
 
 def _is_false(result: object) -> bool:

@@ -1,0 +1,188 @@
+"""Cases: named results inside a test."""
+
+from __future__ import annotations
+
+import os
+import threading
+from contextvars import ContextVar
+
+from rtf import _exceptions, _location
+from rtf._body_skip import BodySkip, BodySkipped
+from rtf._stop import CriticalAssertionEnded, Interrupted, StepEnded
+
+# As `typing.TYPE_CHECKING`, without the time that its import takes.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from rtf._sampling import Notify
+    from rtf._session import Session
+
+
+class OpenCase:
+    """A case that has started."""
+
+    __slots__ = ("is_open", "number", "outer", "owner", "path", "skip_reason")
+
+    def __init__(self, owner: Cases, outer: OpenCase | None, path: str, number: int | None) -> None:
+        """Open a case of a test; in a forked child, with the number of the inherited case."""
+        self.owner = owner
+        self.outer = outer
+        self.path = path
+        self.number = number
+        self.is_open = True
+        self.skip_reason: str | None = None
+
+    def skip(self, reason: str) -> None:
+        """Record that the case skips itself; the first reason counts."""
+        if self.skip_reason is None:
+            self.skip_reason = reason
+
+
+# The innermost case of a thread. Tasks of `asyncio` that run at the same time have
+# different ones.
+_innermost: ContextVar[OpenCase | None] = ContextVar("rtf_case", default=None)
+
+
+class Cases:
+    """The cases of a test."""
+
+    def __init__(self, notify: Notify) -> None:
+        """Start without cases, on the thread that runs the test."""
+        self._notify = notify
+        self._count = 0
+        self._process = os.getpid()
+        self._run_thread = threading.get_ident()
+        self._innermost_of_run: OpenCase | None = None
+        # Reentrant, because a signal handler may open a case while it is held.
+        self._lock = threading.RLock()
+
+    def innermost(self) -> OpenCase | None:
+        """Return the innermost open case of this thread."""
+        case = _innermost.get()
+        while case is not None and not case.is_open:
+            case = case.outer
+        return case if case is not None and case.owner is self else None
+
+    def current(self) -> int | None:
+        """Return the number of the case to which a message of this thread belongs."""
+        if not self._count:
+            return None
+        case = self.innermost() or self._innermost_of_run
+        return None if case is None else case.number
+
+    def is_forked(self) -> bool:
+        """Whether this is a forked child: the runner accepts no cases from it."""
+        return os.getpid() != self._process
+
+    def path_of(self, name: str) -> str:
+        """Return the path of a case that starts now on this thread."""
+        outer = self.innermost()
+        return name if outer is None else f"{outer.path}/{name}"
+
+    def plan(self, names: list[str]) -> None:
+        """Announce cases."""
+        if names and not self.is_forked():
+            self._notify("cases-planned", {"names": names})
+
+    def start(self, name: str, parameters: dict[str, object]) -> OpenCase:
+        """Open a case in the innermost one of this thread."""
+        outer, path = self.innermost(), self.path_of(name)
+        if self.is_forked():
+            case = OpenCase(self, outer, path, self.current())
+        else:
+            place = _location.caller()
+            # The runner expects the numbers in order.
+            with self._lock:
+                self._count += 1
+                case = OpenCase(self, outer, path, self._count)
+                fields: dict[str, object] = {"case": case.number, "name": name}
+                if outer is not None:
+                    fields["parent"] = outer.number
+                if parameters:
+                    values = [{"name": key, "value": _text(v)} for key, v in parameters.items()]
+                    fields["parameters"] = values
+                if place is not None:
+                    fields["location"] = place.as_json()
+                self._notify("case-started", fields)
+        self._set_innermost(case)
+        return case
+
+    def finish(self, case: OpenCase) -> None:
+        """Close a case and send its end."""
+        self.close(case)
+        if self.is_forked():
+            return
+        fields: dict[str, object] = {"case": case.number}
+        if case.skip_reason is not None:
+            fields.update(outcome="skipped", reason=case.skip_reason)
+        self._notify("case-finished", fields)
+
+    def close(self, case: OpenCase) -> None:
+        """Close a case whose end the runner decides."""
+        case.is_open = False
+        self._set_innermost(self.innermost())
+
+    def _set_innermost(self, case: OpenCase | None) -> None:
+        _innermost.set(case)
+        if threading.get_ident() == self._run_thread:
+            self._innermost_of_run = case
+
+
+class Case:
+    """A case, as a context manager."""
+
+    def __init__(self, session: Session, name: str, parameters: dict[str, object]) -> None:
+        """Prepare a case, which starts with the `with` statement."""
+        self._session = session
+        self._name = name
+        self._parameters = parameters
+        self._open: OpenCase | None = None
+        self._body_skip: BodySkip | None = None
+
+    def __enter__(self) -> None:
+        """Start the case if it is selected; otherwise skip the body."""
+        if self._may_start():
+            self._open = self._session.cases.start(self._name, self._parameters)
+        else:
+            self._body_skip = BodySkip()
+
+    def _may_start(self) -> bool:
+        session = self._session
+        if session.phase != "run":
+            session.error("cases are allowed in `run` only")
+            return False
+        cases = session.cases
+        return cases.is_forked() or session.task.selects(cases.path_of(self._name))
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        problem: BaseException | None,
+        trace: TracebackType | None,
+    ) -> bool:
+        """Finish the case, and swallow an exception that ends only the case."""
+        if self._body_skip is not None:
+            self._body_skip.restore_tracing()
+            return isinstance(problem, BodySkipped)
+        case, session = self._open, self._session
+        if case is None:
+            return False
+        if isinstance(problem, (SystemExit, Interrupted)) or session.request.stop_requested():
+            # The process ends, or the runner has stopped the test: the runner finishes it.
+            session.cases.close(case)
+            return False
+        is_own = isinstance(problem, (StepEnded, GeneratorExit))
+        if problem is not None and not is_own:
+            _exceptions.report(session, problem)
+        session.cases.finish(case)
+        return problem is not None and not isinstance(
+            problem, (CriticalAssertionEnded, GeneratorExit)
+        )
+
+
+def _text(value: object) -> str:
+    """Return a parameter's value as text, as in the other languages."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return str(value)

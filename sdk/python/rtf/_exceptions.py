@@ -1,0 +1,32 @@
+"""Reports an exception of the plug-in."""
+
+from __future__ import annotations
+
+from rtf import _location
+from rtf._stop import Error
+
+# As `typing.TYPE_CHECKING`, without the time that its import takes.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from rtf._session import Session
+
+
+def report(session: Session, problem: BaseException) -> None:
+    """Report an exception as an error, with its type, text, location and traceback.
+
+    An `rtf.Error` is reported by its text alone.
+    """
+    place = _location.of_exception(problem.__traceback__, session.task.file)
+    if isinstance(problem, Error):
+        session.error(str(problem), location=place)
+        return
+    import traceback  # noqa: PLC0415 - slow to import, and most tests raise nothing
+
+    reason = "".join(traceback.format_exception_only(type(problem), problem)).strip()
+    if isinstance(problem, SyntaxError):
+        reason = f"{type(problem).__name__}: {problem.msg}"
+        place = _location.Location(problem.filename or session.task.file, problem.lineno or 0)
+    trace = _location.without_host(problem.__traceback__)
+    lines = traceback.format_exception(type(problem), problem, trace)
+    text = f"{reason}\n{''.join(lines).rstrip()}" if trace else reason
+    session.error(text, location=place)

@@ -1,0 +1,67 @@
+"""The parameters of a plug-in."""
+
+from __future__ import annotations
+
+
+class Task:
+    """The parameters of `run-test` or `set-up-fixture`."""
+
+    def __init__(self, params: dict[str, object]) -> None:
+        """Read them; a `TypeError` names the one that is wrong."""
+        self.file = _text_of(params, "file")
+        self.name = _text_of(params, "name")
+        self.param = _text_of(params, "param", "")
+        self.environment = _text_of(params, "environment", "")
+        args = params.get("args", [])
+        repetition = params.get("repetition", 0)
+        if not isinstance(args, list) or not all(isinstance(arg, str) for arg in args):
+            raise TypeError("`args` is not a list of texts")
+        if not isinstance(repetition, int):
+            raise TypeError("`repetition` is not a whole number")
+        self.args: list[str] = args
+        self.repetition = repetition
+        self.last = params.get("is_last", False) is True
+        self.attachments_dir = _text_of(params, "attachments_dir", "")
+        # Ends the test's output in a host that continues with the next test.
+        self.end_marker = _text_of(params, "end_marker", "")
+        parameters = _objects_of(params, "parameters")
+        self.parameters = {_text_of(one, "name"): _text_of(one, "value") for one in parameters}
+        self.selectors = [Selector(one) for one in _objects_of(params, "cases")]
+
+    def selects(self, path: str) -> bool:
+        """Whether the case with this path runs."""
+        return not self.selectors or any(one.selects(path) for one in self.selectors)
+
+
+class Selector:
+    """Selects cases by their path: names joined with `/`."""
+
+    def __init__(self, params: dict[str, object]) -> None:
+        """Read `{"equals": PATH}` or `{"contains": TEXT}`."""
+        self._is_exact = "equals" in params
+        self._text = _text_of(params, "equals" if self._is_exact else "contains")
+
+    def selects(self, path: str) -> bool:
+        """Whether the case with this path runs."""
+        if self._is_exact:
+            return _is_in(path, self._text) or _is_in(self._text, path)
+        return self._text in path
+
+
+def _is_in(path: str, outer: str) -> bool:
+    """Whether a case is another one, or in it."""
+    return path == outer or path.startswith(f"{outer}/")
+
+
+def _objects_of(params: dict[str, object], name: str) -> list[dict[str, object]]:
+    value = params.get(name, [])
+    if not isinstance(value, list) or not all(isinstance(one, dict) for one in value):
+        raise TypeError(f"`{name}` is not a list of objects")
+    return value
+
+
+def _text_of(params: dict[str, object], name: str, default: str | None = None) -> str:
+    value = params.get(name, default)
+    if not isinstance(value, str):
+        raise TypeError(f"`{name}` is missing or not a text")
+    return value
