@@ -80,6 +80,18 @@ class Host
     [kind, text&.lines(chomp: true)&.first]
   end
 
+  # The starts and ends of cases, and the messages with their cases.
+  def case_events
+    @seen.filter_map do |line|
+      params = line["params"]
+      case line["method"]
+      when "case-started" then ["start", *params.values_at("case", "name", "parent")]
+      when "case-finished" then ["end", params["case"]]
+      when "message" then [params["kind"], params["text"].lines.first.chomp, params["case"]]
+      end
+    end
+  end
+
   # Sends nothing more, like a runner that is gone.
   def close
     @channel.close_write
@@ -142,5 +154,9 @@ class HostTest < Minitest::Test
 
   def run_body(body, more = "")
     run_plugin(arm(body, more))
+  end
+
+  def events_of(body, more = "")
+    run_body(body, more)[1].case_events
   end
 end

@@ -78,7 +78,7 @@ class LoadingTest < HostTest
 
   def test_initialize_names_the_interpreter
     expected = { "protocol" => 1, "host" => "ruby #{RUBY_VERSION}", "stack" => "message",
-                 "supports_shared" => true }
+                 "supports_shared" => true, "selects_cases" => true }
     assert_equal expected, host.initialized["result"]
   end
 

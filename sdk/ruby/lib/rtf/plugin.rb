@@ -145,7 +145,7 @@ module RTF
       directory = session.task.attachments_dir
       full = Attachment.copy(full, name, directory) unless directory.empty?
       params = { name: name, path: Text.utf8(full), media_type: Text.utf8(media_type) }
-      session.notify("attached", params)
+      session.notify_in_case("attached", params)
     end
 
     private

@@ -28,14 +28,20 @@ module RTF
       @lock.synchronize { @first = { outcome: outcome, reason: reason }.compact if @first.nil? }
     end
 
-    # Whether there is no problem so far.
+    # Records that the test skips itself; a problem has precedence.
+    def skip(reason)
+      answer = { outcome: "skipped", reason: reason }
+      @lock.synchronize { @skipped = answer if @skipped.nil? }
+    end
+
+    # Whether there is no problem and no skip so far.
     def passed?
-      @lock.synchronize { @first.nil? }
+      @lock.synchronize { @first.nil? && @skipped.nil? }
     end
 
     # The answer to the request.
     def answer
-      @lock.synchronize { @first || { outcome: "passed" } }
+      @lock.synchronize { @first || @skipped || { outcome: "passed" } }
     end
 
     # Asks the plug-in to stop; this is a problem.

@@ -41,8 +41,9 @@ module RTF
       @began = now
     end
 
-    # Adds a sample, and sends the batches that are due.
-    def add(signal, value, at, accepted:)
+    # Adds a sample, and sends the batches that are due. `source` is the signal and the
+    # number of the case.
+    def add(source, value, at, accepted:)
       taken = now
       at ||= @began ? (taken - @began).round(6) : 0.0
       # The first violation may decide the verdict: a crash must not lose it.
@@ -50,7 +51,7 @@ module RTF
       @has_failed ||= first_failed
       safely do
         @oldest = taken if @batches.empty?
-        points = points_of(signal)
+        points = points_of(*source)
         points << [at, value]
         full = points.length >= BATCH_SAMPLES || @batches.length >= BATCH_SAMPLES
         send_all if full || first_failed || taken - @oldest >= BATCH_AGE_SECONDS
@@ -86,12 +87,13 @@ module RTF
       end
     end
 
-    def points_of(signal)
-      params, limits = @open[signal.name]
-      return params[:points] if limits == signal
+    def points_of(signal, number)
+      params, *source = @open[signal.name]
+      return params[:points] if source == [signal, number]
 
-      params = signal.to_h.merge(location: Location.caller_place).compact.merge(points: [])
-      @open[signal.name] = [params, signal]
+      more = { case: number, location: Location.caller_place }
+      params = signal.to_h.merge(more).compact.merge(points: [])
+      @open[signal.name] = [params, signal, number]
       @batches << params
       params[:points]
     end

@@ -1,51 +1,18 @@
 # frozen_string_literal: true
 
+require "rtf/cases"
 require "rtf/location"
 require "rtf/request_state"
 require "rtf/sampling"
+require "rtf/stop"
+require "rtf/task"
 require "rtf/text"
 
 module RTF
-  # The parameters of a plug-in.
-  class Task
-    attr_reader :file, :name, :param, :environment, :args, :repetition, :end_marker
-
-    # The directory for copies of attached files.
-    attr_accessor :attachments_dir
-
-    # Reads the parameters of `run-test` or `set-up-fixture`.
-    def initialize(params)
-      @file = text(params, "file")
-      @name = text(params, "name")
-      @param = text(params, "param", "")
-      @environment = text(params, "environment", "")
-      @attachments_dir = text(params, "attachments_dir", "")
-      @args = params.fetch("args", [])
-      @repetition = params.fetch("repetition", 0)
-      @last = params["is_last"] == true
-      @end_marker = text(params, "end_marker", "")
-      strings = @args.is_a?(Array) && @args.all?(String)
-      raise TypeError, "`args` is not a list of texts" unless strings
-      raise TypeError, "`repetition` is not a whole number" unless @repetition.is_a?(Integer)
-    end
-
-    def last?
-      @last
-    end
-
-    private
-
-    def text(params, name, default = nil)
-      value = params.fetch(name, default)
-      raise TypeError, "`#{name}` is missing or not a text" unless value.is_a?(String)
-
-      value
-    end
-  end
-
   # The connection between one plug-in and the runner, for any thread.
   class Session
-    attr_reader :task, :request, :sampling
+    # `phase` is the announced step of a test, and nil in a fixture.
+    attr_reader :task, :request, :sampling, :cases, :phase
 
     @current = nil
 
@@ -73,6 +40,14 @@ module RTF
       @request = request
       @channel = channel
       @sampling = Sampling.new { |method, params| channel.notify(method, params) }
+      @cases = Cases.new(self)
+      @phase = nil
+    end
+
+    # Announces a step of a test.
+    def announce(phase)
+      @phase = phase
+      notify("phase", { phase: phase })
     end
 
     # Sends a notification, after the samples that were taken before.
@@ -81,11 +56,18 @@ module RTF
       @channel.notify(method, params)
     end
 
+    # Sends a notification that belongs to the present case, if any.
+    def notify_in_case(method, params)
+      number = @cases.current
+      params[:case] = number if number
+      notify(method, params)
+    end
+
     # Sends a message of the plug-in with its location.
     def message(kind, text, location: Location.caller_place, **more)
       params = { kind: kind, text: Text.utf8(text) }
       params[:location] = location if location
-      notify("message", params.merge(more.compact))
+      notify_in_case("message", params.merge(more.compact))
     end
 
     # Sends a failure.
@@ -100,11 +82,32 @@ module RTF
       message("error", text, **more)
     end
 
+    # Sends an exception as an error, with its class, text, location and backtrace.
+    def exception(problem)
+      reason = "#{problem.class}: #{Text.utf8(problem.message)}"
+      place = Location.of_exception(problem, @task.file)
+      lines = Location.backtrace(problem).map { |line| "  from #{Text.utf8(line)}" }
+      error([reason, *lines].join("\n"), location: place)
+    end
+
+    # Skips the innermost case of this thread, or without one the test.
+    def skip(reason)
+      reason = Text.utf8(reason)
+      if (opened = @cases.innermost)
+        opened.skip_reason ||= reason
+      elsif %w[setup run].include?(@phase)
+        @request.skip(reason)
+      else
+        error("`skip` is allowed in `setup` and `run` only")
+      end
+      raise Skipped, reason
+    end
+
     # Sends a measurement, and returns whether it is within its limits.
     def measured(signal, value)
       @request.record("failed") unless signal.accept?(value)
       params = signal.to_h.merge(value: value, location: Location.caller_place)
-      notify("measured", params.compact)
+      notify_in_case("measured", params.compact)
       signal.accept?(value)
     end
 
@@ -112,7 +115,7 @@ module RTF
     def sampled(signal, value, at)
       accepted = signal.accept?(value)
       @request.record("failed") unless accepted
-      @sampling.add(signal, value, at, accepted: accepted)
+      @sampling.add([signal, @cases.current], value, at, accepted: accepted)
       accepted
     end
   end

@@ -13,6 +13,14 @@ module RTF
   class AssertionEnded < StepEnded
   end
 
+  # A critical assertion failed. Ends the test, not only the case.
+  class CriticalAssertionEnded < AssertionEnded
+  end
+
+  # The test or the case skips itself.
+  class Skipped < StepEnded
+  end
+
   # The runner asked the plug-in to stop.
   class Interrupted < StepEnded
   end

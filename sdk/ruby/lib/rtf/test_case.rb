@@ -16,6 +16,39 @@ module RTF
       raise NotImplementedError, "#{self.class} has no `run`"
     end
 
+    # Runs the block as a case, a named result inside the test:
+    # `self.case("joint 3", joint: 3) { … }`.
+    #
+    # An assertion, an error, an exception or `skip` ends the case, and the test continues
+    # after it. The block does not run if the case is not selected.
+    def case(name, **parameters, &block)
+      Session.current.cases.run(name, parameters, &block)
+    end
+
+    # Announces the names of cases that the test is going to run.
+    def plan_cases(names)
+      Session.current.cases.plan(names)
+    end
+
+    # Ends the innermost case, otherwise the test, as skipped: the bench lacks something.
+    def skip(reason)
+      Session.current.skip(reason)
+    end
+
+    # The test's values of a matrix.
+    def parameters
+      Session.current.task.parameters.dup
+    end
+
+    # The test's value of a matrix; an unknown name is an error.
+    def parameter(name)
+      known = Session.current.task.parameters
+      known.fetch(name.to_s) do
+        has = known.empty? ? "none" : known.keys.join(", ")
+        error("there is no parameter \"#{name}\"; this test has #{has}")
+      end
+    end
+
     # Takes a sample of a signal; outside its limits it is a failure, and the test
     # continues. `time` is in seconds since the set-up began; the default is the current time.
     def sample(name, value, unit = "", time: nil, **limits)
@@ -58,7 +91,7 @@ module RTF
     def require_critical(condition, text)
       unless condition
         Session.current.failure(text, critical: true)
-        raise AssertionEnded, text.to_s
+        raise CriticalAssertionEnded, text.to_s
       end
       Session.current.message("check", text)
     end

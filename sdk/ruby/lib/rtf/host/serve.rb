@@ -94,7 +94,7 @@ module RTF
         end
         @initialized = true
         { protocol: PROTOCOL_VERSION, host: "ruby #{RUBY_VERSION}", stack: "message",
-          supports_shared: true }
+          supports_shared: true, selects_cases: true }
       end
 
       def run_test(request)
@@ -108,7 +108,7 @@ module RTF
         task = session.task
         require "rtf/host/shared_host"
         @shared ||= SharedHost.begin unless task.last?
-        Steps.phase(session, "load")
+        session.announce("load")
         answer = Steps.run_test(session)
         continues = session.request.passed? && !task.last? && @shared&.end_test(task.end_marker)
         continues ? [answer.merge(continues: true), false] : [answer, true]

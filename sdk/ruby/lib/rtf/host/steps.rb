@@ -13,14 +13,14 @@ module RTF
       def run_test(session)
         test = load(session, TestCase)
         if test
-          phase(session, "setup")
+          session.announce("setup")
           session.sampling.begin
           step(session, "setup") { test.setup(session.task.args) }
           if session.request.passed?
-            phase(session, "run")
+            session.announce("run")
             step(session, "run") { test.run }
           end
-          phase(session, "tear-down")
+          session.announce("tear-down")
           tear_down(session, test)
         end
         answer(session)
@@ -76,18 +76,6 @@ module RTF
         answer(session)
       end
 
-      # Reports an exception as an error, with its class, text, location and backtrace.
-      def report(session, problem)
-        reason = "#{problem.class}: #{Text.utf8(problem.message)}"
-        place = Location.of_exception(problem, session.task.file)
-        lines = Location.backtrace(problem).map { |line| "  from #{Text.utf8(line)}" }
-        session.error([reason, *lines].join("\n"), location: place)
-      end
-
-      def phase(session, name)
-        session.notify("phase", { phase: name })
-      end
-
       def load(session, base)
         guard(session) { Load.load(session.task.file, base) }
       end
@@ -126,10 +114,10 @@ module RTF
       rescue StepEnded
         nil # recorded before it was raised
       rescue LoadError => problem
-        problem.is_a?(Load::NoPlugin) ? session.error(problem.message) : report(session, problem)
+        problem.is_a?(Load::NoPlugin) ? session.error(problem.message) : session.exception(problem)
         nil
       rescue Exception => problem # rubocop:disable Lint/RescueException
-        report(session, problem)
+        session.exception(problem)
         nil
       end
 

@@ -59,7 +59,7 @@ module RTF
         thread = Thread.current
         return if session.nil? || thread[OWN] || !thread.report_on_exception
 
-        Steps.report(session, problem)
+        session.exception(problem)
       end
 
       # The stacks of all threads of the plug-in, the main one first.

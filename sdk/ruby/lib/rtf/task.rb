@@ -1,0 +1,80 @@
+# frozen_string_literal: true
+
+module RTF
+  # The parameters of a plug-in.
+  class Task
+    # Selects cases by their path: names joined with `/`.
+    Selector = Struct.new(:equals, :contains) do
+      def select?(path)
+        return path.include?(contains) if contains
+
+        inside?(path, equals) || inside?(equals, path)
+      end
+
+      # Whether a case is another one, or in it.
+      def inside?(path, outer)
+        path == outer || path.start_with?("#{outer}/")
+      end
+    end
+
+    attr_reader :file, :name, :param, :environment, :args, :repetition, :end_marker, :parameters
+
+    # The directory for copies of attached files.
+    attr_accessor :attachments_dir
+
+    # Reads the parameters of `run-test` or `set-up-fixture`.
+    def initialize(params)
+      @file = text(params, "file")
+      @name = text(params, "name")
+      @param = text(params, "param", "")
+      @environment = text(params, "environment", "")
+      @attachments_dir = text(params, "attachments_dir", "")
+      @args = params.fetch("args", [])
+      @repetition = params.fetch("repetition", 0)
+      @last = params["is_last"] == true
+      @end_marker = text(params, "end_marker", "")
+      strings = @args.is_a?(Array) && @args.all?(String)
+      raise TypeError, "`args` is not a list of texts" unless strings
+      raise TypeError, "`repetition` is not a whole number" unless @repetition.is_a?(Integer)
+
+      read_cases(params)
+    end
+
+    def last?
+      @last
+    end
+
+    # Whether the case with this path runs.
+    def select?(path)
+      @selectors.empty? || @selectors.any? { |selector| selector.select?(path) }
+    end
+
+    private
+
+    # Reads the values of a matrix, and the cases that run.
+    def read_cases(params)
+      @parameters = objects(params, "parameters").to_h do |one|
+        [text(one, "name"), text(one, "value")]
+      end
+      @selectors = objects(params, "cases").map do |one|
+        next Selector.new(text(one, "equals")) if one.key?("equals")
+
+        Selector.new(nil, text(one, "contains"))
+      end
+    end
+
+    def objects(params, name)
+      value = params.fetch(name, [])
+      return value if value.is_a?(Array) && value.all?(Hash)
+
+      raise TypeError, "`#{name}` is not a list of objects"
+    end
+
+    def text(params, name, default = nil)
+      value = params.fetch(name, default)
+      raise TypeError, "`#{name}` is missing or not a text" unless value.is_a?(String)
+
+      value
+    end
+  end
+end
