@@ -39,6 +39,9 @@ class OpenCase:
             self.skip_reason = reason
 
 
+# A line of the protocol has a limit.
+_NAMES_IN_LINE = 4096
+
 # The innermost case of a thread. Tasks of `asyncio` that run at the same time have
 # different ones.
 _innermost: ContextVar[OpenCase | None] = ContextVar("rtf_case", default=None)
@@ -54,6 +57,8 @@ class Cases:
         self._process = os.getpid()
         self._run_thread = threading.get_ident()
         self._innermost_of_run: OpenCase | None = None
+        # After a stop request the runner finishes all cases that are open.
+        self._is_abandoned = False
         # Reentrant, because a signal handler may open a case while it is held.
         self._lock = threading.RLock()
 
@@ -71,7 +76,7 @@ class Cases:
         case = self.innermost() or self._innermost_of_run
         return None if case is None else case.number
 
-    def is_forked(self) -> bool:
+    def _is_forked(self) -> bool:
         """Whether this is a forked child: the runner accepts no cases from it."""
         return os.getpid() != self._process
 
@@ -82,13 +87,14 @@ class Cases:
 
     def plan(self, names: list[str]) -> None:
         """Announce cases."""
-        if names and not self.is_forked():
-            self._notify("cases-planned", {"names": names})
+        if not self._is_forked():
+            for first in range(0, len(names), _NAMES_IN_LINE):
+                self._notify("cases-planned", {"names": names[first : first + _NAMES_IN_LINE]})
 
     def start(self, name: str, parameters: dict[str, object]) -> OpenCase:
         """Open a case in the innermost one of this thread."""
         outer, path = self.innermost(), self.path_of(name)
-        if self.is_forked():
+        if self._is_forked():
             case = OpenCase(self, outer, path, self.current())
         else:
             place = _location.caller()
@@ -110,16 +116,20 @@ class Cases:
 
     def finish(self, case: OpenCase) -> None:
         """Close a case and send its end."""
-        self.close(case)
-        if self.is_forked():
+        self._close(case)
+        if self._is_forked() or self._is_abandoned:
             return
         fields: dict[str, object] = {"case": case.number}
         if case.skip_reason is not None:
             fields.update(outcome="skipped", reason=case.skip_reason)
         self._notify("case-finished", fields)
 
-    def close(self, case: OpenCase) -> None:
-        """Close a case whose end the runner decides."""
+    def abandon(self, case: OpenCase) -> None:
+        """Close a case that the runner finishes."""
+        self._is_abandoned = True
+        self._close(case)
+
+    def _close(self, case: OpenCase) -> None:
         case.is_open = False
         self._set_innermost(self.innermost())
 
@@ -141,7 +151,7 @@ class Case:
         self._body_skip: BodySkip | None = None
 
     def __enter__(self) -> None:
-        """Start the case if it is selected; otherwise skip the body."""
+        """Start the case, or skip the body if it is not selected or the test is stopped."""
         if self._may_start():
             self._open = self._session.cases.start(self._name, self._parameters)
         else:
@@ -152,8 +162,8 @@ class Case:
         if session.phase != "run":
             session.error("cases are allowed in `run` only")
             return False
-        cases = session.cases
-        return cases.is_forked() or session.task.selects(cases.path_of(self._name))
+        is_stopped = session.request.stop_requested()
+        return not is_stopped and session.task.selects(session.cases.path_of(self._name))
 
     def __exit__(
         self,
@@ -170,7 +180,7 @@ class Case:
             return False
         if isinstance(problem, (SystemExit, Interrupted)) or session.request.stop_requested():
             # The process ends, or the runner has stopped the test: the runner finishes it.
-            session.cases.close(case)
+            session.cases.abandon(case)
             return False
         is_own = isinstance(problem, (StepEnded, GeneratorExit))
         if problem is not None and not is_own:

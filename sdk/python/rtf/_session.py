@@ -174,10 +174,17 @@ class Session:
         case = self.cases.innermost()
         if case is not None:
             case.skip(reason)
-        elif self.phase in {"setup", "run"}:
-            self.request.skip(reason)
-        else:
-            text = "`skip` is allowed in `setup` and `run` only"
+            return
+        self._require_setup_or_run("`skip` is allowed in `setup` and `run` only")
+        self.request.skip(reason)
+
+    def plan_cases(self, names: list[str]) -> None:
+        """Announce those of the cases that are selected."""
+        self._require_setup_or_run("cases are planned in `setup` and `run` only")
+        self.cases.plan([name for name in names if self.task.selects(name)])
+
+    def _require_setup_or_run(self, text: str) -> None:
+        if self.phase not in {"setup", "run"}:
             self.error(text)
             raise AssertionEnded(text)
 

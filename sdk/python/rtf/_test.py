@@ -50,8 +50,7 @@ class TestCase(Plugin):
         """Announce the names of cases that the test is going to run."""
         if isinstance(names, str):
             raise TypeError("`plan_cases` needs a list of names, not a text")
-        session = _session.current()
-        session.cases.plan([name for name in map(str, names) if session.task.selects(name)])
+        _session.current().plan_cases([str(name) for name in names])
 
     def skip(self, reason: object) -> NoReturn:
         """End the innermost case, otherwise the test, as skipped: the bench lacks something."""

@@ -183,12 +183,6 @@ def test_a_failure_has_precedence_over_a_skip(tmp_path: Path, before: str, tear_
     assert ran.result == {"outcome": "failed"}
 
 
-def test_a_skip_in_tear_down_is_an_error(tmp_path: Path) -> None:
-    ran = run(tmp_path, arm("pass", "    def tearDown(self):\n        self.skip('late')\n"))
-    assert ran.result == {"outcome": "error"}
-    assert ran.texts == [("error", "`skip` is allowed in `setup` and `run` only")]
-
-
 @pytest.mark.parametrize("step", ["setup", "tearDown"])
 def test_a_case_outside_of_run_is_an_error_and_its_body_does_not_run(
     tmp_path: Path, step: str
@@ -388,6 +382,42 @@ def test_only_selected_cases_are_planned(tmp_path: Path) -> None:
     assert run(tmp_path, body).host.of("cases-planned") == [{"names": ["a", "b"]}, {"names": ["c"]}]
     ran = run(tmp_path, body, cases=[{"equals": "b/inner"}])
     assert ran.host.of("cases-planned") == [{"names": ["b"]}]
+
+
+def test_many_planned_names_fit_in_the_lines_of_the_protocol(tmp_path: Path) -> None:
+    ran = run(tmp_path, arm("self.plan_cases('x' * 200 + str(n) for n in range(100_000))"))
+    names = [name for one in ran.host.of("cases-planned") for name in one["names"]]
+    assert [name.lstrip("x") for name in names] == [str(number) for number in range(100_000)]
+    assert ran.result == {"outcome": "passed"}
+
+
+@pytest.mark.parametrize(
+    ("line", "text"),
+    [
+        ("self.skip('late')", "`skip` is allowed in `setup` and `run` only"),
+        ("self.plan_cases(['late'])", "cases are planned in `setup` and `run` only"),
+    ],
+)
+def test_skips_and_plans_in_tear_down_are_errors(tmp_path: Path, line: str, text: str) -> None:
+    ran = run(tmp_path, arm("pass", f"    def tearDown(self):\n        {line}\n"))
+    assert ran.result == {"outcome": "error"}
+    assert ran.texts == [("error", text)]
+
+
+def test_a_stopped_test_starts_no_further_case(tmp_path: Path) -> None:
+    host = Host(tmp_path)
+    body = arm(
+        "with self.case('one'):\n    self.report('going')\n"
+        "    while not self.interrupted(): pass\n"
+        "with self.case('two'): self.report('never')\n"
+        "self.report('after')"
+    )
+    host.send("run-test", plugin(tmp_path, body), number=2)
+    host.wait_for("message")
+    host.send("interrupt", {"reason": "Ctrl-C"})
+    assert host.answer()["result"] == {"outcome": "interrupted", "reason": "Ctrl-C"}
+    assert host.texts() == [("report", "going"), ("report", "after")]
+    assert (len(host.of("case-started")), host.of("case-finished")) == (1, [])
 
 
 def test_a_case_that_is_not_selected_leaves_trace_functions_as_they_are(tmp_path: Path) -> None:

@@ -60,6 +60,23 @@ class CaseThreadsTest < HostTest
     end
   end
 
+  def test_a_stopped_test_starts_no_further_case
+    host = self.host
+    host.send("run-test", plugin(arm(<<~RUBY)), 2)
+      self.case("one") do
+        report("going")
+        nil until interrupted?
+      end
+      self.case("two") { report("never") }
+      report("after")
+    RUBY
+    host.wait_for("message")
+    host.send("interrupt", { reason: "Ctrl-C" })
+    assert_equal "interrupted", host.answer["result"]["outcome"]
+    assert_equal [["start", 1, "one", nil], ["report", "going", 1], ["report", "after", nil]],
+                 host.case_events
+  end
+
   def test_the_end_of_the_process_leaves_the_case_open
     assert_equal [["start", 1, "one", nil]], events_of('self.case("one") { exit(0) }')
   end

@@ -37,9 +37,13 @@ class SkipTest < HostTest
     assert_equal failed, run_body('skip("no camera")', more).first
   end
 
-  def test_a_skip_in_tear_down_is_an_error
-    result, host, = run_body("nil", "  def tear_down = skip(\"late\")\n")
-    assert_equal({ "outcome" => "error" }, result)
-    assert_equal [["error", "`skip` is allowed in `setup` and `run` only"]], host.texts
+  LATE = { 'skip("late")' => "`skip` is allowed in `setup` and `run` only",
+           'plan_cases(["late"])' => "cases are planned in `setup` and `run` only" }.freeze
+
+  def test_skips_and_plans_in_tear_down_are_errors
+    LATE.each do |line, text|
+      result, host, = run_body("nil", "  def tear_down = #{line}\n")
+      assert_equal [{ "outcome" => "error" }, [["error", text]]], [result, host.texts]
+    end
   end
 end

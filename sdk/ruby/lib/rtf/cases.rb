@@ -10,6 +10,10 @@ module RTF
     # A case that has started.
     OpenCase = Struct.new(:number, :path, :skip_reason)
 
+    # A line of the protocol has a limit.
+    NAMES_IN_LINE = 4096
+    private_constant :NAMES_IN_LINE
+
     # Starts without cases, on the thread that runs the test.
     def initialize(session)
       @session = session
@@ -19,6 +23,8 @@ module RTF
       # The open cases of each thread, the innermost last.
       @open = {}.compare_by_identity
       @lock = Mutex.new
+      # After a stop request the runner finishes all cases that are open.
+      @abandoned = false
     end
 
     # The innermost open case of this thread.
@@ -36,7 +42,9 @@ module RTF
     # Announces those of the cases that are selected.
     def plan(names)
       names = names.map { |name| Text.utf8(name) }.select { |name| @session.task.select?(name) }
-      @session.notify("cases-planned", { names: names }) unless names.empty? || forked?
+      return if forked?
+
+      names.each_slice(NAMES_IN_LINE) { |some| @session.notify("cases-planned", { names: some }) }
     end
 
     # Runs a case, if it is selected. Its end does not end the test, unless the process ends,
@@ -47,7 +55,7 @@ module RTF
         return
       end
       path = [innermost&.path, Text.utf8(name)].compact.join("/")
-      return unless forked? || @session.task.select?(path)
+      return if stopped? || !@session.task.select?(path)
 
       Thread.handle_interrupt(Interrupted => :never) { run_selected(name, path, parameters, &body) }
       nil
@@ -70,8 +78,9 @@ module RTF
         @session.exception(problem) unless problem.is_a?(StepEnded)
       ensure
         # Also after `return`, `break` or `throw` in the body.
+        @abandoned ||= problem.is_a?(SystemExit) || stopped?
         close
-        finish(opened) unless problem.is_a?(SystemExit) || stopped?
+        finish(opened) unless @abandoned
       end
     end
 

@@ -95,12 +95,17 @@ module RTF
       reason = Text.utf8(reason)
       if (opened = @cases.innermost)
         opened.skip_reason ||= reason
-      elsif %w[setup run].include?(@phase)
-        @request.skip(reason)
       else
-        error("`skip` is allowed in `setup` and `run` only")
+        require_setup_or_run("`skip` is allowed in `setup` and `run` only")
+        @request.skip(reason)
       end
       raise Skipped, reason
+    end
+
+    # Announces cases.
+    def plan_cases(names)
+      require_setup_or_run("cases are planned in `setup` and `run` only")
+      @cases.plan(names)
     end
 
     # Sends a measurement, and returns whether it is within its limits.
@@ -117,6 +122,15 @@ module RTF
       @request.record("failed") unless accepted
       @sampling.add([signal, @cases.current], value, at, accepted: accepted)
       accepted
+    end
+
+    private
+
+    def require_setup_or_run(text)
+      return if %w[setup run].include?(@phase)
+
+      error(text)
+      raise AssertionEnded, text
     end
   end
 end

@@ -27,7 +27,7 @@ module RTF
 
     # Announces the names of cases that the test is going to run.
     def plan_cases(names)
-      Session.current.cases.plan(names)
+      Session.current.plan_cases(names)
     end
 
     # Ends the innermost case, otherwise the test, as skipped: the bench lacks something.
