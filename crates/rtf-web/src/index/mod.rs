@@ -10,7 +10,7 @@ mod positions;
 
 use std::fs::{File, Metadata};
 use std::io;
-use std::time::SystemTime;
+use std::time::{Duration, SystemTime};
 
 use rtf_model::{Damage, Record, RunState};
 use rtf_report::journal::{self, JournalLines};
@@ -18,6 +18,10 @@ use rtf_report::journal::{self, JournalLines};
 pub use attachments::{AttachmentIndex, AttachmentInfo};
 pub use lines::LineReader;
 pub use positions::Positions;
+
+/// An append changes the modification time before the length. A change of the time alone
+/// means that a journal with a live writer was rewritten only if it is older than this.
+const APPENDING: Duration = Duration::from_secs(1);
 
 /// The state of a run in the API.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, utoipa::ToSchema)]
@@ -76,8 +80,16 @@ impl Index {
 
     /// Whether the journal was modified, but did not grow: it was rewritten in place.
     fn is_rewritten(&self, journal: &Metadata) -> bool {
-        let is_modified = self.modified.is_some_and(|at| journal.modified().ok() != Some(at));
-        is_modified && journal.len() == self.offset
+        let Ok(modified) = journal.modified() else { return false };
+        let is_modified = self.modified.is_some_and(|known| known != modified);
+        is_modified && journal.len() == self.offset && !self.is_append_pending(modified)
+    }
+
+    /// Whether the writer may be appending what changed the modification time.
+    fn is_append_pending(&self, modified: SystemTime) -> bool {
+        // A time in the future has no age.
+        let age = modified.elapsed().unwrap_or_default();
+        age < APPENDING && journal::is_written(&self.file)
     }
 
     /// Reads appended lines; reads the journal again if it was rewritten in place.
@@ -162,5 +174,64 @@ impl Index {
     #[must_use]
     pub fn next_seq(&self) -> u64 {
         self.lines.next_seq()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rtf_model::{Event, EventKind, Micros, Phase, TestId};
+    use rtf_report::Reporter;
+    use rtf_report::journal::Journal;
+    use std::fs;
+    use std::io::Write;
+    use std::path::Path;
+
+    /// A journal with one event, and its writer, which lives.
+    fn written(path: &Path) -> Journal {
+        let mut writer = Journal::create(path).unwrap();
+        let kind = EventKind::TestPhase { test: TestId(0), phase: Phase::Run };
+        let event = Event { seq: 0, at: Micros(0), kind };
+        writer.event(&event, &Record::default()).unwrap();
+        writer.idle(&Record::default()).unwrap();
+        writer
+    }
+
+    /// Changes the journal without changing its length, at this time.
+    fn rewrite(path: &Path, at: SystemTime) {
+        let text = fs::read_to_string(path).unwrap().replace("\"at\":0", "\"at\":1");
+        let mut file = fs::OpenOptions::new().write(true).open(path).unwrap();
+        file.write_all(text.as_bytes()).unwrap();
+        file.set_modified(at).unwrap();
+    }
+
+    /// A reader between both steps of an append read the whole journal again: seconds for
+    /// a million events, while live pages waited.
+    #[test]
+    fn an_append_in_progress_is_not_a_rewrite() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("events.jsonl");
+        let _writer = written(&path);
+        let mut index = Index::new(File::open(&path).unwrap());
+        index.advance().unwrap();
+        let now = SystemTime::now();
+        rewrite(&path, now + Duration::from_secs(60));
+        index.advance().unwrap();
+        assert_eq!(index.record().last_at, Micros(0), "the new time may be that of an append");
+        rewrite(&path, now - Duration::from_secs(60));
+        index.advance().unwrap();
+        assert_eq!(index.record().last_at, Micros(1), "an append does not take a minute");
+    }
+
+    #[test]
+    fn a_journal_without_a_writer_is_rewritten_at_any_time() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("events.jsonl");
+        drop(written(&path));
+        let mut index = Index::new(File::open(&path).unwrap());
+        index.advance().unwrap();
+        rewrite(&path, SystemTime::now() + Duration::from_secs(60));
+        index.advance().unwrap();
+        assert_eq!(index.record().last_at, Micros(1));
     }
 }
