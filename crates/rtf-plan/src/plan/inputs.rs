@@ -83,16 +83,16 @@ fn add(resolved: &mut Vec<ResolvedInput>, input: ResolvedInput) {
     resolved.push(input);
 }
 
-/// Resolves `suite.xml::EncoderTest`, one test of a suite.
-fn one_test(input: &InputFile) -> Option<ResolvedInput> {
-    let path = input.path.to_str()?;
-    let (file, name) = (path.match_indices("::"))
-        .map(|(at, _)| (Path::new(&path[..at]), &path[at + 2..]))
-        .find(|(file, _)| file.is_file())?;
-    let suite_name = input.name.strip_suffix(name)?.strip_suffix("::")?.to_owned();
-    let suite = InputFile { path: file.to_owned(), name: suite_name };
+/// Resolves `suite.xml::EncoderTest`, one test of a suite. The text after `::` is not part
+/// of a path: it keeps `//` and a slash at its end.
+fn one_test(input: &InputFile, options: &Options) -> Option<ResolvedInput> {
+    let (path, file, name) = (input.name.match_indices("::"))
+        .map(|(at, _)| (&input.name[..at], &input.name[at + 2..]))
+        .map(|(file, name)| (options.runner.absolute(Path::new(file)), file, name))
+        .find(|(path, ..)| path.is_file())?;
     let only = vec![name.to_owned()];
-    is_suite_file(file).then_some(ResolvedInput::Suite { file: suite, only })
+    let file = InputFile { path, name: file.to_owned() };
+    is_suite_file(&file.path).then_some(ResolvedInput::Suite { file, only })
 }
 
 fn resolve_path(
@@ -107,7 +107,7 @@ fn resolve_path(
         InputPath::Any(_) if file.path.is_dir() => {
             resolve_dir(&file, DirContent::Any, options.recursive)
         }
-        InputPath::Any(_) => resolve_file(file).map(one),
+        InputPath::Any(_) => resolve_file(file, options).map(one),
         InputPath::Plugins(_) => resolve_dir(&file, DirContent::Plugins, options.recursive),
         InputPath::Suites(_) => resolve_dir(&file, DirContent::Suites, options.recursive),
         InputPath::Suite(_) if file.path.exists() => Ok(one(ResolvedInput::suite(file))),
@@ -130,9 +130,9 @@ fn named_plugin(file: InputFile, options: &Options) -> Result<ResolvedInput, Box
 }
 
 /// Resolves a file: a suite, or a plug-in by its extension.
-fn resolve_file(file: InputFile) -> Result<ResolvedInput, Box<Diagnostic>> {
+fn resolve_file(file: InputFile, options: &Options) -> Result<ResolvedInput, Box<Diagnostic>> {
     if !file.path.exists() {
-        return one_test(&file).ok_or_else(|| missing_test(&file).into());
+        return one_test(&file, options).ok_or_else(|| missing_test(&file).into());
     }
     if has_extension(&file.path, "xml") {
         return Ok(ResolvedInput::suite(file));

@@ -74,12 +74,18 @@ fn parse(source: &SourceText, problems: &mut Vec<Diagnostic>) -> Option<MatrixTa
                 let message = format!("`{wrong}` is not the name of a parameter");
                 report("invalid-value", message);
             }
+            let repeated = (1..cells.len()).find(|index| cells[..*index].contains(&cells[*index]));
+            if let Some(index) = repeated {
+                let message = format!("the header names the parameter `{}` twice", cells[index]);
+                report("duplicate-name", message);
+            }
             table = Some(MatrixTable { names: cells, rows: Vec::new() });
             continue;
         };
         if cells.len() != table.names.len() {
             let (found, expected) = (cells.len(), table.names.len());
-            report("ragged-csv", format!("a row with {found} values, expected {expected}"));
+            let plural = if found == 1 { "" } else { "s" };
+            report("ragged-csv", format!("a row with {found} value{plural}, expected {expected}"));
         } else if let Some(message) = cells.iter().find_map(|value| invalid_value(value)) {
             report("invalid-value", message);
         } else if let Some(first) = first_rows.insert(cells.clone(), span) {

@@ -130,7 +130,7 @@ fn every_syntax_error_has_a_position() {
 fn unknown_values_are_warned_about() {
     let filter = parse(&SourceText::new("filter", "!tag(slwo) & suite(=Arm)")).unwrap();
     let selection = Selection { filters: vec![filter], ..Selection::default() };
-    let warnings = select(plan(), &selection).warnings;
+    let warnings = select(plan(), &selection).problems;
     let shown: Vec<_> = warnings.iter().map(|w| (w.message.as_str(), w.hint.as_deref())).collect();
     assert_eq!(
         shown,

@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use rtf_model::Trigger;
+use rtf_model::{Trigger, Verdict};
 use rtf_plan::suite::{
     AfterCollapse, ClockSource, DeclaredLimits, DeclaredProbe, DeclaredProbeKind, FixtureKind,
-    HookKind, Leaks, MiddlewareProbe,
+    HookKind, Leaks, MatrixDimension, MiddlewareProbe,
 };
 
 use crate::file;
@@ -18,7 +18,7 @@ fn every_attribute_is_read() {
     assert_eq!(suite.settings.timeout, Some(secs(5400)));
     assert_eq!(suite.tags, ["hardware", "slow"]);
     assert!(suite.settings.tolerates_collapse);
-    assert!(suite.settings.critical_stops_run);
+    assert!(suite.settings.critical_stops_run && suite.settings.skips_fail);
     assert_eq!(suite.settings.parallel, 4);
     let clock = suite.clock.unwrap();
     assert_eq!((clock.source, clock.backstop), (ClockSource::Ros, Some(20)));
@@ -49,6 +49,19 @@ fn every_attribute_is_read() {
     assert!(test.settings.critical && test.settings.exclusive);
     assert_eq!(test.tags, ["reach", "slow"]);
     assert_eq!(test.env, [("SEED".to_owned(), "7".to_owned())]);
+    let failure = test.known_failure.as_ref().unwrap();
+    assert_eq!(failure.verdicts, [Verdict::Failed, Verdict::TimedOut]);
+    assert_eq!(failure.issue.as_deref(), Some("https://example.org/7"));
+    assert_eq!(failure.until.as_ref().unwrap().value.to_string(), "2027-01-31");
+    let matrix = test.matrix.as_ref().unwrap();
+    let [MatrixDimension::Values(name, values), MatrixDimension::File(file)] =
+        matrix.dimensions.as_slice()
+    else {
+        panic!("{matrix:?}")
+    };
+    assert_eq!((name.value.as_str(), values.join(",").as_str()), ("joint", "0,1,2"));
+    assert_eq!(file.value, "poses.csv");
+    assert_eq!(matrix.excludes[0].values[1].1, "up");
     let other = &suite.tests[1];
     assert!(!other.settings.critical && !other.settings.exclusive);
     assert_eq!(
