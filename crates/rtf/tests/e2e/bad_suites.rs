@@ -30,7 +30,7 @@ fn an_unknown_attribute() {
     2 |   <test timout="3s">EncoderTest.lua</test>
       |         ^^^^^^ not known in `<test>`
       |
-      = note: `<test>` can have the attributes `name`, `type`, `param`, `repetition`, `tags`, `timeout`, `load-timeout`, `setup-timeout`, `teardown-timeout`, `slow`, `grace`, `after-collapse`, `leaks`, `retries`, `retry-delay`, `critical`, `exclusive`, `isolation`
+      = note: `<test>` can have the attributes `name`, `type`, `param`, `repetition`, `tags`, `timeout`, `load-timeout`, `setup-timeout`, `teardown-timeout`, `slow`, `grace`, `after-collapse`, `leaks`, `retries`, `retry-delay`, `critical`, `exclusive`, `isolation`, `expect`, `issue`, `until`
       = help: did you mean `timeout`?
 
     1 error; nothing was started
@@ -135,7 +135,7 @@ fn five_mistakes_are_five_messages() {
     1 | <suite name="arm" tag="smoke">
       |                   ^^^ not known in `<suite>`
       |
-      = note: `<suite>` can have the attributes `name`, `timeout`, `tags`, `isolate`, `requires`, `critical-stops`, `parallel`, `middleware`, `clock`, `clock-backstop`, `tolerate-collapse`, `after-collapse`, `leaks`, `retries`, `retry-delay`, `test-timeout`, `test-load-timeout`, `test-setup-timeout`, `test-teardown-timeout`, `test-slow`, `test-grace`
+      = note: `<suite>` can have the attributes `name`, `timeout`, `tags`, `isolate`, `requires`, `critical-stops`, `parallel`, `middleware`, `clock`, `clock-backstop`, `tolerate-collapse`, `skips`, `after-collapse`, `leaks`, `retries`, `retry-delay`, `test-timeout`, `test-load-timeout`, `test-setup-timeout`, `test-teardown-timeout`, `test-slow`, `test-grace`
       = help: did you mean `tags`?
 
     error: unknown element `<fixtures>`

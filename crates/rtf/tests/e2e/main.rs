@@ -16,6 +16,7 @@ mod bad_outputs;
 mod bad_plugins;
 mod bad_suites;
 mod blocked_console;
+mod case_selection;
 mod cases;
 mod chaos;
 mod chaos_hosts;
@@ -37,8 +38,10 @@ mod host_modes;
 mod hostile_fixtures;
 mod isolation;
 mod killed_runner;
+mod known_failures;
 mod locks;
 mod lost_results;
+mod matrix;
 mod merge;
 mod middleware;
 #[path = "../../../rtf-report/tests/reports/mutate.rs"]

@@ -202,6 +202,7 @@ fn help_of_run() {
           --retries <N>            Retry a failed test up to N times; overrides its suite
           --flaky-result <RESULT>  Result of a test that passes only on a retry [default: pass]
                                    [possible values: pass, fail]
+          --no-skips               Fail the run if a test or a case skips itself
           --max-fail <N>           Skip the remaining tests after N tests have failed
           --until-fail             Skip the remaining tests after the first failure, as `--max-fail 1`
 

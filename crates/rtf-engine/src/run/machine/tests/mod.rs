@@ -1,6 +1,7 @@
 //! The state machine with invented times: no processes, no sleeps.
 
 mod attached;
+mod case_selection;
 mod cases;
 mod chaos;
 mod clock;
