@@ -130,6 +130,26 @@ impl AttemptCases {
         self.kept.len() as u64 + self.omitted + self.not_run.len() as u64
     }
 
+    /// The path by which a host knows a case. The runner numbers repeated names: the host
+    /// knows `joint#2` as `joint`, which selects both.
+    #[must_use]
+    pub fn selectable_path(&self, case: &CaseRecord) -> String {
+        let mut path = case.path.clone();
+        let mut end = path.len();
+        while let Some(hash) = path[..end].rfind('#') {
+            let digits = path[hash + 1..].chars().take_while(char::is_ascii_digit).count();
+            let after = hash + 1 + digits;
+            let is_end = matches!(path[after..].chars().next(), None | Some('/'));
+            let base = &path[..hash];
+            let exists = || self.kept.iter().any(|other| other.path == base);
+            if digits > 0 && is_end && exists() {
+                path.replace_range(hash..after, "");
+            }
+            end = hash;
+        }
+        path
+    }
+
     pub(super) fn plan(&mut self, names: &[String]) {
         self.not_run.announce(names.iter().cloned());
     }

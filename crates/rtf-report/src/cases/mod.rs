@@ -24,6 +24,7 @@ pub(crate) struct TestCases<'r> {
     pub results: Vec<CaseResult<'r>>,
     /// Number of passed cases that the record does not keep.
     pub omitted: u64,
+    attempts: Vec<&'r AttemptRecord>,
     problems: HashMap<(usize, CaseId), CaseProblems<'r>>,
 }
 
@@ -127,12 +128,19 @@ impl<'r> TestCases<'r> {
         }
         results.extend(not_run.into_iter().map(CaseResult::not_run));
         let omitted = attempts.iter().map(|attempt| attempt.cases.omitted()).max().unwrap_or(0);
-        Some(Self { results, omitted, problems })
+        Some(Self { results, omitted, attempts, problems })
     }
 
     /// The failures and violated limits that were reported in a case.
     pub fn problems(&self, case: &CaseResult<'_>) -> Option<&CaseProblems<'r>> {
         self.problems.get(&case.key()?)
+    }
+
+    /// The path with which the case is selected.
+    pub fn selectable_path(&self, case: &CaseResult<'_>) -> String {
+        let attempt = self.attempts.get(case.attempt);
+        let path = attempt.zip(case.record).map(|(a, record)| a.cases.selectable_path(record));
+        path.unwrap_or_else(|| case.path.to_owned())
     }
 
     /// The locations of the problems of a case, and then that of the case.

@@ -53,7 +53,8 @@ fn failed_case(
     if let Some(location) = cases.locations(case).next() {
         page.inner_fact("at", &escape::line(&location.to_string()));
     }
-    if let Some(command) = (options.rerun)(record, test.plan.test, Some(case.path)) {
+    let path = cases.selectable_path(case);
+    if let Some(command) = (options.rerun)(record, test.plan.test, Some(&path)) {
         page.inner_fact("rerun", &escape::line(&command));
     }
 }

@@ -18,7 +18,7 @@ pub fn of_test(test: &TestRecord) -> Option<Vec<String>> {
         }
         let failed = attempt.cases.kept().iter().filter(|case| is_failed(case));
         for case in failed.filter(|case| !is_inherited(attempt, case)) {
-            let path = selectable_path(attempt, case);
+            let path = attempt.cases.selectable_path(case);
             if !paths.contains(&path) {
                 paths.push(path);
             }
@@ -49,23 +49,4 @@ fn is_inherited(attempt: &AttemptRecord, case: &CaseRecord) -> bool {
     case.reason().is_some_and(|reason| reason.starts_with(CASE_REASON))
         && attempt.failures().all(|message| message.case != id)
         && attempt.violations().all(|measurement| measurement.case != id)
-}
-
-/// Returns the path by which a host knows a case. The runner numbers repeated names: the
-/// host knows `joint#2` as `joint`, which selects both.
-fn selectable_path(attempt: &AttemptRecord, case: &CaseRecord) -> String {
-    let mut path = case.path.clone();
-    let mut end = path.len();
-    while let Some(hash) = path[..end].rfind('#') {
-        let digits = path[hash + 1..].chars().take_while(char::is_ascii_digit).count();
-        let after = hash + 1 + digits;
-        let is_end = matches!(path[after..].chars().next(), None | Some('/'));
-        let base = &path[..hash];
-        let exists = || attempt.cases.kept().iter().any(|other| other.path == base);
-        if digits > 0 && is_end && exists() {
-            path.replace_range(hash..after, "");
-        }
-        end = hash;
-    }
-    path
 }
