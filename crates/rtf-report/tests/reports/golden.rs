@@ -2,6 +2,9 @@
 //! run must agree.
 
 use junit_parser::TestStatus;
+use rtf_model::{Event, EventKind, Record};
+use rtf_report::Reporter;
+use rtf_report::console::Console;
 use rtf_report::console::ConsoleOptions;
 
 use crate::support::*;
@@ -114,5 +117,48 @@ fn tap() {
         let line = line.unwrap_or_else(|| panic!("{test} is not `{ok}`"));
         assert_eq!(line.contains(" # TODO "), tap.ends_with("todo"), "{line}");
         assert_eq!(line.contains(" # SKIP "), tap.ends_with("skip"), "{line}");
+    }
+}
+
+/// The stream in which a test or a case that skips itself makes the run red.
+fn events_with_failing_skips() -> Vec<Event> {
+    let mut events = events(STREAM).0;
+    for event in &mut events {
+        if let EventKind::SuitePlanned(suite) = &mut event.kind {
+            suite.skips_fail = true;
+        }
+    }
+    events
+}
+
+#[test]
+fn a_skip_that_fails_is_red_in_every_report() {
+    let (mut record, paper) = (Record::default(), Paper::default());
+    let mut console = Console::new(Box::new(paper.clone()), ConsoleOptions::default());
+    for event in &events_with_failing_skips() {
+        record.apply(event);
+        console.event(event, &record).unwrap();
+    }
+    console.finish(&record).unwrap();
+    let console = anstream::adapter::strip_str(&paper.text()).to_string();
+    let (mut junit, mut tap, mut github) = (Vec::new(), Vec::new(), Vec::new());
+    rtf_report::junit::write(&mut junit, &record, None).unwrap();
+    rtf_report::tap::write(&mut tap, &record).unwrap();
+    rtf_report::github::write(&mut github, &record, None).unwrap();
+    let junit = junit_parser::from_reader(junit.as_slice()).unwrap();
+    let (_, failures, errors, skipped) = totals();
+    // One skipped case, and a skipped test with each of the four marks.
+    let counts = (junit.failures, junit.errors, junit.skipped);
+    assert_eq!(counts, (failures + 5, errors, skipped - 5));
+    let (tap, github) = (String::from_utf8(tap).unwrap(), String::from_utf8(github).unwrap());
+    for mark in ["case", "expected", "quarantined", "expired", "listed"] {
+        let test = format!("{mark}-skipped");
+        let has = |report: &str, start: &str, name: &str| {
+            report.lines().any(|line| line.starts_with(start) && line.contains(name))
+        };
+        assert!(has(&tap, "    not ok", &format!(" - {test}")), "{test}: {tap}");
+        assert!(has(&github, "::error", &format!("title=arm/{test} ")), "{test}: {github}");
+        let summary = console.split_once("tests that did not pass:").unwrap().1;
+        assert!(has(summary, "  arm/", &format!("{test}  ")), "{test}: {summary}");
     }
 }

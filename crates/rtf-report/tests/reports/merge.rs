@@ -151,3 +151,30 @@ fn no_path_leads_out_of_the_attachments() {
         assert_eq!(attachment_path(0, path), None, "{path}");
     }
 }
+
+#[test]
+fn cases_marks_and_failing_skips_are_kept() {
+    let part = |name| crate::support::events(name).0;
+    let mut strict = part("known-failures");
+    for event in &mut strict {
+        match &mut event.kind {
+            EventKind::RunStarted(run) => run.manifest.no_skips = true,
+            EventKind::SuitePlanned(suite) => suite.skips_fail = true,
+            _ => {}
+        }
+    }
+    let merged = merged([part("cases"), strict]).unwrap();
+    let parts = [crate::support::record("cases"), crate::support::record("known-failures")];
+    let kept = |record: &Record| -> Vec<_> {
+        let of_test = |test: &rtf_model::TestRecord| {
+            let cases = test.attempts.iter().flat_map(|attempt| attempt.cases.kept());
+            let cases: Vec<_> = cases.map(|case| (case.path.clone(), case.verdict())).collect();
+            let not_run: usize = test.attempts.iter().map(|a| a.cases.not_run().len()).sum();
+            (test.plan.name.clone(), test.plan.expected.clone(), cases, not_run)
+        };
+        record.tests.iter().map(of_test).collect()
+    };
+    assert_eq!(kept(&merged), parts.iter().flat_map(kept).collect::<Vec<_>>());
+    assert!(merged.suites[0].plan.skips_fail, "in any of the runs");
+    assert!(merged.run.unwrap().manifest.no_skips, "in any of the runs");
+}
