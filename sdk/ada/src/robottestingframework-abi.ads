@@ -12,7 +12,7 @@ private package RobotTestingFramework.ABI is
    subtype Address is System.Address;
 
    Major : constant := 1;
-   Minor : constant := 2;
+   Minor : constant := 3;
 
    Kind_Test    : constant := 1;
    Kind_Fixture : constant := 2;
@@ -71,6 +71,20 @@ private package RobotTestingFramework.ABI is
       Line  : Interfaces.Unsigned_32;
    end record with Convention => C;
 
+   type Parameter is record
+      Name  : Text;
+      Value : Text;
+   end record with Convention => C;
+
+   type Test_Case is record
+      Size            : Interfaces.C.size_t;
+      Name            : Text;
+      Parameters      : Address;
+      Parameter_Count : Interfaces.C.size_t;
+      File            : Address;
+      Line            : Interfaces.Unsigned_32;
+   end record with Convention => C;
+
    type Attachment is record
       Size       : Interfaces.C.size_t;
       Path       : Text;
@@ -111,6 +125,18 @@ private package RobotTestingFramework.ABI is
    type Tell_Number is access function (Context : Address) return Interfaces.Unsigned_32
      with Convention => C;
 
+   type Begin_Case is access function
+     (Context : Address; Value : Test_Case) return Interfaces.C.int
+     with Convention => C;
+   type End_Case is access procedure (Context : Address; Result : Interfaces.Integer_32)
+     with Convention => C;
+   type Take_Texts is access procedure
+     (Context : Address; Texts : Address; Count : Interfaces.C.size_t)
+     with Convention => C;
+   type Tell_Parameters is access function
+     (Context : Address; Count : not null access Interfaces.C.size_t) return Address
+     with Convention => C;
+
    type Host_Table is record
       Major       : Interfaces.Unsigned_32;
       Minor       : Interfaces.Unsigned_32;
@@ -127,6 +153,11 @@ private package RobotTestingFramework.ABI is
       Environment : Tell_Text;
       Repetition  : Tell_Number;
       Sample      : Take_Sample;
+      Case_Begin  : Begin_Case;
+      Case_End    : End_Case;
+      Plan_Cases  : Take_Texts;
+      Skip        : Take_Text;
+      Parameters  : Tell_Parameters;
    end record with Convention => C;
 
    type Host_Access is access constant Host_Table with Convention => C;

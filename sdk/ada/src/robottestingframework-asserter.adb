@@ -43,7 +43,7 @@ package body RobotTestingFramework.Asserter is
          Host.Send (ABI.Check, Message, File, Line);
       else
          Host.Send (ABI.Failure, Message, File, Line, Critical => True);
-         raise Assertion_Ended with Message;
+         raise Critical_Assertion_Ended with Message;
       end if;
    end Require_Critical;
 
@@ -60,6 +60,16 @@ package body RobotTestingFramework.Asserter is
       Host.Send (ABI.Error, Message, File, Line);
       raise Assertion_Ended with Message;
    end Error;
+
+   procedure Skip
+     (Reason : String; File : String := Source.File; Line : Natural := Source.Line)
+   is
+      Table : constant not null ABI.Host_Access := Host.Table_With_Cases (File, Line);
+      Text  : aliased constant String           := Reason;
+   begin
+      Table.Skip (Table.Context, Host.To_C (Text));
+      raise Assertion_Ended with Reason;
+   end Skip;
 
    --  Reports the comparison; a failed assertion ends the step.
    procedure Compare

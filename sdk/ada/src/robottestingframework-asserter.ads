@@ -1,8 +1,8 @@
 --  SPDX-License-Identifier: Apache-2.0
 --  Checks and assertions. The location in a message is the caller's.
 --
---  All may be called from any task. Those that end a step raise an exception, and must be
---  called in the task that runs the step.
+--  All may be called from any task. Those that end a step or a case raise an exception, and
+--  must be called in the task that runs it.
 
 with GNAT.Source_Info;
 
@@ -43,6 +43,12 @@ package RobotTestingFramework.Asserter is
    --  Reports an error (the bench is wrong) and ends this step.
    procedure Error
      (Message : String; File : String := Source.File; Line : Natural := Source.Line)
+     with No_Return;
+
+   --  Ends the innermost case of this task, or without one the test, as skipped: the bench
+   --  lacks something. Allowed in Setup and Run.
+   procedure Skip
+     (Reason : String; File : String := Source.File; Line : Natural := Source.Line)
      with No_Return;
 
    type Numbers is array (Positive range <>) of Long_Float;

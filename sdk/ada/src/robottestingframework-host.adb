@@ -25,6 +25,22 @@ package body RobotTestingFramework.Host is
       return Found;
    end Table;
 
+   function Table_With_Cases
+     (File : String; Line : Natural) return not null ABI.Host_Access
+   is
+      Found : constant not null ABI.Host_Access := Table;
+      Minor : constant String                   := Found.Minor'Image;
+      Text  : constant String :=
+        "this rtf is too old for cases: its plug-in interface is 1."
+        & Minor (Minor'First + 1 .. Minor'Last);
+   begin
+      if Found.Size < ABI.Host_Table'Size / System.Storage_Unit then
+         Send (ABI.Error, Text, File, Line);
+         raise Assertion_Ended with Text;
+      end if;
+      return Found;
+   end Table_With_Cases;
+
    procedure Send
      (Kind       : ABI.Message_Kind;
       Content      : String;

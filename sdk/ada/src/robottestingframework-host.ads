@@ -12,6 +12,10 @@ private package RobotTestingFramework.Host is
    --  Raises Program_Error in a program that `rtf run` has not started.
    function Table return not null ABI.Host_Access;
 
+   --  The same, for the functions of version 1.3: an older rtf is an error.
+   function Table_With_Cases
+     (File : String; Line : Natural) return not null ABI.Host_Access;
+
    --  Sends a message; an empty file is an unknown location.
    procedure Send
      (Kind       : ABI.Message_Kind;

@@ -1,5 +1,6 @@
 --  SPDX-License-Identifier: Apache-2.0
 
+with Ada.Strings.Unbounded; use Ada.Strings.Unbounded;
 with Interfaces.C;
 with RobotTestingFramework.ABI;
 with RobotTestingFramework.Asserter;
@@ -12,6 +13,7 @@ package body RobotTestingFramework.Session is
 
    use type Interfaces.C.int;
    use type Interfaces.C.size_t;
+   use type Interfaces.Unsigned_32;
 
    Poll : constant Duration := 0.01;
 
@@ -21,6 +23,42 @@ package body RobotTestingFramework.Session is
    function Name return String is (Ask (Host.Table.Name));
 
    function Parameters return String is (Ask (Host.Table.Param));
+
+   function Parameter_Values
+     (File : String := Source.File; Line : Natural := Source.Line)
+      return Cases.Named_Values
+   is
+      Table : constant not null ABI.Host_Access := Host.Table_With_Cases (File, Line);
+      Count : aliased Interfaces.C.size_t       := 0;
+      First : constant ABI.Address              :=
+        Table.Parameters (Table.Context, Count'Access);
+      Found : array (1 .. Natural (Count)) of ABI.Parameter with Import, Address => First;
+   begin
+      return Values : Cases.Named_Values (1 .. Natural (Count)) do
+         for Index in Values'Range loop
+            Values (Index) := Cases.Named
+              (Host.To_Ada (Found (Index).Name), Host.To_Ada (Found (Index).Value));
+         end loop;
+      end return;
+   end Parameter_Values;
+
+   function Parameter
+     (Name : String; File : String := Source.File; Line : Natural := Source.Line)
+      return String
+   is
+      Values : constant Cases.Named_Values := Parameter_Values (File, Line);
+      Known  : Unbounded_String;
+   begin
+      for Value of Values loop
+         if Value.Name = Name then
+            return To_String (Value.Value);
+         end if;
+         Append (Known, (if Length (Known) = 0 then "" else ", ") & Value.Name);
+      end loop;
+      Asserter.Error
+        ("there is no parameter """ & Name & """; this test has "
+         & (if Values'Length = 0 then "none" else To_String (Known)), File, Line);
+   end Parameter;
 
    function Environment return String is (Ask (Host.Table.Environment));
 
@@ -136,7 +174,7 @@ package body RobotTestingFramework.Session is
       Within       : Interfaces.C.int;
       pragma Unreferenced (Within);
    begin
-      if Table.Size < ABI.Host_Table'Size / System.Storage_Unit then
+      if Table.Minor < 2 then
          raise Program_Error with "this rtf is too old for samples";
       elsif Low /= Low or else High /= High then
          raise Constraint_Error with "a limit of `" & Name & "` is not a number";

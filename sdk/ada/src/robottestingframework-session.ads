@@ -3,6 +3,7 @@
 --  and attachments.
 
 with GNAT.Source_Info;
+with RobotTestingFramework.Cases;
 
 package RobotTestingFramework.Session is
 
@@ -15,6 +16,16 @@ package RobotTestingFramework.Session is
    function Parameters return String;
    function Argument_Count return Natural;
    function Argument (Number : Positive) return String;
+
+   --  The test's value of a matrix; an unknown name is an error.
+   function Parameter
+     (Name : String; File : String := Source.File; Line : Natural := Source.Line)
+      return String;
+
+   --  All values of the matrix.
+   function Parameter_Values
+     (File : String := Source.File; Line : Natural := Source.Line)
+      return Cases.Named_Values;
 
    --  The suite's environment string.
    function Environment return String;

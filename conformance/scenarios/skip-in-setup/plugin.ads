@@ -1,0 +1,12 @@
+with RobotTestingFramework.TestCase;
+
+package Plugin is
+
+   type Test is new RobotTestingFramework.TestCase.TestCase with null record;
+   overriding function Setup (Self : in out Test; Parameters : String) return Boolean;
+   overriding procedure Run (Self : in out Test);
+   overriding procedure TearDown (Self : in out Test);
+
+   package Declared is new RobotTestingFramework.TestCase.Register (Test);
+
+end Plugin;
