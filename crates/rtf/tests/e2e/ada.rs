@@ -107,6 +107,54 @@ fn endings() {
     assert_eq!((place.file.as_str(), place.line), ("endings.adb", 21));
 }
 
+/// Cases with values, in a test with a matrix: their verdicts, and the messages in them.
+#[test]
+fn cases_and_values() {
+    let folder = Folder::new();
+    let file = plugin("case_steps").display().to_string();
+    let matrix = "<matrix name='side' values='left'/><matrix name='joint' values='3'/>";
+    folder.file(
+        "s.xml",
+        &format!(
+            "<suite><test name='nested' param='nested'>{file}</test>\
+             <test name='matrix' param='matrix'>{file}{matrix}</test>\
+             <test name='wait' param='wait' timeout='300ms'>{file}</test>\
+             <test name='late' param='late'>{file}</test></suite>"
+        ),
+    );
+    assert_eq!(folder.rtf(&["run", "s.xml"]).code, Some(1));
+    let record = folder.journal().record;
+    let cases = |test: usize| {
+        let kept = record.tests[test].attempts[0].cases.kept();
+        let values = |case: &rtf_model::CaseRecord| {
+            let values = case.start.parameters.iter();
+            values.map(|own| format!(" {}={}", own.name, own.value)).collect::<String>()
+        };
+        let line = |case: &rtf_model::CaseRecord| {
+            format!("{}{}: {}", case.path, values(case), case.verdict().expect("a verdict"))
+        };
+        kept.iter().map(line).collect::<Vec<_>>()
+    };
+    let index = "Error: CONSTRAINT_ERROR: case_steps.adb:15 index check failed";
+    assert_eq!(texts(&record, 0), [index, "Report: moved 1", index, "Report: moved 2"]);
+    let nested = [
+        "arm joint=-3 side=left: error",
+        "arm/moves: error",
+        "hand empty=: error",
+        "hand/moves: error",
+    ];
+    assert_eq!(cases(0), nested);
+    let unknown = "Error: there is no parameter \"speed\"; this test has side, joint";
+    assert_eq!(texts(&record, 1), ["Report: left, 2", unknown]);
+    assert_eq!(record.verdict(TestId(2)), Some(Verdict::TimedOut));
+    assert_eq!((cases(2), texts(&record, 2)), (vec!["waits: timed-out".to_owned()], vec![]));
+    let late = [
+        "Error: cases are allowed in `run` only",
+        "Error: `skip` is allowed in `setup` and `run` only",
+    ];
+    assert_eq!((cases(3), texts(&record, 3)), (vec![], late.map(str::to_owned).to_vec()));
+}
+
 /// A watchdog task reports the collapse; a second fixture of the same library
 /// fails to set up.
 #[test]
