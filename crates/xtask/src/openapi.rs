@@ -2,8 +2,8 @@
 //! model, which are those of the journal, in their places.
 
 use rtf_model::{
-    Attachment, Diagnostic, Event, ExitStatus, LeakedProcess, Measurement, Message, Phase, Stream,
-    SuitePrepared, Trigger, Verdict,
+    Attachment, Diagnostic, Event, ExitStatus, ExpectedFailure, LeakedProcess, Location,
+    Measurement, Message, Parameter, Phase, Stream, SuitePrepared, Trigger, Verdict,
 };
 use schemars::SchemaGenerator;
 use schemars::generate::SchemaSettings;
@@ -48,9 +48,12 @@ fn model() -> Map<String, Value> {
     generator.subschema_for::<Attachment>();
     generator.subschema_for::<Diagnostic>();
     generator.subschema_for::<ExitStatus>();
+    generator.subschema_for::<ExpectedFailure>();
     generator.subschema_for::<LeakedProcess>();
+    generator.subschema_for::<Location>();
     generator.subschema_for::<Measurement>();
     generator.subschema_for::<Message>();
+    generator.subschema_for::<Parameter>();
     generator.subschema_for::<Phase>();
     generator.subschema_for::<Stream>();
     generator.subschema_for::<SuitePrepared>();

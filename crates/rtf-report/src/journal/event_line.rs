@@ -82,14 +82,15 @@ pub struct EventHeader {
 
 impl EventHeader {
     /// The source of a detail: a message, a measurement, samples, an attachment, output,
-    /// a stack dump or leaked processes.
+    /// a stack dump, leaked processes or a case.
     #[must_use]
     pub fn detail_source(&self) -> Option<Source> {
         match &*self.kind {
             // A fixture's report about a test belongs to the test.
             "message" => self.test.map(Source::Test).or(self.source),
             "output" | "stack-dumped" | "processes-leaked" => self.source,
-            "measured" | "sampled" | "attached" => self.test.map(Source::Test),
+            "measured" | "sampled" | "attached" | "cases-planned" | "case-started"
+            | "case-finished" => self.test.map(Source::Test),
             _ => None,
         }
     }

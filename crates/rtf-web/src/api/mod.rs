@@ -1,5 +1,6 @@
 //! Version 1 of the API: its routes, and its description made from them.
 
+mod cases;
 mod control;
 mod details;
 mod events;
@@ -76,6 +77,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(plan::hook))
         .routes(routes!(tests::list))
         .routes(routes!(tests::test))
+        .routes(routes!(cases::cases))
         .routes(routes!(details::test_messages))
         .routes(routes!(details::fixture_messages))
         .routes(routes!(details::hook_messages))

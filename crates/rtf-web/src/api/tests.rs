@@ -1,7 +1,7 @@
 //! The tests of a run.
 
 use axum::extract::State;
-use rtf_model::{Record, TestRecord, Verdict};
+use rtf_model::{CaseRecord, Record, TestRecord, Verdict};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
@@ -34,6 +34,9 @@ pub struct Which {
     tag: Option<String>,
     /// Tests with this in `suite/name`, in upper or lower case.
     q: Option<String>,
+    /// Tests with a case whose path contains all these words, in upper or lower case.
+    /// Passed cases that are only counted are not searched.
+    case: Option<String>,
     /// The `next` of the page before.
     #[param(maximum = 4_294_967_295_i64)]
     after: Option<u32>,
@@ -43,18 +46,20 @@ pub struct Which {
 }
 
 impl Which {
-    fn matches(&self, test: &Test, record: &Record, verdicts: Option<&[String]>) -> bool {
+    fn matches(&self, (test, found): &(Test, &TestRecord), verdicts: Option<&[String]>) -> bool {
         let verdict = test.verdict.map(|verdict| verdict.as_str());
-        let name = || {
-            let suite = record.suites.get(test.suite as usize);
-            let suite = suite.map_or("", |suite| &suite.plan.name);
-            format!("{suite}/{}", test.name).to_lowercase()
-        };
         self.suite.is_none_or(|suite| suite == test.suite)
             && self.state.is_none_or(|state| state == test.state)
             && verdicts.is_none_or(|list| list.iter().any(|wanted| Some(&**wanted) == verdict))
             && self.tag.as_ref().is_none_or(|tag| test.tags.contains(tag))
-            && self.q.as_ref().is_none_or(|q| name().contains(&q.to_lowercase()))
+            && self.case.as_ref().is_none_or(|case| has_case(found, case))
+    }
+
+    fn has_name(&self, test: &Test, record: &Record) -> bool {
+        let Some(q) = &self.q else { return true };
+        let suite = record.suites.get(test.suite as usize);
+        let suite = suite.map_or("", |suite| &suite.plan.name);
+        format!("{suite}/{}", test.name).to_lowercase().contains(&q.to_lowercase())
     }
 
     fn page(&self, record: &Record, over: bool) -> Result<TestPage, Problem> {
@@ -62,10 +67,12 @@ impl Which {
         let known = Verdict::ALL.map(|verdict| verdict.as_str());
         let verdicts = self.verdict.as_ref().map(|list| words("verdict", list, &known));
         let verdicts = verdicts.transpose()?;
-        let matches = |test: &Test| self.matches(test, record, verdicts.as_deref());
+        let matches = |test: &(Test, &TestRecord)| {
+            self.matches(test, verdicts.as_deref()) && self.has_name(&test.0, record)
+        };
         let (mut page, mut more) = (TestPage { tests: Vec::new(), total: 0, next: None }, false);
-        let view = |test: &TestRecord| Test::of(test, over);
-        for test in record.tests.iter().map(view).filter(matches) {
+        let all = record.tests.iter().map(|test| (Test::of(test, record, over), test));
+        for (test, _) in all.filter(matches) {
             page.total += 1;
             let wanted = self.after.is_none_or(|after| test.id > after);
             match wanted && page.tests.len() < limit {
@@ -76,6 +83,16 @@ impl Which {
         page.next = page.tests.last().filter(|_| more).map(|test| test.id);
         Ok(page)
     }
+}
+
+/// Whether a kept case has all these words in its path.
+fn has_case(test: &TestRecord, words: &str) -> bool {
+    let words = words.to_lowercase();
+    let has_words = |case: &CaseRecord| {
+        let path = case.path.to_lowercase();
+        words.split_whitespace().all(|word| path.contains(word))
+    };
+    test.attempts.iter().flat_map(|attempt| attempt.cases.kept()).any(has_words)
 }
 
 /// Tests, filtered, page by page.
@@ -104,7 +121,8 @@ pub async fn test(
         let attempts = test.attempts.iter().zip(1..).map(|(a, number)| Attempt::of(a, number));
         let attempts = attempts.collect();
         let command = rerun()(index.record(), test.plan.test, None);
-        Ok(TestDetail { test: Test::of(test, index.state().is_over()), attempts, command })
+        let test = Test::of(test, index.record(), index.state().is_over());
+        Ok(TestDetail { test, attempts, command })
     })
     .await
 }

@@ -2,6 +2,7 @@
 
 #![expect(clippy::expect_used, clippy::unwrap_used, reason = "what cannot go on fails its test")]
 
+mod cases;
 mod client;
 mod damaged;
 mod files;

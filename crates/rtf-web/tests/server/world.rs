@@ -107,6 +107,21 @@ impl Writer {
 
     /// The plan of a run about which more is known.
     pub fn plan_of(&mut self, suite: &str, tests: &[&str], more: &dyn Fn(&mut RunStarted)) {
+        self.plan_with(suite, tests, more, &|_| ());
+    }
+
+    /// The plan of a run about whose tests more is known.
+    pub fn plan_tests(&mut self, suite: &str, tests: &[&str], more: &dyn Fn(&mut TestPlanned)) {
+        self.plan_with(suite, tests, &|_| (), more);
+    }
+
+    fn plan_with(
+        &mut self,
+        suite: &str,
+        tests: &[&str],
+        more: &dyn Fn(&mut RunStarted),
+        of_test: &dyn Fn(&mut TestPlanned),
+    ) {
         let mut started = RunStarted {
             version: 1,
             run: self.folder.file_name().unwrap().to_string_lossy().into_owned(),
@@ -131,7 +146,7 @@ impl Writer {
             skips_fail: false,
         }));
         for (id, name) in (0..).zip(tests) {
-            self.emit(EventKind::TestPlanned(TestPlanned {
+            let mut plan = TestPlanned {
                 test: TestId(id),
                 suite: SuiteId(0),
                 name: (*name).to_owned(),
@@ -142,7 +157,9 @@ impl Writer {
                 tags: Vec::new(),
                 expected: None,
                 parameters: Vec::new(),
-            }));
+            };
+            of_test(&mut plan);
+            self.emit(EventKind::TestPlanned(plan));
         }
         self.emit(EventKind::SuiteStarted { suite: SuiteId(0) });
     }

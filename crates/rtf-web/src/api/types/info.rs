@@ -89,7 +89,7 @@ pub struct Totals {
 }
 
 /// A number for each verdict.
-fn by_verdict() -> Object {
+pub(super) fn by_verdict() -> Object {
     let number = || ObjectBuilder::new().schema_type(Type::Integer).minimum(Some(0));
     let verdicts = Verdict::ALL.iter().map(|verdict| verdict.as_str());
     let all = verdicts.fold(ObjectBuilder::new(), |all, verdict| {

@@ -1,14 +1,17 @@
 //! What the API answers: views of a record, made to be written as JSON.
 
+mod case;
 mod detail;
 mod fixture;
 mod hook;
 mod info;
 pub mod model;
 mod signal;
+mod significance;
 mod suite;
 mod test;
 
+pub use case::{Case, CaseCounts, Cases};
 pub use detail::{
     Attached, Attachments, Measured, Measurements, Messages, OutputPage, Printed, Said, Stack,
     Stacks,
@@ -17,5 +20,6 @@ pub use fixture::{Fixture, Fixtures};
 pub use hook::{Hook, Hooks};
 pub use info::{RunInfo, RunList, Totals};
 pub use signal::{Signal, Signals};
+pub use significance::Significance;
 pub use suite::{Snapshot, Suite, Suites};
 pub use test::{Attempt, Test, TestDetail, TestPage, TestState};

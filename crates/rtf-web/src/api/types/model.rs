@@ -33,6 +33,6 @@ macro_rules! model {
 }
 
 model! {
-    Attachment, Diagnostic, Event, ExitStatus, LeakedProcess, Measurement, Message, Phase, Stream,
-    Revision, SuitePrepared, Trigger, Verdict,
+    Attachment, Diagnostic, Event, ExitStatus, ExpectedFailure, LeakedProcess, Location,
+    Measurement, Message, Parameter, Phase, Stream, Revision, SuitePrepared, Trigger, Verdict,
 }

@@ -57,6 +57,10 @@ pub struct Suite {
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     #[schema(required = false)]
     pub tolerates_collapse: bool,
+    /// Whether a test or case that skips itself makes the run red.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[schema(required = false)]
+    pub skips_fail: bool,
     /// Its state.
     pub state: SuiteState,
     /// When it started.
@@ -100,6 +104,8 @@ impl Suite {
             description: plan.description.clone(),
             environment: plan.environment.clone(),
             tolerates_collapse: plan.tolerates_collapse,
+            skips_fail: plan.skips_fail
+                || record.run.as_ref().is_some_and(|run| run.manifest.no_skips),
             state: match (suite.started, suite.finished) {
                 (_, Some(_)) => SuiteState::Finished,
                 (Some(_), None) if !over => SuiteState::Running,
@@ -138,7 +144,7 @@ impl Snapshot {
             suites: record.suites.iter().map(|suite| Suite::of(suite, record, over)).collect(),
             fixtures: record.fixtures.iter().map(Fixture::of).collect(),
             hooks: record.hooks.iter().map(Hook::of).collect(),
-            tests: record.tests.iter().map(|test| Test::of(test, over)).collect(),
+            tests: record.tests.iter().map(|test| Test::of(test, record, over)).collect(),
             warnings: record.warnings.clone(),
             leaked: record.leaked.clone(),
             info,

@@ -1,10 +1,13 @@
 //! Tests and their attempts.
 
-use rtf_model::{AttemptRecord, ExitStatus, LeakedProcess, Phase, TestRecord, Verdict};
+use rtf_model::{
+    AttemptRecord, ExitStatus, ExpectedFailure, LeakedProcess, Parameter, Phase, Record,
+    TestRecord, Verdict,
+};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::model;
+use super::{CaseCounts, Significance, model};
 
 /// The state of a test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -41,12 +44,26 @@ pub struct Test {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub tags: Vec<String>,
+    /// The values of its matrix.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schema(value_type = Vec<model::Parameter>, required = false)]
+    pub parameters: Vec<Parameter>,
+    /// Its known failure.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<model::ExpectedFailure>)]
+    pub expected: Option<Box<ExpectedFailure>>,
     /// Its state.
     pub state: TestState,
     /// Its final verdict.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<model::Verdict>)]
     pub verdict: Option<Verdict>,
+    /// What the final verdict means, if it does not count like any other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub significance: Option<Significance>,
+    /// Whether the final verdict leaves the run green.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub green: Option<bool>,
     /// Why it did not pass.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
@@ -156,6 +173,9 @@ pub struct Attempt {
     pub slow: bool,
     /// How much it reported.
     pub counts: Counts,
+    /// Its cases, if it has any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cases: Option<CaseCounts>,
     /// Its processes that had to be killed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<model::LeakedProcess>, required = false)]
@@ -175,7 +195,7 @@ pub struct PhaseAt {
 impl Test {
     /// A view of a test; `over`: its run has ended.
     #[must_use]
-    pub fn of(test: &TestRecord, over: bool) -> Self {
+    pub fn of(test: &TestRecord, record: &Record, over: bool) -> Self {
         let plan = &test.plan;
         let verdict = if over { Some(test.final_verdict()) } else { test.verdict() };
         let running = test.attempts.last().filter(|_| verdict.is_none() && test.is_running());
@@ -190,12 +210,16 @@ impl Test {
             repetitions: plan.repetitions,
             timed: test.repetitions().is_none(),
             tags: plan.tags.clone(),
+            parameters: plan.parameters.clone(),
+            expected: plan.expected.clone(),
             state: match (verdict, running) {
                 (Some(_), _) => TestState::Done,
                 (None, Some(_)) => TestState::Running,
                 (None, None) => TestState::Pending,
             },
             verdict,
+            significance: verdict.and_then(|_| Significance::of(test.significance())),
+            green: verdict.map(|_| record.is_test_green(test)),
             reason: test.reason().map(str::to_owned),
             phase: running.and_then(|attempt| attempt.phases.last()).map(|(phase, _)| *phase),
             duration_us: u64::try_from(test.duration().as_micros()).unwrap_or(u64::MAX),
@@ -235,6 +259,7 @@ impl Attempt {
             exit: finished.and_then(|finished| finished.exit),
             slow: attempt.slow,
             counts: attempt.counts.into(),
+            cases: CaseCounts::of(&attempt.cases),
             leaked: attempt.leaked.clone(),
         }
     }

@@ -1,0 +1,112 @@
+//! The cases of an attempt of a test.
+
+use std::collections::BTreeMap;
+
+use rtf_model::{AttemptCases, CaseRecord, Location, Parameter, Verdict};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::model;
+
+/// A named result inside an attempt.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Case {
+    /// Counts all cases of the attempt, from 1.
+    pub case: u32,
+    /// The case that contains it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub parent: Option<u32>,
+    /// Its name, unique in its parent.
+    pub name: String,
+    /// Its name, after the names of the cases that contain it: `Arm/Moves`.
+    pub path: String,
+    /// Its parameters.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schema(value_type = Vec<model::Parameter>, required = false)]
+    pub parameters: Vec<Parameter>,
+    /// Where in the plug-in it starts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<model::Location>)]
+    pub location: Option<Location>,
+    /// When it started.
+    pub started: u64,
+    /// Microseconds that it took.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub duration_us: Option<u64>,
+    /// The verdict.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<model::Verdict>)]
+    pub verdict: Option<Verdict>,
+    /// Why it did not pass.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+/// A page of the cases of an attempt.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Cases {
+    /// The cases, in the order in which they started.
+    pub cases: Vec<Case>,
+    /// The `after` of the next page.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub next: Option<u32>,
+    /// Number of passed cases that are counted, but not listed; the journal has them.
+    #[serde(skip_serializing_if = "is_zero")]
+    #[schema(required = false)]
+    pub omitted: u64,
+    /// On the last page, the first announced cases that have not started; up to `limit`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schema(required = false)]
+    pub not_run: Vec<String>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde requires a reference")]
+fn is_zero(number: &u64) -> bool {
+    *number == 0
+}
+
+/// Number of cases of an attempt.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct CaseCounts {
+    /// All: finished, running, and announced.
+    pub total: u64,
+    /// Announced cases that have not started.
+    pub not_run: u64,
+    /// Finished cases by verdict.
+    #[schema(schema_with = super::info::by_verdict)]
+    pub verdicts: BTreeMap<&'static str, u64>,
+}
+
+impl Case {
+    /// A view of a case.
+    #[must_use]
+    pub fn of(case: &CaseRecord) -> Self {
+        let micros = |duration: std::time::Duration| duration.as_micros().try_into();
+        Self {
+            case: case.start.case.0,
+            parent: case.start.parent.map(|parent| parent.0),
+            name: case.start.name.clone(),
+            path: case.path.clone(),
+            parameters: case.start.parameters.clone(),
+            location: case.start.location.clone(),
+            started: case.started.0,
+            duration_us: case.duration().map(|duration| micros(duration).unwrap_or(u64::MAX)),
+            verdict: case.verdict(),
+            reason: case.reason().map(str::to_owned),
+        }
+    }
+}
+
+impl CaseCounts {
+    /// `None` if there are no cases.
+    #[must_use]
+    pub fn of(cases: &AttemptCases) -> Option<Self> {
+        let verdicts = Verdict::ALL.map(|verdict| (verdict.as_str(), cases.of(verdict)));
+        let not_run = cases.not_run().len() as u64;
+        (cases.total() > 0).then(|| Self {
+            total: cases.total(),
+            not_run,
+            verdicts: verdicts.into_iter().collect(),
+        })
+    }
+}
