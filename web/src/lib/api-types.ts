@@ -5,11 +5,14 @@ import type * as api from '../generated/api';
 
 export type {
     Attached as AttachmentEntry,
+    Case,
+    Cases,
     Counts,
     Fixture,
     Hook,
     Measured as MeasurementEntry,
     Printed as OutputEntry,
+    Parameter,
     Said as MessageEntry,
     Server as ApiRoot,
     Stack as StackEntry,

@@ -105,6 +105,13 @@ export const test = (run: string, id: number, signal: AbortSignal | null = null)
         signal,
     );
 
+/** The tests with a case whose path contains these words; the first 1000. */
+export async function testsWithCase(run: string, words: string, signal: AbortSignal) {
+    const route = path(['runs', run, 'tests'], { case: words, limit: 1000 });
+    const { tests } = await get<{ tests: Test[] }>(route, signal);
+    return new Set(tests.map(({ id }) => id));
+}
+
 /** The first 1000 measurements of an attempt. */
 export async function measurements(run: string, test: number, attempt: number) {
     const route = ['runs', run, 'tests', test, 'attempts', attempt, 'measurements'];

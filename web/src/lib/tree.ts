@@ -2,6 +2,7 @@
 
 import type { Suite, Test } from './api-types';
 import type { TestState } from './event';
+import { markOf, type Mark } from './known-failure';
 import type { RunRecord } from './record/record';
 
 export type Row =
@@ -9,11 +10,16 @@ export type Row =
     | { kind: 'test'; test: Test; state: TestState; position: number; siblings: number };
 
 export interface Filter {
-    /** Words that `suite/test` must contain; `tag:slow` requires a tag. */
+    /** Words that `suite/test`, its parameters or the path of a case must contain; `tag:slow` requires a tag. */
     search: string;
-    /** Accepted states; none means all. */
-    states: ReadonlySet<TestState>;
+    /** Accepted states and known failures; none means all. */
+    states: ReadonlySet<TestFilter>;
+    /** Tests with a case that matches the search. */
+    byCase?: ReadonlySet<number>;
 }
+
+/** A state, or how a test is marked. */
+export type TestFilter = TestState | Mark;
 
 /** A filter, prepared for many tests. */
 export function compile(filter: Filter): (suite: string, test: Test, state: TestState) => boolean {
@@ -21,12 +27,16 @@ export function compile(filter: Filter): (suite: string, test: Test, state: Test
     const tags = words.filter((word) => word.startsWith('tag:')).map((word) => word.slice(4));
     const names = words.filter((word) => !word.startsWith('tag:'));
     return (suite, test, state) => {
-        if (filter.states.size > 0 && !filter.states.has(state)) return false;
+        if (filter.states.size > 0 && !filter.states.has(state)) {
+            const mark = markOf(test);
+            if (mark === null || !filter.states.has(mark)) return false;
+        }
         if (!tags.every((tag) => test.tags?.some((each) => each.toLowerCase() === tag)))
             return false;
         if (names.length === 0) return true;
-        const name = `${suite}/${test.name}`.toLowerCase();
-        return names.every((word) => name.includes(word));
+        const parameters = test.parameters?.map(({ name, value }) => ` ${name}=${value}`) ?? [];
+        const name = `${suite}/${test.name}${parameters.join('')}`.toLowerCase();
+        return names.every((word) => name.includes(word)) || filter.byCase?.has(test.id) === true;
     };
 }
 

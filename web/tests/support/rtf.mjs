@@ -1,7 +1,7 @@
 // Runs the real rtf, which serves the page.
 
 import { spawn } from 'node:child_process';
-import { mkdtemp, readdir, rm, writeFile, cp } from 'node:fs/promises';
+import { mkdir, mkdtemp, readdir, rm, writeFile, cp } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -48,6 +48,14 @@ export class Bench {
         await this.write('suite.xml', suite);
         const program = this.spawn(['run', 'suite.xml']);
         await program.ended;
+    }
+
+    /** A finished run with these events, numbered here. */
+    async journal(name, events) {
+        const dir = path.join(this.dir, 'rtf-results', name);
+        await mkdir(dir, { recursive: true });
+        const lines = events.map((event, seq) => JSON.stringify({ seq, at: seq * 1000, ...event }));
+        await writeFile(path.join(dir, 'events.jsonl'), `${lines.join('\n')}\n`);
     }
 
     async names() {

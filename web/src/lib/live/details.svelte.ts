@@ -2,8 +2,9 @@
 // and keeps them up to date while the run continues.
 
 import { get, path } from '../api';
-import type { Said, Signal, Signals } from '../api-types';
+import type { Cases, Said, Signal, Signals } from '../api-types';
 import type { Event } from '../event';
+import { CaseList } from '../record/cases';
 import { addToLists, append, emptyLists, LIST_NAMES, type ListName } from '../record/detail';
 import type { LiveRun } from './run.svelte';
 
@@ -42,6 +43,10 @@ export class Details {
     more: Partial<Record<ListName, number>> = $state.raw({});
     /** The signals of a test. */
     signals: readonly Signal[] = $state.raw([]);
+    /** The cases of a test. */
+    cases = new CaseList();
+    /** Where the next page of cases starts, if there is one. */
+    nextCase: number | null = $state(null);
     private signalsDue: ReturnType<typeof setTimeout> | null = null;
     private all = emptyLists();
     private waiting: Event[] | null = [];
@@ -81,6 +86,28 @@ export class Details {
         await this.attempt(() => this.pages(list, after, 1));
     }
 
+    /** Loads the next page of cases. */
+    async loadMoreCases(): Promise<void> {
+        const after = this.nextCase;
+        if (after === null) return;
+        await this.attempt(() => this.casePages(after, 1));
+    }
+
+    private async casePages(from: number | undefined, most: number): Promise<void> {
+        const { id, number } = this.subject;
+        const route = ['runs', this.run.name, 'tests', id, 'attempts', number, 'cases'];
+        let after = from;
+        for (let page = 0; page < most; page += 1) {
+            const query = path(route, { after, limit: PAGE });
+            const { cases, next, omitted, not_run } = await get<Cases>(query, this.closing.signal);
+            this.cases.load(cases, not_run, omitted);
+            after = next;
+            this.version += 1;
+            if (after === undefined) break;
+        }
+        this.nextCase = after ?? null;
+    }
+
     private get key(): string {
         const { kind, id, number } = this.subject;
         return `${kind}/${id}/${number}`;
@@ -91,7 +118,9 @@ export class Details {
             const { kind } = this.subject;
             await Promise.all([
                 ...LISTS[kind].map((list) => this.pages(list, undefined, FIRST_PAGES)),
-                ...(kind === 'test' ? [this.loadSignals()] : []),
+                ...(kind === 'test'
+                    ? [this.loadSignals(), this.casePages(undefined, FIRST_PAGES)]
+                    : []),
             ]);
             const missed = this.waiting ?? [];
             this.waiting = null;
@@ -104,7 +133,8 @@ export class Details {
     }
 
     private keep(): void {
-        this.run.keep(this.key, { lists: this.all, more: this.more, signals: this.signals });
+        const { all: lists, more, signals, cases } = this;
+        this.run.keep(this.key, { lists, more, signals, cases });
     }
 
     /** Restores details that were loaded before. */
@@ -114,6 +144,7 @@ export class Details {
         this.all = kept.lists;
         this.more = kept.more;
         this.signals = kept.signals;
+        this.cases = kept.cases;
         this.isLoaded = true;
         this.problem = null;
         this.version += 1;
@@ -199,6 +230,7 @@ export class Details {
     }
 
     private add(event: Event): void {
+        this.cases.apply(event);
         const list = listOf(event);
         // Appending to an incomplete list would leave a gap.
         if (list !== null && this.more[list] === undefined)

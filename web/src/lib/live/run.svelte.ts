@@ -7,6 +7,7 @@ import { flushSync } from 'svelte';
 import * as api from '../api';
 import type { Signal } from '../api-types';
 import type { Event } from '../event';
+import type { CaseList } from '../record/cases';
 import type { ListName, Lists } from '../record/detail';
 import { RunRecord } from '../record/record';
 import { Feed, type Connection } from './feed';
@@ -16,6 +17,7 @@ export interface Kept {
     lists: Lists;
     more: Partial<Record<ListName, number>>;
     signals: readonly Signal[];
+    cases: CaseList;
 }
 
 /** Maximum number of details that are kept. */

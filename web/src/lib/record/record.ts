@@ -19,6 +19,9 @@ import { applyToHook, hookProblems, plannedHook } from './hook';
 import { applyToTest, plannedTest, testState } from './test';
 
 export class RunRecord {
+    /** The run's `--no-skips`; a snapshot has it in its suites. */
+    private noSkips = false;
+
     constructor(private readonly data: Snapshot = emptySnapshot()) {}
 
     get info(): RunInfo {
@@ -62,7 +65,7 @@ export class RunRecord {
         const isOfTest = event.type !== 'hook-started' && event.type !== 'test-planned';
         if (isOfTest && 'test' in event && event.test != null) {
             const test = this.data.tests[event.test];
-            if (test !== undefined) applyToTest(test, event);
+            if (test !== undefined) applyToTest(test, event, this.data.suites[test.suite]);
         } else if (
             'fixture' in event &&
             event.type !== 'fixture-planned' &&
@@ -93,6 +96,7 @@ export class RunRecord {
         const { data } = this;
         switch (event.type) {
             case 'run-started':
+                this.noSkips = event.manifest?.no_skips === true;
                 Object.assign(data.info, {
                     run: event.run,
                     started_at: event.started_at,
@@ -103,7 +107,7 @@ export class RunRecord {
                 });
                 break;
             case 'suite-planned':
-                data.suites[event.suite] = plannedSuite(event);
+                data.suites[event.suite] = plannedSuite(event, this.noSkips);
                 break;
             case 'fixture-planned':
                 data.fixtures[event.fixture] = plannedFixture(event);
@@ -186,13 +190,13 @@ export class RunRecord {
             this.info.damages.length === 0 &&
             this.info.state === 'finished' &&
             this.tests.length > 0 &&
-            this.tests.every((test) => test.verdict === 'passed') &&
+            this.tests.every((test) => test.green === true) &&
             this.suites.every((suite) => this.suiteProblems(suite).length === 0)
         );
     }
 }
 
-function plannedSuite(plan: Extract<Event, { type: 'suite-planned' }>): Suite {
+function plannedSuite(plan: Extract<Event, { type: 'suite-planned' }>, noSkips: boolean): Suite {
     return {
         id: plan.suite,
         name: plan.name,
@@ -200,6 +204,7 @@ function plannedSuite(plan: Extract<Event, { type: 'suite-planned' }>): Suite {
         description: plan.description ?? '',
         environment: plan.environment ?? '',
         ...(plan.tolerates_collapse ? { tolerates_collapse: true } : {}),
+        ...(plan.skips_fail || noSkips ? { skips_fail: true } : {}),
         state: 'pending',
         totals: noTotals(),
         problems: [],

@@ -1,8 +1,9 @@
 // Applies events to a test. The rules for its verdict are those
 // of rtf_model::TestRecord.
 
-import type { AttemptRow, Test } from '../api-types';
+import type { AttemptRow, Suite, Test } from '../api-types';
 import type { Event, TestPlanned, TestState, Verdict } from '../event';
+import { isGreenVerdict, significanceOf } from '../known-failure';
 
 const NO_COUNTS = {
     messages: 0,
@@ -14,7 +15,18 @@ const NO_COUNTS = {
 };
 
 export function plannedTest(plan: TestPlanned): Test {
-    const { test, suite, name, plugin_type, plugin, repetitions, timed, tags } = plan;
+    const {
+        test,
+        suite,
+        name,
+        plugin_type,
+        plugin,
+        repetitions,
+        timed,
+        tags,
+        parameters,
+        expected,
+    } = plan;
     return {
         id: test,
         suite,
@@ -24,6 +36,8 @@ export function plannedTest(plan: TestPlanned): Test {
         repetitions,
         ...(timed === true ? { timed } : {}),
         ...(tags === undefined ? {} : { tags }),
+        ...(parameters === undefined ? {} : { parameters }),
+        ...(expected == null ? {} : { expected: expected as NonNullable<Test['expected']> }),
         state: 'pending',
         duration_us: 0,
         attempts: [],
@@ -32,7 +46,7 @@ export function plannedTest(plan: TestPlanned): Test {
 }
 
 /** Applies an event of this test. */
-export function applyToTest(test: Test, event: Event): void {
+export function applyToTest(test: Test, event: Event, suite?: Suite): void {
     const last = test.attempts.at(-1);
     switch (event.type) {
         case 'test-started': {
@@ -61,31 +75,38 @@ export function applyToTest(test: Test, event: Event): void {
             delete test.phase;
             test.state = 'pending';
             if (!event.rerun && test.timed !== true && last.repetition >= test.repetitions)
-                conclude(test, null);
+                conclude(test, null, suite);
             break;
         case 'test-repeated':
             // The time has elapsed: the number of repetitions is known now.
             test.repetitions = event.repetitions;
             delete test.timed;
-            conclude(test, null);
+            conclude(test, null, suite);
             break;
         case 'test-skipped':
-            conclude(test, event.reason);
+            conclude(test, event.reason, suite);
             break;
     }
 }
 
-/** Sets the final verdict: that of the first deciding attempt that did not pass, if there is one. */
-function conclude(test: Test, skipped: string | null): void {
-    const bad = decidingAttempts(test).find(({ verdict }) => isBad(verdict));
+/** Sets the final verdict: that of the first deciding attempt with a problem, else of the
+ *  first that skipped itself. */
+function conclude(test: Test, skipped: string | null, suite: Suite | undefined): void {
+    const decisive = decisiveAttempt(test);
+    const verdict = decisive?.verdict ?? 'passed';
+    const bad = isBad(verdict) ? decisive : undefined;
     test.state = 'done';
-    test.verdict = bad?.verdict ?? (skipped === null ? 'passed' : 'skipped');
-    const reason = bad?.reason ?? skipped;
+    test.verdict = bad?.verdict ?? (skipped === null ? verdict : 'skipped');
+    const reason = bad?.reason ?? skipped ?? decisive?.reason ?? null;
     if (reason !== null && test.verdict !== 'passed') test.reason = reason;
+    const significance = significanceOf(test, test.verdict, skipped === null);
+    if (significance !== null) test.significance = significance;
+    test.green = isGreenVerdict(test.verdict, significance, suite);
 }
 
+/** Whether a verdict is a problem of the test; a test may skip itself. */
 function isBad(verdict: Verdict | undefined): boolean {
-    return verdict !== undefined && verdict !== 'passed';
+    return verdict !== undefined && verdict !== 'passed' && verdict !== 'skipped';
 }
 
 /** The deciding attempts: the last one of each repetition. */
@@ -109,5 +130,10 @@ export function isFlaky(test: Test): boolean {
 
 /** The attempt to show first: the decisive one, or the last. */
 export function decisiveAttempt(test: Test): AttemptRow | undefined {
-    return decidingAttempts(test).find(({ verdict }) => isBad(verdict)) ?? test.attempts.at(-1);
+    const deciding = decidingAttempts(test);
+    return (
+        deciding.find(({ verdict }) => isBad(verdict)) ??
+        deciding.find(({ verdict }) => verdict === 'skipped') ??
+        test.attempts.at(-1)
+    );
 }
