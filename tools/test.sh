@@ -95,6 +95,7 @@ lint_python() {
   "$checkers/mypy" examples/05-ros1/*.py examples/05-ros1/rover/scripts/*.py
   "$checkers/mypy" examples/06-ros2/*.py
   "$checkers/mypy" examples/07-levels/*.py
+  "$checkers/mypy" examples/08-cases/*.py
   "$checkers/mypy" fixtures
   "$checkers/mypy" tests/fixtures/*.py tests/fixtures/ros2launch/*.py \
     tests/fixtures/orocos/*.py tests/fixtures/yarp/*.py
@@ -221,6 +222,10 @@ example_07() {
     examples/07-levels
 }
 
+example_08() {
+  PATH="$simulation:$PATH" python3 tools/check_example_08.py "$TARGET/release/rtf" examples/08-cases
+}
+
 # Runs an npm script of the page.
 in_web() {
   tools/web.sh modules
@@ -268,6 +273,7 @@ step_with 'example 05' ros1 example_05
 step_with 'clock ros1' ros1 clock_ros1
 step_with 'example 06' ros2 example_06
 step 'example 07' example_07
+step 'example 08' example_08
 step_with 'clock ros2' ros2 clock_ros2
 step_with 'fixture ros2launch' ros2 fixture_ros2launch
 step_with 'fixture orocos' orocos fixture_orocos

@@ -22,7 +22,7 @@ pub struct ExpectedFailure {
     /// Whether the test may pass, too: it is quarantined in `rtf.toml`.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub quarantined: bool,
-    /// Whether [`ExpectedFailure::until`] is over: the test counts like any other.
+    /// Whether [`ExpectedFailure::until`] has passed: the test counts like any other.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub expired: bool,
 }

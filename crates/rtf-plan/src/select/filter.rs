@@ -176,8 +176,8 @@ impl Filter {
         }
     }
 
-    /// Checks whether the filter can match a test of the suite, whatever the test's own
-    /// properties are.
+    /// Checks whether the filter can match a test of the suite, for any properties of
+    /// the test itself.
     #[must_use]
     pub fn can_match(&self, suite: &SuitePlan) -> bool {
         self.known_match(suite) != Some(false)
