@@ -189,7 +189,6 @@ impl TestRun<'_> {
         self.evidence.open_case = self.cases.open.last().map(|open| open.path.clone());
         let (verdict, reason, _) = judge(&self.evidence, self.phase);
         let ended = self.evidence.stopped.is_some() || verdict == Verdict::Crashed;
-        let problem_before = self.evidence.case_problem.clone();
         while let Some(open) = self.cases.open.last() {
             let has_problem = open.first_problem.is_some() || open.inner_problem.is_some();
             let result = match (ended, has_problem) {
@@ -201,10 +200,6 @@ impl TestRun<'_> {
                 }
             };
             self.end_case(open.id, result, cx);
-        }
-        if ended {
-            // The end of the process is not one more problem before it.
-            self.evidence.case_problem = problem_before;
         }
     }
 
