@@ -39,6 +39,9 @@ class OpenCase:
             self.skip_reason = reason
 
 
+# Exceptions that end a generator or a thread, and are not a problem of the case.
+_LEAVE = (GeneratorExit, SystemExit)
+
 # A line of the protocol has a limit.
 _NAMES_IN_LINE = 4096
 
@@ -124,10 +127,14 @@ class Cases:
             fields.update(outcome="skipped", reason=case.skip_reason)
         self._notify("case-finished", fields)
 
-    def abandon(self, case: OpenCase) -> None:
+    def abandon(self, case: OpenCase, *, is_stopped: bool) -> None:
         """Close a case that the runner finishes."""
-        self._is_abandoned = True
+        self._is_abandoned |= is_stopped
         self._close(case)
+
+    def ends_process(self, problem: BaseException | None) -> bool:
+        """Whether an exception ends the process; in another thread, it ends the thread."""
+        return isinstance(problem, SystemExit) and threading.get_ident() == self._run_thread
 
     def _close(self, case: OpenCase) -> None:
         case.is_open = False
@@ -178,17 +185,14 @@ class Case:
         case, session = self._open, self._session
         if case is None:
             return False
-        if isinstance(problem, (SystemExit, Interrupted)) or session.request.stop_requested():
-            # The process ends, or the runner has stopped the test: the runner finishes it.
-            session.cases.abandon(case)
+        is_stopped = isinstance(problem, Interrupted) or session.request.stop_requested()
+        if is_stopped or session.cases.ends_process(problem):
+            session.cases.abandon(case, is_stopped=is_stopped)
             return False
-        is_own = isinstance(problem, (StepEnded, GeneratorExit))
-        if problem is not None and not is_own:
+        if problem is not None and not isinstance(problem, (StepEnded, *_LEAVE)):
             _exceptions.report(session, problem)
         session.cases.finish(case)
-        return problem is not None and not isinstance(
-            problem, (CriticalAssertionEnded, GeneratorExit)
-        )
+        return problem is not None and not isinstance(problem, (CriticalAssertionEnded, *_LEAVE))
 
 
 def _text(value: object) -> str:

@@ -344,6 +344,22 @@ def test_the_end_of_the_process_leaves_the_case_open(tmp_path: Path) -> None:
     assert events(ran) == [("start", 1, "one", None)]
 
 
+def test_a_case_whose_thread_ends_finishes(tmp_path: Path) -> None:
+    body = (
+        "import sys, threading\n"
+        "def leave():\n"
+        "    with self.case('thread'):\n        sys.exit()\n"
+        "thread = threading.Thread(target=leave)\n"
+        "thread.start()\n"
+        "thread.join()\n"
+        "with self.case('main'):\n    pass"
+    )
+    ran = run(tmp_path, arm(body))
+    assert [one["case"] for one in ran.host.of("case-finished")] == [1, 2]
+    # As without the case.
+    assert ran.problem == ("error", "SystemExit")
+
+
 SELECTED = arm(
     "with self.case('Arm'):\n"
     "    with self.case('joint 1'): self.report('1')\n"

@@ -78,9 +78,9 @@ module RTF
         @session.exception(problem) unless problem.is_a?(StepEnded)
       ensure
         # Also after `return`, `break` or `throw` in the body.
-        @abandoned ||= problem.is_a?(SystemExit) || stopped?
+        @abandoned ||= stopped?
         close
-        finish(opened) unless @abandoned
+        finish(opened) unless @abandoned || problem.is_a?(SystemExit)
       end
     end
 
