@@ -4,15 +4,17 @@
 //! attempt of each repetition.
 
 mod live;
+mod totals;
 
 use std::collections::{HashMap, HashSet};
 use std::time::Duration;
 
 use rtf_model::{
-    AttemptRecord, CaseId, CaseRecord, Location, Measurement, Message, Record, TestRecord, Verdict,
+    AttemptRecord, CaseId, CaseRecord, Location, Measurement, Message, TestRecord, Verdict,
 };
 
 pub(crate) use live::{has_inner_problem, problem_count};
+pub(crate) use totals::CaseTotals;
 
 /// The reason of a case that was running when the run ended.
 const CUT_SHORT: &str = "the run ended before the case did";
@@ -52,14 +54,6 @@ pub(crate) struct CaseResult<'r> {
 pub(crate) struct CaseProblems<'r> {
     pub failures: Vec<&'r Message>,
     pub violations: Vec<&'r Measurement>,
-}
-
-/// Number of cases by result.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct CaseTotals {
-    pub total: u64,
-    pub not_run: u64,
-    counts: [u64; Verdict::ALL.len()],
 }
 
 impl CaseResult<'_> {
@@ -157,20 +151,6 @@ impl<'r> TestCases<'r> {
         reported.chain(start).flatten()
     }
 
-    /// Number of cases by result.
-    pub fn totals(&self) -> CaseTotals {
-        let mut totals = CaseTotals::default();
-        for result in &self.results {
-            match result.verdict() {
-                Some(verdict) => totals.counts[verdict as usize] += 1,
-                None => totals.not_run += 1,
-            }
-        }
-        totals.counts[Verdict::Passed as usize] += self.omitted;
-        totals.total = self.results.len() as u64 + self.omitted;
-        totals
-    }
-
     /// Whether the test has a problem that none of its cases has.
     pub fn has_test_problem(&self, test: &TestRecord) -> bool {
         let verdict = test.final_verdict();
@@ -261,35 +241,4 @@ fn problems<'r>(attempts: &[&'r AttemptRecord]) -> HashMap<(usize, CaseId), Case
         }
     }
     problems
-}
-
-impl CaseTotals {
-    /// Number of cases with this verdict.
-    pub fn of(&self, verdict: Verdict) -> u64 {
-        self.counts[verdict as usize]
-    }
-
-    /// Number of cases of all tests of a run.
-    pub fn of_run(record: &Record) -> Self {
-        let mut totals = Self::default();
-        let cases = record.tests.iter().filter_map(TestCases::of);
-        cases.for_each(|cases| totals += cases.totals());
-        totals
-    }
-
-    /// `6 passed, 1 crashed, 33 did not run`; empty without cases.
-    pub fn describe(&self) -> String {
-        let by_verdict = Verdict::ALL.map(|verdict| (self.of(verdict), verdict.as_str()));
-        let counts = by_verdict.into_iter().chain([(self.not_run, "did not run")]);
-        let counts = counts.filter(|(count, _)| *count > 0);
-        counts.map(|(count, word)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
-    }
-}
-
-impl std::ops::AddAssign for CaseTotals {
-    fn add_assign(&mut self, other: Self) {
-        self.total += other.total;
-        self.not_run += other.not_run;
-        self.counts.iter_mut().zip(other.counts).for_each(|(count, other)| *count += other);
-    }
 }

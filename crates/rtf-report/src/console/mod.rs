@@ -6,6 +6,7 @@
 //! messages, the console omits detail and shows how much.
 
 mod case_summary;
+mod failed_tests;
 mod hooks;
 mod live;
 mod options;

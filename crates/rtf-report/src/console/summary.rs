@@ -4,15 +4,15 @@
 use std::collections::BTreeMap;
 
 use anstyle::Style;
-use rtf_model::{Phase, Record, Significance, TestId, TestRecord, Verdict};
+use rtf_model::{Record, Significance, TestId, Verdict};
 
 use super::page::ConsoleLines;
 use super::style::{self, BAD, BOLD, GOOD, LOUD};
-use super::{ConsoleOptions, case_summary, hooks};
-use crate::cases::{CaseTotals, TestCases};
+use super::{ConsoleOptions, case_summary, failed_tests, hooks};
+use crate::cases::CaseTotals;
 use crate::growth::{self, Growing, Within};
 use crate::repetition_summary::Repeated;
-use crate::{cause, escape, explain, known_failure, logs, words};
+use crate::{cause, escape, explain, known_failure, words};
 
 /// Maximum number of skipped tests that are listed per reason.
 const NAMES: usize = 5;
@@ -27,7 +27,7 @@ const PROCESSES: usize = 50;
 pub(super) fn show(page: &mut ConsoleLines, options: &ConsoleOptions, record: &Record) {
     hooks::summary(page, options, record);
     problems(page, record);
-    failed(page, options, record);
+    failed_tests::show(page, options, record);
     case_summary::unexpected(page, options, record);
     case_summary::known(page, record);
     flaky(page, record);
@@ -60,93 +60,6 @@ fn problems(page: &mut ConsoleLines, record: &Record) {
     for same in problems.chunk_by(|a, b| a == b) {
         let times = if same.len() > 1 { format!(" ({} times)", same.len()) } else { String::new() };
         page.line(&format!("  {}{times}", style::paint(BAD, &same[0])));
-    }
-}
-
-fn failed(page: &mut ConsoleLines, options: &ConsoleOptions, record: &Record) {
-    let failed: Vec<_> = record.tests.iter().filter(|test| is_failed(record, test)).collect();
-    if failed.is_empty() {
-        return;
-    }
-    page.line("");
-    page.line(&style::paint(BOLD, "tests that did not pass:"));
-    for test in failed {
-        failed_test(page, options, record, test);
-    }
-}
-
-/// Whether a test did not pass. The runner's skips and unexpected passes are listed
-/// separately.
-fn is_failed(record: &Record, test: &TestRecord) -> bool {
-    let is_listed = match test.significance() {
-        Significance::UnexpectedPass => false,
-        Significance::SkippedItself => true,
-        _ => test.final_verdict() != Verdict::Skipped,
-    };
-    is_listed && !record.is_test_green(test)
-}
-
-fn failed_test(
-    page: &mut ConsoleLines,
-    options: &ConsoleOptions,
-    record: &Record,
-    test: &TestRecord,
-) {
-    let id = test.plan.test;
-    let attempt = test.decisive_attempt();
-    let cases = TestCases::of(test);
-    failed_title(page, record, test);
-    // The reason is that of a case, which is listed.
-    let is_told = cases.as_ref().is_some_and(|cases| !cases.has_test_problem(test));
-    let red_reason = known_failure::red_reason(record, test);
-    match red_reason.as_deref().or(test.reason()) {
-        Some(reason) if red_reason.is_some() || !is_told => {
-            page.fact("reason", &words::first_line(reason));
-        }
-        None if !record.is_complete() => page.fact("reason", "the run ended before the test did"),
-        _ => {}
-    }
-    if !is_told {
-        first_problem(page, test);
-    }
-    case_summary::mark(page, test);
-    if let Some(attempt) = attempt.filter(|attempt| !attempt.output.is_empty()) {
-        let log = logs::attempt_log(record, id, (attempt.repetition, attempt.attempt));
-        options.shown(&log).into_iter().for_each(|log| page.fact("log", &log));
-    }
-    if let Some(command) = (options.rerun)(record, id, None) {
-        page.fact("rerun", &escape::line(&command));
-    }
-    if let Some(cases) = &cases {
-        case_summary::failed_cases(page, options, record, (test, cases));
-    }
-}
-
-/// `  arm/MoveTest  failed in set-up`.
-fn failed_title(page: &mut ConsoleLines, record: &Record, test: &TestRecord) {
-    let finished = test.decisive_attempt().and_then(|attempt| attempt.finished.as_ref());
-    let phase = finished.map(|(_, finished)| finished.phase).filter(|phase| *phase != Phase::Run);
-    let verdict = test.final_verdict();
-    let phase = phase.filter(|_| verdict.is_problem());
-    let phase = phase.map_or(String::new(), |phase| format!(" in {phase}"));
-    let name = style::paint(BOLD, &escape::line(&record.full_name(test.plan.test)));
-    let verdict = style::paint(style::of_verdict(verdict), verdict.as_str());
-    page.line(&format!("  {name}  {verdict}{phase}"));
-}
-
-/// Shows the first failure of an attempt without an end, and the location of the first
-/// problem.
-fn first_problem(page: &mut ConsoleLines, test: &TestRecord) {
-    let attempt = test.decisive_attempt();
-    let first = attempt.and_then(|attempt| explain::own_failures(attempt).next());
-    let is_open = attempt.is_none_or(|attempt| attempt.finished.is_none());
-    if let (true, Some(failure)) = (is_open, first) {
-        page.fact("before", &words::first_line(&failure.text));
-    }
-    let violation = attempt.and_then(|attempt| attempt.violations().next());
-    let place = first.and_then(|message| message.location.as_ref());
-    if let Some(location) = place.or(violation.and_then(|v| v.location.as_ref())) {
-        page.fact("at", &escape::line(&location.to_string()));
     }
 }
 

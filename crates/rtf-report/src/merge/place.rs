@@ -1,6 +1,6 @@
 //! From the ids of a run to those of the merged run.
 
-use rtf_model::{EventKind, FixtureId, HookId, Source, SuiteId, TestId};
+use rtf_model::{Attachment, EventKind, FixtureId, HookId, Source, SuiteId, TestId};
 
 use super::attachment_path;
 use super::plan::MergedPlan;
@@ -58,24 +58,18 @@ impl Ids<'_> {
             | EventKind::TestSlow { test }
             | EventKind::TestStopping { test, .. }
             | EventKind::TestRepeated { test, .. }
-            | EventKind::TestSkipped { test, .. } => Some(self.test(test)),
-            EventKind::CasesPlanned { test, .. } => Some(self.test(test)),
+            | EventKind::TestSkipped { test, .. }
+            | EventKind::CasesPlanned { test, .. } => Some(self.test(test)),
             EventKind::CaseStarted(started) => Some(self.test(&mut started.test)),
             EventKind::CaseFinished(end) => Some(self.test(&mut end.test)),
             EventKind::TestFinished(finished) => Some(self.test(&mut finished.test)),
             EventKind::Measured { test, fixture, .. } => {
-                if let Some(fixture) = fixture {
-                    self.fixture(fixture);
-                }
+                self.reporter(fixture);
                 Some(self.test(test))
             }
             EventKind::Attached { test, fixture, attachment } => {
-                if let Some(fixture) = fixture {
-                    self.fixture(fixture);
-                }
-                if let Some(path) = attachment_path(self.part, &attachment.path) {
-                    attachment.path = path;
-                }
+                self.reporter(fixture);
+                self.attachment(attachment);
                 Some(self.test(test))
             }
             EventKind::HookStarted { hook, test, .. } => {
@@ -100,6 +94,13 @@ impl Ids<'_> {
         self.plan.fixtures[id.index()].suite
     }
 
+    /// The fixture that reports about a test.
+    fn reporter(&self, fixture: &mut Option<FixtureId>) {
+        if let Some(fixture) = fixture {
+            self.fixture(fixture);
+        }
+    }
+
     fn hook(&self, id: &mut HookId) -> SuiteId {
         *id = self.plan.maps[self.part].hooks[id.index()];
         self.plan.hooks[id.index()].suite
@@ -108,6 +109,12 @@ impl Ids<'_> {
     fn test(&self, id: &mut TestId) -> SuiteId {
         *id = self.plan.maps[self.part].tests[id.index()];
         self.plan.tests[id.index()].suite
+    }
+
+    fn attachment(&self, attachment: &mut Attachment) {
+        if let Some(path) = attachment_path(self.part, &attachment.path) {
+            attachment.path = path;
+        }
     }
 
     fn source(&self, source: &mut Source) -> SuiteId {

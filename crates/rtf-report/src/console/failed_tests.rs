@@ -1,0 +1,97 @@
+//! The tests that did not pass, in the summary.
+
+use rtf_model::{Phase, Record, Significance, TestRecord, Verdict};
+
+use super::page::ConsoleLines;
+use super::style::{self, BOLD};
+use super::{ConsoleOptions, case_summary};
+use crate::cases::TestCases;
+use crate::{escape, explain, known_failure, logs, words};
+
+/// Lists the tests that did not pass.
+pub(super) fn show(page: &mut ConsoleLines, options: &ConsoleOptions, record: &Record) {
+    let failed: Vec<_> = record.tests.iter().filter(|test| is_failed(record, test)).collect();
+    if failed.is_empty() {
+        return;
+    }
+    page.line("");
+    page.line(&style::paint(BOLD, "tests that did not pass:"));
+    for test in failed {
+        failed_test(page, options, record, test);
+    }
+}
+
+/// Whether a test did not pass. The runner's skips and unexpected passes are listed
+/// separately.
+fn is_failed(record: &Record, test: &TestRecord) -> bool {
+    let is_listed = match test.significance() {
+        Significance::UnexpectedPass => false,
+        Significance::SkippedItself => true,
+        _ => test.final_verdict() != Verdict::Skipped,
+    };
+    is_listed && !record.is_test_green(test)
+}
+
+fn failed_test(
+    page: &mut ConsoleLines,
+    options: &ConsoleOptions,
+    record: &Record,
+    test: &TestRecord,
+) {
+    let id = test.plan.test;
+    let attempt = test.decisive_attempt();
+    let cases = TestCases::of(test);
+    failed_title(page, record, test);
+    // The reason is that of a case, which is listed.
+    let is_told = cases.as_ref().is_some_and(|cases| !cases.has_test_problem(test));
+    let red_reason = known_failure::red_reason(record, test);
+    match red_reason.as_deref().or(test.reason()) {
+        Some(reason) if red_reason.is_some() || !is_told => {
+            page.fact("reason", &words::first_line(reason));
+        }
+        None if !record.is_complete() => page.fact("reason", "the run ended before the test did"),
+        _ => {}
+    }
+    if !is_told {
+        first_problem(page, test);
+    }
+    case_summary::mark(page, test);
+    if let Some(attempt) = attempt.filter(|attempt| !attempt.output.is_empty()) {
+        let log = logs::attempt_log(record, id, (attempt.repetition, attempt.attempt));
+        options.shown(&log).into_iter().for_each(|log| page.fact("log", &log));
+    }
+    if let Some(command) = (options.rerun)(record, id, None) {
+        page.fact("rerun", &escape::line(&command));
+    }
+    if let Some(cases) = &cases {
+        case_summary::failed_cases(page, options, record, (test, cases));
+    }
+}
+
+/// `  arm/MoveTest  failed in set-up`.
+fn failed_title(page: &mut ConsoleLines, record: &Record, test: &TestRecord) {
+    let finished = test.decisive_attempt().and_then(|attempt| attempt.finished.as_ref());
+    let phase = finished.map(|(_, finished)| finished.phase).filter(|phase| *phase != Phase::Run);
+    let verdict = test.final_verdict();
+    let phase = phase.filter(|_| verdict.is_problem());
+    let phase = phase.map_or(String::new(), |phase| format!(" in {phase}"));
+    let name = style::paint(BOLD, &escape::line(&record.full_name(test.plan.test)));
+    let verdict = style::paint(style::of_verdict(verdict), verdict.as_str());
+    page.line(&format!("  {name}  {verdict}{phase}"));
+}
+
+/// Shows the first failure of an attempt without an end, and the location of the first
+/// problem.
+fn first_problem(page: &mut ConsoleLines, test: &TestRecord) {
+    let attempt = test.decisive_attempt();
+    let first = attempt.and_then(|attempt| explain::own_failures(attempt).next());
+    let is_open = attempt.is_none_or(|attempt| attempt.finished.is_none());
+    if let (true, Some(failure)) = (is_open, first) {
+        page.fact("before", &words::first_line(&failure.text));
+    }
+    let violation = attempt.and_then(|attempt| attempt.violations().next());
+    let place = first.and_then(|message| message.location.as_ref());
+    if let Some(location) = place.or(violation.and_then(|v| v.location.as_ref())) {
+        page.fact("at", &escape::line(&location.to_string()));
+    }
+}
