@@ -70,10 +70,10 @@ impl<'a> MatrixExpander<'a> {
             matrix.dimensions.iter().map(|dimension| self.table(dimension)).collect();
         let dimensions = dimensions.into_iter().collect::<Option<Vec<_>>>()?;
         self.check_names(&dimensions)?;
-        let is_valid = matrix
-            .excludes
-            .iter()
-            .fold(true, |is_valid, exclude| self.check_exclude(exclude, &dimensions) && is_valid);
+        let mut is_valid = true;
+        for exclude in &matrix.excludes {
+            is_valid &= self.check_exclude(exclude, &dimensions);
+        }
         if !is_valid {
             return None;
         }

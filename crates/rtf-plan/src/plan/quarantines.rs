@@ -2,6 +2,7 @@
 //! nothing or expire.
 
 use std::collections::HashMap;
+use std::path::PathBuf;
 use std::rc::Rc;
 
 use jiff::civil::Date;
@@ -18,7 +19,7 @@ use crate::suite::Span;
 #[derive(Debug, Default)]
 pub(super) struct Quarantines {
     /// The tables that can match a test of a planned suite, by file and position.
-    used: HashMap<(std::path::PathBuf, Span), QuarantineUse>,
+    used: HashMap<(PathBuf, Span), QuarantineUse>,
 }
 
 #[derive(Debug)]

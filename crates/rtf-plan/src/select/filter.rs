@@ -176,8 +176,8 @@ impl Filter {
         }
     }
 
-    /// Checks whether the filter can match a test of the suite, for any properties of
-    /// the test itself.
+    /// Checks whether the filter can match a test of the suite, regardless of the test's
+    /// own properties.
     #[must_use]
     pub fn can_match(&self, suite: &SuitePlan) -> bool {
         self.known_match(suite) != Some(false)

@@ -49,19 +49,6 @@ fn every_attribute_is_read() {
     assert!(test.settings.critical && test.settings.exclusive);
     assert_eq!(test.tags, ["reach", "slow"]);
     assert_eq!(test.env, [("SEED".to_owned(), "7".to_owned())]);
-    let failure = test.known_failure.as_ref().unwrap();
-    assert_eq!(failure.verdicts, [Verdict::Failed, Verdict::TimedOut]);
-    assert_eq!(failure.issue.as_deref(), Some("https://example.org/7"));
-    assert_eq!(failure.until.as_ref().unwrap().value.to_string(), "2027-01-31");
-    let matrix = test.matrix.as_ref().unwrap();
-    let [MatrixDimension::Values(name, values), MatrixDimension::File(file)] =
-        matrix.dimensions.as_slice()
-    else {
-        panic!("{matrix:?}")
-    };
-    assert_eq!((name.value.as_str(), values.join(",").as_str()), ("joint", "0,1,2"));
-    assert_eq!(file.value, "poses.csv");
-    assert_eq!(matrix.excludes[0].values[1].1, "up");
     let other = &suite.tests[1];
     assert!(!other.settings.critical && !other.settings.exclusive);
     assert_eq!(
@@ -79,6 +66,25 @@ fn every_attribute_is_read() {
             grace: Some(Duration::from_millis(500)),
         }
     );
+}
+
+#[test]
+fn known_failures_and_matrices_are_read() {
+    let (suite, _) = file("valid/everything.xml");
+    let test = &suite.tests[0];
+    let failure = test.known_failure.as_ref().unwrap();
+    assert_eq!(failure.verdicts, [Verdict::Failed, Verdict::TimedOut]);
+    assert_eq!(failure.issue.as_deref(), Some("https://example.org/7"));
+    assert_eq!(failure.until.as_ref().unwrap().value.to_string(), "2027-01-31");
+    let matrix = test.matrix.as_ref().unwrap();
+    let [MatrixDimension::Values(name, values), MatrixDimension::File(file)] =
+        matrix.dimensions.as_slice()
+    else {
+        panic!("{matrix:?}")
+    };
+    assert_eq!((name.value.as_str(), values.join(",").as_str()), ("joint", "0,1,2"));
+    assert_eq!(file.value, "poses.csv");
+    assert_eq!(matrix.excludes[0].values[1].1, "up");
 }
 
 #[test]
