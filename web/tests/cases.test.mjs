@@ -94,6 +94,7 @@ after(async () => {
 });
 
 const cases = () => guarded.page.getByRole('list', { name: 'Cases', exact: true });
+const caseButton = (name) => cases().getByRole('button', { name, exact: true });
 const item = (name) => cases().getByRole('listitem').filter({ hasText: name });
 
 test('a test shows its cases as a tree', async () => {
@@ -106,12 +107,8 @@ test('a test shows its cases as a tree', async () => {
     assert.ok(names[2].startsWith(`failed: ${SCRIPT} `), names[2]);
     assert.match(names[2], /the elbow stops at 40 degrees$/);
     assert.match(names[3], /^skipped: Wrist .*no wrist$/);
-    const [elbow, bends] = await Promise.all(
-        ['Elbow', 'bends'].map(
-            async (name) => (await item(name).getByRole('button').boundingBox()).x,
-        ),
-    );
-    assert.ok(bends > elbow, 'a nested case is indented');
+    const left = async (name) => (await caseButton(name).boundingBox()).x;
+    assert.ok((await left('bends')) > (await left('Elbow')), 'a nested case is indented');
     await guarded.see('Did not run (1)', '#detail');
     await guarded.see('Hand', '#detail');
 });
@@ -120,7 +117,7 @@ test('the selected case selects the messages', async () => {
     await guarded.see('all done', '#detail');
     // Without a selection, each message shows its case.
     await guarded.see('Elbow/bends', '#detail');
-    await item('Elbow').first().getByRole('button').click();
+    await caseButton('Elbow').click();
     await guarded.gone('all done', '#detail');
     await guarded.gone('no wrist is mounted', '#detail');
     await guarded.see('bent to 90 degrees', '#detail');
