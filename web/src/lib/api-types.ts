@@ -32,6 +32,8 @@ export type Said = Pick<api.Said, 'seq' | 'at'>;
 export interface AttemptRow extends api.AttemptRow {
     /** Known only for attempts that ended while the page was open. */
     reason?: string;
+    /** Whether it was being stopped; known only for attempts since the page was opened. */
+    stopped?: boolean;
 }
 
 export interface Test extends api.Test {

@@ -1,7 +1,8 @@
+import { readFileSync } from 'node:fs';
 import { describe, expect, test } from 'vitest';
 import type { Case } from '../lib/api-types';
 import type { Event, Verdict } from '../lib/event';
-import { isGreenVerdict, issueAddress, significanceOf } from '../lib/known-failure';
+import { isGreenVerdict, issueAddress, LABELS, significanceOf } from '../lib/known-failure';
 import { CaseList } from '../lib/record/cases';
 import { rows } from '../lib/tree';
 import { recordOf, stream } from './streams';
@@ -93,8 +94,8 @@ describe('the cases of an attempt', () => {
         expect(list.get(5)?.verdict).toBe('failed');
     });
 
-    test('nest 100 000 levels deep', () => {
-        const deep = Array.from({ length: 100_000 }, (_, index) =>
+    test('nest 20 000 levels deep', () => {
+        const deep = Array.from({ length: 20_000 }, (_, index) =>
             started(index + 1, 'x', index === 0 ? undefined : index),
         );
         // Paths are long; rows need none.
@@ -106,7 +107,7 @@ describe('the cases of an attempt', () => {
                     : [],
             ),
         );
-        expect(list.rows().at(-1)?.depth).toBe(99_999);
+        expect(list.rows().at(-1)?.depth).toBe(19_999);
     });
 });
 
@@ -171,4 +172,39 @@ test('tests are found by their mark, parameters and cases', () => {
     expect(found({ states: new Set(['quarantined']) })).toEqual([second.id]);
     expect(found({ search: 'JOINT=0' })).toEqual([third.id]);
     expect(found({ search: 'no-such-name', byCase: new Set([second.id]) })).toEqual([second.id]);
+});
+
+test('an attempt that was being stopped did not skip itself', () => {
+    const record = recordOf(stream('verdicts').filter(({ type }) => type.endsWith('planned')));
+    const [first, second] = record.tests;
+    if (first === undefined || second === undefined) throw new Error('the stream has tests');
+    for (const { id: test } of [first, second]) {
+        const common = { at: 0, test };
+        const skips: object[] = [
+            { ...common, type: 'test-started', repetition: 1, attempt: 1 },
+            ...(test === second.id ? [{ ...common, type: 'test-stopping' }] : []),
+            { ...common, type: 'test-finished', verdict: 'skipped', phase: 'run' },
+        ];
+        for (const event of skips)
+            record.apply({ ...event, seq: record.info.seq } as unknown as Event);
+    }
+    expect([first.significance, first.green]).toEqual(['skipped-itself', true]);
+    expect([second.significance, second.green]).toEqual([undefined, false]);
+});
+
+/** How each verdict counts: the table that the other reports are checked against. */
+function goldenRows() {
+    const table = new URL('../../../crates/rtf-report/tests/golden/verdicts.txt', import.meta.url);
+    const lines = readFileSync(table, 'utf8').split('\n');
+    return lines
+        .filter((line) => line !== '' && !line.startsWith('#'))
+        .map((line) => line.split(/\s+/) as [name: string, exit: string, console: string]);
+}
+
+test.each(goldenRows())('%s exits with %s', (name, exit, console) => {
+    const found = recordOf(stream('known-failures')).tests.find((each) => each.name === name);
+    expect(found?.green).toBe(exit === '0');
+    const label = found?.significance === undefined ? '' : LABELS[found.significance];
+    if (console === 'expected' || console === 'quarantined') expect(label).toBe(console);
+    else if (console === 'passed' && exit !== '0') expect(label).toBe('unexpected pass');
 });

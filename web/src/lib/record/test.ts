@@ -65,6 +65,9 @@ export function applyToTest(test: Test, event: Event, suite?: Suite): void {
         case 'test-slow':
             test.slow = true;
             break;
+        case 'test-stopping':
+            if (last !== undefined) last.stopped = true;
+            break;
         case 'test-finished':
             if (last === undefined) return;
             last.finished = event.at;
@@ -95,11 +98,13 @@ function conclude(test: Test, skipped: string | null, suite: Suite | undefined):
     const decisive = decisiveAttempt(test);
     const verdict = decisive?.verdict ?? 'passed';
     const bad = isBad(verdict) ? decisive : undefined;
+    // The runner skips a test, or an attempt during which a fixture collapsed.
+    const skippedItself = skipped === null && decisive?.stopped !== true;
     test.state = 'done';
     test.verdict = bad?.verdict ?? (skipped === null ? verdict : 'skipped');
     const reason = bad?.reason ?? skipped ?? decisive?.reason ?? null;
     if (reason !== null && test.verdict !== 'passed') test.reason = reason;
-    const significance = significanceOf(test, test.verdict, skipped === null);
+    const significance = significanceOf(test, test.verdict, skippedItself);
     if (significance !== null) test.significance = significance;
     test.green = isGreenVerdict(test.verdict, significance, suite);
 }
