@@ -6,6 +6,7 @@
 //! hosts' answers. A valid plan can fail only because of the outside world, not
 //! because of its input files.
 
+mod case_selection;
 mod checks;
 mod clock;
 mod context;
@@ -35,6 +36,7 @@ mod types;
 mod unix;
 mod use_site;
 
+pub use case_selection::{CaseSelection, CaseSelectionOrigin};
 pub use checks::{CheckAnswer, CheckGroup, CheckReport};
 pub use draft::{PlanDraft, PlanOutcome, draft};
 pub use installed::{LocatedHost, find_in_path, installed_hosts, shipped_fixtures_dir};

@@ -1,12 +1,48 @@
 //! `<matrix>` and `<matrix-exclude>`: the values with which a test runs.
 
 use roxmltree::Node;
-use rtf_model::Diagnostic;
+use rtf_model::{Diagnostic, Parameter};
 
 use super::reader::ElementReader;
 use super::schema::{self, check, check_content};
-use super::{DeclaredMatrix, MatrixDimension, MatrixExclude, Span, Spanned};
+use super::{Span, Spanned};
 use crate::config::is_name;
+
+/// The matrix of a test.
+#[derive(Clone, Debug, Default)]
+pub struct DeclaredMatrix {
+    /// Its dimensions, in order.
+    pub dimensions: Vec<MatrixDimension>,
+    /// The excluded combinations.
+    pub excludes: Vec<MatrixExclude>,
+}
+
+/// A `<matrix>`.
+#[derive(Clone, Debug)]
+pub enum MatrixDimension {
+    /// One parameter and its values.
+    Values(Spanned<String>, Vec<String>),
+    /// A CSV file, whose header row names the parameters.
+    File(Spanned<String>),
+}
+
+/// A `<matrix-exclude>`: excludes the combinations that have all of these values.
+#[derive(Clone, Debug)]
+pub struct MatrixExclude {
+    /// The position of the tag.
+    pub span: Span,
+    /// The names and values of parameters.
+    pub values: Vec<(Spanned<String>, String)>,
+}
+
+/// A combination of a matrix.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Combination {
+    /// Whether it is the first one of its test.
+    pub is_first: bool,
+    /// The values, in the order of the matrix.
+    pub parameters: Vec<Parameter>,
+}
 
 /// Reads the matrix of a test; `None` if it has none, or if an element is invalid.
 pub(super) fn read(reader: &mut ElementReader<'_>, test: Node<'_, '_>) -> Option<DeclaredMatrix> {

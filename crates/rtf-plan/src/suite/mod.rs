@@ -38,6 +38,7 @@ pub use duration::{DurationError, parse_duration};
 pub(crate) use env::is_reserved;
 pub(crate) use known_failure::{parse_day, parse_verdict};
 pub(crate) use matrix::invalid_value;
+pub use matrix::{Combination, DeclaredMatrix, MatrixDimension, MatrixExclude};
 pub use param_string::split_param;
 pub use root::parse;
 pub use shared_settings::{SharedSettings, shared_settings};

@@ -3,9 +3,9 @@
 use std::time::Duration;
 
 use jiff::civil::Date;
-use rtf_model::{Parameter, Trigger, Verdict};
+use rtf_model::{Trigger, Verdict};
 
-use super::{Span, Spanned};
+use super::{Combination, DeclaredMatrix, Span, Spanned};
 
 /// The contents of a suite file.
 #[derive(Clone, Debug)]
@@ -170,42 +170,6 @@ pub struct DeclaredKnownFailure {
     pub reason: Option<String>,
     /// The last day on which it applies.
     pub until: Option<Spanned<Date>>,
-}
-
-/// The matrix of a test.
-#[derive(Clone, Debug, Default)]
-pub struct DeclaredMatrix {
-    /// Its dimensions, in order.
-    pub dimensions: Vec<MatrixDimension>,
-    /// The excluded combinations.
-    pub excludes: Vec<MatrixExclude>,
-}
-
-/// A `<matrix>`.
-#[derive(Clone, Debug)]
-pub enum MatrixDimension {
-    /// One parameter and its values.
-    Values(Spanned<String>, Vec<String>),
-    /// A CSV file, whose header row names the parameters.
-    File(Spanned<String>),
-}
-
-/// A `<matrix-exclude>`: excludes the combinations that have all of these values.
-#[derive(Clone, Debug)]
-pub struct MatrixExclude {
-    /// The position of the tag.
-    pub span: Span,
-    /// The names and values of parameters.
-    pub values: Vec<(Spanned<String>, String)>,
-}
-
-/// A combination of a matrix.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Combination {
-    /// Whether it is the first one of its test.
-    pub is_first: bool,
-    /// The values, in the order of the matrix.
-    pub parameters: Vec<Parameter>,
 }
 
 /// The settings of a test in which no name has to be resolved.
