@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import lesson_1  # noqa: F401 - makes arm_client known
 import rtf
 from arm_client import Arm
@@ -27,7 +29,7 @@ class PosesTest(rtf.TestCase):
                 if self.parameter("load") == "full" and name == "high":
                     self.skip("the simulated arm has no weight to lift")
                 self.arm.move(self.joint, angle)
-                self.wait_until(lambda at=angle: self.is_at(at), 5, f"{self.joint} at {angle} rad")
+                self.wait_until(partial(self.is_at, angle), 5, f"{self.joint} at {angle} rad")
                 self.measure("error", abs(self.arm.position(self.joint) - angle), "rad", high=0.1)
 
     def is_at(self, angle: float) -> bool:
