@@ -112,31 +112,16 @@ impl OrderChecker {
                 self.start_test(*test, (*repetition, *attempt))
             }
             EventKind::TestPhase { test, phase: Phase::Notify } => self.judge_test(*test),
-            EventKind::CasesPlanned { test, .. } => self.before_verdict(*test),
-            EventKind::CaseStarted(started) => self.start_case(started),
-            EventKind::CaseFinished(end) => self.finish_case(end.test, end.case),
-            EventKind::Sampled { test, samples } => {
-                self.inside_test(*test)?;
-                self.inside_case(*test, samples.case)
-            }
+            EventKind::CasesPlanned { .. }
+            | EventKind::CaseStarted(_)
+            | EventKind::CaseFinished(_)
+            | EventKind::Sampled { .. }
+            | EventKind::Measured { .. }
+            | EventKind::Attached { .. }
+            | EventKind::Message { .. } => self.check_report(kind),
             EventKind::TestPhase { test, .. }
             | EventKind::TestSlow { test }
             | EventKind::TestStopping { test, .. } => self.inside_test(*test),
-            EventKind::Measured { test, fixture, measurement } => {
-                self.inside_both(fixture.map(Source::Fixture), Source::Test(*test))?;
-                self.inside_case(*test, measurement.case)
-            }
-            EventKind::Attached { test, fixture, attachment } => {
-                self.inside_both(fixture.map(Source::Fixture), Source::Test(*test))?;
-                self.inside_case(*test, attachment.case)
-            }
-            EventKind::Message { source, test, message } => {
-                self.inside_both(test.map(Source::Test), *source)?;
-                match source {
-                    Source::Test(id) => self.inside_case(*id, message.case),
-                    Source::Fixture(_) | Source::Hook(_) => Ok(()),
-                }
-            }
             EventKind::StackDumped { source, .. } | EventKind::ProcessesLeaked { source, .. } => {
                 self.inside(*source)
             }
@@ -155,6 +140,34 @@ impl OrderChecker {
                 Ok(())
             }
             EventKind::RunFinished { .. } => self.finish_run(),
+        }
+    }
+
+    fn check_report(&mut self, kind: &EventKind) -> Rule {
+        match kind {
+            EventKind::CasesPlanned { test, .. } => self.before_verdict(*test),
+            EventKind::CaseStarted(started) => self.start_case(started),
+            EventKind::CaseFinished(end) => self.finish_case(end.test, end.case),
+            EventKind::Sampled { test, samples } => {
+                self.inside_test(*test)?;
+                self.inside_case(*test, samples.case)
+            }
+            EventKind::Measured { test, fixture, measurement } => {
+                self.inside_both(fixture.map(Source::Fixture), Source::Test(*test))?;
+                self.inside_case(*test, measurement.case)
+            }
+            EventKind::Attached { test, fixture, attachment } => {
+                self.inside_both(fixture.map(Source::Fixture), Source::Test(*test))?;
+                self.inside_case(*test, attachment.case)
+            }
+            EventKind::Message { source, test, message } => {
+                self.inside_both(test.map(Source::Test), *source)?;
+                match source {
+                    Source::Test(id) => self.inside_case(*id, message.case),
+                    Source::Fixture(_) | Source::Hook(_) => Ok(()),
+                }
+            }
+            _ => Ok(()),
         }
     }
 

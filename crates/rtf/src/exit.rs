@@ -40,8 +40,6 @@ pub fn of_signal(number: i32) -> u8 {
 
 #[cfg(test)]
 mod tests {
-    #![expect(clippy::unwrap_used, reason = "a test that cannot continue fails")]
-
     use std::path::Path;
 
     use super::*;

@@ -5,7 +5,7 @@ use std::hash::{BuildHasher, Hasher, RandomState};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use rtf_model::{Manifest, Record, TestId, Verdict};
+use rtf_model::{Manifest, Record, Significance, TestRecord, Verdict};
 use rtf_plan::config::ConfigRequest;
 use rtf_plan::plan::{InputPath, Options, RunnerEnvironment};
 use rtf_plan::select::{Shard, ShardBy};
@@ -102,16 +102,18 @@ fn rerun_manifest(args: &InputArgs, results: &Path) -> Result<(Manifest, PathBuf
     Ok((manifest, PathBuf::from(&started.working_dir)))
 }
 
+/// Suite and test of each test to rerun; and suite, test and paths of failed cases.
+type TestsToRerun = (Vec<(String, String)>, Vec<(String, String, Vec<String>)>);
+
 /// The tests to rerun, and the cases of those of which only some cases failed.
 fn tests_to_rerun(
     record: &Record,
     run: &str,
     verdicts: &[RerunVerdict],
-) -> Result<(Vec<(String, String)>, Vec<(String, String, Vec<String>)>), Failure> {
+) -> Result<TestsToRerun, Failure> {
     let (mut names, mut cases) = (Vec::new(), Vec::new());
-    for (id, test) in (0..).map(TestId).zip(&record.tests) {
-        let verdict = record.final_verdict(id);
-        if !verdicts.iter().any(|wanted| wanted.matches(verdict)) {
+    for test in &record.tests {
+        if !verdicts.iter().any(|wanted| wanted.matches(record, test)) {
             continue;
         }
         let Some((suite, test_name)) = name(record, test) else { continue };
@@ -129,16 +131,18 @@ fn tests_to_rerun(
 }
 
 /// The names of a test's suite and of the test.
-fn name(record: &Record, test: &rtf_model::TestRecord) -> Option<(String, String)> {
+fn name(record: &Record, test: &TestRecord) -> Option<(String, String)> {
     let suite = record.suites.get(test.plan.suite.index())?;
     Some((suite.plan.name.clone(), test.plan.name.clone()))
 }
 
 impl RerunVerdict {
-    fn matches(self, verdict: Verdict) -> bool {
-        let interrupted = matches!(verdict, Verdict::Interrupted | Verdict::Skipped);
+    fn matches(self, record: &Record, test: &TestRecord) -> bool {
+        let skipped_itself = test.significance() == Significance::SkippedItself;
+        let interrupted = !skipped_itself
+            && matches!(test.final_verdict(), Verdict::Interrupted | Verdict::Skipped);
         match self {
-            Self::Failed => !verdict.is_green() && !interrupted,
+            Self::Failed => !record.is_test_green(test) && !interrupted,
             Self::Interrupted => interrupted,
         }
     }

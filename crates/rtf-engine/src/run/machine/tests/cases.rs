@@ -248,7 +248,8 @@ fn a_report_in_a_case_that_is_not_open_belongs_to_the_test() {
 #[test]
 fn wrong_numbers_of_cases_are_protocol_errors() {
     let plan = one_test();
-    let steps: [(&str, fn(&mut World<'_>)); 5] = [
+    type Step = fn(&mut World<'_>);
+    let steps: [(&str, Step); 5] = [
         ("started case 2 after case 0", |world| world.case(2, "b", None)),
         ("finished case 1, which is not open", |world| world.case_ends(1)),
         ("finished case 1 before a case that it contains", |world| {

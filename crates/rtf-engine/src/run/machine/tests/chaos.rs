@@ -33,6 +33,35 @@ fn phase(step: u8) -> Phase {
     }
 }
 
+/// A failure, or the start or end of a case.
+fn report(choice: u8) -> Notification {
+    let number = u32::from(choice);
+    match choice / 16 % 4 {
+        1 => {
+            let (case, name) = (CaseId(1 + number / 64), "pose".to_owned());
+            let parent = (choice > 128).then_some(CaseId(1));
+            let (parameters, location) = (Vec::new(), None);
+            Notification::CaseStarted(CaseStart { case, name, parent, parameters, location })
+        }
+        3 => {
+            let case = CaseId(1 + number / 128);
+            Notification::CaseFinished { case, outcome: None, reason: None }
+        }
+        _ => {
+            let (kind, text, critical) = (MessageKind::Failure, "no".to_owned(), choice > 240);
+            let (location, comparison) = (None, None);
+            Notification::Message(Message {
+                kind,
+                text,
+                location,
+                comparison,
+                critical,
+                case: None,
+            })
+        }
+    }
+}
+
 pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool) {
     let alive: Vec<_> = world.hosts.iter().map(|(host, source)| (*host, *source)).collect();
     if act_idle(world, choice) {
@@ -75,22 +104,7 @@ pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool)
         9 => world.feed(notify(Notification::Collapsed { reason: "gone".to_owned() })),
         10 => world.exit(source, ExitStatus::Signal(9)),
         11 | 12 => world.exit(source, ExitStatus::Code(0)),
-        13 if choice / 16 % 4 == 1 => {
-            let (case, name) = (CaseId(1 + u32::from(choice / 64)), "pose".to_owned());
-            let parent = (choice > 128).then_some(CaseId(1));
-            let start = CaseStart { case, name, parent, parameters: Vec::new(), location: None };
-            world.feed(notify(Notification::CaseStarted(start)));
-        }
-        13 if choice / 16 % 4 == 3 => {
-            let (case, outcome, reason) = (CaseId(1 + u32::from(choice / 128)), None, None);
-            world.feed(notify(Notification::CaseFinished { case, outcome, reason }));
-        }
-        13 => {
-            let (kind, text, critical) = (MessageKind::Failure, "no".to_owned(), choice > 240);
-            let message =
-                Message { kind, text, location: None, comparison: None, critical, case: None };
-            world.feed(notify(Notification::Message(message)));
-        }
+        13 => world.feed(notify(report(choice))),
         14 => drop((!world.deadlines.is_empty()).then(|| world.next_deadline())),
         _ if choice == 255 => world.stop(StopLevel::Kill),
         _ if choice == 239 => world.stop(StopLevel::TearDown),
