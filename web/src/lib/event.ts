@@ -36,15 +36,6 @@ export const VERDICTS = [
     'interrupted',
 ] as const satisfies readonly Verdict[];
 
-/** The verdicts after which `rtf run --rerun failed` reruns a test. */
-export const FAILED = [
-    'failed',
-    'error',
-    'crashed',
-    'timed-out',
-    'collapsed',
-] as const satisfies readonly Verdict[];
-
 /** The state of a test for display: its verdict, or its progress. */
 export type TestState = Verdict | 'running' | 'pending';
 

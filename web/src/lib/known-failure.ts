@@ -30,6 +30,13 @@ export function significanceOf(
     return isQuarantined ? 'quarantined' : 'expected';
 }
 
+/** Whether `rtf run --rerun failed` reruns a test of a run that has ended: it made the run
+ *  red, and the runner neither skipped nor interrupted it. */
+export function isRerunAsFailed(test: Pick<Test, 'green' | 'verdict' | 'significance'>): boolean {
+    const isUndecided = test.verdict === 'skipped' || test.verdict === 'interrupted';
+    return test.green === false && (!isUndecided || test.significance === 'skipped-itself');
+}
+
 /** Whether a final verdict leaves the run green, apart from cases that skipped themselves. */
 export function isGreenVerdict(
     verdict: Verdict,

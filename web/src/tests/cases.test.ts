@@ -2,7 +2,13 @@ import { readFileSync } from 'node:fs';
 import { describe, expect, test } from 'vitest';
 import type { Case } from '../lib/api-types';
 import type { Event, Verdict } from '../lib/event';
-import { isGreenVerdict, issueAddress, LABELS, significanceOf } from '../lib/known-failure';
+import {
+    isGreenVerdict,
+    isRerunAsFailed,
+    issueAddress,
+    LABELS,
+    significanceOf,
+} from '../lib/known-failure';
 import { CaseList } from '../lib/record/cases';
 import { rows } from '../lib/tree';
 import { recordOf, stream } from './streams';
@@ -112,6 +118,20 @@ describe('the cases of an attempt', () => {
 });
 
 describe('known failures', () => {
+    test('are not rerun with the failed tests', () => {
+        const tests = recordOf(stream('known-failures')).tests;
+        const rerun = tests.filter(isRerunAsFailed);
+        expect(rerun.length).toBeGreaterThan(0);
+        expect(rerun.every(({ green }) => green === false)).toBe(true);
+        const verdicts = new Set(rerun.map(({ verdict }) => verdict));
+        expect(verdicts).toContain('passed');
+        expect(verdicts).not.toContain('interrupted');
+        const isExpected = ({ significance }: { significance?: string }) =>
+            significance === 'expected' || significance === 'quarantined';
+        expect(tests.some(isExpected)).toBe(true);
+        expect(rerun.some(isExpected)).toBe(false);
+    });
+
     const known = { verdicts: ['failed' as const] };
     test.each([
         [undefined, 'failed', null, false],
