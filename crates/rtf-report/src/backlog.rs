@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use rtf_model::{Event, EventKind, Source};
+use rtf_model::{CaseStart, Event, EventKind, Source};
 
 /// Approximate memory of an event without its texts, in bytes.
 const EVENT_BYTES: usize = 200;
@@ -74,6 +74,19 @@ fn size(kind: &EventKind) -> Option<(Source, usize)> {
         EventKind::Sampled { test, samples } => {
             (Source::Test(*test), samples.points.len() * SAMPLE_BYTES)
         }
+        EventKind::CasesPlanned { test, names } => {
+            let names = names.iter().map(|name| name.len() + size_of::<String>());
+            (Source::Test(*test), names.sum())
+        }
+        EventKind::CaseStarted(started) => {
+            let CaseStart { name, parameters, location, .. } = &started.start;
+            let parameters = parameters.iter().map(|it| it.name.len() + it.value.len());
+            let location = location.as_ref().map_or(0, |location| location.file.len());
+            (Source::Test(started.test), name.len() + parameters.sum::<usize>() + location)
+        }
+        EventKind::CaseFinished(end) => {
+            (Source::Test(end.test), end.reason.as_ref().map_or(0, String::len))
+        }
         _ => return None,
     };
     Some((source, EVENT_BYTES + more))
@@ -81,7 +94,9 @@ fn size(kind: &EventKind) -> Option<(Source, usize)> {
 
 #[cfg(test)]
 mod tests {
-    use rtf_model::{FixtureId, Message, MessageKind, Micros, TestId};
+    use rtf_model::{
+        CaseFinished, CaseId, CaseStarted, FixtureId, Message, MessageKind, Micros, TestId, Verdict,
+    };
 
     use super::*;
 
@@ -91,6 +106,29 @@ mod tests {
             Message { kind, text, location: None, comparison: None, critical: false, case: None };
         let kind = EventKind::Message { source, message, test: None };
         Event { seq: 0, at: Micros::default(), kind }
+    }
+
+    /// A test with a million cases must not fill the memory of the runner.
+    #[test]
+    fn cases_wait_like_messages() {
+        let (test, backlog) = (TestId(3), Backlog::default());
+        let (case, name) = (CaseId(1), "x".repeat(50));
+        let start = CaseStart { case, name, parent: None, parameters: Vec::new(), location: None };
+        let names = vec!["x".repeat(76)];
+        let kinds = [
+            EventKind::CasesPlanned { test, names },
+            EventKind::CaseStarted(Box::new(CaseStarted { test, start })),
+            EventKind::CaseFinished(CaseFinished {
+                test,
+                case,
+                verdict: Verdict::Failed,
+                reason: Some("x".repeat(50)),
+            }),
+        ];
+        for (kind, bytes) in kinds.into_iter().zip([300, 550, 800]) {
+            backlog.add(&Event { seq: 0, at: Micros::default(), kind });
+            assert_eq!(backlog.of(Source::Test(test)), bytes);
+        }
     }
 
     #[test]
