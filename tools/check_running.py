@@ -27,7 +27,20 @@ ARM = """\
 <suite name="arm" requires="robot:icub">
   <test type="lua" tags="slow"> EncoderTest </test>
   <test type="lua"> JointLimitTest </test>
+  <test type="lua"> Reach </test>
+  <test type="lua"> Move
+    <matrix name="joint" values="0 1"/>
+    <matrix name="speed" values="slow fast"/>
+  </test>
 </suite>
+"""
+REACH = """\
+TestCase = {}
+function TestCase.run()
+  rtf.case("left", function()
+    rtf.case("high", function() end)
+  end)
+end
 """
 HAND = """\
 <suite name="hand">
@@ -79,8 +92,9 @@ def possible(command: str) -> str:
 def fill(directory: Path) -> None:
     """Writes the page's suites and their plug-ins."""
     directory.mkdir(exist_ok=True)
-    for name in ("EncoderTest.lua", "JointLimitTest.lua"):
+    for name in ("EncoderTest.lua", "JointLimitTest.lua", "Move.lua"):
         (directory / name).write_text(LUA)
+    (directory / "Reach.lua").write_text(REACH)
     (directory / "GripTest.py").write_text(GRIP)
     (directory / "arm.xml").write_text(ARM)
     (directory / "hand.xml").write_text(HAND)

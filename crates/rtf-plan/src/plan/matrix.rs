@@ -47,6 +47,9 @@ impl<'a> MatrixExpander<'a> {
     /// Replaces each test with a matrix by its combinations; omits it if the matrix is
     /// invalid.
     pub fn expand(&mut self, tests: Vec<DeclaredTest>) -> Vec<DeclaredTest> {
+        if tests.iter().all(|test| test.matrix.is_none()) {
+            return tests;
+        }
         let mut expanded = Vec::with_capacity(tests.len());
         for mut test in tests {
             let Some(matrix) = test.matrix.take() else {

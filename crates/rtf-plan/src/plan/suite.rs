@@ -21,8 +21,8 @@ use super::{
 };
 use crate::config;
 use crate::suite::{
-    DeclaredLimits, DeclaredMiddleware, DeclaredSuite, DeclaredTest, FixtureKind, SourceText,
-    split_param,
+    Combination, DeclaredLimits, DeclaredMiddleware, DeclaredPlugin, DeclaredSuite, DeclaredTest,
+    FixtureKind, SourceText, split_param,
 };
 
 /// The name of the suite of the plug-ins that are given directly.
@@ -102,42 +102,59 @@ fn plan_tests(
 ) -> Vec<TestPlan> {
     let (mut limits, mut plans) = (SharedLimits::default(), Vec::with_capacity(tests.len()));
     let today = planner.context.options.today;
-    // The name and the plug-in of the present test; the combinations of a matrix share them.
-    let (mut base, mut shared): (Arc<str>, Option<PluginPlan>) = (Arc::from(""), None);
-    for test in tests {
-        let is_first = is_first_of_matrix(&test);
-        if is_first {
-            let declared = test.name.as_ref().map(|name| name.value.clone());
-            let unique = || names.unique(base_name(&test.plugin.name.value));
-            base = declared.unwrap_or_else(unique).into();
-            let failure = test.known_failure.as_ref();
-            let warning = failure.and_then(|it| known_failure::warn_of_end(it, today, source));
+    // The combinations of a matrix share its name and plug-in.
+    let mut matrix: Option<(Arc<str>, Option<PluginPlan>)> = None;
+    for mut test in tests {
+        let combination = test.combination.take();
+        let is_first = combination.as_ref().is_none_or(|it| it.is_first);
+        if is_first && let Some(failure) = &test.known_failure {
+            let warning = known_failure::warn_of_end(failure, today, source);
             planner.context.problems.extend(warning);
         }
-        let (tags, env) = (tags(suite_tags, &test), &test.env);
-        if is_first || !search_variables(env).is_empty() {
-            shared = planner.plan(test.plugin, source, env, PluginRole::Test);
-        } else if let Some(plugin) = &mut shared {
-            plugin.args = split_param(&test.plugin.param);
-            plugin.param = test.plugin.param;
-        }
-        let Some(plugin) = shared.clone() else { continue };
-        let parameters = test.combination.map(|combination| combination.parameters);
-        let failure = test.known_failure.as_ref();
+        let tags = tags(suite_tags, &test);
+        let DeclaredTest { name, plugin, env, limits: declared, settings, known_failure, .. } =
+            test;
+        let named = |plugin: &DeclaredPlugin| {
+            let unique = || names.unique(base_name(&plugin.name.value));
+            name.map(|name| name.value).unwrap_or_else(unique)
+        };
+        let (name, plugin, base, parameters) = match combination {
+            None => {
+                let name = named(&plugin);
+                (name, planner.plan(plugin, source, &env, PluginRole::Test), None, Vec::new())
+            }
+            Some(Combination { is_first, parameters }) => {
+                let base = match &matrix {
+                    Some((base, _)) if !is_first => Arc::clone(base),
+                    _ => Arc::from(named(&plugin)),
+                };
+                let known = matrix.take().and_then(|(_, plugin)| plugin).filter(|_| !is_first);
+                let plan = match known {
+                    Some(known) if search_variables(&env).is_empty() => Some(PluginPlan {
+                        args: split_param(&plugin.param),
+                        param: plugin.param,
+                        ..known
+                    }),
+                    None if !is_first => None,
+                    _ => planner.plan(plugin, source, &env, PluginRole::Test),
+                };
+                matrix = Some((Arc::clone(&base), plan.clone()));
+                let name = names.unique(&matrix::combination_name(&base, &parameters));
+                (name, plan, Some(base), parameters)
+            }
+        };
+        let Some(plugin) = plugin else { continue };
         plans.push(TestPlan {
             id: TestId(0),
-            name: match &parameters {
-                Some(parameters) => names.unique(&matrix::combination_name(&base, parameters)),
-                None => base.to_string(),
-            },
-            matrix: parameters.is_some().then(|| Arc::clone(&base)),
-            parameters: parameters.unwrap_or_default(),
+            name,
+            matrix: base,
+            parameters,
             plugin,
-            env: test.env,
-            limits: limits.get(test.limits),
-            settings: test.settings,
+            env,
+            limits: limits.get(declared),
+            settings,
             tags,
-            expected: failure.map(|it| Box::new(known_failure::expect(it, today))),
+            expected: known_failure.map(|it| Box::new(known_failure::expect(&it, today))),
             cases: CaseSelection::default(),
         });
     }

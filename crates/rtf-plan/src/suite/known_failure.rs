@@ -41,6 +41,10 @@ pub(super) fn read(
     reader: &mut ElementReader<'_>,
     node: Node<'_, '_>,
 ) -> Option<DeclaredKnownFailure> {
+    let names = ["expect", "issue", "until"];
+    if !node.attributes().any(|attribute| names.contains(&attribute.name())) {
+        return None;
+    }
     let issue = reader.word(node, "issue").map(|issue| issue.value);
     let until = reader.word(node, "until").and_then(|text| day(reader, &text));
     let Some(expect) = reader.attribute(node, "expect") else {

@@ -46,6 +46,7 @@ pub struct Combination {
 
 /// Reads the matrix of a test; `None` if it has none, or if an element is invalid.
 pub(super) fn read(reader: &mut ElementReader<'_>, test: Node<'_, '_>) -> Option<DeclaredMatrix> {
+    test.first_element_child()?;
     let mut matrix = DeclaredMatrix::default();
     let mut is_valid = true;
     for node in test.children().filter(|node| node.has_tag_name("matrix")) {

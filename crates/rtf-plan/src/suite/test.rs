@@ -46,8 +46,8 @@ pub(super) fn read(
     };
     let tags = values(reader.words(node, "tags"));
     let env = env::read(reader, node);
-    let known_failure = known_failure::read(reader, node);
-    let matrix = matrix::read(reader, node);
+    let known_failure = known_failure::read(reader, node).map(Box::new);
+    let matrix = matrix::read(reader, node).map(Box::new);
     let plugin = plugin(reader, node)?;
     let span = ElementReader::tag(node);
     let combination = None;

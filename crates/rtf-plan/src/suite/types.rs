@@ -152,9 +152,9 @@ pub struct DeclaredTest {
     /// Environment variables in addition to the suite's.
     pub env: Vec<(String, String)>,
     /// Its known failure.
-    pub known_failure: Option<DeclaredKnownFailure>,
+    pub known_failure: Option<Box<DeclaredKnownFailure>>,
     /// The values with which it runs; `None` for a test without a matrix.
-    pub matrix: Option<DeclaredMatrix>,
+    pub matrix: Option<Box<DeclaredMatrix>>,
     /// The combination of the matrix, once the planner has expanded it.
     pub combination: Option<Combination>,
 }
