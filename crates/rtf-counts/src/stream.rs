@@ -107,6 +107,7 @@ fn test(number: u32) -> Vec<EventKind> {
         phase: if failed { Phase::Run } else { Phase::Exit },
         exit: Some(ExitStatus::Code(0)),
         rerun: false,
+        decided_by: None,
     }));
     kinds
 }

@@ -109,7 +109,15 @@ fn report(number: u64) -> EventKind {
 
 fn after() -> [EventKind; 3] {
     let (verdict, reason, phase) = (Verdict::Passed, None, Phase::Exit);
-    let finished = TestFinished { test: TEST, verdict, reason, phase, exit: None, rerun: false };
+    let finished = TestFinished {
+        test: TEST,
+        verdict,
+        reason,
+        phase,
+        exit: None,
+        rerun: false,
+        decided_by: None,
+    };
     [
         EventKind::TestFinished(finished),
         EventKind::SuiteFinished { suite: SUITE },

@@ -123,6 +123,7 @@ mod tests {
                 case,
                 verdict: Verdict::Failed,
                 reason: Some("x".repeat(50)),
+                decided_by: None,
             }),
         ];
         for (kind, bytes) in kinds.into_iter().zip([300, 550, 800]) {

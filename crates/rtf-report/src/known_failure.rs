@@ -77,7 +77,7 @@ pub(crate) fn facts(expected: &ExpectedFailure) -> Vec<(&'static str, String)> {
     facts.extend(expected.reason.as_ref().map(|reason| ("known", words::first_line(reason))));
     facts.extend(expected.issue.as_ref().map(|issue| ("issue", words::first_line(issue))));
     let until = expected.until.as_ref().map(|until| match expected.expired {
-        true => format!("{until}, which is over: the test counts"),
+        true => format!("{until}, which has passed: the test counts"),
         false => until.clone(),
     });
     facts.extend(until.map(|until| ("until", words::first_line(&until))));

@@ -57,4 +57,8 @@ pub struct CaseFinished {
     /// Why it did not pass.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// The case in it whose problem decided the verdict, or in which the test was stopped
+    /// or its process ended.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub decided_by: Option<CaseId>,
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::ExitStatus;
-use crate::{TestId, Verdict};
+use crate::{CaseId, TestId, Verdict};
 
 /// A phase of a test, in the order in which they happen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -73,6 +73,10 @@ pub struct TestFinished {
     pub reason: Option<String>,
     /// The phase that decided the verdict.
     pub phase: Phase,
+    /// The case whose problem decided the verdict, or in which the test was stopped or its
+    /// process ended.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub decided_by: Option<CaseId>,
     /// How the host's process exited, if it was started and is not shared.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub exit: Option<ExitStatus>,

@@ -13,8 +13,8 @@ pub struct CaseRecord {
     pub path: String,
     /// When it started.
     pub started: Micros,
-    /// When it finished, its verdict, and the reason.
-    pub finished: Option<(Micros, Verdict, Option<String>)>,
+    /// When and how it finished.
+    pub finished: Option<(Micros, CaseFinished)>,
 }
 
 impl CaseRecord {
@@ -29,13 +29,13 @@ impl CaseRecord {
     /// The verdict, `None` while it runs.
     #[must_use]
     pub fn verdict(&self) -> Option<Verdict> {
-        self.finished.as_ref().map(|(_, verdict, _)| *verdict)
+        self.finished.as_ref().map(|(_, finished)| finished.verdict)
     }
 
     /// Why it did not pass.
     #[must_use]
     pub fn reason(&self) -> Option<&str> {
-        self.finished.as_ref().and_then(|(_, _, reason)| reason.as_deref())
+        self.finished.as_ref().and_then(|(_, finished)| finished.reason.as_deref())
     }
 
     /// Its duration, `None` while it runs.
@@ -118,6 +118,12 @@ impl AttemptCases {
         self.counts[verdict as usize]
     }
 
+    /// Number of finished cases that did not pass, without skipped ones.
+    #[must_use]
+    pub fn problems(&self) -> u64 {
+        Verdict::ALL.into_iter().filter(|verdict| verdict.is_problem()).map(|v| self.of(v)).sum()
+    }
+
     /// Number of passed cases that are counted and not kept; the journal has them.
     #[must_use]
     pub fn omitted(&self) -> u64 {
@@ -180,6 +186,6 @@ impl AttemptCases {
             }
             *passed_kept += 1;
         }
-        self.kept[index].finished = Some((at, end.verdict, end.reason.clone()));
+        self.kept[index].finished = Some((at, end.clone()));
     }
 }

@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
-use super::case::AttemptCases;
+use super::case::{AttemptCases, CaseRecord};
 use super::counts::{AttemptCounts, is_detail};
 use super::signal::SignalSummary;
 use crate::{
-    Attachment, EventKind, LeakedProcess, Measurement, Message, MessageKind, Micros, Phase,
+    Attachment, CaseId, EventKind, LeakedProcess, Measurement, Message, MessageKind, Micros, Phase,
     Significance, TestFinished, TestPlanned, Verdict,
 };
 
@@ -301,6 +301,28 @@ impl AttemptRecord {
     pub fn failures(&self) -> impl Iterator<Item = &Message> {
         let fails = |m: &&Message| matches!(m.kind, MessageKind::Failure | MessageKind::Error);
         self.messages.iter().filter(fails)
+    }
+
+    /// Whether a failure or a violated limit was reported in this case; `None` is outside of cases.
+    #[must_use]
+    pub fn has_reported_problem(&self, case: Option<CaseId>) -> bool {
+        self.failures().any(|failure| failure.case == case)
+            || self.violations().any(|violation| violation.case == case)
+    }
+
+    /// Whether a case did not pass for a reason that is not only that of a case it contains.
+    #[must_use]
+    pub fn has_own_problem(&self, case: &CaseRecord) -> bool {
+        let id = Some(case.start.case);
+        let is_open_inside =
+            |inner: &CaseRecord| inner.start.parent == id && inner.finished.is_none();
+        match &case.finished {
+            None => !self.cases.kept().iter().any(is_open_inside),
+            Some((_, finished)) => {
+                finished.verdict.is_problem()
+                    && (finished.decided_by.is_none() || self.has_reported_problem(id))
+            }
+        }
     }
 
     /// The measurements outside their limits.

@@ -17,7 +17,13 @@ fn case(number: u32, name: &str, parent: Option<u32>) -> EventKind {
 
 fn case_ends(number: u32, verdict: Verdict) -> EventKind {
     let reason = verdict.is_problem().then(|| format!("{verdict} for a reason"));
-    EventKind::CaseFinished(CaseFinished { test: TEST, case: CaseId(number), verdict, reason })
+    EventKind::CaseFinished(CaseFinished {
+        test: TEST,
+        case: CaseId(number),
+        verdict,
+        reason,
+        decided_by: None,
+    })
 }
 
 fn report(case: u32) -> EventKind {

@@ -22,7 +22,15 @@ fn start(test: u32) -> EventKind {
 fn finish(test: u32) -> EventKind {
     let (verdict, phase) = (Verdict::Passed, Phase::Run);
     let (test, reason, exit, rerun) = (TestId(test), None, None, false);
-    EventKind::TestFinished(TestFinished { test, verdict, reason, phase, exit, rerun })
+    EventKind::TestFinished(TestFinished {
+        test,
+        verdict,
+        reason,
+        phase,
+        exit,
+        rerun,
+        decided_by: None,
+    })
 }
 
 fn park(starts: bool) -> EventKind {

@@ -102,7 +102,15 @@ pub fn rerun(verdict: Verdict) -> EventKind {
 fn finish(verdict: Verdict, rerun: bool) -> EventKind {
     let reason = (!verdict.is_green()).then(|| format!("{verdict} for a reason"));
     let phase = Phase::Run;
-    EventKind::TestFinished(TestFinished { test: TEST, verdict, reason, phase, exit: None, rerun })
+    EventKind::TestFinished(TestFinished {
+        test: TEST,
+        verdict,
+        reason,
+        phase,
+        exit: None,
+        rerun,
+        decided_by: None,
+    })
 }
 
 pub fn skipped(test: u32) -> EventKind {

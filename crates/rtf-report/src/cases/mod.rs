@@ -3,7 +3,6 @@
 //! Like a test's verdict, that of a case is the first one that is a problem, of the last
 //! attempt of each repetition.
 
-mod live;
 mod totals;
 
 use std::collections::{HashMap, HashSet};
@@ -13,7 +12,6 @@ use rtf_model::{
     AttemptRecord, CaseId, CaseRecord, Location, Measurement, Message, TestRecord, Verdict,
 };
 
-pub(crate) use live::{has_inner_problem, problem_count};
 pub(crate) use totals::CaseTotals;
 
 /// The reason of a case that was running when the run ended.
@@ -43,8 +41,8 @@ pub(crate) struct CaseResult<'r> {
     pub parent: Option<usize>,
     /// Whether it contains cases.
     pub is_container: bool,
-    /// Whether its problem is not only that of a case that it contains.
-    pub is_own_problem: bool,
+    /// Whether it has a problem that is not only that of a case that it contains.
+    pub is_problem: bool,
     /// The deciding attempt to which `record` belongs, from 0.
     attempt: usize,
 }
@@ -62,11 +60,6 @@ impl CaseResult<'_> {
         self.record.map(|record| record.verdict().unwrap_or(Verdict::Interrupted))
     }
 
-    /// Whether it has a problem that no inner case has.
-    pub fn is_problem(&self) -> bool {
-        self.is_own_problem
-    }
-
     /// Why it did not pass.
     pub fn reason(&self) -> &str {
         match (self.record, self.verdict()) {
@@ -79,10 +72,6 @@ impl CaseResult<'_> {
     /// The deciding attempt in which it ran, from 0, and its id.
     pub fn key(&self) -> Option<(usize, CaseId)> {
         self.record.map(|record| (self.attempt, record.start.case))
-    }
-
-    fn severity(&self) -> u8 {
-        self.verdict().map_or(0, Verdict::severity)
     }
 
     /// Of several repetitions, the first one with the highest rank decides.
@@ -107,18 +96,8 @@ impl<'r> TestCases<'r> {
             attempts => several_attempts(attempts),
         };
         let problems = problems(&attempts);
-        let has_reports =
-            |result: &CaseResult<'_>| result.key().is_some_and(|key| problems.contains_key(&key));
-        // A case comes after the one that contains it.
-        let mut worst_inner = vec![0; results.len()];
-        for index in (0..results.len()).rev() {
-            let severity = results[index].severity();
-            let is_worse = severity > worst_inner[index] || has_reports(&results[index]);
-            results[index].is_own_problem = severity > 0 && is_worse;
-            if let Some(parent) = results[index].parent {
-                results[parent].is_container = true;
-                worst_inner[parent] = worst_inner[parent].max(severity);
-            }
+        for parent in results.iter().filter_map(|result| result.parent).collect::<Vec<_>>() {
+            results[parent].is_container = true;
         }
         results.extend(not_run.into_iter().map(CaseResult::not_run));
         let omitted = attempts.iter().map(|attempt| attempt.cases.omitted()).max().unwrap_or(0);
@@ -153,26 +132,31 @@ impl<'r> TestCases<'r> {
 
     /// Whether the test has a problem that none of its cases has.
     pub fn has_test_problem(&self, test: &TestRecord) -> bool {
-        let verdict = test.final_verdict();
-        let worst = self.results.iter().map(CaseResult::severity).max().unwrap_or(0);
-        if !verdict.is_problem() || verdict.severity() > worst {
-            return verdict.is_problem();
-        }
-        let Some(attempt) = test.decisive_attempt() else { return true };
-        let reports = attempt.failures().any(|failure| failure.case.is_none())
-            || attempt.violations().any(|violation| violation.case.is_none());
-        // The runner names the case in the reason.
-        let by_case = test.reason().is_some_and(|reason| reason.starts_with("case `"));
-        matches!(verdict, Verdict::Failed | Verdict::Error) && (reports || !by_case)
+        let decisive = test.decisive_attempt();
+        let is_of_case = decisive.is_some_and(|attempt| {
+            let finished = attempt.finished.as_ref();
+            finished.is_some_and(|(_, finished)| finished.decided_by.is_some())
+                && !attempt.has_reported_problem(None)
+        });
+        test.final_verdict().is_problem() && !is_of_case
     }
 }
 
 impl<'r> CaseResult<'r> {
-    fn new(record: &'r CaseRecord, attempt: usize, parent: Option<usize>) -> Self {
-        let (path, duration) = (record.path.as_str(), record.duration().unwrap_or_default());
-        let (is_container, is_own_problem) = (false, false);
-        let record = Some(record);
-        Self { path, record, duration, parent, is_container, is_own_problem, attempt }
+    fn new(
+        (number, attempt): (usize, &AttemptRecord),
+        record: &'r CaseRecord,
+        parent: Option<usize>,
+    ) -> Self {
+        Self {
+            path: &record.path,
+            record: Some(record),
+            duration: record.duration().unwrap_or_default(),
+            parent,
+            is_container: false,
+            is_problem: attempt.has_own_problem(record),
+            attempt: number,
+        }
     }
 
     fn not_run(path: &'r str) -> Self {
@@ -182,7 +166,7 @@ impl<'r> CaseResult<'r> {
             duration: Duration::ZERO,
             parent: None,
             is_container: false,
-            is_own_problem: false,
+            is_problem: false,
             attempt: 0,
         }
     }
@@ -195,7 +179,8 @@ fn one_attempt(attempt: &AttemptRecord) -> Results<'_> {
     let kept = attempt.cases.kept();
     let index = |id: CaseId| kept.binary_search_by_key(&id, |case| case.start.case).ok();
     let parent = |case: &CaseRecord| case.start.parent.and_then(index);
-    let results = kept.iter().map(|case| CaseResult::new(case, 0, parent(case))).collect();
+    let results =
+        kept.iter().map(|case| CaseResult::new((0, attempt), case, parent(case))).collect();
     (results, attempt.cases.not_run().names().collect())
 }
 
@@ -206,7 +191,7 @@ fn several_attempts<'r>(attempts: &[&'r AttemptRecord]) -> Results<'r> {
         for case in attempt.cases.kept() {
             let parent = case.start.parent.and_then(|id| attempt.cases.get(id));
             let parent = parent.and_then(|parent| indices.get(parent.path.as_str()).copied());
-            let result = CaseResult::new(case, number, parent);
+            let result = CaseResult::new((number, attempt), case, parent);
             let index = *indices.entry(result.path).or_insert(results.len());
             match results.get_mut(index) {
                 None => results.push(result),

@@ -20,7 +20,7 @@ pub(super) fn failed_cases(
     record: &Record,
     (test, cases): (&TestRecord, &TestCases<'_>),
 ) {
-    let failed: Vec<_> = cases.results.iter().filter(|case| case.is_problem()).collect();
+    let failed: Vec<_> = cases.results.iter().filter(|case| case.is_problem).collect();
     for case in failed.iter().take(CASES) {
         failed_case(page, options, record, (test, cases, case));
     }

@@ -9,7 +9,7 @@ use super::live::{self, EXTENT};
 use super::page::ConsoleLines;
 use super::style::{self, BAD, LOUD};
 use super::{ConsoleOptions, Verbosity};
-use crate::cases::{self, CaseProblems};
+use crate::cases::CaseProblems;
 use crate::explain::{self, Tone};
 use crate::{escape, known_failure, logs, words};
 
@@ -29,7 +29,7 @@ pub(super) fn case_finished(
     let Some(test) = record.tests.get(end.test.index()) else { return };
     let Some(attempt) = test.attempts.last() else { return };
     let Some(case) = attempt.cases.get(end.case) else { return };
-    if cases::problem_count(attempt) > CASES || cases::has_inner_problem(attempt, case) {
+    if attempt.cases.problems() > CASES || !attempt.has_own_problem(case) {
         return;
     }
     let (known, word) = attempt_word(test, end.verdict);
@@ -159,7 +159,7 @@ fn case_counts(attempt: &AttemptRecord, sink: explain::Sink<'_>) {
         .map(|(count, word)| format!("{count} {word}"))
         .collect();
     sink(Tone::Plain, &format!("{}: {}", words::count(cases.total(), "case"), counts.join(", ")));
-    let problems = cases::problem_count(attempt);
+    let problems = attempt.cases.problems();
     if problems > CASES {
         let more = words::count(problems - CASES, "more case");
         sink(Tone::Dim, &format!("… and {more} that did not pass are in the reports"));

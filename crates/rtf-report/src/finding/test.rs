@@ -28,7 +28,7 @@ pub(super) fn of(record: &Record, test: &TestRecord, roots: &Roots<'_>) -> Vec<F
     if cases.has_test_problem(test) {
         findings.push(of_test(record, test, roots));
     }
-    let failed = cases.results.iter().filter(|case| case.is_problem());
+    let failed = cases.results.iter().filter(|case| case.is_problem);
     let count = failed.clone().count();
     findings.extend(failed.take(CASES).map(|case| of_case(record, test, (&cases, case), roots)));
     if count > CASES {

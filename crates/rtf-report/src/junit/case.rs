@@ -32,7 +32,7 @@ pub(super) fn of(record: &Record, test: &TestRecord, folder: Option<&Path>) -> V
     let mut bearer = None;
     for case in cases.results.iter().filter(|case| is_listed(case)) {
         let status = status(record, test, &cases, case);
-        if case.is_problem() && bearer.is_none() {
+        if case.is_problem && bearer.is_none() {
             bearer = Some(junit.len());
         }
         let mut one = TestCase::new(escape::line(case.path), status);
@@ -56,7 +56,7 @@ pub(super) fn of(record: &Record, test: &TestRecord, folder: Option<&Path>) -> V
 
 /// Whether a case is more than the cases that it contains.
 fn is_listed(case: &CaseResult<'_>) -> bool {
-    !case.is_container || case.is_problem() || case.verdict() == Some(Verdict::Skipped)
+    !case.is_container || case.is_problem || case.verdict() == Some(Verdict::Skipped)
 }
 
 fn has_own_test_case(test: &TestRecord, cases: &TestCases<'_>) -> bool {

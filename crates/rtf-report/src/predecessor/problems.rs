@@ -33,7 +33,7 @@ pub(super) fn of_attempt(record: &Record, finished: &TestFinished) -> Option<Res
     let reason = finished.reason.as_deref().unwrap_or(finished.verdict.as_str());
     // The reason of a problem in a case begins with the name of the case.
     let is_said = |text: &str, case: Option<CaseId>| match reason.strip_suffix(text) {
-        Some(start) => start.is_empty() || case.is_some() && start.starts_with("case `"),
+        Some(start) => start.is_empty() || case.is_some() && case == finished.decided_by,
         None => false,
     };
     let said = attempt.failures().any(|message| is_said(&message.text, message.case))

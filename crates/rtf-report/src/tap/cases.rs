@@ -86,7 +86,7 @@ impl Subtests<'_> {
         let line = format!("{indent}{ok} {number} - {}{directive}", description(name));
         *text += line.trim_end();
         text.push('\n');
-        if case.is_problem() {
+        if case.is_problem {
             self.explain(text, level, case);
         }
     }

@@ -27,6 +27,7 @@ fn finish(run: &mut Writer, case: u32, verdict: Verdict) {
         case: CaseId(case),
         verdict,
         reason,
+        decided_by: None,
     }));
 }
 

@@ -224,6 +224,7 @@ impl Writer {
             phase,
             exit: None,
             rerun: false,
+            decided_by: None,
         }));
     }
 

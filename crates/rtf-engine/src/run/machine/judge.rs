@@ -2,7 +2,7 @@
 //! decides; the host's own reason counts only if nothing was reported.
 
 use rtf_model::protocol::{Answer, RpcError};
-use rtf_model::{ExitStatus, LeakedProcess, Outcome, Phase, StopCause, Verdict};
+use rtf_model::{CaseId, ExitStatus, LeakedProcess, Outcome, Phase, StopCause, Verdict};
 
 use rtf_plan::plan::Leaks;
 
@@ -12,6 +12,30 @@ pub struct TestProblem {
     pub verdict: Verdict,
     pub reason: String,
     pub phase: Phase,
+    /// The innermost case in which it was reported.
+    pub case: Option<CaseId>,
+}
+
+/// The verdict of an attempt.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Judgement {
+    pub verdict: Verdict,
+    pub reason: Option<String>,
+    /// The phase in which it was decided.
+    pub phase: Phase,
+    /// The case whose problem decided it, or in which the test ended.
+    pub decided_by: Option<CaseId>,
+}
+
+impl Judgement {
+    fn new(verdict: Verdict, reason: impl Into<Option<String>>, phase: Phase) -> Self {
+        Self { verdict, reason: reason.into(), phase, decided_by: None }
+    }
+
+    /// The test ended in the open case.
+    fn in_case(self, evidence: &Evidence) -> Self {
+        Self { decided_by: evidence.open_case.as_ref().map(|(case, _)| *case), ..self }
+    }
 }
 
 #[derive(Debug, Default)]
@@ -21,8 +45,9 @@ pub struct Evidence {
     pub first_problem: Option<TestProblem>,
     /// The first of the worst problems in cases.
     pub case_problem: Option<TestProblem>,
-    /// The path of the innermost case that was open when the process ended.
-    pub open_case: Option<String>,
+    /// The innermost case that was open when the test was stopped or its process ended,
+    /// and its path.
+    pub open_case: Option<(CaseId, String)>,
     /// The host's answer to `run-test`.
     pub answer: Option<Result<Answer, RpcError>>,
     /// `None` if the process never started or is still alive.
@@ -52,8 +77,8 @@ impl Evidence {
     }
 }
 
-/// Decides verdict, reason, and the phase in which they were decided.
-pub fn judge(evidence: &Evidence, last_phase: Phase) -> (Verdict, Option<String>, Phase) {
+/// Judges an attempt.
+pub fn judge(evidence: &Evidence, last_phase: Phase) -> Judgement {
     if let Some((cause, reason, phase)) = &evidence.stopped {
         let verdict = match cause {
             StopCause::Timeout => Verdict::TimedOut,
@@ -61,27 +86,27 @@ pub fn judge(evidence: &Evidence, last_phase: Phase) -> (Verdict, Option<String>
             StopCause::Interrupt => Verdict::Interrupted,
             StopCause::Protocol => Verdict::Error,
         };
-        return (verdict, Some(reason.clone()), *phase);
+        return Judgement::new(verdict, reason.clone(), *phase).in_case(evidence);
     }
     match &evidence.answer {
         None => judge_without_answer(evidence, last_phase),
         Some(Err(error)) => {
             let reason = format!("the host refused the test: {} ({})", error.message, error.code);
-            (Verdict::Error, Some(reason), last_phase)
+            Judgement::new(Verdict::Error, reason, last_phase)
         }
         Some(Ok(answer)) => judge_answer(evidence, answer, last_phase),
     }
 }
 
-fn judge_without_answer(evidence: &Evidence, phase: Phase) -> (Verdict, Option<String>, Phase) {
+fn judge_without_answer(evidence: &Evidence, phase: Phase) -> Judgement {
     if evidence.exit.is_none() {
         let problem = evidence.problem();
         let reason = problem.map_or("the host could not be started".to_owned(), |p| p.reason);
-        return (Verdict::Error, Some(reason), phase);
+        return Judgement::new(Verdict::Error, reason, phase);
     }
     let status = status_of(evidence.exit);
     let place = match &evidence.open_case {
-        Some(case) => format!("case `{case}`"),
+        Some((_, case)) => format!("case `{case}`"),
         None => phase.to_string(),
     };
     let mut reason =
@@ -89,32 +114,29 @@ fn judge_without_answer(evidence: &Evidence, phase: Phase) -> (Verdict, Option<S
     if let Some(problem) = evidence.problem() {
         reason += &format!("; before that: {}", problem.reason);
     }
-    (Verdict::Crashed, Some(reason), phase)
+    Judgement::new(Verdict::Crashed, reason, phase).in_case(evidence)
 }
 
-fn judge_answer(
-    evidence: &Evidence,
-    answer: &Answer,
-    last_phase: Phase,
-) -> (Verdict, Option<String>, Phase) {
+fn judge_answer(evidence: &Evidence, answer: &Answer, last_phase: Phase) -> Judgement {
     let clean = evidence.released || evidence.exit == Some(ExitStatus::Code(0));
     let problem = evidence.problem().or_else(|| problem_of(answer, last_phase));
     match problem {
         None if clean && answer.outcome == Outcome::Skipped => {
-            (Verdict::Skipped, answer.reason.clone(), last_phase)
+            Judgement::new(Verdict::Skipped, answer.reason.clone(), last_phase)
         }
-        None if clean => (Verdict::Passed, None, last_phase),
+        None if clean => Judgement::new(Verdict::Passed, None, last_phase),
         None => {
             let status = status_of(evidence.exit);
             let reason = format!("the test's process ended with {status} after the test was over");
-            (Verdict::Crashed, Some(reason), Phase::Exit)
+            Judgement::new(Verdict::Crashed, reason, Phase::Exit)
         }
         Some(mut problem) => {
             if !clean {
                 let status = status_of(evidence.exit);
                 problem.reason += &format!("; then the test's process ended with {status}");
             }
-            (problem.verdict, Some(problem.reason), problem.phase)
+            let TestProblem { verdict, reason, phase, case } = problem;
+            Judgement { verdict, reason: Some(reason), phase, decided_by: case }
         }
     }
 }
@@ -127,7 +149,7 @@ fn problem_of(answer: &Answer, phase: Phase) -> Option<TestProblem> {
         Outcome::Interrupted => (Verdict::Error, "the test stopped without a request"),
     };
     let reason = answer.reason.clone().unwrap_or_else(|| default.to_owned());
-    Some(TestProblem { verdict, reason, phase })
+    Some(TestProblem { verdict, reason, phase, case: None })
 }
 
 fn status_of(exit: Option<ExitStatus>) -> String {
@@ -157,11 +179,11 @@ mod tests {
     #[test]
     fn a_pass_needs_an_answer_and_a_clean_exit() {
         let passed = answered(Outcome::Passed, ExitStatus::Code(0));
-        assert_eq!(judge(&passed, Phase::Exit).0, Verdict::Passed);
+        assert_eq!(judge(&passed, Phase::Exit).verdict, Verdict::Passed);
         let crashed = answered(Outcome::Passed, ExitStatus::Signal(11));
-        assert_eq!(judge(&crashed, Phase::Exit).0, Verdict::Crashed);
+        assert_eq!(judge(&crashed, Phase::Exit).verdict, Verdict::Crashed);
         let silent = Evidence { exit: Some(ExitStatus::Code(0)), ..Evidence::default() };
-        assert_eq!(judge(&silent, Phase::Run).0, Verdict::Crashed);
+        assert_eq!(judge(&silent, Phase::Run).verdict, Verdict::Crashed);
     }
 
     #[test]
@@ -172,15 +194,19 @@ mod tests {
             verdict: Verdict::Failed,
             reason: reason.clone(),
             phase: Phase::Run,
+            case: None,
         });
-        assert_eq!(judge(&evidence, Phase::Exit), (Verdict::Failed, Some(reason), Phase::Run));
+        assert_eq!(
+            judge(&evidence, Phase::Exit),
+            Judgement::new(Verdict::Failed, reason, Phase::Run)
+        );
     }
 
     #[test]
     fn a_stop_decides_before_the_answer() {
         let mut evidence = answered(Outcome::Passed, ExitStatus::Code(0));
         evidence.stopped = Some((StopCause::Collapse, "gone".to_owned(), Phase::Run));
-        assert_eq!(judge(&evidence, Phase::Exit).0, Verdict::Collapsed);
+        assert_eq!(judge(&evidence, Phase::Exit).verdict, Verdict::Collapsed);
     }
 
     #[test]
@@ -189,17 +215,18 @@ mod tests {
         let verdict = |evidence: &Evidence| judge(evidence, Phase::Exit);
         let reason = |text: &str| Some(text.to_owned());
         let none = reason("the test failed without a reason");
-        assert_eq!(verdict(&evidence), (Verdict::Failed, none, Phase::Exit));
+        assert_eq!(verdict(&evidence), Judgement::new(Verdict::Failed, none, Phase::Exit));
         if let Some(Ok(answer)) = &mut evidence.answer {
             answer.reason = reason("set-up returned false");
         }
-        assert_eq!(verdict(&evidence).1, reason("set-up returned false"));
+        assert_eq!(verdict(&evidence).reason, reason("set-up returned false"));
         evidence.first_problem = Some(TestProblem {
             verdict: Verdict::Error,
             reason: "no connection".to_owned(),
             phase: Phase::Setup,
+            case: None,
         });
-        let first = (Verdict::Error, reason("no connection"), Phase::Setup);
+        let first = Judgement::new(Verdict::Error, reason("no connection"), Phase::Setup);
         assert_eq!(verdict(&evidence), first);
     }
 }

@@ -44,7 +44,15 @@ fn stream() -> Vec<Event> {
     ];
     for test in [TestId(0), TestId(1)] {
         let (verdict, reason, phase) = (Verdict::Passed, None, Phase::Exit);
-        let end = TestFinished { test, verdict, reason, phase, exit: None, rerun: false };
+        let end = TestFinished {
+            test,
+            verdict,
+            reason,
+            phase,
+            exit: None,
+            rerun: false,
+            decided_by: None,
+        };
         kinds.push(EventKind::TestStarted { test, repetition: 1, attempt: 1 });
         kinds.push(EventKind::TestFinished(end));
     }

@@ -240,6 +240,7 @@ impl Run {
                     phase: Phase::Run,
                     exit: None,
                     rerun: attempt < tries.len() as u32,
+                    decided_by: None,
                 }));
             }
             if planned.skipped {

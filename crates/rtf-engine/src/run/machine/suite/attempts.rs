@@ -20,10 +20,10 @@ fn is_known_failure(plan: &TestPlan, verdict: Verdict) -> bool {
 /// critical assertion. A known failure needs no second attempt.
 fn is_retried(plan: &TestPlan, number: AttemptNumber, finished: &FinishedAttempt) -> bool {
     use Verdict::{Crashed, Error, Failed, TimedOut};
-    matches!(finished.verdict, Failed | Error | Crashed | TimedOut)
+    matches!(finished.judgement.verdict, Failed | Error | Crashed | TimedOut)
         && number.retries < plan.settings.retries.count
         && finished.critical.is_none()
-        && !is_known_failure(plan, finished.verdict)
+        && !is_known_failure(plan, finished.judgement.verdict)
 }
 
 impl<'p> SuiteMachine<'p> {
@@ -37,7 +37,7 @@ impl<'p> SuiteMachine<'p> {
         let Some(active) = self.scheduler.get(test) else { return };
         let (plan, number, stopped) = (active.plan, active.number, active.stop_reason.take());
         let continues = self.end_reason.is_none() && stopped.is_none();
-        let has_collapsed = finished.verdict == Verdict::Collapsed;
+        let has_collapsed = finished.judgement.verdict == Verdict::Collapsed;
         let retry = continues && is_retried(plan, number, finished);
         let after = plan.settings.after_collapse;
         let rerun = retry || (continues && has_collapsed && after == AfterCollapse::Rerun);
@@ -73,7 +73,7 @@ impl<'p> SuiteMachine<'p> {
     }
 
     fn end_if_critical(&mut self, plan: &TestPlan, finished: &FinishedAttempt, rerun: bool) {
-        let (name, verdict) = (&plan.name, finished.verdict);
+        let (name, verdict) = (&plan.name, finished.judgement.verdict);
         let reason = match &finished.critical {
             Some(text) => format!("a critical assertion of `{name}` did not hold: {text}"),
             None if plan.settings.critical

@@ -133,6 +133,7 @@ impl<'p> SuiteMachine<'p> {
                 phase: Phase::Load,
                 exit: None,
                 rerun: false,
+                decided_by: None,
             }));
             if plan.settings.repetitions > 1 || self.scheduler.soak.is_timed() {
                 cx.emit(EventKind::TestSkipped { test: plan.id, reason: reason.to_owned() });

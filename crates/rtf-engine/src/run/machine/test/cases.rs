@@ -10,7 +10,7 @@ use rtf_model::{
 
 use super::TestRun;
 use crate::run::machine::context::Context;
-use crate::run::machine::judge::{TestProblem, judge};
+use crate::run::machine::judge::{Judgement, TestProblem, judge};
 use rtf_plan::plan::CaseSelection;
 
 /// The number of names that a problem lists.
@@ -48,7 +48,12 @@ enum CaseResult {
     /// As its host reports it.
     OfCase(Verdict, Option<String>),
     /// The test was stopped or its process ended, which is no problem of the case alone.
-    OfTest(Verdict, Option<String>),
+    OfTest {
+        verdict: Verdict,
+        reason: Option<String>,
+        /// The innermost case that was open in it.
+        innermost: Option<CaseId>,
+    },
 }
 
 impl OpenCase {
@@ -57,21 +62,22 @@ impl OpenCase {
         self.first_problem.get_or_insert(problem);
     }
 
-    /// Names the case in a problem's reason.
+    /// Returns a problem as that of a case, unless it is that of an inner case already.
     fn describe(&self, problem: TestProblem) -> TestProblem {
+        if problem.case.is_some() {
+            return problem;
+        }
         let reason = format!("case `{}`: {}", self.path, problem.reason);
-        TestProblem { reason, ..problem }
+        TestProblem { reason, case: Some(self.id), ..problem }
     }
 
-    /// Returns its worst problem, and whether it is that of an inner case.
-    fn take_problem(&mut self) -> Option<(TestProblem, bool)> {
-        let (own, inner) = (self.first_problem.take(), self.inner_problem.take());
-        let own_severity = own.as_ref().map(|own| own.verdict.severity());
-        let is_inner = |inner: &TestProblem| Some(inner.verdict.severity()) > own_severity;
-        match inner.filter(is_inner) {
-            Some(inner) => Some((inner, true)),
-            None => own.map(|own| (own, false)),
+    /// Returns its worst problem; `case` is set if it is that of an inner case.
+    fn take_problem(&mut self) -> Option<TestProblem> {
+        let mut problem = self.first_problem.take();
+        if let Some(inner) = self.inner_problem.take() {
+            TestProblem::keep_worse(&mut problem, inner);
         }
+        problem
     }
 }
 
@@ -102,6 +108,15 @@ impl OpenCases {
         let (all, names) = (self.announced, names.join(", "));
         Some(format!("{missing} of {all} planned cases did not run: {names}{dots}"))
     }
+}
+
+/// Returns the innermost open case inside of `open`, and records it for the case around it.
+fn open_inside(innermost: &mut HashMap<CaseId, CaseId>, open: &OpenCase) -> Option<CaseId> {
+    let inside = innermost.get(&open.id).copied();
+    if let Some(parent) = open.parent {
+        innermost.entry(parent).or_insert(inside.unwrap_or(open.id));
+    }
+    inside
 }
 
 /// Makes a name unique: the second one becomes `NAME#2`.
@@ -186,13 +201,17 @@ impl TestRun<'_> {
 
     /// Finishes the cases that the test left open, the innermost first.
     pub(super) fn close_cases(&mut self, cx: &mut Context<'_>) {
-        self.evidence.open_case = self.cases.open.last().map(|open| open.path.clone());
-        let (verdict, reason, _) = judge(&self.evidence, self.phase);
+        self.evidence.open_case = self.cases.open.last().map(|open| (open.id, open.path.clone()));
+        let Judgement { verdict, reason, .. } = judge(&self.evidence, self.phase);
         let ended = self.evidence.stopped.is_some() || verdict == Verdict::Crashed;
+        let mut innermost = HashMap::new();
         while let Some(open) = self.cases.open.last() {
             let has_problem = open.first_problem.is_some() || open.inner_problem.is_some();
             let result = match (ended, has_problem) {
-                (true, _) => CaseResult::OfTest(verdict, reason.clone()),
+                (true, _) => {
+                    let innermost = open_inside(&mut innermost, open);
+                    CaseResult::OfTest { verdict, reason: reason.clone(), innermost }
+                }
                 (false, true) => CaseResult::OfCase(Verdict::Passed, None),
                 (false, false) => {
                     let reason = "the test ended before the case".to_owned();
@@ -208,26 +227,25 @@ impl TestRun<'_> {
         let Some(index) = self.cases.open.iter().rposition(|open| open.id == case) else { return };
         let mut open = self.cases.open.remove(index);
         let (test, phase) = (self.plan.id, self.phase);
-        let (is_of_test, mut verdict, mut reason) = match result {
-            CaseResult::OfCase(verdict, reason) => (false, verdict, reason),
-            CaseResult::OfTest(verdict, reason) => (true, verdict, reason),
+        let mut problem = open.take_problem();
+        let (is_of_test, mut verdict, mut reason, mut decided_by) = match result {
+            CaseResult::OfCase(verdict, reason) => (false, verdict, reason, None),
+            CaseResult::OfTest { verdict, reason, innermost } => (true, verdict, reason, innermost),
         };
-        let problem = open.take_problem();
-        if let Some((problem, _)) = &problem
-            && problem.verdict.severity() >= verdict.severity()
-        {
-            (verdict, reason) = (problem.verdict, Some(problem.reason.clone()));
-        }
-        let outer = match (problem, is_of_test) {
-            (Some((problem, true)), _) => Some(problem),
-            (Some((problem, false)), _) => Some(open.describe(problem)),
-            (None, false) if verdict.is_problem() => {
-                let reason = reason.clone().unwrap_or_else(|| format!("it is {verdict}"));
-                Some(open.describe(TestProblem { verdict, reason, phase }))
+        match &problem {
+            Some(problem) if problem.verdict.severity() >= verdict.severity() => {
+                (verdict, reason) = (problem.verdict, Some(problem.reason.clone()));
+                decided_by = problem.case;
             }
-            (None, _) => None,
-        };
-        cx.emit(EventKind::CaseFinished(CaseFinished { test, case, verdict, reason }));
+            _ if !is_of_test && verdict.is_problem() => {
+                let reason = reason.clone().unwrap_or_else(|| format!("it is {verdict}"));
+                problem = Some(TestProblem { verdict, reason, phase, case: None });
+            }
+            _ => {}
+        }
+        let outer = problem.map(|problem| open.describe(problem));
+        let end = CaseFinished { test, case, verdict, reason, decided_by };
+        cx.emit(EventKind::CaseFinished(end));
         if let Some(problem) = outer {
             let kept = match open.parent.and_then(|parent| self.cases.get_mut(parent)) {
                 Some(parent) => &mut parent.inner_problem,

@@ -91,7 +91,9 @@ impl TestRun<'_> {
     /// Records the first failure or error of a case, or of the test outside of cases.
     fn record_case_problem(&mut self, case: Option<CaseId>, verdict: Verdict, reason: String) {
         match case.and_then(|case| self.cases.get_mut(case)) {
-            Some(case) => case.record(TestProblem { verdict, reason, phase: self.phase }),
+            Some(case) => {
+                case.record(TestProblem { verdict, reason, phase: self.phase, case: None })
+            }
             None => self.record_problem(verdict, reason),
         }
     }
@@ -101,6 +103,11 @@ impl TestRun<'_> {
     pub(super) fn record_problem(&mut self, verdict: Verdict, reason: String) {
         let verdict = if self.phase == Phase::Run { verdict } else { Verdict::Error };
         let phase = self.phase;
-        self.evidence.first_problem.get_or_insert(TestProblem { verdict, reason, phase });
+        self.evidence.first_problem.get_or_insert(TestProblem {
+            verdict,
+            reason,
+            phase,
+            case: None,
+        });
     }
 }

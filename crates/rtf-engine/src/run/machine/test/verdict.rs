@@ -3,12 +3,12 @@
 
 use std::time::Duration;
 
-use rtf_model::{ExitStatus, LeakedProcess, Phase, TestFinished, Verdict};
+use rtf_model::{ExitStatus, LeakedProcess, TestFinished, Verdict};
 
 use super::TestRun;
 use crate::run::machine::context::Context;
 use crate::run::machine::io::TestTimer;
-use crate::run::machine::judge::{judge, leak_problem};
+use crate::run::machine::judge::{Judgement, judge, leak_problem};
 
 /// How long a test that did not pass waits for a fixture's collapse: a connection breaks
 /// before the kernel reports the death at its other end. A test that would pass waits for
@@ -32,10 +32,7 @@ pub(super) enum AttemptState {
 /// The result of an attempt.
 #[derive(Debug)]
 pub struct FinishedAttempt {
-    pub verdict: Verdict,
-    pub reason: Option<String>,
-    /// Where the verdict was decided.
-    pub phase: Phase,
+    pub judgement: Judgement,
     pub exit: Option<ExitStatus>,
     /// The critical assertion that failed.
     pub critical: Option<String>,
@@ -54,7 +51,7 @@ impl TestRun<'_> {
         self.leak = leak_problem(self.plan.settings.leaks, &leaked);
         cx.report_leaked(self.source(), leaked);
         (self.evidence.exit, self.evidence.released) = (exit, self.is_released);
-        let (verdict, ..) = judge(&self.evidence, self.phase);
+        let verdict = judge(&self.evidence, self.phase).verdict;
         let may_have_collapsed = self.has_fixtures && self.evidence.stopped.is_none();
         self.state = match (may_have_collapsed, !verdict.is_problem()) {
             (false, _) => AttemptState::Ended,
@@ -98,17 +95,16 @@ impl TestRun<'_> {
         self.clear(TestTimer::Limit, cx);
         self.clear(TestTimer::Slow, cx);
         self.close_cases(cx);
-        let (mut verdict, mut reason, phase) = judge(&self.evidence, self.phase);
+        let mut judgement = judge(&self.evidence, self.phase);
         let late_problem = self.leak.take().or_else(|| self.cases.not_run_problem());
-        if let (Verdict::Passed, Some(problem)) = (verdict, late_problem) {
-            verdict = Verdict::Error;
-            reason = Some(problem);
+        if let (Verdict::Passed, Some(problem)) = (judgement.verdict, late_problem) {
+            (judgement.verdict, judgement.reason) = (Verdict::Error, Some(problem));
         }
         self.state = AttemptState::Judged;
         let (exit, critical) = (self.evidence.exit, self.critical.take());
-        let finished = FinishedAttempt { verdict, reason: reason.clone(), phase, exit, critical };
-        self.finished = Some(finished);
-        Some((verdict, reason))
+        let result = (judgement.verdict, judgement.reason.clone());
+        self.finished = Some(FinishedAttempt { judgement, exit, critical });
+        Some(result)
     }
 
     pub fn is_judged(&self) -> bool {
@@ -124,9 +120,10 @@ impl TestRun<'_> {
     pub fn finished_event(&self, finished: &FinishedAttempt, rerun: bool) -> TestFinished {
         TestFinished {
             test: self.plan.id,
-            verdict: finished.verdict,
-            reason: finished.reason.clone(),
-            phase: finished.phase,
+            verdict: finished.judgement.verdict,
+            reason: finished.judgement.reason.clone(),
+            phase: finished.judgement.phase,
+            decided_by: finished.judgement.decided_by,
             exit: finished.exit,
             rerun,
         }

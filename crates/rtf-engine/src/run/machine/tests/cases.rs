@@ -2,7 +2,9 @@
 
 use insta::assert_snapshot;
 use rtf_model::protocol::Notification;
-use rtf_model::{CaseId, CaseStart, ExitStatus, Message, MessageKind, Outcome, Phase, Verdict};
+use rtf_model::{
+    CaseId, CaseRecord, CaseStart, ExitStatus, Message, MessageKind, Outcome, Phase, Verdict,
+};
 use rtf_plan::plan::SuitePlan;
 
 use super::world::{TEST, World, suite};
@@ -80,7 +82,7 @@ fn a_failure_in_a_case_fails_the_case_and_the_test() {
     0.0  case-started case=3 name=joint 2 test=0
     0.0  case-finished case=3 test=0 verdict=passed
     0.0    → close the channel
-    0.0  test-finished exit={code:0} phase=run reason=case `joint 1`: joint 1 moves test=0 verdict=failed
+    0.0  test-finished decided_by=2 exit={code:0} phase=run reason=case `joint 1`: joint 1 moves test=0 verdict=failed
     0.0  suite-finished
     ");
 }
@@ -178,6 +180,11 @@ fn a_crash_closes_the_open_cases_and_leaves_planned_ones_not_run() {
     );
     assert_eq!(world.verdict(), (Verdict::Crashed, Some(reason)));
     assert_eq!(cases.not_run().names().collect::<Vec<_>>(), ["c", "b#2"]);
+    let decided_by = |case: &CaseRecord| case.finished.as_ref().and_then(|(_, end)| end.decided_by);
+    let inner = Some(CaseId(3));
+    assert_eq!(cases.kept().iter().map(decided_by).collect::<Vec<_>>(), [None, inner, None]);
+    let (_, finished) = world.record.tests[0].attempts[0].finished.as_ref().unwrap();
+    assert_eq!(finished.decided_by, inner);
 }
 
 #[test]

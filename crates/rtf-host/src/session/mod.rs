@@ -1,5 +1,7 @@
 //! The host's end of the channel, which its threads share.
 
+mod cases;
+
 use std::collections::VecDeque;
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
@@ -7,14 +9,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use rtf_model::protocol::{Answer, CHANNEL_VARIABLE, CaseSelector, Notification, Reply, RpcError};
-use rtf_model::{
-    Attachment, CaseId, CaseStart, Location, Measurement, Message, MessageKind, Outcome, Parameter,
-    Phase,
-};
+use rtf_model::protocol::{Answer, CHANNEL_VARIABLE, Notification, Reply, RpcError};
+use rtf_model::{Attachment, Location, Measurement, Message, MessageKind, Outcome, Phase};
 use serde::Serialize;
 
-use crate::cases::{CaseEnd, CaseError, Cases};
+use crate::cases::Cases;
 use crate::decode::Incoming;
 use crate::outcome::RequestOutcome;
 use crate::sampling::{Sample, Sampling};
@@ -183,53 +182,10 @@ impl Session {
         self.state().attachments_dir = dir.map(PathBuf::from);
     }
 
-    /// Starts a case of the test on the calling thread. Returns whether its body runs; if
-    /// not, it is not selected, or not allowed here, or the test is stopping. Otherwise call
-    /// [`Self::end_case`] after the body.
-    pub fn begin_case(
-        &self,
-        name: String,
-        parameters: Vec<Parameter>,
-        location: Option<Location>,
-    ) -> bool {
-        let start = CaseStart { case: CaseId(0), name, parent: None, parameters, location };
-        let send = |started: &Notification| self.notify_case(started);
-        self.allowed(self.0.cases.begin(start, self.interrupted(), send)).unwrap_or(false)
-    }
-
-    /// Finishes the innermost case of the calling thread.
-    pub fn end_case(&self, end: CaseEnd) {
-        let send = |finished: &Notification| self.notify_case(finished);
-        self.allowed(self.0.cases.end(end, self.interrupted(), send));
-    }
-
-    /// Announces top-level cases.
-    pub fn plan_cases(&self, names: Vec<String>) {
-        self.allowed(self.0.cases.plan(names, |planned| self.notify_case(planned)));
-    }
-
-    /// Skips the innermost case of the calling thread, or the test if it has none. The
-    /// plug-in then leaves the case or the step.
-    pub fn skip(&self, reason: &str) {
-        if self.allowed(self.0.cases.skip(reason)) == Some(true) {
-            self.state().outcome.skip(reason);
-        }
-    }
-
-    /// Reports a call that is not allowed here as an error of the plug-in.
-    fn allowed<T>(&self, result: Result<T, CaseError>) -> Option<T> {
-        result.map_err(|error| self.error(error.to_string(), None)).ok()
-    }
-
     /// Reports an error of the plug-in that it did not report itself.
     pub(crate) fn error(&self, text: String, location: Option<Location>) {
         let (kind, comparison) = (MessageKind::Error, None);
         self.message(Message { kind, text, location, comparison, critical: false, case: None });
-    }
-
-    /// Begins an attempt of a test with these selected cases, on the calling thread.
-    pub(crate) fn begin_attempt(&self, cases: &[CaseSelector]) {
-        self.0.cases.begin_attempt(cases);
     }
 
     /// Reports that the fixture collapsed.
@@ -410,12 +366,6 @@ impl Session {
     fn notify(&self, notification: &Notification) {
         self.flush();
         self.0.writer.notify(notification);
-    }
-
-    /// Sends a notification about cases; false if it is too long.
-    fn notify_case(&self, notification: &Notification) -> bool {
-        self.flush();
-        self.0.writer.send(None, notification)
     }
 
     fn sampling(&self) -> MutexGuard<'_, Sampling> {
