@@ -17,6 +17,9 @@ pub const HOOK_KILLED: &str = "it was killed by the third request to end the run
 /// The problem of a triggered hook that was not started.
 pub const HOOK_NOT_RUN: &str = "it did not run: the end of the run was requested three times";
 
+/// The problem of a test or hook that provides a value.
+pub const PROVIDED: &str = "values can be provided in the set-up of a fixture only";
+
 /// Returns the parameters of `run-test` for a hook's plug-in.
 pub fn request(suite: &SuitePlan, hook: &HookPlan, plugin: &PluginPlan) -> Plugin {
     Plugin { is_last: true, ..plugin_request::plugin(suite, &hook.name, plugin, 1) }
@@ -73,6 +76,7 @@ impl HookJudgement {
             }
             Notification::Measured(measurement) => measurement.problem(),
             Notification::Sampled(samples) => samples.problem(),
+            Notification::Provided { .. } => Some(PROVIDED.to_owned()),
             _ => None,
         };
         problem.into_iter().for_each(|problem| self.fail(problem));

@@ -17,5 +17,6 @@ pub fn plugin(suite: &SuitePlan, name: &str, plan: &PluginPlan, repetition: u32)
         attachments_dir: None,
         cases: Vec::new(),
         parameters: Vec::new(),
+        fixture_values: Vec::new(),
     }
 }

@@ -7,6 +7,7 @@ mod case;
 mod expected;
 mod planned;
 mod process;
+mod provided;
 mod test;
 
 use serde::{Deserialize, Serialize};
@@ -17,6 +18,7 @@ pub use self::planned::{
     FixturePlanned, HookPlanned, RunStarted, SuitePlanned, TestPlanned, Trigger,
 };
 pub use self::process::{ExitStatus, LeakedProcess, Output, Source, Stream, signal_name};
+pub use self::provided::{FixtureProvided, value_text};
 pub use self::test::{Phase, StopCause, TestFinished};
 use crate::{
     Attachment, Diagnostic, FixtureId, HookId, Measurement, Message, Micros, Samples, SuiteId,
@@ -79,6 +81,8 @@ pub enum EventKind {
         /// From 1; each restart counts up.
         attempt: u32,
     },
+    /// A fixture provides a value, before `fixture-ready`.
+    FixtureProvided(FixtureProvided),
     /// A fixture's set-up succeeded; it is supervised from now on.
     FixtureReady {
         /// The fixture.

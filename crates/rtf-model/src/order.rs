@@ -6,6 +6,8 @@ mod concurrency;
 mod progress;
 mod shared_hosts;
 
+use std::collections::BTreeSet;
+
 use crate::{Event, EventKind, FixtureId, HookId, Phase, Source, SuiteId, TestId};
 use concurrency::Concurrency;
 use progress::{FixtureProgress, FixtureStage, StreamStage, SuiteStage, TestProgress};
@@ -103,6 +105,7 @@ impl OrderChecker {
             EventKind::SuiteStarted { suite } => self.start_suite(*suite),
             EventKind::SuitePrepared(prepared) => self.prepare(prepared.suite),
             EventKind::FixtureStarting { .. }
+            | EventKind::FixtureProvided(_)
             | EventKind::FixtureReady { .. }
             | EventKind::FixtureCollapsed { .. }
             | EventKind::FixtureStopping { .. }
@@ -175,6 +178,7 @@ impl OrderChecker {
         use FixtureStage::{Collapsed, Ready, Starting, Stopped, Stopping};
         match kind {
             EventKind::FixtureStarting { fixture, attempt } => self.start(*fixture, *attempt),
+            EventKind::FixtureProvided(provided) => self.provide(provided.fixture, &provided.name),
             EventKind::FixtureReady { fixture } => self.advance(*fixture, &[Starting], Ready),
             EventKind::FixtureCollapsed { fixture, .. } => {
                 self.advance(*fixture, &[Ready], Collapsed)
@@ -215,7 +219,13 @@ impl OrderChecker {
             format!("fixture {fixture} out of order")
         })?;
         let stage = FixtureStage::Stopped;
-        self.fixtures.push(FixtureProgress { suite, stage, attempt: 0, broken: false });
+        self.fixtures.push(FixtureProgress {
+            suite,
+            stage,
+            attempt: 0,
+            broken: false,
+            provided: BTreeSet::new(),
+        });
         Ok(())
     }
 
@@ -292,6 +302,7 @@ impl OrderChecker {
         ensure(attempt == fixture.attempt + 1, || format!("fixture {id}: attempt out of order"))?;
         fixture.attempt = attempt;
         fixture.stage = FixtureStage::Starting;
+        fixture.provided.clear();
         Ok(())
     }
 
@@ -301,6 +312,14 @@ impl OrderChecker {
         ensure(from.contains(&stage), || format!("fixture {id} goes from {stage:?} to {to:?}"))?;
         fixture.stage = to;
         Ok(())
+    }
+
+    fn provide(&mut self, id: FixtureId, name: &str) -> Rule {
+        let fixture = self.fixture(id)?;
+        let is_starting = fixture.stage == FixtureStage::Starting;
+        ensure(is_starting, || format!("fixture {id} is not being set up"))?;
+        let is_new = fixture.provided.insert(name.to_owned());
+        ensure(is_new, || format!("fixture {id} provided `{name}` twice"))
     }
 
     fn break_fixture(&mut self, id: FixtureId) -> Rule {

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::{
     Attachment, CaseId, CaseStart, Measurement, Message, Outcome, Parameter, Phase, Samples,
@@ -197,6 +198,19 @@ pub struct Plugin {
     /// The cases that a test runs; empty: all.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cases: Vec<CaseSelector>,
+    /// The values of fixtures that it can use.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fixture_values: Vec<FixtureValue>,
+}
+
+/// A value of a fixture.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct FixtureValue {
+    /// The name of the fixture, a dot, and the name of the value: `simulator.port`.
+    pub name: String,
+    /// Any JSON value except `null`.
+    pub value: Value,
 }
 
 /// Selects cases by their path: names joined with `/`.
@@ -332,6 +346,13 @@ pub enum Notification {
         /// The reason for this outcome.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         reason: Option<String>,
+    },
+    /// A fixture provides a value for tests, hooks and other fixtures, in its set-up.
+    Provided {
+        /// The name of the value.
+        name: String,
+        /// The value.
+        value: Value,
     },
     /// The stacks of the host's threads.
     Stack {

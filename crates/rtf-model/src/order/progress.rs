@@ -1,5 +1,7 @@
 //! The progress of the run, its suites, fixtures and tests in an event stream.
 
+use std::collections::BTreeSet;
+
 use super::cases::CaseProgress;
 use crate::SuiteId;
 
@@ -36,6 +38,8 @@ pub(super) struct FixtureProgress {
     pub stage: FixtureStage,
     pub attempt: u32,
     pub broken: bool,
+    /// The names of the values of this set-up.
+    pub provided: BTreeSet<String>,
 }
 
 #[derive(Clone, Debug)]

@@ -1,7 +1,8 @@
 //! The state and history of one fixture.
 
 use crate::{
-    EventKind, FixturePlanned, Growth, LeakedProcess, Message, MessageKind, Micros, UsageSeries,
+    EventKind, FixturePlanned, FixtureProvided, Growth, LeakedProcess, Message, MessageKind,
+    Micros, UsageSeries,
 };
 
 /// The current state of a fixture.
@@ -56,6 +57,8 @@ pub struct FixtureRecord {
     pub started: Option<Micros>,
     /// When the last set-up succeeded.
     pub ready: Option<Micros>,
+    /// The values that it has provided since the last start.
+    pub values: Vec<FixtureProvided>,
     /// Its lives, the oldest first.
     pub lives: Vec<FixtureLife>,
     /// Its collapses: when, and why.
@@ -80,6 +83,7 @@ impl FixtureRecord {
             starts: 0,
             started: None,
             ready: None,
+            values: Vec::new(),
             lives: Vec::new(),
             collapses: Vec::new(),
             broken: None,
@@ -97,8 +101,10 @@ impl FixtureRecord {
                 self.starts = *attempt;
                 self.started = Some(at);
                 self.ready = None;
+                self.values.clear();
                 self.state = FixtureState::Starting;
             }
+            EventKind::FixtureProvided(provided) => self.values.push(provided.clone()),
             EventKind::FixtureReady { .. } => {
                 self.state = FixtureState::Ready;
                 self.ready = Some(at);

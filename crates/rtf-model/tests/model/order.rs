@@ -3,8 +3,8 @@
 use crate::support::*;
 use proptest::prelude::*;
 use rtf_model::{
-    Diagnostic, Event, EventKind, OrderChecker, Samples, Source, SuiteId, SuitePrepared, TestId,
-    Trigger, Verdict,
+    Diagnostic, Event, EventKind, FixtureProvided, OrderChecker, Samples, Source, SuiteId,
+    SuitePrepared, TestId, Trigger, Verdict,
 };
 
 pub fn check(events: &[Event]) -> Result<(), String> {
@@ -155,6 +155,32 @@ fn a_fixture_goes_through_its_states_in_order() {
     assert_eq!(wrong(&[broken(), starting(1)]), "event 6: fixture 0 started although broken");
     assert_eq!(wrong(&[broken(), broken()]), "event 6: fixture 0 broke twice");
     assert_eq!(wrong(&[starting(1), skipped(0)]), "event 7: fixture 0 still runs",);
+}
+
+#[test]
+fn a_fixture_provides_each_value_once_in_each_set_up() {
+    let wrong = |body: &[EventKind]| check_body(1, body.to_vec()).expect_err("out of order");
+    let provided = |name: &str| {
+        let (fixture, name) = (SIMULATOR, name.to_owned());
+        let (value, secret) = (Some(1.into()), false);
+        EventKind::FixtureProvided(FixtureProvided { fixture, name, value, secret })
+    };
+    let twice = [starting(1), provided("port"), provided("pid"), provided("port")];
+    assert_eq!(wrong(&twice), "event 8: fixture 0 provided `port` twice");
+    let late = [starting(1), ready(), provided("port")];
+    assert_eq!(wrong(&late), "event 7: fixture 0 is not being set up");
+    let restarted = [
+        starting(1),
+        provided("port"),
+        ready(),
+        stopping(),
+        stopped(),
+        starting(2),
+        provided("port"),
+        ready(),
+        provided("pid"),
+    ];
+    assert_eq!(wrong(&restarted), "event 13: fixture 0 is not being set up");
 }
 
 #[test]

@@ -41,6 +41,7 @@ impl Ids<'_> {
             | EventKind::FixtureStopping { fixture }
             | EventKind::FixtureStopped { fixture, .. }
             | EventKind::FixtureBroken { fixture, .. } => Some(self.fixture(fixture)),
+            EventKind::FixtureProvided(provided) => Some(self.fixture(&mut provided.fixture)),
             EventKind::Message { source, test, .. } => {
                 let place = self.source(source);
                 if let Some(test) = test {

@@ -4,6 +4,7 @@ use rtf_model::protocol::Notification;
 use rtf_model::{CaseId, EventKind, Message, MessageKind, Phase, Verdict};
 
 use super::TestRun;
+use crate::hook::PROVIDED;
 use crate::run::machine::context::{Context, error_message};
 use crate::run::machine::judge::TestProblem;
 
@@ -30,6 +31,7 @@ impl TestRun<'_> {
                 self.finish_case(case, outcome, reason, cx);
             }
             Notification::Attached(_) => {}
+            Notification::Provided { .. } => self.report_error(PROVIDED.to_owned(), cx),
             Notification::Collapsed { .. } => {
                 self.on_protocol_error("sent `collapsed`, which is for fixtures".to_owned(), cx);
             }
