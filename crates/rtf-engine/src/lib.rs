@@ -7,10 +7,12 @@
 
 pub mod control;
 pub mod events;
+mod fixture_values;
 pub mod guard;
 mod hook;
 pub mod isolate;
 pub mod locks;
+mod plan_texts;
 mod plugin_request;
 pub mod run;
 pub mod signal;

@@ -2,6 +2,7 @@
 //! command.
 
 use std::collections::BTreeMap;
+use std::io::Read as _;
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -21,6 +22,8 @@ use crate::tree;
 const ADDRESS_IN_USE_LIMIT: Duration = Duration::from_millis(200);
 /// The longest reason printed by a command, in bytes.
 const MAX_REASON_BYTES: u64 = 4096;
+/// The longest value that is read completely, in bytes: more than the runner accepts.
+const MAX_VALUE_BYTES: u64 = 128 * 1024;
 
 /// The probes of a process.
 #[derive(Clone, Debug, Default)]
@@ -29,8 +32,19 @@ pub struct Probes {
     pub ready: Vec<ProbeSpec>,
     /// All must pass while it is ready.
     pub alive: Vec<ProbeSpec>,
+    /// The values that are read once the `ready` probes have passed.
+    pub values: Vec<ValueSpec>,
     /// The network namespace of the process; the runner's when `None`.
     pub network: Option<Network>,
+}
+
+/// A value that the process provides.
+#[derive(Clone, Debug)]
+pub struct ValueSpec {
+    /// Its name.
+    pub name: String,
+    /// A file, whose content is the value, or a command, whose output is the value.
+    pub probe: ProbeSpec,
 }
 
 /// A probe.
@@ -163,10 +177,42 @@ impl Prober {
         }
     }
 
+    /// Reads the value of a file or a command once, without white space at its ends. A file
+    /// must have changed since `before`. A text of [`MAX_VALUE_BYTES`] may be truncated.
+    ///
+    /// # Errors
+    /// Why there is no value.
+    pub async fn read(&self, probe: &ProbeSpec, before: &FileVersions) -> Result<String, String> {
+        let text = match &probe.target {
+            ProbeTarget::File(path) => {
+                before.check(path)?;
+                read_file(path).map_err(|error| format!("{}: {error}", path.display()))?
+            }
+            ProbeTarget::Command { command, .. } => {
+                let read = self.run(command, Streams::StdoutOnly, MAX_VALUE_BYTES);
+                let shown = shown(command);
+                match timeout(probe.timeout, read).await {
+                    Ok(Ok((ExitStatus::Code(0), text))) => text,
+                    Ok(Ok((status, _))) => return Err(format!("`{shown}` ended with {status}")),
+                    Ok(Err(error)) => return Err(format!("`{shown}` cannot run: {error}")),
+                    Err(_) => {
+                        let limit = probe.timeout;
+                        return Err(format!("`{shown}` did not answer within {limit:?}"));
+                    }
+                }
+            }
+            ProbeTarget::Tcp(_) | ProbeTarget::Http(_) => String::new(),
+        };
+        match text.trim() {
+            "" => Err(format!("{} is empty", subject(probe))),
+            text => Ok(text.to_owned()),
+        }
+    }
+
     async fn check_command(&self, command: &[String], subject: Option<&str>) -> Result<(), String> {
         let streams = if subject.is_some() { Streams::StdoutOnly } else { Streams::None };
         let shown = shown(command);
-        match (self.run(command, streams).await, subject) {
+        match (self.run(command, streams, MAX_REASON_BYTES).await, subject) {
             (Ok((ExitStatus::Code(0), _)), _) => Ok(()),
             (Ok((_, reason)), Some(_)) if !reason.is_empty() => Err(reason),
             (Ok((status, _)), None) => Err(format!("`{shown}` ended with {status}")),
@@ -183,6 +229,7 @@ impl Prober {
         &self,
         command: &[String],
         streams: Streams,
+        max_bytes: u64,
     ) -> std::io::Result<(ExitStatus, String)> {
         let request = SpawnRequest {
             command: command.to_vec(),
@@ -195,7 +242,7 @@ impl Prober {
         let guard = KillOnDrop(process.pid);
         let mut printed = Vec::new();
         if let Some(stdout) = process.stdout.take() {
-            stdout.take(MAX_REASON_BYTES).read_to_end(&mut printed).await?;
+            stdout.take(max_bytes).read_to_end(&mut printed).await?;
         }
         let status = process.end.wait().await?;
         std::mem::forget(guard);
@@ -235,13 +282,15 @@ struct FileVersion {
 }
 
 impl FileVersions {
-    /// Reads the versions of the files of `ready` probes.
+    /// Reads the versions of the files of `ready` probes and values.
     pub fn now(probes: Option<&Probes>) -> Self {
-        let probes = probes.into_iter().flat_map(|probes| &probes.ready);
-        let paths = probes.filter_map(|probe| match &probe.target {
-            ProbeTarget::File(path) => Some(path),
-            _ => None,
-        });
+        let ready = probes.into_iter().flat_map(|probes| &probes.ready);
+        let values = probes.into_iter().flat_map(|probes| &probes.values);
+        let paths =
+            ready.chain(values.map(|value| &value.probe)).filter_map(|probe| match &probe.target {
+                ProbeTarget::File(path) => Some(path),
+                _ => None,
+            });
         Self(paths.filter_map(|path| Some((path.clone(), version(path).ok()?))).collect())
     }
 
@@ -253,6 +302,12 @@ impl FileVersions {
         }
         Ok(())
     }
+}
+
+fn read_file(path: &Path) -> std::io::Result<String> {
+    let mut text = String::new();
+    std::fs::File::open(path)?.take(MAX_VALUE_BYTES).read_to_string(&mut text)?;
+    Ok(text)
 }
 
 fn version(path: &Path) -> std::io::Result<FileVersion> {

@@ -28,6 +28,8 @@ pub struct HookContext<'a> {
     pub test: Option<&'a (TestId, String)>,
     /// The network of its suite.
     pub network: Option<&'a Arc<Namespaces>>,
+    /// Why it cannot be started, if a value of a fixture is missing.
+    pub resolved: Result<(), String>,
 }
 
 /// A hook that the dead runner has started.
@@ -68,6 +70,7 @@ pub fn run(
         StartedHook::Running(process) => Ok(process),
         StartedHook::Ended => Err("it ended, and how was lost with the runner".to_owned()),
         StartedHook::NotBegun if signals.requests_kill() => Err(HOOK_NOT_RUN.to_owned()),
+        StartedHook::NotBegun if let Err(problem) = &context.resolved => Err(problem.clone()),
         StartedHook::NotBegun => spawn(hook, &start, context).map_err(|error| {
             let program = hook.command.first().map_or("", String::as_str);
             format!("`{program}` cannot be started: {error}")

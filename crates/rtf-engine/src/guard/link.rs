@@ -13,6 +13,7 @@ use tokio::sync::Notify;
 
 use super::message::{GuardMessage, HookSpec, HookStart};
 use super::message_queue::MessageQueue;
+use crate::fixture_values::FixtureValues;
 use crate::isolate::PreparedSuite;
 use rtf_plan::plan::SuitePlan;
 use rtf_process::descriptor_passing::MAX_DESCRIPTORS;
@@ -110,6 +111,9 @@ impl Link {
             }
             let hooks = suite.hooks.iter().map(|hook| HookSpec::new(suite, hook)).collect();
             self.send(&GuardMessage::SuiteStarted { suite: suite.id, hooks });
+            if suite.refers_to_values {
+                self.fixture_values(suite, FixtureValues::new(suite));
+            }
         }
     }
 
@@ -126,6 +130,13 @@ impl Link {
         }
         if has_hooks {
             self.suites_with_hooks.fetch_sub(1, Ordering::Relaxed);
+        }
+    }
+
+    /// The fixtures of a suite have provided these values, which its hooks can use.
+    pub(crate) fn fixture_values(&self, suite: &SuitePlan, values: FixtureValues) {
+        if !suite.hooks.is_empty() {
+            self.send(&GuardMessage::FixtureValues { suite: suite.id, values });
         }
     }
 

@@ -9,6 +9,7 @@ use rtf_model::{EventKind, HookId, SuiteId, TestId, Trigger};
 use rtf_process::task::ProcessStream;
 use serde::{Deserialize, Serialize};
 
+use crate::fixture_values::FixtureValues;
 use crate::hook::request;
 use rtf_plan::plan::{HookBody, HookPlan, SuitePlan};
 
@@ -48,6 +49,11 @@ pub enum GuardMessage {
     /// A suite has finished; its hooks will not run.
     SuiteFinished {
         suite: SuiteId,
+    },
+    /// The fixtures of a suite have provided these values.
+    FixtureValues {
+        suite: SuiteId,
+        values: FixtureValues,
     },
     /// A test starts: all hooks of its suite become due.
     TestStarted {
@@ -133,6 +139,25 @@ pub struct HookSpec {
 }
 
 impl HookSpec {
+    /// Replaces the references to values of fixtures.
+    ///
+    /// # Errors
+    /// Why the hook cannot run: a value was not provided.
+    pub fn resolve(&mut self, values: &FixtureValues) -> Result<(), String> {
+        let env = self.env.iter().map(|(_, value)| value);
+        let plugin =
+            self.plugin.iter().flat_map(|plugin| plugin.args.iter().chain([&plugin.param]));
+        if let Some(problem) = values.missing(self.command.iter().chain(env).chain(plugin)) {
+            return Err(problem);
+        }
+        self.command = values.in_command(&self.command);
+        values.extend_env(&mut self.env);
+        if let Some(plugin) = &mut self.plugin {
+            values.extend_request(plugin);
+        }
+        Ok(())
+    }
+
     /// Converts a planned hook.
     pub fn new(suite: &SuitePlan, plan: &HookPlan) -> Self {
         let mut env = vec![(ENVIRONMENT_VARIABLE.to_owned(), suite.settings.environment.clone())];

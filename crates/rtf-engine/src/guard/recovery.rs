@@ -9,6 +9,8 @@ use rtf_model::{EventKind, LeakedProcess};
 use rtf_process::{prepare_process, tree};
 use rustix::event::{PollFd, PollFlags, poll};
 
+use crate::fixture_values::FixtureValues;
+
 use super::hook_run::{self, HookContext};
 use super::journal_close::{self, FinishedHook, MissingEvents, TimedEvent};
 use super::message::HookSpec;
@@ -61,16 +63,19 @@ pub fn recover(
     let hook_reason = format!("the runner died: {reason}");
     let finished_hooks = finished_hooks(&state.hooks);
     let mut hooks: Vec<_> = state.hooks.iter().filter_map(failed_under_runner).collect();
-    let mut events = Vec::new();
+    let (mut events, no_values) = (Vec::new(), FixtureValues::default());
     for hook in hooks_to_run(state.hooks) {
-        let spec = with_attachments_dir(hook.spec, run_dir);
+        let mut spec = with_attachments_dir(hook.spec, run_dir);
+        let values = state.values.get(&spec.suite).unwrap_or(&no_values);
+        let resolved = spec.resolve(values);
         let network = state.resources.get(&spec.suite).and_then(|held| held.network.as_ref());
         let network = network.map(|(namespaces, _)| namespaces);
         let test = only_test(&state.tests, spec.suite);
-        let context = HookContext { reason: &hook_reason, test, network };
+        let context = HookContext { reason: &hook_reason, test, network, resolved };
         let (problem, more) = hook_run::run(&spec, hook.status, &context, &mut signals);
         hooks.push(RecoveredHook { name: spec.name, problem });
-        events.extend(more);
+        let masked = |event: TimedEvent| TimedEvent { kind: values.mask(event.kind), ..event };
+        events.extend(more.into_iter().map(masked));
     }
     // The holders of namespaces belong to rtf: they are not reported.
     for (_, holder) in state.resources.values().filter_map(|held| held.network.as_ref()) {

@@ -12,6 +12,7 @@ use rtf_process::task::ProcessStream;
 
 use super::hook_process::StreamEnds;
 use super::message::{GuardMessage, HookSpec, HookStart};
+use crate::fixture_values::FixtureValues;
 use crate::locks;
 
 /// The state of the run, as far as recovery needs it.
@@ -26,6 +27,8 @@ pub struct RecoveryState {
     pub tests: RunningTests,
     /// The streams of the fixtures' processes.
     pub fixtures: HashMap<i32, StreamEnds>,
+    /// The values that the fixtures of the suites have provided.
+    pub values: HashMap<SuiteId, FixtureValues>,
     /// The exclusive resources of the running suites.
     pub resources: HashMap<SuiteId, SuiteResources>,
 }
@@ -146,6 +149,7 @@ impl RecoveryState {
                     |spec| GuardedHook { spec, status: HookStatus::Due, runs: 0, last_run: None };
                 self.hooks.extend(hooks.into_iter().map(due));
             }
+            M::FixtureValues { suite, values } => drop(self.values.insert(suite, values)),
             M::SuiteFinished { suite } => self.finish_suite(suite),
             M::TestStarted { suite, test, name } => {
                 self.tests.entry(suite).or_default().push((test, name));

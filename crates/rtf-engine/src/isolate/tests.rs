@@ -149,6 +149,7 @@ fn plan_of(text: &str) -> SuitePlan {
                 probe(ProbeKind::Command(vec!["ask".to_owned(), text.to_owned()])),
             ],
             alive: vec![probe(ProbeKind::Tcp(text.to_owned()))],
+            values: Vec::new(),
         },
         stop_signal: 15,
         stop_grace: SECOND,

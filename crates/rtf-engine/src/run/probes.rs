@@ -2,11 +2,15 @@
 
 use rtf_plan::plan;
 use rtf_process::network::Network;
-use rtf_process::probe::{ProbeSpec, ProbeTarget, Probes};
+use rtf_process::probe::{ProbeSpec, ProbeTarget, Probes, ValueSpec};
 
 pub(super) fn convert(plan: &plan::ProbePlans, network: Option<Network>) -> Probes {
     let convert = |probes: &[plan::Probe]| probes.iter().filter_map(probe).collect();
-    Probes { ready: convert(&plan.ready), alive: convert(&plan.alive), network }
+    let values = plan.values.iter().filter_map(|value| {
+        Some(ValueSpec { name: value.name.clone(), probe: probe(&value.probe)? })
+    });
+    let values = values.collect();
+    Probes { ready: convert(&plan.ready), alive: convert(&plan.alive), values, network }
 }
 
 fn probe(plan: &plan::Probe) -> Option<ProbeSpec> {

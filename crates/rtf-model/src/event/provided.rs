@@ -26,6 +26,25 @@ pub struct FixtureProvided {
 impl FixtureProvided {
     /// The text that reports show instead of a secret.
     pub const SECRET: &str = "***";
+    /// The longest name, in characters.
+    pub const MAX_NAME_LENGTH: usize = 32;
+
+    /// Checks a name: a letter, followed by letters, digits, `-` and `_`.
+    #[must_use]
+    pub fn is_name(name: &str) -> bool {
+        let known = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+        name.starts_with(|c: char| c.is_ascii_alphabetic())
+            && name.chars().all(known)
+            && name.len() <= Self::MAX_NAME_LENGTH
+    }
+
+    /// The environment variable that holds the value `name` of a fixture.
+    #[must_use]
+    pub fn variable(fixture: &str, name: &str) -> String {
+        let letter = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' };
+        let letters = |text: &str| text.chars().map(letter).collect::<String>();
+        format!("RTF_FIXTURE_{}_{}", letters(fixture), letters(name))
+    }
 
     /// The text of the value for reports.
     #[must_use]

@@ -9,8 +9,8 @@ use super::param_reference;
 use super::profile_view::{ConfigRequest, ProfileView};
 use crate::plan::defaults;
 use crate::suite::{
-    DeclaredLimits, DeclaredPlugin, DeclaredProbeKind, DeclaredProbes, DeclaredSuite, FixtureKind,
-    HookKind, MAX_DURATION, SourceText, Span,
+    DeclaredLimits, DeclaredPlugin, DeclaredProbeKind, DeclaredProbes, DeclaredProvide,
+    DeclaredSuite, DeclaredValueSource, FixtureKind, HookKind, MAX_DURATION, SourceText, Span,
 };
 use crate::wording::nearest;
 
@@ -205,6 +205,7 @@ impl ParamSubstitution<'_> {
         self.own.clear();
         for fixture in &mut suite.fixtures {
             self.env(&mut fixture.env, fixture.span);
+            self.provides(&mut fixture.provides);
             match &mut fixture.body {
                 FixtureKind::Plugin(plugin) => self.plugin(plugin),
                 FixtureKind::Process(process) => {
@@ -228,6 +229,16 @@ impl ParamSubstitution<'_> {
             }
         }
         self.problems
+    }
+
+    fn provides(&mut self, provides: &mut [DeclaredProvide]) {
+        for provide in provides {
+            match &mut provide.source {
+                DeclaredValueSource::File(path) => self.text(path, provide.name.span),
+                DeclaredValueSource::Command(words) => self.words(&mut words.value, words.span),
+                DeclaredValueSource::Plugin | DeclaredValueSource::Log(_) => {}
+            }
+        }
     }
 
     fn probes(&mut self, probes: &mut DeclaredProbes) {

@@ -55,6 +55,7 @@ fn fixture(
     Some(FixturePlan {
         id: FixtureId(0),
         name: name.or_else(|| names.find(|name| !is_taken(name)))?,
+        provides: Vec::new(),
         depends: (0..others.len()).collect(),
         body: FixtureBody::Plugin(plugin),
         env: Vec::new(),

@@ -6,18 +6,19 @@ use std::time::Duration;
 use rtf_model::{Diagnostic, FixtureId};
 
 use super::context::PlanContext;
+use super::fixture_values::DeclaredValues;
 use super::names::UniqueNames;
 use super::plugin_planner::PluginPlanner;
 use super::plugin_search::base_name;
 use super::search_scope::SearchScope;
 use super::use_site::PluginRole;
 use super::{
-    FixtureBody, FixtureLimits, FixturePlan, Probe, ProbeKind, ProbePlans, ProcessPlan, RemotePlan,
-    defaults, dependencies, middleware, program,
+    FixtureBody, FixtureLimits, FixturePlan, Probe, ProbeKind, ProbePlans, ProcessPlan,
+    ProvidePlan, RemotePlan, ValueProbe, defaults, dependencies, middleware, program,
 };
 use crate::suite::{
-    self, DeclaredFixture, DeclaredProbeKind, DeclaredProbes, DeclaredProcess, FixtureKind,
-    SourceText, Spanned,
+    self, DeclaredFixture, DeclaredProbeKind, DeclaredProbes, DeclaredProcess, DeclaredProvide,
+    DeclaredValueSource, FixtureKind, FixtureReference, SourceText, Spanned,
 };
 
 // `spec/suite.md` lists these defaults.
@@ -35,7 +36,7 @@ const STOP_GRACE: Duration = Duration::from_secs(5);
 pub(super) fn plan_all(
     planner: &mut PluginPlanner<'_, '_>,
     source: &Arc<SourceText>,
-    fixtures: Vec<DeclaredFixture>,
+    (fixtures, references): (Vec<DeclaredFixture>, &[FixtureReference]),
 ) -> Vec<FixturePlan> {
     let declared = fixtures.iter().map(|fixture| fixture.name.as_ref());
     let problems = &mut planner.context.problems;
@@ -48,6 +49,8 @@ pub(super) fn plan_all(
         })
         .collect();
     let steps = dependencies::setup_order(&fixtures, &names, source, problems);
+    let values = DeclaredValues { fixtures: &fixtures, names: &names, steps: &steps };
+    values.check(references, source, problems);
     let mut fixtures: Vec<_> = fixtures.into_iter().zip(names).map(Some).collect();
     let mut plans = Vec::with_capacity(steps.len());
     for step in steps {
@@ -89,19 +92,23 @@ fn plan(
             let scope = planner.scope();
             let mut planner =
                 ProcessPlanner::new(source, scope.with(&fixture.env), planner.context);
-            FixtureBody::Process(Arc::new(planner.plan(*process, check_every)))
+            let process = planner.plan(*process, &fixture.provides, check_every);
+            FixtureBody::Process(Arc::new(process))
         }
         FixtureKind::Attached(probes) => {
             let scope = planner.scope();
             let mut planner =
                 ProcessPlanner::new(source, scope.with(&fixture.env), planner.context);
-            FixtureBody::Attached(Arc::new(planner.plan_attached(probes, check_every)))
+            let mut attached = planner.plan_attached(probes, check_every);
+            attached.values = planner.values(&fixture.provides);
+            FixtureBody::Attached(Arc::new(attached))
         }
     };
     Some(FixturePlan {
         id: FixtureId(0),
         name,
         depends: Vec::new(),
+        provides: fixture.provides.into_iter().map(provide).collect(),
         body,
         env: fixture.env,
         limits,
@@ -109,6 +116,10 @@ fn plan(
         restart_delay: fixture.restart_delay.unwrap_or(RESTART_DELAY),
         check_every,
     })
+}
+
+fn provide(declared: DeclaredProvide) -> ProvidePlan {
+    ProvidePlan { name: declared.name.value, secret: declared.secret }
 }
 
 struct ProcessPlanner<'a> {
@@ -126,8 +137,14 @@ impl<'a> ProcessPlanner<'a> {
         Self { source, scope, problems: &mut context.problems }
     }
 
-    fn plan(&mut self, declared: DeclaredProcess, check_every: Option<Duration>) -> ProcessPlan {
-        let probes = self.probes(declared.probes, check_every);
+    fn plan(
+        &mut self,
+        declared: DeclaredProcess,
+        provides: &[DeclaredProvide],
+        check_every: Option<Duration>,
+    ) -> ProcessPlan {
+        let mut probes = self.probes(declared.probes, check_every);
+        probes.values = self.values(provides);
         let remote =
             declared.host.map(|host| RemotePlan { ssh: self.ssh(&host), host: host.value });
         let command = match remote {
@@ -153,7 +170,7 @@ impl<'a> ProcessPlanner<'a> {
     ) -> ProbePlans {
         let intervals: Vec<_> = declared.ready.iter().map(|probe| probe.every).collect();
         let every = check_every.unwrap_or(ALIVE_EVERY);
-        let ProbePlans { mut ready, mut alive } = self.probes(declared, check_every);
+        let ProbePlans { mut ready, mut alive, values } = self.probes(declared, check_every);
         let at = |probe: &Probe, every| Probe { every, ..probe.clone() };
         if alive.is_empty() {
             let both = ready.iter().zip(intervals);
@@ -161,7 +178,7 @@ impl<'a> ProcessPlanner<'a> {
         } else {
             ready.extend(alive.iter().map(|probe| at(probe, READY_EVERY)));
         }
-        ProbePlans { ready, alive }
+        ProbePlans { ready, alive, values }
     }
 
     fn probes(&mut self, declared: DeclaredProbes, check_every: Option<Duration>) -> ProbePlans {
@@ -171,7 +188,25 @@ impl<'a> ProcessPlanner<'a> {
         ProbePlans {
             ready: plan(declared.ready, READY_EVERY),
             alive: plan(declared.alive, check_every.unwrap_or(ALIVE_EVERY)),
+            values: Vec::new(),
         }
+    }
+
+    fn values(&mut self, provides: &[DeclaredProvide]) -> Vec<ValueProbe> {
+        let mut values = Vec::with_capacity(provides.len());
+        for provide in provides {
+            let kind = match &provide.source {
+                DeclaredValueSource::Plugin => continue,
+                DeclaredValueSource::Log(pattern) => ProbeKind::Log(pattern.clone()),
+                DeclaredValueSource::File(path) => ProbeKind::File(self.scope.dir.join(path)),
+                DeclaredValueSource::Command(words) => {
+                    ProbeKind::Command(self.command(words.clone()))
+                }
+            };
+            let probe = Probe { kind, every: READY_EVERY, timeout: PROBE_TIMEOUT };
+            values.push(ValueProbe { name: provide.name.value.clone(), probe });
+        }
+        values
     }
 
     fn probe(&mut self, declared: suite::DeclaredProbe, every: Duration) -> Probe {

@@ -14,6 +14,7 @@ pub(crate) mod defaults;
 mod dependencies;
 mod draft;
 mod fixture;
+mod fixture_values;
 mod hook;
 mod hosts;
 mod inputs;

@@ -72,7 +72,8 @@ pub(super) fn plan_suite(
     let fallback_dir = fallback_dir.as_deref();
     let scope = SearchScope { runner, dir: &dir, fallback_dir, suite_env: &env, own_env: &[] };
     let mut planner = PluginPlanner::new(context, scope);
-    let mut fixtures = fixture::plan_all(&mut planner, source, suite.fixtures);
+    let mut fixtures =
+        fixture::plan_all(&mut planner, source, (suite.fixtures, &suite.fixture_references.found));
     let clock = clock::plan(&mut planner, source, suite.clock, &mut fixtures);
     let hooks = hook::plan_all(&mut planner, source, suite.hooks);
     let tests = plan_tests(&mut planner, source, &mut names, (&suite.tags, suite.tests));
@@ -86,6 +87,7 @@ pub(super) fn plan_suite(
         isolate,
         preparation: Preparation::NotNeeded,
         settings: suite.settings,
+        refers_to_values: suite.fixture_references.any,
         clock,
         fixtures,
         hooks,
@@ -260,6 +262,7 @@ pub(super) fn plan_direct_plugins(
         isolate: Isolation::default(),
         preparation: Preparation::NotNeeded,
         settings: SuiteSettings { environment, ..SuiteSettings::default() },
+        refers_to_values: false,
         clock: None,
         fixtures: Vec::new(),
         hooks: Vec::new(),

@@ -69,6 +69,8 @@ pub struct SuitePlan {
     pub preparation: Preparation,
     /// The settings that need no name to be resolved.
     pub settings: SuiteSettings,
+    /// Whether its texts contain references to values of fixtures, or escaped ones.
+    pub refers_to_values: bool,
     /// The simulated clock; `None` for the wall clock.
     pub clock: Option<ClockPlan>,
     /// The fixtures: each after its dependencies, otherwise in the order of the file.
@@ -141,6 +143,8 @@ pub struct FixturePlan {
     pub depends: Vec<usize>,
     /// The plug-in or process.
     pub body: FixtureBody,
+    /// The values that it must provide before it is ready.
+    pub provides: Vec<ProvidePlan>,
     /// Environment variables in addition to the suite's.
     pub env: Vec<(String, String)>,
     /// The limits of its phases.
@@ -152,6 +156,15 @@ pub struct FixturePlan {
     pub restart_delay: Duration,
     /// The interval of `check` or `<alive>` while tests run; `None`: only before each test.
     pub check_every: Option<Duration>,
+}
+
+/// A declared value of a fixture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ProvidePlan {
+    /// The name, unique in the fixture.
+    pub name: String,
+    /// Whether it is neither stored nor shown.
+    pub secret: bool,
 }
 
 /// The limits of a fixture's phases.
@@ -329,6 +342,17 @@ pub struct ProbePlans {
     pub ready: Vec<Probe>,
     /// The probes that must pass while it is ready.
     pub alive: Vec<Probe>,
+    /// The sources of its values.
+    pub values: Vec<ValueProbe>,
+}
+
+/// The source of a value of a process.
+#[derive(Clone, Debug)]
+pub struct ValueProbe {
+    /// The name of the value.
+    pub name: String,
+    /// A log, whose pattern has a group for the value; a file or a command.
+    pub probe: Probe,
 }
 
 /// A probe of a process fixture.

@@ -5,7 +5,7 @@ use rtf_model::Diagnostic;
 
 use super::reader::ElementReader;
 use super::schema::{self, ElementSchema, check};
-use super::{Spanned, port_reference};
+use super::{Spanned, reference};
 
 /// Reads a `<command>`; returns no words if it is invalid.
 pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Spanned<Vec<String>> {
@@ -25,7 +25,7 @@ pub(super) fn words(
     name: &str,
     line: &Spanned<String>,
 ) -> Option<Vec<String>> {
-    port_reference::check(reader, name, line);
+    reference::check(reader, name, line);
     let Ok(words) = split(&line.value) else {
         reader.wrong(name, line, "has a quote that is not closed", None);
         return None;

@@ -3,12 +3,12 @@
 use roxmltree::Node;
 use rtf_model::{Diagnostic, protocol};
 
-use super::port_reference;
 use super::reader::ElementReader;
+use super::reference;
 use super::schema::{self, check};
 
-/// Variables that only the runner sets. `RTF_PORT_*` are reserved as well.
-const RESERVED: [&str; 12] = [
+/// Variables that only the runner sets. `RTF_PORT_*` and `RTF_FIXTURE_*` are reserved as well.
+const RESERVED: [&str; 11] = [
     protocol::CHANNEL_VARIABLE,
     protocol::FORK_SERVER_VARIABLE,
     protocol::SCOPE_VARIABLE,
@@ -17,7 +17,6 @@ const RESERVED: [&str; 12] = [
     protocol::RUN_DIR_VARIABLE,
     protocol::CLOCK_VARIABLE,
     protocol::CLOCK_FILE_VARIABLE,
-    "RTF_FIXTURE_START",
     "RTF_HOOK_TRIGGER",
     "RTF_HOOK_REASON",
     "RTF_HOOK_TEST",
@@ -47,7 +46,7 @@ pub(super) fn read(reader: &mut ElementReader<'_>, parent: Node<'_, '_>) -> Vec<
             reader.missing(node, "the attribute `value`; it may be empty");
             continue;
         };
-        port_reference::check(reader, "value", &value);
+        reference::check(reader, "value", &value);
         found.push((name.value, value.value));
     }
     found
@@ -55,5 +54,5 @@ pub(super) fn read(reader: &mut ElementReader<'_>, parent: Node<'_, '_>) -> Vec<
 
 /// Checks whether only `rtf` may set a variable.
 pub(crate) fn is_reserved(name: &str) -> bool {
-    RESERVED.contains(&name) || name.starts_with("RTF_PORT_")
+    RESERVED.contains(&name) || name.starts_with("RTF_PORT_") || name.starts_with("RTF_FIXTURE_")
 }

@@ -6,6 +6,7 @@ use std::time::Duration;
 use roxmltree::Node;
 use rtf_model::Diagnostic;
 
+use super::provide::{self, Provider};
 use super::reader::ElementReader;
 use super::schema::{self, check};
 use super::{DeclaredFixture, FixtureKind, Span, env, process, test};
@@ -35,6 +36,13 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option
     let restart_delay = restart_delay(reader, node);
     let check_every = reader.duration(node, "check-every");
     let env = env::read(reader, node);
+    let provider = match (is_process, is_attached) {
+        (true, true) => Provider::Attached,
+        (true, false) if node.has_attribute("host") => Provider::Remote,
+        (true, false) => Provider::Process,
+        (false, _) => Provider::Plugin,
+    };
+    let provides = provide::read(reader, node, provider);
     let body = match (is_process, is_attached) {
         (true, true) => FixtureKind::Attached(process::attached(reader, node)),
         (true, false) => FixtureKind::Process(Box::new(process::read(reader, node))),
@@ -46,6 +54,7 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option
         name,
         depends,
         body,
+        provides,
         env,
         setup,
         check,

@@ -3,7 +3,7 @@
 use roxmltree::Node;
 
 use super::reader::ElementReader;
-use super::{DeclaredProbeKind, MiddlewareProbe, Spanned, port_reference};
+use super::{DeclaredProbeKind, MiddlewareProbe, Spanned, reference};
 
 /// The attributes. `fixtures/rtf_fixtures/probe.py` defines their meaning.
 const KINDS: [&str; 5] = ["ros-node", "ros-topic", "ros-service", "ros2-topic", "yarp-port"];
@@ -22,10 +22,10 @@ pub(super) fn read(
 ) -> Option<DeclaredProbeKind> {
     let kind = KINDS.into_iter().find(|kind| *kind == attribute)?;
     let min_rate = min_rate(reader, node);
-    if !port_reference::check(reader, kind, name) {
+    if !reference::check(reader, kind, name) {
         return None;
     }
-    let example = crate::config::sample(&port_reference::expand(&name.value, |_| "1".to_owned()));
+    let example = crate::config::sample(&reference::example(&name.value));
     let is_absolute = example.len() > 1 && example.starts_with('/') && !example.ends_with('/');
     if !is_absolute || example.contains(char::is_whitespace) {
         let hint =

@@ -3,11 +3,11 @@
 //! `rtf-engine` replaces it by a number when the suite starts.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use rtf_model::{Diagnostic, SuitePort};
 
 use super::reader::ElementReader;
+use super::reference::position;
 use super::{Span, Spanned};
 use crate::placeholder::{Segment, segments};
 use crate::wording::nearest;
@@ -50,10 +50,9 @@ pub fn expand(text: &str, port: impl Fn(&str) -> String) -> String {
     expanded
 }
 
-/// Records the ports of a value and reports invalid references. Returns whether all are valid.
-pub(super) fn check(reader: &mut ElementReader<'_>, what: &str, value: &Spanned<String>) -> bool {
+/// Records the ports of a value and reports invalid references.
+pub(super) fn check(reader: &mut ElementReader<'_>, what: &str, value: &Spanned<String>) {
     warn_of_misspelling(reader, value);
-    let before = reader.problems.len();
     for segment in segments(&value.value, OPEN) {
         match segment {
             Segment::Text(_) => {}
@@ -71,7 +70,6 @@ pub(super) fn check(reader: &mut ElementReader<'_>, what: &str, value: &Spanned<
             }
         }
     }
-    reader.problems.len() == before
 }
 
 fn record(reader: &mut ElementReader<'_>, name: &str, span: Span) {
@@ -117,20 +115,6 @@ fn warn_of_misspelling(reader: &mut ElementReader<'_>, value: &Spanned<String>) 
                 .hint(format!("did you mean `{OPEN}`?"));
             reader.report(problem);
         }
-    }
-}
-
-/// Returns the position of a part of a value, or of the whole value if entities
-/// or line breaks shift the part.
-fn position(reader: &ElementReader<'_>, value: &Spanned<String>, part: Range<usize>) -> Span {
-    let raw = reader.source.text().get(value.span.range()).unwrap_or_default();
-    let lead = raw.len() - raw.trim_start().len();
-    if raw == value.value {
-        value.span.part(part)
-    } else if raw.trim() == value.value {
-        value.span.part(part.start + lead..part.end + lead)
-    } else {
-        value.span
     }
 }
 

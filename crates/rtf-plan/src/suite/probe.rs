@@ -1,12 +1,13 @@
 //! `<ready>` and `<alive>`.
 
+use regex::Regex;
 use roxmltree::Node;
 use rtf_model::Diagnostic;
 
 use super::command::words;
 use super::reader::ElementReader;
 use super::schema::{ElementSchema, check};
-use super::{DeclaredProbe, DeclaredProbeKind, Span, Spanned, middleware, port_reference};
+use super::{DeclaredProbe, DeclaredProbeKind, Span, Spanned, middleware, reference};
 use crate::wording::quoted;
 
 /// The attributes that modify a probe; each other attribute is a kind of probe.
@@ -63,11 +64,11 @@ fn read_kind(
     value: &Spanned<String>,
 ) -> Option<DeclaredProbeKind> {
     // `words` checks the ports of a command, and a pattern cannot refer to one.
-    if matches!(name, "tcp" | "http" | "file") && !port_reference::check(reader, name, value) {
+    if matches!(name, "tcp" | "http" | "file") && !reference::check(reader, name, value) {
         return None;
     }
     // With an example port the syntax of the rest can be checked.
-    let example = crate::config::sample(&port_reference::expand(&value.value, |_| "1".to_owned()));
+    let example = crate::config::sample(&reference::example(&value.value));
     match name {
         "tcp" => {
             let port = example.rsplit_once(':').filter(|(host, _)| !host.is_empty());
@@ -81,24 +82,39 @@ fn read_kind(
         "http" => read_url(reader, name, value, &example),
         "file" => Some(DeclaredProbeKind::File(value.value.clone())),
         "command" => words(reader, name, value).map(DeclaredProbeKind::Command),
-        _ if port_reference::mentions(&value.value) => {
-            let hint = "write a pattern for the number: `\\d+`";
-            reader.wrong(name, value, "cannot contain a `${port:…}`", Some(hint));
+        _ => read_pattern(reader, name, value).map(DeclaredProbeKind::Log),
+    }
+}
+
+/// Reads a regular expression, which cannot contain references.
+pub(super) fn read_pattern(
+    reader: &mut ElementReader<'_>,
+    name: &str,
+    value: &Spanned<String>,
+) -> Option<Regex> {
+    if reference::is_in(&value.value) {
+        let hint = "write a pattern for the value: `\\d+`";
+        reader.wrong(name, value, "cannot contain `${port:…}` or `${fixture:…}`", Some(hint));
+        return None;
+    }
+    match Regex::new(&value.value) {
+        Ok(pattern) => Some(pattern),
+        Err(error) => {
+            let message = format!("`{name}` is not a regular expression: `{}`", value.value);
+            let label = reader.source.label(value.span, "");
+            let problem = Diagnostic::error("invalid-value", message).label(label);
+            reader.report(problem.note(error.to_string()));
             None
         }
-        _ => match regex::Regex::new(&value.value) {
-            Ok(pattern) => Some(DeclaredProbeKind::Log(pattern)),
-            Err(error) => {
-                let problem = Diagnostic::error(
-                    "invalid-value",
-                    format!("`{name}` is not a regular expression: `{}`", value.value),
-                );
-                let label = reader.source.label(value.span, "");
-                reader.report(problem.label(label).note(error.to_string()));
-                None
-            }
-        },
     }
+}
+
+/// Reports a file of a process on another machine.
+pub(super) fn report_local_file(reader: &mut ElementReader<'_>, span: Span, hint: &str) {
+    let message = "`file` checks this machine, and the fixture runs on another one";
+    let problem =
+        Diagnostic::error("other-machine", message).label(reader.source.label(span, "")).hint(hint);
+    reader.report(problem);
 }
 
 fn read_url(

@@ -6,8 +6,8 @@ use rtf_model::Diagnostic;
 use super::reader::ElementReader;
 use super::schema::{self, check};
 use super::{
-    DeclaredProbe, DeclaredProbeKind, DeclaredProbes, DeclaredProcess, Span, Spanned, command,
-    port_reference, probe, signal,
+    DeclaredProbeKind, DeclaredProbes, DeclaredProcess, Span, Spanned, command, probe, reference,
+    signal,
 };
 
 /// Reads the children of `<fixture type="process">`.
@@ -44,8 +44,11 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Declar
         reader.missing(node, "a `<command>` for `type=\"process\"`");
     }
     if process.host.is_some() {
-        for probe in process.probes.ready.iter().chain(&process.probes.alive) {
-            report_local_file(reader, probe);
+        let hint = "use `log`, `tcp` or `http`, or `command=\"ssh …\"`";
+        for found in process.probes.ready.iter().chain(&process.probes.alive) {
+            if matches!(found.kind, DeclaredProbeKind::File(_)) {
+                probe::report_local_file(reader, found.span, hint);
+            }
         }
     }
     process
@@ -55,7 +58,7 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Declar
 fn host(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Spanned<String>> {
     const EXAMPLE: &str = "write it like `user@machine` or `ssh://user@machine:2222`";
     let host = reader.word(node, "host")?;
-    port_reference::check(reader, "host", &host);
+    reference::check(reader, "host", &host);
     let port = host.value.matches(':').count() == 1 && !host.value.starts_with("ssh://");
     if host.value.starts_with('-') || host.value.contains(char::is_whitespace) || port {
         reader.wrong("host", &host, "is not a host name for `ssh`", Some(EXAMPLE));
@@ -66,16 +69,6 @@ fn host(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Spanned<St
         reader.report(Diagnostic::error("other-machine", message).label(label));
     }
     Some(host)
-}
-
-fn report_local_file(reader: &mut ElementReader<'_>, probe: &DeclaredProbe) {
-    if matches!(probe.kind, DeclaredProbeKind::File(_)) {
-        let message = "`file` checks this machine, and the fixture runs on another one";
-        let problem = Diagnostic::error("other-machine", message)
-            .label(reader.source.label(probe.span, ""))
-            .hint("use `log`, `tcp` or `http`, or `command=\"ssh …\"`");
-        reader.report(problem);
-    }
 }
 
 fn stop_signal(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<i32> {

@@ -5,6 +5,7 @@ use std::time::Duration;
 use roxmltree::Node;
 use rtf_model::Diagnostic;
 
+use super::fixture_reference::{FixtureReferences, ReferenceUser};
 use super::port_reference::Ports;
 use super::{DurationError, SourceText, Span, Spanned, parse_duration};
 use crate::wording::{nearest, quoted};
@@ -17,6 +18,10 @@ pub(super) struct ElementReader<'a> {
     pub problems: &'a mut Vec<Diagnostic>,
     /// The ports found so far.
     pub ports: Ports,
+    /// The element that is being read.
+    pub user: ReferenceUser,
+    /// The references to values of fixtures found so far.
+    pub fixture_references: FixtureReferences,
 }
 
 impl ElementReader<'_> {

@@ -7,8 +7,8 @@ use super::reader::ElementReader;
 use super::schema::{self, check};
 use super::test::{self, TestDefaults};
 use super::{
-    DeclaredIsolation, DeclaredMiddleware, DeclaredSuite, SourceText, Spanned, SuiteSettings,
-    TestSettings, clock, env, fixture, hook, port_reference, requires, xml,
+    DeclaredIsolation, DeclaredMiddleware, DeclaredSuite, ReferenceUser, SourceText, Spanned,
+    SuiteSettings, TestSettings, clock, env, fixture, hook, reference, requires, xml,
 };
 
 /// Parses the text of a suite file and adds every problem to `problems`.
@@ -20,7 +20,13 @@ pub fn parse(source: &SourceText, problems: &mut Vec<Diagnostic>) -> Option<Decl
     let scan = xml::prepare(source, problems)?;
     let document = xml::parse(source, &scan.text, problems)?;
     let root = document.root_element();
-    let mut reader = ElementReader { source, problems, ports: port_reference::Ports::default() };
+    let mut reader = ElementReader {
+        source,
+        problems,
+        ports: super::port_reference::Ports::default(),
+        user: ReferenceUser::Suite,
+        fixture_references: super::FixtureReferences::default(),
+    };
     let name = root.tag_name();
     if name.name() != "suite" || name.namespace().is_some() {
         reader.report(not_a_suite(source, root));
@@ -74,6 +80,7 @@ fn read_suite(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> DeclaredSui
         fixtures: Vec::new(),
         hooks: Vec::new(),
         tests: Vec::new(),
+        fixture_references: super::FixtureReferences::default(),
     };
     for node in root.children().filter(Node::is_element) {
         match node.tag_name().name() {
@@ -84,16 +91,27 @@ fn read_suite(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> DeclaredSui
             }
             "environment" => {
                 let text = last_text(reader, node, "environment");
-                port_reference::check(reader, "<environment>", &text);
+                reference::check(reader, "<environment>", &text);
                 suite.settings.environment = text.value;
             }
-            "fixture" => suite.fixtures.extend(fixture::read(reader, node)),
-            "hook" => suite.hooks.extend(hook::read(reader, node)),
-            "test" => suite.tests.extend(test::read(reader, node, defaults)),
+            "fixture" => {
+                reader.user = ReferenceUser::Fixture(suite.fixtures.len());
+                suite.fixtures.extend(fixture::read(reader, node));
+            }
+            "hook" => {
+                reader.user = ReferenceUser::TestOrHook;
+                suite.hooks.extend(hook::read(reader, node));
+            }
+            "test" => {
+                reader.user = ReferenceUser::TestOrHook;
+                suite.tests.extend(test::read(reader, node, defaults));
+            }
             _ => {}
         }
+        reader.user = ReferenceUser::Suite;
     }
     suite.isolate.ports = reader.ports.names();
+    suite.fixture_references = std::mem::take(&mut reader.fixture_references);
     // An unknown element may be a misspelt test, and is reported as unknown.
     let may_be_test = |node: &Node<'_, '_>| {
         node.has_tag_name("test") || !schema::SUITE.elements.contains(&node.tag_name().name())

@@ -100,7 +100,7 @@ pub(super) const FIXTURE: ElementSchema = ElementSchema {
         "attach",
         "host",
     ],
-    elements: &["env"],
+    elements: &["env", "provide"],
     text: true,
 };
 
@@ -119,7 +119,7 @@ pub(super) const PROCESS: ElementSchema = ElementSchema {
         "attach",
         "host",
     ],
-    elements: &["command", "ready", "alive", "stop", "env"],
+    elements: &["command", "ready", "alive", "stop", "env", "provide"],
     text: false,
 };
 
@@ -136,7 +136,7 @@ pub(super) const ATTACHED: ElementSchema = ElementSchema {
         "check-every",
         "attach",
     ],
-    elements: &["ready", "alive", "env"],
+    elements: &["ready", "alive", "env", "provide"],
     text: false,
 };
 
@@ -192,6 +192,9 @@ pub(super) const ALIVE: ElementSchema = leaf(
         "every",
     ],
 );
+/// `<provide>`.
+pub(super) const PROVIDE: ElementSchema =
+    leaf("provide", &["name", "log", "file", "command", "secret"]);
 /// `<stop>`.
 pub(super) const STOP: ElementSchema = leaf("stop", &["signal", "grace", "exit-codes"]);
 /// `<command>`, `<description>`, `<environment>`.

@@ -7,7 +7,7 @@ use super::reader::ElementReader;
 use super::schema::{self, check};
 use super::{
     AfterCollapse, DeclaredLimits, DeclaredPlugin, DeclaredTest, Leaks, Retries, Spanned,
-    TestSettings, env, known_failure, matrix, port_reference,
+    TestSettings, env, known_failure, matrix, reference,
 };
 
 /// The defaults that a suite declares for its tests.
@@ -118,7 +118,7 @@ pub(super) fn plugin(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Opti
     let plugin_type = reader.word(node, "type");
     let param = reader.attribute(node, "param");
     if let Some(param) = &param {
-        port_reference::check(reader, "param", param);
+        reference::check(reader, "param", param);
     }
     if let Some(param) = &param
         && param.value.bytes().filter(|byte| *byte == b'"').count() % 2 == 1

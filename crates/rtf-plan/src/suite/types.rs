@@ -5,7 +5,7 @@ use std::time::Duration;
 use jiff::civil::Date;
 use rtf_model::{Trigger, Verdict};
 
-use super::{Combination, DeclaredMatrix, Span, Spanned};
+use super::{Combination, DeclaredMatrix, FixtureReferences, Span, Spanned};
 
 /// The contents of a suite file.
 #[derive(Clone, Debug)]
@@ -30,6 +30,8 @@ pub struct DeclaredSuite {
     pub hooks: Vec<DeclaredHook>,
     /// The tests, in order.
     pub tests: Vec<DeclaredTest>,
+    /// The references to values of fixtures.
+    pub fixture_references: FixtureReferences,
 }
 
 /// The settings of a suite in which no name has to be resolved.
@@ -275,6 +277,8 @@ pub struct DeclaredFixture {
     pub depends: Option<Vec<Spanned<String>>>,
     /// The plug-in or process.
     pub body: FixtureKind,
+    /// The values that it provides.
+    pub provides: Vec<DeclaredProvide>,
     /// Environment variables in addition to the suite's.
     pub env: Vec<(String, String)>,
     /// The limit for its set-up.
@@ -328,6 +332,30 @@ pub struct DeclaredProcess {
     pub stop_codes: Vec<i32>,
     /// The remote machine on which it runs; `None` for this one.
     pub host: Option<Spanned<String>>,
+}
+
+/// A `<provide>`: a value of a fixture.
+#[derive(Clone, Debug)]
+pub struct DeclaredProvide {
+    /// The name, unique in the fixture.
+    pub name: Spanned<String>,
+    /// Where the value comes from.
+    pub source: DeclaredValueSource,
+    /// Whether it is neither stored nor shown.
+    pub secret: bool,
+}
+
+/// The source of a fixture's value.
+#[derive(Clone, Debug)]
+pub enum DeclaredValueSource {
+    /// The plug-in.
+    Plugin,
+    /// The first group of the first matching line of the output.
+    Log(regex::Regex),
+    /// The content of a file.
+    File(String),
+    /// The output of a program.
+    Command(Spanned<Vec<String>>),
 }
 
 /// A `<hook>`.

@@ -33,11 +33,11 @@ pub async fn watch_attached(
     mut commands: mpsc::UnboundedReceiver<ProcessCommand>,
     events: EventSender,
 ) {
-    let AttachedJob { host, probes: Probes { ready, alive, network }, launch } = job;
+    let AttachedJob { host, probes: Probes { ready, alive, values, network }, launch } = job;
     let prober = Arc::new(Prober { spawner, template: launch.full_request(), network });
     let reporter = ProbeReporter { host, events: events.clone(), prober };
     let mut background = JoinSet::new();
-    background.spawn(reporter.clone().watch_ready(ready, FileVersions::default()));
+    background.spawn(reporter.clone().watch_ready((ready, values), FileVersions::default()));
     loop {
         match commands.recv().await {
             Some(ProcessCommand::WatchAlive) => {

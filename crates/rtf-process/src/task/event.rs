@@ -31,6 +31,13 @@ pub enum ProcessEvent {
     Resumed,
     /// It printed to an output.
     Printed(Stream, Vec<u8>),
+    /// A value of a process was read.
+    ValueRead {
+        /// Its name.
+        name: String,
+        /// Its text.
+        value: String,
+    },
     /// All `ready` probes have passed.
     ProbesPassed,
     /// A `ready` probe does not pass yet; sent once for each reason.

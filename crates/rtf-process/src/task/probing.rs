@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::ProcessTask;
 use super::event::{EventSender, HostId, ProcessEvent};
 use crate::liveness::LivenessCheck;
-use crate::probe::{FileVersions, ProbeSpec, Prober, Probes};
+use crate::probe::{FileVersions, ProbeSpec, Prober, Probes, ValueSpec};
 use crate::usage;
 
 /// Evaluates the probes of one process, and reports the results as its events.
@@ -17,20 +17,41 @@ pub(super) struct ProbeReporter {
 }
 
 impl ProbeReporter {
-    /// Reports when each of these probes has passed once, and each new reason why one does
-    /// not pass. A file must have changed since `before`.
-    pub(super) async fn watch_ready(self, probes: Vec<ProbeSpec>, before: FileVersions) {
+    /// Reports when each of these probes has passed once, after the values, and each new
+    /// reason why one does not pass. A file must have changed since `before`.
+    pub(super) async fn watch_ready(
+        self,
+        (probes, values): (Vec<ProbeSpec>, Vec<ValueSpec>),
+        before: FileVersions,
+    ) {
         let mut reported = String::new();
         for probe in &probes {
             while let Err(reason) = self.prober.check(probe, &before).await {
-                if reason != reported {
-                    reported.clone_from(&reason);
-                    self.report(ProcessEvent::ProbePending(reason)).await;
-                }
+                self.report_pending(reason, &mut reported).await;
                 tokio::time::sleep(probe.interval).await;
             }
         }
+        for ValueSpec { name, probe } in values {
+            let value = loop {
+                match self.prober.read(&probe, &before).await {
+                    Ok(value) => break value,
+                    Err(reason) => {
+                        let reason = format!("it did not provide `{name}`: {reason}");
+                        self.report_pending(reason, &mut reported).await;
+                    }
+                }
+                tokio::time::sleep(probe.interval).await;
+            };
+            self.report(ProcessEvent::ValueRead { name, value }).await;
+        }
         self.report(ProcessEvent::ProbesPassed).await;
+    }
+
+    async fn report_pending(&self, reason: String, reported: &mut String) {
+        if reason != *reported {
+            reported.clone_from(&reason);
+            self.report(ProcessEvent::ProbePending(reason)).await;
+        }
     }
 
     /// Reports when one of these probes fails.
@@ -72,8 +93,8 @@ impl ProcessTask {
     }
 
     pub(super) fn watch_ready(&mut self, before: FileVersions) {
-        if let Some(Probes { ready, .. }) = self.job.probes.clone() {
-            self.background.spawn(self.probe_reporter().watch_ready(ready, before));
+        if let Some(Probes { ready, values, .. }) = self.job.probes.clone() {
+            self.background.spawn(self.probe_reporter().watch_ready((ready, values), before));
         }
     }
 

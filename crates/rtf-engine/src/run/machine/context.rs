@@ -2,9 +2,12 @@
 
 use std::time::Duration;
 
-use rtf_model::{EventKind, LeakedProcess, Message, MessageKind, Source};
+use rtf_model::{EventKind, FixtureProvided, LeakedProcess, Message, MessageKind, Source};
+use rtf_plan::plan::FixturePlan;
+use serde_json::Value;
 
 use super::io::{Deadline, Effect, HostId};
+use crate::fixture_values::FixtureValues;
 
 /// Collects the effects of one input.
 #[derive(Debug)]
@@ -12,12 +15,18 @@ pub struct Context<'a> {
     now: Duration,
     effects: &'a mut Vec<Effect>,
     last_host: &'a mut u64,
+    values: &'a mut FixtureValues,
     abandoned: Option<String>,
 }
 
 impl<'a> Context<'a> {
-    pub fn new(now: Duration, effects: &'a mut Vec<Effect>, last_host: &'a mut u64) -> Self {
-        Self { now, effects, last_host, abandoned: None }
+    pub fn new(
+        now: Duration,
+        effects: &'a mut Vec<Effect>,
+        last_host: &'a mut u64,
+        values: &'a mut FixtureValues,
+    ) -> Self {
+        Self { now, effects, last_host, values, abandoned: None }
     }
 
     pub fn now(&self) -> Duration {
@@ -28,8 +37,25 @@ impl<'a> Context<'a> {
         self.effects.push(effect);
     }
 
+    /// Reports an event, without secrets.
     pub fn emit(&mut self, kind: EventKind) {
+        let kind = self.values.mask(kind);
         self.push(Effect::Emit(kind));
+    }
+
+    /// The values that fixtures have provided.
+    pub fn values(&self) -> &FixtureValues {
+        self.values
+    }
+
+    /// Stores a value of a fixture, also with the guard.
+    pub fn provide(&mut self, plan: &FixturePlan, index: usize, (name, value): (String, Value)) {
+        let secret = plan.provides.iter().any(|known| known.name == name && known.secret);
+        self.values.set(index, (&plan.name, &name), value.clone(), secret);
+        self.push(Effect::KeepValues(self.values.clone()));
+        let value = (!secret).then_some(value);
+        let fixture = plan.id;
+        self.emit(EventKind::FixtureProvided(FixtureProvided { fixture, name, value, secret }));
     }
 
     pub fn report_leaked(&mut self, source: Source, processes: Vec<LeakedProcess>) {

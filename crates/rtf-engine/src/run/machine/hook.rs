@@ -7,6 +7,7 @@ use super::context::Context;
 use super::io::{Deadline, Effect, HostId, ProcessEvent, Program, StartRequest, environment};
 use super::kill_escalation::{KILL_WAIT, MAX_KILLS, SIGTERM, TERM_GRACE};
 use super::output_capture::OutputCapture;
+use crate::fixture_values::FixtureValues;
 use crate::hook::{HookJudgement, RUN_REQUEST, request, trigger_variables};
 use rtf_plan::plan::{HookBody, HookPlan, SuitePlan};
 
@@ -36,9 +37,12 @@ impl<'p> RunningHook<'p> {
         let plan = &suite.hooks[triggered.index];
         let (host, source) = (cx.next_host_id(), Source::Hook(plan.id));
         cx.emit(started_event(plan, &triggered));
-        cx.push(Effect::Spawn { host, source, start: process_start(suite, plan, triggered) });
+        let start = process_start(suite, plan, triggered, cx.values());
+        cx.push(Effect::Spawn { host, source, start });
         if let HookBody::Plugin(body) = &plan.body {
-            let request = Request::RunTest(request(suite, plan, body));
+            let mut request = request(suite, plan, body);
+            cx.values().extend_request(&mut request);
+            let request = Request::RunTest(request);
             cx.push(Effect::Send(host, Some(RUN_REQUEST), request));
         }
         cx.set(Deadline::Hook, plan.timeout);
@@ -136,12 +140,17 @@ fn started_event(plan: &HookPlan, triggered: &TriggeredHook) -> EventKind {
     }
 }
 
-fn process_start(suite: &SuitePlan, plan: &HookPlan, triggered: TriggeredHook) -> StartRequest {
+fn process_start(
+    suite: &SuitePlan,
+    plan: &HookPlan,
+    triggered: TriggeredHook,
+    values: &FixtureValues,
+) -> StartRequest {
     let what = match &plan.body {
-        HookBody::Plugin(plugin) => Program::Host(plugin.host.clone()),
-        HookBody::Command(command) => Program::Command(command.clone()),
+        HookBody::Plugin(plugin) => Program::Host(values.in_host(&plugin.host)),
+        HookBody::Command(command) => Program::Command(values.in_command(command)),
     };
-    let mut env = environment(suite, &plan.env, "hook", &plan.name);
+    let mut env = environment(suite, &plan.env, ("hook", &plan.name), values);
     let test = triggered.test.as_ref().map(|(_, name)| name.as_str());
     env.extend(trigger_variables(triggered.trigger, &triggered.reason, test));
     StartRequest { what, env, folder: suite.folder.clone() }

@@ -71,9 +71,13 @@ impl<'p> HookQueue<'p> {
                 report_not_run(self.plan, &hook, HOOK_NOT_RUN, cx);
             }
         }
-        if self.running.is_none() {
-            self.running =
-                self.queue.pop_front().map(|hook| RunningHook::start(self.plan, hook, cx));
+        while self.running.is_none()
+            && let Some(hook) = self.queue.pop_front()
+        {
+            match cx.values().missing_in(&self.plan.hooks[hook.index]) {
+                Some(problem) => report_not_run(self.plan, &hook, &problem, cx),
+                None => self.running = Some(RunningHook::start(self.plan, hook, cx)),
+            }
         }
         self.running.is_some()
     }

@@ -9,6 +9,8 @@ use rtf_model::{EventKind, Source, TestId};
 
 use rtf_plan::plan::{HostPlan, ProbePlans, ProcessPlan, SuitePlan};
 
+use crate::fixture_values::FixtureValues;
+
 pub use crate::control::{Stop, StopLevel};
 pub use rtf_process::probe::ProbeSelection;
 pub use rtf_process::task::{HostId, ProcessEvent};
@@ -92,11 +94,14 @@ pub struct StartRequest {
 pub(super) fn environment(
     suite: &SuitePlan,
     own: &[(String, String)],
-    kind: &str,
-    name: &str,
+    (kind, name): (&str, &str),
+    values: &FixtureValues,
 ) -> Vec<(String, String)> {
     let owner = (OWNER_VARIABLE.to_owned(), format!("{kind} {}/{name}", suite.name));
-    suite.env.iter().chain(own).cloned().chain([owner]).collect()
+    let mut env: Vec<_> = suite.env.iter().chain(own).cloned().collect();
+    values.extend_env(&mut env);
+    env.push(owner);
+    env
 }
 
 /// A program to start.
@@ -160,6 +165,8 @@ pub enum Effect {
     SetDeadline(Deadline, Duration),
     /// Clear a deadline.
     ClearDeadline(Deadline),
+    /// Keep these values of fixtures for hooks that the guard runs.
+    KeepValues(FixtureValues),
     /// Report an event.
     Emit(EventKind),
     /// The suite has finished. The last effect.

@@ -18,11 +18,14 @@ pub struct LogWatch {
     awaited: Vec<Regex>,
     forbidden: Vec<Regex>,
     forbidden_line: Option<String>,
+    /// The values that no line has provided yet; the first group of the pattern is the value.
+    values: Vec<(String, Regex)>,
+    found: Vec<(String, String)>,
 }
 
 impl LogWatch {
-    pub fn new(awaited: Vec<Regex>, forbidden: Vec<Regex>) -> Self {
-        Self { awaited, forbidden, ..Self::default() }
+    pub fn new(awaited: Vec<Regex>, forbidden: Vec<Regex>, values: Vec<(String, Regex)>) -> Self {
+        Self { awaited, forbidden, values, ..Self::default() }
     }
 
     pub fn push(&mut self, bytes: &[u8]) {
@@ -39,6 +42,12 @@ impl LogWatch {
         let line = String::from_utf8_lossy(&line);
         let line = line.trim_end_matches(['\n', '\r']);
         self.awaited.retain(|pattern| !pattern.is_match(line));
+        self.values.retain(|(name, pattern)| {
+            let group = pattern.captures(line).and_then(|groups| groups.get(1));
+            let value = group.map(|group| group.as_str()).filter(|value| !value.is_empty());
+            self.found.extend(value.map(|value| (name.clone(), value.to_owned())));
+            value.is_none()
+        });
         if self.forbidden_line.is_none()
             && self.forbidden.iter().any(|pattern| pattern.is_match(line))
         {
@@ -57,6 +66,16 @@ impl LogWatch {
     /// An awaited pattern that has not matched yet.
     pub fn missing(&self) -> Option<&Regex> {
         self.awaited.first()
+    }
+
+    /// The values found since the last call.
+    pub fn take_values(&mut self) -> Vec<(String, String)> {
+        std::mem::take(&mut self.found)
+    }
+
+    /// The pattern of a value that no line has provided yet.
+    pub fn pattern_of(&self, name: &str) -> Option<&Regex> {
+        self.values.iter().find(|(known, _)| known == name).map(|(_, pattern)| pattern)
     }
 
     /// The first line that matched a forbidden pattern, once.
@@ -79,7 +98,7 @@ mod tests {
     #[test]
     fn patterns_match_lines_that_arrive_in_pieces() {
         let ready = Regex::new("^READY$").unwrap();
-        let mut watch = LogWatch::new(vec![ready], vec![Regex::new("FATAL").unwrap()]);
+        let mut watch = LogWatch::new(vec![ready], vec![Regex::new("FATAL").unwrap()], Vec::new());
         watch.push(b"REA");
         assert!(!watch.has_seen_awaited());
         watch.push(b"DY\r\nno FAT");
@@ -88,5 +107,16 @@ mod tests {
         watch.push(b"AL: motor\n");
         assert_eq!(watch.take_forbidden().as_deref(), Some("no FATAL: motor"));
         assert_eq!(watch.tail(), ["READY", "no FATAL: motor"]);
+    }
+
+    #[test]
+    fn the_first_line_that_matches_provides_a_value() {
+        let pattern = Regex::new("port (\\d*)").unwrap();
+        let mut watch = LogWatch::new(Vec::new(), Vec::new(), vec![("port".to_owned(), pattern)]);
+        watch.push(b"port \nport 40");
+        assert_eq!(watch.take_values(), []);
+        watch.push(b"123\nport 5\n");
+        assert_eq!(watch.take_values(), [("port".to_owned(), "40123".to_owned())]);
+        assert!(watch.pattern_of("port").is_none());
     }
 }

@@ -12,6 +12,7 @@ mod host_replies;
 mod io;
 mod judge;
 mod kill_escalation;
+mod line_buffer;
 mod log_watch;
 mod output_capture;
 mod suite;

@@ -93,7 +93,7 @@ impl SuiteMachine<'_> {
         // The check also holds for tests that wait until fixtures are notified.
         self.is_checked = self.scheduler.any_awaiting_notification();
         self.hooks.on_test_start();
-        cx.push(Effect::SpawnAhead(self.scheduler.hosts_ahead()));
+        cx.push(Effect::SpawnAhead(self.scheduler.hosts_ahead(cx.values())));
     }
 
     /// Triggers the `end` hooks, once; true if one of them runs now.

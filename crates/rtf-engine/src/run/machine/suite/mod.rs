@@ -22,6 +22,7 @@ use super::fixture::FixtureFailure;
 use super::fixture_graph::FixtureGraph;
 use super::hook_queue::HookQueue;
 use super::io::{Deadline, Effect, HostId, Input, ProcessEvent};
+use crate::fixture_values::FixtureValues;
 use crate::run::FailLimit;
 use fixture_examinations::Examinations;
 use rtf_plan::plan::{Preparation, SuitePlan};
@@ -50,6 +51,7 @@ pub struct SuiteMachine<'p> {
     is_started: bool,
     is_finished: bool,
     last_host: u64,
+    values: FixtureValues,
     #[cfg(debug_assertions)]
     invariant: deadline_invariant::DeadlineInvariant,
 }
@@ -73,6 +75,7 @@ impl<'p> SuiteMachine<'p> {
             is_started: false,
             is_finished: false,
             last_host: 0,
+            values: FixtureValues::new(plan),
             #[cfg(debug_assertions)]
             invariant: deadline_invariant::DeadlineInvariant::default(),
         }
@@ -89,7 +92,8 @@ impl<'p> SuiteMachine<'p> {
         #[cfg(debug_assertions)]
         let begin = self.invariant.begin(&input, effects);
         let mut last_host = self.last_host;
-        let mut cx = Context::new(now, effects, &mut last_host);
+        let mut values = std::mem::take(&mut self.values);
+        let mut cx = Context::new(now, effects, &mut last_host, &mut values);
         match input {
             Input::Start => self.start(&mut cx),
             Input::Host(host, input) => self.on_host_input(host, input, &mut cx),
@@ -102,7 +106,7 @@ impl<'p> SuiteMachine<'p> {
         self.end_if_abandoned(&mut cx);
         self.judge_tests(&mut cx);
         self.advance(&mut cx);
-        self.last_host = last_host;
+        (self.last_host, self.values) = (last_host, values);
         #[cfg(debug_assertions)]
         self.invariant.check(&effects[begin..], self.is_started && !self.is_finished);
     }

@@ -12,6 +12,7 @@ use rtf_model::{StopCause, TestId, Verdict};
 use super::active_test::{ActiveTest, AttemptNumber};
 use super::shared_host::SharedHost;
 use super::soak::Soak;
+use crate::fixture_values::FixtureValues;
 use crate::run::machine::context::Context;
 use crate::run::machine::io::{HostId, StartRequest};
 use crate::run::machine::test::host::host_start;
@@ -250,7 +251,7 @@ impl<'p> Scheduler<'p> {
     }
 
     /// The hosts of the next attempts: further repetitions, then tests that have not begun.
-    pub fn hosts_ahead(&self) -> Vec<StartRequest> {
+    pub fn hosts_ahead(&self, values: &FixtureValues) -> Vec<StartRequest> {
         if self.active.iter().any(|active| self.successor(active.plan, active.number).is_some()) {
             // The next test uses the shared host.
             return Vec::new();
@@ -266,7 +267,7 @@ impl<'p> Scheduler<'p> {
         let all = begun.chain(others.map(|plan| (plan, plan.settings.repetitions)));
         let next = all
             .flat_map(|(plan, times)| std::iter::repeat_n(plan, HOSTS_AHEAD.min(times as usize)));
-        next.take(HOSTS_AHEAD).map(|plan| host_start(self.suite, plan)).collect()
+        next.take(HOSTS_AHEAD).map(|plan| host_start(self.suite, plan, values)).collect()
     }
 
     /// Tests that have not begun, or have attempts left.

@@ -25,8 +25,8 @@ pub(super) struct SharedHost<'p> {
     assigned: Option<(HostId, TestId, AttemptNumber)>,
     /// The host has begun the assigned test, which is being started.
     begun: Option<HostId>,
-    /// It has no test; it served this one last.
-    idle: Option<(HostId, &'p TestPlan)>,
+    /// It has no test; it served this one last, with the fixtures' values of this version.
+    idle: Option<(HostId, &'p TestPlan, u64)>,
     /// It was killed this many times and has not ended.
     killed: Option<(HostId, u32)>,
 }
@@ -97,7 +97,7 @@ impl<'p> Scheduler<'p> {
             return false;
         }
         match assigned {
-            None => self.shared_host.idle = Some((run.host(), plan)),
+            None => self.shared_host.idle = Some((run.host(), plan, cx.values().version())),
             Some((host, test, number)) if self.next_due() == Some((test, number)) => {
                 self.shared_host.begun = Some(host);
                 self.begin_next();
@@ -120,8 +120,12 @@ impl<'p> Scheduler<'p> {
         }
         match self.shared_host.idle.take() {
             None => HostChoice::New,
-            Some((host, previous)) if can_share(previous, plan) => HostChoice::Idle(host),
-            Some((host, _)) => {
+            Some((host, previous, values))
+                if can_share(previous, plan) && values == cx.values().version() =>
+            {
+                HostChoice::Idle(host)
+            }
+            Some((host, ..)) => {
                 self.kill_shared_host(host, 1, cx);
                 HostChoice::New
             }
@@ -147,7 +151,7 @@ impl<'p> Scheduler<'p> {
 
     /// Kills the idle host; true once there is none.
     pub(super) fn stop_shared_host(&mut self, cx: &mut Context<'_>) -> bool {
-        if let Some((host, _)) = self.shared_host.idle.take() {
+        if let Some((host, ..)) = self.shared_host.idle.take() {
             self.kill_shared_host(host, 1, cx);
         }
         self.shared_host.killed.is_none()
@@ -165,7 +169,7 @@ impl SuiteMachine<'_> {
         let shared = &mut self.scheduler.shared_host;
         if shared.killed.take_if(|(killed, _)| *killed == host).is_some() {
             cx.clear(Deadline::SharedHost);
-        } else if shared.idle.take_if(|(idle, _)| *idle == host).is_some() {
+        } else if shared.idle.take_if(|(idle, ..)| *idle == host).is_some() {
             self.warn_host_exited(status, cx);
         }
     }

@@ -4,6 +4,7 @@ use rtf_model::Source;
 use rtf_model::protocol::{Plugin, Request};
 
 use super::{AttemptState, TestRun};
+use crate::fixture_values::FixtureValues;
 use crate::plugin_request::plugin;
 use crate::run::machine::context::Context;
 use crate::run::machine::io::{Effect, HostId, Program, StartRequest, environment};
@@ -80,8 +81,8 @@ pub(super) fn acquire(
 
 fn spawn(suite: &SuitePlan, plan: &TestPlan, request: TestRequest, cx: &mut Context<'_>) -> HostId {
     let (host, source) = (cx.next_host_id(), Source::Test(plan.id));
-    cx.push(Effect::Spawn { host, source, start: host_start(suite, plan) });
-    let request = Request::RunTest(plugin_of(suite, plan, request));
+    cx.push(Effect::Spawn { host, source, start: host_start(suite, plan, cx.values()) });
+    let request = Request::RunTest(plugin_of(suite, plan, request, cx.values()));
     cx.push(Effect::Send(host, Some(RUN_TEST), request));
     host
 }
@@ -96,16 +97,16 @@ pub fn assign(
     cx: &mut Context<'_>,
 ) -> HostId {
     let (host, source) = (cx.next_host_id(), Source::Test(plan.id));
-    let (request, plugin) = (request_number(host), plugin_of(suite, plan, request));
+    let (request, plugin) = (request_number(host), plugin_of(suite, plan, request, cx.values()));
     cx.push(Effect::Join { host, on, source, request, plugin });
     host
 }
 
 /// How the host of a test is started.
-pub fn host_start(suite: &SuitePlan, plan: &TestPlan) -> StartRequest {
+pub fn host_start(suite: &SuitePlan, plan: &TestPlan, values: &FixtureValues) -> StartRequest {
     StartRequest {
-        what: Program::Host(plan.plugin.host.clone()),
-        env: environment(suite, &plan.env, "test", &plan.name),
+        what: Program::Host(values.in_host(&plan.plugin.host)),
+        env: environment(suite, &plan.env, ("test", &plan.name), values),
         folder: suite.folder.clone(),
     }
 }
@@ -114,13 +115,20 @@ fn request_number(host: HostId) -> u64 {
     RUN_TEST + host.0
 }
 
-fn plugin_of(suite: &SuitePlan, plan: &TestPlan, request: TestRequest) -> Plugin {
-    Plugin {
+fn plugin_of(
+    suite: &SuitePlan,
+    plan: &TestPlan,
+    request: TestRequest,
+    values: &FixtureValues,
+) -> Plugin {
+    let mut plugin = Plugin {
         is_last: request.is_last,
         // The task of the process fills in the marker.
         end_marker: plan.settings.shared.then(String::new),
         parameters: plan.parameters.clone(),
         cases: plan.cases.selectors.clone(),
         ..plugin(suite, &plan.name, &plan.plugin, request.repetition)
-    }
+    };
+    values.extend_request(&mut plugin);
+    plugin
 }

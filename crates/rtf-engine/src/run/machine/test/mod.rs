@@ -144,6 +144,7 @@ impl<'p> TestRun<'p> {
             ProcessEvent::Throttled => self.pause_stopwatch(true),
             ProcessEvent::Resumed => self.pause_stopwatch(false),
             ProcessEvent::NotStarted(_)
+            | ProcessEvent::ValueRead { .. }
             | ProcessEvent::ProbesPassed
             | ProcessEvent::ProbePending(_)
             | ProcessEvent::ProbeFailed(_)

@@ -13,7 +13,8 @@ fn plan() -> SuitePlan {
     let mut plan = suite(1, 2);
     let probe =
         Probe { kind: ProbeKind::Tcp("robot:5000".to_owned()), every: SECOND, timeout: SECOND };
-    let attached = ProbePlans { ready: vec![probe.clone()], alive: vec![probe] };
+    let attached =
+        ProbePlans { ready: vec![probe.clone()], alive: vec![probe], values: Vec::new() };
     plan.fixtures[0].body = FixtureBody::Attached(Arc::new(attached));
     plan.fixtures[0].restart_delay = SECOND;
     plan

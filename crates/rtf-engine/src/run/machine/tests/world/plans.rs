@@ -23,6 +23,7 @@ pub fn suite(fixtures: usize, tests: usize) -> SuitePlan {
         fixtures: (0..fixtures).map(fixture).collect(),
         hooks: Vec::new(),
         tests: (0..tests).map(test).collect(),
+        refers_to_values: false,
     }
 }
 
@@ -56,6 +57,7 @@ fn fixture(index: usize) -> FixturePlan {
         restarts: 1,
         restart_delay: Duration::ZERO,
         check_every: None,
+        provides: Vec::new(),
     }
 }
 

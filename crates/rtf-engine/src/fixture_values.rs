@@ -1,0 +1,283 @@
+//! The values that the fixtures of a suite have provided: how they reach tests, hooks and
+//! other fixtures, and how secrets are kept out of events.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use rtf_model::protocol::{FixtureValue, Plugin};
+use rtf_model::{EventKind, FixtureProvided, value_text};
+use rtf_plan::plan::{FixtureBody, HookBody, HookPlan, HostPlan, SuitePlan};
+use rtf_plan::suite::fixture_reference;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::plan_texts::Substitution;
+
+/// The values that fixtures have provided; those of a restarted fixture replace the old ones.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FixtureValues {
+    values: Vec<ProvidedValue>,
+    /// Increases with each change.
+    version: u64,
+    /// Whether texts of the plan refer to values.
+    expands: bool,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct ProvidedValue {
+    /// `simulator.port`.
+    name: String,
+    /// The index of the fixture in its suite.
+    fixture: usize,
+    variable: String,
+    value: Value,
+    text: String,
+    is_secret: bool,
+}
+
+impl FixtureValues {
+    /// Creates the store of a suite.
+    pub fn new(suite: &SuitePlan) -> Self {
+        Self { expands: suite.refers_to_values, ..Self::default() }
+    }
+
+    /// Stores a value of a fixture.
+    pub fn set(&mut self, fixture: usize, names: (&str, &str), value: Value, is_secret: bool) {
+        let name = format!("{}.{}", names.0, names.1);
+        let variable = FixtureProvided::variable(names.0, names.1);
+        let text = value_text(&value).into_owned();
+        self.values.retain(|known| known.name != name);
+        self.values.push(ProvidedValue { name, fixture, variable, value, text, is_secret });
+        self.version += 1;
+    }
+
+    /// A number that differs after each change.
+    pub fn version(&self) -> u64 {
+        self.version
+    }
+
+    /// Returns the values that a fixture can use: of those that it depends on, directly or
+    /// indirectly.
+    pub fn of_dependencies(&self, suite: &SuitePlan, fixture: usize) -> Self {
+        if self.values.is_empty() {
+            return self.clone();
+        }
+        let mut depends = vec![false; suite.fixtures.len()];
+        let mut open = suite.fixtures[fixture].depends.clone();
+        while let Some(index) = open.pop() {
+            if !std::mem::replace(&mut depends[index], true) {
+                open.extend(&suite.fixtures[index].depends);
+            }
+        }
+        let mut values = self.clone();
+        values.values.retain(|value| depends[value.fixture]);
+        values
+    }
+
+    /// Adds the values to an environment, and replaces references in it.
+    pub fn extend_env(&self, env: &mut Vec<(String, String)>) {
+        if self.expands {
+            self.env(env);
+        }
+        let variables = self.values.iter();
+        env.extend(variables.map(|value| (value.variable.clone(), value.text.clone())));
+    }
+
+    /// Adds the values to a request, and replaces references in it.
+    pub fn extend_request(&self, request: &mut Plugin) {
+        if self.expands {
+            self.text(&mut request.param);
+            self.texts(&mut request.args);
+        }
+        request.fixture_values = self.values.iter().map(ProvidedValue::of_protocol).collect();
+    }
+
+    /// Returns a host whose environment has all references replaced.
+    pub fn in_host(&self, host: &Arc<HostPlan>) -> Arc<HostPlan> {
+        let mut host = Arc::clone(host);
+        if self.expands && host.env.iter().any(|(_, value)| self.is_in(value)) {
+            self.env(&mut Arc::make_mut(&mut host).env);
+        }
+        host
+    }
+
+    /// Replaces the references in a command.
+    pub fn in_command(&self, command: &[String]) -> Vec<String> {
+        let mut command = command.to_vec();
+        if self.expands {
+            self.texts(&mut command);
+        }
+        command
+    }
+
+    /// Returns the plan of a fixture with all references replaced.
+    pub fn in_fixture<'p>(&self, body: &'p FixtureBody) -> Cow<'p, FixtureBody> {
+        if !self.expands {
+            return Cow::Borrowed(body);
+        }
+        let mut body = body.clone();
+        self.fixture(&mut body);
+        Cow::Owned(body)
+    }
+
+    /// Why a hook cannot run: it refers to a value that was never provided.
+    pub fn missing_in(&self, plan: &HookPlan) -> Option<String> {
+        let env = plan.env.iter().map(|(_, value)| value);
+        let body: Vec<&String> = match &plan.body {
+            HookBody::Plugin(plugin) => plugin.args.iter().chain([&plugin.param]).collect(),
+            HookBody::Command(command) => command.iter().collect(),
+        };
+        self.missing(env.chain(body))
+    }
+
+    /// Describes the first of the references that has no value.
+    pub fn missing<'t>(&self, texts: impl Iterator<Item = &'t String>) -> Option<String> {
+        if !self.expands {
+            return None;
+        }
+        let mut names = texts.flat_map(|text| fixture_reference::names(text));
+        let name = names.find(|name| self.get(name).is_none())?;
+        Some(format!("it needs `${{fixture:{name}}}`, which was not provided"))
+    }
+
+    fn get(&self, name: &str) -> Option<&ProvidedValue> {
+        self.values.iter().find(|value| value.name == name)
+    }
+
+    fn secrets(&self) -> impl Iterator<Item = &str> {
+        self.values.iter().filter(|value| value.is_secret).map(|value| value.text.as_str())
+    }
+
+    /// Whether a value is a secret.
+    pub fn has_secrets(&self) -> bool {
+        self.values.iter().any(|value| value.is_secret)
+    }
+
+    /// Replaces all secrets in the texts of an event.
+    pub fn mask(&self, kind: EventKind) -> EventKind {
+        if !self.has_secrets() {
+            return kind;
+        }
+        // The journal's format has all texts of every event.
+        let Ok(mut event) = serde_json::to_value(&kind) else { return kind };
+        self.mask_value(&mut event);
+        serde_json::from_value(event).unwrap_or(kind)
+    }
+
+    fn mask_value(&self, value: &mut Value) {
+        match value {
+            Value::String(text) => *text = self.mask_text(std::mem::take(text)),
+            Value::Array(items) => items.iter_mut().for_each(|item| self.mask_value(item)),
+            Value::Object(fields) => fields.values_mut().for_each(|field| self.mask_value(field)),
+            Value::Null | Value::Bool(_) | Value::Number(_) => {}
+        }
+    }
+
+    /// Replaces all secrets in a text.
+    pub fn mask_text(&self, mut text: String) -> String {
+        for secret in self.secrets().filter(|secret| !secret.is_empty()) {
+            if text.contains(secret) {
+                text = text.replace(secret, FixtureProvided::SECRET);
+            }
+        }
+        text
+    }
+
+    /// The length of the longest end of `bytes` with which a secret may begin: the rest of
+    /// the secret may come with the next bytes.
+    pub fn secret_start_len(&self, bytes: &[u8]) -> usize {
+        let start_len = |secret: &[u8]| {
+            let complete = find_last(bytes, secret).map_or(0, |start| start + secret.len());
+            let rest = &bytes[complete..];
+            let longest = rest.len().min(secret.len().saturating_sub(1));
+            (1..=longest).rev().find(|len| rest.ends_with(&secret[..*len])).unwrap_or(0)
+        };
+        self.secrets().map(|secret| start_len(secret.as_bytes())).max().unwrap_or(0)
+    }
+
+    /// The length of the longest begin of `bytes` with which a secret may end.
+    pub fn secret_end_len(&self, bytes: &[u8]) -> usize {
+        let end_len = |secret: &[u8]| {
+            let longest = bytes.len().min(secret.len().saturating_sub(1));
+            let end = |len: &usize| bytes.starts_with(&secret[secret.len() - len..]);
+            (1..=longest).rev().find(end).unwrap_or(0)
+        };
+        self.secrets().map(|secret| end_len(secret.as_bytes())).max().unwrap_or(0)
+    }
+}
+
+impl ProvidedValue {
+    fn of_protocol(&self) -> FixtureValue {
+        FixtureValue { name: self.name.clone(), value: self.value.clone() }
+    }
+}
+
+impl Substitution for FixtureValues {
+    fn is_in(&self, text: &str) -> bool {
+        fixture_reference::mentions(text)
+    }
+
+    fn expand(&self, text: &str) -> String {
+        fixture_reference::expand(text, |name| Some(Cow::Borrowed(self.get(name)?.text.as_str())))
+    }
+}
+
+fn find_last(bytes: &[u8], pattern: &[u8]) -> Option<usize> {
+    bytes.windows(pattern.len().max(1)).rposition(|window| window == pattern)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(secret: &str) -> FixtureValues {
+        let mut values = FixtureValues { expands: true, ..FixtureValues::default() };
+        values.set(0, ("sim", "port"), 40123.into(), false);
+        values.set(0, ("sim", "token"), secret.into(), true);
+        values
+    }
+
+    #[test]
+    fn a_secret_is_replaced_in_every_text_of_an_event() {
+        let fixture = rtf_model::FixtureId(0);
+        let log_tail = vec!["token abcabd".to_owned(), "40123".to_owned()];
+        let reason = "abcabd was refused".to_owned();
+        let masked =
+            values("abcabd").mask(EventKind::FixtureCollapsed { fixture, reason, log_tail });
+        let log_tail = vec!["token ***".to_owned(), "40123".to_owned()];
+        let reason = "*** was refused".to_owned();
+        assert_eq!(masked, EventKind::FixtureCollapsed { fixture, reason, log_tail });
+    }
+
+    #[test]
+    fn a_secret_that_is_cut_is_recognised_at_both_ends() {
+        let values = values("abcabd");
+        for (bytes, start, end) in [
+            ("x", 0, 0),
+            ("xa", 1, 0),
+            ("xabcab", 5, 0),
+            ("abcabd", 0, 0),
+            ("abcabdab", 2, 0),
+            ("bd!", 0, 2),
+            ("dx", 0, 1),
+        ] {
+            assert_eq!(values.secret_start_len(bytes.as_bytes()), start, "{bytes}");
+            assert_eq!(values.secret_end_len(bytes.as_bytes()), end, "{bytes}");
+        }
+    }
+
+    #[test]
+    fn values_of_a_restarted_fixture_replace_the_old_ones() {
+        let mut values = values("abcabd");
+        let before = values.version();
+        values.set(0, ("sim", "port"), 40124.into(), false);
+        assert_ne!(values.version(), before);
+        assert_eq!(values.expand("${fixture:sim.port}"), "40124");
+        let mut env = vec![("AT".to_owned(), "tcp:${fixture:sim.port}".to_owned())];
+        values.extend_env(&mut env);
+        let found: Vec<_> = env.iter().map(|(n, v)| format!("{n}={v}")).collect();
+        let expected =
+            ["AT=tcp:40124", "RTF_FIXTURE_SIM_TOKEN=abcabd", "RTF_FIXTURE_SIM_PORT=40124"];
+        assert_eq!(found, expected);
+    }
+}

@@ -1,0 +1,146 @@
+//! `${fixture:name.value}`: a reference to a value of a fixture.
+//!
+//! The planner checks references, because only it knows all fixtures. `rtf-engine` replaces
+//! them whenever a process starts.
+
+use rtf_model::Diagnostic;
+
+use super::reader::ElementReader;
+use super::reference::position;
+use super::{Span, Spanned};
+use crate::placeholder::{Segment, segments};
+
+const OPEN: &str = "${fixture:";
+
+/// A reference to a value of a fixture.
+#[derive(Clone, Debug)]
+pub struct FixtureReference {
+    /// The name of the fixture.
+    pub fixture: String,
+    /// The name of the value.
+    pub value: String,
+    /// Its position.
+    pub span: Span,
+    /// The element that contains it.
+    pub user: ReferenceUser,
+}
+
+/// The references of a suite.
+#[derive(Clone, Debug, Default)]
+pub struct FixtureReferences {
+    /// The well-formed references.
+    pub found: Vec<FixtureReference>,
+    /// Whether a text contains one, or an escaped one.
+    pub any: bool,
+}
+
+/// The element that contains a reference.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ReferenceUser {
+    /// The suite itself, whose settings also apply to its fixtures.
+    #[default]
+    Suite,
+    /// A fixture, by its index in the file.
+    Fixture(usize),
+    /// A test or a hook.
+    TestOrHook,
+}
+
+/// Checks whether a text refers to a value of a fixture, or escapes such a reference.
+#[must_use]
+pub fn mentions(text: &str) -> bool {
+    text.contains(OPEN)
+}
+
+/// Replaces each reference by the result of `value`, which gets its name, `simulator.port`.
+/// A reference without a result is kept.
+pub fn expand<'v>(text: &str, value: impl Fn(&str) -> Option<std::borrow::Cow<'v, str>>) -> String {
+    let mut expanded = String::with_capacity(text.len());
+    for segment in segments(text, OPEN) {
+        match segment {
+            Segment::Text(text) => expanded += text,
+            Segment::Placeholder(name, start) => match value(name) {
+                Some(value) => expanded += &value,
+                None => expanded += &text[start..start + OPEN.len() + name.len() + 1],
+            },
+            Segment::Unclosed(start) => expanded += &text[start..],
+        }
+    }
+    expanded
+}
+
+/// Returns the names of all references of a text: `simulator.port`.
+pub fn names(text: &str) -> impl Iterator<Item = &str> {
+    let names = segments(text, OPEN).into_iter().filter_map(|segment| match segment {
+        Segment::Placeholder(name, _) => Some(name),
+        Segment::Text(_) | Segment::Unclosed(_) => None,
+    });
+    names.collect::<Vec<_>>().into_iter()
+}
+
+/// Records the references of a value and reports malformed ones.
+pub(super) fn check(reader: &mut ElementReader<'_>, what: &str, value: &Spanned<String>) {
+    if !mentions(&value.value) {
+        return;
+    }
+    reader.fixture_references.any = true;
+    for segment in segments(&value.value, OPEN) {
+        match segment {
+            Segment::Text(_) => {}
+            Segment::Unclosed(start) => {
+                let span = position(reader, value, start..start + OPEN.len());
+                let message = format!("`{OPEN}` in `{what}` is not closed");
+                let problem = Diagnostic::error("invalid-fixture-value", message)
+                    .label(reader.source.label(span, "a `}` is missing after it"))
+                    .hint(format!("`${OPEN}` stands for these characters"));
+                reader.report(problem);
+            }
+            Segment::Placeholder(name, start) => {
+                let span = position(reader, value, start..start + OPEN.len() + name.len() + 1);
+                record(reader, name, span);
+            }
+        }
+    }
+}
+
+fn record(reader: &mut ElementReader<'_>, name: &str, span: Span) {
+    let user = reader.user;
+    let problem = match name.rsplit_once('.') {
+        Some((fixture, value)) if user != ReferenceUser::Suite => {
+            let (fixture, value) = (fixture.to_owned(), value.to_owned());
+            let reference = FixtureReference { fixture, value, span, user };
+            return reader.fixture_references.found.push(reference);
+        }
+        Some(_) => {
+            let message = "a suite's own settings cannot use the value of a fixture: they also \
+                           apply to its fixtures";
+            Diagnostic::error("invalid-fixture-value", message)
+                .hint("write it in the tests and hooks that need it")
+        }
+        None => {
+            let message = format!("`{name}` names no value of a fixture");
+            Diagnostic::error("invalid-fixture-value", message)
+                .hint(format!("write `{OPEN}NAME.VALUE}}`"))
+        }
+    };
+    let label = reader.source.label(span, "");
+    reader.report(problem.label(label));
+}
+
+#[cfg(test)]
+mod tests {
+    use std::borrow::Cow;
+
+    use super::*;
+
+    #[test]
+    fn known_values_are_replaced_and_the_rest_is_kept() {
+        let value = |name: &str| (name == "sim.port").then_some(Cow::Borrowed("40123"));
+        let filled = |text: &str| expand(text, value);
+        assert_eq!(filled("tcp:${fixture:sim.port}!"), "tcp:40123!");
+        assert_eq!(filled("${fixture:sim.pid} ${port:a}"), "${fixture:sim.pid} ${port:a}");
+        assert_eq!(filled("$${fixture:sim.port}"), "${fixture:sim.port}");
+        assert_eq!(filled("${fixture:sim.port"), "${fixture:sim.port");
+        assert_eq!(names("${fixture:a.b}-${fixture:c.d.e}").collect::<Vec<_>>(), ["a.b", "c.d.e"]);
+    }
+}

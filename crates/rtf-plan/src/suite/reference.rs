@@ -1,0 +1,43 @@
+//! References in the values of a suite: `${port:name}` and `${fixture:name.value}`.
+
+use std::ops::Range;
+
+use super::reader::ElementReader;
+use super::{Span, Spanned, fixture_reference, port_reference};
+
+/// Records the references of a value and reports invalid ones. Returns whether all are valid.
+pub(super) fn check(reader: &mut ElementReader<'_>, what: &str, value: &Spanned<String>) -> bool {
+    let before = reader.problems.len();
+    port_reference::check(reader, what, value);
+    fixture_reference::check(reader, what, value);
+    reader.problems.len() == before
+}
+
+/// Replaces each reference by a number, to check the syntax of the rest.
+pub(super) fn example(text: &str) -> String {
+    let example = port_reference::expand(text, |_| "1".to_owned());
+    fixture_reference::expand(&example, |_| Some("1".into()))
+}
+
+/// Checks whether a text contains a reference.
+pub(super) fn is_in(text: &str) -> bool {
+    port_reference::mentions(text) || fixture_reference::mentions(text)
+}
+
+/// Returns the position of a part of a value, or of the whole value if entities
+/// or line breaks shift the part.
+pub(super) fn position(
+    reader: &ElementReader<'_>,
+    value: &Spanned<String>,
+    part: Range<usize>,
+) -> Span {
+    let raw = reader.source.text().get(value.span.range()).unwrap_or_default();
+    let lead = raw.len() - raw.trim_start().len();
+    if raw == value.value {
+        value.span.part(part)
+    } else if raw.trim() == value.value {
+        value.span.part(part.start + lead..part.end + lead)
+    } else {
+        value.span
+    }
+}
