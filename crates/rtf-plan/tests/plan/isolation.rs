@@ -99,9 +99,9 @@ fn invalid_ports_are_reported_with_their_positions() {
     invalid-port: `` is not the name of a port
       4:23 ${port:}
       note: a name starts with a letter, followed by letters, digits, `-` and `_`: at most 32 characters
-    invalid-value: `log` cannot contain a `${port:…}`: `at ${port:a-b}`
+    invalid-value: `log` cannot contain `${port:…}` or `${fixture:…}`: `at ${port:a-b}`
       4:46 at ${port:a-b}
-      hint: write a pattern for the number: `\d+`
+      hint: write a pattern for the value: `\d+`
     invalid-value: `tcp` is not a host and a port: `${port:x}`
       4:75 ${port:x}
       hint: write it like `127.0.0.1:5000`

@@ -5,6 +5,7 @@
 mod bench;
 mod clock;
 mod depends;
+mod fixture_values;
 mod hooks;
 mod inputs;
 mod isolation;

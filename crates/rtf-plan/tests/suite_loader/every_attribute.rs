@@ -4,8 +4,9 @@ use std::time::Duration;
 
 use rtf_model::{Trigger, Verdict};
 use rtf_plan::suite::{
-    AfterCollapse, ClockSource, DeclaredLimits, DeclaredProbe, DeclaredProbeKind, FixtureKind,
-    HookKind, Leaks, MatrixDimension, MiddlewareProbe,
+    AfterCollapse, ClockSource, DeclaredLimits, DeclaredProbe, DeclaredProbeKind,
+    DeclaredValueSource, FixtureKind, HookKind, Leaks, MatrixDimension, MiddlewareProbe,
+    ReferenceUser,
 };
 
 use crate::file;
@@ -138,6 +139,21 @@ fn every_part_of_a_process_fixture_is_read() {
     );
     assert_eq!(process.probes.ready[0].every, Some(Duration::from_millis(50)));
     assert_eq!(process.probes.ready[0].timeout, Some(Duration::from_millis(500)));
+    let provides = &fixture.provides;
+    let names: Vec<_> = provides.iter().map(|it| (it.name.value.as_str(), it.secret)).collect();
+    assert_eq!(names, [("port", false), ("pid", false), ("token", true)]);
+    let DeclaredValueSource::Log(pattern) = &provides[0].source else { panic!("a log") };
+    assert_eq!(pattern.as_str(), "listening on port (\\d+)");
+    let DeclaredValueSource::File(path) = &provides[1].source else { panic!("a file") };
+    assert_eq!(path, "run/sim.pid");
+    let DeclaredValueSource::Command(words) = &provides[2].source else { panic!("a command") };
+    assert_eq!(words.value, ["python3", "arm_client.py", "token"]);
+    assert!(matches!(suite.fixtures[1].provides[0].source, DeclaredValueSource::Plugin));
+    let references = &suite.fixture_references.found;
+    let users: Vec<_> =
+        references.iter().map(|it| (it.fixture.as_str(), it.value.as_str(), it.user)).collect();
+    let by_driver = ("sim", "port", ReferenceUser::Fixture(1));
+    assert_eq!(users, [by_driver, ("sim", "port", ReferenceUser::TestOrHook)]);
     assert_eq!(suite.fixtures[0].depends, None);
     assert_eq!(suite.fixtures[0].restart_delay, Some(Duration::from_millis(500)));
     assert_eq!(suite.fixtures[1].depends.as_ref().unwrap()[0].value, "sim");
@@ -164,6 +180,6 @@ fn every_part_of_a_hook_is_read() {
     let HookKind::Plugin(plugin) = &park.body else { panic!("a plug-in") };
     assert_eq!((plugin.name.value.as_str(), plugin.param.as_str()), ("Park.lua", "--slow"));
     let HookKind::Command(command) = &suite.hooks[1].body else { panic!("a command") };
-    assert_eq!(command.value, ["python3", "park.py", "--fast"]);
+    assert_eq!(command.value, ["python3", "park.py", "--fast", "--port", "${fixture:sim.port}"]);
     assert_eq!((suite.hooks[1].timeout, suite.hooks[1].name.is_none()), (None, true));
 }
