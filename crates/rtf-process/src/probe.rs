@@ -193,6 +193,8 @@ impl Prober {
                 let shown = shown(command);
                 match timeout(probe.timeout, read).await {
                     Ok(Ok((ExitStatus::Code(0), text))) => text,
+                    // The command could not write the rest.
+                    Ok(Ok((_, text))) if text.len() as u64 > MAX_VALUE_BYTES / 2 => text,
                     Ok(Ok((status, _))) => return Err(format!("`{shown}` ended with {status}")),
                     Ok(Err(error)) => return Err(format!("`{shown}` cannot run: {error}")),
                     Err(_) => {

@@ -30,6 +30,7 @@ mod cpp_fixture;
 mod damaged_journals;
 mod doctor;
 mod documented;
+mod fixture_values;
 mod forked_children;
 mod forked_hosts;
 mod guard;
