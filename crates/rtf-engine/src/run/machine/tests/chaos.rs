@@ -33,7 +33,7 @@ fn phase(step: u8) -> Phase {
     }
 }
 
-/// A failure, or the start or end of a case.
+/// A failure, a value, or the start or end of a case.
 fn report(choice: u8) -> Notification {
     let number = u32::from(choice);
     match choice / 16 % 4 {
@@ -42,6 +42,10 @@ fn report(choice: u8) -> Notification {
             let parent = (choice > 128).then_some(CaseId(1));
             let (parameters, location) = (Vec::new(), None);
             Notification::CaseStarted(CaseStart { case, name, parent, parameters, location })
+        }
+        2 => {
+            let name = if choice > 128 { "port" } else { "pid" }.to_owned();
+            Notification::Provided { name, value: number.into() }
         }
         3 => {
             let case = CaseId(1 + number / 128);
