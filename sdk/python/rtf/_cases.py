@@ -79,8 +79,8 @@ class Cases:
         case = self.innermost() or self._innermost_of_run
         return None if case is None else case.number
 
-    def _is_forked(self) -> bool:
-        """Whether this is a forked child: the runner accepts no cases from it."""
+    def is_forked(self) -> bool:
+        """Whether this is a forked child: the runner accepts no cases and values from it."""
         return os.getpid() != self._process
 
     def path_of(self, name: str) -> str:
@@ -90,14 +90,14 @@ class Cases:
 
     def plan(self, names: list[str]) -> None:
         """Announce cases."""
-        if not self._is_forked():
+        if not self.is_forked():
             for first in range(0, len(names), _NAMES_IN_LINE):
                 self._notify("cases-planned", {"names": names[first : first + _NAMES_IN_LINE]})
 
     def start(self, name: str, parameters: dict[str, object]) -> OpenCase:
         """Open a case in the innermost one of this thread."""
         outer, path = self.innermost(), self.path_of(name)
-        if self._is_forked():
+        if self.is_forked():
             case = OpenCase(self, outer, path, self.current())
         else:
             place = _location.caller()
@@ -120,7 +120,7 @@ class Cases:
     def finish(self, case: OpenCase) -> None:
         """Close a case and send its end."""
         self._close(case)
-        if self._is_forked() or self._is_abandoned:
+        if self.is_forked() or self._is_abandoned:
             return
         fields: dict[str, object] = {"case": case.number}
         if case.skip_reason is not None:

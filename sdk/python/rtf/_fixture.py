@@ -45,6 +45,23 @@ class FixtureManager(Plugin):
     def tearDown(self) -> None:
         """Stop the fixture, also after a failed `setup`."""
 
+    def provide(self, name: str, value: object) -> None:
+        """Provide a value for tests, hooks and dependent fixtures: in `setup`, once per name.
+
+        `value` is any value that `json` can encode, except `None`. The others read it with
+        `fixture_value`, and from the environment.
+        """
+        # `python3 -m rtf.host` imports this module while the working directory is searched.
+        import json  # noqa: PLC0415
+
+        if value is None:
+            raise TypeError(f"the value of `{name}` is None")
+        try:
+            json.dumps(value, allow_nan=False)
+        except (TypeError, ValueError) as problem:
+            raise TypeError(f"the value of `{name}` is not JSON: {problem}") from None
+        _session.current().provide(name, value)
+
     def collapsed(self, reason: object) -> None:
         """Report from any thread that the fixture collapsed."""
         _session.current().notify("collapsed", {"reason": str(reason)})

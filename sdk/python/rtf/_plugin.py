@@ -11,7 +11,7 @@ from rtf._stop import AssertionEnded, Interrupted
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Callable, NoReturn
+    from typing import Any, Callable, NoReturn
 
 _POLL_SECONDS = 0.01
 
@@ -38,6 +38,16 @@ class Plugin:
     def repetition(self) -> int:
         """The present repetition, from 1."""
         return _session.current().task.repetition
+
+    def fixture_value(self, name: str) -> Any:
+        """Return a value that a fixture provided: `simulator.port`; an unknown name is an error.
+
+        Tests and hooks can read the values of all fixtures of their suite, a fixture those of
+        the fixtures that it depends on.
+        """
+        session = _session.current()
+        problem = f'there is no fixture value "{name}"; there are'
+        return session.value_of(session.task.fixture_values, name, problem)
 
     def report(self, text: object) -> None:
         """Report information; it does not change the verdict."""

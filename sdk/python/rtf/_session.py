@@ -18,7 +18,7 @@ from rtf._stop import AssertionEnded
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Protocol
+    from typing import Protocol, TypeVar
 
     from rtf._sampling import Notify, Signal
     from rtf._task import Task
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
         def __call__(self, phase: str, *, held: bool = False) -> None:
             """Announce it."""
+
+    _Value = TypeVar("_Value")
 
 
 class RequestState:
@@ -182,6 +184,19 @@ class Session:
         """Announce those of the cases that are selected."""
         self._require_setup_or_run("cases are planned in `setup` and `run` only")
         self.cases.plan([name for name in names if self.task.selects(name)])
+
+    def value_of(self, values: dict[str, _Value], name: str, problem: str) -> _Value:
+        """Return a named value. For an unknown name, report `problem` and the known names."""
+        if name not in values:
+            text = f"{problem} {', '.join(values) or 'none'}"
+            self.error(text)
+            raise AssertionEnded(text)
+        return values[name]
+
+    def provide(self, name: str, value: object) -> None:
+        """Send a value of a fixture. A forked child sends none, like a case."""
+        if not self.cases.is_forked():
+            self.notify("provided", {"name": name, "value": value})
 
     def _require_setup_or_run(self, text: str) -> None:
         if self.phase not in {"setup", "run"}:

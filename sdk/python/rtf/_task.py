@@ -26,6 +26,8 @@ class Task:
         self.end_marker = _text_of(params, "end_marker", "")
         parameters = _objects_of(params, "parameters")
         self.parameters = {_text_of(one, "name"): _text_of(one, "value") for one in parameters}
+        values = _objects_of(params, "fixture_values")
+        self.fixture_values = {_text_of(one, "name"): _value_of(one, "value") for one in values}
         self.selectors = [Selector(one) for one in _objects_of(params, "cases")]
 
     def selects(self, path: str) -> bool:
@@ -57,6 +59,13 @@ def _objects_of(params: dict[str, object], name: str) -> list[dict[str, object]]
     value = params.get(name, [])
     if not isinstance(value, list) or not all(isinstance(one, dict) for one in value):
         raise TypeError(f"`{name}` is not a list of objects")
+    return value
+
+
+def _value_of(params: dict[str, object], name: str) -> object:
+    value = params.get(name)
+    if value is None:
+        raise TypeError(f"`{name}` is missing or null")
     return value
 
 

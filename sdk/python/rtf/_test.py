@@ -64,11 +64,9 @@ class TestCase(Plugin):
 
     def parameter(self, name: str) -> str:
         """Return the test's value of a matrix; an unknown name is an error."""
-        known = _session.current().task.parameters
-        if name not in known:
-            has = ", ".join(known) or "none"
-            self.error(f'there is no parameter "{name}"; this test has {has}')
-        return known[name]
+        session = _session.current()
+        problem = f'there is no parameter "{name}"; this test has'
+        return session.value_of(session.task.parameters, name, problem)
 
     def sample(  # noqa: PLR0913, PLR0917 - the arguments of `measure`, and the time
         self,

@@ -61,12 +61,12 @@ module RTF
       nil
     end
 
-    private
-
-    # Whether this is a forked child: the runner accepts no cases from it.
+    # Whether this is a forked child: the runner accepts no cases and values from it.
     def forked?
       Process.pid != @process
     end
+
+    private
 
     def run_selected(name, path, parameters, &body)
       opened = start(name, path, parameters)

@@ -1,5 +1,6 @@
 # frozen_string_literal: true
 
+require "rtf/json_value"
 require "rtf/plugin"
 
 module RTF
@@ -21,6 +22,17 @@ module RTF
     # Called after a test with its verdict: `passed`, `failed`, `error`, `crashed`, …
     # Reports, measurements and attachments of this method belong to that test.
     def test_finished(_test, _verdict, _reason); end
+
+    # Provides a value for tests, hooks and dependent fixtures: in `setup`, once per name.
+    #
+    # `value` is any value that `json` can encode, except nil. The others read it with
+    # `fixture_value`, and from the environment.
+    def provide(name, value)
+      problem = value.nil? ? "nil" : JsonValue.problem(value)
+      raise TypeError, "the value of `#{name}` is #{problem}" if problem
+
+      Session.current.provide(Text.utf8(name), value)
+    end
 
     # Reports from any thread that the fixture collapsed.
     def collapsed(reason)

@@ -48,6 +48,15 @@ module RTF
       Session.current.task.repetition
     end
 
+    # A value that a fixture provided: `simulator.port`; an unknown name is an error. Tests and
+    # hooks can read the values of all fixtures of their suite, a fixture those of the fixtures
+    # that it depends on.
+    def fixture_value(name)
+      session = Session.current
+      problem = "there is no fixture value \"#{name}\"; there are"
+      session.value_of(session.task.fixture_values, name, problem)
+    end
+
     # Reports information; it does not change the verdict.
     def report(text)
       Session.current.message("report", text)

@@ -108,6 +108,20 @@ module RTF
       @cases.plan(names)
     end
 
+    # The value with this name. For an unknown name, reports `problem` and the known names.
+    def value_of(values, name, problem)
+      values.fetch(name.to_s) do
+        text = "#{problem} #{values.empty? ? "none" : values.keys.join(", ")}"
+        error(text)
+        raise AssertionEnded, text
+      end
+    end
+
+    # Sends a value of a fixture. A forked child sends none, like a case.
+    def provide(name, value)
+      notify("provided", { name: name, value: value }) unless @cases.forked?
+    end
+
     # Sends a measurement, and returns whether it is within its limits.
     def measured(signal, value)
       @request.record("failed") unless signal.accept?(value)

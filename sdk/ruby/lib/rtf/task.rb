@@ -17,7 +17,8 @@ module RTF
       end
     end
 
-    attr_reader :file, :name, :param, :environment, :args, :repetition, :end_marker, :parameters
+    attr_reader :file, :name, :param, :environment, :args, :repetition, :end_marker, :parameters,
+                :fixture_values
 
     # The directory for copies of attached files.
     attr_accessor :attachments_dir
@@ -37,6 +38,7 @@ module RTF
       raise TypeError, "`args` is not a list of texts" unless strings
       raise TypeError, "`repetition` is not a whole number" unless @repetition.is_a?(Integer)
 
+      read_values(params)
       read_cases(params)
     end
 
@@ -51,11 +53,20 @@ module RTF
 
     private
 
-    # Reads the values of a matrix, and the cases that run.
-    def read_cases(params)
+    # Reads the values of a matrix and of fixtures.
+    def read_values(params)
       @parameters = objects(params, "parameters").to_h do |one|
         [text(one, "name"), text(one, "value")]
       end
+      @fixture_values = objects(params, "fixture_values").to_h do |one|
+        raise TypeError, "`value` is missing or null" if one["value"].nil?
+
+        [text(one, "name"), one["value"]]
+      end
+    end
+
+    # Reads which cases run.
+    def read_cases(params)
       @selectors = objects(params, "cases").map do |one|
         next Selector.new(text(one, "equals")) if one.key?("equals")
 

@@ -42,11 +42,9 @@ module RTF
 
     # The test's value of a matrix; an unknown name is an error.
     def parameter(name)
-      known = Session.current.task.parameters
-      known.fetch(name.to_s) do
-        has = known.empty? ? "none" : known.keys.join(", ")
-        error("there is no parameter \"#{name}\"; this test has #{has}")
-      end
+      session = Session.current
+      problem = "there is no parameter \"#{name}\"; this test has"
+      session.value_of(session.task.parameters, name, problem)
     end
 
     # Takes a sample of a signal; outside its limits it is a failure, and the test
