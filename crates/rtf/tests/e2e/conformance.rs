@@ -1,6 +1,8 @@
 //! Every scenario of `conformance/` in every language, with the real hosts.
 
-use std::path::{Path, PathBuf};
+mod suites;
+
+use std::path::PathBuf;
 
 use rtf_model::{
     AttemptRecord, CaseRecord, Event, EventKind, ExitStatus, Record, SuiteId, TestId, TestRecord,
@@ -8,9 +10,10 @@ use rtf_model::{
 };
 use serde_json::{Value, json};
 
+use self::suites::{Plugins, suite};
 use crate::clock::SIMULATOR;
 use crate::host_modes::{FORKED, Mode, PROCESS, SHARED};
-use crate::support::{Folder, Journal, build_ada, build_cpp, nothing_left, root};
+use crate::support::{Folder, Journal, nothing_left, root};
 
 struct Language {
     name: &'static str,
@@ -118,42 +121,16 @@ fn is_excepted(scenario: &str, language: &str) -> bool {
     })
 }
 
-fn plugin(scenario: &str, language: &Language, built: Option<&Path>) -> PathBuf {
-    match built {
-        Some(built) if language.name == "cpp" => built.join(format!("{scenario}.so")),
-        Some(built) => built.join(scenario).join(language.file),
-        None => folder().join("scenarios").join(scenario).join(language.file),
-    }
-}
-
-/// A suite for each scenario: a test that passes, the scenario's test, then one that
-/// must not suffer.
 fn check(language: &Language, mode: Mode) {
-    let Mode { fork, isolation, .. } = mode;
     let temp = Folder::new();
     let scenarios: Vec<String> =
         scenarios().into_iter().filter(|name| !is_excepted(name, language.name)).collect();
-    let built = match language.name {
-        "cpp" => Some(build_cpp(&folder(), "conformance")),
-        "ada" => Some(build_ada(&folder().join("conformance.gpr"), "SCENARIO", &scenarios)),
-        _ => None,
-    };
+    let plugins = Plugins::build(language, &scenarios);
     for scenario in &scenarios {
-        let path = |name: &str| plugin(name, language, built.as_deref());
-        let (test, pass) = (path(scenario), path("pass"));
-        let (kind, shared) = (language.plugin_type, format!("isolation=\"{isolation}\""));
-        let more = attributes(scenario);
-        let (clock, fixture) = clock(scenario);
-        let suite = format!(
-            "<suite name=\"{scenario}\"{clock}>\n  {fixture}<environment>--robot sim</environment>\n  <test type=\"{kind}\" {shared} name=\"before\">{1}</test>\n  <test type=\"{kind}\" {shared} name=\"scenario\" {more}>{0}</test>\n  \
-             <test type=\"{kind}\" {shared} name=\"after\">{1}</test>\n</suite>\n",
-            test.display(),
-            pass.display()
-        );
-        temp.file(&format!("{scenario}.xml"), &suite);
+        temp.file(&format!("{scenario}.xml"), &suite(scenario, &plugins, mode.isolation));
     }
     temp.file("simulator.py", SIMULATOR);
-    let finished = temp.rtf(&["run", "--fork", fork, "."]);
+    let finished = temp.rtf(&["run", "--fork", mode.fork, "."]);
     assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
     let journal = temp.journal();
     let problems: Vec<String> = scenarios
@@ -165,26 +142,6 @@ fn check(language: &Language, mode: Mode) {
         .collect();
     assert!(problems.is_empty(), "{}: \n{}", language.name, problems.join("\n"));
     assert!(nothing_left(&temp), "processes are left");
-}
-
-/// What the suite says of a scenario's test.
-fn attributes(scenario: &str) -> &'static str {
-    match scenario {
-        "hang" | "interrupted-sleep" => r#"timeout="300ms" grace="500ms""#,
-        "context" => r#"param="--joint elbow" repetition="3""#,
-        _ => "",
-    }
-}
-
-/// What else the suite has for a scenario: a clock that is faster than the world.
-fn clock(scenario: &str) -> (&'static str, &'static str) {
-    match scenario {
-        "simulated-time" => (
-            " clock=\"file\"",
-            "<fixture type=\"process\"><command>python3 simulator.py 50</command></fixture>\n  ",
-        ),
-        _ => ("", ""),
-    }
 }
 
 fn check_scenario(
