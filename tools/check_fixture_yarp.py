@@ -64,6 +64,15 @@ def in_parallel(lesson: Lesson) -> None:
     run = lesson.start("left.xml", "in parallel", "--jobs", "2", str(lesson.example / "right.xml"))
     expect("exit code", run.wait(), 0)
     expect("verdicts", run.attempts(), ["passed", "passed"])
+    servers: dict[int, dict[str, object]] = {}
+    for event in run.events("fixture-provided"):
+        servers.setdefault(event["fixture"], {})[event["name"]] = event["value"]
+    spaces = {str(values["namespace"]) for values in servers.values()}
+    expect("private namespaces", len(spaces), 2)
+    for values in servers.values():
+        number = int(str(values["namespace"]).removeprefix("/rtf"))
+        expected = {"host": "127.0.0.1", "port": 10000 + 100 * number, "namespace": f"/rtf{number}"}
+        expect("values of yarpserver", values, expected)
     lesson.nothing_left()
 
 
