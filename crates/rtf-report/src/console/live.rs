@@ -7,7 +7,7 @@ use rtf_model::{
 
 use super::page::ConsoleLines;
 use super::style::{self, BAD, BOLD, DIM, LOUD};
-use super::{ConsoleOptions, Verbosity, hooks, results};
+use super::{ConsoleOptions, Verbosity, fixture_values, hooks, results};
 use crate::explain::{self, Extent, Tone};
 use crate::{ReportError, cause, escape, logs, private_resources, words};
 
@@ -205,7 +205,11 @@ impl Live<'_> {
         let Some(fixture) = self.record.fixture(id) else { return };
         let took = fixture.started.zip(fixture.ready).map(|(start, ready)| ready.since(start));
         let time = words::time(took.unwrap_or_default());
-        page.entry((style::GOOD, "ready"), &time, &self.fixture(id));
+        let mut text = self.fixture(id);
+        if let Some(values) = fixture_values::on_one_line(&fixture.values) {
+            text += &format!("  {}", style::paint(DIM, &values));
+        }
+        page.entry((style::GOOD, "ready"), &time, &text);
     }
 
     fn trouble(&self, page: &mut ConsoleLines, word: &str, id: FixtureId, what: (&str, &[String])) {

@@ -7,6 +7,7 @@
 
 mod case_summary;
 mod failed_tests;
+mod fixture_values;
 mod hooks;
 mod live;
 mod options;

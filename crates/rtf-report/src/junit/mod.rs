@@ -85,6 +85,14 @@ fn properties(junit: &mut TestSuite, record: &Record, suite: &SuiteRecord) {
     for growing in fixtures.iter().chain(&hosts) {
         growing.properties().iter().for_each(|(name, value)| add(name, value));
     }
+    for fixture in suite.fixtures.iter().filter_map(|id| record.fixture(*id)) {
+        for value in &fixture.values {
+            let name = format!("fixture.{}.{}", fixture.plan.name, value.name);
+            // An empty value is listed, too. Parsers read a line break in an attribute as a space.
+            let value = value.text();
+            junit.add_property((escape::line(&name), escape::line(&value)));
+        }
+    }
 }
 
 /// Text that XML can hold and that means no harm: control characters are

@@ -1,11 +1,10 @@
 //! Fixtures in the text report.
 
-use rtf_model::{FixtureRecord, FixtureState};
+use rtf_model::{FixtureProvided, FixtureRecord, FixtureState};
 
 use super::lines::TextLines;
-use crate::explain;
-use crate::growth;
-use crate::words;
+use crate::explain::{self, Tone};
+use crate::{escape, growth, words};
 
 /// Writes a fixture.
 pub(super) fn show(lines: &mut TextLines, fixture: &FixtureRecord) {
@@ -18,6 +17,7 @@ pub(super) fn show(lines: &mut TextLines, fixture: &FixtureRecord) {
     if let Some((start, ready)) = fixture.started.zip(fixture.ready) {
         lines.at(4, &format!("ready after: {}", words::time(ready.since(start))));
     }
+    values(lines, &fixture.values);
     for (at, reason) in &fixture.collapses {
         let label = format!("collapsed at {}", words::time(at.as_duration()));
         lines.fact(4, &label, reason);
@@ -38,6 +38,17 @@ pub(super) fn show(lines: &mut TextLines, fixture: &FixtureRecord) {
     if !fixture.log_tail.is_empty() {
         lines.at(4, "last lines before the last problem:");
         fixture.log_tail.iter().for_each(|line| lines.quoted(6, line));
+    }
+}
+
+/// Writes the values of the last start.
+fn values(lines: &mut TextLines, values: &[FixtureProvided]) {
+    if !values.is_empty() {
+        lines.at(4, "values:");
+    }
+    for value in values {
+        let label = format!("{}: ", escape::line(&value.name));
+        explain::block(Tone::Plain, &value.text(), &label, &mut |_, line| lines.at(6, line));
     }
 }
 

@@ -5,7 +5,9 @@ mod runs;
 use std::collections::{BTreeMap, BTreeSet};
 
 use proptest::prelude::*;
-use rtf_model::{Event, EventKind, Micros, OrderChecker, Record, SuiteRecord, TestId, Verdict};
+use rtf_model::{
+    Event, EventKind, FixtureRecord, Micros, OrderChecker, Record, SuiteRecord, TestId, Verdict,
+};
 use rtf_report::merge::{Header, MergeInput, MergeProblem, attachment_path, merge};
 
 use runs::{PARTS, Run, Suite, Test, Try, suites};
@@ -51,6 +53,17 @@ fn measured(record: &Record) -> BTreeMap<&str, u64> {
     record.suites.iter().map(|suite| (suite.plan.name.as_str(), seen(suite))).collect()
 }
 
+/// The values of each fixture.
+fn values(record: &Record) -> BTreeMap<String, Vec<String>> {
+    let of_fixture = |fixture: &FixtureRecord| {
+        let suite = &record.suites[fixture.plan.suite.index()].plan.name;
+        let values = fixture.values.iter();
+        let values = values.map(|value| format!("{} {}", value.name, value.text()));
+        (format!("{suite}/{}", fixture.plan.name), values.collect())
+    };
+    record.fixtures.iter().map(of_fixture).collect()
+}
+
 proptest! {
     #[test]
     fn the_parts_of_a_run_make_up_the_run(mut suites in suites()) {
@@ -70,6 +83,7 @@ proptest! {
         let collapses = |record: &Record| record.fixtures.iter().map(|fixture| fixture.collapses.len()).sum::<usize>();
         prop_assert_eq!(collapses(&merged), collapses(&whole));
         prop_assert_eq!(measured(&merged), measured(&whole));
+        prop_assert_eq!(values(&merged), values(&whole));
     }
 
     /// Each part may have lost its runner, at any moment, or have fixtures that broke.
@@ -138,6 +152,16 @@ fn a_joined_suite_starts_once_and_its_fixture_in_each_part() {
     let paths: Vec<_> =
         merged.tests.iter().map(|test| test.attempts[0].attachments[0].path.as_str()).collect();
     assert_eq!(paths, ["attachments/part-1/0/1/plot.png", "attachments/part-2/0/1/plot.png"]);
+}
+
+#[test]
+fn a_value_belongs_to_the_same_fixture_in_the_merged_run() {
+    let suites = [single(0), single(1)];
+    let merged = merged((0..2).map(|part| Run::of(&suites, Some(part)).unwrap())).unwrap();
+    let values: Vec<_> = values(&merged).into_iter().collect();
+    let wanted = ["suite-0/fixture-0", "suite-1/fixture-0"]
+        .map(|name| (name.to_owned(), vec![format!("address {name}"), "token ***".to_owned()]));
+    assert_eq!(values, wanted);
 }
 
 #[test]

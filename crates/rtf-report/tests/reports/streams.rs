@@ -41,7 +41,17 @@ fn console() {
 
 #[test]
 fn quiet_console() {
-    for name in ["verdicts", "silent", "collapse-restart", "hooks", "leaked", "prepared", "cases"] {
+    let names = [
+        "verdicts",
+        "silent",
+        "collapse-restart",
+        "hooks",
+        "leaked",
+        "prepared",
+        "cases",
+        "values",
+    ];
+    for name in names {
         insta::assert_snapshot!(format!("quiet-{name}"), plain(name, Verbosity::Quiet));
     }
 }

@@ -2,9 +2,9 @@
 
 use proptest::prelude::*;
 use rtf_model::{
-    Attachment, Event, EventKind, FixtureId, FixturePlanned, HookId, HookPlanned, Manifest,
-    Measurement, Message, MessageKind, Micros, Phase, RunStarted, Source, SuiteId, SuitePlanned,
-    TestFinished, TestId, TestPlanned, Trigger, Usage, Verdict,
+    Attachment, Event, EventKind, FixtureId, FixturePlanned, FixtureProvided, HookId, HookPlanned,
+    Manifest, Measurement, Message, MessageKind, Micros, Phase, RunStarted, Source, SuiteId,
+    SuitePlanned, TestFinished, TestId, TestPlanned, Trigger, Usage, Verdict,
 };
 
 /// What each attempt of a test comes to, whichever part runs it.
@@ -167,14 +167,14 @@ impl Run {
             }));
         }
         let tests = tests.into_iter().map(|(_, test)| test).collect();
-        Planned { id, suite, fixture, hook, test: next, tests }
+        Planned { id, number, suite, fixture, hook, test: next, tests }
     }
 
     fn suite(&mut self, plan: &Planned<'_>) {
         self.push(EventKind::SuiteStarted { suite: plan.id });
         self.tests_served = 0;
         let fixtures = || (plan.fixture..plan.fixture + plan.suite.fixtures).map(FixtureId);
-        fixtures().for_each(|fixture| self.up(fixture, 1));
+        fixtures().for_each(|fixture| self.up(plan, fixture, 1));
         let (mut starts, mut broken) = (1, false);
         for (test, planned) in (plan.test..).map(TestId).zip(&plan.tests) {
             if broken {
@@ -197,7 +197,7 @@ impl Run {
                 self.down(fixture);
                 if !broken {
                     starts += 1;
-                    self.up(fixture, starts);
+                    self.up(plan, fixture, starts);
                 }
             }
         }
@@ -215,8 +215,14 @@ impl Run {
         self.push(EventKind::SuiteFinished { suite: plan.id });
     }
 
-    fn up(&mut self, fixture: FixtureId, attempt: u32) {
+    fn up(&mut self, plan: &Planned<'_>, fixture: FixtureId, attempt: u32) {
         self.push(EventKind::FixtureStarting { fixture, attempt });
+        // In every part the same, although the ids differ.
+        let address = format!("suite-{}/fixture-{}", plan.number, fixture.0 - plan.fixture);
+        for (name, value) in [("address", Some(address.into())), ("token", None)] {
+            let (name, secret) = (name.to_owned(), value.is_none());
+            self.push(EventKind::FixtureProvided(FixtureProvided { fixture, name, value, secret }));
+        }
         self.push(EventKind::FixtureReady { fixture });
     }
 
@@ -301,6 +307,8 @@ impl Run {
 
 struct Planned<'a> {
     id: SuiteId,
+    /// The suite's place in the whole run.
+    number: usize,
     suite: &'a Suite,
     fixture: u32,
     hook: u32,
