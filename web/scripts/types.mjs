@@ -22,6 +22,20 @@ function joinReferences(node) {
     return JSON.parse(JSON.stringify({ ...rest, $ref, properties, required }));
 }
 
+/** A property without keywords is any JSON value; the compiler would make it an object. */
+function typeAnyValues(node) {
+    if (Array.isArray(node)) return node.map(typeAnyValues);
+    if (node === null || typeof node !== 'object') return node;
+    const typed = Object.fromEntries(
+        Object.entries(node).map(([name, value]) => [name, typeAnyValues(value)]),
+    );
+    for (const property of Object.values(typed.properties ?? {})) {
+        const isAny = Object.keys(property).every((keyword) => keyword === 'description');
+        if (isAny) property.tsType = 'unknown';
+    }
+    return typed;
+}
+
 /** The API omits missing values, and never sends null (spec/web.md). */
 function leaveOutNull(node) {
     if (Array.isArray(node)) return node.map(leaveOutNull);
@@ -64,6 +78,8 @@ for (const [name, schema] of [
     ['event', await read('event')],
     ['api', await api()],
 ]) {
-    const types = await compile(joinReferences(schema), name, { additionalProperties: false });
+    const types = await compile(joinReferences(typeAnyValues(schema)), name, {
+        additionalProperties: false,
+    });
     await writeFile(new URL(`${name}.d.ts`, TARGET), types);
 }

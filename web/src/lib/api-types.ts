@@ -13,6 +13,7 @@ export type {
     Measured as MeasurementEntry,
     Printed as OutputEntry,
     Parameter,
+    ProvidedValue,
     Said as MessageEntry,
     Server as ApiRoot,
     Stack as StackEntry,

@@ -9,6 +9,7 @@ export type {
     Diagnostic,
     Event,
     FixturePlanned,
+    FixtureProvided,
     HookPlanned,
     LeakedProcess,
     Measurement,

@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import type { Snapshot } from '../lib/api-types';
 import { emptySnapshot, RunRecord } from '../lib/record/record';
-import { marks, spans } from '../lib/record/fixture';
+import { marks, spans, valueText } from '../lib/record/fixture';
 import { isFlaky } from '../lib/record/test';
 import { names, recordOf, stream } from './streams';
 
@@ -12,6 +12,9 @@ function told(record: RunRecord): string[] {
         `${state} ${green ? 'green' : 'not green'}`,
         ...record.tests.map((each) => `${each.name}: ${record.stateOf(each)}`),
         ...record.suites.flatMap((suite) => record.suiteProblems(suite)),
+        ...record.fixtures.flatMap(({ name, values = [] }) =>
+            values.map((value) => `${name}.${value.name} = ${valueText(value)}`),
+        ),
     ];
 }
 
@@ -72,6 +75,33 @@ test('a fixture that collapses is a lane with its marks', () => {
     ]);
     expect(spans(fixture).every(({ to }) => to !== null)).toBe(true);
     expect(marks(fixture).map(({ kind }) => kind)).toEqual(['collapsed', 'restarted']);
+});
+
+test('a fixture has the values of its last start', () => {
+    const record = new RunRecord();
+    const seen: unknown[] = [];
+    for (const event of stream('values')) {
+        record.apply(event);
+        if (event.type === 'fixture-starting' || event.type === 'fixture-ready')
+            seen.push(record.fixtures[event.fixture]?.values);
+    }
+    const device = { name: 'device', value: '/dev/ttyUSB0' };
+    const token = { name: 'token', secret: true };
+    expect(seen.slice(0, 4)).toEqual([
+        undefined,
+        [{ name: 'port', value: '40123' }, device],
+        undefined,
+        [token],
+    ]);
+    expect(seen.slice(4, 7)).toEqual([
+        undefined,
+        [{ name: 'port', value: '40987' }, device],
+        undefined,
+    ]);
+    const [, arm] = record.fixtures;
+    const texts = arm?.values?.map((each) => valueText(each)) ?? [];
+    expect(texts.slice(0, 2)).toEqual(['***', '[-1.5,2,{"joint":"elbow"}]']);
+    expect(texts.slice(3, 6)).toEqual(['', 'true', '12.5']);
 });
 
 test('a test that passes after a retry is flaky', () => {

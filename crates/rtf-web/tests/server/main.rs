@@ -6,6 +6,7 @@ mod cases;
 mod client;
 mod damaged;
 mod files;
+mod fixture_values;
 mod limits;
 mod reading;
 mod security;

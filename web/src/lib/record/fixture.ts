@@ -1,7 +1,7 @@
 // Applies events to a fixture; its life as spans and marks.
 
-import type { Fixture, Start } from '../api-types';
-import type { Event, FixturePlanned } from '../event';
+import type { Fixture, ProvidedValue, Start } from '../api-types';
+import type { Event, FixturePlanned, FixtureProvided } from '../event';
 
 /** A stretch of a fixture's life; `to` is `null` while it lasts. */
 export interface Span {
@@ -29,7 +29,12 @@ export function applyToFixture(fixture: Fixture, event: Event): void {
     switch (event.type) {
         case 'fixture-starting':
             fixture.starts.push({ number: event.attempt, starting: at });
+            delete fixture.values;
             fixture.state = 'starting';
+            break;
+        case 'fixture-provided':
+            // A new list: components keep the previous one.
+            fixture.values = [...(fixture.values ?? []), provided(event)];
             break;
         case 'fixture-ready':
             if (last !== undefined) last.ready = at;
@@ -57,6 +62,16 @@ export function applyToFixture(fixture: Fixture, event: Event): void {
             fixture.state = 'broken';
             break;
     }
+}
+
+function provided({ name, value, secret }: FixtureProvided): ProvidedValue {
+    return secret === true ? { name, secret } : { name, value };
+}
+
+/** The text of a value: of a string the string, of any other value its compact JSON. */
+export function valueText({ value }: ProvidedValue): string {
+    if (value === undefined) return '***';
+    return typeof value === 'string' ? value : JSON.stringify(value);
 }
 
 /** A fixture's life, for its lane. */

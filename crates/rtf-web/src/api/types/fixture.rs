@@ -1,6 +1,8 @@
 //! Fixtures.
 
-use rtf_model::{FixtureLife, FixtureRecord, FixtureState, LeakedProcess, Message};
+use rtf_model::{
+    FixtureLife, FixtureProvided, FixtureRecord, FixtureState, LeakedProcess, Message,
+};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -22,6 +24,10 @@ pub struct Fixture {
     pub state: &'static str,
     /// Each of its starts, in order.
     pub starts: Vec<Start>,
+    /// The values that it has provided since its last start.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schema(value_type = Vec<ProvidedValue>, required = false)]
+    pub values: Vec<ProvidedValue>,
     /// The first cause, once it broke.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub broken: Option<String>,
@@ -37,6 +43,20 @@ pub struct Fixture {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<model::LeakedProcess>, required = false)]
     pub leaked: Vec<LeakedProcess>,
+}
+
+/// A value that a fixture provides.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct ProvidedValue {
+    /// Its name, unique in the fixture.
+    pub name: String,
+    /// Any JSON value except `null`; a secret has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub value: Option<serde_json::Value>,
+    /// Whether the value is neither stored nor shown.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[schema(required = false)]
+    pub secret: bool,
 }
 
 /// One life of a fixture.
@@ -99,11 +119,19 @@ impl Fixture {
                 FixtureState::Broken => "broken",
             },
             starts: fixture.lives.iter().zip(1..).map(|(life, n)| Start::of(life, n)).collect(),
+            values: fixture.values.iter().map(ProvidedValue::of).collect(),
             broken: fixture.broken.clone(),
             log_tail: fixture.log_tail.clone(),
             messages: fixture.messages.clone(),
             leaked: fixture.leaked.clone(),
         }
+    }
+}
+
+impl ProvidedValue {
+    fn of(provided: &FixtureProvided) -> Self {
+        let FixtureProvided { name, value, secret, .. } = provided.clone();
+        Self { name, value, secret }
     }
 }
 
