@@ -1,10 +1,14 @@
 // Names, messages, output and attachments are always shown as text.
 
 import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
 import { after, before, test } from 'node:test';
 import { Guarded, launch } from './support/browser.mjs';
 import { Bench } from './support/rtf.mjs';
 import { HOSTILE } from './support/suites.mjs';
+
+/** A stored stream of events, with fixtures that provide values. */
+const VALUES = new URL('../../crates/rtf-report/tests/streams/values.jsonl', import.meta.url);
 
 let browser;
 let bench;
@@ -14,6 +18,11 @@ before(async () => {
     browser = await launch();
     bench = await Bench.make();
     await bench.runToEnd(HOSTILE);
+    const lines = (await readFile(VALUES, 'utf8')).trimEnd().split('\n');
+    await bench.journal(
+        'values',
+        lines.map((line) => JSON.parse(line)),
+    );
     const serve = await bench.serve();
     guarded = await Guarded.open(browser, serve.url);
     const [name] = await bench.names();
@@ -86,4 +95,24 @@ test('none of it became a part of the page', async () => {
     assert.equal(await page.locator('script').count(), 1);
     assert.equal(await page.locator('main b, main i, main img').count(), 0);
     assert.equal(await page.locator('[onerror], [onload]').count(), 0);
+});
+
+test('values of fixtures are text, and a secret is labelled', async () => {
+    const { page } = guarded;
+    await page.evaluate(() => (location.hash = '#/runs/values/fixtures/1'));
+    const values = page.getByLabel('Values', { exact: true });
+    await values.waitFor();
+    assert.equal(await values.locator('dt').first().innerText(), 'token');
+    assert.equal(await values.locator('dd').first().innerText(), '*** secret');
+    const texts = await values.locator('code').allInnerTexts();
+    assert.equal(texts.length, 7);
+    assert.equal(texts[1], '[-1.5,2,{"joint":"elbow"}]');
+    assert.equal(
+        texts[2],
+        'Arm 3 <script>alert(1)</script>\nfirmware ⟨ESC⟩[31m7.1⟨ESC⟩[0m & "quotes"\n\n' +
+            "  calibrated with ]]> & 'größe' 🤖 ⟨U+202E⟩gnp.exe",
+    );
+    const isWrapped = await values.evaluate((list) => list.scrollWidth <= list.clientWidth);
+    assert.ok(isWrapped, 'long values are wrapped');
+    assert.equal(await page.locator('script').count(), 1);
 });
