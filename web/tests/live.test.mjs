@@ -70,8 +70,13 @@ test('a run is watched live', async (context) => {
     });
 
     await step('a collapse, the restart and the rerun', async () => {
+        const fixture = await first.tab(page.url().replace(/\/tests\/.*/, '/fixtures/0'));
+        const values = fixture.page.getByLabel('Values', { exact: true });
+        await values.getByText('40001', { exact: true }).waitFor();
         await bench.open('kill');
         await first.see('attempt 2');
+        await values.getByText('40002', { exact: true }).waitFor();
+        await fixture.page.close();
         await first.rowIs('Sweep', 'running');
         await page.getByRole('link', { name: 'collapsed attempt 1' }).click();
         await first.see(/fixture `simulator` collapsed/, '#detail');

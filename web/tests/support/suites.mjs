@@ -6,6 +6,7 @@ export const ARM = `<suite name="arm" tolerate-collapse="true">
   <fixture name="simulator" type="process" restarts="2" restart-delay="100ms">
     <command>python3 -u simulator.py</command>
     <ready log="the simulator is up"/>
+    <provide name="port" log="listening on port (\\d+)"/>
   </fixture>
   <hook name="park" on="collapse end"><command>python3 -u park.py</command></hook>
   <test type="python" name="Sweep" param="sweep" after-collapse="rerun">Step</test>
