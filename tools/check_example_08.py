@@ -42,6 +42,8 @@ def all_tests(run: Run) -> None:
     expect("tests", {event["name"] for event in run.events("test-planned")}, TESTS)
     expect("verdicts", Counter(run.verdicts().values()), {"passed": 5, "failed": 1})
     expect("cases", cases(run), {"passed": 13, "skipped": 2})
+    [port] = run.events("fixture-provided")
+    expect("the port is a value", port["name"], "port")
     expect("measured", sum(1 for _ in run.events("measured")), 13)
     expect_in("quarantined", run.output.read_text())
 

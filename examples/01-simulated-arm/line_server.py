@@ -77,6 +77,12 @@ class LineServer:
         self._selector.register(self._listener, selectors.EVENT_READ)
 
     @property
+    def port(self) -> int:
+        """The TCP port on which it listens."""
+        port: int = self._listener.getsockname()[1]
+        return port
+
+    @property
     def clients(self) -> int:
         """How many clients are connected."""
         return len(self._selector.get_map()) - 1

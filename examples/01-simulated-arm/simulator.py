@@ -157,7 +157,7 @@ def main() -> int:
         type=int,
         default=os.environ.get("ARM_PORT"),
         required="ARM_PORT" not in os.environ,
-        help="TCP port on 127.0.0.1; otherwise the environment's ARM_PORT",
+        help="TCP port on 127.0.0.1, 0 for a free one; otherwise the environment's ARM_PORT",
     )
     port = arguments.parse_args().port
 
@@ -171,7 +171,7 @@ def main() -> int:
     except OSError as problem:
         print(f"simulator: cannot listen on 127.0.0.1:{port}: {problem}", file=sys.stderr)
         return 1
-    print(f"arm with {', '.join(arm.joints)} on 127.0.0.1:{port}", flush=True)
+    print(f"arm with {', '.join(arm.joints)} on 127.0.0.1:{server.port}", flush=True)
 
     heartbeat = time.monotonic() + HEARTBEAT_SECS
     while not asked_to_stop:

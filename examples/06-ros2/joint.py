@@ -6,13 +6,14 @@ Service: `motor` switches it on and off. Parameter: `speed_limit` in rad/s.
 
 from __future__ import annotations
 
-import contextlib
 import os
+import signal
 
 import rclpy
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
-from rclpy.executors import ExternalShutdownException
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool
 
@@ -63,11 +64,18 @@ class Joint(Node):  # type: ignore[misc]  # rclpy has no types
 
 def main() -> None:
     """Run it until it is stopped."""
-    rclpy.init()
+    stops: list[int] = []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda number, _frame: stops.append(number))
+    # With rclpy's handlers, `step` could publish after a signal has shut the context down.
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     node = Joint()
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
     print(f"{node.robot}: joint is ready", flush=True)
-    with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
-        rclpy.spin(node)
+    while not stops:
+        executor.spin_once(timeout_sec=0.1)
+    rclpy.shutdown()
 
 
 if __name__ == "__main__":

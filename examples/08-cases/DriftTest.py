@@ -11,7 +11,7 @@ class DriftTest(rtf.TestCase):
     """The arm's clock should not advance while the arm rests, and does."""
 
     def run(self) -> None:
-        arm = Arm()
+        arm = Arm(int(self.fixture_value("arm.port")))
         before = arm.time()
         self.sleep(0.2)
         self.check(arm.time() == before, "the clock stands still while the arm rests")

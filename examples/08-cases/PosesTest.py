@@ -19,7 +19,7 @@ class PosesTest(rtf.TestCase):
     def setup(self, args: list[str]) -> None:
         if args:
             self.error("the joint and its load are parameters of the matrix")
-        self.arm = Arm()
+        self.arm = Arm(int(self.fixture_value("arm.port")))
         self.joint = self.parameter("joint")
 
     def run(self) -> None:

@@ -83,32 +83,12 @@ fn read_suite(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> DeclaredSui
         fixture_references: super::FixtureReferences::default(),
     };
     for node in root.children().filter(Node::is_element) {
-        match node.tag_name().name() {
-            "description" => {
-                let text = last_text(reader, node, "description");
-                suite.settings.description =
-                    text.value.split_whitespace().collect::<Vec<_>>().join(" ");
-            }
-            "environment" => {
-                let text = last_text(reader, node, "environment");
-                reference::check(reader, "<environment>", &text);
-                suite.settings.environment = text.value;
-            }
-            "fixture" => {
-                reader.user = ReferenceUser::Fixture(suite.fixtures.len());
-                suite.fixtures.extend(fixture::read(reader, node));
-            }
-            "hook" => {
-                reader.user = ReferenceUser::TestOrHook;
-                suite.hooks.extend(hook::read(reader, node));
-            }
-            "test" => {
-                reader.user = ReferenceUser::TestOrHook;
-                suite.tests.extend(test::read(reader, node, defaults));
-            }
-            _ => {}
-        }
-        reader.user = ReferenceUser::Suite;
+        reader.user = match node.tag_name().name() {
+            "fixture" => ReferenceUser::Fixture(suite.fixtures.len()),
+            "hook" | "test" => ReferenceUser::TestOrHook,
+            _ => ReferenceUser::Suite,
+        };
+        read_child(reader, node, &mut suite, defaults);
     }
     suite.isolate.ports = reader.ports.names();
     suite.fixture_references = std::mem::take(&mut reader.fixture_references);
@@ -122,6 +102,31 @@ fn read_suite(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> DeclaredSui
         reader.report(problem);
     }
     suite
+}
+
+/// Reads a child of `<suite>`.
+fn read_child(
+    reader: &mut ElementReader<'_>,
+    node: Node<'_, '_>,
+    suite: &mut DeclaredSuite,
+    defaults: TestDefaults,
+) {
+    match node.tag_name().name() {
+        "description" => {
+            let text = last_text(reader, node, "description");
+            suite.settings.description =
+                text.value.split_whitespace().collect::<Vec<_>>().join(" ");
+        }
+        "environment" => {
+            let text = last_text(reader, node, "environment");
+            reference::check(reader, "<environment>", &text);
+            suite.settings.environment = text.value;
+        }
+        "fixture" => suite.fixtures.extend(fixture::read(reader, node)),
+        "hook" => suite.hooks.extend(hook::read(reader, node)),
+        "test" => suite.tests.extend(test::read(reader, node, defaults)),
+        _ => {}
+    }
 }
 
 fn isolation(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> DeclaredIsolation {
