@@ -156,7 +156,7 @@ impl Cases {
         }
         let attempt = settings.attempt;
         let opened = |case| OpenCase { attempt, case, path, skip_reason: None, has_problem: false };
-        if getpid() != self.process {
+        if self.is_forked_child() {
             self.push(opened(parent.or_else(|| self.main_case())));
             return Ok(true);
         }
@@ -188,7 +188,7 @@ impl Cases {
             return Ok(());
         }
         self.is_abandoned.fetch_or(is_stopping, Ordering::Relaxed);
-        let is_sent = getpid() == self.process && !self.is_abandoned.load(Ordering::Relaxed);
+        let is_sent = !self.is_forked_child() && !self.is_abandoned.load(Ordering::Relaxed);
         if let (Some(case), true) = (closed.case, is_sent) {
             let (outcome, reason) = match (closed.skip_reason, end) {
                 (Some(reason), _) => (Some(Outcome::Skipped), Some(reason)),
@@ -222,7 +222,7 @@ impl Cases {
             return Err(CaseError::PlannedElsewhere);
         }
         names.retain(|name| settings.selects(name));
-        if getpid() != self.process {
+        if self.is_forked_child() {
             return Ok(());
         }
         let mut parts = names.chunks(NAMES_IN_LINE).map(<[String]>::to_vec);
@@ -246,6 +246,12 @@ impl Cases {
         if self.open.load(Ordering::Relaxed) > 0 {
             with_innermost(self.settings().attempt, |open| open.has_problem = true);
         }
+    }
+
+    /// Whether this process was forked by the plug-in: it reports no cases and provides no
+    /// values.
+    pub(crate) fn is_forked_child(&self) -> bool {
+        getpid() != self.process
     }
 
     /// The innermost case of this thread, and the path of a case in it.

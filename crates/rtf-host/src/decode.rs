@@ -20,7 +20,7 @@ pub(crate) enum Incoming {
         /// The request's number.
         id: Option<u64>,
         /// The request.
-        request: Request,
+        request: Box<Request>,
     },
     /// A line that the host cannot carry out.
     Refused {
@@ -36,6 +36,14 @@ impl Incoming {
     pub(crate) fn id(&self) -> Option<u64> {
         match self {
             Self::Request { id, .. } | Self::Refused { id, .. } => *id,
+        }
+    }
+
+    /// The request, unless it is refused.
+    pub(crate) fn request(&self) -> Option<&Request> {
+        match self {
+            Self::Request { request, .. } => Some(request),
+            Self::Refused { .. } => None,
         }
     }
 }
@@ -82,7 +90,7 @@ pub(crate) fn decode(line: &[u8]) -> Incoming {
         unknown => return refused(id, METHOD_NOT_FOUND, format!("unknown method `{unknown}`")),
     };
     match request {
-        Ok(request) => Incoming::Request { id, request },
+        Ok(request) => Incoming::Request { id, request: Box::new(request) },
         Err(error) => {
             refused(id, INVALID_PARAMS, format!("parameters of `{}`: {error}", envelope.method))
         }
@@ -125,7 +133,7 @@ mod tests {
         for request in requests {
             let id = request.is_answered().then_some(7);
             let line = serde_json::to_vec(&RpcMessage::new(id, request.clone())).unwrap();
-            assert_eq!(decode(&line), Incoming::Request { id, request });
+            assert_eq!(decode(&line), Incoming::Request { id, request: Box::new(request) });
         }
     }
 
@@ -144,7 +152,7 @@ mod tests {
             br#"{"jsonrpc":"2.0","id":1,"new":[],"method":"check-fixture","params":{"x":1}}"#;
         assert_eq!(
             decode(line),
-            Incoming::Request { id: Some(1), request: Request::CheckFixture {} }
+            Incoming::Request { id: Some(1), request: Box::new(Request::CheckFixture {}) }
         );
     }
 }

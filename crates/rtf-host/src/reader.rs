@@ -54,20 +54,21 @@ impl Reader {
                 Ok(0) | Err(_) => return None,
                 Ok(_) => {}
             }
-            match decode(self.line.trim_ascii_end()) {
-                Incoming::Request { request: Request::Interrupt { reason, request }, .. } => {
-                    if self.session.request_stop(&reason, request)
+            let incoming = decode(self.line.trim_ascii_end());
+            match incoming.request() {
+                Some(Request::Interrupt { reason, request }) => {
+                    if self.session.request_stop(reason, *request)
                         && let Some(stop) = &self.stopper
                     {
                         stop(&self.session);
                     }
                 }
-                Incoming::Request { request: Request::DumpStack {}, .. } => {
+                Some(Request::DumpStack {}) => {
                     if let Some(dump) = &self.dumper {
                         dump(&self.session);
                     }
                 }
-                incoming => return Some(incoming),
+                _ => return Some(incoming),
             }
         }
     }

@@ -73,7 +73,7 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
                 self.session.refuse(id, error);
                 false
             }
-            Incoming::Request { id, request } => self.carry_out(id, request),
+            Incoming::Request { id, request } => self.carry_out(id, *request),
         }
     }
 

@@ -31,6 +31,15 @@ impl Script {
         });
     }
 
+    fn provide(&self, value: &str) {
+        let (name, value) = value.split_once('=').unwrap();
+        let value = match value {
+            "huge" => "x".repeat(17 * 1024 * 1024).into(),
+            json => serde_json::from_str(json).unwrap(),
+        };
+        self.session.provide(name.to_owned(), value);
+    }
+
     fn act(&self, word: &str) -> Option<StepEnd> {
         let (verb, rest) = word.split_once(':').unwrap_or((word, ""));
         match verb {
@@ -71,11 +80,13 @@ impl Script {
                     .attach(Attachment { name, path, media_type: String::new(), case: None })
                     .unwrap();
             }
+            "provide" => self.provide(rest),
             "fork" => {
-                // SAFETY: the child only takes a sample and ends, in this thread.
+                // SAFETY: the child only sends and ends, in this thread.
                 #[expect(unsafe_code, reason = "what plug-ins do")]
                 if unsafe { libc::fork() } == 0 {
                     self.act("sample:1@7");
+                    self.act("provide:port=1");
                 } else {
                     std::thread::sleep(Duration::from_millis(200));
                 }
@@ -251,7 +262,7 @@ fn samples_come_in_batches_and_before_later_messages() {
 }
 
 #[test]
-fn a_forked_child_sends_only_its_own_samples() {
+fn a_forked_child_sends_only_its_own_samples_and_provides_no_values() {
     let (mut runner, _host) = Runner::start();
     runner.ask("run-test", "report:;sample:1@3,fork;report:");
     let mut times = Vec::new();
@@ -259,12 +270,48 @@ fn a_forked_child_sends_only_its_own_samples() {
         let line: serde_json::Value = serde_json::from_str(&runner.line()).unwrap();
         let points = line["params"]["points"].as_array().cloned().unwrap_or_default();
         times.extend(points.iter().map(|point| point[0].as_f64().unwrap()));
+        assert_ne!(line["method"], "provided", "{line}");
         if !line["id"].is_null() {
             break;
         }
     }
     times.sort_by(f64::total_cmp);
     assert_eq!(times, [3.0, 7.0]);
+}
+
+/// The runner checks names and values: the host sends any.
+#[test]
+fn a_value_is_sent_at_once_and_unchecked() {
+    let (mut runner, _host) = Runner::start();
+    runner.ask("set-up-fixture", "provide:port=40123,report:up,provide:=[null];report:;report:");
+    let mut lines = Vec::new();
+    loop {
+        let mut line: serde_json::Value = serde_json::from_str(&runner.line()).unwrap();
+        if !line["id"].is_null() {
+            break;
+        }
+        lines.push((line["method"].take(), line["params"].take()));
+    }
+    let port = serde_json::json!({"name": "port", "value": 40123});
+    let nameless = serde_json::json!({"name": "", "value": [null]});
+    assert_eq!((&lines[0].0, &lines[0].1), (&"provided".into(), &port));
+    assert_eq!(lines[1].1["text"], "up");
+    assert_eq!((&lines[2].0, &lines[2].1), (&"provided".into(), &nameless));
+    assert_eq!(lines.len(), 3);
+    runner.ask("tear-down-fixture", "");
+    assert_eq!(runner.result(), r#""outcome":"passed""#);
+}
+
+#[test]
+fn a_value_that_is_too_long_for_a_line_is_an_error() {
+    let (mut runner, _host) = Runner::start();
+    runner.ask("set-up-fixture", "provide:image=huge;report:;report:");
+    let line: serde_json::Value = serde_json::from_str(&runner.line()).unwrap();
+    let error = "a value and its name are longer than a line of the protocol";
+    assert_eq!(line["params"]["text"], error);
+    assert_eq!(runner.result(), r#""outcome":"error""#);
+    runner.ask("tear-down-fixture", "");
+    assert_eq!(runner.result(), r#""outcome":"passed""#);
 }
 
 #[test]

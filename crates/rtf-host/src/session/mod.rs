@@ -12,6 +12,7 @@ use std::time::Duration;
 use rtf_model::protocol::{Answer, CHANNEL_VARIABLE, Notification, Reply, RpcError};
 use rtf_model::{Attachment, Location, Measurement, Message, MessageKind, Outcome, Phase};
 use serde::Serialize;
+use serde_json::Value;
 
 use crate::cases::Cases;
 use crate::decode::Incoming;
@@ -191,6 +192,20 @@ impl Session {
     /// Reports that the fixture collapsed.
     pub fn collapsed(&self, reason: &str) {
         self.notify(&Notification::Collapsed { reason: reason.to_owned() });
+    }
+
+    /// Provides a value of the fixture. The runner checks the name and the value. Has no
+    /// effect in a forked child.
+    pub fn provide(&self, name: String, value: Value) {
+        if self.0.cases.is_forked_child() {
+            return;
+        }
+        self.flush();
+        let provided = Notification::Provided { name, value };
+        if !self.0.writer.send(None, &provided) {
+            let text = "a value and its name are longer than a line of the protocol";
+            self.error(text.to_owned(), None);
+        }
     }
 
     /// Sends the stacks that the runner asked for.
