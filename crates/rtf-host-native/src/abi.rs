@@ -33,6 +33,11 @@ pub const RTF_MESSAGE_FAILURE: i32 = 2;
 /// An error: the bench is wrong.
 pub const RTF_MESSAGE_ERROR: i32 = 3;
 
+/// The value of a fixture is the text itself.
+pub const RTF_VALUE_TEXT: i32 = 0;
+/// The text is JSON: a number, `true`, `[1, 2]`, …
+pub const RTF_VALUE_JSON: i32 = 1;
+
 /// A UTF-8 text, not necessarily terminated by zero. Invalid bytes become `U+FFFD`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
@@ -247,6 +252,14 @@ pub struct rtf_host {
     pub skip: unsafe extern "C" fn(context: *mut c_void, reason: rtf_text),
     /// Since 1.3: the test's values of a matrix, `count` of them.
     pub parameters:
+        unsafe extern "C" fn(context: *mut c_void, count: *mut usize) -> *const rtf_parameter,
+    /// Since 1.3: provides a value of the fixture, in its set-up. `kind` is `RTF_VALUE_TEXT`
+    /// or `RTF_VALUE_JSON`.
+    pub provide:
+        unsafe extern "C" fn(context: *mut c_void, name: rtf_text, kind: i32, value: rtf_text),
+    /// Since 1.3: the values that fixtures provided, `count` of them, by name:
+    /// `simulator.port`. A value is its text: JSON, except for a text.
+    pub fixture_values:
         unsafe extern "C" fn(context: *mut c_void, count: *mut usize) -> *const rtf_parameter,
 }
 

@@ -5,13 +5,17 @@ use std::ffi::{CStr, c_char, c_int, c_void};
 use std::time::Duration;
 
 use ::rtf_host::{CaseEnd, Sample, Session};
-use rtf_model::protocol::Plugin;
-use rtf_model::{Attachment, Comparison, Location, Measurement, Message, MessageKind, Parameter};
+use rtf_model::protocol::{FixtureValue, Plugin};
+use rtf_model::{
+    Attachment, Comparison, Location, Measurement, Message, MessageKind, Parameter, value_text,
+};
+use serde_json::Value;
 
 use crate::abi::{
     RTF_ABI_MAJOR, RTF_ABI_MINOR, RTF_DONE, RTF_MESSAGE_CHECK, RTF_MESSAGE_ERROR,
-    RTF_MESSAGE_FAILURE, RTF_MESSAGE_REPORT, rtf_attachment, rtf_case, rtf_comparison, rtf_host,
-    rtf_measurement, rtf_message, rtf_parameter, rtf_sample, rtf_text,
+    RTF_MESSAGE_FAILURE, RTF_MESSAGE_REPORT, RTF_VALUE_JSON, RTF_VALUE_TEXT, rtf_attachment,
+    rtf_case, rtf_comparison, rtf_host, rtf_measurement, rtf_message, rtf_parameter, rtf_sample,
+    rtf_text,
 };
 
 /// The context of the functions: one per plug-in, never freed, because the plug-in's
@@ -22,15 +26,16 @@ struct HostContext {
     plugin: &'static Plugin,
     /// The test's values of a matrix. They refer to `plugin`.
     parameters: Vec<rtf_parameter>,
+    /// The values of fixtures. They refer to leaked texts.
+    fixture_values: Vec<rtf_parameter>,
 }
 
 /// Makes the table for a plug-in.
 pub(crate) fn for_plugin(session: &Session, plugin: &Plugin) -> &'static rtf_host {
     let plugin: &'static Plugin = Box::leak(Box::new(plugin.clone()));
-    let entry =
-        |own: &'static Parameter| rtf_parameter { name: lend(&own.name), value: lend(&own.value) };
-    let parameters = plugin.parameters.iter().map(entry).collect();
-    let context = HostContext { session: session.clone(), plugin, parameters };
+    let parameters = entries(&plugin.parameters);
+    let fixture_values = entries(Vec::leak(fixture_value_texts(plugin)));
+    let context = HostContext { session: session.clone(), plugin, parameters, fixture_values };
     let context = Box::into_raw(Box::new(context)).cast::<c_void>();
     Box::leak(Box::new(rtf_host {
         abi_major: RTF_ABI_MAJOR,
@@ -53,7 +58,24 @@ pub(crate) fn for_plugin(session: &Session, plugin: &Plugin) -> &'static rtf_hos
         plan_cases,
         skip,
         parameters: self::parameters,
+        provide,
+        fixture_values: self::fixture_values,
     }))
+}
+
+fn entries(values: &'static [Parameter]) -> Vec<rtf_parameter> {
+    let entry =
+        |own: &'static Parameter| rtf_parameter { name: lend(&own.name), value: lend(&own.value) };
+    values.iter().map(entry).collect()
+}
+
+fn fixture_value_texts(plugin: &Plugin) -> Vec<Parameter> {
+    let values = plugin.fixture_values.iter();
+    let text = |own: &FixtureValue| Parameter {
+        name: own.name.clone(),
+        value: value_text(&own.value).into_owned(),
+    };
+    values.map(text).collect()
 }
 
 unsafe extern "C" fn message(context: *mut c_void, message: *const rtf_message) {
@@ -129,17 +151,7 @@ unsafe extern "C" fn attach(context: *mut c_void, attachment: *const rtf_attachm
         if let Err(error) =
             session.attach(Attachment { name, path: path.clone(), media_type, case: None })
         {
-            let text = format!("`{path}` cannot be attached: {error}");
-            let kind = MessageKind::Error;
-            let (location, comparison) = (None, None);
-            session.message(Message {
-                kind,
-                text,
-                location,
-                comparison,
-                critical: false,
-                case: None,
-            });
+            report_error(session, format!("`{path}` cannot be attached: {error}"));
         }
     }
 }
@@ -217,11 +229,45 @@ unsafe extern "C" fn skip(context: *mut c_void, reason: rtf_text) {
 
 unsafe extern "C" fn parameters(context: *mut c_void, count: *mut usize) -> *const rtf_parameter {
     // SAFETY: the pointers are valid by spec/plugin-abi.md.
-    unsafe {
-        let parameters = &self::context(context).parameters;
-        *count = parameters.len();
-        parameters.as_ptr()
+    unsafe { list_entries(&self::context(context).parameters, count) }
+}
+
+unsafe extern "C" fn provide(context: *mut c_void, name: rtf_text, kind: i32, value: rtf_text) {
+    // SAFETY: the pointers are valid by spec/plugin-abi.md.
+    let (session, name, value) =
+        unsafe { (&self::context(context).session, text(name), text(value)) };
+    let value = match kind {
+        RTF_VALUE_TEXT => Ok(Value::String(value)),
+        RTF_VALUE_JSON => serde_json::from_str(&value)
+            .map_err(|error| format!("the value of `{name}` is not JSON: {error}")),
+        _ => Err(format!("the value of `{name}` has the unknown kind {kind}")),
+    };
+    match value {
+        Ok(value) => session.provide(name, value),
+        Err(error) => report_error(session, error),
     }
+}
+
+unsafe extern "C" fn fixture_values(
+    context: *mut c_void,
+    count: *mut usize,
+) -> *const rtf_parameter {
+    // SAFETY: the pointers are valid by spec/plugin-abi.md.
+    unsafe { list_entries(&self::context(context).fixture_values, count) }
+}
+
+/// # Safety
+/// `count` is valid.
+unsafe fn list_entries(entries: &[rtf_parameter], count: *mut usize) -> *const rtf_parameter {
+    // SAFETY: the caller's promise.
+    unsafe { *count = entries.len() };
+    entries.as_ptr()
+}
+
+/// Reports an error of a call that the plug-in made.
+fn report_error(session: &Session, text: String) {
+    let (kind, location, comparison) = (MessageKind::Error, None, None);
+    session.message(Message { kind, text, location, comparison, critical: false, case: None });
 }
 
 /// # Safety

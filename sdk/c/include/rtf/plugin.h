@@ -46,6 +46,12 @@
 // An error: the bench is wrong.
 #define RTF_MESSAGE_ERROR 3
 
+// The value of a fixture is the text itself.
+#define RTF_VALUE_TEXT 0
+
+// The text is JSON: a number, `true`, `[1, 2]`, …
+#define RTF_VALUE_JSON 1
+
 // A UTF-8 text, not necessarily terminated by zero. Invalid bytes become `U+FFFD`.
 typedef struct rtf_text {
     // The first byte; may be null if `length` is 0.
@@ -218,6 +224,12 @@ typedef struct rtf_host {
     void (*skip)(void *context, struct rtf_text reason);
     // Since 1.3: the test's values of a matrix, `count` of them.
     const struct rtf_parameter *(*parameters)(void *context, size_t *count);
+    // Since 1.3: provides a value of the fixture, in its set-up. `kind` is `RTF_VALUE_TEXT`
+    // or `RTF_VALUE_JSON`.
+    void (*provide)(void *context, struct rtf_text name, int32_t kind, struct rtf_text value);
+    // Since 1.3: the values that fixtures provided, `count` of them, by name:
+    // `simulator.port`. A value is its text: JSON, except for a text.
+    const struct rtf_parameter *(*fixture_values)(void *context, size_t *count);
 } rtf_host;
 
 // An attempt of a test.

@@ -8,6 +8,7 @@
 
 #include <rtf/Declare.hpp>
 #include <rtf/Plugin.hpp>
+#include <rtf/internal/Values.hpp>
 
 namespace rtf {
 
@@ -59,6 +60,14 @@ public:
     const FixtureEvents *getDispatcher() const { return &events_; }
 
 protected:
+    // Provides a value for tests, hooks and dependent fixtures, in setup: a text, a number, a
+    // bool, or rtf::Json{"[1, 2]"}.
+    template <class T>
+    void provide(std::string_view name, const T &value, Location here = Location::current()) const
+    {
+        internal::provide_value(here, name, value);
+    }
+
     // The same as getDispatcher()->fixtureCollapsed(reason).
     void collapsed(std::string_view reason) const { events_.fixtureCollapsed(reason); }
 

@@ -11,6 +11,7 @@
 
 #include <rtf/Assertions.hpp>
 #include <rtf/internal/Results.hpp>
+#include <rtf/internal/Values.hpp>
 
 namespace rtf {
 
@@ -72,6 +73,13 @@ protected:
 
     // The present repetition, from 1.
     unsigned repetition() const { return internal::host().repetition(internal::host().context); }
+
+    // A value that a fixture provided, as text: fixtureValue("simulator.port"). An unknown
+    // name is an error. A fixture sees the values of the fixtures that it depends on.
+    std::string fixtureValue(std::string_view name, Location here = Location::current()) const
+    {
+        return internal::fixture_value(here, name);
+    }
 
     // Records a number. Outside its limits it is a failure; the step continues. A fixture
     // measures in its testFinished.

@@ -15,6 +15,7 @@
 #include <rtf/Plugin.hpp>
 #include <rtf/internal/Cases.hpp>
 #include <rtf/internal/Sampling.hpp>
+#include <rtf/internal/Values.hpp>
 
 namespace rtf {
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cases, skipping, and a test's values of a matrix.
+// Cases and skipping.
 #ifndef RTF_INTERNAL_CASES_HPP
 #define RTF_INTERNAL_CASES_HPP
 
 #include <cstddef>
 #include <initializer_list>
-#include <map>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -16,17 +15,6 @@
 
 namespace rtf {
 namespace internal {
-
-// The host's table, if it has the functions of version 1.3.
-inline const rtf_host &host_with_cases(Location here)
-{
-    const rtf_host &table = host();
-    if (table.size < offsetof(rtf_host, parameters) + sizeof table.parameters) {
-        error(here, "this rtf is too old for cases: its plug-in interface is 1." +
-                        std::to_string(table.abi_minor));
-    }
-    return table;
-}
 
 // A parameter of a case: its value is a number, a bool or a text.
 struct CaseParameter
@@ -58,7 +46,7 @@ public:
     template <class Body>
     void operator+(Body &&body) const
     {
-        const rtf_host &table = host_with_cases(here_);
+        const rtf_host &table = host_since_1_3(here_, "cases");
         if (!begin(table)) {
             return;
         }
@@ -101,7 +89,7 @@ private:
 
 [[noreturn]] inline void skip(Location here, std::string_view reason)
 {
-    const rtf_host &table = host_with_cases(here);
+    const rtf_host &table = host_since_1_3(here, "cases");
     table.skip(table.context, to_text(reason));
     throw Stop();
 }
@@ -113,37 +101,8 @@ inline void plan_cases(Location here, const std::vector<std::string> &names)
     for (const std::string &name : names) {
         texts.push_back(to_text(name));
     }
-    const rtf_host &table = host_with_cases(here);
+    const rtf_host &table = host_since_1_3(here, "cases");
     table.plan_cases(table.context, texts.data(), texts.size());
-}
-
-inline std::map<std::string, std::string> parameters(Location here)
-{
-    const rtf_host &table = host_with_cases(here);
-    std::size_t count = 0;
-    const rtf_parameter *first = table.parameters(table.context, &count);
-    std::map<std::string, std::string> all;
-    for (std::size_t index = 0; index < count; ++index) {
-        all.emplace(from_text(first[index].name), from_text(first[index].value));
-    }
-    return all;
-}
-
-inline std::string parameter(Location here, std::string_view name)
-{
-    const rtf_host &table = host_with_cases(here);
-    std::size_t count = 0;
-    const rtf_parameter *first = table.parameters(table.context, &count);
-    std::string known;
-    for (std::size_t index = 0; index < count; ++index) {
-        const std::string own = from_text(first[index].name);
-        if (own == name) {
-            return from_text(first[index].value);
-        }
-        known += (index == 0 ? "" : ", ") + own;
-    }
-    error(here, "there is no parameter \"" + std::string(name) + "\"; this test has " +
-                    (count == 0 ? "none" : known));
 }
 
 } // namespace internal

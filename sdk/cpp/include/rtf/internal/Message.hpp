@@ -3,6 +3,8 @@
 #ifndef RTF_INTERNAL_MESSAGE_HPP
 #define RTF_INTERNAL_MESSAGE_HPP
 
+#include <cstddef>
+#include <string>
 #include <string_view>
 
 #include <rtf/internal/Host.hpp>
@@ -72,6 +74,17 @@ inline void require_critical(Location here, bool holds, std::string_view text)
 {
     send(RTF_MESSAGE_ERROR, text, here);
     throw Stop();
+}
+
+// The host's table, if it has the functions of version 1.3.
+inline const rtf_host &host_since_1_3(Location here, std::string_view feature)
+{
+    const rtf_host &table = host();
+    if (table.size < offsetof(rtf_host, fixture_values) + sizeof table.fixture_values) {
+        error(here, "this rtf is too old for " + std::string(feature) +
+                        ": its plug-in interface is 1." + std::to_string(table.abi_minor));
+    }
+    return table;
 }
 
 } // namespace internal
