@@ -145,6 +145,23 @@ function rtf.parameter(name) end
 ---@return table<string, string>
 function rtf.parameters() end
 
+---A string, a number, a boolean, or a table of these. Numbers must be finite. A table is
+---either a list without holes, or has only strings as keys; an empty table is an empty object.
+---@alias rtf.Value string | number | boolean | table<string, rtf.Value> | rtf.Value[]
+
+---Provides a value of the fixture for tests, hooks and dependent fixtures. Allowed in `setup`,
+---once for each name. An integer stays an integer.
+---@param name string
+---@param value rtf.Value
+function rtf.provide(name, value) end
+
+---A value that a fixture provided: `rtf.fixture_value("simulator.port")`. An unknown name is an
+---error. A fixture sees the values of the fixtures that it depends on. A JSON `null` inside a
+---value is `nil`; an integer that Lua cannot represent is a float.
+---@param name string
+---@return rtf.Value
+function rtf.fixture_value(name) end
+
 ---Adds a copy of a complete file to the results. The file may be deleted afterwards.
 ---@param path string
 ---@param name? string The default is the file's name.

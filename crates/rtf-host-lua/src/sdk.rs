@@ -13,6 +13,7 @@ use rtf_model::{Attachment, Comparison, Location, Measurement, Message, MessageK
 use crate::cases;
 use crate::chunk::SdkChunk;
 use crate::clock::Clock;
+use crate::fixture_values;
 
 /// The name in Lua's registry of the value that unwinds a step.
 pub(crate) const STOP: &CStr = c"rtf.stop";
@@ -32,7 +33,7 @@ static PREDECESSOR: SdkChunk = SdkChunk::new(include_str!("../../../sdk/lua/src/
 pub(crate) struct InstalledSdk {
     /// Calls a function of the plug-in and returns how it ended.
     pub(crate) call: Function,
-    /// The host's functions, and the plug-in's name and parameters.
+    /// The host's functions, and the plug-in's name, parameters and values of fixtures.
     host: Table,
 }
 
@@ -89,6 +90,7 @@ fn about(lua: &Lua, plugin: &Plugin) -> mlua::Result<Table> {
     about.set("environment", plugin.environment.as_str())?;
     about.set("repetition", plugin.repetition)?;
     about.set("parameters", cases::parameters(lua, plugin)?)?;
+    about.set("fixture_values", fixture_values::values(lua, plugin)?)?;
     Ok(about)
 }
 
@@ -121,6 +123,7 @@ fn functions(lua: &Lua) -> mlua::Result<Table> {
         Ok(session.wait(duration.min(LONGEST)))
     })?;
     cases::add_functions(lua, &host)?;
+    fixture_values::add_functions(lua, &host)?;
     add(lua, &host, "interrupted", |session, (): ()| Ok(session.interrupted()))?;
     Ok(host)
 }

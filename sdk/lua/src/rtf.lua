@@ -236,17 +236,26 @@ function rtf.plan_cases(names)
   host.plan_cases(planned)
 end
 
-function rtf.parameter(name)
+-- Returns the value of a pair with this name. The error for an unknown name:
+-- there is no <what> "…"; <known_are> a, b
+local function find(values, name, what, known_are)
   local known = {}
-  for index, parameter in ipairs(host.plugin.parameters) do
-    if parameter[1] == name then
-      return parameter[2]
+  for index, pair in ipairs(values) do
+    if pair[1] == name then
+      return pair[2]
     end
-    known[index] = parameter[1]
+    known[index] = pair[1]
   end
   local list = #known > 0 and table.concat(known, ", ") or "none"
-  send("error", ('there is no parameter "%s"; this test has %s'):format(tostring(name), list))
+  local file, line = guard.location(3)
+  local problem = ('there is no %s "%s"; %s %s'):format(what, tostring(name), known_are, list)
+  host.message("error", problem, file, line, nil, false)
   unwind()
+end
+
+function rtf.parameter(name)
+  local value = find(host.plugin.parameters, name, "parameter", "this test has")
+  return value
 end
 
 function rtf.parameters()
@@ -255,6 +264,30 @@ function rtf.parameters()
     all[parameter[1]] = parameter[2]
   end
   return all
+end
+
+function rtf.provide(name, value)
+  local problem = host.provide(tostring(name), value)
+  if problem then
+    error(problem, 2)
+  end
+end
+
+local function copy(value)
+  if type(value) ~= "table" then
+    return value
+  end
+  local copied = {}
+  for key, entry in pairs(value) do
+    copied[key] = copy(entry)
+  end
+  return copied
+end
+
+-- Each call returns a new table, so that a plug-in can change it.
+function rtf.fixture_value(name)
+  local value = find(host.plugin.fixture_values, name, "fixture value", "there are")
+  return copy(value)
 end
 
 function rtf.attach(path, name, media_type)

@@ -67,6 +67,11 @@ impl Host {
             "file": file, "name": "Arm", "param": "--rate 100", "args": ["--rate", "100"],
             "environment": "--robot sim", "repetition": 3, "is_last": method == "run-test",
             "parameters": [{"name": "joint", "value": "3"}, {"name": "side", "value": "left"}],
+            "fixture_values": [
+                {"name": "simulator.port", "value": 40123}, {"name": "simulator.rate", "value": 40.0},
+                {"name": "simulator.model", "value": "Bär"}, {"name": "simulator.ready", "value": false},
+                {"name": "simulator.limits", "value": [-1.5, {"max": 2}, null, []]},
+            ],
         });
         self.send(Some(1), method, params);
         file

@@ -3,6 +3,7 @@
 
 mod cases;
 mod driver;
+mod fixture_values;
 mod fixtures;
 mod loading;
 mod messages;
