@@ -21,6 +21,9 @@ private package RobotTestingFramework.ABI is
    Refused : constant := 1;
    Stopped : constant := 2;
 
+   Value_Text : constant := 0;
+   Value_JSON : constant := 1;
+
    type Message_Kind is (Report, Check, Failure, Error) with Convention => C;
 
    type Text is record
@@ -137,6 +140,10 @@ private package RobotTestingFramework.ABI is
      (Context : Address; Count : not null access Interfaces.C.size_t) return Address
      with Convention => C;
 
+   type Take_Value is access procedure
+     (Context : Address; Name : Text; Kind : Interfaces.Integer_32; Value : Text)
+     with Convention => C;
+
    type Host_Table is record
       Major       : Interfaces.Unsigned_32;
       Minor       : Interfaces.Unsigned_32;
@@ -158,6 +165,8 @@ private package RobotTestingFramework.ABI is
       Plan_Cases  : Take_Texts;
       Skip        : Take_Text;
       Parameters  : Tell_Parameters;
+      Provide     : Take_Value;
+      Values      : Tell_Parameters;
    end record with Convention => C;
 
    type Host_Access is access constant Host_Table with Convention => C;

@@ -64,7 +64,7 @@ package body RobotTestingFramework.Asserter is
    procedure Skip
      (Reason : String; File : String := Source.File; Line : Natural := Source.Line)
    is
-      Table : constant not null ABI.Host_Access := Host.Table_With_Cases (File, Line);
+      Table : constant not null ABI.Host_Access := Host.Table_Since_1_3 ("cases", File, Line);
       Text  : aliased constant String           := Reason;
    begin
       Table.Skip (Table.Context, Host.To_C (Text));

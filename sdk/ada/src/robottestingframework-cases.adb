@@ -69,7 +69,7 @@ package body RobotTestingFramework.Cases is
       File       : String       := Source.File;
       Line       : Natural      := Source.Line)
    is
-      Table : constant not null ABI.Host_Access := Host.Table_With_Cases (File, Line);
+      Table : constant not null ABI.Host_Access := Host.Table_Since_1_3 ("cases", File, Line);
    begin
       if not Starts (Table, Name, Parameters, File, Line) then
          return;
@@ -92,7 +92,7 @@ package body RobotTestingFramework.Cases is
    procedure Plan_Cases
      (Names : Case_Names; File : String := Source.File; Line : Natural := Source.Line)
    is
-      Table     : constant not null ABI.Host_Access := Host.Table_With_Cases (File, Line);
+      Table     : constant not null ABI.Host_Access := Host.Table_Since_1_3 ("cases", File, Line);
       All_Texts : Unbounded_String;
    begin
       for Name of Names loop

@@ -1,6 +1,7 @@
 --  SPDX-License-Identifier: Apache-2.0
 --  Fixtures: they run while tests run, for example a simulator or a driver.
 
+with GNAT.Source_Info;
 private with RobotTestingFramework.Registry;
 
 package RobotTestingFramework.FixtureManager is
@@ -37,6 +38,31 @@ package RobotTestingFramework.FixtureManager is
 
    --  Stops the fixture, also after a failed Setup.
    procedure TearDown (Self : in out FixtureManager) is null;
+
+   package Source renames GNAT.Source_Info;
+
+   --  Provides a value for tests, hooks and dependent fixtures, in Setup.
+   procedure Provide
+     (Name, Value : String; File : String := Source.File; Line : Natural := Source.Line);
+   procedure Provide
+     (Name  : String;
+      Value : Integer;
+      File  : String  := Source.File;
+      Line  : Natural := Source.Line);
+   procedure Provide
+     (Name  : String;
+      Value : Long_Float;
+      File  : String  := Source.File;
+      Line  : Natural := Source.Line);
+   procedure Provide
+     (Name  : String;
+      Value : Boolean;
+      File  : String  := Source.File;
+      Line  : Natural := Source.Line);
+
+   --  Any other value: Provide_JSON ("limits", "[1, 2]").
+   procedure Provide_JSON
+     (Name, Value : String; File : String := Source.File; Line : Natural := Source.Line);
 
    --  Reports from any task that the fixture collapsed.
    procedure Collapsed (Reason : String);

@@ -1,6 +1,8 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 with Ada.Characters.Handling;
+with Ada.Strings.Fixed;
+with Ada.Strings.Maps;
 with Interfaces.C;
 
 package body RobotTestingFramework.Host is
@@ -25,13 +27,13 @@ package body RobotTestingFramework.Host is
       return Found;
    end Table;
 
-   function Table_With_Cases
-     (File : String; Line : Natural) return not null ABI.Host_Access
+   function Table_Since_1_3
+     (Feature : String; File : String; Line : Natural) return not null ABI.Host_Access
    is
       Found : constant not null ABI.Host_Access := Table;
       Minor : constant String                   := Found.Minor'Image;
       Text  : constant String :=
-        "this rtf is too old for cases: its plug-in interface is 1."
+        "this rtf is too old for " & Feature & ": its plug-in interface is 1."
         & Minor (Minor'First + 1 .. Minor'Last);
    begin
       if Found.Size < ABI.Host_Table'Size / System.Storage_Unit then
@@ -39,7 +41,7 @@ package body RobotTestingFramework.Host is
          raise Assertion_Ended with Text;
       end if;
       return Found;
-   end Table_With_Cases;
+   end Table_Since_1_3;
 
    procedure Send
      (Kind       : ABI.Message_Kind;
@@ -77,15 +79,25 @@ package body RobotTestingFramework.Host is
      (Buffer : System.Address; Size : size_t; Format : char_array; Value : double) return int
      with Import, Convention => C_Variadic_3, External_Name => "snprintf";
 
-   function Image (Number : Long_Float) return String is
+   function Printed (Format : String; Number : Long_Float) return String is
       Buffer : String (1 .. 64);
-      Length : int;
+      Length : constant int :=
+        Print (Buffer'Address, Buffer'Length, To_C (Format), double (Number));
    begin
-      if Number /= Number then
-         return "nan";
-      end if;
-      Length := Print (Buffer'Address, Buffer'Length, To_C ("%.6g"), double (Number));
       return Ada.Characters.Handling.To_Lower (Buffer (1 .. Natural (Length)));
-   end Image;
+   end Printed;
+
+   function Image (Number : Long_Float) return String is
+     (if Number /= Number then "nan" else Printed ("%.6g", Number));
+
+   function JSON_Image (Number : Long_Float) return String is
+      --  A plug-in may have set a locale with another decimal point.
+      Digits_Only : constant String :=
+        Ada.Strings.Fixed.Translate
+          (Printed ("%.17g", Number), Ada.Strings.Maps.To_Mapping (",", "."));
+   begin
+      return Digits_Only
+        & (if (for some C of Digits_Only => C in '.' | 'e') then "" else ".0");
+   end JSON_Image;
 
 end RobotTestingFramework.Host;

@@ -13,8 +13,8 @@ private package RobotTestingFramework.Host is
    function Table return not null ABI.Host_Access;
 
    --  The same, for the functions of version 1.3: an older rtf is an error.
-   function Table_With_Cases
-     (File : String; Line : Natural) return not null ABI.Host_Access;
+   function Table_Since_1_3
+     (Feature : String; File : String; Line : Natural) return not null ABI.Host_Access;
 
    --  Sends a message; an empty file is an unknown location.
    procedure Send
@@ -31,5 +31,8 @@ private package RobotTestingFramework.Host is
 
    --  A number like C's %.6g, as in all SDKs (see conformance/texts.json).
    function Image (Number : Long_Float) return String;
+
+   --  A finite number in JSON, with all its digits.
+   function JSON_Image (Number : Long_Float) return String;
 
 end RobotTestingFramework.Host;

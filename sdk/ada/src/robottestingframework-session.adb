@@ -24,14 +24,11 @@ package body RobotTestingFramework.Session is
 
    function Parameters return String is (Ask (Host.Table.Param));
 
-   function Parameter_Values
-     (File : String := Source.File; Line : Natural := Source.Line)
-      return Cases.Named_Values
+   function Listed
+     (List : not null ABI.Tell_Parameters; Context : ABI.Address) return Cases.Named_Values
    is
-      Table : constant not null ABI.Host_Access := Host.Table_With_Cases (File, Line);
-      Count : aliased Interfaces.C.size_t       := 0;
-      First : constant ABI.Address              :=
-        Table.Parameters (Table.Context, Count'Access);
+      Count : aliased Interfaces.C.size_t := 0;
+      First : constant ABI.Address        := List (Context, Count'Access);
       Found : array (1 .. Natural (Count)) of ABI.Parameter with Import, Address => First;
    begin
       return Values : Cases.Named_Values (1 .. Natural (Count)) do
@@ -40,14 +37,17 @@ package body RobotTestingFramework.Session is
               (Host.To_Ada (Found (Index).Name), Host.To_Ada (Found (Index).Value));
          end loop;
       end return;
-   end Parameter_Values;
+   end Listed;
 
-   function Parameter
-     (Name : String; File : String := Source.File; Line : Natural := Source.Line)
-      return String
+   --  The error for an unknown name: there is no <What> "..."; <Known_Are> a, b.
+   function Find
+     (Values          : Cases.Named_Values;
+      Name            : String;
+      What, Known_Are : String;
+      File            : String;
+      Line            : Natural) return String
    is
-      Values : constant Cases.Named_Values := Parameter_Values (File, Line);
-      Known  : Unbounded_String;
+      Known : Unbounded_String;
    begin
       for Value of Values loop
          if Value.Name = Name then
@@ -56,9 +56,34 @@ package body RobotTestingFramework.Session is
          Append (Known, (if Length (Known) = 0 then "" else ", ") & Value.Name);
       end loop;
       Asserter.Error
-        ("there is no parameter """ & Name & """; this test has "
+        ("there is no " & What & " """ & Name & """; " & Known_Are & " "
          & (if Values'Length = 0 then "none" else To_String (Known)), File, Line);
-   end Parameter;
+   end Find;
+
+   function Parameter_Values
+     (File : String := Source.File; Line : Natural := Source.Line)
+      return Cases.Named_Values
+   is
+      Table : constant not null ABI.Host_Access := Host.Table_Since_1_3 ("cases", File, Line);
+   begin
+      return Listed (Table.Parameters, Table.Context);
+   end Parameter_Values;
+
+   function Parameter
+     (Name : String; File : String := Source.File; Line : Natural := Source.Line)
+      return String
+   is (Find (Parameter_Values (File, Line), Name, "parameter", "this test has", File, Line));
+
+   function Fixture_Value
+     (Name : String; File : String := Source.File; Line : Natural := Source.Line)
+      return String
+   is
+      Table : constant not null ABI.Host_Access :=
+        Host.Table_Since_1_3 ("values of fixtures", File, Line);
+   begin
+      return Find
+        (Listed (Table.Values, Table.Context), Name, "fixture value", "there are", File, Line);
+   end Fixture_Value;
 
    function Environment return String is (Ask (Host.Table.Environment));
 

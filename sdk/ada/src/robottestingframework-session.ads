@@ -27,6 +27,13 @@ package RobotTestingFramework.Session is
      (File : String := Source.File; Line : Natural := Source.Line)
       return Cases.Named_Values;
 
+   --  A value that a fixture provided, as text: Fixture_Value ("simulator.port"). An
+   --  unknown name is an error. A fixture sees the values of the fixtures that it depends
+   --  on.
+   function Fixture_Value
+     (Name : String; File : String := Source.File; Line : Natural := Source.Line)
+      return String;
+
    --  The suite's environment string.
    function Environment return String;
 

@@ -188,6 +188,43 @@ fn a_fixture_with_a_task() {
     assert!(nothing_left(&folder));
 }
 
+/// Numbers keep all their digits; a number that JSON does not have is an error.
+#[test]
+fn a_fixture_provides_values() {
+    let folder = Folder::new();
+    let file = plugin("fixture").display().to_string();
+    folder.file("Passes.lua", "function TestCase.run() end\n");
+    let suite = |param: &str| {
+        format!("<suite><fixture param='{param}'>{file}</fixture><test>Passes.lua</test></suite>")
+    };
+    folder.file("s.xml", &suite(""));
+    folder.file("t.xml", &suite("infinite"));
+    folder.file("u.xml", &suite("no JSON"));
+    assert_eq!(folder.rtf(&["run", "s.xml", "t.xml", "u.xml"]).code, Some(1));
+    let record = folder.journal().record;
+    let values = record.fixtures[0].values.iter();
+    let values: Vec<_> =
+        values.map(|own| (own.name.as_str(), own.value.clone().expect("a value"))).collect();
+    let expected = [
+        ("model", serde_json::json!("arm \"1\"")),
+        ("joints", serde_json::json!(-6)),
+        ("gain", serde_json::json!(40.0)),
+        ("rate", serde_json::json!(0.1)),
+        ("least", serde_json::json!(f64::MIN_POSITIVE)),
+        ("ready", serde_json::json!(false)),
+        ("limits", serde_json::json!([-1.5, 1.5])),
+    ];
+    assert_eq!(values, expected);
+    let errors = [
+        "the value of `bad` is not a finite number",
+        "the value of `bad` is not JSON: EOF while parsing a list at line 1 column 5",
+    ];
+    for (fixture, error) in record.fixtures[1..].iter().zip(errors) {
+        let texts: Vec<&str> = fixture.messages.iter().map(|own| own.text.as_str()).collect();
+        assert!(texts.contains(&error), "{texts:?}");
+    }
+}
+
 /// A fixture is no test, and a plug-in that cannot be made says why.
 #[test]
 fn plug_ins_that_are_none() {
