@@ -1,0 +1,3 @@
+function TestCase.run()
+  rtf.provide("port", 40123)
+end
