@@ -37,9 +37,7 @@ fn values_and_their_sources_are_planned() {
     assert_eq!(suite.tests[0].plugin.args[0], "${fixture:arm.left.device}");
 }
 
-#[test]
-fn wrong_declarations_are_reported_with_their_positions() {
-    let text = "<suite>\n\
+const WRONG_DECLARATIONS: &str = "<suite>\n\
         <fixture type='process' name='sim'><command>./sim</command>\n\
         <provide log='(x)'/><provide name='9'/><provide name='a'/>\n\
         <provide name='b' log='port \\d+'/><provide name='c' log='('/>\n\
@@ -52,7 +50,10 @@ fn wrong_declarations_are_reported_with_their_positions() {
         <fixture name='x-y'>F.lua<provide name='z'/></fixture>\n\
         <fixture name='x'>F.lua<provide name='y-z'/></fixture>\n\
         <test>A.lua<env name='RTF_FIXTURE_SIM_PORT' value='1'/></test></suite>";
-    assert_snapshot!(bench().shown(text), @r#"
+
+#[test]
+fn wrong_declarations_are_reported_with_their_positions() {
+    assert_snapshot!(bench().shown(WRONG_DECLARATIONS), @r#"
     incomplete: `<provide>` needs the attribute `name`
       3:1 <provide
     incomplete: `<provide>` needs one of the attributes `log`, `file` and `command`
