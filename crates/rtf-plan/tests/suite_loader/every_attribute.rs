@@ -139,6 +139,15 @@ fn every_part_of_a_process_fixture_is_read() {
     );
     assert_eq!(process.probes.ready[0].every, Some(Duration::from_millis(50)));
     assert_eq!(process.probes.ready[0].timeout, Some(Duration::from_millis(500)));
+    assert_eq!(suite.fixtures[0].depends, None);
+    assert_eq!(suite.fixtures[0].restart_delay, Some(Duration::from_millis(500)));
+    assert_eq!(suite.fixtures[1].depends.as_ref().unwrap()[0].value, "sim");
+}
+
+#[test]
+fn every_value_of_a_fixture_is_read() {
+    let (suite, _) = file("valid/everything.xml");
+    let fixture = &suite.fixtures[0];
     let provides = &fixture.provides;
     let names: Vec<_> = provides.iter().map(|it| (it.name.value.as_str(), it.secret)).collect();
     assert_eq!(names, [("port", false), ("pid", false), ("token", true)]);
@@ -154,9 +163,6 @@ fn every_part_of_a_process_fixture_is_read() {
         references.iter().map(|it| (it.fixture.as_str(), it.value.as_str(), it.user)).collect();
     let by_driver = ("sim", "port", ReferenceUser::Fixture(1));
     assert_eq!(users, [by_driver, ("sim", "port", ReferenceUser::TestOrHook)]);
-    assert_eq!(suite.fixtures[0].depends, None);
-    assert_eq!(suite.fixtures[0].restart_delay, Some(Duration::from_millis(500)));
-    assert_eq!(suite.fixtures[1].depends.as_ref().unwrap()[0].value, "sim");
 }
 
 #[test]
