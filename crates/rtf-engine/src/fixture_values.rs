@@ -17,6 +17,8 @@ use crate::plan_texts::Substitution;
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FixtureValues {
     values: Vec<ProvidedValue>,
+    /// Secrets that a restarted fixture has replaced: they are still not shown.
+    former_secrets: Vec<String>,
     /// Increases with each change.
     version: u64,
     /// Whether texts of the plan refer to values.
@@ -46,7 +48,10 @@ impl FixtureValues {
         let name = format!("{}.{}", names.0, names.1);
         let variable = FixtureProvided::variable(names.0, names.1);
         let text = value_text(&value).into_owned();
-        self.values.retain(|known| known.name != name);
+        if let Some(index) = self.values.iter().position(|known| known.name == name) {
+            let former = self.values.remove(index);
+            self.former_secrets.extend(former.is_secret.then_some(former.text));
+        }
         self.values.push(ProvidedValue { name, fixture, variable, value, text, is_secret });
         self.version += 1;
     }
@@ -145,12 +150,13 @@ impl FixtureValues {
     }
 
     fn secrets(&self) -> impl Iterator<Item = &str> {
-        self.values.iter().filter(|value| value.is_secret).map(|value| value.text.as_str())
+        let present = self.values.iter().filter(|value| value.is_secret).map(|value| &value.text);
+        present.chain(&self.former_secrets).map(String::as_str)
     }
 
     /// Whether a value is a secret.
     pub fn has_secrets(&self) -> bool {
-        self.values.iter().any(|value| value.is_secret)
+        self.secrets().next().is_some()
     }
 
     /// Replaces all secrets in the texts of an event.
@@ -264,6 +270,14 @@ mod tests {
             assert_eq!(values.secret_start_len(bytes.as_bytes()), start, "{bytes}");
             assert_eq!(values.secret_end_len(bytes.as_bytes()), end, "{bytes}");
         }
+    }
+
+    #[test]
+    fn the_secret_before_a_restart_is_still_replaced() {
+        let mut values = values("abcabd");
+        values.set(0, ("sim", "token"), "second".into(), true);
+        assert_eq!(values.mask_text("abcabd, second".to_owned()), "***, ***");
+        assert_eq!(values.expand("${fixture:sim.token}"), "second");
     }
 
     #[test]

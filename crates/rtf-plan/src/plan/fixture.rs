@@ -27,6 +27,8 @@ pub(super) const RESTART_DELAY: Duration = Duration::from_millis(100);
 const READY_EVERY: Duration = Duration::from_millis(100);
 const ALIVE_EVERY: Duration = Duration::from_secs(1);
 const PROBE_TIMEOUT: Duration = Duration::from_secs(1);
+/// The limit for a command that prints a value; set-up has a limit, too.
+const VALUE_TIMEOUT: Duration = Duration::from_secs(10);
 /// The variable with the user's `ssh` command line.
 const SSH_VARIABLE: &str = "RTF_SSH";
 const STOP_SIGNAL: i32 = 15;
@@ -203,7 +205,7 @@ impl<'a> ProcessPlanner<'a> {
                     ProbeKind::Command(self.command(words.clone()))
                 }
             };
-            let probe = Probe { kind, every: READY_EVERY, timeout: PROBE_TIMEOUT };
+            let probe = Probe { kind, every: READY_EVERY, timeout: VALUE_TIMEOUT };
             values.push(ValueProbe { name: provide.name.value.clone(), probe });
         }
         values

@@ -33,7 +33,7 @@ fn folder(fixture: &str, more: &str, tests: &str) -> Folder {
 
 fn suite(fixture: &str, more: &str, tests: &str) -> String {
     format!(
-        "<suite name='s'><fixture type='process' name='sim' timeout='5s' restarts='1'>\
+        "<suite name='s'><fixture type='process' name='sim' timeout='20s' restarts='1'>\
          <command>python3 sim.py</command>{fixture}</fixture>{more}{tests}</suite>"
     )
 }
@@ -143,7 +143,7 @@ fn a_declared_value_that_is_missing_breaks_the_fixture() {
     for (provide, reason) in cases {
         let folder = folder(provide, "", "<test type='python'>T</test>");
         folder.file("empty.txt", "");
-        let text = folder.read("s.xml").replace("restarts='1'", "restarts='0'");
+        let text = folder.read("s.xml").replace("'20s' restarts='1'", "'5s' restarts='0'");
         folder.file("s.xml", &text);
         let finished = folder.rtf(&["run", "s.xml"]);
         assert_eq!(finished.code, Some(1));
@@ -238,6 +238,20 @@ fn a_secret_reaches_its_users_and_no_file_and_no_screen() {
         assert!(!shows, "{name} contains the secret");
     }
     assert_eq!(provided(&folder.journal()), [("token".to_owned(), None)]);
+}
+
+#[test]
+fn a_secret_is_not_shown_if_the_program_ends_in_the_middle_of_its_line() {
+    let folder = Folder::new();
+    folder.file(
+        "sim.py",
+        "import sys\nsys.stdout.write('token: ' + 'hunter-' + '7c1f')\nsys.exit(3)\n",
+    );
+    folder.file("T.py", TEST).file("s.xml", "<suite><fixture type='process' name='sim' restarts='0'><command>python3 sim.py</command>\
+        <provide name='token' log='token: (\\S+)' secret='true'/></fixture><test type='python'>T</test></suite>");
+    let finished = folder.rtf(&["run", "s.xml", "-v"]);
+    let shown = format!("{}{}", finished.stdout, finished.stderr);
+    assert!(!shown.contains("7c1f") && shown.contains("token: ***"), "{shown}");
 }
 
 #[test]

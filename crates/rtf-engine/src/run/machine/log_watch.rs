@@ -37,6 +37,13 @@ impl LogWatch {
         }
     }
 
+    /// The output has ended, perhaps without a line break.
+    pub fn end_incomplete_line(&mut self) {
+        if !self.line.is_empty() {
+            self.end_line();
+        }
+    }
+
     fn end_line(&mut self) {
         let line = std::mem::take(&mut self.line);
         let line = String::from_utf8_lossy(&line);
@@ -84,9 +91,7 @@ impl LogWatch {
     }
 
     pub fn tail(&mut self) -> Vec<String> {
-        if !self.line.is_empty() {
-            self.end_line();
-        }
+        self.end_incomplete_line();
         self.tail.iter().cloned().collect()
     }
 }
