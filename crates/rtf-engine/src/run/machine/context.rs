@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use rtf_model::protocol::Request;
 use rtf_model::{EventKind, FixtureProvided, LeakedProcess, Message, MessageKind, Source};
 use rtf_plan::plan::FixturePlan;
 use serde_json::Value;
@@ -35,6 +36,11 @@ impl<'a> Context<'a> {
 
     pub fn push(&mut self, effect: Effect) {
         self.effects.push(effect);
+    }
+
+    /// Sends a request, or without a number a notification.
+    pub fn send(&mut self, host: HostId, id: Option<u64>, request: Request) {
+        self.push(Effect::Send(host, id, Box::new(request)));
     }
 
     /// Reports an event, without secrets.

@@ -43,7 +43,7 @@ impl<'p> RunningHook<'p> {
             let mut request = request(suite, plan, body);
             cx.values().extend_request(&mut request);
             let request = Request::RunTest(request);
-            cx.push(Effect::Send(host, Some(RUN_REQUEST), request));
+            cx.send(host, Some(RUN_REQUEST), request);
         }
         cx.set(Deadline::Hook, plan.timeout);
         let output = OutputCapture::new(source);

@@ -141,13 +141,13 @@ pub enum Effect {
         /// The number of the request.
         request: u64,
         /// The request.
-        plugin: Plugin,
+        plugin: Box<Plugin>,
     },
     /// Start these hosts ahead, for later `Spawn`s of the same. Hosts that were started
     /// ahead and are not in this list are no longer needed.
     SpawnAhead(Vec<StartRequest>),
     /// Send a request or a notification.
-    Send(HostId, Option<u64>, Request),
+    Send(HostId, Option<u64>, Box<Request>),
     /// Close the channel: the host ends after the present request.
     CloseChannel(HostId),
     /// Take a stack dump. Answered by [`ProcessEvent::StackDumped`] or a `stack` notification.

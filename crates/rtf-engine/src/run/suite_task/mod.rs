@@ -234,8 +234,14 @@ impl SuiteTask<'_> {
                 let leak_owner = format!("test {}/{}", self.plan.name, plugin.name);
                 let owner = self.context.process_owner(source);
                 let attachments_dir = attachments_dir(source, host);
-                let assignment =
-                    Assignment { host, owner, attachments_dir, leak_owner, request, plugin };
+                let assignment = Assignment {
+                    host,
+                    owner,
+                    attachments_dir,
+                    leak_owner,
+                    request,
+                    plugin: *plugin,
+                };
                 let commands = self.commands.get(&on).map(|(_, commands)| commands.clone());
                 match commands.filter(|commands| !commands.is_closed()) {
                     Some(commands) => {
@@ -248,7 +254,7 @@ impl SuiteTask<'_> {
             }
             Effect::SpawnAhead(starts) => self.spawn_ahead(starts),
             Effect::Send(host, id, request) => {
-                self.command(host, ProcessCommand::Send(id, request))
+                self.command(host, ProcessCommand::Send(id, *request))
             }
             Effect::CloseChannel(host) => self.command(host, ProcessCommand::CloseChannel),
             Effect::DumpStack(host, support) => {

@@ -83,7 +83,7 @@ fn spawn(suite: &SuitePlan, plan: &TestPlan, request: TestRequest, cx: &mut Cont
     let (host, source) = (cx.next_host_id(), Source::Test(plan.id));
     cx.push(Effect::Spawn { host, source, start: host_start(suite, plan, cx.values()) });
     let request = Request::RunTest(plugin_of(suite, plan, request, cx.values()));
-    cx.push(Effect::Send(host, Some(RUN_TEST), request));
+    cx.send(host, Some(RUN_TEST), request);
     host
 }
 
@@ -97,7 +97,8 @@ pub fn assign(
     cx: &mut Context<'_>,
 ) -> HostId {
     let (host, source) = (cx.next_host_id(), Source::Test(plan.id));
-    let (request, plugin) = (request_number(host), plugin_of(suite, plan, request, cx.values()));
+    let plugin = Box::new(plugin_of(suite, plan, request, cx.values()));
+    let request = request_number(host);
     cx.push(Effect::Join { host, on, source, request, plugin });
     host
 }

@@ -57,7 +57,7 @@ impl TestRun<'_> {
         self.step = Some(StopStep::Asked);
         let reason = self.evidence.stopped.as_ref().map(|(_, reason, _)| reason.clone());
         let (reason, request) = (reason.unwrap_or_default(), Some(self.request));
-        cx.push(Effect::Send(self.host, None, Request::Interrupt { reason, request }));
+        cx.send(self.host, None, Request::Interrupt { reason, request });
         self.set_limit(self.plan.limits.grace, cx);
     }
 

@@ -167,10 +167,10 @@ impl<'p> World<'p> {
                     assert!(self.assigned.insert(on, (host, source, request)).is_none());
                 }
                 Effect::Send(host, id, request) => {
-                    if let (true, Some(id), Request::CheckFixture {}) = (ends, id, &request) {
+                    if let (true, Some(id), Request::CheckFixture {}) = (ends, id, &*request) {
                         checked.push((host, id));
                     }
-                    self.sent.push((host, id, request));
+                    self.sent.push((host, id, *request));
                 }
                 Effect::SetDeadline(deadline, at) => drop(self.deadlines.insert(deadline, at)),
                 Effect::ClearDeadline(deadline) => drop(self.deadlines.remove(&deadline)),
