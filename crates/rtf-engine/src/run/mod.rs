@@ -246,7 +246,7 @@ fn planned(suite: &SuitePlan, test: &TestPlan, timed: bool) -> TestPlanned {
         repetitions: test.settings.repetitions,
         timed,
         tags: test.tags.clone(),
-        parameters: test.parameters.clone(),
+        parameters: test.parameters().to_vec(),
         expected: test.expected.clone(),
     }
 }

@@ -43,14 +43,14 @@ fn find<'n>(suite: &SuitePlan, name: &'n str) -> Option<(&'n str, Option<&'n str
 }
 
 fn is_named(test: &TestPlan, name: &str) -> bool {
-    test.name == name || test.matrix.as_deref() == Some(name)
+    test.name == name || test.matrix() == Some(name)
 }
 
 fn unknown_test(suite: &SuitePlan, name: &str) -> Diagnostic {
     let message = format!("there is no test `{name}` in `{}`", suite.file);
     let problem = Diagnostic::error("unknown-test", message);
     let known = suite.tests.iter().map(|test| test.name.as_str());
-    let matrices = suite.tests.iter().filter_map(|test| test.matrix.as_deref());
+    let matrices = suite.tests.iter().filter_map(TestPlan::matrix);
     let problem = suggest(problem, name, known.chain(matrices));
     match problem.hint {
         Some(_) => problem,

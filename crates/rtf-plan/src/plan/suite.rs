@@ -15,7 +15,7 @@ use super::plugin_search::base_name;
 use super::search_scope::{SearchScope, search_variables};
 use super::use_site::PluginRole;
 use super::{
-    CaseSelection, Compatibility, Isolation, OwnMiddleware, PluginPlan, Preparation, SuitePlan,
+    CombinationPlan, Compatibility, Isolation, OwnMiddleware, PluginPlan, Preparation, SuitePlan,
     SuiteSettings, TestLimits, TestPlan, TestSettings, clock, defaults, fixture, hook,
     known_failure, matrix, middleware,
 };
@@ -149,15 +149,14 @@ fn plan_tests(
         plans.push(TestPlan {
             id: TestId(0),
             name,
-            matrix: base,
-            parameters,
+            combination: base.map(|test| Box::new(CombinationPlan { test, parameters })),
             plugin,
             env,
             limits: limits.get(declared),
             settings,
             tags,
             expected: known_failure.map(|it| Box::new(known_failure::expect(&it, today))),
-            cases: CaseSelection::default(),
+            cases: None,
         });
     }
     plans
@@ -247,10 +246,9 @@ pub(super) fn plan_direct_plugins(
             limits: Arc::clone(&limits),
             settings: TestSettings { repetitions, ..TestSettings::default() },
             tags: Vec::new(),
-            matrix: None,
-            parameters: Vec::new(),
+            combination: None,
             expected: None,
-            cases: CaseSelection::default(),
+            cases: None,
         });
     }
     SuitePlan {

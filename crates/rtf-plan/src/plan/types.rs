@@ -220,15 +220,12 @@ pub struct TestPlan {
     pub settings: TestSettings,
     /// The tags of the suite and of the test.
     pub tags: Vec<String>,
-    /// The name of the test of whose matrix it is a combination: `Move` of
-    /// `Move[joint=0]`.
-    pub matrix: Option<Arc<str>>,
-    /// Its values of the matrix.
-    pub parameters: Vec<Parameter>,
+    /// Its combination of the values of a matrix.
+    pub combination: Option<Box<CombinationPlan>>,
     /// Its known failure.
     pub expected: Option<Box<ExpectedFailure>>,
-    /// The cases that it runs.
-    pub cases: CaseSelection,
+    /// The cases that it runs; `None` for all.
+    pub cases: Option<Box<CaseSelection>>,
 }
 
 impl TestPlan {
@@ -236,8 +233,29 @@ impl TestPlan {
     /// shared host knows whether the host can select cases.
     pub fn select_cases(&mut self, cases: CaseSelection) {
         self.settings.shared = false;
-        self.cases = cases;
+        self.cases = Some(Box::new(cases));
     }
+
+    /// Returns its values of a matrix.
+    #[must_use]
+    pub fn parameters(&self) -> &[Parameter] {
+        self.combination.as_ref().map_or(&[], |combination| &combination.parameters)
+    }
+
+    /// Returns the name of the test with the matrix: `Move` of `Move[joint=0]`.
+    #[must_use]
+    pub fn matrix(&self) -> Option<&str> {
+        self.combination.as_ref().map(|combination| &*combination.test)
+    }
+}
+
+/// One combination of the values of a matrix.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CombinationPlan {
+    /// The name of the test with the matrix.
+    pub test: Arc<str>,
+    /// The values.
+    pub parameters: Vec<Parameter>,
 }
 
 /// The limits of a test's phases.

@@ -149,7 +149,7 @@ impl<'p> Candidate<'p> {
             Subject::Suite => visit(Cow::Borrowed(&self.suite.name)),
             Subject::Name => visit(Cow::Borrowed(&self.test.name)),
             Subject::File => visit(Cow::Borrowed(&self.suite.file)),
-            Subject::Param => self.test.parameters.iter().for_each(|parameter| {
+            Subject::Param => self.test.parameters().iter().for_each(|parameter| {
                 visit(Cow::Borrowed(&parameter.name));
                 visit(format!("{}={}", parameter.name, parameter.value).into());
             }),

@@ -68,7 +68,7 @@ pub fn select(plan: Plan, selection: &Selection) -> Selected {
                 return false;
             };
             for cases in selections {
-                if test.cases.selectors.is_empty() {
+                if test.cases.is_none() {
                     test.select_cases(cases);
                 } else {
                     conflict.get_or_insert_with(|| test.name.clone());

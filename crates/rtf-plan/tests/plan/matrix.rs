@@ -36,12 +36,12 @@ fn each_combination_is_a_test() {
     let env: Vec<_> = test.env.iter().map(|(name, value)| format!("{name}={value}")).collect();
     assert_eq!(env, ["RTF_PARAM_JOINT=1", "RTF_PARAM_SPEED=slow", "PLACE=j1"]);
     let parameters: Vec<_> =
-        test.parameters.iter().map(|it| format!("{}={}", it.name, it.value)).collect();
+        test.parameters().iter().map(|it| format!("{}={}", it.name, it.value)).collect();
     assert_eq!(
-        (parameters.join(" ").as_str(), test.matrix.as_deref()),
+        (parameters.join(" ").as_str(), test.matrix()),
         ("joint=1 speed=slow", Some("Move"))
     );
-    assert!(plan.suites[0].tests[3].parameters.is_empty());
+    assert!(plan.suites[0].tests[3].parameters().is_empty());
 }
 
 #[test]

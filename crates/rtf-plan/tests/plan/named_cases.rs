@@ -24,10 +24,13 @@ fn shown(plan: &Plan) -> Vec<String> {
     let tests = plan.suites.iter().flat_map(|suite| &suite.tests);
     tests
         .map(|test| {
-            let cases = test.cases.selectors.iter().map(|selector| match selector {
-                CaseSelector::Equals(path) => format!(" ={path}"),
-                CaseSelector::Contains(text) => format!(" ~{text}"),
-            });
+            let cases =
+                test.cases.iter().flat_map(|cases| &cases.selectors).map(
+                    |selector| match selector {
+                        CaseSelector::Equals(path) => format!(" ={path}"),
+                        CaseSelector::Contains(text) => format!(" ~{text}"),
+                    },
+                );
             format!("{}{}", test.name, cases.collect::<String>())
         })
         .collect()
@@ -134,6 +137,6 @@ fn several_selections_of_cases_conflict() {
     let rerun = Selection { filters: Vec::new(), ..selection };
     let selected = select(bench().plan(&["s.xml"]), &rerun);
     assert!(selected.problems.is_empty());
-    let cases = &selected.plan.suites[0].tests[0].cases;
+    let cases = &selected.plan.suites[0].tests[0].cases.as_ref().unwrap();
     assert_eq!((cases.origin, cases.needs_support()), (CaseSelectionOrigin::Rerun, false));
 }

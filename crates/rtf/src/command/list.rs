@@ -125,7 +125,7 @@ fn write_json(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
             critical: test.settings.critical,
             exclusive: test.settings.exclusive,
             parallel: suite.settings.parallel,
-            parameters: &test.parameters,
+            parameters: test.parameters(),
             expected: test.expected.as_deref(),
         })
         .collect();

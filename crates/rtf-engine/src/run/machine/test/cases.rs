@@ -82,8 +82,9 @@ impl OpenCase {
 }
 
 impl OpenCases {
-    pub fn new(selection: &CaseSelection) -> Self {
-        let awaited = selection.required_paths().map(str::to_owned).collect();
+    pub fn new(selection: Option<&CaseSelection>) -> Self {
+        let paths = selection.into_iter().flat_map(CaseSelection::required_paths);
+        let awaited = paths.map(str::to_owned).collect();
         Self { awaited, ..Self::default() }
     }
 

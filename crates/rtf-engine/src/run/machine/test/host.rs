@@ -126,8 +126,8 @@ fn plugin_of(
         is_last: request.is_last,
         // The task of the process fills in the marker.
         end_marker: plan.settings.shared.then(String::new),
-        parameters: plan.parameters.clone(),
-        cases: plan.cases.selectors.clone(),
+        parameters: plan.parameters().to_vec(),
+        cases: plan.cases.as_ref().map(|cases| cases.selectors.clone()).unwrap_or_default(),
         ..plugin(suite, &plan.name, &plan.plugin, request.repetition)
     };
     values.extend_request(&mut plugin);

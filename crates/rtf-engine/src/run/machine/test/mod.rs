@@ -86,7 +86,7 @@ impl<'p> TestRun<'p> {
             has_fixtures: !suite.fixtures.is_empty(),
             leak: None,
             output: OutputCapture::new(Source::Test(plan.id)),
-            cases: OpenCases::new(&plan.cases),
+            cases: OpenCases::new(plan.cases.as_deref()),
             critical: None,
             finished: None,
         }
@@ -158,7 +158,8 @@ impl<'p> TestRun<'p> {
             Ok(initialized) => {
                 self.stack = initialized.stack;
                 self.shares_host = self.plan.settings.shared && initialized.supports_shared;
-                if !initialized.selects_cases && self.plan.cases.needs_support() {
+                let needs_support = self.plan.cases.as_ref().is_some_and(|it| it.needs_support());
+                if needs_support && !initialized.selects_cases {
                     let reason = format!("{} cannot select cases", initialized.host);
                     self.stop(StopCause::Protocol, reason, cx);
                 }

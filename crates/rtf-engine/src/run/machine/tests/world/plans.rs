@@ -90,9 +90,8 @@ fn test(index: usize) -> TestPlan {
         limits: Arc::new(limits),
         settings: TestSettings::default(),
         tags: Vec::new(),
-        matrix: None,
-        parameters: Vec::new(),
+        combination: None,
         expected: None,
-        cases: CaseSelection::default(),
+        cases: None,
     }
 }
