@@ -8,12 +8,17 @@ use std::io::{self, Write};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
+use std::time::{Duration, Instant};
 
 use crate::console::{Bar, BarState};
 use crate::is_disconnect;
 
 /// Above this number of pending bytes, reporters omit detail.
 const FULL: usize = 4 * 1024 * 1024;
+
+/// Output within this time after the last write is collected, so that many short lines are
+/// written together.
+const GATHERING: Duration = Duration::from_micros(250);
 
 /// A data stream omits nothing: writing blocks above this number of pending bytes.
 const STREAM_LIMIT: usize = 4 * 1024 * 1024;
@@ -122,9 +127,14 @@ impl Write for BackgroundWriter {
             return Err(error);
         }
         if !state.is_over {
+            // Waking the thread is a system call; with text, it is awake already.
+            let is_idle = state.text.is_empty();
             state.text.extend_from_slice(bytes);
             waiting.fetch_add(bytes.len(), Ordering::Relaxed);
-            self.shared.changed.notify_all();
+            drop(state);
+            if is_idle {
+                self.shared.changed.notify_all();
+            }
         }
         Ok(bytes.len())
     }
@@ -143,10 +153,15 @@ impl Write for BackgroundWriter {
 /// The thread: writes what waits, until all handles are gone.
 fn write_all(shared: &SharedBuffer, mut out: Box<dyn Write + Send>) {
     let mut bar = Bar::hidden();
+    let mut written_at: Option<Instant> = None;
     loop {
         let is_idle =
             |state: &WriterState| state.text.is_empty() && state.bar.is_none() && !state.is_closed;
-        let mut state = shared.wait_while(is_idle);
+        drop(shared.wait_while(is_idle));
+        if let Some(rest) = written_at.and_then(|at| GATHERING.checked_sub(at.elapsed())) {
+            thread::sleep(rest);
+        }
+        let mut state = shared.lock();
         if state.is_over || (state.text.is_empty() && state.bar.is_none()) {
             return;
         }
@@ -158,6 +173,7 @@ fn write_all(shared: &SharedBuffer, mut out: Box<dyn Write + Send>) {
             true => Ok(()),
             false => bar.around(|| out.write_all(&text).and_then(|()| out.flush())),
         };
+        written_at = Some(Instant::now());
         shared.waiting.fetch_sub(text.len(), Ordering::Relaxed);
         let mut state = shared.lock();
         state.is_writing = false;
