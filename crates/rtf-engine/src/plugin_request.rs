@@ -16,6 +16,8 @@ pub fn plugin(suite: &SuitePlan, name: &str, plan: &PluginPlan, repetition: u32)
         end_marker: None,
         attachments_dir: None,
         cases: Vec::new(),
+        case_timeout_ms: None,
+        separate_cases: false,
         parameters: Vec::new(),
         fixture_values: Vec::new(),
     }

@@ -198,6 +198,12 @@ pub struct Plugin {
     /// The cases that a test runs; empty: all.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cases: Vec<CaseSelector>,
+    /// The limit for each case, in milliseconds. Only for hosts that run cases in programs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub case_timeout_ms: Option<u64>,
+    /// Whether each case needs a separate process. Only for hosts that run cases in programs.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub separate_cases: bool,
     /// The values of fixtures that it can use.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fixture_values: Vec<FixtureValue>,

@@ -104,4 +104,8 @@ pub enum Outcome {
     Interrupted,
     /// The test, or the case, skipped itself.
     Skipped,
+    /// A program that runs the test or the case for the host died.
+    Crashed,
+    /// A program that runs the test or the case for the host exceeded a limit of the host.
+    TimedOut,
 }

@@ -79,10 +79,11 @@ fn size(kind: &EventKind) -> Option<(Source, usize)> {
             (Source::Test(*test), names.sum())
         }
         EventKind::CaseStarted(started) => {
-            let CaseStart { name, parameters, location, .. } = &started.start;
+            let CaseStart { name, parameters, tags, location, .. } = &started.start;
+            let tags: usize = tags.iter().map(String::len).sum();
             let parameters = parameters.iter().map(|it| it.name.len() + it.value.len());
             let location = location.as_ref().map_or(0, |location| location.file.len());
-            (Source::Test(started.test), name.len() + parameters.sum::<usize>() + location)
+            (Source::Test(started.test), name.len() + parameters.sum::<usize>() + tags + location)
         }
         EventKind::CaseFinished(end) => {
             (Source::Test(end.test), end.reason.as_ref().map_or(0, String::len))
@@ -113,7 +114,8 @@ mod tests {
     fn cases_wait_like_messages() {
         let (test, backlog) = (TestId(3), Backlog::default());
         let (case, name) = (CaseId(1), "x".repeat(50));
-        let start = CaseStart { case, name, parent: None, parameters: Vec::new(), location: None };
+        let (parameters, tags) = (Vec::new(), Vec::new());
+        let start = CaseStart { case, name, parent: None, parameters, tags, location: None };
         let names = vec!["x".repeat(76)];
         let kinds = [
             EventKind::CasesPlanned { test, names },

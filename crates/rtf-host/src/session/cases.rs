@@ -16,7 +16,8 @@ impl Session {
         parameters: Vec<Parameter>,
         location: Option<Location>,
     ) -> bool {
-        let start = CaseStart { case: CaseId(0), name, parent: None, parameters, location };
+        let (case, parent, tags) = (CaseId(0), None, Vec::new());
+        let start = CaseStart { case, name, parent, parameters, tags, location };
         let send = |started: &Notification| self.notify_case(started);
         self.allowed(self.0.cases.begin(start, self.interrupted(), send)).unwrap_or(false)
     }

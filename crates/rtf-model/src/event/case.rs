@@ -28,6 +28,9 @@ pub struct CaseStart {
     /// Its parameters.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub parameters: Vec<Parameter>,
+    /// Its tags, as its framework reports them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tags: Vec<String>,
     /// Where in the plug-in it starts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub location: Option<Location>,

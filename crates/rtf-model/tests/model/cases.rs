@@ -11,7 +11,8 @@ use rtf_model::{
 fn case(number: u32, name: &str, parent: Option<u32>) -> EventKind {
     let (case, parent) = (CaseId(number), parent.map(CaseId));
     let name = name.to_owned();
-    let start = CaseStart { case, name, parent, parameters: Vec::new(), location: None };
+    let start =
+        CaseStart { case, name, parent, parameters: Vec::new(), tags: Vec::new(), location: None };
     EventKind::CaseStarted(Box::new(CaseStarted { test: TEST, start }))
 }
 

@@ -15,6 +15,7 @@ fn start(run: &mut Writer, case: u32, name: &str, parent: Option<u32>) {
         name: name.to_owned(),
         parent: parent.map(CaseId),
         parameters: vec![joint],
+        tags: Vec::new(),
         location: None,
     };
     run.emit(EventKind::CaseStarted(Box::new(CaseStarted { test: TEST, start })));

@@ -147,6 +147,8 @@ fn problem_of(answer: &Answer, phase: Phase) -> Option<TestProblem> {
         Outcome::Failed => (Verdict::Failed, "the test failed without a reason"),
         Outcome::Error => (Verdict::Error, "the test ended in an error without a reason"),
         Outcome::Interrupted => (Verdict::Error, "the test stopped without a request"),
+        Outcome::Crashed => (Verdict::Crashed, "the test's program died"),
+        Outcome::TimedOut => (Verdict::TimedOut, "the test's program took too long"),
     };
     let reason = answer.reason.clone().unwrap_or_else(|| default.to_owned());
     Some(TestProblem { verdict, reason, phase, case: None })

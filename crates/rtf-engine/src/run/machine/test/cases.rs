@@ -196,6 +196,8 @@ impl TestRun<'_> {
             Some(Outcome::Error) => Verdict::Error,
             Some(Outcome::Interrupted) => Verdict::Interrupted,
             Some(Outcome::Skipped) => Verdict::Skipped,
+            Some(Outcome::Crashed) => Verdict::Crashed,
+            Some(Outcome::TimedOut) => Verdict::TimedOut,
         };
         self.end_case(case, CaseResult::OfCase(verdict, reason), cx);
     }

@@ -22,7 +22,14 @@ fn initialized(world: &mut World<'_>, selects_cases: bool) {
 
 fn run_case(world: &mut World<'_>, name: &str) {
     let (case, name) = (CaseId(1), name.to_owned());
-    let start = CaseStart { case, name, parent: None, parameters: Vec::new(), location: None };
+    let start = CaseStart {
+        case,
+        name,
+        parent: None,
+        parameters: Vec::new(),
+        tags: Vec::new(),
+        location: None,
+    };
     world.input(TEST, ProcessEvent::Notified(Notification::CaseStarted(start)));
     let end = Notification::CaseFinished { case, outcome: None, reason: None };
     world.input(TEST, ProcessEvent::Notified(end));

@@ -18,7 +18,14 @@ impl World<'_> {
     fn case(&mut self, case: u32, name: &str, parent: Option<u32>) {
         let (case, parent) = (CaseId(case), parent.map(CaseId));
         let name = name.to_owned();
-        let start = CaseStart { case, name, parent, parameters: Vec::new(), location: None };
+        let start = CaseStart {
+            case,
+            name,
+            parent,
+            parameters: Vec::new(),
+            tags: Vec::new(),
+            location: None,
+        };
         self.notified(Notification::CaseStarted(start));
     }
 

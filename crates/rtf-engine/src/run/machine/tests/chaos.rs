@@ -41,7 +41,14 @@ fn report(choice: u8) -> Notification {
             let (case, name) = (CaseId(1 + number / 64), "pose".to_owned());
             let parent = (choice > 128).then_some(CaseId(1));
             let (parameters, location) = (Vec::new(), None);
-            Notification::CaseStarted(CaseStart { case, name, parent, parameters, location })
+            Notification::CaseStarted(CaseStart {
+                case,
+                name,
+                parent,
+                parameters,
+                tags: Vec::new(),
+                location,
+            })
         }
         2 => {
             let name = if choice > 128 { "port" } else { "pid" }.to_owned();
