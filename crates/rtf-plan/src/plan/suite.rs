@@ -157,6 +157,7 @@ fn plan_tests(
             tags,
             expected: known_failure.map(|it| Box::new(known_failure::expect(&it, today))),
             cases: None,
+            cases_in_programs: None,
         });
     }
     plans
@@ -249,6 +250,7 @@ pub(super) fn plan_direct_plugins(
             combination: None,
             expected: None,
             cases: None,
+            cases_in_programs: None,
         });
     }
     SuitePlan {

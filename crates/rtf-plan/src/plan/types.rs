@@ -226,6 +226,8 @@ pub struct TestPlan {
     pub expected: Option<Box<ExpectedFailure>>,
     /// The cases that it runs; `None` for all.
     pub cases: Option<Box<CaseSelection>>,
+    /// For a test of another framework, whose host runs cases in programs.
+    pub cases_in_programs: Option<Box<CasesInPrograms>>,
 }
 
 impl TestPlan {
@@ -247,6 +249,15 @@ impl TestPlan {
     pub fn matrix(&self) -> Option<&str> {
         self.combination.as_ref().map(|combination| &*combination.test)
     }
+}
+
+/// How a host runs cases in programs of another framework.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct CasesInPrograms {
+    /// The limit of each case.
+    pub case_timeout: Option<Duration>,
+    /// Whether each case needs a separate process.
+    pub separate: bool,
 }
 
 /// One combination of the values of a matrix.

@@ -93,5 +93,6 @@ fn test(index: usize) -> TestPlan {
         combination: None,
         expected: None,
         cases: None,
+        cases_in_programs: None,
     }
 }
