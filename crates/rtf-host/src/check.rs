@@ -56,7 +56,18 @@ pub fn files_to_check(args: impl IntoIterator<Item = OsString>) -> Option<Vec<Pa
 /// The standard output cannot be written.
 pub fn check(
     files: &[PathBuf],
-    mut check_file: impl FnMut(&Path) -> CheckedFile,
+    check_file: impl FnMut(&Path) -> CheckedFile,
+) -> std::io::Result<()> {
+    check_each(files, check_file)
+}
+
+/// As [`check()`], for a host that reports more about a file.
+///
+/// # Errors
+/// The standard output cannot be written.
+pub fn check_each<T: Serialize>(
+    files: &[PathBuf],
+    mut check_file: impl FnMut(&Path) -> T,
 ) -> std::io::Result<()> {
     let mut output = unix::divert_stdout()?;
     for file in files {

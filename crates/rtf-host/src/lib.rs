@@ -24,7 +24,7 @@ mod unix;
 mod writer;
 
 pub use cases::CaseEnd;
-pub use check::{CheckedFile, check, files_to_check};
+pub use check::{CheckedFile, check, check_each, files_to_check};
 pub use plugin::{HostPlugin, LoadError, PluginKind, Reaction, Step, StepEnd, TestNotification};
 pub use program::HostProgram;
 pub use sampling::Sample;

@@ -1,6 +1,7 @@
 //! The host's end of the channel, which its threads share.
 
 mod cases;
+mod program;
 
 use std::collections::VecDeque;
 use std::os::unix::net::UnixStream;

@@ -1,0 +1,380 @@
+//! Reports the cases of a test to the runner: numbers them, keeps the open ones, and
+//! compares them with the selected ones.
+
+use std::collections::{HashMap, HashSet};
+use std::io::Write as _;
+use std::time::Instant;
+
+use rtf_host::Session;
+use rtf_model::protocol::{CaseSelector, Notification};
+use rtf_model::{
+    Attachment, CaseId, CaseStart, Location, Measurement, Message, MessageKind, Outcome, Parameter,
+    Samples,
+};
+
+use crate::framework::{CaseResult, Selection};
+
+/// How many names a message lists.
+const NAMES_SHOWN: usize = 5;
+
+/// Maximum number of planned names in a notification, whose size is limited.
+const NAMES_IN_LINE: usize = 4096;
+
+/// The start of a case, as a framework reports it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct StartedCase {
+    /// Its name.
+    pub name: String,
+    /// Its parameters.
+    pub parameters: Vec<Parameter>,
+    /// Its tags.
+    pub tags: Vec<String>,
+    /// Its location.
+    pub location: Option<Location>,
+}
+
+/// An open case.
+#[derive(Debug)]
+struct OpenCase {
+    path: String,
+    case: CaseId,
+    parent: Option<CaseId>,
+    started: Instant,
+    has_problem: bool,
+}
+
+/// Reports the cases of one attempt of a test. A path is a name after those of the cases
+/// that contain it, joined with `/`.
+#[derive(Debug)]
+pub struct CaseReporter<'a> {
+    session: &'a Session,
+    started: u32,
+    open: Vec<OpenCase>,
+    /// Top-level cases that have finished: whether without a problem.
+    results: HashMap<String, bool>,
+    skipped: usize,
+    /// The top-level cases that are expected; `None` if any is.
+    expected: Option<HashSet<String>>,
+    /// The cases that the runner wants, if the program announces its cases itself; empty: all.
+    wanted: Vec<CaseSelector>,
+    /// Whether cases that the present process announces are new: later ones run the rest.
+    is_first_process: bool,
+    /// The top-level cases that the present process runs; `None` if all.
+    selection: Option<HashSet<String>>,
+    /// Whether the present process reported a problem in a case.
+    has_problem: bool,
+    /// How many top-level cases finished in the present process.
+    finished: usize,
+    last_finished: Option<String>,
+}
+
+impl<'a> CaseReporter<'a> {
+    /// A reporter for an attempt of a test.
+    #[must_use]
+    pub fn new(session: &'a Session) -> Self {
+        Self {
+            session,
+            started: 0,
+            open: Vec::new(),
+            results: HashMap::new(),
+            skipped: 0,
+            expected: None,
+            wanted: Vec::new(),
+            is_first_process: true,
+            selection: None,
+            has_problem: false,
+            finished: 0,
+            last_finished: None,
+        }
+    }
+
+    /// Announces top-level cases. Others are errors from then on.
+    pub fn plan(&mut self, names: impl IntoIterator<Item = String>) {
+        let names: Vec<String> = names.into_iter().collect();
+        self.expected.get_or_insert_default().extend(names.iter().cloned());
+        for part in names.chunks(NAMES_IN_LINE) {
+            self.session.forward(&Notification::CasesPlanned { names: part.to_vec() });
+        }
+    }
+
+    /// Sets the cases that the runner wants, for a program that announces its cases itself.
+    pub fn want(&mut self, wanted: &[CaseSelector]) {
+        self.wanted = wanted.to_vec();
+    }
+
+    /// The program announces top-level cases. Returns for each one whether it runs in the
+    /// present process.
+    pub fn announce(&mut self, names: Vec<String>) -> Vec<bool> {
+        if self.is_first_process {
+            let wanted = names.iter().filter(|name| self.is_wanted(name)).cloned();
+            let wanted: Vec<String> = wanted.collect();
+            self.plan(wanted);
+        }
+        names.iter().map(|name| self.runs(name)).collect()
+    }
+
+    /// Whether a top-level case runs in the present process: it is selected and has not
+    /// finished.
+    #[must_use]
+    pub fn runs(&self, name: &str) -> bool {
+        self.is_wanted(name)
+            && !self.results.contains_key(name)
+            && self.selection.as_ref().is_none_or(|selection| selection.contains(name))
+    }
+
+    fn is_wanted(&self, name: &str) -> bool {
+        self.wanted.is_empty() || self.wanted.iter().any(|wanted| wanted.selects(name))
+    }
+
+    /// Whether a top-level case is still to be run.
+    #[must_use]
+    pub fn is_awaited(&self, name: &str) -> bool {
+        !self.results.contains_key(name)
+            && self.expected.as_ref().is_none_or(|expected| expected.contains(name))
+    }
+
+    /// Starts a case in the open case with this path, or a top-level case.
+    pub fn start_case(&mut self, parent: Option<&str>, case: StartedCase) {
+        match parent {
+            Some(parent) => self.start_in(Some(parent), case),
+            None => self.start(case),
+        }
+    }
+
+    /// Starts a top-level case.
+    pub fn start(&mut self, case: StartedCase) {
+        if self.expected.as_ref().is_some_and(|expected| !expected.contains(&case.name)) {
+            let text = format!("the program ran `{}`, which was not selected", case.name);
+            self.test_error(text);
+        }
+        self.start_in(None, case);
+    }
+
+    fn start_in(&mut self, parent: Option<&str>, case: StartedCase) {
+        if self.session.interrupted() {
+            return;
+        }
+        let parent = parent.and_then(|path| self.find(path));
+        let (parent, path) = match parent {
+            Some(open) => (Some(open.case), format!("{}/{}", open.path, case.name)),
+            None => (None, case.name.clone()),
+        };
+        let id = CaseId(self.started + 1);
+        let StartedCase { name, parameters, tags, location } = case;
+        let start = CaseStart { case: id, name, parent, parameters, tags, location };
+        if !self.session.forward(&Notification::CaseStarted(start)) {
+            return self.test_error("a case has a name that is longer than 16 MiB".to_owned());
+        }
+        self.started = id.0;
+        let started = Instant::now();
+        self.open.push(OpenCase { path, case: id, parent, started, has_problem: false });
+    }
+
+    /// Finishes the open case with this path. The cases in it must have finished.
+    pub fn finish(&mut self, path: &str, result: CaseResult) {
+        let Some(index) = self.open.iter().rposition(|open| open.path == path) else {
+            return self.test_error(format!("the program finished `{path}`, which is not running"));
+        };
+        let case = self.open[index].case;
+        // Cases that the framework left open have the result that their messages report.
+        while let Some(inner) = self.open.iter().rposition(|open| open.parent == Some(case)) {
+            let path = self.open[inner].path.clone();
+            self.finish(&path, CaseResult::default());
+        }
+        let Some(index) = self.open.iter().rposition(|open| open.case == case) else { return };
+        let open = self.open.remove(index);
+        let CaseResult { outcome, reason } = result;
+        let is_bad = outcome.is_some_and(|it| !matches!(it, Outcome::Passed | Outcome::Skipped));
+        let has_problem = open.has_problem || is_bad;
+        self.has_problem |= has_problem;
+        if let Some(parent) = open.parent {
+            let mut others = self.open.iter_mut();
+            if let Some(parent) = others.find(|other| other.case == parent) {
+                parent.has_problem |= has_problem;
+            }
+        } else {
+            self.skipped += usize::from(outcome == Some(Outcome::Skipped) && !has_problem);
+            self.finished += 1;
+            self.last_finished = Some(open.path.clone());
+            self.results.insert(open.path, !has_problem);
+        }
+        let finished = Notification::CaseFinished { case, outcome, reason };
+        if !self.session.interrupted() && !self.session.forward(&finished) {
+            let reason = Some("the reason is longer than 16 MiB".to_owned());
+            self.session.forward(&Notification::CaseFinished { case, outcome, reason });
+        }
+    }
+
+    /// Starts and finishes a top-level case that does not run.
+    pub fn add(&mut self, case: StartedCase, result: CaseResult) {
+        let path = case.name.clone();
+        self.start(case);
+        if !self.session.interrupted() {
+            self.finish(&path, result);
+        }
+    }
+
+    /// Reports a message in the case with this path; without a path, in the innermost open
+    /// case; if there is none, of the test.
+    pub fn message(
+        &mut self,
+        path: Option<&str>,
+        kind: MessageKind,
+        text: impl Into<String>,
+        location: Option<Location>,
+    ) {
+        let text = text.into();
+        let message =
+            Message { kind, text, location, comparison: None, critical: false, case: None };
+        self.full_message(path, message);
+    }
+
+    /// Reports a message with all its fields, see [`Self::message`].
+    pub fn full_message(&mut self, path: Option<&str>, mut message: Message) {
+        let is_problem = matches!(message.kind, MessageKind::Failure | MessageKind::Error);
+        message.case = self.mark(path, is_problem);
+        self.session.forward(&Notification::Message(message));
+    }
+
+    /// Reports a measurement, see [`Self::message`].
+    pub fn measure(&mut self, path: Option<&str>, mut measurement: Measurement) {
+        measurement.case = self.mark(path, !measurement.is_within_limits());
+        self.session.forward(&Notification::Measured(measurement));
+    }
+
+    /// Reports samples, see [`Self::message`].
+    pub fn sample(&mut self, path: Option<&str>, mut samples: Samples) {
+        let is_problem = samples.outside().next().is_some();
+        samples.case = self.mark(path, is_problem);
+        self.session.forward(&Notification::Sampled(samples));
+    }
+
+    /// Attaches a file, see [`Self::message`].
+    pub fn attach(&mut self, path: Option<&str>, mut attachment: Attachment) {
+        attachment.case = self.mark(path, false);
+        self.session.forward(&Notification::Attached(attachment));
+    }
+
+    /// Reports a property of a case: a measurement if it is a number, else a message.
+    pub fn property(&mut self, path: Option<&str>, name: &str, value: &str) {
+        match value.trim().parse::<f64>() {
+            Ok(number) if number.is_finite() => {
+                let (name, unit) = (name.to_owned(), String::new());
+                let (low, high, location, case) = (None, None, None, None);
+                let value = Some(number);
+                self.measure(path, Measurement { name, value, unit, low, high, location, case });
+            }
+            _ => self.message(path, MessageKind::Report, format!("{name}: {value}"), None),
+        }
+    }
+
+    /// Passes on output of the program that is not part of its report.
+    #[expect(clippy::unused_self, reason = "only readers of reports have output")]
+    pub fn output(&mut self, bytes: &[u8]) {
+        let mut stdout = std::io::stdout().lock();
+        drop(stdout.write_all(bytes).and_then(|()| stdout.flush()));
+    }
+
+    /// Reports an error of the test, outside of its cases.
+    pub fn test_error(&mut self, text: String) {
+        let (kind, location, comparison) = (MessageKind::Error, None, None);
+        let message = Message { kind, text, location, comparison, critical: false, case: None };
+        self.session.forward(&Notification::Message(message));
+    }
+
+    /// The path of the innermost open case.
+    #[must_use]
+    pub fn innermost(&self) -> Option<&str> {
+        self.open.last().map(|open| open.path.as_str())
+    }
+
+    /// The path of the top-level case that was started last and is open, and its start.
+    #[must_use]
+    pub fn running(&self) -> Option<(&str, Instant)> {
+        let top = self.open.iter().rfind(|open| open.parent.is_none())?;
+        Some((&top.path, top.started))
+    }
+
+    /// The results of the finished top-level cases: true without a problem.
+    #[must_use]
+    pub fn results(&self) -> &HashMap<String, bool> {
+        &self.results
+    }
+
+    /// Whether a case of the present process has a problem.
+    #[must_use]
+    pub fn has_problem(&self) -> bool {
+        self.has_problem || self.open.iter().any(|open| open.has_problem)
+    }
+
+    /// How many top-level cases finished in the present process.
+    #[must_use]
+    pub fn finished(&self) -> usize {
+        self.finished
+    }
+
+    /// The top-level case that finished last.
+    #[must_use]
+    pub fn last_finished(&self) -> Option<&str> {
+        self.last_finished.as_deref()
+    }
+
+    /// How many cases there are, if all of them were skipped.
+    #[must_use]
+    pub fn all_skipped(&self) -> Option<usize> {
+        (self.skipped > 0 && self.skipped == self.results.len()).then_some(self.skipped)
+    }
+
+    /// Describes the planned cases that were not reported.
+    #[must_use]
+    pub fn missing(&self) -> Option<String> {
+        let expected = self.expected.as_ref()?;
+        let mut missing: Vec<&str> = expected
+            .iter()
+            .map(String::as_str)
+            .filter(|name| !self.results.contains_key(*name))
+            .collect();
+        if missing.is_empty() {
+            return None;
+        }
+        missing.sort_unstable();
+        let names: Vec<String> =
+            missing.iter().take(NAMES_SHOWN).map(|name| format!("`{name}`")).collect();
+        let dots = if missing.len() > NAMES_SHOWN { ", …" } else { "" };
+        let (some, all) = (missing.len(), expected.len());
+        Some(format!("{some} of {all} selected cases were not run: {}{dots}", names.join(", ")))
+    }
+
+    /// A new process begins, which runs these cases.
+    pub fn begin_process(&mut self, selection: &Selection<'_>) {
+        (self.has_problem, self.finished, self.last_finished) = (false, 0, None);
+        self.is_first_process = self.expected.is_none();
+        let names = || selection.cases.iter().map(|case| case.name.clone()).collect();
+        self.selection = (!selection.is_all).then(names);
+    }
+
+    /// Finishes all open cases: with this result if no open case is in it, otherwise with the
+    /// result of those.
+    pub fn end_open(&mut self, result: &CaseResult) {
+        let parents: HashSet<CaseId> = self.open.iter().filter_map(|open| open.parent).collect();
+        while let Some(open) = self.open.last() {
+            let (path, is_outer) = (open.path.clone(), parents.contains(&open.case));
+            let result = if is_outer { CaseResult::default() } else { result.clone() };
+            self.finish(&path, result);
+        }
+    }
+
+    fn find(&self, path: &str) -> Option<&OpenCase> {
+        self.open.iter().rfind(|open| open.path == path)
+    }
+
+    /// The case of a report, which may be a problem of it.
+    fn mark(&mut self, path: Option<&str>, is_problem: bool) -> Option<CaseId> {
+        let open = match path {
+            Some(path) => self.open.iter_mut().rfind(|open| open.path == path),
+            None => self.open.last_mut(),
+        }?;
+        open.has_problem |= is_problem;
+        Some(open.case)
+    }
+}

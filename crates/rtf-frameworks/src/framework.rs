@@ -1,0 +1,268 @@
+//! The functions that each framework's adapter implements.
+
+use std::collections::HashMap;
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+use rtf_model::{ExitStatus, Location, Outcome, Parameter};
+use serde::Serialize;
+
+use crate::case_reporter::{CaseReporter, StartedCase};
+
+/// A test of a suite: a program of a framework, or files and directories with its tests.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct TestProgram {
+    /// The file or directory, absolute.
+    pub file: PathBuf,
+    /// Arguments from the suite.
+    pub args: Vec<String>,
+}
+
+/// A case that a framework lists before the run.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct ListedCase {
+    /// Its name, unique in the test.
+    pub name: String,
+    /// Its location, if the framework knows it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub location: Option<Location>,
+    /// Its tags.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub tags: Vec<String>,
+    /// Its parameters.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub parameters: Vec<Parameter>,
+    /// Whether the framework does not run it unless it is told to.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub disabled: bool,
+    /// Why it is disabled; `disabled` if the framework gives no reason.
+    #[serde(skip)]
+    pub disabled_reason: Option<String>,
+    /// How the framework identifies it, if not by its name.
+    #[serde(skip)]
+    pub id: Option<String>,
+    /// The limit that the framework's own configuration sets.
+    #[serde(skip)]
+    pub timeout: Option<Duration>,
+}
+
+impl ListedCase {
+    /// The start of the case, as far as it is known before the run.
+    #[must_use]
+    pub fn start(&self) -> StartedCase {
+        StartedCase {
+            name: self.name.clone(),
+            parameters: self.parameters.clone(),
+            tags: self.tags.clone(),
+            location: self.location.clone(),
+        }
+    }
+}
+
+/// Why a program is no test of its framework.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct ListError {
+    /// What is wrong, and what would help.
+    pub message: String,
+    /// The line in the file, from 1.
+    pub line: Option<u32>,
+}
+
+impl ListError {
+    /// An error without a line.
+    pub fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into(), line: None }
+    }
+}
+
+/// The cases that one process of the program runs.
+#[derive(Clone, Copy, Debug)]
+pub struct Selection<'a> {
+    /// The cases; empty if the framework has no list.
+    pub cases: &'a [ListedCase],
+    /// Whether these are all cases of the program, so that nothing needs to be selected.
+    pub is_all: bool,
+}
+
+/// What an adapter needs to start a program.
+#[derive(Clone, Debug)]
+pub struct Launch<'a> {
+    /// The program.
+    pub test: &'a TestProgram,
+    /// The cases that it runs.
+    pub cases: Selection<'a>,
+    /// Where it reports.
+    pub channel: OpenChannel,
+    /// A directory for temporary files, which exists.
+    pub scratch: &'a Path,
+}
+
+/// Where a program writes the report that a [`ReportReader`] reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReportChannel {
+    /// Nowhere: reports arrive through `RTF_SESSION`, or there are none.
+    None,
+    /// To standard output. The reader passes on what is not part of the report with
+    /// [`CaseReporter::output`].
+    Stdout,
+    /// To a descriptor that it inherits, which has a path.
+    Descriptor,
+    /// To a TCP connection to the loopback interface.
+    Socket,
+}
+
+/// An open channel, for the command line of the program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum OpenChannel {
+    /// See [`ReportChannel::None`].
+    None,
+    /// See [`ReportChannel::Stdout`].
+    Stdout,
+    /// The path of the descriptor: `/dev/fd/7`.
+    Descriptor(PathBuf),
+    /// The address to which the program connects.
+    Socket(SocketAddr),
+}
+
+/// How a hanging program is made to show its stacks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StackDump {
+    /// A debugger is attached.
+    Debugger,
+    /// It writes them to its output on this signal.
+    SignalToOutput(rustix::process::Signal),
+    /// It writes them on SIGUSR2 to the file in `RTF_STACK_FILE`.
+    SignalToFile,
+}
+
+/// How a case ended, for cases that the adapter judges itself.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct CaseResult {
+    /// The outcome, if no message reports it.
+    pub outcome: Option<Outcome>,
+    /// The reason for the outcome.
+    pub reason: Option<String>,
+}
+
+impl CaseResult {
+    /// A result with a reason.
+    pub fn new(outcome: Outcome, reason: impl Into<String>) -> Self {
+        Self { outcome: Some(outcome), reason: Some(reason.into()) }
+    }
+}
+
+/// Output of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OutputStream {
+    /// Standard output.
+    Stdout,
+    /// Standard error.
+    Stderr,
+}
+
+/// Part of a report that is not as the framework writes it.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct Garbage(pub String);
+
+/// A test framework.
+pub trait Framework {
+    /// Lists the cases of a test; `None` if the framework cannot.
+    ///
+    /// # Errors
+    /// The program cannot be started, or is no test of this framework.
+    fn list(&self, test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError>;
+
+    /// Lists the cases for a run. Some frameworks announce them while they run.
+    ///
+    /// # Errors
+    /// As for [`Self::list`].
+    fn list_for_run(&self, test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
+        self.list(test)
+    }
+
+    /// Where the program reports.
+    fn channel(&self) -> ReportChannel;
+
+    /// Whether [`ReportReader::output`] needs the program's output.
+    fn watches_output(&self) -> bool {
+        false
+    }
+
+    /// The command that runs cases. The supervisor adds its own environment variables, and
+    /// sets streams and process group.
+    ///
+    /// # Errors
+    /// The command cannot be made, with the reason.
+    fn command(&self, launch: &Launch<'_>) -> Result<Command, String>;
+
+    /// A reader for the report of one process. Called after [`Self::command`].
+    fn reader(&self, launch: &Launch<'_>) -> Box<dyn ReportReader>;
+
+    /// Whether each case needs a process, in which the supervisor starts the case.
+    fn needs_separate_processes(&self) -> bool {
+        false
+    }
+
+    /// The cases to run for these selected ones, in order: a framework may add cases on
+    /// which others depend.
+    fn order(&self, _listed: &[ListedCase], selected: Vec<ListedCase>) -> Vec<ListedCase> {
+        selected
+    }
+
+    /// The result of a case that need not run, given the results so far (true: without a
+    /// problem).
+    fn decide(&self, _case: &ListedCase, _results: &HashMap<String, bool>) -> Option<CaseResult> {
+        None
+    }
+
+    /// The result of a test without cases.
+    fn program_result(&self, _end: ExitStatus, _last_error_line: &str) -> Option<CaseResult> {
+        None
+    }
+
+    /// Whether this exit code is right, given whether a case has a problem.
+    fn accepts_exit(&self, code: i32, has_problem: bool) -> bool {
+        code == 0 || has_problem
+    }
+
+    /// How stacks are dumped.
+    fn stack_dump(&self) -> StackDump {
+        StackDump::Debugger
+    }
+}
+
+/// Reads the report of one process.
+pub trait ReportReader {
+    /// Reads the next bytes of the report.
+    ///
+    /// # Errors
+    /// They are not part of a report; no further ones are read.
+    fn report(&mut self, bytes: &[u8], cases: &mut CaseReporter<'_>) -> Result<(), Garbage>;
+
+    /// Reads output that the program wrote, which is passed on in any case.
+    fn output(&mut self, _stream: OutputStream, _bytes: &[u8], _cases: &mut CaseReporter<'_>) {}
+
+    /// The process has ended, and everything that it wrote was read.
+    ///
+    /// # Errors
+    /// The report is incomplete although the program was not killed.
+    fn finish(&mut self, end: ExitStatus, cases: &mut CaseReporter<'_>) -> Result<(), Garbage>;
+}
+
+/// The reader of a framework that reports through `RTF_SESSION`.
+#[derive(Clone, Copy, Debug)]
+pub struct NoReport;
+
+impl ReportReader for NoReport {
+    fn report(&mut self, _bytes: &[u8], _cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
+        Ok(())
+    }
+
+    fn finish(&mut self, _end: ExitStatus, _cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
+        Ok(())
+    }
+}

@@ -1,0 +1,194 @@
+//! GoogleTest, also with GoogleMock.
+//!
+//! The result stream (`--gtest_stream_result_to`) reports the start and the end of each
+//! test as it happens. In it, a skipped test looks like a failed one (google/googletest#3411),
+//! so the verdict of such a test is taken from the program's output, which contains
+//! `[  SKIPPED ]` or `[  FAILED  ]`. Properties are in the JSON report, at the end.
+
+mod stream;
+
+use std::path::Path;
+use std::process::Command;
+use std::time::Duration;
+
+use rtf_model::{Location, Parameter};
+use serde::Deserialize;
+use serde_json::Value;
+
+use crate::framework::{
+    Framework, Launch, ListError, ListedCase, OpenChannel, ReportChannel, ReportReader, TestProgram,
+};
+use crate::listing::{self, file_name};
+
+/// The limit for listing the tests of a program.
+const LIST_LIMIT: Duration = Duration::from_secs(60);
+
+/// Above this length, the filter is passed in a file: an argument has at most 128 KiB.
+const FILTER_BYTES: usize = 64 * 1024;
+
+const RUN_DISABLED: &str = "--gtest_also_run_disabled_tests";
+
+/// Flags that would change which tests run, or where results go.
+const RESERVED: [&str; 6] = [
+    "--gtest_filter",
+    "--gtest_output",
+    "--gtest_list_tests",
+    "--gtest_stream_result_to",
+    "--gtest_repeat",
+    "--gtest_flagfile",
+];
+
+/// Variables with the same effect.
+const VARIABLES: [&str; 7] = [
+    "GTEST_FILTER",
+    "GTEST_OUTPUT",
+    "GTEST_LIST_TESTS",
+    "GTEST_STREAM_RESULT_TO",
+    "GTEST_REPEAT",
+    "GTEST_TOTAL_SHARDS",
+    "GTEST_SHARD_INDEX",
+];
+
+/// The adapter.
+#[derive(Clone, Copy, Debug)]
+pub struct GoogleTest;
+
+/// The JSON report, and the JSON list.
+#[derive(Debug, Deserialize)]
+struct Report {
+    testsuites: Vec<Suite>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Suite {
+    name: String,
+    testsuite: Vec<Test>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Test {
+    name: String,
+    file: Option<String>,
+    line: Option<u32>,
+    type_param: Option<String>,
+    value_param: Option<String>,
+    /// Also the properties.
+    #[serde(flatten)]
+    rest: serde_json::Map<String, Value>,
+}
+
+impl Test {
+    fn parameters(&self) -> Vec<Parameter> {
+        let named = [("type", &self.type_param), ("value", &self.value_param)];
+        let parameter = |name: &str, value: String| Parameter { name: name.to_owned(), value };
+        named
+            .into_iter()
+            .filter_map(|(name, value)| Some(parameter(name, value.clone()?)))
+            .collect()
+    }
+}
+
+impl Framework for GoogleTest {
+    fn list(&self, test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
+        if let Some(flag) = listing::reserved(&test.args, &RESERVED) {
+            let message = format!("`{flag}` is set by rtf; select cases with `cases`");
+            return Err(ListError::new(message));
+        }
+        let dir = tempfile::tempdir().map_err(|error| ListError::new(error.to_string()))?;
+        let report = dir.path().join("list.json");
+        let mut command = command(test);
+        command.arg("--gtest_list_tests").arg(output_flag(&report));
+        let listed = listing::run(command, LIST_LIMIT)?;
+        let runs_disabled = test.args.iter().any(|arg| arg.starts_with(RUN_DISABLED));
+        let text = std::fs::read(&report).unwrap_or_default();
+        match serde_json::from_slice::<Report>(&text) {
+            Ok(report) => Ok(Some(cases(&report, runs_disabled))),
+            Err(_) => Err(not_gtest(&test.file, &listed)),
+        }
+    }
+
+    fn channel(&self) -> ReportChannel {
+        ReportChannel::Socket
+    }
+
+    fn watches_output(&self) -> bool {
+        true
+    }
+
+    fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
+        let mut command = command(launch.test);
+        let report = report_file(launch.scratch);
+        drop(std::fs::remove_file(&report));
+        command.arg(output_flag(&report));
+        if let OpenChannel::Socket(address) = &launch.channel {
+            command.arg(format!("--gtest_stream_result_to={address}"));
+        }
+        let names: Vec<&str> = launch.cases.cases.iter().map(|case| case.name.as_str()).collect();
+        if launch.cases.is_all {
+            return Ok(command);
+        }
+        let filter = format!("--gtest_filter={}", names.join(":"));
+        if filter.len() <= FILTER_BYTES {
+            command.arg(filter);
+        } else {
+            let file = launch.scratch.join("filter");
+            std::fs::write(&file, filter).map_err(|error| error.to_string())?;
+            command.arg(format!("--gtest_flagfile={}", file.display()));
+        }
+        Ok(command)
+    }
+
+    fn reader(&self, launch: &Launch<'_>) -> Box<dyn ReportReader> {
+        Box::new(stream::Reader::new(launch.cases.cases, report_file(launch.scratch)))
+    }
+}
+
+fn command(test: &TestProgram) -> Command {
+    let mut command = Command::new(&test.file);
+    command.args(&test.args);
+    VARIABLES.iter().for_each(|name| drop(command.env_remove(name)));
+    command
+}
+
+fn report_file(scratch: &Path) -> std::path::PathBuf {
+    scratch.join("gtest.json")
+}
+
+fn output_flag(file: &Path) -> String {
+    format!("--gtest_output=json:{}", file.display())
+}
+
+fn cases(report: &Report, runs_disabled: bool) -> Vec<ListedCase> {
+    let of_suite = |suite: &Suite| -> Vec<ListedCase> {
+        let case = |test: &Test| {
+            let name = format!("{}.{}", suite.name, test.name);
+            let is_disabled =
+                |part: &str| part.starts_with("DISABLED_") || part.contains("/DISABLED_");
+            let disabled = !runs_disabled && (is_disabled(&suite.name) || is_disabled(&test.name));
+            let location =
+                test.file.clone().map(|file| Location { file, line: test.line.unwrap_or(0) });
+            ListedCase {
+                name,
+                location,
+                parameters: test.parameters(),
+                disabled,
+                ..ListedCase::default()
+            }
+        };
+        suite.testsuite.iter().map(case).collect()
+    };
+    report.testsuites.iter().flat_map(of_suite).collect()
+}
+
+fn not_gtest(file: &Path, listed: &listing::Listed) -> ListError {
+    let name = file_name(file);
+    let how = listed.status;
+    let quote = listed.quote();
+    let message =
+        format!("`{name}` is no GoogleTest program: `--gtest_list_tests` lists nothing ({how})");
+    ListError::new(if quote.is_empty() {
+        message
+    } else {
+        format!("{message}\nit printed\n{quote}")
+    })
+}

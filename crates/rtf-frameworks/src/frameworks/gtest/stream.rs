@@ -1,0 +1,283 @@
+//! Reads the result stream, the marks in the output, and the properties of the JSON report.
+
+use std::collections::{HashMap, HashSet, VecDeque};
+use std::path::PathBuf;
+
+use rtf_model::{ExitStatus, Location, MessageKind, Outcome};
+
+use super::Report;
+use crate::case_reporter::{CaseReporter, StartedCase};
+use crate::framework::{CaseResult, Garbage, ListedCase, OutputStream, ReportReader};
+
+const SKIPPED: &str = "[  SKIPPED ] ";
+const FAILED: &str = "[  FAILED  ] ";
+
+/// Text after a mark that is enough to contain the name of a test.
+const NAME_BYTES: usize = 4096;
+
+/// Fields of a test in the JSON report that are no properties.
+const FIELDS: [&str; 8] =
+    ["status", "result", "timestamp", "time", "classname", "failures", "skipped", "file"];
+
+/// Lines of the stream that say nothing about a test.
+const OTHER_EVENTS: [&str; 6] = [
+    "TestProgramStart",
+    "TestProgramEnd",
+    "TestIterationStart",
+    "TestIterationEnd",
+    "TestCaseEnd",
+    "TestSuiteEnd",
+];
+
+/// The reader of one process.
+#[derive(Debug)]
+pub(super) struct Reader {
+    report: PathBuf,
+    starts: HashMap<String, StartedCase>,
+    /// The end of the stream that is not a whole line yet.
+    line: Vec<u8>,
+    /// Events that wait for the verdict of a test.
+    queue: VecDeque<Event>,
+    suite: String,
+    running: Option<Running>,
+    /// The end of standard output in which a mark may begin.
+    output: String,
+    /// Tests whose mark was seen, and whether they were skipped.
+    marks: HashMap<String, bool>,
+    /// Tests that were reported as skipped.
+    skipped: HashSet<String>,
+}
+
+/// The running test.
+#[derive(Debug)]
+struct Running {
+    name: String,
+    /// Its results that are not reported yet: the reason of a skip, or failures.
+    parts: Vec<Part>,
+}
+
+#[derive(Debug)]
+struct Part {
+    text: String,
+    location: Option<Location>,
+}
+
+/// A line of the stream.
+#[derive(Debug)]
+enum Event {
+    SuiteStart(String),
+    TestStart(String),
+    Part(Part),
+    TestEnd { passed: bool },
+}
+
+impl Reader {
+    pub fn new(cases: &[ListedCase], report: PathBuf) -> Self {
+        Self {
+            report,
+            starts: cases.iter().map(|case| (case.name.clone(), case.start())).collect(),
+            line: Vec::new(),
+            queue: VecDeque::new(),
+            suite: String::new(),
+            running: None,
+            output: String::new(),
+            marks: HashMap::new(),
+            skipped: HashSet::new(),
+        }
+    }
+
+    /// Carries out the queued events up to one whose verdict is unknown.
+    fn advance(&mut self, is_last: bool, cases: &mut CaseReporter<'_>) {
+        while let Some(event) = self.queue.pop_front() {
+            if let Event::TestEnd { passed: false } = event
+                && !is_last
+                && self.running.as_ref().is_some_and(|run| !self.marks.contains_key(&run.name))
+            {
+                self.queue.push_front(event);
+                return;
+            }
+            self.carry_out(event, cases);
+        }
+    }
+
+    fn carry_out(&mut self, event: Event, cases: &mut CaseReporter<'_>) {
+        match event {
+            Event::SuiteStart(name) => self.suite = name,
+            Event::TestStart(name) => {
+                let name = format!("{}.{name}", self.suite);
+                let start = self.starts.get(&name).cloned();
+                let unknown = || StartedCase { name: name.clone(), ..StartedCase::default() };
+                cases.start(start.unwrap_or_else(unknown));
+                self.running = Some(Running { name, parts: Vec::new() });
+            }
+            Event::Part(part) => match &mut self.running {
+                Some(running) => running.parts.push(part),
+                // Of a suite's or the program's set-up or tear-down.
+                None => report_failure(None, part, cases),
+            },
+            Event::TestEnd { passed } => self.end_test(passed, cases),
+        }
+    }
+
+    fn end_test(&mut self, passed: bool, cases: &mut CaseReporter<'_>) {
+        let Some(Running { name, parts }) = self.running.take() else { return };
+        if self.marks.remove(&name) == Some(true) {
+            let reasons: Vec<&str> = parts.iter().map(|part| part.text.trim()).collect();
+            let reason = reasons.join("\n");
+            let reason = if reason.is_empty() { "skipped" } else { reason.trim() };
+            cases.finish(&name, CaseResult::new(Outcome::Skipped, reason));
+            self.skipped.insert(name);
+            return;
+        }
+        let has_parts = !parts.is_empty();
+        parts.into_iter().for_each(|part| report_failure(Some(&name), part, cases));
+        let result = match passed || has_parts {
+            true => CaseResult::default(),
+            false => CaseResult::new(Outcome::Failed, "it failed without a message"),
+        };
+        cases.finish(&name, result);
+    }
+
+    /// Reads the JSON report: the properties, and whether the tests were skipped. A test can
+    /// print a mark itself.
+    fn read_report(&self, cases: &mut CaseReporter<'_>) {
+        let text = std::fs::read(&self.report).unwrap_or_default();
+        let Ok(report) = serde_json::from_slice::<Report>(&text) else { return };
+        for suite in &report.testsuites {
+            for test in &suite.testsuite {
+                let test_name = format!("{}.{}", suite.name, test.name);
+                let was_skipped = test.rest.get("result").is_some_and(|it| it == "SKIPPED");
+                if self.skipped.contains(&test_name) && !was_skipped {
+                    let text =
+                        format!("`{test_name}` was not skipped, as its output had suggested");
+                    cases.test_error(text);
+                }
+                let properties =
+                    test.rest.iter().filter(|(name, _)| !FIELDS.contains(&name.as_str()));
+                for (name, value) in properties {
+                    let value = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+                    cases.property(None, &format!("{test_name}: {name}"), &value);
+                }
+            }
+        }
+    }
+}
+
+impl ReportReader for Reader {
+    fn report(&mut self, bytes: &[u8], cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
+        self.line.extend_from_slice(bytes);
+        let Some(end) = self.line.iter().rposition(|byte| *byte == b'\n') else { return Ok(()) };
+        let rest = self.line.split_off(end + 1);
+        let lines = std::mem::replace(&mut self.line, rest);
+        for line in lines.split(|byte| *byte == b'\n').filter(|line| !line.is_empty()) {
+            self.queue.extend(parse(&String::from_utf8_lossy(line))?);
+        }
+        self.advance(false, cases);
+        Ok(())
+    }
+
+    fn output(&mut self, stream: OutputStream, bytes: &[u8], cases: &mut CaseReporter<'_>) {
+        if stream == OutputStream::Stdout {
+            self.output.push_str(&String::from_utf8_lossy(bytes));
+            self.find_marks();
+            self.advance(false, cases);
+        }
+    }
+
+    fn finish(&mut self, end: ExitStatus, cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
+        // After a crash, a test without a mark has failed.
+        self.advance(true, cases);
+        if let Some(Running { name, parts }) = self.running.take() {
+            // The failures of a test that did not end.
+            parts.into_iter().for_each(|part| report_failure(Some(&name), part, cases));
+        }
+        if let ExitStatus::Code(_) = end {
+            self.read_report(cases);
+        }
+        Ok(())
+    }
+}
+
+impl Reader {
+    /// Finds the marks of skipped and failed tests in the output.
+    fn find_marks(&mut self) {
+        let mut rest = self.output.as_str();
+        while let Some(at) = [SKIPPED, FAILED].iter().filter_map(|mark| rest.find(mark)).min() {
+            let (is_skip, text) = (rest[at..].starts_with(SKIPPED), &rest[at + SKIPPED.len()..]);
+            // After a colour.
+            let text = text.strip_prefix("\u{1b}[m").unwrap_or(text);
+            let Some(end) = text.find(['\n', ' ', ',']) else {
+                let kept = if text.len() > NAME_BYTES { "" } else { &rest[at..] };
+                self.output = kept.to_owned();
+                return;
+            };
+            let name = text[..end].to_owned();
+            self.marks.insert(name, is_skip);
+            rest = &text[end..];
+        }
+        // A mark may be cut.
+        let mut start = rest.len().saturating_sub(SKIPPED.len());
+        while !rest.is_char_boundary(start) {
+            start += 1;
+        }
+        self.output = rest[start..].to_owned();
+    }
+}
+
+/// Parses a line of the stream; nothing for a line that is not needed.
+fn parse(line: &str) -> Result<Option<Event>, Garbage> {
+    let fields: HashMap<&str, String> = line
+        .split('&')
+        .filter_map(|field| field.split_once('='))
+        .map(|(name, value)| (name, decode(value)))
+        .collect();
+    let field = |name: &str| fields.get(name).cloned().unwrap_or_default();
+    let event = field("event");
+    Ok(Some(match event.as_str() {
+        "TestCaseStart" | "TestSuiteStart" => Event::SuiteStart(field("name")),
+        "TestStart" => Event::TestStart(field("name")),
+        "TestPartResult" => {
+            let line = field("line").parse().unwrap_or(0);
+            let file =
+                Some(field("file")).filter(|file| !file.is_empty() && file != "unknown file");
+            let location = file.map(|file| Location { file, line });
+            Event::Part(Part { text: field("message"), location })
+        }
+        "TestEnd" => Event::TestEnd { passed: field("passed") == "1" },
+        other if OTHER_EVENTS.contains(&other) => return Ok(None),
+        "" if line.starts_with("gtest_streaming_protocol_version=") => return Ok(None),
+        _ => {
+            let start: String = line.chars().take(200).collect();
+            return Err(Garbage(format!("`{start}` is no line of GoogleTest's result stream")));
+        }
+    }))
+}
+
+/// Decodes `%3D`.
+fn decode(text: &str) -> String {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let Some((&byte, after)) = rest.split_first() {
+        let code = after.get(..2).and_then(|code| std::str::from_utf8(code).ok());
+        match code.and_then(|code| u8::from_str_radix(code, 16).ok()) {
+            Some(decoded) if byte == b'%' => {
+                bytes.push(decoded);
+                rest = &after[2..];
+            }
+            _ => {
+                bytes.push(byte);
+                rest = after;
+            }
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+/// Reports a failure; an exception is an error.
+fn report_failure(case: Option<&str>, part: Part, cases: &mut CaseReporter<'_>) {
+    let is_exception = part.location.is_none()
+        && (part.text.starts_with("C++ exception")
+            || part.text.starts_with("Unknown C++ exception"));
+    let kind = if is_exception { MessageKind::Error } else { MessageKind::Failure };
+    cases.message(case, kind, part.text.trim_end(), part.location);
+}

@@ -1,0 +1,24 @@
+//! The adapters, one per framework.
+
+mod gtest;
+
+use crate::framework::Framework;
+
+type AnyFramework = Box<dyn Framework + Send + Sync>;
+
+/// All types, as suites name them.
+const TYPES: [(&str, fn() -> AnyFramework); 1] = [("gtest", || Box::new(gtest::GoogleTest))];
+
+/// The framework of this type.
+#[must_use]
+pub fn by_name(name: &str) -> Option<(&'static str, AnyFramework)> {
+    let (name, make) = TYPES.iter().find(|(known, _)| *known == name)?;
+    Some((name, make()))
+}
+
+/// How the host is started.
+#[must_use]
+pub fn usage() -> String {
+    let names: Vec<&str> = TYPES.iter().map(|(name, _)| *name).collect();
+    format!("usage: rtf-host-framework {} [--check FILE… [-- ARGUMENT…]]", names.join("|"))
+}

@@ -1,0 +1,96 @@
+//! Runs a program that lists its cases.
+
+use std::ffi::OsStr;
+use std::io::Read;
+use std::os::unix::process::CommandExt as _;
+use std::process::{Command, ExitStatus, Stdio};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+
+use rustix::process::{Pid, Signal, kill_process_group};
+
+use crate::framework::ListError;
+
+/// The longest part of the output that an error quotes.
+const QUOTED_BYTES: usize = 2000;
+
+/// What a program printed, and how it ended.
+#[derive(Debug)]
+pub struct Listed {
+    /// Standard output.
+    pub stdout: Vec<u8>,
+    /// Standard error.
+    pub stderr: Vec<u8>,
+    /// How it ended.
+    pub status: ExitStatus,
+}
+
+impl Listed {
+    /// The end of its output, for an error message; standard error if there is any.
+    #[must_use]
+    pub fn quote(&self) -> String {
+        let is_blank = self.stderr.trim_ascii().is_empty();
+        let text = if is_blank { &self.stdout } else { &self.stderr };
+        let start = text.len().saturating_sub(QUOTED_BYTES);
+        String::from_utf8_lossy(text[start..].trim_ascii()).into_owned()
+    }
+}
+
+/// Runs a command to its end, in a new process group, which is killed after the limit and
+/// at the end.
+///
+/// # Errors
+/// It cannot be started, or takes longer than the limit.
+pub fn run(mut command: Command, limit: Duration) -> Result<Listed, ListError> {
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command.process_group(0).env_remove("RTF_SESSION");
+    let program = command.get_program().to_string_lossy().into_owned();
+    let started = command.spawn();
+    let mut child = started
+        .map_err(|error| ListError::new(format!("`{program}` cannot be started: {error}")))?;
+    let pid = Pid::from_child(&child);
+    let (stdout, stderr) = (read(child.stdout.take()), read(child.stderr.take()));
+    let (sender, ended) = channel();
+    std::thread::spawn(move || sender.send(child.wait()));
+    let status = match ended.recv_timeout(limit) {
+        Ok(status) => status,
+        Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => {
+            kill(pid);
+            let message = format!("`{program}` did not list its cases within {limit:?}");
+            return Err(ListError::new(message));
+        }
+    };
+    // Children that it left may hold its output open.
+    kill(pid);
+    let text = |reader: std::thread::JoinHandle<Vec<u8>>| reader.join().unwrap_or_default();
+    let status = status.map_err(|error| ListError::new(format!("`{program}`: {error}")))?;
+    Ok(Listed { stdout: text(stdout), stderr: text(stderr), status })
+}
+
+fn kill(pid: Pid) {
+    // Fails if all of them have ended.
+    drop(kill_process_group(pid, Signal::KILL));
+}
+
+fn read(stream: Option<impl Read + Send + 'static>) -> std::thread::JoinHandle<Vec<u8>> {
+    std::thread::spawn(move || {
+        let mut bytes = Vec::new();
+        if let Some(mut stream) = stream {
+            drop(stream.read_to_end(&mut bytes));
+        }
+        bytes
+    })
+}
+
+/// The first argument that `rtf` sets itself, and its name without a value.
+#[must_use]
+pub fn reserved<'a>(args: &'a [String], reserved: &[&str]) -> Option<&'a str> {
+    let name = |arg: &'a String| arg.split('=').next().unwrap_or(arg);
+    args.iter().map(name).find(|name| reserved.contains(name))
+}
+
+/// A file name, for messages.
+#[must_use]
+pub fn file_name(file: &std::path::Path) -> String {
+    file.file_name().unwrap_or(OsStr::new("?")).to_string_lossy().into_owned()
+}

@@ -1,0 +1,285 @@
+//! Runs the cases of a test in one process after the other, until each selected case has
+//! finished or the test is stopped.
+
+mod process;
+mod session_socket;
+mod stack;
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use rtf_host::Session;
+use rtf_model::protocol::{CaseSelector, FixtureValue, Plugin};
+use rtf_model::{ExitStatus, Outcome};
+use rustix::process::{Pid, Signal, kill_process_group};
+
+use crate::case_reporter::CaseReporter;
+use crate::framework::{CaseResult, Framework, ListedCase, Selection, StackDump, TestProgram};
+use process::{ProcessEnd, Termination};
+
+/// The process that runs cases at the moment, for other threads.
+#[derive(Clone, Debug, Default)]
+pub struct RunningProgram(Arc<Mutex<Option<Pid>>>);
+
+impl RunningProgram {
+    fn set(&self, pid: Option<Pid>) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = pid;
+    }
+
+    /// Its process id.
+    #[must_use]
+    pub fn pid(&self) -> Option<Pid> {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Sends a signal to its process group.
+    pub fn signal(&self, signal: Signal) {
+        // The lock is held: the process is reaped only after it was removed here.
+        let running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(pid) = *running {
+            // Fails if all of them have ended.
+            drop(kill_process_group(pid, signal));
+        }
+    }
+}
+
+/// Dumps the stacks of the running program; `None` if there is none, or if they are in its
+/// output.
+#[must_use]
+pub fn dump_stack(running: &RunningProgram, kind: StackDump, file: &Path) -> Option<String> {
+    stack::dump(kind, running.pid()?, file)
+}
+
+/// One run of a test.
+struct TestRun<'a> {
+    framework: &'a dyn Framework,
+    program: TestProgram,
+    session: &'a Session,
+    running: &'a RunningProgram,
+    case_timeout: Option<Duration>,
+    separate: bool,
+    fixture_values: &'a [FixtureValue],
+    /// For temporary files.
+    scratch: &'a Path,
+    /// Where the program writes its stacks on a signal.
+    stack_file: PathBuf,
+}
+
+/// Runs a test, and reports its cases and problems to the session.
+pub fn run(
+    framework: &dyn Framework,
+    plugin: &Plugin,
+    session: &Session,
+    running: &RunningProgram,
+    scratch: &Path,
+) {
+    let program = TestProgram { file: plugin.file.clone().into(), args: plugin.args.clone() };
+    let mut cases = CaseReporter::new(session);
+    let separate = plugin.separate_cases || framework.needs_separate_processes();
+    let listed = match separate {
+        true => framework.list(&program),
+        false => framework.list_for_run(&program),
+    };
+    let listed = match listed {
+        Ok(listed) => listed,
+        Err(error) => return cases.test_error(error.message),
+    };
+    let run = TestRun {
+        framework,
+        program,
+        session,
+        running,
+        case_timeout: plugin.case_timeout_ms.map(Duration::from_millis),
+        separate,
+        fixture_values: &plugin.fixture_values,
+        scratch,
+        stack_file: scratch.join("stacks"),
+    };
+    match listed {
+        Some(listed) => run.listed(&listed, &plugin.cases, &mut cases),
+        None => run.unlisted(&plugin.cases, &mut cases),
+    }
+    if let (Some(count), false) = (cases.all_skipped(), session.interrupted()) {
+        let reason = match count {
+            1 => "its only case was skipped".to_owned(),
+            count => format!("all {count} cases were skipped"),
+        };
+        session.record_result(Outcome::Skipped, &reason);
+    }
+}
+
+impl TestRun<'_> {
+    /// Runs a test whose cases are known.
+    fn listed(&self, listed: &[ListedCase], wanted: &[CaseSelector], cases: &mut CaseReporter<'_>) {
+        let is_wanted = |case: &&ListedCase| {
+            wanted.is_empty() || wanted.iter().any(|it| it.selects(&case.name))
+        };
+        let selected: Vec<ListedCase> = listed.iter().filter(is_wanted).cloned().collect();
+        let is_all = selected.len() == listed.len();
+        let selected = self.framework.order(listed, selected);
+        if selected.is_empty() {
+            let text = match wanted.is_empty() {
+                true => "the program has no case",
+                false => "the program has none of the selected cases",
+            };
+            return cases.test_error(text.to_owned());
+        }
+        cases.plan(selected.iter().map(|case| case.name.clone()));
+        let mut queue = Vec::with_capacity(selected.len());
+        let mut all_run = is_all;
+        for case in selected {
+            if case.disabled {
+                let reason = case.disabled_reason.as_deref().unwrap_or("disabled");
+                cases.add(case.start(), CaseResult::new(Outcome::Skipped, reason));
+                all_run = false;
+            } else {
+                queue.push(case);
+            }
+        }
+        while !queue.is_empty() && !self.session.interrupted() {
+            let goes_on = if self.separate {
+                let case = queue.remove(0);
+                self.separate_case(&case, cases)
+            } else {
+                let selection = Selection { cases: &queue, is_all: all_run };
+                let goes_on = self.process(selection, cases);
+                queue.retain(|case| !cases.results().contains_key(&case.name));
+                all_run = false;
+                goes_on
+            };
+            if !goes_on {
+                break;
+            }
+        }
+        if let (Some(missing), false) = (cases.missing(), self.session.interrupted()) {
+            cases.test_error(missing);
+        }
+    }
+
+    /// Runs a test whose cases are not known, or are announced by the program.
+    fn unlisted(&self, wanted: &[CaseSelector], cases: &mut CaseReporter<'_>) {
+        cases.want(wanted);
+        loop {
+            let before = cases.results().len();
+            let goes_on = self.process(Selection { cases: &[], is_all: true }, cases);
+            let has_rest = cases.missing().is_some();
+            let made_progress = cases.results().len() > before;
+            if !(goes_on && has_rest && made_progress) || self.session.interrupted() {
+                break;
+            }
+        }
+        if let (Some(missing), false) = (cases.missing(), self.session.interrupted()) {
+            cases.test_error(missing);
+        }
+    }
+
+    /// Runs one case in a process. Returns whether to continue.
+    fn separate_case(&self, case: &ListedCase, cases: &mut CaseReporter<'_>) -> bool {
+        if let Some(result) = self.framework.decide(case, cases.results()) {
+            cases.add(case.start(), result);
+            return true;
+        }
+        if self.framework.needs_separate_processes() {
+            cases.start(case.start());
+        }
+        let cases_of_process = std::slice::from_ref(case);
+        self.process(Selection { cases: cases_of_process, is_all: false }, cases);
+        // The next case does not depend on how this process ended.
+        true
+    }
+
+    /// Runs cases in a new process. Returns whether to continue with the remaining ones.
+    fn process(&self, selection: Selection<'_>, cases: &mut CaseReporter<'_>) -> bool {
+        cases.begin_process(&selection);
+        let limit = match selection.cases {
+            [case] => self.case_timeout.into_iter().chain(case.timeout).min(),
+            _ => self.case_timeout,
+        };
+        match process::run(self, selection, limit, cases) {
+            Ok(end) => self.conclude(&end, selection, cases),
+            Err(reason) => {
+                cases.end_open(&CaseResult::new(Outcome::Error, reason.clone()));
+                cases.test_error(reason);
+                false
+            }
+        }
+    }
+
+    /// Judges the end of a process. Returns whether to continue with the remaining cases.
+    fn conclude(
+        &self,
+        end: &ProcessEnd,
+        selection: Selection<'_>,
+        cases: &mut CaseReporter<'_>,
+    ) -> bool {
+        let status = end.status;
+        match &end.termination {
+            Termination::Stopped => return false,
+            Termination::Garbage(garbage) => {
+                let text = format!("the report of the program is damaged: {garbage}");
+                cases.end_open(&CaseResult::new(Outcome::Error, text.clone()));
+                cases.test_error(text);
+                return false;
+            }
+            Termination::CaseTimeout(limit) => {
+                let reason = format!("the case took longer than {limit:?}");
+                cases.end_open(&CaseResult::new(Outcome::TimedOut, reason));
+                return true;
+            }
+            Termination::Exited => {}
+        }
+        if let Some(result) = self.framework.program_result(status, &end.last_error_line) {
+            let reason = result.reason.unwrap_or_default();
+            self.session.record_result(result.outcome.unwrap_or(Outcome::Passed), &reason);
+            return false;
+        }
+        if cases.innermost().is_some() {
+            let reason = format!("the program ended in the case with {status}");
+            cases.end_open(&CaseResult::new(Outcome::Crashed, reason));
+            return true;
+        }
+        self.conclude_idle(status, selection, cases)
+    }
+
+    /// Judges the end of a process in which no case was running.
+    fn conclude_idle(
+        &self,
+        status: ExitStatus,
+        selection: Selection<'_>,
+        cases: &mut CaseReporter<'_>,
+    ) -> bool {
+        let awaited = |case: &&ListedCase| cases.is_awaited(&case.name);
+        let has_rest = match selection.cases {
+            [] => cases.missing().is_some(),
+            selected => selected.iter().any(|case| awaited(&case)),
+        };
+        match status {
+            ExitStatus::Signal(_) => {
+                let place = match cases.last_finished() {
+                    Some(case) if has_rest => format!("after the case `{case}`"),
+                    Some(_) => "after its last case".to_owned(),
+                    None => "before its first case".to_owned(),
+                };
+                let reason = format!("the program ended {place} with {status}");
+                self.session.record_result(Outcome::Crashed, &reason);
+                has_rest && cases.finished() > 0
+            }
+            ExitStatus::Code(code) => {
+                if !self.framework.accepts_exit(code, cases.has_problem()) {
+                    cases.test_error(match cases.finished() {
+                        0 => format!("the program ended with {status} and reported no case"),
+                        _ => format!(
+                            "the program ended with {status} although no case has a problem"
+                        ),
+                    });
+                } else if cases.finished() == 0 && !has_rest {
+                    cases.test_error(format!(
+                        "the program ended with {status} and reported no case"
+                    ));
+                }
+                false
+            }
+        }
+    }
+}

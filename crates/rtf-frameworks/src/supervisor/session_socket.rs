@@ -1,0 +1,144 @@
+//! The socket of `RTF_SESSION`, over which a program reports while it runs.
+
+use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
+
+use rtf_model::protocol::FixtureValue;
+use rtf_model::{Attachment, Location, Measurement, Message, Outcome, Parameter, Samples};
+use rustix::io::FdFlags;
+use rustix::net::{
+    AddressFamily, RecvFlags, SendFlags, SocketFlags, SocketType, recv, send, socketpair,
+};
+use serde::Deserialize;
+use serde_json::Value;
+
+use crate::case_reporter::{CaseReporter, StartedCase};
+use crate::framework::CaseResult;
+
+/// The longest packet.
+const PACKET: usize = 256 * 1024;
+
+/// A packet was accepted, or the case runs.
+const YES: u8 = b'0';
+/// It was not, or the case does not run.
+const NO: u8 = b'1';
+
+/// Our end.
+#[derive(Debug)]
+pub(super) struct SessionSocket(OwnedFd);
+
+/// Opens a socket; the second descriptor is inherited by the program.
+pub(super) fn pair() -> std::io::Result<(SessionSocket, OwnedFd)> {
+    let flags = SocketFlags::CLOEXEC;
+    let (ours, theirs) = socketpair(AddressFamily::UNIX, SocketType::SEQPACKET, flags, None)?;
+    rustix::io::fcntl_setfd(&theirs, FdFlags::empty())?;
+    Ok((SessionSocket(ours), theirs))
+}
+
+impl AsFd for SessionSocket {
+    fn as_fd(&self) -> BorrowedFd<'_> {
+        self.0.as_fd()
+    }
+}
+
+/// A packet of the program (`spec/frameworks.md`).
+#[derive(Debug, Deserialize)]
+#[serde(tag = "method", content = "params", rename_all = "kebab-case")]
+enum Packet {
+    Measured(InCase<Measurement>),
+    Sampled(InCase<Samples>),
+    Attached(InCase<Attachment>),
+    Message(InCase<Message>),
+    FixtureValues {},
+    CasesPlanned { names: Vec<String> },
+    CaseStarted(Start),
+    CaseFinished(Finish),
+}
+
+/// A report with the path of its case.
+#[derive(Debug)]
+struct InCase<T> {
+    case: Option<String>,
+    report: T,
+}
+
+impl<'de, T: serde::de::DeserializeOwned> Deserialize<'de> for InCase<T> {
+    fn deserialize<D: serde::Deserializer<'de>>(input: D) -> Result<Self, D::Error> {
+        let mut value = Value::deserialize(input)?;
+        let case = value.as_object_mut().and_then(|fields| fields.remove("case"));
+        let case = case.and_then(|case| case.as_str().map(str::to_owned));
+        let report = serde_json::from_value(value).map_err(serde::de::Error::custom)?;
+        Ok(Self { case, report })
+    }
+}
+
+#[derive(Debug, Deserialize)]
+struct Start {
+    name: String,
+    parent: Option<String>,
+    #[serde(default)]
+    parameters: Vec<Parameter>,
+    #[serde(default)]
+    tags: Vec<String>,
+    location: Option<Location>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Finish {
+    name: String,
+    outcome: Option<Outcome>,
+    reason: Option<String>,
+}
+
+impl SessionSocket {
+    /// The next packet, if there is one.
+    pub fn receive(&self) -> Option<Vec<u8>> {
+        let mut buffer = vec![0; PACKET];
+        let flags = RecvFlags::DONTWAIT;
+        let received = rustix::io::retry_on_intr(|| recv(&self.0, &mut buffer[..], flags));
+        let (_, length) = received.ok().filter(|(_, length)| *length > 0)?;
+        buffer.truncate(length);
+        Some(buffer)
+    }
+
+    /// Carries out a packet and answers it.
+    pub fn handle(&self, packet: &[u8], values: &[FixtureValue], cases: &mut CaseReporter<'_>) {
+        let answer = match serde_json::from_slice(packet) {
+            Ok(packet) => carry_out(packet, values, cases),
+            Err(error) => {
+                let start: String = String::from_utf8_lossy(packet).chars().take(200).collect();
+                cases.test_error(format!("a packet of the session is malformed: {error}: {start}"));
+                vec![NO]
+            }
+        };
+        // Fails if the program has ended.
+        drop(rustix::io::retry_on_intr(|| send(&self.0, &answer, SendFlags::NOSIGNAL)));
+    }
+}
+
+fn carry_out(packet: Packet, values: &[FixtureValue], cases: &mut CaseReporter<'_>) -> Vec<u8> {
+    let answer = |is_accepted| vec![if is_accepted { YES } else { NO }];
+    match packet {
+        Packet::Measured(it) => cases.measure(it.case.as_deref(), it.report),
+        Packet::Sampled(it) => cases.sample(it.case.as_deref(), it.report),
+        Packet::Attached(it) => cases.attach(it.case.as_deref(), it.report),
+        Packet::Message(it) => cases.full_message(it.case.as_deref(), it.report),
+        Packet::FixtureValues {} => return serde_json::to_vec(values).unwrap_or_default(),
+        Packet::CasesPlanned { names } => {
+            return cases
+                .announce(names)
+                .into_iter()
+                .map(|runs| if runs { YES } else { NO })
+                .collect();
+        }
+        Packet::CaseStarted(Start { name, parent, parameters, tags, location }) => {
+            if parent.is_none() && !cases.runs(&name) {
+                return answer(false);
+            }
+            cases.start_case(parent.as_deref(), StartedCase { name, parameters, tags, location });
+        }
+        Packet::CaseFinished(Finish { name, outcome, reason }) => {
+            cases.finish(&name, CaseResult { outcome, reason });
+        }
+    }
+    answer(true)
+}
