@@ -69,7 +69,7 @@ pub fn run(mut command: Command, limit: Duration) -> Result<Listed, ListError> {
 
 fn kill(pid: Pid) {
     // Fails if all of them have ended.
-    drop(kill_process_group(pid, Signal::KILL));
+    let _ = kill_process_group(pid, Signal::KILL);
 }
 
 fn read(stream: Option<impl Read + Send + 'static>) -> std::thread::JoinHandle<Vec<u8>> {

@@ -146,7 +146,9 @@ impl Framework for GoogleTest {
 fn command(test: &TestProgram) -> Command {
     let mut command = Command::new(&test.file);
     command.args(&test.args);
-    VARIABLES.iter().for_each(|name| drop(command.env_remove(name)));
+    for name in VARIABLES {
+        command.env_remove(name);
+    }
     command
 }
 

@@ -7,7 +7,7 @@ use crate::framework::Framework;
 type AnyFramework = Box<dyn Framework + Send + Sync>;
 
 /// All types, as suites name them.
-const TYPES: [(&str, fn() -> AnyFramework); 1] = [("gtest", || Box::new(gtest::GoogleTest))];
+const TYPES: &[(&str, fn() -> AnyFramework)] = &[("gtest", || Box::new(gtest::GoogleTest))];
 
 /// The framework of this type.
 #[must_use]

@@ -39,7 +39,7 @@ impl RunningProgram {
         let running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(pid) = *running {
             // Fails if all of them have ended.
-            drop(kill_process_group(pid, signal));
+            let _ = kill_process_group(pid, signal);
         }
     }
 }

@@ -95,7 +95,7 @@ pub(super) fn run(
     };
     process.drain(cases);
     // What the program left in its group must not run next to the next process.
-    drop(rustix::process::kill_process_group(pid, Signal::KILL));
+    let _ = rustix::process::kill_process_group(pid, Signal::KILL);
     let RunningProcess { mut reader, mut termination, last_error, .. } = process;
     if test.session.interrupted() {
         termination = Termination::Stopped;

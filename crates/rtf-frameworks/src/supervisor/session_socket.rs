@@ -111,7 +111,7 @@ impl SessionSocket {
             }
         };
         // Fails if the program has ended.
-        drop(rustix::io::retry_on_intr(|| send(&self.0, &answer, SendFlags::NOSIGNAL)));
+        let _ = rustix::io::retry_on_intr(|| send(&self.0, &answer, SendFlags::NOSIGNAL));
     }
 }
 

@@ -19,7 +19,7 @@ pub(super) fn dump(kind: StackDump, pid: Pid, file: &Path) -> Option<String> {
     match kind {
         StackDump::Debugger => Some(by_debugger(pid)),
         StackDump::SignalToOutput(signal) => {
-            drop(kill_process(pid, signal));
+            let _ = kill_process(pid, signal);
             std::thread::sleep(SIGNAL_WAIT / 4);
             None
         }
@@ -28,7 +28,7 @@ pub(super) fn dump(kind: StackDump, pid: Pid, file: &Path) -> Option<String> {
 }
 
 fn by_signal(pid: Pid, file: &Path) -> Option<String> {
-    drop(kill_process(pid, Signal::USR2));
+    let _ = kill_process(pid, Signal::USR2);
     let deadline = Instant::now() + SIGNAL_WAIT;
     let mut last = Vec::new();
     while Instant::now() < deadline {
