@@ -48,7 +48,7 @@ if [ -z "${SUDO_USER:-}" ]; then
   tools/bootstrap.sh build
   tools/build.sh
 fi
-for program in rtf rtf-host-native rtf-host-lua; do
+for program in rtf rtf-host-native rtf-host-lua rtf-host-framework; do
   [ -x "$release/$program" ] || die "$release/$program is missing" "run \`make build\` first"
 done
 if [ -e "$top" ] && [ ! -w "$top" ]; then
@@ -67,6 +67,7 @@ put 755 "$release/rtf" bin/rtf
 put_link rtf bin/robottestingframework-testrunner # the command line of 2.x
 put 755 "$release/rtf-host-native" libexec/rtf/rtf-host-native
 put 755 "$release/rtf-host-lua" libexec/rtf/rtf-host-lua
+put 755 "$release/rtf-host-framework" libexec/rtf/rtf-host-framework
 put_tree sdk/c/include include '*.h'
 put_tree sdk/cpp/include include '*.h' '*.hpp'
 put_tree sdk/cpp/cmake lib/cmake '*.cmake'

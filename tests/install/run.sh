@@ -12,7 +12,8 @@ prefix=$work/prefix
 PREFIX=$prefix DESTDIR='' tools/install.sh
 cp -R tests/install/downstream "$work/project"
 
-for file in bin/rtf libexec/rtf/rtf-host-native libexec/rtf/rtf-host-lua share/man/man1/rtf.1 \
+for file in bin/rtf libexec/rtf/rtf-host-native libexec/rtf/rtf-host-lua \
+  libexec/rtf/rtf-host-framework share/man/man1/rtf.1 \
   share/man/man1/rtf-run.1 share/bash-completion/completions/rtf share/zsh/site-functions/_rtf \
   share/fish/vendor_completions.d/rtf.fish share/rtf/spec/suite.md share/rtf/schemas/event.json \
   lib/cmake/rtf/rtf-config.cmake include/robottestingframework/TestCase.h include/rtf1/TestCase.h \
@@ -73,7 +74,7 @@ else
   "${session[@]}"
 fi
 
-for program in bin/rtf libexec/rtf/rtf-host-native libexec/rtf/rtf-host-lua; do
+for program in bin/rtf libexec/rtf/rtf-host-{native,lua,framework}; do
   ! grep -q -a -F -e "$ROOT/sdk" -e "$ROOT/target" "$prefix/$program" ||
     die "$program knows where the checkout is"
 done
