@@ -340,3 +340,24 @@ fn the_c_header_is_also_cpp11_and_every_header_stands_alone() {
     }
     assert!(count > 10, "{count} headers");
 }
+
+#[test]
+fn the_header_for_programs_can_be_included_in_a_plug_in() {
+    let text = r#"
+        #include <rtf/session.hpp>
+        #include <rtf/rtf.hpp>
+
+        class Both : public rtf::TestCase
+        {
+            void run() override
+            {
+                RTF_CHECK(measure("of the plug-in", 1, "s", 0.0, 2.0), "a member");
+                RTF_CHECK(rtf::measure("of no program", 1, "s", 0, 2), "a function");
+                RTF_REPORT("a text");
+            }
+        };
+        RTF_PLUGIN(Both);
+    "#;
+    let ran = run_test(&build_text("both_headers.cpp", text, &[]), json!({}));
+    assert_eq!(ran.texts(), ["check: a member", "check: a function", "report: a text"]);
+}
