@@ -102,6 +102,7 @@ lint_python() {
   "$checkers/mypy" tests/fixtures/clock/*.py
   "$checkers/mypy" benches/bench.py
   "$checkers/mypy" tests/predecessor/*.py
+  "$checkers/mypy" tests/frameworks/*.py
 }
 
 sdk_python() {

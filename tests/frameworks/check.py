@@ -1,0 +1,212 @@
+#!/usr/bin/env python3
+"""Runs the corpus of a framework with rtf, and compares all results with a table.
+
+    check.py RTF TYPE
+
+The corpus is `tests/frameworks/TYPE`; `build.sh TYPE` has built it, and its exports are set.
+`expected.json` is the table:
+
+    {
+      "runs": [
+        {
+          "name": "all",                       for messages, and for `own`
+          "verb": "run",                       or `check`, `list`; default `run`
+          "input": "suite.xml",                relative to the corpus; may have `::TEST/CASE`
+          "options": [],                       further arguments of rtf
+          "exit": 1,
+          "prints": ["…"],                     texts in the output of rtf
+          "tests": {                           exactly the tests that the run reports
+            "arm_test": {
+              "verdict": "failed",
+              "reason": "…",                   a part of it
+              "stdout": ["…"], "stderr": ["…"],    parts of its output
+              "silent": ["<?xml"],             texts that its output must not contain
+              "stacks": ["…"],                 parts of its stack dumps
+              "measured": {}, "messages": ["…"],    outside of its cases, as below
+              "cases": {                       exactly the cases that it reports
+                "Arm.Passes": "passed",        short for {"verdict": "passed"}
+                "Arm.Fails": {                 a path: `CASE/CASE IN IT`
+                  "verdict": "failed",
+                  "reason": "…",               required, unless it passed
+                  "location": "arm_test.cpp: fails",    of its first failure or error
+                  "starts": "arm_test.cpp: Fails",      of the case itself
+                  "tags": [], "parameters": {}, "measured": {},   exactly these
+                  "messages": ["…"]            each is a part of a message of the case
+      …
+      "own": [
+        {
+          "command": ["{out}/arm_test", "--gtest_output=xml:{report}/a.xml"],
+          "format": "junit",                   or `counts`: it prints {"passed":1,"failed":2,…}
+          "compare": ["all", "arm_test"],      the run and its test
+          "cases": "top",                      or `leaves`
+          "left_out": ["Arm.Crashes"]          cases that the command does not run
+        }
+      ]
+    }
+
+A location names a file and a marker: the line of the file that contains `line: fails`.
+`own` runs the framework's own runner and compares the numbers of cases that passed, failed
+(or had an error, or crashed) and were skipped. In `command`, `{out}` is the directory of the
+build, `{source}` that of the corpus, and `{report}` an empty directory.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tools")]
+
+from observed import CaseResult, TestResult, observe  # noqa: E402
+from own_results import own_counts, rtf_counts  # noqa: E402
+from run import Run  # noqa: E402
+
+Table = dict[str, Any]
+
+
+def main() -> int:
+    """Prints all differences; the exit code is 1 if there is any."""
+    rtf, framework = str(Path(sys.argv[1]).resolve()), sys.argv[2]
+    corpus = Corpus(framework)
+    results = {}
+    with tempfile.TemporaryDirectory() as name:
+        for number, run in enumerate(corpus.table["runs"]):
+            title = run.get("name", run["input"])
+            print(f"\n=== {title}", flush=True)
+            results[title] = corpus.check_run(rtf, run, Path(name) / str(number))
+        for own in corpus.table["own"]:
+            corpus.check_own(own, results)
+    print(f"\n{corpus.checked} passed, {len(corpus.differences)} failed")
+    for difference in corpus.differences:
+        print(f"different: {difference}")
+    return 1 if corpus.differences else 0
+
+
+class Corpus:
+    """The corpus of a framework, and all differences from its table."""
+
+    def __init__(self, framework: str) -> None:
+        self.source = ROOT / "tests/frameworks" / framework
+        self.out = ROOT / "build/frameworks" / framework
+        self.table: Table = json.loads((self.source / "expected.json").read_text())
+        self.differences: list[str] = []
+        self.checked = 0
+
+    def check_run(self, rtf: str, run: Table, directory: Path) -> dict[str, TestResult]:
+        """Runs rtf once and compares its exit code, output and tests with the table."""
+        title = run.get("name", run["input"])
+        file, *selected = run["input"].split("::", maxsplit=1)
+        target = "::".join([str(self.source / file), *selected])
+        options = [str(option) for option in run.get("options", [])]
+        tests: dict[str, TestResult] = {}
+        if run.get("verb", "run") == "run":
+            ours = Run(rtf, target, directory, *options)
+            code = ours.wait()
+            output = ours.output.read_text(errors="replace")
+            tests = observe(ours.events())
+        else:
+            code, output = run_verb(rtf, run["verb"], *options, target)
+        self.expect(f"{title}: exit code", code, run["exit"])
+        for text in run.get("prints", []):
+            self.expect_part(f"{title}: output of rtf", output, text)
+        expected = run.get("tests", {})
+        self.expect(f"{title}: tests", sorted(tests), sorted(expected))
+        for name in expected.keys() & tests.keys():
+            self.check_test(f"{title}: {name}", tests[name], expected[name])
+        return tests
+
+    def check_test(self, title: str, got: TestResult, expected: Table) -> None:
+        """Compares a test and its cases."""
+        self.expect(f"{title}: verdict ({got.reason})", got.verdict, expected["verdict"])
+        self.expect_reason(title, got.reason, expected)
+        for stream in ("stdout", "stderr"):
+            for text in expected.get(stream, []):
+                self.expect_part(f"{title}: {stream}", got.output[stream], text)
+            for text in expected.get("silent", []):
+                self.expect(f"{title}: `{text}` in {stream}", text in got.output[stream], False)
+        for text in expected.get("stacks", []):
+            self.expect_part(f"{title}: stack dump", got.stacks, text)
+        self.expect(f"{title}: measured", got.measured, expected.get("measured", {}))
+        self.expect_messages(title, got.messages, expected)
+        cases = expected.get("cases", {})
+        self.expect(f"{title}: cases", sorted(got.cases), sorted(cases))
+        for path in cases.keys() & got.cases.keys():
+            each = cases[path]
+            each = {"verdict": each} if isinstance(each, str) else each
+            self.check_case(f"{title}: {path}", got.cases[path], each)
+
+    def check_case(self, title: str, got: CaseResult, expected: Table) -> None:
+        """Compares a case; what the table does not mention must be absent."""
+        self.expect(f"{title}: verdict ({got.reason})", got.verdict, expected["verdict"])
+        self.expect_reason(title, got.reason, expected)
+        self.expect(f"{title}: tags", sorted(got.tags), sorted(expected.get("tags", [])))
+        self.expect(f"{title}: parameters", got.parameters, expected.get("parameters", {}))
+        self.expect(f"{title}: measured", got.measured, expected.get("measured", {}))
+        self.expect_messages(title, got.messages, expected)
+        for key, location in (("location", got.problem_location), ("starts", got.location)):
+            if key in expected:
+                line = self.marked(expected[key])
+                self.expect(f"{title}: {key}", location, line)
+
+    def expect_reason(self, title: str, reason: str, expected: Table) -> None:
+        """Everything that did not pass has a reason."""
+        if expected["verdict"] != "passed":
+            self.expect_part(f"{title}: reason", reason, expected["reason"])
+
+    def expect_messages(self, title: str, messages: list[str], expected: Table) -> None:
+        """Each expected text is a part of a message."""
+        for text in expected.get("messages", []):
+            found = any(text in message for message in messages)
+            self.expect(f"{title}: `{text}` in {messages}", found, True)
+
+    def check_own(self, own: Table, results: dict[str, dict[str, TestResult]]) -> None:
+        """Compares the numbers of cases with those of the framework's own runner."""
+        run, test = own["compare"]
+        title = f"{run}: {test}: counts of the framework"
+        got = rtf_counts(results[run][test], own.get("cases", "top"), own.get("left_out", []))
+        self.expect(title, got, own_counts(own, self.source, self.out))
+
+    def marked(self, location: str) -> str:
+        """The `FILE:LINE` of a `FILE: MARKER`."""
+        name, marker = location.split(": ", maxsplit=1)
+        lines = (self.source / name).read_text().splitlines()
+        found = [at for at, line in enumerate(lines, 1) if line.endswith(f"line: {marker}")]
+        if len(found) != 1:
+            raise SystemExit(f"{name}: {len(found)} lines end with `line: {marker}`")
+        return f"{Path(name).name}:{found[0]}"
+
+    def expect(self, what: str, got: object, expected: object) -> None:
+        """Remembers a difference."""
+        self.checked += got == expected
+        if got != expected:
+            self.differences.append(f"{what}: got {got!r}, expected {expected!r}")
+
+    def expect_part(self, what: str, got: str, text: str) -> None:
+        """Remembers that a text is missing in another; an empty text only matches itself."""
+        self.expect(f"{what}: `{text}` in {got!r}", text in got if text else not got, True)
+
+
+def run_verb(rtf: str, *arguments: str) -> tuple[int, str]:
+    """Runs `rtf check` or `rtf list`."""
+    done = subprocess.run(
+        [rtf, *arguments],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        env={**os.environ, "NO_COLOR": "1"},
+        check=False,
+    )
+    print(done.stdout, flush=True)
+    return done.returncode, done.stdout
+
+
+if __name__ == "__main__":
+    sys.exit(main())
