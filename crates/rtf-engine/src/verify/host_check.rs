@@ -21,12 +21,13 @@ enum HostEnd {
 /// The longest standard error of a host.
 const STDERR_BYTES: u64 = 4096;
 
-/// The longest line of the protocol.
-const LINE_BYTES: u64 = 1024 * 1024;
+/// The longest line of the protocol: a list of 50 000 cases with long names.
+const LINE_BYTES: u64 = 64 * 1024 * 1024;
 
 /// Checks all files. A host that dies at one of them is restarted for the files
 /// after it, so that one bad plug-in does not hide another.
 pub(super) fn check(group: &CheckGroup, files: &[&Path], limit: Duration) -> Vec<CheckAnswer> {
+    let limit = group.limit(limit);
     let mut answers = Vec::with_capacity(files.len());
     while answers.len() < files.len() {
         let rest = &files[answers.len()..];
@@ -98,6 +99,9 @@ fn spawn(group: &CheckGroup, files: &[&Path]) -> std::io::Result<Child> {
     })?;
     let mut command = Command::new(program);
     command.args(arguments).arg("--check").args(files).current_dir(&group.folder);
+    if !files.is_empty() && !group.arguments.is_empty() {
+        command.arg("--").args(&group.arguments);
+    }
     command.envs(group.env.iter().map(|(name, value)| (name, value)));
     command.envs(group.host.env.iter().map(|(name, value)| (name, value)));
     command.env_remove(protocol::CHANNEL_VARIABLE);

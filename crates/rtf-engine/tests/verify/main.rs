@@ -6,6 +6,7 @@
 #[path = "../../../rtf-plan/tests/plan/bench.rs"]
 #[expect(dead_code, reason = "the planner's tests use all of it")]
 mod bench;
+mod frameworks;
 
 use std::ops::Deref;
 use std::time::Duration;

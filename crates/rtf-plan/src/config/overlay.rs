@@ -141,6 +141,7 @@ fn test_limits(declared: DeclaredLimits, view: &ProfileView, scale: f64) -> Decl
         slow: limit(declared.slow, ("slow", default.slow), view, scale),
         // Not scaled: a slow robot must not delay the kill.
         grace: declared.grace.or_else(|| view.duration("timeouts.grace")),
+        case: declared.case.map(|limit| scaled(limit, scale)),
     }
 }
 
@@ -197,6 +198,9 @@ impl ParamSubstitution<'_> {
             let reported = self.problems.len();
             self.env(&mut test.env, test.span);
             self.plugin(&mut test.plugin);
+            if let Some(patterns) = test.cases.as_mut().and_then(|cases| cases.patterns.as_mut()) {
+                self.text(&mut patterns.value, patterns.span);
+            }
             if combination.is_some_and(|combination| !combination.is_first) {
                 // The first combination has the same ones.
                 self.problems.truncate(reported);

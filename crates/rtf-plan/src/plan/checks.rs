@@ -16,9 +16,10 @@ use std::time::Duration;
 use rtf_model::Diagnostic;
 use serde::Deserialize;
 
-use super::HostPlan;
+use super::frameworks::Framework;
 use super::search_scope::SearchScope;
 use super::use_site::{PluginRole, UseSite, UseSites};
+use super::{HostPlan, ListedCase};
 use crate::suite::SourceMap;
 
 /// A use of a plug-in that has to be checked.
@@ -30,6 +31,17 @@ pub(super) struct PluginUse<'a> {
     pub site: &'a UseSite,
     /// Whether the file is omitted, without an error, if it contains no plug-in of this role.
     pub optional: bool,
+    /// The arguments with which its cases are listed; empty for other plug-ins.
+    pub arguments: &'a [String],
+    /// The framework of the test.
+    pub framework: Option<(&'static str, Framework)>,
+}
+
+/// The position of a file in the checks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct CheckId {
+    group: usize,
+    file: usize,
 }
 
 /// All files to check, each once per way of loading it.
@@ -47,6 +59,10 @@ pub struct CheckGroup {
     pub folder: PathBuf,
     /// Environment variables in addition to the runner's; later ones win.
     pub env: Vec<(String, String)>,
+    /// The arguments for the programs of another framework, which list their cases.
+    pub arguments: Vec<String>,
+    /// The type, if it is another framework.
+    framework: Option<(&'static str, Framework)>,
     files: Vec<FileUse>,
     index: HashMap<PathBuf, usize>,
 }
@@ -56,6 +72,13 @@ impl CheckGroup {
     /// [`PlanDraft::finish`](super::PlanDraft::finish) expects.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         self.files.iter().map(|entry| entry.file.as_path())
+    }
+
+    /// Returns the limit for one file; `usual` unless the host needs longer.
+    #[must_use]
+    pub fn limit(&self, usual: Duration) -> Duration {
+        let own = self.framework.and_then(|(_, framework)| framework.check_limit);
+        own.map_or(usual, |own| own.max(usual))
     }
 }
 
@@ -95,6 +118,8 @@ pub struct CheckReport {
     pub line: Option<u32>,
     /// The plug-ins in the file, `test` or `fixture`, if the host knows them.
     pub kinds: Option<Vec<String>>,
+    /// The cases of a test of another framework; `None` if they are known only when it runs.
+    pub cases: Option<Vec<ListedCase>>,
 }
 
 /// A file and its uses.
@@ -116,12 +141,15 @@ pub(super) struct CheckFindings {
     pub sources: SourceMap,
     /// Files of input directories that contain no test.
     pub omitted: BTreeSet<PathBuf>,
+    /// The cases of tests of other frameworks.
+    pub cases: HashMap<CheckId, Arc<[ListedCase]>>,
 }
 
 impl PluginChecks {
     /// Records a use.
-    pub fn add(&mut self, plugin: PluginUse<'_>) {
-        let group = self.group(plugin.host, plugin.scope);
+    pub fn add(&mut self, plugin: PluginUse<'_>) -> CheckId {
+        let id = self.group(&plugin);
+        let group = &mut self.groups[id];
         let index = match group.index.get(plugin.file) {
             Some(index) => *index,
             None => {
@@ -145,30 +173,35 @@ impl PluginChecks {
             PluginRole::Hook => &mut entry.hooks,
         };
         sites.add(plugin.site);
+        CheckId { group: id, file: index }
     }
 
-    fn group(&mut self, host: &Arc<HostPlan>, scope: &SearchScope<'_>) -> &mut CheckGroup {
+    /// Returns the index of the group of a use.
+    fn group(&mut self, plugin: &PluginUse<'_>) -> usize {
+        let PluginUse { host, scope, arguments, .. } = plugin;
         let env = || scope.suite_env.iter().chain(scope.own_env);
         let is_same = |group: &CheckGroup| {
             Arc::ptr_eq(&group.host, host)
+                && group.arguments == *arguments
                 && group.folder == scope.dir
                 && group.env.iter().eq(env())
         };
         // Searched backwards: most uses belong to the group of the previous one.
-        let index = match self.groups.iter().rposition(is_same) {
+        match self.groups.iter().rposition(is_same) {
             Some(index) => index,
             None => {
                 self.groups.push(CheckGroup {
                     host: Arc::clone(host),
                     folder: scope.dir.to_path_buf(),
                     env: env().cloned().collect(),
+                    arguments: arguments.to_vec(),
+                    framework: plugin.framework,
                     files: Vec::new(),
                     index: HashMap::new(),
                 });
                 self.groups.len() - 1
             }
-        };
-        &mut self.groups[index]
+        }
     }
 
     /// Returns the groups to check.
@@ -179,8 +212,8 @@ impl PluginChecks {
     /// Turns the answers, one per file of each group, into diagnostics.
     pub fn diagnose(&self, answers: Vec<Vec<CheckAnswer>>) -> CheckFindings {
         let mut findings = CheckFindings::default();
-        for (group, answers) in self.groups.iter().zip(answers) {
-            diagnose::diagnose(group, answers, &mut findings);
+        for (index, (group, answers)) in self.groups.iter().zip(answers).enumerate() {
+            diagnose::diagnose(index, group, answers, &mut findings);
         }
         findings
     }

@@ -8,6 +8,7 @@ use rtf_model::{Diagnostic, Severity};
 
 use super::checks::{CheckAnswer, CheckGroup, PluginChecks};
 use super::context::{PlanContext, parent_dir};
+use super::framework_tests::FrameworkTests;
 use super::inputs::{self, InputFile, ResolvedInput};
 use super::matrix::MatrixExpander;
 use super::named_tests;
@@ -32,10 +33,19 @@ pub struct PlanOutcome {
 /// A plan whose plug-ins have not been checked yet.
 #[derive(Debug)]
 pub struct PlanDraft {
-    suites: Vec<SuitePlan>,
+    suites: Vec<SuiteDraft>,
     problems: Vec<Diagnostic>,
     sources: SourceMap,
     checks: PluginChecks,
+}
+
+/// A suite whose plug-ins have not been checked yet.
+#[derive(Debug)]
+pub(super) struct SuiteDraft {
+    /// The plan.
+    pub plan: SuitePlan,
+    /// Its tests of other frameworks.
+    pub frameworks: FrameworkTests,
 }
 
 impl PlanDraft {
@@ -52,21 +62,25 @@ impl PlanDraft {
         let findings = self.checks.diagnose(answers);
         self.problems.extend(findings.problems);
         self.sources.append(findings.sources);
+        for SuiteDraft { plan, frameworks } in &mut self.suites {
+            frameworks.add_cases(plan, &findings.cases);
+        }
+        let mut suites: Vec<SuitePlan> = self.suites.into_iter().map(|suite| suite.plan).collect();
         // Only files of input directories can be omitted, and those belong to no suite file.
-        for suite in self.suites.iter_mut().filter(|suite| suite.file.is_empty()) {
+        for suite in suites.iter_mut().filter(|suite| suite.file.is_empty()) {
             suite.tests.retain(|test| !findings.omitted.contains(&test.plugin.file));
         }
         // A suite file without tests was reported; the suite of plug-ins may have become empty.
-        self.suites.retain(|suite| !suite.tests.is_empty());
+        suites.retain(|suite| !suite.tests.is_empty());
         if self.problems.iter().all(|problem| problem.severity != Severity::Error)
-            && self.suites.is_empty()
+            && suites.is_empty()
         {
             let problem = Diagnostic::error("no-tests", "there is no test to run");
             let notes =
                 findings.omitted.iter().map(|file| format!("{} contains no test", file.display()));
             self.problems.push(notes.fold(problem, Diagnostic::note));
         }
-        outcome(self.problems, self.suites, self.sources)
+        outcome(self.problems, suites, self.sources)
     }
 
     /// Completes the plan without checking the plug-ins.
@@ -90,8 +104,12 @@ pub fn draft(inputs: &[InputPath], options: &Options) -> PlanDraft {
         match input {
             ResolvedInput::Suite { file, only } => {
                 let mut suite = suite_from_file(&mut context, &file, &mut sources);
-                if let Some(suite) = suite.as_mut().filter(|_| !only.is_empty()) {
-                    context.problems.extend(named_tests::retain(suite, &only));
+                if let Some(suite) = &mut suite {
+                    if !only.is_empty() {
+                        context.problems.extend(named_tests::retain(&mut suite.plan, &only));
+                    }
+                    let SuiteDraft { plan, frameworks } = suite;
+                    frameworks.add_checks(plan, &options.runner, &mut context.checks);
                 }
                 suites.extend(suite);
             }
@@ -107,7 +125,7 @@ pub fn draft(inputs: &[InputPath], options: &Options) -> PlanDraft {
 fn add_direct_plugins(
     context: &mut PlanContext<'_>,
     plugins: Vec<DirectPlugin>,
-    suites: &mut Vec<SuitePlan>,
+    suites: &mut Vec<SuiteDraft>,
 ) {
     let options = context.options;
     let has_options = |plugin: &DirectPlugin| options.apply_to_plugin(plugin.from_dir);
@@ -126,7 +144,7 @@ fn add_direct_plugins(
         .map(|group| {
             let mut plan = plan_direct_plugins(context, group);
             context.quarantine(&options.runner.current_dir, &mut plan);
-            plan
+            SuiteDraft { plan, frameworks: FrameworkTests::default() }
         })
         .collect();
     suites.splice(index..index, planned);
@@ -153,7 +171,7 @@ fn suite_from_file(
     context: &mut PlanContext<'_>,
     file: &InputFile,
     sources: &mut SourceMap,
-) -> Option<SuitePlan> {
+) -> Option<SuiteDraft> {
     let source = match suite::read_source(&file.path, &file.name) {
         Ok(source) => Arc::new(source),
         Err(unreadable) => {
@@ -173,12 +191,12 @@ fn suite_from_file(
             MatrixExpander::new(&dir, &source, &mut context.problems, sources).expand(tests);
         context.configure(&dir, &source, suite);
     }
-    let mut plan = suite.map(|suite| plan_suite(context, file, &source, suite));
-    if let Some(plan) = &mut plan {
-        context.quarantine(&parent_dir(&file.path), plan);
+    let mut draft = suite.map(|suite| plan_suite(context, file, &source, suite));
+    if let Some(draft) = &mut draft {
+        context.quarantine(&parent_dir(&file.path), &mut draft.plan);
     }
     add_if_used(sources, &source, &context.problems[before..]);
-    plan
+    draft
 }
 
 /// Adds a text if a diagnostic refers to it, or if a plug-in check may still do so.

@@ -1,12 +1,14 @@
 //! The catalogue of hosts: the types of plug-ins, and how to start the host of each.
 //!
-//! A new host is a new entry here; no other part of the runner depends on it.
+//! A new host is a new entry here; no other part of the runner depends on it. The types of
+//! other test frameworks are in [`frameworks`](super::frameworks).
 
 use std::path::{Path, PathBuf};
 
 use rtf_model::Diagnostic;
 
 use super::HostPlan;
+use super::frameworks::{self, Framework};
 use super::program::{in_path, list, searched_path, utf8};
 use super::search_scope::SearchScope;
 use super::unix::is_executable;
@@ -24,14 +26,24 @@ pub(super) struct HostKind {
     pub library_path: Option<&'static str>,
     /// The namespace of the base classes `TestCase` and `FixtureManager`, with its separator.
     pub class_prefix: Option<&'static str>,
-    start: HostStart,
+    /// For a type whose tests another framework runs.
+    pub framework: Option<Framework>,
+    /// How to start its host.
+    pub start: HostStart,
 }
 
 /// The ways to start a host.
 #[derive(Debug)]
-enum HostStart {
+pub(super) enum HostStart {
     /// A program that comes with `rtf`.
-    Shipped { program: &'static str },
+    Shipped {
+        program: &'static str,
+        arguments: &'static [&'static str],
+        /// The SDK that its tests can import.
+        sdk: Option<&'static Sdk>,
+        /// Whether it can run as a fork server.
+        forks: bool,
+    },
     /// The user's interpreter with a module that comes with `rtf`.
     Interpreter {
         /// The name in `PATH`.
@@ -39,7 +51,7 @@ enum HostStart {
         /// The variable that selects another program.
         variable: &'static str,
         arguments: &'static [&'static str],
-        sdk: Sdk,
+        sdk: &'static Sdk,
         /// Whether the module can run as a fork server.
         forks: bool,
     },
@@ -47,7 +59,7 @@ enum HostStart {
 
 /// The location of the interpreter's module.
 #[derive(Debug)]
-struct Sdk {
+pub(super) struct Sdk {
     /// The directory in the installation's prefix.
     installed: &'static str,
     /// The directory in the source tree.
@@ -74,7 +86,22 @@ const LIBRARY_PATH: &str = if cfg!(target_os = "macos") {
     "LD_LIBRARY_PATH"
 };
 
-/// All hosts; the first is the default type.
+/// The Python SDK, with the host of Python plug-ins.
+pub(super) static PYTHON_SDK: Sdk = Sdk {
+    installed: "share/rtf/python",
+    source: "sdk/python",
+    marker: "rtf/host",
+    variable: "PYTHONPATH",
+};
+
+static RUBY_SDK: Sdk = Sdk {
+    installed: "share/rtf/ruby/lib",
+    source: "sdk/ruby/lib",
+    marker: "rtf/host.rb",
+    variable: "RUBYLIB",
+};
+
+/// The hosts of plug-ins; the first is the default type.
 pub(super) static HOSTS: [HostKind; 4] = [
     HostKind {
         name: "dll",
@@ -82,7 +109,8 @@ pub(super) static HOSTS: [HostKind; 4] = [
         prefixes: &["", "lib"],
         library_path: Some(LIBRARY_PATH),
         class_prefix: Some("rtf::"),
-        start: HostStart::Shipped { program: "rtf-host-native" },
+        framework: None,
+        start: shipped("rtf-host-native"),
     },
     HostKind {
         name: "lua",
@@ -90,7 +118,8 @@ pub(super) static HOSTS: [HostKind; 4] = [
         prefixes: &[""],
         library_path: None,
         class_prefix: None,
-        start: HostStart::Shipped { program: "rtf-host-lua" },
+        framework: None,
+        start: shipped("rtf-host-lua"),
     },
     HostKind {
         name: "python",
@@ -98,16 +127,12 @@ pub(super) static HOSTS: [HostKind; 4] = [
         prefixes: &[""],
         library_path: None,
         class_prefix: Some("rtf."),
+        framework: None,
         start: HostStart::Interpreter {
             program: "python3",
             variable: "RTF_PYTHON",
             arguments: &["-m", "rtf.host"],
-            sdk: Sdk {
-                installed: "share/rtf/python",
-                source: "sdk/python",
-                marker: "rtf/host",
-                variable: "PYTHONPATH",
-            },
+            sdk: &PYTHON_SDK,
             forks: true,
         },
     },
@@ -117,24 +142,25 @@ pub(super) static HOSTS: [HostKind; 4] = [
         prefixes: &[""],
         library_path: None,
         class_prefix: Some("RTF::"),
+        framework: None,
         start: HostStart::Interpreter {
             program: "ruby",
             variable: "RTF_RUBY",
             arguments: &["-e", "require 'rtf/host'; RTF::Host.main", "--"],
-            sdk: Sdk {
-                installed: "share/rtf/ruby/lib",
-                source: "sdk/ruby/lib",
-                marker: "rtf/host.rb",
-                variable: "RUBYLIB",
-            },
+            sdk: &RUBY_SDK,
             forks: false,
         },
     },
 ];
 
+const fn shipped(program: &'static str) -> HostStart {
+    HostStart::Shipped { program, arguments: &[], sdk: None, forks: true }
+}
+
 /// Returns the type of this name, ignoring case as 2.x did.
 pub(super) fn by_name(name: &str) -> Option<&'static HostKind> {
-    HOSTS.iter().find(|kind| kind.name.eq_ignore_ascii_case(name))
+    let plugins = HOSTS.iter().find(|kind| kind.name.eq_ignore_ascii_case(name));
+    plugins.or_else(|| frameworks::by_name(name))
 }
 
 /// Returns the type of a file by its extension; a directory `my.sources` in the
@@ -152,18 +178,23 @@ impl HostKind {
     /// Finds the host for processes in `scope`.
     pub fn locate(&self, scope: &SearchScope<'_>) -> Result<HostPlan, Box<Diagnostic>> {
         match &self.start {
-            HostStart::Shipped { program } => {
+            HostStart::Shipped { program, arguments, sdk, forks } => {
                 let file = shipped_host(program, scope)?;
-                Ok(HostPlan { command: vec![utf8(&file)?], env: Vec::new(), forks: true })
+                let env = sdk.map(|sdk| sdk.env(scope)).transpose()?.unwrap_or_default();
+                Ok(HostPlan { command: command(&file, arguments)?, env, forks: *forks })
             }
             HostStart::Interpreter { program, variable, arguments, sdk, forks } => {
                 let file = interpreter(self.name, program, variable, scope)?;
-                let mut command = vec![utf8(&file)?];
-                command.extend(arguments.iter().map(|argument| (*argument).to_owned()));
+                let command = command(&file, arguments)?;
                 Ok(HostPlan { command, env: sdk.env(scope)?, forks: *forks })
             }
         }
     }
+}
+
+fn command(program: &Path, arguments: &[&str]) -> Result<Vec<String>, Box<Diagnostic>> {
+    let arguments = arguments.iter().map(|argument| (*argument).to_owned());
+    Ok(std::iter::once(utf8(program)?).chain(arguments).collect())
 }
 
 impl Sdk {

@@ -127,14 +127,19 @@ impl<'a, 'c> PluginPlanner<'a, 'c> {
             return None;
         }
         let host = self.host(usage.kind, usage.env, usage.site)?;
-        self.context.checks.add(PluginUse {
-            host: &host,
-            scope: &self.scope.with(usage.env),
-            file,
-            role: usage.role,
-            site: usage.site,
-            optional: usage.optional,
-        });
+        // The checks of other frameworks are added for the selected tests.
+        if usage.kind.framework.is_none() {
+            self.context.checks.add(PluginUse {
+                host: &host,
+                scope: &self.scope.with(usage.env),
+                file,
+                role: usage.role,
+                site: usage.site,
+                optional: usage.optional,
+                arguments: &[],
+                framework: None,
+            });
+        }
         let name = usage.kind.name;
         let plugin_type = Arc::clone(self.types.entry(name).or_insert_with(|| Arc::from(name)));
         let args = split_param(&param);

@@ -7,6 +7,8 @@ use std::sync::Arc;
 
 use rtf_model::Diagnostic;
 
+use super::framework_search;
+use super::frameworks::FRAMEWORKS;
 use super::hosts::{self, HOSTS, HostKind};
 use super::program::list;
 use super::search_scope::SearchScope;
@@ -23,18 +25,38 @@ pub(super) fn kind_of(
         let by_extension = hosts::by_extension(Path::new(&plugin.name.value));
         return Ok(by_extension.unwrap_or(&HOSTS[0]));
     };
-    hosts::by_name(&declared.value).ok_or_else(|| {
-        let process = (role == PluginRole::Fixture).then_some("process");
-        let names: Vec<&str> = HOSTS.iter().map(|kind| kind.name).chain(process).collect();
-        let list = quoted(names.iter().copied(), ", ");
-        let problem =
-            Diagnostic::error("unknown-type", format!("unknown type `{}`", declared.value))
-                .note(format!("known types are {list}"));
-        if role == PluginRole::Hook && declared.value == "process" {
-            return problem.hint("a program is written as `<command>`, without a `type`").into();
-        }
-        suggest(problem, &declared.value, names.into_iter()).into()
-    })
+    if let Some(kind) = hosts::by_name(&declared.value) {
+        return if kind.framework.is_some() && role != PluginRole::Test {
+            Err(only_for_tests(kind, role).into())
+        } else {
+            Ok(kind)
+        };
+    }
+    Err(unknown_type(&declared.value, role).into())
+}
+
+fn only_for_tests(kind: &HostKind, role: PluginRole) -> Diagnostic {
+    let (name, element) = (kind.name, role.element());
+    let message = format!("the type `{name}` is only for tests, not for a {element}");
+    let problem = Diagnostic::error("wrong-kind", message);
+    match role {
+        PluginRole::Hook => problem.hint("write a program as `<command>`, without a `type`"),
+        _ => problem.hint("`type=\"process\"` is a fixture that runs a program"),
+    }
+}
+
+fn unknown_type(declared: &str, role: PluginRole) -> Diagnostic {
+    let others: &[HostKind] = if role == PluginRole::Test { &FRAMEWORKS } else { &[] };
+    let process = (role == PluginRole::Fixture).then_some("process");
+    let names: Vec<&str> =
+        HOSTS.iter().chain(others).map(|kind| kind.name).chain(process).collect();
+    let list = quoted(names.iter().copied(), ", ");
+    let problem = Diagnostic::error("unknown-type", format!("unknown type `{declared}`"))
+        .note(format!("known types are {list}"));
+    if role == PluginRole::Hook && declared == "process" {
+        return problem.hint("a program is written as `<command>`, without a `type`");
+    }
+    suggest(problem, declared, names.into_iter())
 }
 
 /// Finds plug-ins in one scope and caches the results.
@@ -59,8 +81,13 @@ impl PluginFinder {
         if let Some(known) = self.found.get(&(kind.name, name.to_owned())) {
             return known.clone();
         }
-        let dirs = self.dirs.entry(kind.name).or_insert_with(|| search_dirs(kind, scope).into());
-        let file = search(name, kind, dirs);
+        let file = match kind.framework {
+            Some(framework) => framework_search::find(name, framework.subject, scope),
+            None => {
+                let dirs = || search_dirs(kind, scope).into();
+                search(name, kind, self.dirs.entry(kind.name).or_insert_with(dirs))
+            }
+        };
         self.found.insert((kind.name, name.to_owned()), file.clone());
         file
     }
@@ -97,7 +124,7 @@ pub(super) fn is_in_user_dir(file: &Path, scope: &SearchScope<'_>) -> bool {
 }
 
 /// Returns the directories for the user's plug-ins.
-fn user_dirs(scope: &SearchScope<'_>) -> Vec<PathBuf> {
+pub(super) fn user_dirs(scope: &SearchScope<'_>) -> Vec<PathBuf> {
     let mut dirs = vec![scope.dir.to_path_buf()];
     dirs.extend(scope.fallback_dir.map(Path::to_path_buf));
     dirs.extend(scope.dirs("RTF_PLUGIN_PATH"));
@@ -154,6 +181,10 @@ pub(super) fn not_found(
     scope: &SearchScope<'_>,
     suggest: bool,
 ) -> Diagnostic {
+    if let Some(framework) = kind.framework {
+        let kind = (kind.name, framework.subject);
+        return framework_search::not_found(name, kind, scope, suggest);
+    }
     let dirs = search_dirs(kind, scope);
     let files: Vec<_> =
         candidates(name, kind).iter().map(|file| file.display().to_string()).collect();

@@ -7,6 +7,8 @@ use std::sync::Arc;
 use rtf_model::{SuiteId, TestId};
 
 use super::context::{PlanContext, parent_dir};
+use super::draft::SuiteDraft;
+use super::framework_tests::{self, FrameworkTest, FrameworkTests};
 use super::hosts::HostKind;
 use super::inputs::InputFile;
 use super::names::UniqueNames;
@@ -56,7 +58,7 @@ pub(super) fn plan_suite(
     file: &InputFile,
     source: &Arc<SourceText>,
     suite: DeclaredSuite,
-) -> SuitePlan {
+) -> SuiteDraft {
     let suite_dir = parent_dir(&file.path);
     let runner = &context.options.runner;
     let (dir, fallback_dir) = match context.options.compatibility {
@@ -76,9 +78,10 @@ pub(super) fn plan_suite(
         fixture::plan_all(&mut planner, source, (suite.fixtures, &suite.fixture_references.found));
     let clock = clock::plan(&mut planner, source, suite.clock, &mut fixtures);
     let hooks = hook::plan_all(&mut planner, source, suite.hooks);
-    let tests = plan_tests(&mut planner, source, &mut names, (&suite.tags, suite.tests));
+    let (tests, frameworks) =
+        plan_tests(&mut planner, source, &mut names, (&suite.tags, suite.tests));
     planner.report_missing();
-    SuitePlan {
+    let plan = SuitePlan {
         id: SuiteId(0),
         name,
         file: file.name.clone(),
@@ -92,7 +95,8 @@ pub(super) fn plan_suite(
         fixtures,
         hooks,
         tests,
-    }
+    };
+    SuiteDraft { plan, frameworks }
 }
 
 /// Plans the tests of a suite; omits those without a plug-in, which are reported.
@@ -101,8 +105,9 @@ fn plan_tests(
     source: &Arc<SourceText>,
     names: &mut UniqueNames,
     (suite_tags, tests): (&[String], Vec<DeclaredTest>),
-) -> Vec<TestPlan> {
+) -> (Vec<TestPlan>, FrameworkTests) {
     let (mut limits, mut plans) = (SharedLimits::default(), Vec::with_capacity(tests.len()));
+    let mut frameworks = FrameworkTests::default();
     let today = planner.context.options.today;
     // The combinations of a matrix share its name and plug-in.
     let mut matrix: Option<(Arc<str>, Option<PluginPlan>)> = None;
@@ -114,10 +119,19 @@ fn plan_tests(
             planner.context.problems.extend(warning);
         }
         let tags = tags(suite_tags, &test);
+        let framework = FrameworkTest::new(&test, source);
+        if is_first {
+            let problems = framework_tests::check_attributes(&test, framework.as_ref(), source);
+            planner.context.problems.extend(problems);
+        }
+        let dir = planner.scope().dir;
         let DeclaredTest { name, plugin, env, limits: declared, settings, known_failure, .. } =
             test;
         let named = |plugin: &DeclaredPlugin| {
-            let unique = || names.unique(base_name(&plugin.name.value));
+            let unique = || match &framework {
+                Some(test) => names.unique(&test.default_name(&plugin.name.value, dir)),
+                None => names.unique(base_name(&plugin.name.value)),
+            };
             name.map(|name| name.value).unwrap_or_else(unique)
         };
         let (name, plugin, base, parameters) = match combination {
@@ -146,6 +160,10 @@ fn plan_tests(
             }
         };
         let Some(plugin) = plugin else { continue };
+        let cases_in_programs = framework.as_ref().map(|test| Box::new(test.plan(declared)));
+        if let Some(test) = framework {
+            frameworks.tests.insert(name.clone(), test);
+        }
         plans.push(TestPlan {
             id: TestId(0),
             name,
@@ -157,10 +175,10 @@ fn plan_tests(
             tags,
             expected: known_failure.map(|it| Box::new(known_failure::expect(&it, today))),
             cases: None,
-            cases_in_programs: None,
+            cases_in_programs,
         });
     }
-    plans
+    (plans, frameworks)
 }
 
 fn is_first_of_matrix(test: &DeclaredTest) -> bool {

@@ -5,8 +5,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_model::{
-    ExpectedFailure, FixtureId, HookId, Parameter, SuiteId, SuitePrepared, TestId, Trigger,
+    ExpectedFailure, FixtureId, HookId, Location, Parameter, SuiteId, SuitePrepared, TestId,
+    Trigger,
 };
+use serde::{Deserialize, Serialize};
 
 use super::CaseSelection;
 pub use crate::suite::{
@@ -258,6 +260,25 @@ pub struct CasesInPrograms {
     pub case_timeout: Option<Duration>,
     /// Whether each case needs a separate process.
     pub separate: bool,
+    /// All cases of the test, in the order of the framework; `None` if they are known only
+    /// when it runs.
+    pub listed: Option<Arc<[ListedCase]>>,
+}
+
+/// A case that a host lists before the run (`spec/frameworks.md`).
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct ListedCase {
+    /// The name, unique in the test. It may contain slashes.
+    pub name: String,
+    /// The position of its source.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub location: Option<Location>,
+    /// Its tags.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tags: Vec<String>,
+    /// Whether its framework does not run it unless it is selected.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub disabled: bool,
 }
 
 /// One combination of the values of a matrix.

@@ -81,6 +81,15 @@ impl PluginRole {
         }
     }
 
+    /// Returns the name of its element in suites.
+    pub fn element(self) -> &'static str {
+        match self {
+            Self::Test => "test",
+            Self::Fixture => "fixture",
+            Self::Hook => "hook",
+        }
+    }
+
     /// Returns the hint for a plug-in of the other kind.
     pub fn advice(self) -> &'static str {
         match self {

@@ -6,8 +6,8 @@ use rtf_model::Diagnostic;
 use super::reader::ElementReader;
 use super::schema::{self, check};
 use super::{
-    AfterCollapse, DeclaredLimits, DeclaredPlugin, DeclaredTest, Leaks, Retries, Spanned,
-    TestSettings, env, known_failure, matrix, reference,
+    AfterCollapse, DeclaredCases, DeclaredLimits, DeclaredPlugin, DeclaredTest, Leaks, Retries,
+    Span, Spanned, TestIsolation, TestSettings, env, known_failure, matrix, reference,
 };
 
 /// The defaults that a suite declares for its tests.
@@ -35,15 +35,17 @@ pub(super) fn read(
         teardown: declared.teardown.or(default.teardown),
         slow: declared.slow.or(default.slow),
         grace: declared.grace.or(default.grace),
+        case: reader.duration(node, "case-timeout"),
     };
-    let words = [("process", false), ("shared", true)];
+    let isolation = isolation(reader, node);
     let settings = TestSettings {
         repetitions: reader.number(node, "repetition", 1).unwrap_or(1),
         critical: reader.boolean(node, "critical").unwrap_or(false),
         exclusive: reader.boolean(node, "exclusive").unwrap_or(false),
-        shared: reader.choice(node, "isolation", &words).unwrap_or(false),
+        shared: isolation == Some(TestIsolation::Shared),
         ..inherited_settings(reader, node, defaults.settings)
     };
+    let cases = cases(reader, node, isolation).map(Box::new);
     let tags = values(reader.words(node, "tags"));
     let env = env::read(reader, node);
     let known_failure = known_failure::read(reader, node).map(Box::new);
@@ -57,12 +59,43 @@ pub(super) fn read(
         plugin,
         limits,
         settings,
+        cases,
         tags,
         env,
         known_failure,
         matrix,
         combination,
     })
+}
+
+fn isolation(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<TestIsolation> {
+    let words = [
+        ("process", None),
+        ("shared", Some(TestIsolation::Shared)),
+        ("case", Some(TestIsolation::Case)),
+    ];
+    reader.choice(node, "isolation", &words).flatten()
+}
+
+/// Reads the attributes whose meaning depends on the type of the test.
+fn cases(
+    reader: &mut ElementReader<'_>,
+    node: Node<'_, '_>,
+    isolation: Option<TestIsolation>,
+) -> Option<DeclaredCases> {
+    let patterns = reader.word(node, "cases");
+    if let Some(patterns) = &patterns {
+        warn_of_open_quote(reader, "cases", patterns, "the last pattern reaches to the end");
+    }
+    let position = |name| node.attribute_node(name).map(|it| Span::new(it.range_value()));
+    let case_timeout = position("case-timeout");
+    // Only a test with a `type` can be one of another framework.
+    let isolation = isolation
+        .filter(|isolation| *isolation == TestIsolation::Case || node.has_attribute("type"))
+        .zip(position("isolation"))
+        .map(|(isolation, span)| Spanned::new(isolation, span));
+    let is_empty = patterns.is_none() && case_timeout.is_none() && isolation.is_none();
+    (!is_empty).then_some(DeclaredCases { patterns, case_timeout, isolation })
 }
 
 /// Reads the limits of tests; on `<suite>` their attributes have the prefix `test-`.
@@ -85,6 +118,7 @@ pub(super) fn limits(
         teardown: get("teardown-timeout"),
         slow: get("slow"),
         grace: get("grace"),
+        case: None,
     }
 }
 
@@ -119,13 +153,7 @@ pub(super) fn plugin(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Opti
     let param = reader.attribute(node, "param");
     if let Some(param) = &param {
         reference::check(reader, "param", param);
-    }
-    if let Some(param) = &param
-        && param.value.bytes().filter(|byte| *byte == b'"').count() % 2 == 1
-    {
-        let problem = Diagnostic::warning("open-quote", "a quote in `param` is never closed")
-            .label(reader.source.label(param.span, "the last argument reaches to the end"));
-        reader.report(problem);
+        warn_of_open_quote(reader, "param", param, "the last argument reaches to the end");
     }
     let Some(name) = reader.text(node) else {
         reader.missing(node, "the name of a plug-in as its text");
@@ -133,6 +161,19 @@ pub(super) fn plugin(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Opti
     };
     let param = param.map(|param| param.value).unwrap_or_default();
     Some(DeclaredPlugin { name, plugin_type, param })
+}
+
+fn warn_of_open_quote(
+    reader: &mut ElementReader<'_>,
+    name: &str,
+    value: &Spanned<String>,
+    effect: &str,
+) {
+    if value.value.bytes().filter(|byte| *byte == b'"').count() % 2 == 1 {
+        let message = format!("a quote in `{name}` is never closed");
+        let label = reader.source.label(value.span, effect);
+        reader.report(Diagnostic::warning("open-quote", message).label(label));
+    }
 }
 
 /// Returns the texts without their positions.

@@ -149,6 +149,8 @@ pub struct DeclaredTest {
     pub limits: DeclaredLimits,
     /// The settings that need no name to be resolved.
     pub settings: TestSettings,
+    /// The attributes about its cases; `None` if it has none of them.
+    pub cases: Option<Box<DeclaredCases>>,
     /// The tags of the test itself.
     pub tags: Vec<String>,
     /// Environment variables in addition to the suite's.
@@ -159,6 +161,26 @@ pub struct DeclaredTest {
     pub matrix: Option<Box<DeclaredMatrix>>,
     /// The combination of the matrix, once the planner has expanded it.
     pub combination: Option<Combination>,
+}
+
+/// The attributes of a test that depend on whether another framework runs it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DeclaredCases {
+    /// The patterns of `cases`.
+    pub patterns: Option<Spanned<String>>,
+    /// The position of `case-timeout`; [`DeclaredLimits::case`] is its value.
+    pub case_timeout: Option<Span>,
+    /// The `isolation`, unless it is `process`.
+    pub isolation: Option<Spanned<TestIsolation>>,
+}
+
+/// The processes of a test, unless it has a separate one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TestIsolation {
+    /// It may share a process with other tests.
+    Shared,
+    /// Each of its cases has a separate process.
+    Case,
 }
 
 /// A known failure: in a suite `expect`, in an `rtf.toml` `[[quarantine]]`.
@@ -242,6 +264,8 @@ pub struct DeclaredLimits {
     pub slow: Option<Duration>,
     /// The time between the request to stop and the kill.
     pub grace: Option<Duration>,
+    /// For each case of a test of another framework.
+    pub case: Option<Duration>,
 }
 
 /// The reaction of a test to a fixture that collapses while it runs.

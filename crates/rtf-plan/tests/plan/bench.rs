@@ -30,7 +30,7 @@ impl Bench {
         };
         let options = Options::new(runner);
         let bench = Self { _dir: dir, root, options };
-        for host in ["rtf-host-native", "rtf-host-lua", "python3"] {
+        for host in ["rtf-host-native", "rtf-host-lua", "rtf-host-framework", "python3"] {
             bench.program(&format!("bin/{host}"), "exit 0");
         }
         bench

@@ -6,6 +6,7 @@ mod bench;
 mod clock;
 mod depends;
 mod fixture_values;
+mod frameworks;
 mod hooks;
 mod inputs;
 mod isolation;

@@ -152,7 +152,9 @@ fn unknown_types_list_the_known_ones() {
     };
     let known = "known types are `dll`, `lua`, `python`, `ruby`, `process`";
     assert_eq!(found(0), ("unknown-type", known, Some("did you mean `process`?")));
-    let known = "known types are `dll`, `lua`, `python`, `ruby`";
+    let known = "known types are `dll`, `lua`, `python`, `ruby`, `gtest`, `catch2`, `doctest`, \
+                 `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `ctest`, `rostest`, \
+                 `cargo`, `go`, `tap`, `program`";
     assert_eq!(found(1), ("unknown-type", known, Some("did you mean `lua`?")));
 }
 

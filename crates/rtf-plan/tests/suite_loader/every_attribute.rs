@@ -6,7 +6,7 @@ use rtf_model::{Trigger, Verdict};
 use rtf_plan::suite::{
     AfterCollapse, ClockSource, DeclaredLimits, DeclaredProbe, DeclaredProbeKind,
     DeclaredValueSource, FixtureKind, HookKind, Leaks, MatrixDimension, MiddlewareProbe,
-    ReferenceUser,
+    ReferenceUser, TestIsolation,
 };
 
 use crate::file;
@@ -41,6 +41,7 @@ fn every_attribute_is_read() {
             teardown: Some(secs(13)),
             slow: Some(secs(14)),
             grace: Some(secs(15)),
+            case: None,
         }
     );
     assert_eq!(
@@ -65,8 +66,21 @@ fn every_attribute_is_read() {
             teardown: Some(secs(3)),
             slow: Some(secs(4)),
             grace: Some(Duration::from_millis(500)),
+            case: None,
         }
     );
+}
+
+#[test]
+fn cases_of_other_frameworks_are_read() {
+    let (suite, _) = file("valid/everything.xml");
+    assert_eq!(suite.tests[0].cases, None);
+    let test = &suite.tests[2];
+    assert_eq!(test.limits.case, Some(Duration::from_secs(30)));
+    let cases = test.cases.as_ref().unwrap();
+    assert_eq!(cases.patterns.as_ref().unwrap().value, "Arm.* !*Slow");
+    assert_eq!(cases.isolation.as_ref().unwrap().value, TestIsolation::Case);
+    assert!(cases.case_timeout.is_some());
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use rtf_model::Diagnostic;
 
-use super::{CheckAnswer, CheckFindings, CheckGroup, CheckReport, FileUse};
+use super::{CheckAnswer, CheckFindings, CheckGroup, CheckId, CheckReport, FileUse};
 use crate::plan::hosts;
 use crate::plan::use_site::PluginRole;
 use crate::suite::SourceText;
@@ -15,25 +15,34 @@ const MAX_QUOTED_BYTES: u64 = 4 * 1024 * 1024;
 
 /// Diagnoses the answers about a group's files.
 pub(super) fn diagnose(
+    index: usize,
     group: &CheckGroup,
     answers: Vec<CheckAnswer>,
     findings: &mut CheckFindings,
 ) {
-    for (entry, answer) in group.files.iter().zip(answers) {
+    let check = match group.framework {
+        Some((_, framework)) if framework.lists_cases => "listing the cases of",
+        Some(_) => "checking",
+        None => "loading",
+    };
+    for (file, (entry, answer)) in group.files.iter().zip(answers).enumerate() {
         let problem = match answer {
             CheckAnswer::Report(report) if report.ok => {
                 check_kinds(entry, &report, findings);
+                let cases =
+                    report.cases.map(|cases| (CheckId { group: index, file }, cases.into()));
+                findings.cases.extend(cases);
                 continue;
             }
-            CheckAnswer::Report(report) => not_loadable(entry, &report, findings),
+            CheckAnswer::Report(report) => not_loadable(group, entry, &report, findings),
             CheckAnswer::Died { how, stderr } => {
                 let name = file_name(&entry.file);
-                let message = format!("loading `{name}` ended its host: {how}");
+                let message = format!("{check} `{name}` ended its host: {how}");
                 with_stderr(Diagnostic::error("plugin-not-loadable", message), &stderr)
             }
             CheckAnswer::Silent(limit) => {
                 let name = file_name(&entry.file);
-                let message = format!("loading `{name}` takes longer than {limit:?}");
+                let message = format!("{check} `{name}` takes longer than {limit:?}");
                 Diagnostic::error("plugin-not-loadable", message)
             }
             CheckAnswer::HostFailed { how, stderr } => {
@@ -67,12 +76,21 @@ fn host_failed(group: &CheckGroup, how: &str, stderr: &str) -> Diagnostic {
 }
 
 /// Quotes the message of the host's loader or compiler.
-fn not_loadable(entry: &FileUse, report: &CheckReport, findings: &mut CheckFindings) -> Diagnostic {
+fn not_loadable(
+    group: &CheckGroup,
+    entry: &FileUse,
+    report: &CheckReport,
+    findings: &mut CheckFindings,
+) -> Diagnostic {
     let reason = report.message.as_deref().unwrap_or("the host gives no reason").trim();
     // Some hosts start with the same words as this message.
     let reason = reason.strip_prefix("cannot be loaded: ").unwrap_or(reason);
     let (first, rest) = reason.split_once('\n').unwrap_or((reason, ""));
-    let mut message = format!("the plug-in `{}` cannot be loaded: {first}", file_name(&entry.file));
+    let name = file_name(&entry.file);
+    let mut message = match group.framework {
+        Some((kind, _)) => format!("`{name}` cannot be run as a test of type `{kind}`: {first}"),
+        None => format!("the plug-in `{name}` cannot be loaded: {first}"),
+    };
     let label = report.line.and_then(|line| {
         let source = plugin_text(&entry.file)?;
         let label = source.label(source.line_span(line)?, first);

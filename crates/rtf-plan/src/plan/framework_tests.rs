@@ -1,0 +1,161 @@
+//! The tests of other frameworks in a suite: their attributes, and the checks before the run
+//! that list their cases.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use rtf_model::Diagnostic;
+
+use super::checks::{CheckId, PluginChecks, PluginUse};
+use super::frameworks::{self, FRAMEWORKS};
+use super::hosts::HostKind;
+use super::search_scope::{SearchScope, search_variables};
+use super::use_site::{PluginRole, UseSite};
+use super::{CasesInPrograms, ListedCase, RunnerEnvironment, SuitePlan};
+use crate::suite::{DeclaredLimits, DeclaredTest, SourceText, TestIsolation};
+use crate::wording::quoted;
+
+/// A test of another framework.
+#[derive(Debug)]
+pub(super) struct FrameworkTest {
+    /// Its type.
+    kind: &'static HostKind,
+    /// The position of its file in the suite.
+    site: UseSite,
+    /// The variables of the test with which it is checked.
+    env: Vec<(String, String)>,
+    separate: bool,
+    /// Its check; `None` before [`FrameworkTests::add_checks`].
+    pub check: Option<CheckId>,
+}
+
+impl FrameworkTest {
+    /// Returns the test; `None` for the test of a plug-in.
+    pub fn new(declared: &DeclaredTest, source: &Arc<SourceText>) -> Option<Self> {
+        let kind = frameworks::by_name(&declared.plugin.plugin_type.as_ref()?.value)?;
+        let cases = declared.cases.as_deref();
+        let isolation = cases.and_then(|cases| cases.isolation.as_ref());
+        Some(Self {
+            kind,
+            site: UseSite::Suite(Arc::clone(source), declared.plugin.name.span),
+            env: search_variables(&declared.env),
+            separate: isolation.is_some_and(|it| it.value == TestIsolation::Case),
+            check: None,
+        })
+    }
+
+    /// Returns the name of a test without `name`: that of its file or directory, without the
+    /// extension of its type.
+    pub fn default_name(&self, file: &str, suite_dir: &Path) -> String {
+        let path: PathBuf = suite_dir.join(file).components().collect();
+        let extension = path.extension().and_then(|extension| extension.to_str());
+        let is_known = extension.is_some_and(|it| self.kind.extensions.contains(&it));
+        let name = if is_known { path.file_stem() } else { path.file_name() };
+        name.map_or_else(|| file.to_owned(), |name| name.to_string_lossy().into_owned())
+    }
+
+    /// Returns the plan of its cases, before they are listed.
+    pub fn plan(&self, limits: DeclaredLimits) -> CasesInPrograms {
+        CasesInPrograms { case_timeout: limits.case, separate: self.separate, listed: None }
+    }
+}
+
+/// Reports the attributes about cases that the type of a test does not have.
+pub(super) fn check_attributes(
+    declared: &DeclaredTest,
+    framework: Option<&FrameworkTest>,
+    source: &SourceText,
+) -> Vec<Diagnostic> {
+    let Some(cases) = &declared.cases else { return Vec::new() };
+    let isolation = cases.isolation.as_ref();
+    let separate = isolation.filter(|it| it.value == TestIsolation::Case).map(|it| it.span);
+    let shared = isolation.filter(|it| it.value == TestIsolation::Shared).map(|it| it.span);
+    let patterns = cases.patterns.as_ref().map(|patterns| patterns.span);
+    let mut problems = Vec::new();
+    let mut report = |span, message: String, hint: &str| {
+        let problem = Diagnostic::error("not-of-this-type", message).hint(hint);
+        problems.push(problem.label(source.label(span, "")));
+    };
+    let Some(FrameworkTest { kind, .. }) = framework else {
+        let attributes = [
+            (patterns, "cases", "`rtf run SUITE::TEST/CASE` selects a case of a plug-in"),
+            (cases.case_timeout, "case-timeout", "`timeout` limits the whole test"),
+            (separate, "isolation=\"case\"", "each test already has a separate process"),
+        ];
+        for (span, name, hint) in attributes {
+            let Some(span) = span else { continue };
+            report(span, format!("`{name}` is only for tests of other frameworks"), hint);
+        }
+        let types = quoted(FRAMEWORKS.iter().map(|kind| kind.name), ", ");
+        let note = format!("their types are {types}");
+        return problems.into_iter().map(|problem| problem.note(note.clone())).collect();
+    };
+    let name = kind.name;
+    if let Some(span) = shared {
+        let message = format!("a test of type `{name}` cannot share a process");
+        report(span, message, "all cases of the test run in one process without `isolation`");
+    }
+    if kind.framework.is_some_and(|framework| !framework.lists_cases) {
+        for (span, attribute) in [(patterns, "cases"), (separate, "isolation=\"case\"")] {
+            let Some(span) = span else { continue };
+            let message = format!(
+                "`{attribute}` needs a list of cases, which a test of type `{name}` does not have"
+            );
+            report(span, message, "if the program can select tests, use `param`");
+        }
+    }
+    problems
+}
+
+/// The tests of other frameworks in a suite, by the name of the test.
+#[derive(Debug, Default)]
+pub(super) struct FrameworkTests {
+    /// The tests.
+    pub tests: HashMap<String, FrameworkTest>,
+}
+
+impl FrameworkTests {
+    /// Adds the checks of all tests of the suite. A test that is not selected is not
+    /// checked: its framework may have to compile it.
+    pub fn add_checks(
+        &mut self,
+        suite: &SuitePlan,
+        runner: &RunnerEnvironment,
+        checks: &mut PluginChecks,
+    ) {
+        if self.tests.is_empty() {
+            return;
+        }
+        for test in &suite.tests {
+            let Some(found) = self.tests.get_mut(&test.name) else { continue };
+            let Some(framework) = found.kind.framework else { continue };
+            let scope = SearchScope {
+                runner,
+                dir: &suite.folder,
+                fallback_dir: None,
+                suite_env: &suite.env,
+                own_env: &found.env,
+            };
+            found.check = Some(checks.add(PluginUse {
+                host: &test.plugin.host,
+                scope: &scope,
+                file: &test.plugin.file,
+                role: PluginRole::Test,
+                site: &found.site,
+                optional: false,
+                arguments: if framework.lists_cases { &test.plugin.args } else { &[] },
+                framework: Some((found.kind.name, framework)),
+            }));
+        }
+    }
+
+    /// Adds the listed cases to the tests of the suite.
+    pub fn add_cases(&self, suite: &mut SuitePlan, found: &HashMap<CheckId, Arc<[ListedCase]>>) {
+        for test in &mut suite.tests {
+            let Some(cases) = &mut test.cases_in_programs else { continue };
+            let check = self.tests.get(&test.name).and_then(|test| test.check);
+            cases.listed = check.and_then(|check| found.get(&check)).map(Arc::clone);
+        }
+    }
+}
