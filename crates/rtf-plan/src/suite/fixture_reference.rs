@@ -6,11 +6,12 @@
 use rtf_model::Diagnostic;
 
 use super::reader::ElementReader;
-use super::reference::position;
+use super::reference::{ReferenceSyntax, record_each};
 use super::{Span, Spanned};
 use crate::placeholder::{Segment, segments};
 
 const OPEN: &str = "${fixture:";
+const SYNTAX: ReferenceSyntax = ReferenceSyntax { open: OPEN, code: "invalid-fixture-value" };
 
 /// A reference to a value of a fixture.
 #[derive(Clone, Debug)]
@@ -84,23 +85,7 @@ pub(super) fn check(reader: &mut ElementReader<'_>, what: &str, value: &Spanned<
         return;
     }
     reader.fixture_references.any = true;
-    for segment in segments(&value.value, OPEN) {
-        match segment {
-            Segment::Text(_) => {}
-            Segment::Unclosed(start) => {
-                let span = position(reader, value, start..start + OPEN.len());
-                let message = format!("`{OPEN}` in `{what}` is not closed");
-                let problem = Diagnostic::error("invalid-fixture-value", message)
-                    .label(reader.source.label(span, "a `}` is missing after it"))
-                    .hint(format!("`${OPEN}` stands for these characters"));
-                reader.report(problem);
-            }
-            Segment::Placeholder(name, start) => {
-                let span = position(reader, value, start..start + OPEN.len() + name.len() + 1);
-                record(reader, name, span);
-            }
-        }
-    }
+    record_each(reader, SYNTAX, (what, value), record);
 }
 
 fn record(reader: &mut ElementReader<'_>, name: &str, span: Span) {

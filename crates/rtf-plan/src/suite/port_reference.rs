@@ -7,12 +7,13 @@ use std::collections::BTreeMap;
 use rtf_model::{Diagnostic, SuitePort};
 
 use super::reader::ElementReader;
-use super::reference::position;
+use super::reference::{ReferenceSyntax, position, record_each};
 use super::{Span, Spanned};
 use crate::placeholder::{Segment, segments};
 use crate::wording::nearest;
 
 const OPEN: &str = "${port:";
+const SYNTAX: ReferenceSyntax = ReferenceSyntax { open: OPEN, code: "invalid-port" };
 const MAX_NAME_LENGTH: usize = 32;
 
 /// The ports of a suite: name and first use, by environment variable.
@@ -53,23 +54,7 @@ pub fn expand(text: &str, port: impl Fn(&str) -> String) -> String {
 /// Records the ports of a value and reports invalid references.
 pub(super) fn check(reader: &mut ElementReader<'_>, what: &str, value: &Spanned<String>) {
     warn_of_misspelling(reader, value);
-    for segment in segments(&value.value, OPEN) {
-        match segment {
-            Segment::Text(_) => {}
-            Segment::Unclosed(start) => {
-                let span = position(reader, value, start..start + OPEN.len());
-                let message = format!("`{OPEN}` in `{what}` is not closed");
-                let problem = Diagnostic::error("invalid-port", message)
-                    .label(reader.source.label(span, "a `}` is missing after it"))
-                    .hint(format!("`${OPEN}` stands for these characters"));
-                reader.report(problem);
-            }
-            Segment::Placeholder(name, start) => {
-                let span = position(reader, value, start..start + OPEN.len() + name.len() + 1);
-                record(reader, name, span);
-            }
-        }
-    }
+    record_each(reader, SYNTAX, (what, value), record);
 }
 
 fn record(reader: &mut ElementReader<'_>, name: &str, span: Span) {

@@ -2,8 +2,19 @@
 
 use std::ops::Range;
 
+use rtf_model::Diagnostic;
+
 use super::reader::ElementReader;
 use super::{Span, Spanned, fixture_reference, port_reference};
+use crate::placeholder::{Segment, segments};
+
+/// A kind of reference.
+pub(super) struct ReferenceSyntax {
+    /// The text that opens a reference: `${port:`.
+    pub open: &'static str,
+    /// The code of the diagnostic of an unclosed reference.
+    pub code: &'static str,
+}
 
 /// Records the references of a value and reports invalid ones. Returns whether all are valid.
 pub(super) fn check(reader: &mut ElementReader<'_>, what: &str, value: &Spanned<String>) -> bool {
@@ -11,6 +22,32 @@ pub(super) fn check(reader: &mut ElementReader<'_>, what: &str, value: &Spanned<
     port_reference::check(reader, what, value);
     fixture_reference::check(reader, what, value);
     reader.problems.len() == before
+}
+
+/// Passes the name and the position of each reference to `record`, and reports an unclosed one.
+pub(super) fn record_each(
+    reader: &mut ElementReader<'_>,
+    ReferenceSyntax { open, code }: ReferenceSyntax,
+    (what, value): (&str, &Spanned<String>),
+    record: impl Fn(&mut ElementReader<'_>, &str, Span),
+) {
+    for segment in segments(&value.value, open) {
+        match segment {
+            Segment::Text(_) => {}
+            Segment::Unclosed(start) => {
+                let span = position(reader, value, start..start + open.len());
+                let message = format!("`{open}` in `{what}` is not closed");
+                let problem = Diagnostic::error(code, message)
+                    .label(reader.source.label(span, "a `}` is missing after it"))
+                    .hint(format!("`${open}` stands for these characters"));
+                reader.report(problem);
+            }
+            Segment::Placeholder(name, start) => {
+                let span = position(reader, value, start..start + open.len() + name.len() + 1);
+                record(reader, name, span);
+            }
+        }
+    }
 }
 
 /// Replaces each reference by a number, to check the syntax of the rest.
