@@ -160,6 +160,14 @@ pub struct FixturePlan {
     pub check_every: Option<Duration>,
 }
 
+impl FixturePlan {
+    /// Checks whether a value is neither stored nor shown. An undeclared value is not secret.
+    #[must_use]
+    pub fn is_secret(&self, value: &str) -> bool {
+        self.provides.iter().any(|known| known.secret && known.name == value)
+    }
+}
+
 /// A declared value of a fixture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ProvidePlan {

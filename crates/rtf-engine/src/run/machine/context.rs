@@ -56,7 +56,7 @@ impl<'a> Context<'a> {
 
     /// Stores a value of a fixture, also with the guard.
     pub fn provide(&mut self, plan: &FixturePlan, index: usize, (name, value): (String, Value)) {
-        let secret = plan.provides.iter().any(|known| known.name == name && known.secret);
+        let secret = plan.is_secret(&name);
         self.values.set(index, (&plan.name, &name), value.clone(), secret);
         self.push(Effect::KeepValues(self.values.clone()));
         let value = (!secret).then_some(value);
