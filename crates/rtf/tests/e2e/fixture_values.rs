@@ -255,6 +255,18 @@ fn a_secret_is_not_shown_if_the_program_ends_in_the_middle_of_its_line() {
 }
 
 #[test]
+fn an_invalid_value_in_an_incomplete_last_line_breaks_the_fixture() {
+    let folder = Folder::new();
+    folder.file("sim.py", "import sys\nsys.stdout.write('token: abc')\n");
+    folder.file("T.py", TEST).file("s.xml", "<suite><fixture type='process' name='sim' restarts='0'><command>python3 sim.py</command>\
+        <provide name='token' log='token: (\\S+)' secret='true'/></fixture><test type='python'>T</test></suite>");
+    assert_eq!(folder.rtf(&["run", "s.xml"]).code, Some(1));
+    let broken = folder.journal().record.fixtures[0].broken.clone();
+    let reason = "set-up failed: the secret `token` is not one line of at least 4 characters";
+    assert_eq!(broken.as_deref(), Some(reason));
+}
+
+#[test]
 fn the_guard_gives_the_values_to_its_hooks() {
     let hook = "<hook name='park' on='interrupt'>\
          <command>sh -c 'echo $0 $RTF_FIXTURE_SIM_PORT > hook.txt' ${fixture:sim.port}</command></hook>";
