@@ -43,8 +43,21 @@ pub struct Probes {
 pub struct ValueSpec {
     /// Its name.
     pub name: String,
-    /// A file, whose content is the value, or a command, whose output is the value.
-    pub probe: ProbeSpec,
+    /// Where it comes from.
+    pub source: ValueSource,
+    /// The interval at which the source is polled.
+    pub interval: Duration,
+    /// The limit for one run of a command.
+    pub timeout: Duration,
+}
+
+/// The source of a value.
+#[derive(Clone, Debug)]
+pub enum ValueSource {
+    /// The content of a file.
+    File(PathBuf),
+    /// The output of a program with arguments.
+    Command(Vec<String>),
 }
 
 /// A probe.
@@ -177,37 +190,43 @@ impl Prober {
         }
     }
 
-    /// Reads the value of a file or a command once, without white space at its ends. A file
-    /// must have changed since `before`. A text of [`MAX_VALUE_BYTES`] may be truncated.
+    /// Reads a value once, without white space at its ends. A file must have changed since
+    /// `before`. A text of [`MAX_VALUE_BYTES`] may be truncated.
     ///
     /// # Errors
     /// Why there is no value.
-    pub async fn read(&self, probe: &ProbeSpec, before: &FileVersions) -> Result<String, String> {
-        let text = match &probe.target {
-            ProbeTarget::File(path) => {
+    pub async fn read(&self, value: &ValueSpec, before: &FileVersions) -> Result<String, String> {
+        let (text, source) = match &value.source {
+            ValueSource::File(path) => {
                 before.check(path)?;
-                read_file(path).map_err(|error| format!("{}: {error}", path.display()))?
+                let shown = path.display().to_string();
+                (read_file(path).map_err(|error| format!("{shown}: {error}"))?, shown)
             }
-            ProbeTarget::Command { command, .. } => {
-                let read = self.run(command, Streams::StdoutOnly, MAX_VALUE_BYTES);
-                let shown = shown(command);
-                match timeout(probe.timeout, read).await {
-                    Ok(Ok((ExitStatus::Code(0), text))) => text,
-                    // The command could not write the rest.
-                    Ok(Ok((_, text))) if text.len() as u64 > MAX_VALUE_BYTES / 2 => text,
-                    Ok(Ok((status, _))) => return Err(format!("`{shown}` ended with {status}")),
-                    Ok(Err(error)) => return Err(format!("`{shown}` cannot run: {error}")),
-                    Err(_) => {
-                        let limit = probe.timeout;
-                        return Err(format!("`{shown}` did not answer within {limit:?}"));
-                    }
-                }
+            ValueSource::Command(command) => {
+                let shown = format!("`{}`", shown(command));
+                (self.read_output(command, &shown, value.timeout).await?, shown)
             }
-            ProbeTarget::Tcp(_) | ProbeTarget::Http(_) => String::new(),
         };
         match text.trim() {
-            "" => Err(format!("{} is empty", subject(probe))),
+            "" => Err(format!("{source} is empty")),
             text => Ok(text.to_owned()),
+        }
+    }
+
+    async fn read_output(
+        &self,
+        command: &[String],
+        shown: &str,
+        limit: Duration,
+    ) -> Result<String, String> {
+        let run = self.run(command, Streams::StdoutOnly, MAX_VALUE_BYTES);
+        match timeout(limit, run).await {
+            Ok(Ok((ExitStatus::Code(0), text))) => Ok(text),
+            // The command could not write the rest.
+            Ok(Ok((_, text))) if text.len() as u64 > MAX_VALUE_BYTES / 2 => Ok(text),
+            Ok(Ok((status, _))) => Err(format!("{shown} ended with {status}")),
+            Ok(Err(error)) => Err(format!("{shown} cannot run: {error}")),
+            Err(_) => Err(format!("{shown} did not answer within {limit:?}")),
         }
     }
 
@@ -287,12 +306,16 @@ impl FileVersions {
     /// Reads the versions of the files of `ready` probes and values.
     pub fn now(probes: Option<&Probes>) -> Self {
         let ready = probes.into_iter().flat_map(|probes| &probes.ready);
+        let ready = ready.filter_map(|probe| match &probe.target {
+            ProbeTarget::File(path) => Some(path),
+            _ => None,
+        });
         let values = probes.into_iter().flat_map(|probes| &probes.values);
-        let paths =
-            ready.chain(values.map(|value| &value.probe)).filter_map(|probe| match &probe.target {
-                ProbeTarget::File(path) => Some(path),
-                _ => None,
-            });
+        let values = values.filter_map(|value| match &value.source {
+            ValueSource::File(path) => Some(path),
+            ValueSource::Command(_) => None,
+        });
+        let paths = ready.chain(values);
         Self(paths.filter_map(|path| Some((path.clone(), version(path).ok()?))).collect())
     }
 

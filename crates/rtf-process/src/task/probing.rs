@@ -31,18 +31,18 @@ impl ProbeReporter {
                 tokio::time::sleep(probe.interval).await;
             }
         }
-        for ValueSpec { name, probe } in values {
+        for spec in values {
             let value = loop {
-                match self.prober.read(&probe, &before).await {
+                match self.prober.read(&spec, &before).await {
                     Ok(value) => break value,
                     Err(reason) => {
-                        let reason = format!("it did not provide `{name}`: {reason}");
+                        let reason = format!("it did not provide `{}`: {reason}", spec.name);
                         self.report_pending(reason, &mut reported).await;
                     }
                 }
-                tokio::time::sleep(probe.interval).await;
+                tokio::time::sleep(spec.interval).await;
             };
-            self.report(ProcessEvent::ValueRead { name, value }).await;
+            self.report(ProcessEvent::ValueRead { name: spec.name, value }).await;
         }
         self.report(ProcessEvent::ProbesPassed).await;
     }
