@@ -215,6 +215,9 @@ impl ParamSubstitution<'_> {
                 FixtureKind::Process(process) => {
                     let span = process.command.span;
                     self.words(&mut process.command.value, span);
+                    if let Some(host) = &mut process.host {
+                        self.text(&mut host.value, host.span);
+                    }
                     self.probes(&mut process.probes);
                 }
                 FixtureKind::Attached(probes) => self.probes(probes),

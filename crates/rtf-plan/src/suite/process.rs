@@ -59,8 +59,10 @@ fn host(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Spanned<St
     const EXAMPLE: &str = "write it like `user@machine` or `ssh://user@machine:2222`";
     let host = reader.word(node, "host")?;
     reference::check(reader, "host", &host);
-    let port = host.value.matches(':').count() == 1 && !host.value.starts_with("ssh://");
-    if host.value.starts_with('-') || host.value.contains(char::is_whitespace) || port {
+    // With an example of each reference, the syntax of the rest can be checked.
+    let example = crate::config::sample(&reference::example(&host.value));
+    let port = example.matches(':').count() == 1 && !example.starts_with("ssh://");
+    if example.starts_with('-') || example.contains(char::is_whitespace) || port {
         reader.wrong("host", &host, "is not a host name for `ssh`", Some(EXAMPLE));
     }
     if node.parent().and_then(|suite| suite.attribute("isolate")) == Some("network") {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use rtf_plan::plan::{FixtureBody, FixtureLimits, ProbeKind, TestLimits};
+use rtf_plan::plan::{FixtureBody, FixtureLimits, FixturePlan, ProbeKind, TestLimits};
 
 use crate::bench::{Bench, names};
 use insta::assert_snapshot;
@@ -312,6 +312,31 @@ fn a_fixture_on_another_machine_needs_ssh_here_and_its_program_there() {
     assert_eq!(process.command, ["no-such-program", "a b"]);
     assert_eq!(remote.host, "pi@robot");
     assert_eq!(remote.ssh, [&bench.path("bin/ssh"), "-p", "22", "-i", "a key"]);
+}
+
+#[test]
+fn a_remote_machine_can_be_a_reference() {
+    let bench = Bench::new();
+    bench.file("cell/A.lua", "");
+    bench.program("bin/ssh", "exit 0");
+    bench.program("cell/sim", "exit 0");
+    let fixture = |name: &str, host: &str| {
+        format!(
+            "<fixture type='process' name='{name}' host='{host}'><command>sim</command></fixture>"
+        )
+    };
+    let sim = "<fixture type='process' name='sim'><command>./sim</command><provide name='ip' log='(x)'/></fixture>";
+    let remotes = ["${fixture:sim.ip}", "ssh://pi@robot:${port:ssh}", "pi@${param:robot=arm}"];
+    let fixtures = ["a", "b", "c"].iter().zip(remotes).map(|(name, host)| fixture(name, host));
+    let fixtures: String = fixtures.collect();
+    bench.file("cell/s.xml", &format!("<suite>{sim}{fixtures}<test>A.lua</test></suite>"));
+    let suite = bench.plan(&["s.xml"]).suites.remove(0);
+    let host = |fixture: &FixturePlan| match &fixture.body {
+        FixtureBody::Process(process) => process.remote.as_ref().map(|remote| remote.host.clone()),
+        _ => None,
+    };
+    let hosts: Vec<_> = suite.fixtures.iter().filter_map(host).collect();
+    assert_eq!(hosts, [remotes[0], remotes[1], "pi@arm"]);
 }
 
 #[test]

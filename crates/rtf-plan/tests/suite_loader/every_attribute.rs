@@ -175,8 +175,10 @@ fn every_value_of_a_fixture_is_read() {
     let references = &suite.fixture_references.found;
     let users: Vec<_> =
         references.iter().map(|it| (it.fixture.as_str(), it.value.as_str(), it.user)).collect();
-    let by_driver = ("sim", "port", ReferenceUser::Fixture(1));
-    assert_eq!(users, [by_driver, ("sim", "port", ReferenceUser::TestOrHook)]);
+    let (driver, remote) = (ReferenceUser::Fixture(1), ReferenceUser::Fixture(4));
+    let remote = ["host", "host", "port"].map(|value| ("sim", value, remote));
+    let hook = ("sim", "port", ReferenceUser::TestOrHook);
+    assert_eq!(users, [&[("sim", "port", driver)], &remote[..], &[hook]].concat());
 }
 
 #[test]

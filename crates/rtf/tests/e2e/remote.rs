@@ -179,6 +179,23 @@ fn a_fixture_on_another_machine_is_ready_gets_its_environment_and_is_stopped() {
 }
 
 #[test]
+fn another_fixture_provides_the_name_of_the_machine() {
+    let bench = Bench::new("well", "0");
+    let suite = bench.folder.read("s.xml").replacen(
+        "<fixture",
+        "<fixture type='process' name='map'><command>sh -c 'echo robot at 127.0.0.1; exec sleep 1000'</command>\
+         <provide name='address' log='robot at (.*)'/></fixture>\n  <fixture",
+        1,
+    );
+    let suite = suite.replace("@127.0.0.1'", "@${fixture:map.address}'");
+    bench.folder.file("s.xml", &suite);
+    let finished = bench.start().finish();
+    assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
+    assert!(bench.path("stopped").exists());
+    bench.wait_until_gone();
+}
+
+#[test]
 fn its_death_is_a_collapse_with_its_own_signal_and_it_is_started_again() {
     let bench = Bench::new("well", "1000");
     let running = bench.start_test();
