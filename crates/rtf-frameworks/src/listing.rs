@@ -7,6 +7,7 @@ use std::process::{Command, ExitStatus, Stdio};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
+use rtf_model::protocol::SESSION_VARIABLE;
 use rustix::process::{Pid, Signal, kill_process_group};
 
 use crate::framework::ListError;
@@ -43,7 +44,7 @@ impl Listed {
 /// It cannot be started, or takes longer than the limit.
 pub fn run(mut command: Command, limit: Duration) -> Result<Listed, ListError> {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    command.process_group(0).env_remove("RTF_SESSION");
+    command.process_group(0).env_remove(SESSION_VARIABLE);
     let program = command.get_program().to_string_lossy().into_owned();
     let started = command.spawn();
     let mut child = started

@@ -48,6 +48,14 @@ pub const CLOCK_FILE_VARIABLE: &str = "RTF_CLOCK_FILE";
 /// `fd:N`, then blanks as room for the variables of a [`ForkRequest`].
 pub const FORK_SERVER_VARIABLE: &str = "RTF_FORK_SERVER";
 
+/// The environment variable that names the socket of a program of another framework:
+/// `fd:N`. `spec/frameworks.md` documents it.
+pub const SESSION_VARIABLE: &str = "RTF_SESSION";
+
+/// The environment variable that names the file to which such a program writes its stacks
+/// on `SIGUSR2`, if it can.
+pub const STACK_FILE_VARIABLE: &str = "RTF_STACK_FILE";
+
 /// JSON-RPC error code: the method is not known.
 pub const METHOD_NOT_FOUND: i32 = -32601;
 

@@ -10,6 +10,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
 use rtf_model::ExitStatus;
+use rtf_model::protocol::{SESSION_VARIABLE, STACK_FILE_VARIABLE};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::{Errno, FdFlags};
 use rustix::pipe::PipeFlags;
@@ -114,8 +115,8 @@ fn spawn(mut command: Command, test: &TestRun<'_>, session: &OwnedFd) -> Result<
     let stream = |is_piped| if is_piped { Stdio::piped() } else { Stdio::inherit() };
     command.stdin(Stdio::null()).stdout(stream(is_piped)).stderr(stream(watches));
     command.process_group(0);
-    command.env("RTF_SESSION", format!("fd:{}", session.as_raw_fd()));
-    command.env("RTF_STACK_FILE", &test.stack_file);
+    command.env(SESSION_VARIABLE, format!("fd:{}", session.as_raw_fd()));
+    command.env(STACK_FILE_VARIABLE, &test.stack_file);
     drop(std::fs::remove_file(&test.stack_file));
     command.spawn().map_err(|error| {
         format!("`{}` cannot be started: {error}", command.get_program().to_string_lossy())

@@ -8,7 +8,7 @@ use super::reference;
 use super::schema::{self, check};
 
 /// Variables that only the runner sets. `RTF_PORT_*` and `RTF_FIXTURE_*` are reserved as well.
-const RESERVED: [&str; 11] = [
+const RESERVED: [&str; 13] = [
     protocol::CHANNEL_VARIABLE,
     protocol::FORK_SERVER_VARIABLE,
     protocol::SCOPE_VARIABLE,
@@ -17,6 +17,8 @@ const RESERVED: [&str; 11] = [
     protocol::RUN_DIR_VARIABLE,
     protocol::CLOCK_VARIABLE,
     protocol::CLOCK_FILE_VARIABLE,
+    protocol::SESSION_VARIABLE,
+    protocol::STACK_FILE_VARIABLE,
     "RTF_HOOK_TRIGGER",
     "RTF_HOOK_REASON",
     "RTF_HOOK_TEST",
