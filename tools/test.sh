@@ -227,6 +227,14 @@ example_08() {
   PATH="$simulation:$PATH" python3 tools/check_example_08.py "$TARGET/release/rtf" examples/08-cases
 }
 
+# The corpus of a test framework, see tests/frameworks/check.py.
+framework() {
+  local settings
+  settings=$(tests/frameworks/build.sh "$1")
+  eval "$settings"
+  python3 tests/frameworks/check.py "$TARGET/release/rtf" "$1"
+}
+
 # Runs an npm script of the page.
 in_web() {
   tools/web.sh modules
@@ -278,6 +286,7 @@ step 'example 08' example_08
 step_with 'clock ros2' ros2 clock_ros2
 step_with 'fixture ros2launch' ros2 fixture_ros2launch
 step_with 'fixture orocos' orocos fixture_orocos
+step 'framework gtest' framework gtest
 step 'guide' tools/check_docs.py "$TARGET/release/rtf" README.md docs/getting-started.md \
   docs/writing-tests.md docs/isolation.md docs/simulation-time.md docs/migrating.md docs/migrating-others.md
 step 'guide commands' tools/check_running.py "$TARGET/release/rtf"
