@@ -12,6 +12,7 @@ missing=()
 have python3 || missing+=(python3)
 have cc && have c++ || missing+=(g++)
 have ctest || missing+=(cmake)
+[ -e /usr/include/gtest/gtest.h ] || missing+=(libgtest-dev)
 [ ${#missing[@]} -eq 0 ] || install_packages "${missing[@]}"
 
 # Peers, required for some lines.

@@ -74,6 +74,8 @@ class Bench:
     ctest: str
     pytest: str
     """pytest with pytest-forked, from `RTF_BENCH_PYTHON`."""
+    gtest: bool
+    """Whether GoogleTest's headers are installed."""
 
     @staticmethod
     def open(directory: Path, results: Path, rtf: Path) -> Bench:
@@ -82,7 +84,8 @@ class Bench:
             raise MeasuringError(f"{rtf} is missing: build it with `make build`")
         ctest = shutil.which("ctest") or ""
         pytest = shutil.which("pytest", path=os.environ.get("RTF_BENCH_PYTHON", "")) or ""
-        return Bench(directory, results, rtf, Predecessor.find(), ctest, pytest)
+        gtest = Path("/usr/include/gtest/gtest.h").exists()
+        return Bench(directory, results, rtf, Predecessor.find(), ctest, pytest, gtest)
 
     def launch(
         self,

@@ -32,6 +32,15 @@ def build(bench: Bench) -> None:
         commands.append(
             [*CPP, *MODULE, *INCLUDES, *source(f"{name}.cpp"), *output(bench, f"{name}.so")]
         )
+    if bench.gtest:
+        libraries = ["-lgtest", "-lgtest_main", "-pthread"]
+        cases = bench.directory / "cases.inc"
+        count = 1000
+        cases.write_text("".join(f"CASE({n})\n" for n in range(count)), encoding="ascii")
+        include = f"-I{bench.directory}"
+        for name, micros in (("gtest", 0), ("gtest-busy", 1000)):
+            program = [*source("ManyCases.cpp"), *output(bench, name), f"-DMICROS={micros}"]
+            commands.append([*CPP[:2], "-O0", include, *program, *libraries])
     if bench.predecessor:
         old = [f"-I{bench.predecessor.include}", f"-L{bench.predecessor.libraries}"]
         libraries = ["-lrobottestingframework-dll", "-lrobottestingframework"]
