@@ -2,6 +2,9 @@
 
 use rtf_model::protocol::CaseSelector;
 
+use super::TestPlan;
+use super::case_narrowing::{self, NarrowedCases};
+
 /// The cases that a test runs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct CaseSelection {
@@ -12,6 +15,13 @@ pub struct CaseSelection {
 }
 
 impl CaseSelection {
+    /// Returns the selection of the cases of these names.
+    pub(super) fn of_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Self {
+        let equals = |name: &str| CaseSelector::Equals(name.to_owned());
+        let selectors = names.into_iter().map(equals).collect();
+        Self { selectors, origin: CaseSelectionOrigin::Named }
+    }
+
     /// Checks whether the host must be able to select cases.
     #[must_use]
     pub fn needs_support(&self) -> bool {
@@ -21,7 +31,12 @@ impl CaseSelection {
     /// Returns the paths of the cases that must exist.
     pub fn required_paths(&self) -> impl Iterator<Item = &str> {
         let is_required = self.origin != CaseSelectionOrigin::Filter;
-        self.selectors.iter().filter(move |_| is_required).filter_map(|selector| match selector {
+        self.paths().filter(move |_| is_required)
+    }
+
+    /// Returns the paths that it contains.
+    pub fn paths(&self) -> impl Iterator<Item = &str> {
+        self.selectors.iter().filter_map(|selector| match selector {
             CaseSelector::Equals(path) => Some(path.as_str()),
             CaseSelector::Contains(_) => None,
         })
@@ -40,4 +55,23 @@ pub enum CaseSelectionOrigin {
     /// A rerun of failed cases: a host that cannot select cases runs all of them; a case
     /// that does not exist is an error.
     Rerun,
+}
+
+impl TestPlan {
+    /// Restricts a test with listed cases to those that a further selection selects, too.
+    pub(crate) fn narrow_cases(&mut self, selection: CaseSelection) -> NarrowedCases {
+        let listed = self.listed_cases().unwrap_or_default();
+        let current: Vec<String> = match &self.cases {
+            Some(cases) => cases.paths().map(str::to_owned).collect(),
+            None => listed.iter().map(|case| case.name.clone()).collect(),
+        };
+        let mut narrowed = case_narrowing::narrow(listed, &current, &selection.selectors);
+        if selection.origin == CaseSelectionOrigin::Rerun {
+            // The error of an unknown case is then the verdict of the test.
+            narrowed.paths.append(&mut narrowed.unknown);
+        }
+        let paths = narrowed.paths.iter().map(String::as_str);
+        self.select_cases(CaseSelection::of_names(paths));
+        narrowed
+    }
 }

@@ -141,8 +141,8 @@ pub(super) struct CheckFindings {
     pub sources: SourceMap,
     /// Files of input directories that contain no test.
     pub omitted: BTreeSet<PathBuf>,
-    /// The cases of tests of other frameworks.
-    pub cases: HashMap<CheckId, Arc<[ListedCase]>>,
+    /// The cases of the files that could be loaded; `None` if the host does not list them.
+    pub cases: HashMap<CheckId, Option<Arc<[ListedCase]>>>,
 }
 
 impl PluginChecks {

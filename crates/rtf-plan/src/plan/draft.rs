@@ -63,7 +63,7 @@ impl PlanDraft {
         self.problems.extend(findings.problems);
         self.sources.append(findings.sources);
         for SuiteDraft { plan, frameworks } in &mut self.suites {
-            frameworks.add_cases(plan, &findings.cases);
+            self.problems.extend(frameworks.add_cases(plan, &findings.cases));
         }
         let mut suites: Vec<SuitePlan> = self.suites.into_iter().map(|suite| suite.plan).collect();
         // Only files of input directories can be omitted, and those belong to no suite file.

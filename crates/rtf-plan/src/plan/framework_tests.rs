@@ -12,8 +12,11 @@ use super::frameworks::{self, FRAMEWORKS};
 use super::hosts::HostKind;
 use super::search_scope::{SearchScope, search_variables};
 use super::use_site::{PluginRole, UseSite};
-use super::{CasesInPrograms, ListedCase, RunnerEnvironment, SuitePlan};
-use crate::suite::{DeclaredLimits, DeclaredTest, SourceText, TestIsolation};
+use super::{
+    CaseSelection, CasesInPrograms, ListedCase, RunnerEnvironment, SuitePlan, TestPlan,
+    case_patterns,
+};
+use crate::suite::{DeclaredLimits, DeclaredTest, SourceText, Spanned, TestIsolation};
 use crate::wording::quoted;
 
 /// A test of another framework.
@@ -25,9 +28,11 @@ pub(super) struct FrameworkTest {
     site: UseSite,
     /// The variables of the test with which it is checked.
     env: Vec<(String, String)>,
+    /// The patterns that select its cases.
+    patterns: Option<Spanned<String>>,
     separate: bool,
     /// Its check; `None` before [`FrameworkTests::add_checks`].
-    pub check: Option<CheckId>,
+    check: Option<CheckId>,
 }
 
 impl FrameworkTest {
@@ -40,6 +45,7 @@ impl FrameworkTest {
             kind,
             site: UseSite::Suite(Arc::clone(source), declared.plugin.name.span),
             env: search_variables(&declared.env),
+            patterns: cases.and_then(|cases| cases.patterns.clone()),
             separate: isolation.is_some_and(|it| it.value == TestIsolation::Case),
             check: None,
         })
@@ -58,6 +64,51 @@ impl FrameworkTest {
     /// Returns the plan of its cases, before they are listed.
     pub fn plan(&self, limits: DeclaredLimits) -> CasesInPrograms {
         CasesInPrograms { case_timeout: limits.case, separate: self.separate, listed: None }
+    }
+}
+
+impl FrameworkTest {
+    /// Selects cases of the test by its patterns, and of these by the names that the user
+    /// gave.
+    fn select(&self, test: &mut TestPlan, listed: Option<&[ListedCase]>) -> Vec<Diagnostic> {
+        let named = test.cases.take();
+        let name = test.matrix().unwrap_or(&test.name).to_owned();
+        if let Some(patterns) = &self.patterns {
+            let label = |problem: Diagnostic| self.label(problem, patterns);
+            let Some(listed) = listed else {
+                let message = format!("the cases of the test `{name}` are known only when it runs");
+                return vec![label(Diagnostic::error("no-cases", message))];
+            };
+            match case_patterns::select(&patterns.value, &name, listed) {
+                Ok(selected) => test.select_cases(CaseSelection::of_names(selected)),
+                Err(problems) => return problems.into_iter().map(label).collect(),
+            }
+        }
+        let Some(named) = named else { return Vec::new() };
+        let Some(listed) = listed else {
+            test.cases = Some(named);
+            return Vec::new();
+        };
+        let narrowed = test.narrow_cases(*named);
+        let unknown = narrowed.unknown.iter();
+        let mut problems: Vec<_> =
+            unknown.map(|path| case_patterns::unknown_case(path, &name, listed)).collect();
+        problems.extend(narrowed.excluded.iter().map(|path| {
+            let message = format!("`cases` of the test `{name}` excludes the case `{path}`");
+            let problem = Diagnostic::error("conflicting-cases", message);
+            match &self.patterns {
+                Some(patterns) => self.label(problem, patterns),
+                None => problem,
+            }
+        }));
+        problems
+    }
+
+    fn label(&self, problem: Diagnostic, patterns: &Spanned<String>) -> Diagnostic {
+        match &self.site {
+            UseSite::Suite(source, _) => problem.label(source.label(patterns.span, "")),
+            UseSite::CommandLine => problem,
+        }
     }
 }
 
@@ -150,12 +201,29 @@ impl FrameworkTests {
         }
     }
 
-    /// Adds the listed cases to the tests of the suite.
-    pub fn add_cases(&self, suite: &mut SuitePlan, found: &HashMap<CheckId, Arc<[ListedCase]>>) {
+    /// Adds the listed cases to the tests of the suite, and selects those that `cases` and
+    /// the command line select. Reports unknown ones.
+    pub fn add_cases(
+        &self,
+        suite: &mut SuitePlan,
+        found: &HashMap<CheckId, Option<Arc<[ListedCase]>>>,
+    ) -> Vec<Diagnostic> {
+        let mut problems: Vec<Diagnostic> = Vec::new();
         for test in &mut suite.tests {
-            let Some(cases) = &mut test.cases_in_programs else { continue };
-            let check = self.tests.get(&test.name).and_then(|test| test.check);
-            cases.listed = check.and_then(|check| found.get(&check)).map(Arc::clone);
+            let Some(framework) = self.tests.get(&test.name) else { continue };
+            let Some(listed) = framework.check.and_then(|check| found.get(&check)) else {
+                continue;
+            };
+            if let Some(cases) = &mut test.cases_in_programs {
+                cases.listed = listed.clone();
+            }
+            for problem in framework.select(test, listed.as_deref()) {
+                // The combinations of a matrix have the same ones.
+                if !problems.contains(&problem) {
+                    problems.push(problem);
+                }
+            }
         }
+        problems
     }
 }

@@ -6,6 +6,8 @@
 //! hosts' answers. A valid plan can fail only because of the outside world, not
 //! because of its input files.
 
+mod case_narrowing;
+mod case_patterns;
 mod case_selection;
 mod checks;
 mod clock;
@@ -37,6 +39,7 @@ mod quarantines;
 mod runner_environment;
 mod search_scope;
 mod suite;
+mod test_planner;
 mod types;
 mod unix;
 mod use_site;

@@ -248,6 +248,12 @@ impl TestPlan {
         self.cases = Some(Box::new(cases));
     }
 
+    /// Returns all its cases, if they are known before the run.
+    #[must_use]
+    pub fn listed_cases(&self) -> Option<&[ListedCase]> {
+        self.cases_in_programs.as_ref()?.listed.as_deref()
+    }
+
     /// Returns its values of a matrix.
     #[must_use]
     pub fn parameters(&self) -> &[Parameter] {
@@ -274,7 +280,7 @@ pub struct CasesInPrograms {
 }
 
 /// A case that a host lists before the run (`spec/frameworks.md`).
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub struct ListedCase {
     /// The name, unique in the test. It may contain slashes.
     pub name: String,

@@ -68,7 +68,11 @@ pub fn select(plan: Plan, selection: &Selection) -> Selected {
                 return false;
             };
             for cases in selections {
-                if test.cases.is_none() {
+                if test.listed_cases().is_some() {
+                    if test.narrow_cases(cases).paths.is_empty() {
+                        return false;
+                    }
+                } else if test.cases.is_none() {
                     test.select_cases(cases);
                 } else {
                     conflict.get_or_insert_with(|| test.name.clone());

@@ -11,6 +11,7 @@ mod hooks;
 mod inputs;
 mod isolation;
 mod known_failures;
+mod listed_cases;
 mod matrix;
 mod named_cases;
 mod plugins;

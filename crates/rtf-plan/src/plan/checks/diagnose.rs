@@ -29,9 +29,10 @@ pub(super) fn diagnose(
         let problem = match answer {
             CheckAnswer::Report(report) if report.ok => {
                 check_kinds(entry, &report, findings);
-                let cases =
-                    report.cases.map(|cases| (CheckId { group: index, file }, cases.into()));
-                findings.cases.extend(cases);
+                if group.framework.is_some() {
+                    let id = CheckId { group: index, file };
+                    findings.cases.insert(id, report.cases.map(Arc::from));
+                }
                 continue;
             }
             CheckAnswer::Report(report) => not_loadable(group, entry, &report, findings),
