@@ -1,5 +1,5 @@
-// A program without a framework, for CTest: `command_line joints` prints the joints,
-// `command_line move JOINT RADIANS` moves one.
+// A program without a framework, for CTest: `arm_command joints` prints the joints,
+// `arm_command move JOINT RADIANS` moves one.
 #include <iostream>
 
 #include "arm.hpp"
@@ -18,9 +18,9 @@ int main(int argc, char **argv)
         if (verb == "move" && argc == 4) {
             return arm.reaches(argv[2], std::stod(argv[3])) ? 0 : 1;
         }
-        std::cerr << "usage: command_line joints | move JOINT RADIANS\n";
+        std::cerr << "usage: arm_command joints | move JOINT RADIANS\n";
     } catch (const std::exception &problem) {
-        std::cerr << "command_line: " << problem.what() << '\n';
+        std::cerr << "arm_command: " << problem.what() << '\n';
     }
     return 2;
 }
