@@ -1,0 +1,143 @@
+"""The connection of a program to the host that started it: `RTF_SESSION`.
+
+Each packet is one JSON object. Several threads can use the connection.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import threading
+
+from rtf.host.channel import end_without_runner
+
+# As `typing.TYPE_CHECKING`, without the time that its import takes.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from typing import Any
+
+SESSION_VARIABLE = "RTF_SESSION"
+
+# The longest packet that the host accepts.
+PACKET_BYTES = 65536
+
+# The kernel's default limit for a packet is smaller.
+_ANSWER_BYTES = 1 << 20
+
+_ACCEPTED = b"0"
+
+_ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+
+
+class Rejected(Exception):  # noqa: N818 - an answer of the host, not a mistake in this package
+    """The host did not accept a packet."""
+
+
+class Connection:
+    """Sends packets to the host."""
+
+    def __init__(self, descriptor: int) -> None:
+        """Take over the descriptor, and close it in child processes that execute a program."""
+        os.set_inheritable(descriptor, False)  # noqa: FBT003 - the library's signature
+        self._socket = socket.socket(fileno=descriptor)
+        self._lock = threading.Lock()
+        self._process = os.getpid()
+
+    @classmethod
+    def from_environment(cls) -> Connection | None:
+        """Open the connection, and remove the variable. `None` without a host."""
+        place = os.environ.pop(SESSION_VARIABLE, "")
+        if not place:
+            return None
+        scheme, _, number = place.partition(":")
+        if scheme != "fd" or not number.isdecimal():
+            raise ValueError(f"{SESSION_VARIABLE} is `{place}`, expected `fd:N`")
+        return cls(int(number))
+
+    def is_ours(self) -> bool:
+        """Whether this process opened the connection. A forked child must not use it."""
+        return os.getpid() == self._process
+
+    def post(self, method: str, params: Mapping[str, object]) -> None:
+        """Send a packet without waiting for an answer."""
+        if not self.is_ours():
+            return
+        try:
+            for packet in _packets({"method": method, "answer": False, "params": params}):
+                self._socket.send(packet)
+        except (BrokenPipeError, ConnectionResetError):
+            end_without_runner()
+
+    def request(self, method: str, params: Mapping[str, object]) -> None:
+        """Send a packet, and wait until the host has processed it."""
+        for packet in _packets({"method": method, "params": params}):
+            if self._ask(packet) != _ACCEPTED:
+                raise Rejected(f"the host rejected `{method}`")
+
+    def ask(self, method: str, params: Mapping[str, object]) -> bytes:
+        """Send a packet, and return the answer."""
+        return self._ask(_encode({"method": method, "params": params}))
+
+    def _ask(self, packet: bytes) -> bytes:
+        if not self.is_ours():
+            raise RuntimeError("only the process that `rtf` started can report results")
+        try:
+            with self._lock:
+                self._socket.send(packet)
+                answer = self._socket.recv(_ANSWER_BYTES)
+        except (BrokenPipeError, ConnectionResetError):
+            end_without_runner()
+            raise
+        if not answer:
+            end_without_runner()
+        return answer
+
+
+def portions(names: list[str]) -> Iterator[list[str]]:
+    """Split names into lists that fit into a packet."""
+    portion: list[str] = []
+    size = 0
+    for name in names:
+        # Escaped, a byte has at most six bytes: `\\u0001`.
+        length = 6 * len(name.encode("utf-8", "replace")) + 3
+        if portion and size + length > PACKET_BYTES - 256:
+            yield portion
+            portion, size = [], 0
+        portion.append(name)
+        size += length
+    if portion:
+        yield portion
+
+
+def _encode(packet: dict[str, object]) -> bytes:
+    try:
+        text = _ENCODER.encode(packet)
+    except ValueError:  # a number that is not finite
+        text = json.dumps(_finite(packet), ensure_ascii=False)
+    return text.encode("utf-8", "replace")
+
+
+def _finite(value: object) -> object:
+    if isinstance(value, float):
+        return value if abs(value) < float("inf") else None
+    if isinstance(value, dict):
+        return {key: _finite(entry) for key, entry in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(entry) for entry in value]
+    return value
+
+
+def _packets(packet: dict[str, object]) -> Iterator[bytes]:
+    """Encode a packet; a text that is too long for one is sent in parts."""
+    data = _encode(packet)
+    params: Any = packet["params"]
+    text = params.get("text")
+    if len(data) <= PACKET_BYTES or not isinstance(text, str):
+        yield data
+        return
+    # Between two lines, if they are not too long.
+    middle = text.rfind("\n", len(text) // 4, len(text) // 2) + 1 or len(text) // 2
+    for part in (text[:middle], text[middle:]):
+        yield from _packets({**packet, "params": {**params, "text": part}})

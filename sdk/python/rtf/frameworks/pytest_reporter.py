@@ -1,0 +1,250 @@
+"""Reports the items of a pytest run to the host as cases."""
+
+from __future__ import annotations
+
+import numbers
+import os
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from rtf import session as rtf_session
+from rtf.frameworks import pytest_details
+from rtf.frameworks.connection import portions
+from rtf.frameworks.pytest_failures import DETAILS, FailureDetails
+from rtf.frameworks.pytest_texts import (
+    collection_problem,
+    expected_failure,
+    skip_reason,
+    subtest_name,
+)
+from rtf.frameworks.stop import Stop
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+    from rtf.frameworks.connection import Connection
+
+_PHASES = {"setup": "set-up: ", "teardown": "tear-down: "}
+
+
+class OpenCase:
+    """A case that runs."""
+
+    __slots__ = ("has_problem", "outcome", "path", "reason")
+
+    def __init__(self, path: str) -> None:
+        """Its result is that of its messages, unless a report says otherwise."""
+        self.path = path
+        self.has_problem = False
+        self.outcome: str | None = None
+        self.reason: str | None = None
+
+    def set(self, outcome: str, reason: str) -> None:
+        """Set the result; the first one counts."""
+        if self.outcome is None:
+            self.outcome, self.reason = outcome, reason
+
+    def result(self) -> dict[str, object]:
+        """Return the parameters of `case-finished`."""
+        params: dict[str, object] = {"name": self.path}
+        if self.outcome is not None and not self.has_problem:
+            params["outcome"] = self.outcome
+            params["reason"] = self.reason
+        return params
+
+
+class Reporter(FailureDetails):
+    """Reports items. With pytest-xdist, it runs in the controller."""
+
+    def __init__(self, config: pytest.Config, connection: Connection) -> None:
+        """Report to this connection."""
+        super().__init__()
+        self._config = config
+        self._connection = connection
+        self._session = rtf_session.connect(connection)
+        self._stop = Stop(KeyboardInterrupt)
+        self._root = str(config.rootpath)
+        self._items: dict[str, pytest.Item] = {}
+        self._open: dict[str, OpenCase] = {}
+        # Modules that skip themselves: name and reason.
+        self._skipped_modules: dict[str, str] = {}
+        self._is_planned = False
+
+    # Collection
+
+    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+        """Report collection errors, and remember modules that skip themselves."""
+        if report.failed:
+            text, long = collection_problem(report)
+            self._connection.post("message", {"kind": "error", "text": text})
+            self._connection.post("message", {"kind": "report", "text": long})
+        elif report.skipped:
+            self._skipped_modules[report.nodeid] = skip_reason(report)
+
+    @pytest.hookimpl(hookwrapper=True, tryfirst=True)
+    def pytest_collection_modifyitems(
+        self, config: pytest.Config, items: list[pytest.Item]
+    ) -> Generator[None, None, None]:
+        """Plan the items that remain, and deselect those that the runner does not want."""
+        yield
+        self._items = {item.nodeid: item for item in items}
+        runs = self._plan(list(self._items))
+        dropped = [item for item in items if not runs[item.nodeid]]
+        if dropped:
+            items[:] = [item for item in items if runs[item.nodeid]]
+            config.hook.pytest_deselected(items=dropped)
+
+    @pytest.hookimpl(optionalhook=True)
+    def pytest_xdist_node_collection_finished(self, ids: list[str]) -> None:
+        """Plan what the workers of pytest-xdist have collected: all have the same items."""
+        if not self._is_planned:
+            self._plan(ids)
+
+    def _plan(self, names: list[str]) -> dict[str, bool]:
+        self._is_planned = True
+        skipped = list(self._skipped_modules)
+        runs: dict[str, bool] = {}
+        for portion in portions(names + skipped):
+            answer = self._connection.ask("cases-planned", {"names": portion})
+            runs.update(zip(portion, (byte == ord("0") for byte in answer)))
+        for name in skipped:
+            if runs[name]:
+                self._connection.post("case-started", {"name": name})
+                reason = self._skipped_modules[name]
+                skip = {"name": name, "outcome": "skipped", "reason": reason}
+                self._connection.post("case-finished", skip)
+        return runs
+
+    # Items
+
+    def pytest_runtest_logstart(self, nodeid: str) -> None:
+        """Start a case. With pytest-xdist, its first report starts it, which has its tags."""
+        item = self._items.get(nodeid)
+        if item is not None:
+            self._start(nodeid, pytest_details.start(item, self._root))
+
+    def _start(self, nodeid: str, params: dict[str, object]) -> OpenCase:
+        case = self._open[nodeid] = OpenCase(nodeid)
+        self._connection.post("case-started", params)
+        return case
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Report a phase of an item, or a subtest. Last, because pytest counts subtests."""
+        case = self._open.get(report.nodeid)
+        if case is None:
+            start = getattr(report, DETAILS, {}).get("start", {"name": report.nodeid})
+            case = self._start(report.nodeid, start)
+        context = getattr(report, "context", None)
+        if context is not None:
+            self._report_subtest(case, report, context)
+            return
+        self._judge(case, report)
+        if report.when == "teardown":
+            self._report_leftovers(case, report)
+
+    def pytest_runtest_logfinish(self, nodeid: str) -> None:
+        """Finish a case."""
+        self._session.send_samples()
+        case = self._open.pop(nodeid, None)
+        if case is not None:
+            self._connection.post("case-finished", case.result())
+
+    def _report_subtest(self, parent: OpenCase, report: pytest.TestReport, context: Any) -> None:
+        name = subtest_name(context)
+        values = [{"name": key, "value": str(it)} for key, it in context.kwargs.items()]
+        start = {"name": name, "parent": parent.path, "parameters": values}
+        self._connection.post("case-started", start)
+        case = OpenCase(f"{parent.path}/{name}")
+        self._judge(case, report)
+        self._report_leftovers(case, report, with_properties=False)
+        self._connection.post("case-finished", case.result())
+
+    def _judge(self, case: OpenCase, report: pytest.TestReport) -> None:
+        expected = getattr(report, "wasxfail", None)
+        if report.failed:
+            self._report_problem(case, report)
+        elif report.skipped and expected is not None:
+            case.set("skipped", expected_failure(expected))
+            self._message(case, "report", report.longreprtext)
+        elif report.skipped:
+            case.set("skipped", skip_reason(report))
+        elif expected is not None:
+            self._message(case, "report", "; ".join(filter(None, ("unexpected pass", expected))))
+
+    def _report_problem(self, case: OpenCase, report: pytest.TestReport) -> None:
+        details = getattr(report, DETAILS, {})
+        long = report.longreprtext
+        if report.when not in {"setup", "call", "teardown"}:
+            # A worker of pytest-xdist died.
+            case.set("crashed", long)
+            return
+        case.has_problem = True
+        crash = getattr(report.longrepr, "reprcrash", None)
+        short = crash.message if crash is not None else long
+        # Without an exception, pytest itself fails the item: `[XPASS(strict)]`.
+        kind = details.get("kind", "failure")
+        params = {"kind": kind, "text": _PHASES.get(report.when or "", "") + short}
+        location = details.get("location") or self._location(report, crash)
+        if location is not None:
+            params["location"] = location
+        if "comparison" in details:
+            params["comparison"] = details["comparison"]
+        self._connection.post("message", {**params, "case": case.path})
+        if long != short:
+            self._message(case, "report", long)
+
+    def _location(self, report: pytest.TestReport, crash: Any) -> dict[str, object] | None:
+        if crash is not None:
+            return {"file": os.path.join(self._root, crash.path), "line": crash.lineno}
+        path, line, _ = report.location
+        return None if line is None else {"file": os.path.join(self._root, path), "line": line + 1}
+
+    def _report_leftovers(
+        self, case: OpenCase, report: pytest.TestReport, *, with_properties: bool = True
+    ) -> None:
+        """Report captured output and properties; the last report of an item has all."""
+        for heading, text in report.sections:
+            if text.strip():
+                self._message(case, "report", f"{heading}\n{text.rstrip()}")
+        for method, params in getattr(report, DETAILS, {}).get("results", ()):
+            self._connection.request(method, {**params, "case": case.path})
+        if with_properties:
+            for name, value in report.user_properties:
+                self._report_property(case, name, value)
+
+    def _report_property(self, case: OpenCase, name: str, value: object) -> None:
+        if isinstance(value, numbers.Real) and not isinstance(value, bool):
+            params = {"name": str(name), "value": float(value), "unit": "", "case": case.path}
+            self._connection.post("measured", params)
+        else:
+            self._message(case, "report", f"{name}: {value}")
+
+    def _message(self, case: OpenCase, kind: str, text: str) -> None:
+        if text:
+            self._connection.post("message", {"kind": kind, "text": text, "case": case.path})
+
+    # The end
+
+    def pytest_keyboard_interrupt(self, excinfo: pytest.ExceptionInfo[BaseException]) -> None:
+        """`pytest.exit` or Ctrl-C ends open cases. At a stop request, the runner does."""
+        if not self._stop.is_requested:
+            reason = f"the run was ended: {excinfo.exconly()}"
+            for case in self._open.values():
+                case.set("error", reason)
+                self._connection.post("case-finished", case.result())
+            self._open.clear()
+
+    def pytest_internalerror(self, excrepr: object) -> None:
+        """Report an error of pytest or a plug-in."""
+        text = str(excrepr)
+        last = text.rstrip().rpartition("\n")[2].strip()
+        error = {"kind": "error", "text": f"internal error of pytest or a plug-in: {last}"}
+        self._connection.post("message", error)
+        self._connection.post("message", {"kind": "report", "text": text})
+
+    def pytest_unconfigure(self) -> None:
+        """Everything is reported."""
+        self._session.send_samples()
+        self._connection.post("finished", {})
