@@ -61,8 +61,10 @@ pub struct CaseReporter<'a> {
     is_first_process: bool,
     /// The top-level cases that the present process runs; `None` if all.
     selection: Option<HashSet<String>>,
-    /// Whether the present process reported a problem in a case.
+    /// Whether the present process reported a problem.
     has_problem: bool,
+    /// Whether the present process announced that it has reported everything.
+    is_complete: bool,
     /// How many top-level cases finished in the present process.
     finished: usize,
     last_finished: Option<String>,
@@ -83,6 +85,7 @@ impl<'a> CaseReporter<'a> {
             is_first_process: true,
             selection: None,
             has_problem: false,
+            is_complete: false,
             finished: 0,
             last_finished: None,
         }
@@ -301,7 +304,18 @@ impl<'a> CaseReporter<'a> {
         &self.results
     }
 
-    /// Whether a case of the present process has a problem.
+    /// The present process has reported everything.
+    pub fn complete_report(&mut self) {
+        self.is_complete = true;
+    }
+
+    /// Whether the present process has reported everything.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.is_complete
+    }
+
+    /// Whether the present process reported a problem.
     #[must_use]
     pub fn has_problem(&self) -> bool {
         self.has_problem || self.open.iter().any(|open| open.has_problem)
@@ -348,6 +362,7 @@ impl<'a> CaseReporter<'a> {
     /// A new process begins, which runs these cases.
     pub fn begin_process(&mut self, selection: &Selection<'_>) {
         (self.has_problem, self.finished, self.last_finished) = (false, 0, None);
+        self.is_complete = false;
         self.is_first_process = self.expected.is_none();
         let names = || selection.cases.iter().map(|case| case.name.clone()).collect();
         self.selection = (!selection.is_all).then(names);
@@ -373,8 +388,16 @@ impl<'a> CaseReporter<'a> {
         let open = match path {
             Some(path) => self.open.iter_mut().rfind(|open| open.path == path),
             None => self.open.last_mut(),
-        }?;
-        open.has_problem |= is_problem;
-        Some(open.case)
+        };
+        match open {
+            Some(open) => {
+                open.has_problem |= is_problem;
+                Some(open.case)
+            }
+            None => {
+                self.has_problem |= is_problem;
+                None
+            }
+        }
     }
 }

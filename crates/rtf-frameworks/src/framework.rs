@@ -229,6 +229,11 @@ pub trait Framework {
         code == 0 || has_problem
     }
 
+    /// Whether a complete report ends with `finished`.
+    fn announces_end(&self) -> bool {
+        false
+    }
+
     /// How stacks are dumped.
     fn stack_dump(&self) -> StackDump {
         StackDump::Debugger

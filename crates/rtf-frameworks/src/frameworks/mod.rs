@@ -1,13 +1,20 @@
 //! The adapters, one per framework.
 
 mod gtest;
+mod pytest;
+mod python;
+mod unittest;
 
 use crate::framework::Framework;
 
 type AnyFramework = Box<dyn Framework + Send + Sync>;
 
 /// All types, as suites name them.
-const TYPES: &[(&str, fn() -> AnyFramework)] = &[("gtest", || Box::new(gtest::GoogleTest))];
+const TYPES: &[(&str, fn() -> AnyFramework)] = &[
+    ("gtest", || Box::new(gtest::GoogleTest)),
+    ("pytest", || Box::new(pytest::Pytest)),
+    ("unittest", || Box::new(unittest::Unittest)),
+];
 
 /// The framework of this type.
 #[must_use]

@@ -273,7 +273,11 @@ impl TestRun<'_> {
                             "the program ended with {status} although no case has a problem"
                         ),
                     });
-                } else if cases.finished() == 0 && !has_rest {
+                } else if self.framework.announces_end() && !cases.is_complete() {
+                    cases.test_error(format!(
+                        "the program ended with {status} before its report was complete"
+                    ));
+                } else if cases.finished() == 0 && !has_rest && !cases.has_problem() {
                     cases.test_error(format!(
                         "the program ended with {status} and reported no case"
                     ));

@@ -52,6 +52,18 @@ enum Packet {
     CasesPlanned { names: Vec<String> },
     CaseStarted(Start),
     CaseFinished(Finish),
+    Finished {},
+}
+
+/// Whether the program waits for the answer to a packet.
+#[derive(Debug, Deserialize)]
+struct Answered {
+    #[serde(default = "yes")]
+    answer: bool,
+}
+
+fn yes() -> bool {
+    true
 }
 
 /// A report with the path of its case.
@@ -100,7 +112,7 @@ impl SessionSocket {
         Some(buffer)
     }
 
-    /// Carries out a packet and answers it.
+    /// Carries out a packet, and answers it if the program waits for that.
     pub fn handle(&self, packet: &[u8], values: &[FixtureValue], cases: &mut CaseReporter<'_>) {
         let answer = match serde_json::from_slice(packet) {
             Ok(packet) => carry_out(packet, values, cases),
@@ -110,6 +122,10 @@ impl SessionSocket {
                 vec![NO]
             }
         };
+        let answered = serde_json::from_slice::<Answered>(packet);
+        if answered.is_ok_and(|it| !it.answer) {
+            return;
+        }
         // Fails if the program has ended.
         let _ = rustix::io::retry_on_intr(|| send(&self.0, &answer, SendFlags::NOSIGNAL));
     }
@@ -139,6 +155,7 @@ fn carry_out(packet: Packet, values: &[FixtureValue], cases: &mut CaseReporter<'
         Packet::CaseFinished(Finish { name, outcome, reason }) => {
             cases.finish(&name, CaseResult { outcome, reason });
         }
+        Packet::Finished {} => cases.complete_report(),
     }
     answer(true)
 }

@@ -28,6 +28,9 @@ pub(super) fn dump(kind: StackDump, pid: Pid, file: &Path) -> Option<String> {
 }
 
 fn by_signal(pid: Pid, file: &Path) -> Option<String> {
+    if !catches(pid, Signal::USR2) {
+        return None;
+    }
     let _ = kill_process(pid, Signal::USR2);
     let deadline = Instant::now() + SIGNAL_WAIT;
     let mut last = Vec::new();
@@ -41,6 +44,15 @@ fn by_signal(pid: Pid, file: &Path) -> Option<String> {
         last = text;
     }
     None
+}
+
+/// Whether a process has a handler for a signal; without one, the signal would kill it.
+fn catches(pid: Pid, signal: Signal) -> bool {
+    let status = std::fs::read_to_string(format!("/proc/{}/status", pid.as_raw_nonzero()));
+    let status = status.unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_some_and(|mask| mask >> (signal.as_raw() - 1) & 1 == 1)
 }
 
 /// The runner's own debugger is attached to the host, which waits; this one shows the program.

@@ -1,0 +1,111 @@
+//! pytest. The plug-in `rtf.frameworks.pytest_plugin` of the Python SDK reports and lists the
+//! items.
+
+use std::process::Command;
+
+use crate::framework::{
+    Framework, Launch, ListError, ListedCase, NoReport, ReportChannel, ReportReader, StackDump,
+    TestProgram,
+};
+use crate::listing::{self, Listed};
+
+use super::python;
+
+const PLUGIN: &str = "rtf.frameworks.pytest_plugin";
+
+/// Arguments with which pytest runs no tests.
+const RESERVED: [&str; 9] = [
+    "--collect-only",
+    "--co",
+    "--setup-plan",
+    "--fixtures",
+    "--fixtures-per-test",
+    "--markers",
+    "--help",
+    "-h",
+    "--version",
+];
+
+/// Names the file with the selected items, for the workers of pytest-xdist.
+const SELECTION_VARIABLE: &str = "RTF_SELECTED_CASES";
+
+/// The exit code without any item. That no case was reported is an error in any case.
+const NO_TESTS: i32 = 5;
+
+/// The adapter.
+#[derive(Clone, Copy, Debug)]
+pub struct Pytest;
+
+impl Framework for Pytest {
+    fn list(&self, test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
+        if let Some(argument) = listing::reserved(&test.args, &RESERVED) {
+            return Err(ListError::new(format!("with `{argument}`, pytest runs no tests")));
+        }
+        let mut command = command(test);
+        command.args(["--collect-only", "-qq"]);
+        python::list(test, command, explain).map(Some)
+    }
+
+    fn list_for_run(&self, test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
+        // The plug-in announces the items, but only the list can select those of workers.
+        if has_workers(&test.args) { self.list(test) } else { Ok(None) }
+    }
+
+    fn channel(&self) -> ReportChannel {
+        ReportChannel::None
+    }
+
+    fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
+        let mut command = command(launch.test);
+        command.env_remove(SELECTION_VARIABLE);
+        if !launch.cases.is_all && has_workers(&launch.test.args) {
+            let names: Vec<&str> = launch.cases.cases.iter().map(|it| it.name.as_str()).collect();
+            let file = launch.scratch.join("selection.json");
+            let text = serde_json::to_vec(&names).map_err(|error| error.to_string())?;
+            std::fs::write(&file, text).map_err(|error| error.to_string())?;
+            command.env(SELECTION_VARIABLE, file);
+        }
+        Ok(command)
+    }
+
+    fn reader(&self, _launch: &Launch<'_>) -> Box<dyn ReportReader> {
+        Box::new(NoReport)
+    }
+
+    fn accepts_exit(&self, code: i32, has_problem: bool) -> bool {
+        // `NO_TESTS`: all modules skipped themselves.
+        code == 0 || code == NO_TESTS || has_problem
+    }
+
+    fn announces_end(&self) -> bool {
+        true
+    }
+
+    fn stack_dump(&self) -> StackDump {
+        StackDump::SignalToFile
+    }
+}
+
+fn command(test: &TestProgram) -> Command {
+    let mut command = python::interpreter("pytest");
+    command.args(["-p", PLUGIN]).args(&test.args).arg(&test.file);
+    command
+}
+
+/// Whether the arguments start workers of pytest-xdist.
+fn has_workers(args: &[String]) -> bool {
+    args.iter().any(|arg| {
+        arg.starts_with("-n") || arg.starts_with("--numprocesses") || arg.starts_with("--dist")
+    })
+}
+
+fn explain(listed: &Listed) -> Option<String> {
+    let text = String::from_utf8_lossy(&listed.stderr);
+    let interpreter = python::interpreter_name();
+    text.trim_end().ends_with("No module named pytest").then(|| {
+        format!(
+            "`{interpreter}` has no pytest\nto install it: `{interpreter} -m pip install pytest`, \
+             or on Debian the package python3-pytest"
+        )
+    })
+}

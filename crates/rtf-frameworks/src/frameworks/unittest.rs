@@ -1,0 +1,53 @@
+//! Python's unittest. The runner `rtf.frameworks.unittest_runner` of the Python SDK discovers,
+//! lists and runs the tests.
+
+use std::process::Command;
+
+use crate::framework::{
+    Framework, Launch, ListError, ListedCase, NoReport, ReportChannel, ReportReader, StackDump,
+    TestProgram,
+};
+
+use super::python;
+
+const RUNNER: &str = "rtf.frameworks.unittest_runner";
+
+/// The adapter.
+#[derive(Clone, Copy, Debug)]
+pub struct Unittest;
+
+impl Framework for Unittest {
+    fn list(&self, test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
+        python::list(test, command(test), |_| None).map(Some)
+    }
+
+    fn list_for_run(&self, _test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
+        Ok(None)
+    }
+
+    fn channel(&self) -> ReportChannel {
+        ReportChannel::None
+    }
+
+    fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
+        Ok(command(launch.test))
+    }
+
+    fn reader(&self, _launch: &Launch<'_>) -> Box<dyn ReportReader> {
+        Box::new(NoReport)
+    }
+
+    fn announces_end(&self) -> bool {
+        true
+    }
+
+    fn stack_dump(&self) -> StackDump {
+        StackDump::SignalToFile
+    }
+}
+
+fn command(test: &TestProgram) -> Command {
+    let mut command = python::interpreter(RUNNER);
+    command.args(&test.args).arg(&test.file);
+    command
+}
