@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import numbers
 import sys
 from typing import TYPE_CHECKING, Any
 
 import pytest
+
+from rtf.frameworks.comparison import compared
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -14,9 +15,6 @@ if TYPE_CHECKING:
 
 # An attribute of reports with our details. Reports of pytest-xdist's workers carry it.
 DETAILS = "_rtf_details"
-
-# The longest sequences that are compared number by number.
-_NUMBERS = 200
 
 
 class FailureDetails:
@@ -90,29 +88,11 @@ def _fields(left: object, right: object) -> dict[str, object] | None:
     if _is_approx(right):
         tolerance = getattr(right, "tolerance", None)
         right = getattr(right, "expected", None)
-    got, expected = _as_numbers(left), _as_numbers(right)
-    if got is None or expected is None or len(got) != len(expected):
-        return None
-    if not isinstance(tolerance, (int, float)):
-        return None  # several numbers, each with its own tolerance
-    return {"expected": expected, "got": got, "tolerance": float(tolerance)}
+    return compared(left, right, tolerance)
 
 
 def _is_approx(value: object) -> bool:
     return type(value).__module__ == "_pytest.python_api" or "Approx" in type(value).__name__
-
-
-def _as_numbers(value: object) -> list[float] | None:
-    if isinstance(value, bool):
-        return None
-    if isinstance(value, numbers.Real):
-        return [float(value)]
-    is_short = isinstance(value, (list, tuple)) and 0 < len(value) <= _NUMBERS
-    if not is_short or not isinstance(value, (list, tuple)):
-        return None
-    if any(isinstance(entry, bool) or not isinstance(entry, numbers.Real) for entry in value):
-        return None
-    return [float(entry) for entry in value]
 
 
 def of_failure(

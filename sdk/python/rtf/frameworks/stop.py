@@ -1,4 +1,4 @@
-"""Stop requests: the host sends SIGTERM, and the tests' tear-down functions must still run."""
+"""Stop requests: the host sends SIGTERM, and tear-down functions still have to run."""
 
 from __future__ import annotations
 
