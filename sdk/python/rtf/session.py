@@ -103,6 +103,7 @@ class Session:
         Raises a `LookupError` for an unknown name without a default, in particular if `rtf`
         did not start the program.
         """
+        __tracebackhide__ = True  # pytest shows the caller's line
         values: dict[str, object] = {}
         if self._values is not None:
             entries = json.loads(self._values())
