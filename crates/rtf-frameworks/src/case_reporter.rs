@@ -278,6 +278,12 @@ impl<'a> CaseReporter<'a> {
         drop(stdout.write_all(bytes).and_then(|()| stdout.flush()));
     }
 
+    /// Passes on text that the program wrote to standard error, if its report contains it.
+    #[expect(clippy::unused_self, reason = "only readers of reports have output")]
+    pub fn error_output(&mut self, bytes: &[u8]) {
+        drop(std::io::stderr().lock().write_all(bytes));
+    }
+
     /// Reports an error of the test, outside of its cases.
     pub fn test_error(&mut self, text: String) {
         let (kind, location, comparison) = (MessageKind::Error, None, None);

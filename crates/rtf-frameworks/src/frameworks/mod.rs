@@ -1,8 +1,13 @@
 //! The adapters, one per framework.
 
+mod assertion;
+mod boost;
+mod catch2;
+mod doctest;
 mod gtest;
 mod pytest;
 mod python;
+mod sections;
 mod unittest;
 
 use crate::framework::Framework;
@@ -11,6 +16,9 @@ type AnyFramework = Box<dyn Framework + Send + Sync>;
 
 /// All types, as suites name them.
 const TYPES: &[(&str, fn() -> AnyFramework)] = &[
+    ("boost", || Box::new(boost::BoostTest)),
+    ("catch2", || Box::new(catch2::Catch2)),
+    ("doctest", || Box::new(doctest::Doctest)),
     ("gtest", || Box::new(gtest::GoogleTest)),
     ("pytest", || Box::new(pytest::Pytest)),
     ("unittest", || Box::new(unittest::Unittest)),

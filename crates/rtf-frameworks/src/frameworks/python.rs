@@ -80,7 +80,9 @@ pub(super) fn list(
             Ok(Line::Problem(problem)) => problems.push(problem),
             Ok(Line::Finished(finished)) => is_complete = finished,
             Err(error) => {
-                return Err(ListError::new(format!("the list of cases has the line {line}: {error}")));
+                return Err(ListError::new(format!(
+                    "the list of cases has the line {line}: {error}"
+                )));
             }
         }
     }

@@ -101,8 +101,10 @@ pub(super) fn run(
     if test.session.interrupted() {
         termination = Termination::Stopped;
     }
-    if let Termination::Exited = termination
+    let reports = matches!(termination, Termination::Exited | Termination::CaseTimeout(_));
+    if reports
         && let Err(garbage) = reader.finish(status, cases)
+        && let Termination::Exited = termination
     {
         termination = Termination::Garbage(garbage);
     }

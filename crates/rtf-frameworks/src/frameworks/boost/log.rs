@@ -1,0 +1,246 @@
+//! Reads the XML log of a process that runs one case, and its XML report.
+
+use std::path::PathBuf;
+
+use rtf_model::{Comparison, ExitStatus, Location, Message, MessageKind, Outcome};
+
+use super::super::assertion;
+use crate::case_reporter::CaseReporter;
+use crate::framework::{CaseResult, Garbage, ReportReader};
+use crate::xml_stream::{Attributes, XmlEvent, XmlStream};
+
+const ROOT: &str = "TestLog";
+
+/// Texts with which exceptions begin that are signals.
+const SIGNALS: [&str; 2] = ["signal:", "memory access violation"];
+
+/// The reader of one process.
+#[derive(Debug)]
+pub(super) struct Reader {
+    stream: XmlStream,
+    case: String,
+    report: PathBuf,
+    /// The suites and the case of the log in which it is; the first is the program itself.
+    path: Vec<String>,
+    has_begun: bool,
+    /// The messages, which may be expected failures: the report contains the verdict.
+    messages: Vec<Message>,
+    entry: Entry,
+    skipped: Option<String>,
+    is_signal: bool,
+}
+
+/// An entry of the log whose element is open.
+#[derive(Debug, Default)]
+struct Entry {
+    location: Option<Location>,
+    frames: Vec<String>,
+    checkpoint: Option<String>,
+}
+
+/// The verdict of the case in the report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Verdict {
+    Passed,
+    Skipped,
+    Other,
+}
+
+impl Reader {
+    pub fn new(case: String, report: PathBuf) -> Self {
+        Self {
+            stream: XmlStream::default(),
+            case,
+            report,
+            path: Vec::new(),
+            has_begun: false,
+            messages: Vec::new(),
+            entry: Entry::default(),
+            skipped: None,
+            is_signal: false,
+        }
+    }
+
+    fn start(&mut self, name: &str, attributes: &Attributes) -> Result<(), Garbage> {
+        if !self.has_begun && name != ROOT {
+            return Err(Garbage(format!("it begins with `<{name}`, not with `<{ROOT}`")));
+        }
+        self.has_begun = true;
+        match name {
+            "TestSuite" | "TestCase" => {
+                self.path.push(attributes.get("name").to_owned());
+                let is_outer = || self.case.starts_with(&format!("{}/", self.present()));
+                if attributes.get("skipped") == "yes" && (self.is_in_case() || is_outer()) {
+                    self.skipped = Some(attributes.get("reason").to_owned());
+                }
+            }
+            "Info" | "Message" | "Warning" | "Error" | "FatalError" | "Exception" => {
+                let location = assertion::location(attributes, "file");
+                // Line 0 stands for an unknown location.
+                let location = location.filter(|location| location.line > 0);
+                self.entry = Entry { location, ..Entry::default() };
+            }
+            "LastCheckpoint" if self.entry.location.is_none() => {
+                self.entry.location = assertion::location(attributes, "file");
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, name: &str, text: &str) {
+        let text = text.trim();
+        let kind = match name {
+            "TestSuite" | "TestCase" => {
+                self.path.pop();
+                return;
+            }
+            "Frame" => return self.entry.frames.push(text.to_owned()),
+            "LastCheckpoint" => {
+                self.entry.checkpoint = Some(text.to_owned()).filter(|text| !text.is_empty());
+                return;
+            }
+            "Info" => MessageKind::Check,
+            "Message" | "Warning" => MessageKind::Report,
+            "Error" | "FatalError" => MessageKind::Failure,
+            "Exception" => MessageKind::Error,
+            _ => return,
+        };
+        let Entry { location, frames, checkpoint } = std::mem::take(&mut self.entry);
+        if !self.is_in_case() {
+            // Of other cases, on which the case depends, and of global fixtures.
+            return;
+        }
+        self.is_signal |= name == "Exception" && SIGNALS.iter().any(|it| text.starts_with(it));
+        let checkpoint = checkpoint.map(|text| format!("last checkpoint: {text}"));
+        let lines: Vec<String> = frames.into_iter().chain(checkpoint).collect();
+        let text = assertion::with_lines(text.to_owned(), &lines);
+        let mut message = assertion::message(kind, &text, location);
+        message.comparison = comparison(&message.text);
+        self.messages.push(message);
+    }
+
+    /// The path of the present suite or case.
+    fn present(&self) -> String {
+        self.path.get(1..).unwrap_or_default().join("/")
+    }
+
+    fn is_in_case(&self) -> bool {
+        self.present() == self.case
+    }
+
+    /// The verdict in the report; `None` if there is no complete report.
+    fn verdict(&self) -> Option<Verdict> {
+        let text = std::fs::read(&self.report).unwrap_or_default();
+        let (mut stream, mut events) = (XmlStream::default(), Vec::new());
+        stream.feed(&text, &mut events).ok()?;
+        let mut path: Vec<&str> = Vec::new();
+        let mut verdict = None;
+        for event in &events {
+            match event {
+                XmlEvent::Start { name, attributes } if is_unit(name) => {
+                    path.push(attributes.get("name"));
+                    if path.get(1..).unwrap_or_default().join("/") == self.case {
+                        verdict = Some(match attributes.get("result") {
+                            "passed" => Verdict::Passed,
+                            "skipped" => Verdict::Skipped,
+                            _ => Verdict::Other,
+                        });
+                    }
+                }
+                XmlEvent::End { name, .. } if is_unit(name) => {
+                    path.pop();
+                }
+                _ => {}
+            }
+        }
+        verdict.filter(|_| stream.is_complete())
+    }
+
+    fn result(&self, verdict: Verdict, has_failure: bool) -> CaseResult {
+        match verdict {
+            _ if self.is_signal => {
+                let signal = self.messages.iter().find(|it| it.kind == MessageKind::Error);
+                let text = signal.map_or("signal", |message| message.text.as_str());
+                CaseResult::new(Outcome::Crashed, text)
+            }
+            Verdict::Passed => CaseResult::default(),
+            Verdict::Skipped => {
+                let reason = self.skipped.as_deref().filter(|reason| !reason.is_empty());
+                CaseResult::new(Outcome::Skipped, reason.unwrap_or("skipped"))
+            }
+            Verdict::Other if has_failure => CaseResult::default(),
+            Verdict::Other => CaseResult::new(Outcome::Failed, "it failed without a message"),
+        }
+    }
+}
+
+impl ReportReader for Reader {
+    fn report(&mut self, bytes: &[u8], _cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
+        let mut events = Vec::new();
+        let result = self.stream.feed(bytes, &mut events);
+        for event in events {
+            match event {
+                XmlEvent::Start { name, attributes } => self.start(&name, &attributes)?,
+                XmlEvent::End { name, text } => self.end(&name, &text),
+            }
+        }
+        result
+    }
+
+    fn finish(&mut self, end: ExitStatus, cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
+        let verdict = self.verdict().filter(|_| self.stream.is_complete());
+        let mut has_failure = false;
+        for mut message in std::mem::take(&mut self.messages) {
+            if matches!(message.kind, MessageKind::Failure | MessageKind::Error) {
+                match verdict {
+                    Some(Verdict::Passed) => {
+                        message.kind = MessageKind::Report;
+                        message.text = format!("tolerated: {}", message.text);
+                    }
+                    _ => has_failure = true,
+                }
+            }
+            cases.full_message(Some(&self.case), message);
+        }
+        // Without a verdict, the program ended in the case.
+        let Some(verdict) = verdict else { return Ok(()) };
+        let result = self.result(verdict, has_failure);
+        let is_bad = has_failure || self.is_signal || verdict == Verdict::Other;
+        cases.finish(&self.case, result);
+        // A skipped case may depend on one that failed.
+        if let ExitStatus::Code(code) = end
+            && code != 0
+            && !is_bad
+            && verdict == Verdict::Passed
+        {
+            let case = &self.case;
+            cases.test_error(format!("the program ended with {end} although `{case}` passed"));
+        }
+        Ok(())
+    }
+}
+
+fn is_unit(name: &str) -> bool {
+    matches!(name, "TestSuite" | "TestCase")
+}
+
+/// The numbers of `check position == 42 has failed [41 != 42]`.
+fn comparison(text: &str) -> Option<Comparison> {
+    let (check, numbers) = text.lines().next()?.split_once(" has failed [")?;
+    let (got, expected) = numbers.strip_suffix(']')?.split_once(" != ")?;
+    check.contains(" == ").then(|| assertion::comparison(&format!("{got} == {expected}"))).flatten()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_compared() {
+        let numbers = comparison("check position == 42 has failed [41 != 42]").expect("numbers");
+        assert_eq!((numbers.got[0], numbers.expected[0]), (Some(41.0), Some(42.0)));
+        assert_eq!(comparison("check speed != 2 has failed [2 == 2]"), None);
+        assert_eq!(comparison("critical"), None);
+    }
+}

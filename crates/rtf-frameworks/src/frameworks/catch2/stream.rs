@@ -1,0 +1,318 @@
+//! Reads the XML report.
+
+use rtf_model::{ExitStatus, Location, Measurement, MessageKind, Outcome};
+
+use super::super::assertion::{self, RunningCases};
+use super::super::sections::Sections;
+use super::{ALL_SKIPPED, tags};
+use crate::case_reporter::CaseReporter;
+use crate::framework::{CaseResult, Garbage, ListedCase, ReportReader};
+use crate::xml_stream::{Attributes, XmlEvent, XmlStream};
+
+const ROOT: &str = "Catch2TestRun";
+
+/// The original text of an exception that no check caught.
+const UNKNOWN: &str = "{Unknown expression after the reported line}";
+
+/// The reader of one process.
+#[derive(Debug)]
+pub(super) struct Reader {
+    stream: XmlStream,
+    running: RunningCases,
+    case: Option<RunningCase>,
+    /// Whether the reported case is another one of the same name.
+    is_ignored: bool,
+    check: Check,
+    benchmark: String,
+    has_begun: bool,
+    unskipped: usize,
+}
+
+/// The running test case.
+#[derive(Debug)]
+struct RunningCase {
+    sections: Sections,
+    may_fail: bool,
+    should_fail: bool,
+    has_failure: bool,
+    /// The reason of a skip outside of sections.
+    skipped: Option<String>,
+    /// The reason of a skip in the present section.
+    section_skipped: Option<String>,
+    /// Whether a section was skipped, and whether another was not.
+    skipped_sections: usize,
+    other_sections: usize,
+    is_success: bool,
+    /// A fatal signal was reported: the process dies.
+    has_died: bool,
+}
+
+/// A check whose element is open, and the messages before it.
+#[derive(Debug, Default)]
+struct Check {
+    kind: String,
+    passed: bool,
+    location: Option<Location>,
+    original: String,
+    expanded: String,
+    exception: Option<String>,
+    is_open: bool,
+    infos: Vec<String>,
+}
+
+impl Reader {
+    pub fn new(cases: &[ListedCase]) -> Self {
+        Self {
+            stream: XmlStream::default(),
+            running: RunningCases::new(cases),
+            case: None,
+            is_ignored: false,
+            check: Check::default(),
+            benchmark: String::new(),
+            has_begun: false,
+            unskipped: 0,
+        }
+    }
+
+    fn start(
+        &mut self,
+        name: &str,
+        attributes: &Attributes,
+        cases: &mut CaseReporter<'_>,
+    ) -> Result<(), Garbage> {
+        if !self.has_begun && name != ROOT {
+            return Err(Garbage(format!("it begins with `<{name}`, not with `<{ROOT}`")));
+        }
+        self.has_begun = true;
+        let location = assertion::location(attributes, "filename");
+        match name {
+            "TestCase" => self.start_case(attributes, location, cases),
+            "Section" => {
+                if let Some(case) = self.living() {
+                    case.sections.enter(attributes.get("name"), location, cases);
+                }
+            }
+            "Expression" => {
+                self.check.kind = attributes.get("type").to_owned();
+                self.check.passed = attributes.get("success") == "true";
+                self.check.location = location;
+                self.check.is_open = true;
+            }
+            "Failure" | "Skip" | "Exception" | "FatalErrorCondition" => {
+                self.check.location = location;
+            }
+            "BenchmarkResults" => attributes.get("name").clone_into(&mut self.benchmark),
+            "mean" => self.measure("", attributes, cases),
+            "standardDeviation" => self.measure(" standard deviation", attributes, cases),
+            "failed" => {
+                let text = format!("{}: {}", self.benchmark, attributes.get("message"));
+                self.report(MessageKind::Failure, &text, cases);
+            }
+            "OverallResult" => {
+                if let Some(case) = &mut self.case {
+                    case.is_success = attributes.get("success") == "true";
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, name: &str, text: &str, cases: &mut CaseReporter<'_>) {
+        let text = text.trim();
+        match name {
+            "TestCase" => self.end_case(cases),
+            "Section" => self.end_section(cases),
+            "Info" => self.check.infos.push(text.to_owned()),
+            "Original" => text.clone_into(&mut self.check.original),
+            "Expanded" => text.clone_into(&mut self.check.expanded),
+            "Warning" => self.report(MessageKind::Report, text, cases),
+            "Exception" if self.check.is_open => self.check.exception = Some(text.to_owned()),
+            "Exception" => self.report(MessageKind::Error, &format!("exception: {text}"), cases),
+            "FatalErrorCondition" => {
+                self.report(MessageKind::Error, text, cases);
+                self.case.iter_mut().for_each(|case| case.has_died = true);
+            }
+            "Expression" => self.end_check(cases),
+            "Failure" => {
+                let text = if text.is_empty() { "FAIL()" } else { text };
+                self.report(MessageKind::Failure, text, cases);
+            }
+            "Skip" => self.skip(text),
+            "StdOut" => cases.output(&output(text)),
+            "StdErr" => cases.error_output(&output(text)),
+            _ => {}
+        }
+    }
+
+    /// The running case, unless its process is dying: Catch2 then closes all elements.
+    fn living(&mut self) -> Option<&mut RunningCase> {
+        self.case.as_mut().filter(|case| !case.has_died)
+    }
+
+    fn start_case(
+        &mut self,
+        attributes: &Attributes,
+        location: Option<Location>,
+        cases: &mut CaseReporter<'_>,
+    ) {
+        let tags = tags(attributes.get("tags"));
+        let start = self.running.start(attributes.get("name"), location);
+        self.is_ignored = start.is_none();
+        let Some(mut start) = start else { return };
+        let has_tag = |tag: &str| tags.iter().any(|known| known == tag);
+        let (may_fail, should_fail) = (has_tag("!mayfail"), has_tag("!shouldfail"));
+        start.tags = tags;
+        self.check = Check::default();
+        self.case = Some(RunningCase {
+            sections: Sections::start_case(start, cases),
+            may_fail,
+            should_fail,
+            has_failure: false,
+            skipped: None,
+            section_skipped: None,
+            skipped_sections: 0,
+            other_sections: 0,
+            is_success: false,
+            has_died: false,
+        });
+    }
+
+    fn end_section(&mut self, cases: &mut CaseReporter<'_>) {
+        let Some(case) = self.living() else { return };
+        let (result, count) = match case.section_skipped.take() {
+            Some(reason) => (CaseResult::new(Outcome::Skipped, reason), &mut case.skipped_sections),
+            None => (CaseResult::default(), &mut case.other_sections),
+        };
+        *count += usize::from(case.sections.leave(result, cases));
+    }
+
+    fn end_case(&mut self, cases: &mut CaseReporter<'_>) {
+        if self.living().is_none() {
+            return;
+        }
+        let Some(mut case) = self.case.take() else { return };
+        let only_skips = case.skipped_sections > 0 && case.other_sections == 0;
+        if only_skips && case.skipped.is_none() {
+            case.skipped = Some("all its sections were skipped".to_owned());
+        }
+        let result = match (case.is_success, case.skipped) {
+            (false, _) if case.has_failure => CaseResult::default(),
+            (false, _) if case.should_fail => {
+                CaseResult::new(Outcome::Failed, "it passed, although it is tagged `[!shouldfail]`")
+            }
+            (false, _) => CaseResult::new(Outcome::Failed, "it failed without a message"),
+            (true, Some(reason)) => CaseResult::new(Outcome::Skipped, reason),
+            (true, None) => CaseResult::default(),
+        };
+        self.unskipped += usize::from(result.outcome != Some(Outcome::Skipped));
+        case.sections.finish_case(result, cases);
+    }
+
+    fn skip(&mut self, text: &str) {
+        let reason = if text.is_empty() { "skipped" } else { text };
+        let reason =
+            assertion::with_lines(reason.to_owned(), &std::mem::take(&mut self.check.infos));
+        let Some(case) = self.living() else { return };
+        match case.sections.is_inside() {
+            true => case.section_skipped = Some(reason),
+            false => case.skipped = Some(reason),
+        }
+    }
+
+    fn end_check(&mut self, cases: &mut CaseReporter<'_>) {
+        let check = std::mem::take(&mut self.check);
+        let Check { kind, passed, location, original, expanded, exception, infos, .. } = check;
+        // An exception in a check of exceptions is a failure; otherwise nobody expected it.
+        let expects = kind.contains("THROW");
+        let text = match &exception {
+            Some(exception) if original == UNKNOWN => format!("exception: {exception}"),
+            Some(exception) => format!("{kind}({original}) threw: {exception}"),
+            None if passed => format!("{kind}({original}): {expanded}"),
+            None => assertion::failed_check(&kind, &original, &expanded),
+        };
+        let message_kind = match (passed, exception) {
+            (true, _) => MessageKind::Check,
+            (false, Some(_)) if !expects => MessageKind::Error,
+            (false, _) => MessageKind::Failure,
+        };
+        // A fatal signal is reported by its own element.
+        if self.living().is_none() {
+            return;
+        }
+        let text = assertion::with_lines(text, &infos);
+        let mut message = assertion::message(message_kind, &text, location);
+        message.comparison = (!passed).then(|| assertion::comparison(&expanded)).flatten();
+        self.report_message(message, cases);
+    }
+
+    fn report(&mut self, kind: MessageKind, text: &str, cases: &mut CaseReporter<'_>) {
+        let infos = std::mem::take(&mut self.check.infos);
+        let text = assertion::with_lines(text.to_owned(), &infos);
+        let message = assertion::message(kind, &text, self.check.location.take());
+        self.report_message(message, cases);
+    }
+
+    /// Reports a message. Failures of a case that may or should fail do not change its verdict.
+    fn report_message(&mut self, mut message: rtf_model::Message, cases: &mut CaseReporter<'_>) {
+        if self.is_ignored {
+            return;
+        }
+        let Some(case) = &mut self.case else {
+            return cases.full_message(None, message);
+        };
+        if matches!(message.kind, MessageKind::Failure | MessageKind::Error) {
+            if case.may_fail || case.should_fail {
+                message.kind = MessageKind::Report;
+                message.text = format!("tolerated: {}", message.text);
+            } else {
+                case.has_failure = true;
+            }
+        }
+        cases.full_message(Some(case.sections.path()), message);
+    }
+
+    /// Reports a time of a benchmark, in nanoseconds.
+    fn measure(&self, suffix: &str, attributes: &Attributes, cases: &mut CaseReporter<'_>) {
+        let Some(case) = &self.case else { return };
+        let name = format!("{}{suffix}", self.benchmark);
+        let value = attributes.get("value").parse().ok();
+        let (unit, low, high, location, case_id) = ("ns".to_owned(), None, None, None, None);
+        let measurement = Measurement { name, value, unit, low, high, location, case: case_id };
+        cases.measure(Some(case.sections.path()), measurement);
+    }
+}
+
+impl ReportReader for Reader {
+    fn report(&mut self, bytes: &[u8], cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
+        let mut events = Vec::new();
+        let result = self.stream.feed(bytes, &mut events);
+        for event in events {
+            match event {
+                XmlEvent::Start { name, attributes } => self.start(&name, &attributes, cases)?,
+                XmlEvent::End { name, text } => self.end(&name, &text, cases),
+            }
+        }
+        result
+    }
+
+    fn finish(&mut self, end: ExitStatus, cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
+        if let Some(case) = &mut self.case {
+            case.sections.close_left(cases);
+        } else if let ExitStatus::Code(code) = end {
+            if self.has_begun && !self.stream.is_complete() {
+                cases.test_error("the report of the program is incomplete".to_owned());
+            }
+            if code == ALL_SKIPPED && self.unskipped > 0 && !cases.has_problem() {
+                let text = format!("the program ended with {end} although no case has a problem");
+                cases.test_error(text);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Kept output, which is a part of the program's output.
+fn output(text: &str) -> Vec<u8> {
+    [text.as_bytes(), b"\n"].concat()
+}

@@ -1,0 +1,31 @@
+# shellcheck shell=bash
+# Catch2 3: the system's package if it is new enough, otherwise Debian's backport of it,
+# unpacked in the user's cache.
+
+# Downloads the package with separate package lists, so that the system's do not change.
+unpack_backport() {
+  local dir=$1 work options
+  work=$(mktemp -d)
+  mkdir -p "$work"/{lists/partial,cache/archives/partial,root}
+  echo 'deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg]' \
+    'http://deb.debian.org/debian bookworm-backports main' >"$work/sources.list"
+  options=(-o Dir::Etc::sourcelist="$work/sources.list" -o Dir::Etc::sourceparts=-
+    -o Dir::State::lists="$work/lists" -o Dir::Cache="$work/cache")
+  quietly apt-get -qq "${options[@]}" update
+  (cd "$work" && quietly apt-get -qq "${options[@]}" download libcatch2-dev)
+  dpkg-deb -x "$work"/libcatch2-dev_*.deb "$work/root"
+  mv "$work/root/usr" "$dir"
+  rm -rf "$work"
+}
+
+need_packages g++
+version=$(candidate_of libcatch2-dev)
+if [ -n "$version" ]; then
+  need_packages libcatch2-dev
+  prefix=/usr
+else
+  prefix=$CACHE/catch2-3.7.1
+  [ -e "$prefix/include/catch2/catch_all.hpp" ] || unpack_backport "$prefix"
+fi
+libraries=$(dirname "$(find "$prefix/lib" -name libCatch2.a -print -quit)")
+cpp_programs -I"$prefix/include" -L"$libraries" -lCatch2Main -lCatch2
