@@ -251,6 +251,20 @@ pub trait ReportReader {
     /// Reads output that the program wrote, which is passed on in any case.
     fn output(&mut self, _stream: OutputStream, _bytes: &[u8], _cases: &mut CaseReporter<'_>) {}
 
+    /// Whether the reader knows of cases that it has not reported yet.
+    fn holds_back(&self) -> bool {
+        false
+    }
+
+    /// Reports these cases: nothing has arrived for a moment.
+    fn release(&mut self, _cases: &mut CaseReporter<'_>) {}
+
+    /// Why the process died, if the report or the output says so. Called after
+    /// [`Self::finish`].
+    fn crash_reason(&self) -> Option<String> {
+        None
+    }
+
     /// The process has ended, and everything that it wrote was read.
     ///
     /// # Errors

@@ -4,6 +4,7 @@ mod assertion;
 mod boost;
 mod catch2;
 mod doctest;
+mod go;
 mod gtest;
 mod pytest;
 mod python;
@@ -19,6 +20,7 @@ const TYPES: &[(&str, fn() -> AnyFramework)] = &[
     ("boost", || Box::new(boost::BoostTest)),
     ("catch2", || Box::new(catch2::Catch2)),
     ("doctest", || Box::new(doctest::Doctest)),
+    ("go", || Box::new(go::Go)),
     ("gtest", || Box::new(gtest::GoogleTest)),
     ("pytest", || Box::new(pytest::Pytest)),
     ("unittest", || Box::new(unittest::Unittest)),

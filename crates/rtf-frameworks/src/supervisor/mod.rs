@@ -6,6 +6,7 @@ mod session_socket;
 mod stack;
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -20,23 +21,32 @@ use process::{ProcessEnd, Termination};
 
 /// The process that runs cases at the moment, for other threads.
 #[derive(Clone, Debug, Default)]
-pub struct RunningProgram(Arc<Mutex<Option<Pid>>>);
+pub struct RunningProgram {
+    pid: Arc<Mutex<Option<Pid>>>,
+    /// Whether the runner had stacks dumped, which can end the program.
+    was_dumped: Arc<AtomicBool>,
+}
 
 impl RunningProgram {
     fn set(&self, pid: Option<Pid>) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = pid;
+        *self.pid.lock().unwrap_or_else(PoisonError::into_inner) = pid;
     }
 
     /// Its process id.
     #[must_use]
     pub fn pid(&self) -> Option<Pid> {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        *self.pid.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Whether the runner had stacks dumped: it is about to stop the test.
+    fn was_dumped(&self) -> bool {
+        self.was_dumped.load(Ordering::Relaxed)
     }
 
     /// Sends a signal to its process group.
     pub fn signal(&self, signal: Signal) {
         // The lock is held: the process is reaped only after it was removed here.
-        let running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let running = self.pid.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(pid) = *running {
             // Fails if all of them have ended.
             let _ = kill_process_group(pid, signal);
@@ -48,7 +58,9 @@ impl RunningProgram {
 /// output.
 #[must_use]
 pub fn dump_stack(running: &RunningProgram, kind: StackDump, file: &Path) -> Option<String> {
-    stack::dump(kind, running.pid()?, file)
+    let pid = running.pid()?;
+    running.was_dumped.store(true, Ordering::Relaxed);
+    stack::dump(kind, pid, file)
 }
 
 /// One run of a test.
@@ -100,7 +112,7 @@ pub fn run(
         Some(listed) => run.listed(&listed, &plugin.cases, &mut cases),
         None => run.unlisted(&plugin.cases, &mut cases),
     }
-    if let (Some(count), false) = (cases.all_skipped(), session.interrupted()) {
+    if let (Some(count), false) = (cases.all_skipped(), run.is_stopping()) {
         let reason = match count {
             1 => "its only case was skipped".to_owned(),
             count => format!("all {count} cases were skipped"),
@@ -110,6 +122,11 @@ pub fn run(
 }
 
 impl TestRun<'_> {
+    /// Whether the runner stops the test, or is about to.
+    fn is_stopping(&self) -> bool {
+        self.session.interrupted() || self.running.was_dumped()
+    }
+
     /// Runs a test whose cases are known.
     fn listed(&self, listed: &[ListedCase], wanted: &[CaseSelector], cases: &mut CaseReporter<'_>) {
         let is_wanted = |case: &&ListedCase| {
@@ -137,7 +154,7 @@ impl TestRun<'_> {
                 queue.push(case);
             }
         }
-        while !queue.is_empty() && !self.session.interrupted() {
+        while !queue.is_empty() && !self.is_stopping() {
             let goes_on = if self.separate {
                 let case = queue.remove(0);
                 self.separate_case(&case, cases)
@@ -152,7 +169,7 @@ impl TestRun<'_> {
                 break;
             }
         }
-        if let (Some(missing), false) = (cases.missing(), self.session.interrupted()) {
+        if let (Some(missing), false) = (cases.missing(), self.is_stopping()) {
             cases.test_error(missing);
         }
     }
@@ -165,11 +182,11 @@ impl TestRun<'_> {
             let goes_on = self.process(Selection { cases: &[], is_all: true }, cases);
             let has_rest = cases.missing().is_some();
             let made_progress = cases.results().len() > before;
-            if !(goes_on && has_rest && made_progress) || self.session.interrupted() {
+            if !(goes_on && has_rest && made_progress) || self.is_stopping() {
                 break;
             }
         }
-        if let (Some(missing), false) = (cases.missing(), self.session.interrupted()) {
+        if let (Some(missing), false) = (cases.missing(), self.is_stopping()) {
             cases.test_error(missing);
         }
     }
@@ -235,7 +252,8 @@ impl TestRun<'_> {
             return false;
         }
         if cases.innermost().is_some() {
-            let reason = format!("the program ended in the case with {status}");
+            let ended = || format!("the program ended in the case with {status}");
+            let reason = end.crash_reason.clone().unwrap_or_else(ended);
             cases.end_open(&CaseResult::new(Outcome::Crashed, reason));
             return true;
         }

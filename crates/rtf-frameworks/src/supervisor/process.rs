@@ -26,6 +26,9 @@ use crate::framework::{
 /// How much is read at once.
 const PIECE: usize = 64 * 1024;
 
+/// How long nothing arrives before a reader reports cases that it holds back.
+const RELEASE_WAIT: Duration = Duration::from_millis(200);
+
 /// The longest line of standard error that a reason quotes.
 const ERROR_LINE_BYTES: usize = 500;
 
@@ -49,6 +52,8 @@ pub(super) struct ProcessEnd {
     pub termination: Termination,
     /// The last line that it wrote to standard error, if its output was watched.
     pub last_error_line: String,
+    /// Why it died, if it or its framework printed that.
+    pub crash_reason: Option<String>,
 }
 
 /// Runs a process until it has ended and everything that it wrote is read.
@@ -98,7 +103,7 @@ pub(super) fn run(
     // What the program left in its group must not run next to the next process.
     let _ = rustix::process::kill_process_group(pid, Signal::KILL);
     let RunningProcess { mut reader, mut termination, last_error, .. } = process;
-    if test.session.interrupted() {
+    if test.is_stopping() {
         termination = Termination::Stopped;
     }
     let reports = matches!(termination, Termination::Exited | Termination::CaseTimeout(_));
@@ -108,7 +113,8 @@ pub(super) fn run(
     {
         termination = Termination::Garbage(garbage);
     }
-    Ok(ProcessEnd { status, termination, last_error_line: last_error.text() })
+    let crash_reason = reader.crash_reason();
+    Ok(ProcessEnd { status, termination, last_error_line: last_error.text(), crash_reason })
 }
 
 fn spawn(mut command: Command, test: &TestRun<'_>, session: &OwnedFd) -> Result<Child, String> {
@@ -212,6 +218,17 @@ impl LastLine {
     }
 }
 
+/// Why a wait has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wakeup {
+    /// The process has ended.
+    Exit,
+    /// Something arrived.
+    Input,
+    /// Nothing arrived in time.
+    Limit,
+}
+
 /// The state of a running process.
 struct RunningProcess<'a> {
     test: &'a TestRun<'a>,
@@ -233,10 +250,13 @@ impl RunningProcess<'_> {
             if wait == Some(Duration::ZERO) {
                 self.end_case(pid);
             }
-            let has_ended = self.wait(exited, wait);
+            let release = self.reader.holds_back().then_some(RELEASE_WAIT);
+            let wakeup = self.wait(exited, wait.into_iter().chain(release).min());
             self.drain(cases);
-            if has_ended {
-                return;
+            match wakeup {
+                Wakeup::Exit => return,
+                Wakeup::Input => {}
+                Wakeup::Limit => self.reader.release(cases),
             }
         }
     }
@@ -259,16 +279,18 @@ impl RunningProcess<'_> {
         self.test.running.signal(Signal::KILL);
     }
 
-    /// Waits for an input or the end of the process; true at its end.
-    fn wait(&self, exited: BorrowedFd<'_>, limit: Option<Duration>) -> bool {
+    /// Waits for an input or the end of the process.
+    fn wait(&self, exited: BorrowedFd<'_>, limit: Option<Duration>) -> Wakeup {
         let input = |fd| PollFd::from_borrowed_fd(fd, PollFlags::IN);
         let mut fds = vec![input(exited), input(self.session.as_fd())];
         fds.extend(self.source.as_ref().map(|source| input(source.as_fd())));
         fds.extend(self.outputs.iter().map(|(_, file)| input(file.as_fd())));
         let limit = limit.and_then(|limit| Timespec::try_from(limit).ok());
         match poll(&mut fds, limit.as_ref()) {
-            Ok(_) | Err(Errno::INTR) => fds[0].revents().contains(PollFlags::IN),
-            Err(_) => true,
+            Ok(0) => Wakeup::Limit,
+            Ok(_) if fds[0].revents().contains(PollFlags::IN) => Wakeup::Exit,
+            Ok(_) | Err(Errno::INTR) => Wakeup::Input,
+            Err(_) => Wakeup::Exit,
         }
     }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use rustix::process::{Pid, Signal, kill_process};
+use rustix::process::{Pid, Signal, kill_process, kill_process_group};
 
 use crate::framework::StackDump;
 
@@ -19,7 +19,8 @@ pub(super) fn dump(kind: StackDump, pid: Pid, file: &Path) -> Option<String> {
     match kind {
         StackDump::Debugger => Some(by_debugger(pid)),
         StackDump::SignalToOutput(signal) => {
-            let _ = kill_process(pid, signal);
+            // The program may run the cases in a child.
+            let _ = kill_process_group(pid, signal);
             std::thread::sleep(SIGNAL_WAIT / 4);
             None
         }

@@ -1,0 +1,4 @@
+#[test]
+fn is_broken() {
+    let speed: u32 = "fast";
+}

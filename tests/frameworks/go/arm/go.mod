@@ -1,0 +1,3 @@
+module example.org/arm
+
+go 1.19
