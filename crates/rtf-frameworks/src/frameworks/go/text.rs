@@ -55,7 +55,7 @@ fn log_start<'a>(line: &'a str, dir: &Path) -> Option<(Location, &'a str)> {
 /// Returns why the process died in a test that printed this text.
 pub(super) fn crash(text: &str, dir: &Path) -> Option<Crash> {
     let is_start = |line: &str| {
-        ["panic: ", "fatal error: ", "SIG"].iter().any(|start| line.starts_with(start))
+        ["panic: ", "fatal error: ", "SIGSEGV"].iter().any(|start| line.starts_with(start))
     };
     let mut lines = text.lines().skip_while(|line| !is_start(line));
     let Some(first) = lines.next() else { return signal(text) };
