@@ -150,7 +150,7 @@ impl OrderChecker {
         match kind {
             EventKind::CasesPlanned { test, .. } => self.before_verdict(*test),
             EventKind::CaseStarted(started) => self.start_case(started),
-            EventKind::CaseFinished(end) => self.finish_case(end.test, end.case),
+            EventKind::CaseFinished(end) => self.finish_case(end),
             EventKind::Sampled { test, samples } => {
                 self.inside_test(*test)?;
                 self.inside_case(*test, samples.case)

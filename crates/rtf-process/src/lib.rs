@@ -20,7 +20,7 @@ pub mod resources;
 pub mod spawn_request;
 pub mod spawner;
 pub mod ssh;
-mod stack_dump;
+pub mod stack_dump;
 pub mod start_gate;
 pub mod task;
 pub mod tree;

@@ -11,18 +11,23 @@ use crate::spawner::Spawner;
 use crate::{tree, unix};
 
 const SIGUSR2: i32 = 12;
-/// A host that dumps its stacks on a signal does so within this time, or not at all.
-const SIGNAL_WAIT: Duration = Duration::from_secs(1);
-/// The limit for a debugger.
-const DEBUGGER_WAIT: Duration = Duration::from_secs(10);
+/// A host that dumps its own stacks does so within this time, or not at all.
+pub const HOST_DUMP_WAIT: Duration = Duration::from_secs(1);
+/// The limit for a debugger, also for one that a host starts.
+pub const DEBUGGER_WAIT: Duration = Duration::from_secs(10);
 /// The longest dump, in bytes.
 const DUMP_LIMIT: u64 = 256 * 1024;
 
 /// Dumps the stacks of a process. For [`StackSupport::Message`] the caller has sent the
 /// request; this is the fallback if the host does not reply.
-pub async fn dump(pid: i32, support: StackSupport, file: &Path, spawner: &Spawner) -> String {
+pub async fn dump(
+    pid: i32,
+    (support, wait): (StackSupport, Duration),
+    file: &Path,
+    spawner: &Spawner,
+) -> String {
     match support {
-        StackSupport::Message => tokio::time::sleep(SIGNAL_WAIT).await,
+        StackSupport::Message => tokio::time::sleep(wait).await,
         StackSupport::Signal => {
             if let Some(text) = by_signal(pid, file).await {
                 return text;
@@ -35,7 +40,7 @@ pub async fn dump(pid: i32, support: StackSupport, file: &Path, spawner: &Spawne
 
 async fn by_signal(pid: i32, file: &Path) -> Option<String> {
     unix::signal_process(pid, SIGUSR2);
-    let deadline = tokio::time::Instant::now() + SIGNAL_WAIT;
+    let deadline = tokio::time::Instant::now() + HOST_DUMP_WAIT;
     let mut last = Vec::new();
     while tokio::time::Instant::now() < deadline {
         tokio::time::sleep(Duration::from_millis(20)).await;

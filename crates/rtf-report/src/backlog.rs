@@ -126,6 +126,7 @@ mod tests {
                 verdict: Verdict::Failed,
                 reason: Some("x".repeat(50)),
                 decided_by: None,
+                carried_us: None,
             }),
         ];
         for (kind, bytes) in kinds.into_iter().zip([300, 550, 800]) {

@@ -64,4 +64,8 @@ pub struct CaseFinished {
     /// or its process ended.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub decided_by: Option<CaseId>,
+    /// For a case that finished in an earlier attempt, which a collapse interrupted: its
+    /// duration there, in microseconds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub carried_us: Option<u64>,
 }

@@ -1,12 +1,14 @@
 //! Cases: each starts and finishes once, inside its parent and its test.
 
 use super::{OrderChecker, Rule, ensure};
-use crate::{CaseId, CaseStarted, TestId};
+use crate::{CaseFinished, CaseId, CaseStarted, TestId};
 
 /// The open cases of an attempt.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CaseProgress {
     started: u32,
+    /// Whether a case has finished in this attempt.
+    any_finished: bool,
     open: Vec<(CaseId, Option<CaseId>)>,
 }
 
@@ -31,9 +33,17 @@ impl OrderChecker {
         Ok(())
     }
 
-    pub(super) fn finish_case(&mut self, id: TestId, case: CaseId) -> Rule {
+    pub(super) fn finish_case(&mut self, end: &CaseFinished) -> Rule {
+        let (id, case) = (end.test, end.case);
         self.before_verdict(id)?;
-        let cases = &mut self.test(id)?.cases;
+        let test = self.test(id)?;
+        let is_retry = test.last.is_some_and(|(_, attempt)| attempt > 1);
+        let cases = &mut test.cases;
+        let is_carried = end.carried_us.is_some();
+        ensure(!is_carried || (is_retry && !cases.any_finished), || {
+            format!("test {id}: case {case} of an earlier attempt is out of order")
+        })?;
+        cases.any_finished |= !is_carried;
         let position = cases.open.iter().rposition(|(open, _)| *open == case);
         let position = position.ok_or_else(|| format!("test {id}: case {case} is not open"))?;
         ensure(!cases.open.iter().any(|(_, parent)| *parent == Some(case)), || {
@@ -59,7 +69,7 @@ impl OrderChecker {
     pub(super) fn all_cases_finished(&mut self, id: TestId) -> Rule {
         let cases = &mut self.test(id)?.cases;
         ensure(cases.open.is_empty(), || format!("test {id} ends before its cases"))?;
-        cases.started = 0;
+        (cases.started, cases.any_finished) = (0, false);
         Ok(())
     }
 }

@@ -1,6 +1,7 @@
 //! The cases of an attempt of a test.
 
 use std::collections::VecDeque;
+use std::time::Duration;
 
 use crate::{CaseFinished, CaseId, CaseStart, Micros, Verdict};
 
@@ -40,8 +41,15 @@ impl CaseRecord {
 
     /// Its duration, `None` while it runs.
     #[must_use]
-    pub fn duration(&self) -> Option<std::time::Duration> {
-        self.finished.as_ref().map(|(at, ..)| at.since(self.started))
+    pub fn duration(&self) -> Option<Duration> {
+        let (at, finished) = self.finished.as_ref()?;
+        Some(finished.carried_us.map_or_else(|| at.since(self.started), Duration::from_micros))
+    }
+
+    /// Whether it finished in an earlier attempt, which has its messages.
+    #[must_use]
+    pub fn is_carried(&self) -> bool {
+        self.finished.as_ref().is_some_and(|(_, finished)| finished.carried_us.is_some())
     }
 }
 

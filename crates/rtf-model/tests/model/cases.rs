@@ -4,8 +4,9 @@ use crate::order::check;
 use crate::record::record;
 use crate::support::*;
 use rtf_model::{
-    AttemptCases, CaseFinished, CaseId, CaseStart, CaseStarted, EventKind, ExpectedFailure,
-    Message, MessageKind, Phase, Record, Significance, Source, StopCause, TestPlanned, Verdict,
+    AttemptCases, CaseFinished, CaseId, CaseRecord, CaseStart, CaseStarted, EventKind,
+    ExpectedFailure, Message, MessageKind, Phase, Record, Significance, Source, StopCause,
+    TestPlanned, Verdict,
 };
 
 fn case(number: u32, name: &str, parent: Option<u32>) -> EventKind {
@@ -17,6 +18,10 @@ fn case(number: u32, name: &str, parent: Option<u32>) -> EventKind {
 }
 
 fn case_ends(number: u32, verdict: Verdict) -> EventKind {
+    case_ends_after(number, verdict, None)
+}
+
+fn case_ends_after(number: u32, verdict: Verdict, carried_us: Option<u64>) -> EventKind {
     let reason = verdict.is_problem().then(|| format!("{verdict} for a reason"));
     EventKind::CaseFinished(CaseFinished {
         test: TEST,
@@ -24,6 +29,7 @@ fn case_ends(number: u32, verdict: Verdict) -> EventKind {
         verdict,
         reason,
         decided_by: None,
+        carried_us,
     })
 }
 
@@ -99,6 +105,55 @@ fn the_numbers_of_cases_begin_again_with_each_attempt() {
     let attempts = &record.tests[0].attempts;
     assert_eq!(attempts[0].cases.of(Verdict::Failed), 1);
     assert_eq!(attempts[1].cases.of(Verdict::Passed), 1);
+}
+
+/// Two attempts, the first of which a collapse interrupts.
+fn rerun_with(second: impl IntoIterator<Item = EventKind>) -> Vec<EventKind> {
+    let passed = Verdict::Passed;
+    let first = [
+        started(1, 1),
+        case(1, "a", None),
+        case_ends(1, passed),
+        rerun(Verdict::Collapsed),
+        started(1, 2),
+    ];
+    let attempts = first.into_iter().chain(second).chain([finished(passed)]);
+    opened(1).into_iter().chain(attempts).chain(closed()).collect()
+}
+
+#[test]
+fn carried_cases_keep_their_durations() {
+    let passed = Verdict::Passed;
+    let second = [
+        case(1, "a", None),
+        case_ends_after(1, passed, Some(700_000)),
+        case(2, "b", None),
+        case_ends(2, passed),
+    ];
+    let kinds = rerun_with(second);
+    check(&stream(kinds.clone())).unwrap();
+    let record = record(kinds);
+    let cases = &record.tests[0].attempts[1].cases;
+    let durations = cases.kept().iter().map(|case| case.duration().unwrap().as_millis());
+    assert_eq!(durations.collect::<Vec<_>>(), [700, 1]);
+    let carried: Vec<_> = cases.kept().iter().map(CaseRecord::is_carried).collect();
+    assert_eq!((carried, cases.total()), (vec![true, false], 2));
+}
+
+#[test]
+fn carried_cases_out_of_order_are_illegal() {
+    let passed = Verdict::Passed;
+    let carried = || [case(1, "a", None), case_ends_after(1, passed, Some(1))];
+    let late = [
+        case(1, "b", None),
+        case_ends(1, passed),
+        case(2, "a", None),
+        case_ends_after(2, passed, Some(1)),
+    ];
+    for kinds in [body(carried()), rerun_with(late)] {
+        let error = check(&stream(kinds)).unwrap_err();
+        assert!(error.contains("of an earlier attempt is out of order"), "{error}");
+    }
 }
 
 #[test]

@@ -47,7 +47,9 @@ pub async fn watch_attached(
                 background.spawn(reporter.clone().check_alive(selection.of(&alive), None));
             }
             Some(
-                ProcessCommand::Send(..) | ProcessCommand::DumpStack(_) | ProcessCommand::Assign(_),
+                ProcessCommand::Send(..)
+                | ProcessCommand::DumpStack(..)
+                | ProcessCommand::Assign(_),
             ) => {}
             Some(
                 ProcessCommand::CloseChannel | ProcessCommand::Signal(_) | ProcessCommand::KillTree,

@@ -1,6 +1,7 @@
 //! The commands that a process's task accepts.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use rtf_model::protocol::{Plugin, Request, StackSupport};
 
@@ -17,8 +18,9 @@ pub enum ProcessCommand {
     Send(Option<u64>, Request),
     /// Send nothing more.
     CloseChannel,
-    /// Dump the stacks of its threads.
-    DumpStack(StackSupport),
+    /// Dump the stacks of its threads; with a debugger if a host that sends them itself has
+    /// not done so in this time.
+    DumpStack(StackSupport, Duration),
     /// Send a signal to its process group.
     Signal(i32),
     /// Kill it and everything below it.
@@ -35,7 +37,7 @@ impl ProcessCommand {
         matches!(
             self,
             Self::Send(_, Request::Interrupt { .. })
-                | Self::DumpStack(_)
+                | Self::DumpStack(..)
                 | Self::Signal(_)
                 | Self::KillTree
         )

@@ -223,7 +223,7 @@ impl ProcessTask {
                 });
             }
             ProcessCommand::KillTree => self.job.launch.kill(&self.process),
-            ProcessCommand::DumpStack(support) => self.dump_stack(support),
+            ProcessCommand::DumpStack(support, wait) => self.dump_stack(support, wait),
             ProcessCommand::WatchAlive => self.watch_alive(),
             ProcessCommand::CheckAlive(selection) => self.check = Some(selection),
         }
@@ -263,14 +263,14 @@ impl ProcessTask {
         }
     }
 
-    fn dump_stack(&mut self, support: StackSupport) {
+    fn dump_stack(&mut self, support: StackSupport, wait: Duration) {
         if support == StackSupport::Message {
             self.send(None, Request::DumpStack {});
         }
         let (events, host, pid) = (self.events.clone(), self.job.host, self.process.pid);
         let (spawner, file) = (self.context.spawner.clone(), self.job.launch.stack_file.clone());
         self.background.spawn(async move {
-            let text = stack_dump::dump(pid, support, &file, &spawner).await;
+            let text = stack_dump::dump(pid, (support, wait), &file, &spawner).await;
             drop(events.send((host, ProcessEvent::StackDumped(text))).await);
         });
     }

@@ -29,6 +29,7 @@ fn finish(run: &mut Writer, case: u32, verdict: Verdict) {
         verdict,
         reason,
         decided_by: None,
+        carried_us: None,
     }));
 }
 

@@ -150,8 +150,9 @@ pub enum Effect {
     Send(HostId, Option<u64>, Box<Request>),
     /// Close the channel: the host ends after the present request.
     CloseChannel(HostId),
-    /// Take a stack dump. Answered by [`ProcessEvent::StackDumped`] or a `stack` notification.
-    DumpStack(HostId, StackSupport),
+    /// Take a stack dump, with a debugger if the host has not sent a `stack` notification in
+    /// this time. Answered by [`ProcessEvent::StackDumped`] or that notification.
+    DumpStack(HostId, StackSupport, Duration),
     /// Send a signal to the process and its group.
     Signal(HostId, i32),
     /// Kill the process and all descendants.

@@ -257,8 +257,8 @@ impl SuiteTask<'_> {
                 self.command(host, ProcessCommand::Send(id, *request))
             }
             Effect::CloseChannel(host) => self.command(host, ProcessCommand::CloseChannel),
-            Effect::DumpStack(host, support) => {
-                self.command(host, ProcessCommand::DumpStack(support))
+            Effect::DumpStack(host, support, wait) => {
+                self.command(host, ProcessCommand::DumpStack(support, wait))
             }
             Effect::Signal(host, signal) => self.command(host, ProcessCommand::Signal(signal)),
             Effect::KillTree(host) => self.kill(host),

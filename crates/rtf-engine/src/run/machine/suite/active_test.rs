@@ -2,7 +2,7 @@
 
 use rtf_model::protocol::TestAttempt;
 
-use crate::run::machine::test::TestRun;
+use crate::run::machine::test::{CarriedCases, TestRun};
 use rtf_plan::plan::TestPlan;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,6 +41,8 @@ pub(super) struct ActiveTest<'p> {
     pub is_delayed: bool,
     /// Whether fixtures were notified of the next attempt.
     pub is_notified: bool,
+    /// The cases that the next attempt does not run again.
+    pub carried: Option<Box<CarriedCases>>,
     /// Why a user stopped it: no repetition follows.
     pub stop_reason: Option<String>,
 }

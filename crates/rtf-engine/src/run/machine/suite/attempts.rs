@@ -31,17 +31,18 @@ impl<'p> SuiteMachine<'p> {
         &mut self,
         test: TestId,
         run: &TestRun<'p>,
-        finished: &FinishedAttempt,
+        mut finished: FinishedAttempt,
         cx: &mut Context<'_>,
     ) {
         let Some(active) = self.scheduler.get(test) else { return };
         let (plan, number, stopped) = (active.plan, active.number, active.stop_reason.take());
         let continues = self.end_reason.is_none() && stopped.is_none();
         let has_collapsed = finished.judgement.verdict == Verdict::Collapsed;
-        let retry = continues && is_retried(plan, number, finished);
+        let retry = continues && is_retried(plan, number, &finished);
         let after = plan.settings.after_collapse;
+        active.carried = finished.carried.take().filter(|_| continues);
         let rerun = retry || (continues && has_collapsed && after == AfterCollapse::Rerun);
-        let mut event = run.finished_event(finished, rerun);
+        let mut event = run.finished_event(&finished, rerun);
         if has_collapsed && after == AfterCollapse::Skip {
             event.verdict = Verdict::Skipped;
         }
@@ -50,7 +51,7 @@ impl<'p> SuiteMachine<'p> {
         }
         cx.emit(EventKind::TestFinished(event));
         self.is_checked = self.close_examination(test);
-        self.end_if_critical(plan, finished, rerun);
+        self.end_if_critical(plan, &finished, rerun);
         let soak = &mut self.scheduler.soak;
         let next = number.next(rerun, soak.last_repetition(plan));
         match (next, stopped) {

@@ -15,7 +15,7 @@ use super::soak::Soak;
 use crate::fixture_values::FixtureValues;
 use crate::run::machine::context::Context;
 use crate::run::machine::io::{HostId, StartRequest};
-use crate::run::machine::test::host::host_start;
+use crate::run::machine::test::host::{TestRequest, host_start};
 use crate::run::machine::test::{FinishedAttempt, TestRun};
 use rtf_plan::plan::SuitePlan;
 
@@ -219,6 +219,7 @@ impl<'p> Scheduler<'p> {
                 run: None,
                 is_delayed: false,
                 is_notified: false,
+                carried: None,
                 stop_reason: None,
             });
             self.next += 1;
@@ -236,8 +237,13 @@ impl<'p> Scheduler<'p> {
         let Some(index) = self.active.iter().position(may_start) else { return false };
         let (plan, number) = (self.active[index].plan, self.active[index].number);
         self.soak.record_start(plan.id, number);
-        let host = (self.choose_host(plan, cx), self.request(plan, number));
-        let run = TestRun::start(self.suite, plan, number.attempt, host, cx);
+        let carried = self.active[index].carried.take();
+        let request = TestRequest { carried: carried.as_deref(), ..self.request(plan, number) };
+        let host = (self.choose_host(plan, cx), request);
+        let mut run = TestRun::start(self.suite, plan, number.attempt, host, cx);
+        if let Some(carried) = carried {
+            run.carry(*carried, cx);
+        }
         self.active[index].run = Some(run);
         true
     }

@@ -64,9 +64,13 @@ impl<'p> Scheduler<'p> {
         can_share(plan, next).then_some((next, AttemptNumber::FIRST))
     }
 
-    pub(super) fn request(&self, plan: &'p TestPlan, number: AttemptNumber) -> TestRequest {
+    pub(super) fn request(
+        &self,
+        plan: &'p TestPlan,
+        number: AttemptNumber,
+    ) -> TestRequest<'static> {
         let is_last = self.successor(plan, number).is_none();
-        TestRequest { repetition: number.repetition, is_last }
+        TestRequest { repetition: number.repetition, is_last, carried: None }
     }
 
     /// Assigns the next test to the host of a running one.

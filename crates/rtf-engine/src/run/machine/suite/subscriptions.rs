@@ -42,7 +42,7 @@ impl SuiteMachine<'_> {
         while let Some((test, run, finished)) =
             self.scheduler.take_finished(|test| !self.fixtures.any_notified_of(test))
         {
-            self.on_attempt_finished(test, &run, &finished, cx);
+            self.on_attempt_finished(test, &run, finished, cx);
         }
     }
 }

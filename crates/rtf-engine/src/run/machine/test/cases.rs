@@ -9,9 +9,10 @@ use rtf_model::{
 };
 
 use super::TestRun;
+use super::carried_cases::{CarriedCases, CaseHistory};
 use crate::run::machine::context::Context;
 use crate::run::machine::judge::{Judgement, TestProblem, judge};
-use rtf_plan::plan::CaseSelection;
+use rtf_plan::plan::{AfterCollapse, TestPlan};
 
 /// The number of names that a problem lists.
 const NAMES_SHOWN: usize = 3;
@@ -32,6 +33,13 @@ pub(super) struct OpenCase {
 #[derive(Debug, Default)]
 pub(super) struct OpenCases {
     started: u32,
+    /// The number of cases that were carried from an earlier attempt. Those of the host
+    /// follow.
+    carried: u32,
+    /// Whether one of these passed.
+    pub any_carried_passed: bool,
+    /// For a test whose finished cases are not rerun after a collapse.
+    pub history: Option<Box<CaseHistory>>,
     open: Vec<OpenCase>,
     /// How many cases with the same parent and name have started, by a hash of both.
     names: HashMap<u64, u32>,
@@ -82,15 +90,40 @@ impl OpenCase {
 }
 
 impl OpenCases {
-    pub fn new(selection: Option<&CaseSelection>) -> Self {
-        let paths = selection.into_iter().flat_map(CaseSelection::required_paths);
+    pub fn new(plan: &TestPlan) -> Self {
+        let paths = plan.cases.iter().flat_map(|cases| cases.required_paths());
         let awaited = paths.map(str::to_owned).collect();
-        Self { awaited, ..Self::default() }
+        let settings = &plan.settings;
+        let has_history = plan.cases_in_programs.is_some()
+            && settings.after_collapse == AfterCollapse::Rerun
+            && !settings.shared;
+        let history = has_history.then(Box::default);
+        Self { awaited, history, ..Self::default() }
     }
 
-    /// Returns the case if it is open.
+    /// Adds cases of an earlier attempt.
+    fn carry(&mut self, carried: CarriedCases) {
+        (self.started, self.carried) = (carried.count(), carried.count());
+        self.any_carried_passed = carried.any_passed();
+        for name in carried.top_names() {
+            unique(&mut self.names, None, name.to_owned());
+        }
+        if !self.awaited.is_empty() {
+            let paths = carried.paths();
+            self.awaited.retain(|awaited| !paths.contains(awaited));
+        }
+        self.history = Some(Box::new(carried.into_history()));
+    }
+
+    /// Returns the number in this attempt of a case that the host numbered.
+    fn number(&self, case: CaseId) -> Option<CaseId> {
+        case.0.checked_add(self.carried).map(CaseId)
+    }
+
+    /// Returns the case that the host numbered, if it is open.
     pub fn open(&self, case: Option<CaseId>) -> Option<CaseId> {
-        case.filter(|case| self.open.iter().any(|open| open.id == *case))
+        let case = self.number(case?)?;
+        self.open.iter().any(|open| open.id == case).then_some(case)
     }
 
     pub fn get_mut(&mut self, case: CaseId) -> Option<&mut OpenCase> {
@@ -134,10 +167,18 @@ impl TestRun<'_> {
         if self.evidence.answer.is_some() {
             return self.on_protocol_error("planned cases after the test's end".to_owned(), cx);
         }
-        let counts = &mut self.cases.planned_names;
-        let names: Vec<_> = names.into_iter().map(|name| unique(counts, None, name).0).collect();
-        self.cases.announced += names.len();
-        self.cases.planned.announce(names.iter().cloned());
+        let cases = &mut self.cases;
+        let counts = &mut cases.planned_names;
+        let names = names.into_iter().map(|name| unique(counts, None, name));
+        let (names, repeated): (Vec<_>, Vec<_>) = names.unzip();
+        cases.announced += names.len();
+        cases.planned.announce(names.iter().cloned());
+        if let Some(history) = &mut cases.history {
+            history.plan(&names);
+            if repeated.contains(&true) {
+                history.on_repeated_name();
+            }
+        }
         cx.emit(EventKind::CasesPlanned { test: self.plan.id, names });
     }
 
@@ -147,11 +188,13 @@ impl TestRun<'_> {
             return self.on_protocol_error(what, cx);
         }
         let cases = &mut self.cases;
-        if start.case.0 != cases.started + 1 {
-            let what = format!("started case {} after case {}", start.case, cases.started);
+        let last = cases.started - cases.carried;
+        if start.case.0 != last + 1 {
+            let what = format!("started case {} after case {last}", start.case);
             return self.on_protocol_error(what, cx);
         }
         cases.started += 1;
+        start.case = CaseId(cases.started);
         start.parent = cases.open(start.parent);
         if start.name.trim().is_empty() {
             start.name = format!("case {}", start.case);
@@ -173,6 +216,12 @@ impl TestRun<'_> {
         let (id, parent) = (start.case, start.parent);
         cases.open.push(OpenCase { id, parent, path, first_problem: None, inner_problem: None });
         let started = CaseStarted { test: self.plan.id, start: CaseStart { name, ..start } };
+        if let Some(history) = &mut cases.history {
+            history.start(&started.start, cx.now());
+            if is_repeated && parent.is_none() {
+                history.on_repeated_name();
+            }
+        }
         cx.emit(EventKind::CaseStarted(Box::new(started)));
     }
 
@@ -183,10 +232,10 @@ impl TestRun<'_> {
         reason: Option<String>,
         cx: &mut Context<'_>,
     ) {
-        if self.cases.open(Some(case)).is_none() {
+        let Some(number) = self.cases.open(Some(case)) else {
             return self.on_protocol_error(format!("finished case {case}, which is not open"), cx);
-        }
-        if self.cases.open.iter().any(|open| open.parent == Some(case)) {
+        };
+        if self.cases.open.iter().any(|open| open.parent == Some(number)) {
             let what = format!("finished case {case} before a case that it contains");
             return self.on_protocol_error(what, cx);
         }
@@ -199,7 +248,17 @@ impl TestRun<'_> {
             Some(Outcome::Crashed) => Verdict::Crashed,
             Some(Outcome::TimedOut) => Verdict::TimedOut,
         };
-        self.end_case(case, CaseResult::OfCase(verdict, reason), cx);
+        self.end_case(number, CaseResult::OfCase(verdict, reason), cx);
+    }
+
+    /// Adds the finished cases of an earlier attempt.
+    pub fn carry(&mut self, carried: CarriedCases, cx: &mut Context<'_>) {
+        self.selects_cases = true;
+        carried.report(self.plan.id, cx);
+        for problem in carried.problems() {
+            TestProblem::keep_worse(&mut self.evidence.case_problem, problem.clone());
+        }
+        self.cases.carry(carried);
     }
 
     /// Finishes the cases that the test left open, the innermost first.
@@ -247,7 +306,10 @@ impl TestRun<'_> {
             _ => {}
         }
         let outer = problem.map(|problem| open.describe(problem));
-        let end = CaseFinished { test, case, verdict, reason, decided_by };
+        let end = CaseFinished { test, case, verdict, reason, decided_by, carried_us: None };
+        if let Some(history) = &mut self.cases.history {
+            history.finish(&end, outer.as_ref(), cx.now());
+        }
         cx.emit(EventKind::CaseFinished(end));
         if let Some(problem) = outer {
             let kept = match open.parent.and_then(|parent| self.cases.get_mut(parent)) {

@@ -1,9 +1,11 @@
 //! The host of a test: a new one, or one that has served other tests.
 
+use std::time::Duration;
+
 use rtf_model::Source;
 use rtf_model::protocol::{Plugin, Request};
 
-use super::{AttemptState, TestRun};
+use super::{AttemptState, CarriedCases, TestRun};
 use crate::fixture_values::FixtureValues;
 use crate::plugin_request::plugin;
 use crate::run::machine::context::Context;
@@ -25,10 +27,12 @@ pub enum HostChoice {
 
 /// A request to run a test.
 #[derive(Clone, Copy, Debug)]
-pub struct TestRequest {
+pub struct TestRequest<'a> {
     pub repetition: u32,
     /// Whether the host will get no further test.
     pub is_last: bool,
+    /// The cases that it does not run again after a collapse.
+    pub carried: Option<&'a CarriedCases>,
 }
 
 impl TestRun<'_> {
@@ -51,7 +55,7 @@ impl TestRun<'_> {
     pub fn restart_in_new_host(
         &mut self,
         suite: &SuitePlan,
-        request: TestRequest,
+        request: TestRequest<'_>,
         cx: &mut Context<'_>,
     ) {
         if self.evidence.stopped.is_some() {
@@ -68,7 +72,7 @@ impl TestRun<'_> {
 pub(super) fn acquire(
     suite: &SuitePlan,
     plan: &TestPlan,
-    (choice, request): (HostChoice, TestRequest),
+    (choice, request): (HostChoice, TestRequest<'_>),
     cx: &mut Context<'_>,
 ) -> (HostId, u64) {
     let host = match choice {
@@ -79,7 +83,12 @@ pub(super) fn acquire(
     (host, request_number(host))
 }
 
-fn spawn(suite: &SuitePlan, plan: &TestPlan, request: TestRequest, cx: &mut Context<'_>) -> HostId {
+fn spawn(
+    suite: &SuitePlan,
+    plan: &TestPlan,
+    request: TestRequest<'_>,
+    cx: &mut Context<'_>,
+) -> HostId {
     let (host, source) = (cx.next_host_id(), Source::Test(plan.id));
     cx.push(Effect::Spawn { host, source, start: host_start(suite, plan, cx.values()) });
     let request = Request::RunTest(plugin_of(suite, plan, request, cx.values()));
@@ -92,7 +101,7 @@ fn spawn(suite: &SuitePlan, plan: &TestPlan, request: TestRequest, cx: &mut Cont
 pub fn assign(
     suite: &SuitePlan,
     plan: &TestPlan,
-    request: TestRequest,
+    request: TestRequest<'_>,
     on: HostId,
     cx: &mut Context<'_>,
 ) -> HostId {
@@ -119,17 +128,28 @@ fn request_number(host: HostId) -> u64 {
 fn plugin_of(
     suite: &SuitePlan,
     plan: &TestPlan,
-    request: TestRequest,
+    request: TestRequest<'_>,
     values: &FixtureValues,
 ) -> Plugin {
+    let programs = plan.cases_in_programs.as_deref();
     let mut plugin = Plugin {
         is_last: request.is_last,
         // The task of the process fills in the marker.
         end_marker: plan.settings.shared.then(String::new),
         parameters: plan.parameters().to_vec(),
-        cases: plan.cases.as_ref().map(|cases| cases.selectors.clone()).unwrap_or_default(),
+        cases: match request.carried {
+            Some(carried) => carried.selectors(),
+            None => plan.cases.as_ref().map(|cases| cases.selectors.clone()).unwrap_or_default(),
+        },
+        case_timeout_ms: programs.and_then(|programs| programs.case_timeout).map(milliseconds),
+        separate_cases: programs.is_some_and(|programs| programs.separate),
         ..plugin(suite, &plan.name, &plan.plugin, request.repetition)
     };
     values.extend_request(&mut plugin);
     plugin
+}
+
+/// A limit, which is not zero.
+fn milliseconds(limit: Duration) -> u64 {
+    u64::try_from(limit.as_millis()).unwrap_or(u64::MAX).max(1)
 }

@@ -1,5 +1,6 @@
 //! One attempt of a test, from its start to the end of its process.
 
+mod carried_cases;
 mod cases;
 pub mod host;
 mod notifications;
@@ -17,6 +18,7 @@ use crate::run::machine::host_replies::{parse_answer, parse_initialized};
 use crate::run::machine::io::{Deadline, Effect, HostId, ProcessEvent, TestTimer};
 use crate::run::machine::judge::Evidence;
 use crate::run::machine::output_capture::OutputCapture;
+pub use carried_cases::CarriedCases;
 use cases::OpenCases;
 use host::{HostChoice, TestRequest};
 use rtf_plan::plan::{SuitePlan, TestPlan};
@@ -39,6 +41,8 @@ pub struct TestRun<'p> {
     phase: Phase,
     evidence: Evidence,
     stack: StackSupport,
+    stack_dumps: u32,
+    /// Whether one arrived since the runner asked for it.
     has_stack_dump: bool,
     step: Option<StopStep>,
     kills: u32,
@@ -51,6 +55,10 @@ pub struct TestRun<'p> {
     leak: Option<String>,
     output: OutputCapture,
     cases: OpenCases,
+    /// Whether its host can select cases.
+    selects_cases: bool,
+    /// The cases that a rerun after a collapse does not run again.
+    carried: Option<Box<CarriedCases>>,
     /// The critical assertion that failed.
     critical: Option<String>,
     finished: Option<FinishedAttempt>,
@@ -61,7 +69,7 @@ impl<'p> TestRun<'p> {
         suite: &SuitePlan,
         plan: &'p TestPlan,
         attempt: u32,
-        (choice, request): (HostChoice, TestRequest),
+        (choice, request): (HostChoice, TestRequest<'_>),
         cx: &mut Context<'_>,
     ) -> Self {
         let repetition = request.repetition;
@@ -77,6 +85,7 @@ impl<'p> TestRun<'p> {
             phase: Phase::Load,
             evidence: Evidence::default(),
             stack: StackSupport::None,
+            stack_dumps: 0,
             has_stack_dump: false,
             step: None,
             kills: 0,
@@ -86,7 +95,9 @@ impl<'p> TestRun<'p> {
             has_fixtures: !suite.fixtures.is_empty(),
             leak: None,
             output: OutputCapture::new(Source::Test(plan.id)),
-            cases: OpenCases::new(plan.cases.as_deref()),
+            cases: OpenCases::new(plan),
+            selects_cases: false,
+            carried: None,
             critical: None,
             finished: None,
         }
@@ -136,7 +147,7 @@ impl<'p> TestRun<'p> {
             }
             ProcessEvent::ProtocolViolated(what) => self.on_protocol_error(what, cx),
             ProcessEvent::Printed(stream, bytes) => self.output.push(stream, &bytes, cx),
-            ProcessEvent::StackDumped(text) => self.on_stack_dump(text, cx),
+            ProcessEvent::StackDumped(text) => self.on_debugger_dump(text, cx),
             ProcessEvent::ResourcesMeasured { usage, tests_served } => {
                 let source = self.source();
                 cx.emit(EventKind::ResourcesMeasured { source, usage, tests_served });
@@ -158,7 +169,9 @@ impl<'p> TestRun<'p> {
             Ok(initialized) => {
                 self.stack = initialized.stack;
                 self.shares_host = self.plan.settings.shared && initialized.supports_shared;
-                let needs_support = self.plan.cases.as_ref().is_some_and(|it| it.needs_support());
+                let needs_support = self.selects_cases
+                    || self.plan.cases.as_ref().is_some_and(|it| it.needs_support());
+                self.selects_cases = initialized.selects_cases;
                 if needs_support && !initialized.selects_cases {
                     let reason = format!("{} cannot select cases", initialized.host);
                     self.stop(StopCause::Protocol, reason, cx);

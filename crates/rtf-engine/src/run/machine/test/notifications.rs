@@ -24,7 +24,7 @@ impl TestRun<'_> {
                 let problem = (samples.problem(), samples.case);
                 self.record(problem, EventKind::Sampled { test, samples }, cx);
             }
-            Notification::Stack { text } => self.on_stack_dump(text, cx),
+            Notification::Stack { text } => self.on_host_dump(text, cx),
             Notification::CasesPlanned { names } => self.plan_cases(names, cx),
             Notification::CaseStarted(start) => self.start_case(start, cx),
             Notification::CaseFinished { case, outcome, reason } => {

@@ -10,9 +10,13 @@ use super::{AttemptState, TestRun};
 use crate::run::machine::context::Context;
 use crate::run::machine::io::{Effect, TestTimer};
 use crate::run::machine::kill_escalation::{KILL_WAIT, MAX_KILLS, SIGTERM, TERM_GRACE};
+use rtf_process::stack_dump::{DEBUGGER_WAIT, HOST_DUMP_WAIT};
 
-/// A backstop: the task of the process gives up a stack dump earlier.
-const STACK_DUMP_LIMIT: Duration = Duration::from_secs(15);
+/// A backstop after the host's time: the task of the process gives up a stack dump earlier.
+const STACK_DUMP_LIMIT: Duration = Duration::from_secs(14);
+
+/// The number of stack dumps that a host can send unasked.
+const MAX_STACK_DUMPS: u32 = 16;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StopStep {
@@ -38,6 +42,10 @@ impl TestRun<'_> {
         self.clear(TestTimer::Slow, cx);
         self.stopwatch = None;
         self.evidence.stopped = Some((cause, reason, self.phase));
+        if let (StopCause::Collapse, true) = (cause, self.selects_cases) {
+            let history = self.cases.history.take();
+            self.carried = history.and_then(|history| history.carry(cx.now())).map(Box::new);
+        }
         if self.has_exited() {
             self.state = AttemptState::Ended;
         } else if cause == StopCause::Timeout {
@@ -49,8 +57,12 @@ impl TestRun<'_> {
 
     fn dump_stack(&mut self, step: StopStep, cx: &mut Context<'_>) {
         self.step = Some(step);
-        cx.push(Effect::DumpStack(self.host, self.stack));
-        self.set_limit(STACK_DUMP_LIMIT, cx);
+        let wait = match self.plan.cases_in_programs {
+            Some(_) => DEBUGGER_WAIT,
+            None => HOST_DUMP_WAIT,
+        };
+        cx.push(Effect::DumpStack(self.host, self.stack, wait));
+        self.set_limit(wait + STACK_DUMP_LIMIT, cx);
     }
 
     fn ask(&mut self, cx: &mut Context<'_>) {
@@ -61,11 +73,27 @@ impl TestRun<'_> {
         self.set_limit(self.plan.limits.grace, cx);
     }
 
-    pub(super) fn on_stack_dump(&mut self, text: String, cx: &mut Context<'_>) {
-        if !self.has_stack_dump {
-            self.has_stack_dump = true;
+    /// The host dumps stacks at the request of the runner, or those of a program before it
+    /// kills it.
+    pub(super) fn on_host_dump(&mut self, text: String, cx: &mut Context<'_>) {
+        let is_requested = self.step.is_some() && !self.has_stack_dump;
+        if is_requested || self.stack_dumps < MAX_STACK_DUMPS {
+            self.stack_dumps += 1;
             cx.emit(EventKind::StackDumped { source: self.source(), text });
         }
+        self.after_stack_dump(cx);
+    }
+
+    /// The fallback for a host that does not dump its stacks.
+    pub(super) fn on_debugger_dump(&mut self, text: String, cx: &mut Context<'_>) {
+        if !self.has_stack_dump {
+            cx.emit(EventKind::StackDumped { source: self.source(), text });
+        }
+        self.after_stack_dump(cx);
+    }
+
+    fn after_stack_dump(&mut self, cx: &mut Context<'_>) {
+        self.has_stack_dump |= self.step.is_some();
         match self.step {
             Some(StopStep::DumpThenAsk) => self.ask(cx),
             Some(StopStep::DumpThenTerminate) => self.terminate(cx),

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use rtf_model::{ExitStatus, LeakedProcess, TestFinished, Verdict};
 
-use super::TestRun;
+use super::{CarriedCases, TestRun};
 use crate::run::machine::context::Context;
 use crate::run::machine::io::TestTimer;
 use crate::run::machine::judge::{Judgement, judge, leak_problem};
@@ -13,7 +13,7 @@ use crate::run::machine::judge::{Judgement, judge, leak_problem};
 /// How long a test that did not pass waits for a fixture's collapse: a connection breaks
 /// before the kernel reports the death at its other end. A test that would pass waits for
 /// the examination of all fixtures instead. Both wait for the end of a dying fixture.
-const COLLAPSE_WAIT: Duration = Duration::from_millis(200);
+pub(super) const COLLAPSE_WAIT: Duration = Duration::from_millis(200);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum AttemptState {
@@ -36,6 +36,8 @@ pub struct FinishedAttempt {
     pub exit: Option<ExitStatus>,
     /// The critical assertion that failed.
     pub critical: Option<String>,
+    /// After a collapse: the cases that a rerun does not run again.
+    pub carried: Option<Box<CarriedCases>>,
 }
 
 impl TestRun<'_> {
@@ -100,10 +102,15 @@ impl TestRun<'_> {
         if let (Verdict::Passed, Some(problem)) = (judgement.verdict, late_problem) {
             (judgement.verdict, judgement.reason) = (Verdict::Error, Some(problem));
         }
+        // Its host skipped only the cases that were left.
+        if judgement.verdict == Verdict::Skipped && self.cases.any_carried_passed {
+            (judgement.verdict, judgement.reason) = (Verdict::Passed, None);
+        }
         self.state = AttemptState::Judged;
         let (exit, critical) = (self.evidence.exit, self.critical.take());
         let result = (judgement.verdict, judgement.reason.clone());
-        self.finished = Some(FinishedAttempt { judgement, exit, critical });
+        let carried = self.carried.take();
+        self.finished = Some(FinishedAttempt { judgement, exit, critical, carried });
         Some(result)
     }
 

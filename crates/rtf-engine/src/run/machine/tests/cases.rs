@@ -11,11 +11,11 @@ use super::world::{TEST, World, suite};
 use crate::run::machine::{ProcessEvent, StopLevel};
 
 impl World<'_> {
-    fn notified(&mut self, notification: Notification) {
+    pub(super) fn notified(&mut self, notification: Notification) {
         self.input(TEST, ProcessEvent::Notified(notification));
     }
 
-    fn case(&mut self, case: u32, name: &str, parent: Option<u32>) {
+    pub(super) fn case(&mut self, case: u32, name: &str, parent: Option<u32>) {
         let (case, parent) = (CaseId(case), parent.map(CaseId));
         let name = name.to_owned();
         let start = CaseStart {
@@ -29,33 +29,38 @@ impl World<'_> {
         self.notified(Notification::CaseStarted(start));
     }
 
-    fn case_ends(&mut self, case: u32) {
+    pub(super) fn case_ends(&mut self, case: u32) {
         self.case_ends_with(case, None, None);
     }
 
-    fn case_ends_with(&mut self, case: u32, outcome: Option<Outcome>, reason: Option<&str>) {
+    pub(super) fn case_ends_with(
+        &mut self,
+        case: u32,
+        outcome: Option<Outcome>,
+        reason: Option<&str>,
+    ) {
         let reason = reason.map(str::to_owned);
         self.notified(Notification::CaseFinished { case: CaseId(case), outcome, reason });
     }
 
-    fn message_in(&mut self, case: u32, kind: MessageKind, text: &str) {
+    pub(super) fn message_in(&mut self, case: u32, kind: MessageKind, text: &str) {
         let (text, case) = (text.to_owned(), Some(CaseId(case)));
         let (location, comparison) = (None, None);
         let message = Message { kind, text, location, comparison, critical: false, case };
         self.notified(Notification::Message(message));
     }
 
-    fn plan_cases(&mut self, names: &[&str]) {
+    pub(super) fn plan_cases(&mut self, names: &[&str]) {
         let names = names.iter().map(|name| (*name).to_owned()).collect();
         self.notified(Notification::CasesPlanned { names });
     }
 
-    fn verdict(&self) -> (Verdict, Option<&str>) {
+    pub(super) fn verdict(&self) -> (Verdict, Option<&str>) {
         let test = &self.record.tests[0];
         (test.final_verdict(), test.reason())
     }
 
-    fn over(&mut self) {
+    pub(super) fn over(&mut self) {
         self.end(TEST, "passed");
         self.finish();
     }

@@ -33,13 +33,14 @@ fn phase(step: u8) -> Phase {
     }
 }
 
-/// A failure, a value, or the start or end of a case.
+/// A failure, a value, or a plan, the start or the end of a case.
 fn report(choice: u8) -> Notification {
     let number = u32::from(choice);
     match choice / 16 % 4 {
         1 => {
-            let (case, name) = (CaseId(1 + number / 64), "pose".to_owned());
+            let case = CaseId(1 + number / 64);
             let parent = (choice > 128).then_some(CaseId(1));
+            let name = if parent.is_some() { "pose".to_owned() } else { format!("pose {case}") };
             let (parameters, location) = (Vec::new(), None);
             Notification::CaseStarted(CaseStart {
                 case,
@@ -49,6 +50,10 @@ fn report(choice: u8) -> Notification {
                 tags: Vec::new(),
                 location,
             })
+        }
+        2 if choice > 200 => {
+            let names = (1..=3).map(|case| format!("pose {case}")).collect();
+            Notification::CasesPlanned { names }
         }
         2 => {
             let name = if choice > 128 { "port" } else { "pid" }.to_owned();
@@ -107,6 +112,11 @@ pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool)
         }
         5 if shared && choice > 100 => {
             let value = serde_json::json!({ "protocol": 1, "host": "h", "supports_shared": true });
+            let answer = ProcessEvent::Replied(INITIALIZE, Reply::Result(value));
+            world.feed(Input::Host(host, answer));
+        }
+        5 if choice > 200 => {
+            let value = serde_json::json!({ "protocol": 1, "host": "h", "selects_cases": true });
             let answer = ProcessEvent::Replied(INITIALIZE, Reply::Result(value));
             world.feed(Input::Host(host, answer));
         }
@@ -175,6 +185,7 @@ proptest! {
             }
         }
         plan.tests[0].settings.after_collapse = AfterCollapse::Rerun;
+        plan.tests[0].cases_in_programs = independent.then(Box::default);
         plan.tests[tests - 1].settings.repetitions = 2;
         let delay = if independent { SECOND } else { Duration::ZERO };
         plan.tests[tests / 2].settings.retries = Retries { count: restarts, delay };

@@ -1,8 +1,10 @@
 //! The state machine with invented times: no processes, no sleeps.
 
 mod attached;
+mod carried_cases;
 mod case_selection;
 mod cases;
+mod cases_in_programs;
 mod chaos;
 mod clock;
 mod collapse;

@@ -46,6 +46,8 @@ pub struct World<'p> {
     pub hides_liveness: bool,
     /// The probes of each examination.
     pub probes: Vec<ProbeSelection>,
+    /// How long the runner waits for stack dumps of hosts.
+    pub dump_waits: Vec<Duration>,
     order: OrderChecker,
     seq: u64,
 }
@@ -77,6 +79,7 @@ impl<'p> World<'p> {
             assigned: BTreeMap::new(),
             hides_liveness: false,
             probes: Vec::new(),
+            dump_waits: Vec::new(),
             order: OrderChecker::default(),
             seq: 0,
         };
@@ -176,11 +179,16 @@ impl<'p> World<'p> {
                 Effect::ClearDeadline(deadline) => drop(self.deadlines.remove(&deadline)),
                 Effect::Done => self.done = true,
                 Effect::SpawnAhead(_) => {}
-                other => self.log.push(format!(
-                    "{:>5.1}    {}",
-                    self.now.as_secs_f64(),
-                    effect_of(&other)
-                )),
+                other => {
+                    if let Effect::DumpStack(.., wait) = other {
+                        self.dump_waits.push(wait);
+                    }
+                    self.log.push(format!(
+                        "{:>5.1}    {}",
+                        self.now.as_secs_f64(),
+                        effect_of(&other)
+                    ));
+                }
             }
         }
         examined.retain(|host| !self.hides_liveness && self.hosts.contains_key(host));
