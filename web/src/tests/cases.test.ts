@@ -76,6 +76,16 @@ describe('the cases of an attempt', () => {
         expect(shown(list, () => false)).toEqual([]);
     });
 
+    test('that were carried keep their durations', () => {
+        const list = listOf([
+            started(1, 'Home'),
+            { ...finished(1, 20, 'passed'), carried_us: 700 } as Event,
+            started(2, 'Wave'),
+        ]);
+        expect(list.get(1)).toMatchObject({ carried: true, duration_us: 700 });
+        expect(list.get(2)).not.toHaveProperty('carried');
+    });
+
     test('contain the cases whose messages they select', () => {
         const list = listOf([...NESTED, started(6, 'Left', 5)]);
         expect([...list.within(1)]).toEqual([1, 3, 5, 6]);

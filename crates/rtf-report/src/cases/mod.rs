@@ -3,6 +3,7 @@
 //! Like a test's verdict, that of a case is the first one that is a problem, of the last
 //! attempt of each repetition.
 
+mod source;
 mod totals;
 
 use std::collections::{HashMap, HashSet};
@@ -12,6 +13,7 @@ use rtf_model::{
     AttemptRecord, CaseId, CaseRecord, Location, Measurement, Message, TestRecord, Verdict,
 };
 
+pub(crate) use source::{CaseSource, sources};
 pub(crate) use totals::CaseTotals;
 
 /// The reason of a case that was running when the run ended.
@@ -95,7 +97,7 @@ impl<'r> TestCases<'r> {
             [attempt] => one_attempt(attempt),
             attempts => several_attempts(attempts),
         };
-        let problems = problems(&attempts);
+        let problems = problems(&sources(test));
         for parent in results.iter().filter_map(|result| result.parent).collect::<Vec<_>>() {
             results[parent].is_container = true;
         }
@@ -211,17 +213,17 @@ fn several_attempts<'r>(attempts: &[&'r AttemptRecord]) -> Results<'r> {
     (results, not_run)
 }
 
-fn problems<'r>(attempts: &[&'r AttemptRecord]) -> HashMap<(usize, CaseId), CaseProblems<'r>> {
+fn problems<'r>(sources: &[CaseSource<'r>]) -> HashMap<(usize, CaseId), CaseProblems<'r>> {
     let mut problems: HashMap<_, CaseProblems<'r>> = HashMap::new();
-    for (number, attempt) in attempts.iter().enumerate() {
-        for failure in attempt.failures() {
-            if let Some(case) = failure.case {
-                problems.entry((number, case)).or_default().failures.push(failure);
+    for source in sources {
+        for failure in source.attempt.failures() {
+            if let Some(key) = source.key(failure.case) {
+                problems.entry(key).or_default().failures.push(failure);
             }
         }
-        for violation in attempt.violations() {
-            if let Some(case) = violation.case {
-                problems.entry((number, case)).or_default().violations.push(violation);
+        for violation in source.attempt.violations() {
+            if let Some(key) = source.key(violation.case) {
+                problems.entry(key).or_default().violations.push(violation);
             }
         }
     }

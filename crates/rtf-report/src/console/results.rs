@@ -16,14 +16,14 @@ use crate::{escape, known_failure, logs, words};
 /// Maximum number of cases of an attempt that are shown because they did not pass.
 const CASES: u64 = 100;
 
-/// Shows a case that did not pass.
+/// Shows a case that did not pass, in the attempt in which it ran.
 pub(super) fn case_finished(
     page: &mut ConsoleLines,
     options: &ConsoleOptions,
     record: &Record,
     end: &CaseFinished,
 ) {
-    if !end.verdict.is_problem() {
+    if !end.verdict.is_problem() || end.carried_us.is_some() {
         return;
     }
     let Some(test) = record.tests.get(end.test.index()) else { return };

@@ -118,7 +118,9 @@ impl Verbose {
         match &event.kind {
             EventKind::Message { message, .. } => Some(lines(&message.text).max(1)),
             EventKind::Measured { .. } | EventKind::Attached { .. } => Some(1),
-            EventKind::CaseFinished(end) if !end.verdict.is_problem() => Some(1),
+            EventKind::CaseFinished(end) if !end.verdict.is_problem() => {
+                end.carried_us.is_none().then_some(1)
+            }
             EventKind::Output(output) => {
                 // The next piece would not continue this line.
                 self.partial.remove(&Key::of(output));
@@ -186,9 +188,11 @@ fn name_in_case(record: &Record, source: Source, case: Option<CaseId>) -> String
     }
 }
 
-/// Shows a case that passed or skipped itself; others are always shown.
+/// Shows a case that passed or skipped itself, in the attempt in which it ran; others are
+/// always shown.
 fn case_finished(page: &mut ConsoleLines, record: &Record, end: &CaseFinished) {
     let word = match end.verdict {
+        _ if end.carried_us.is_some() => return,
         Verdict::Passed => (GOOD, "passed"),
         Verdict::Skipped => (LOUD, "skipped"),
         _ => return,

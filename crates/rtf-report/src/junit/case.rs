@@ -4,12 +4,10 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus};
-use rtf_model::{
-    Attachment, AttemptRecord, CaseId, Measurement, Record, Significance, TestRecord, Verdict,
-};
+use rtf_model::{Attachment, CaseId, Measurement, Record, Significance, TestRecord, Verdict};
 
 use super::{test, text, time};
-use crate::cases::{CaseResult, TestCases};
+use crate::cases::{CaseResult, CaseSource, TestCases, sources};
 use crate::explain::{self, Extent};
 use crate::{escape, known_failure, words};
 
@@ -143,21 +141,19 @@ struct Details<'r> {
 impl<'r> Details<'r> {
     fn of(test: &'r TestRecord) -> Self {
         let mut details = Self::default();
-        for (number, attempt) in test.deciding_attempts().enumerate() {
-            details.add_attempt(number, attempt);
-        }
+        sources(test).iter().for_each(|source| details.add_source(source));
         details
     }
 
-    fn add_attempt(&mut self, number: usize, attempt: &'r AttemptRecord) {
-        for measurement in &attempt.measurements {
-            if let Some(case) = measurement.case {
-                self.measurements.entry((number, case)).or_default().push(measurement);
+    fn add_source(&mut self, source: &CaseSource<'r>) {
+        for measurement in &source.attempt.measurements {
+            if let Some(key) = source.key(measurement.case) {
+                self.measurements.entry(key).or_default().push(measurement);
             }
         }
-        for attachment in &attempt.attachments {
-            if let Some(case) = attachment.case {
-                self.attachments.entry((number, case)).or_default().push(attachment);
+        for attachment in &source.attempt.attachments {
+            if let Some(key) = source.key(attachment.case) {
+                self.attachments.entry(key).or_default().push(attachment);
             }
         }
     }
@@ -167,6 +163,9 @@ impl<'r> Details<'r> {
         let measurements = self.measurements.get(&key).into_iter().flatten();
         for measurement in measurements.take(MEASUREMENTS) {
             test::add_measurement(junit, measurement);
+        }
+        for tag in case.record.iter().flat_map(|record| &record.start.tags) {
+            junit.add_property(("tag", text(tag).as_str()));
         }
         for parameter in case.record.iter().flat_map(|record| &record.start.parameters) {
             let name = text(&format!("parameter.{}", parameter.name));

@@ -39,11 +39,15 @@ pub(super) fn is_in_case(attempt: &AttemptRecord, case: Option<CaseId>) -> bool 
 fn show_case(lines: &mut TextLines, case: &CaseRecord, details: &[String]) {
     let indent = 6 + INDENT * case.depth().min(DEPTH);
     let result = match (case.verdict(), case.duration()) {
-        (Some(verdict), Some(time)) => format!("{verdict} after {}", words::time(time)),
+        (Some(verdict), Some(time)) => {
+            let place = if case.is_carried() { " in an earlier attempt" } else { "" };
+            format!("{verdict} after {}{place}", words::time(time))
+        }
         _ => "it did not finish".to_owned(),
     };
     lines.at(indent, &format!("case {}: {result}", escape::line(&case.start.name)));
     let indent = indent + INDENT;
+    lines.fact(indent, "tags", &case.start.tags.join(" "));
     parameters(lines, indent, &case.start.parameters);
     if let Some(reason) = case.reason() {
         lines.fact(indent, "reason", reason);

@@ -69,6 +69,7 @@ fn verbose_console() {
         "side-by-side",
         "parallel",
         "cases",
+        "carried-cases",
     ];
     for name in names {
         insta::assert_snapshot!(format!("verbose-{name}"), plain(name, Verbosity::Verbose));

@@ -15,7 +15,7 @@ fn start(run: &mut Writer, case: u32, name: &str, parent: Option<u32>) {
         name: name.to_owned(),
         parent: parent.map(CaseId),
         parameters: vec![joint],
-        tags: Vec::new(),
+        tags: vec![format!("tag {case}")],
         location: None,
     };
     run.emit(EventKind::CaseStarted(Box::new(CaseStarted { test: TEST, start })));
@@ -67,7 +67,7 @@ const CASES: &str = "/api/v1/runs/own/tests/0/attempts/1/cases";
 fn cases_of_an_attempt_are_listed_while_it_runs() {
     let (world, mut run) = running_cases();
     let wave = json!({"case": 3, "parent": 1, "name": "Wave", "path": "Arm/Wave",
-        "parameters": [{"name": "joint", "value": "3"}], "started": 100});
+        "parameters": [{"name": "joint", "value": "3"}], "tags": ["tag 3"], "started": 100});
     let seen = world.get(CASES).json();
     assert_eq!(seen["cases"][1]["verdict"], "passed");
     assert_eq!(seen["cases"][1]["duration_us"], 10);

@@ -56,7 +56,8 @@ export class CaseList {
                 this.byId.set(event.case, {
                     ...found,
                     verdict: event.verdict,
-                    duration_us: event.at - found.started,
+                    duration_us: event.carried_us ?? event.at - found.started,
+                    ...(event.carried_us == null ? {} : { carried: true }),
                     ...(event.reason == null ? {} : { reason: event.reason }),
                 });
                 break;
@@ -124,7 +125,7 @@ export class CaseList {
     }
 
     private started(event: Extract<Event, { type: 'case-started' }>): Case {
-        const { case: id, name, parent, parameters, location, at } = event;
+        const { case: id, name, parent, parameters, tags, location, at } = event;
         const above = parent == null ? undefined : this.byId.get(parent);
         return {
             case: id,
@@ -133,6 +134,7 @@ export class CaseList {
             started: at,
             ...(parent == null ? {} : { parent }),
             ...(parameters === undefined ? {} : { parameters }),
+            ...(tags === undefined ? {} : { tags }),
             ...(location == null ? {} : { location: location as NonNullable<Case['location']> }),
         };
     }

@@ -24,6 +24,10 @@ pub struct Case {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<model::Parameter>, required = false)]
     pub parameters: Vec<Parameter>,
+    /// Its tags.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schema(required = false)]
+    pub tags: Vec<String>,
     /// Where in the plug-in it starts.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<model::Location>)]
@@ -33,6 +37,10 @@ pub struct Case {
     /// Microseconds that it took.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub duration_us: Option<u64>,
+    /// Whether it ran in an earlier attempt, which a collapse interrupted.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[schema(required = false)]
+    pub carried: bool,
     /// The verdict.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<model::Verdict>)]
@@ -88,9 +96,11 @@ impl Case {
             name: case.start.name.clone(),
             path: case.path.clone(),
             parameters: case.start.parameters.clone(),
+            tags: case.start.tags.clone(),
             location: case.start.location.clone(),
             started: case.started.0,
             duration_us: case.duration().map(|duration| micros(duration).unwrap_or(u64::MAX)),
+            carried: case.is_carried(),
             verdict: case.verdict(),
             reason: case.reason().map(str::to_owned),
         }

@@ -77,11 +77,11 @@ impl<'p> World<'p> {
 
     /// The paths that the last attempt selects, as `equals`.
     fn selected(&self) -> Vec<&str> {
-        let plugins = self.sent.iter().filter_map(|(_, _, request)| match request {
+        let mut plugins = self.sent.iter().filter_map(|(_, _, request)| match request {
             Request::RunTest(plugin) => Some(plugin),
             _ => None,
         });
-        let cases = plugins.last().map(|plugin| plugin.cases.iter()).expect("a request");
+        let cases = plugins.next_back().map(|plugin| plugin.cases.iter()).expect("a request");
         cases
             .map(|selector| match selector {
                 CaseSelector::Equals(path) => path.as_str(),
