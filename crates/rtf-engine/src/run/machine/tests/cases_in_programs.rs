@@ -27,7 +27,11 @@ fn request(plan: &SuitePlan) -> Plugin {
 fn the_host_gets_the_limit_and_the_isolation_of_cases() {
     let limits = [(1500, 1500), (0, 1)];
     for (limit, sent) in limits.map(|(limit, sent)| (Duration::from_millis(limit), sent)) {
-        let plan = in_programs(CasesInPrograms { case_timeout: Some(limit), separate: true });
+        let plan = in_programs(CasesInPrograms {
+            case_timeout: Some(limit),
+            separate: true,
+            ..CasesInPrograms::default()
+        });
         let plugin = request(&plan);
         assert_eq!((plugin.case_timeout_ms, plugin.separate_cases), (Some(sent), true));
     }
