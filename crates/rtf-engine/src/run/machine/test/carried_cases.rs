@@ -58,12 +58,10 @@ impl PastCase {
         self.start.case == self.top
     }
 
-    /// Whether it finished before the collapse: a problem of the last moments may be a
-    /// consequence of it.
+    /// Whether it finished before the collapse. A case of the last moments may have run
+    /// without the fixture: neither its problem nor its pass counts.
     fn is_finished(&self, now: Duration) -> bool {
-        self.end.as_ref().is_some_and(|end| {
-            !end.event.verdict.is_problem() || now.saturating_sub(end.at) > COLLAPSE_WAIT
-        })
+        self.end.as_ref().is_some_and(|end| now.saturating_sub(end.at) > COLLAPSE_WAIT)
     }
 
     /// Numbers it as a case of the next attempt.

@@ -34,10 +34,11 @@ impl<'p> World<'p> {
         self.input(TEST, ProcessEvent::Replied(INITIALIZE, Reply::Result(value)));
     }
 
-    /// A case passes.
+    /// A case passes, long before anything else happens.
     fn passes(&mut self, case: u32, name: &str) {
         self.case(case, name, None);
         self.case_ends(case);
+        self.now += SECOND;
     }
 
     /// The fixture collapses, the test stops, and the next attempt is about to run cases.
@@ -113,6 +114,7 @@ fn finished_cases_are_carried_and_the_others_run_again() {
     world.case(1, "a", None);
     world.now += SECOND;
     world.case_ends(1);
+    world.now += SECOND;
     world.case(2, "b", None);
     world.restart_transcript();
     world.collapse_and_rerun();
@@ -124,28 +126,28 @@ fn finished_cases_are_carried_and_the_others_run_again() {
     world.passes(2, "c");
     world.end(TEST, "passed");
     assert_snapshot!(world.transcript(), @"
-    1.0  fixture-collapsed fixture=0 reason=gone
-    1.0  test-stopping cause=collapse reason=fixture `fixture0` collapsed: gone test=0
-    1.0    → close the channel
-    1.0  case-finished case=2 reason=fixture `fixture0` collapsed: gone test=0 verdict=collapsed
-    1.0  test-finished decided_by=2 exit={code:0} phase=run reason=fixture `fixture0` collapsed: gone rerun=true test=0 verdict=collapsed
-    1.0  fixture-stopping fixture=0
-    1.0    → close the channel
-    1.0  fixture-stopped fixture=0
-    1.0  fixture-starting attempt=2 fixture=0
-    1.0  fixture-ready fixture=0
-    1.0  test-started attempt=2 repetition=1 test=0
-    1.0  case-started case=1 name=a test=0
-    1.0  case-finished carried_us=1000000 case=1 test=0 verdict=passed
-    1.0  test-phase phase=run test=0
-    1.0  case-started case=2 name=b test=0
-    1.0  message source={test:0}
-    1.0  case-finished case=2 test=0 verdict=passed
-    1.0  case-started case=3 name=c test=0
-    1.0  case-finished case=3 test=0 verdict=passed
-    1.0    → close the channel
-    1.0  test-finished exit={code:0} phase=exit test=0 verdict=passed
-    1.0  fixture-stopping fixture=0
+    2.0  fixture-collapsed fixture=0 reason=gone
+    2.0  test-stopping cause=collapse reason=fixture `fixture0` collapsed: gone test=0
+    2.0    → close the channel
+    2.0  case-finished case=2 reason=fixture `fixture0` collapsed: gone test=0 verdict=collapsed
+    2.0  test-finished decided_by=2 exit={code:0} phase=run reason=fixture `fixture0` collapsed: gone rerun=true test=0 verdict=collapsed
+    2.0  fixture-stopping fixture=0
+    2.0    → close the channel
+    2.0  fixture-stopped fixture=0
+    2.0  fixture-starting attempt=2 fixture=0
+    2.0  fixture-ready fixture=0
+    2.0  test-started attempt=2 repetition=1 test=0
+    2.0  case-started case=1 name=a test=0
+    2.0  case-finished carried_us=1000000 case=1 test=0 verdict=passed
+    2.0  test-phase phase=run test=0
+    2.0  case-started case=2 name=b test=0
+    2.0  message source={test:0}
+    2.0  case-finished case=2 test=0 verdict=passed
+    2.0  case-started case=3 name=c test=0
+    2.0  case-finished case=3 test=0 verdict=passed
+    3.0    → close the channel
+    3.0  test-finished exit={code:0} phase=exit test=0 verdict=passed
+    3.0  fixture-stopping fixture=0
     ");
     assert_eq!(world.paths(), ["(a)", "b", "c"]);
     assert_eq!(world.last_attempt().cases.kept()[0].duration(), Some(SECOND));
@@ -174,19 +176,22 @@ fn a_carried_problem_decides_the_verdict() {
     assert_eq!(finished.decided_by, Some(rtf_model::CaseId(1)));
 }
 
-/// A connection breaks before the kernel reports the death at its other end.
+/// A connection breaks before the kernel reports the death at its other end, and a case may
+/// pass without the fixture.
 #[test]
-fn a_problem_just_before_the_collapse_is_not_carried() {
+fn a_case_just_before_the_collapse_is_not_carried() {
     let plan = rerun();
-    for (millis, selected) in [(200, &["b", "c"][..]), (201, &["c"])] {
+    let (failed, times) = (Some(Outcome::Failed), [(200, &["b", "c"][..]), (201, &["c"])]);
+    let cases = [failed, None].into_iter().flat_map(|outcome| times.map(|time| (outcome, time)));
+    for (outcome, (millis, selected)) in cases {
         let mut world = World::running_cases(&plan);
         world.plan_cases(&["a", "b", "c"]);
         world.passes(1, "a");
         world.case(2, "b", None);
-        world.case_ends_with(2, Some(Outcome::Failed), Some("no connection"));
+        world.case_ends_with(2, outcome, Some("no connection"));
         world.now += std::time::Duration::from_millis(millis);
         world.collapse_and_rerun();
-        assert_eq!(world.selected(), selected, "{millis} ms");
+        assert_eq!(world.selected(), selected, "{outcome:?}, {millis} ms");
     }
 }
 
@@ -200,6 +205,7 @@ fn if_all_cases_have_finished_the_last_one_runs_again() {
     world.case(3, "c", None);
     world.case_ends(3);
     world.case_ends(2);
+    world.now += SECOND;
     world.hides_liveness = true;
     world.end(TEST, "passed");
     world.collapse(FIXTURE, "gone");
@@ -316,6 +322,7 @@ fn cases_stay_carried_through_further_collapses() {
     world.case(1, "a", None);
     world.now += SECOND;
     world.case_ends(1);
+    world.now += SECOND;
     // The second one comes before the host has done anything.
     world.collapse_and_restart();
     world.collapse_and_rerun();
@@ -356,6 +363,7 @@ fn a_test_whose_last_cases_are_skipped_has_passed_if_a_carried_one_has() {
         world.plan_cases(&["a", "b"]);
         world.case(1, "a", None);
         world.case_ends_with(1, outcome, None);
+        world.now += SECOND;
         world.collapse_and_rerun();
         world.case(1, "b", None);
         world.case_ends_with(1, Some(Outcome::Skipped), Some("no gripper"));
