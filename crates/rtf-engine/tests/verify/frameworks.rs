@@ -54,9 +54,10 @@ fn a_program_of_another_framework_is_reported_at_its_line() {
 }
 
 #[test]
-fn a_program_that_hangs_is_reported() {
-    let mut checked = bench(GTEST, "exec sleep 1000");
+fn a_check_that_hangs_is_reported() {
+    let test = "<test type='program'>arm_test</test>";
+    let mut checked = bench(test, "exec sleep 1000");
     checked.limit = Duration::from_millis(500);
     let outcome = checked.build(&["s.xml"]);
-    assert_eq!(only(&outcome).message, "listing the cases of `arm_test` takes longer than 500ms");
+    assert_eq!(only(&outcome).message, "checking `arm_test` takes longer than 500ms");
 }

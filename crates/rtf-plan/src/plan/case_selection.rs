@@ -1,9 +1,12 @@
 //! The cases that a test runs, and the origin of their selection.
 
+use std::borrow::Cow;
+use std::collections::HashMap;
+
 use rtf_model::protocol::CaseSelector;
 
-use super::TestPlan;
 use super::case_narrowing::{self, NarrowedCases};
+use super::{ListedCase, TestPlan};
 
 /// The cases that a test runs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -58,6 +61,22 @@ pub enum CaseSelectionOrigin {
 }
 
 impl TestPlan {
+    /// Returns the cases that it runs, if they are known before the run.
+    #[must_use]
+    pub fn known_cases(&self) -> Option<Vec<Cow<'_, ListedCase>>> {
+        let listed = self.listed_cases()?;
+        let Some(selected) = &self.cases else {
+            return Some(listed.iter().map(Cow::Borrowed).collect());
+        };
+        let by_name: HashMap<&str, &ListedCase> =
+            listed.iter().map(|case| (case.name.as_str(), case)).collect();
+        let case = |path: &str| match by_name.get(path) {
+            Some(case) => Cow::Borrowed(*case),
+            None => Cow::Owned(ListedCase { name: path.to_owned(), ..ListedCase::default() }),
+        };
+        Some(selected.paths().map(case).collect())
+    }
+
     /// Restricts a test with listed cases to those that a further selection selects, too.
     pub(crate) fn narrow_cases(&mut self, selection: CaseSelection) -> NarrowedCases {
         let listed = self.listed_cases().unwrap_or_default();

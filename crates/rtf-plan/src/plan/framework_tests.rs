@@ -10,7 +10,7 @@ use rtf_model::Diagnostic;
 use super::checks::{CheckId, PluginChecks, PluginUse};
 use super::frameworks::{self, FRAMEWORKS};
 use super::hosts::HostKind;
-use super::search_scope::{SearchScope, search_variables};
+use super::search_scope::SearchScope;
 use super::use_site::{PluginRole, UseSite};
 use super::{
     CaseSelection, CasesInPrograms, ListedCase, RunnerEnvironment, SuitePlan, TestPlan,
@@ -26,7 +26,7 @@ pub(super) struct FrameworkTest {
     kind: &'static HostKind,
     /// The position of its file in the suite.
     site: UseSite,
-    /// The variables of the test with which it is checked.
+    /// The variables of the test, without those of a matrix.
     env: Vec<(String, String)>,
     /// The patterns that select its cases.
     patterns: Option<Spanned<String>>,
@@ -41,10 +41,12 @@ impl FrameworkTest {
         let kind = frameworks::by_name(&declared.plugin.plugin_type.as_ref()?.value)?;
         let cases = declared.cases.as_deref();
         let isolation = cases.and_then(|cases| cases.isolation.as_ref());
+        // Its combinations share a check: the variables of the matrix come first.
+        let parameters = declared.combination.as_ref().map_or(0, |it| it.parameters.len());
         Some(Self {
             kind,
             site: UseSite::Suite(Arc::clone(source), declared.plugin.name.span),
-            env: search_variables(&declared.env),
+            env: declared.env.iter().skip(parameters).cloned().collect(),
             patterns: cases.and_then(|cases| cases.patterns.clone()),
             separate: isolation.is_some_and(|it| it.value == TestIsolation::Case),
             check: None,

@@ -49,19 +49,17 @@ impl TestSubject {
     }
 }
 
-/// The limit of a check that imports the user's modules.
-const IMPORT_LIMIT: Option<Duration> = Some(Duration::from_secs(2 * 60));
+/// The limit of a check that starts the program, or imports the user's modules.
+const LIST_LIMIT: Option<Duration> = Some(Duration::from_secs(2 * 60));
 /// The limit of a check that compiles or starts a virtual machine.
 const COMPILE_LIMIT: Option<Duration> = Some(Duration::from_secs(10 * 60));
 
 const LISTED_PROGRAM: Framework =
-    Framework { subject: TestSubject::Program, lists_cases: true, check_limit: None };
-const UNLISTED_PROGRAM: Framework = Framework { lists_cases: false, ..LISTED_PROGRAM };
-const PYTHON_TESTS: Framework = Framework {
-    subject: TestSubject::FileOrDirectory,
-    lists_cases: true,
-    check_limit: IMPORT_LIMIT,
-};
+    Framework { subject: TestSubject::Program, lists_cases: true, check_limit: LIST_LIMIT };
+const UNLISTED_PROGRAM: Framework =
+    Framework { lists_cases: false, check_limit: None, ..LISTED_PROGRAM };
+const PYTHON_TESTS: Framework =
+    Framework { subject: TestSubject::FileOrDirectory, lists_cases: true, check_limit: LIST_LIMIT };
 const BUILT_DIRECTORY: Framework =
     Framework { subject: TestSubject::Directory, lists_cases: true, check_limit: COMPILE_LIMIT };
 
@@ -86,7 +84,7 @@ pub(super) static FRAMEWORKS: [HostKind; 15] = [
     },
     with_python_sdk(kind(&["pytest"], PYTHON_TESTS)),
     with_python_sdk(kind(&["unittest"], PYTHON_TESTS)),
-    kind(&["ctest"], Framework { check_limit: None, ..BUILT_DIRECTORY }),
+    kind(&["ctest"], Framework { check_limit: LIST_LIMIT, ..BUILT_DIRECTORY }),
     HostKind {
         extensions: &["test"],
         ..kind(

@@ -212,6 +212,22 @@ fn attributes_of_other_types_are_errors() {
 }
 
 #[test]
+fn a_check_has_the_variables_of_the_test() {
+    let bench = bench();
+    bench.file(
+        "cell/s.xml",
+        "<suite><env name='MODE' value='fast'/>\
+         <test type='gtest'>arm_test<env name='ROBOT' value='sim'/>\
+         <matrix name='joint' values='1 2 3'/></test></suite>",
+    );
+    let draft = bench.draft(&["s.xml"]);
+    // One check for all combinations.
+    let [group] = draft.check_groups() else { panic!("{:?}", draft.check_groups()) };
+    let expected = [("MODE", "fast"), ("ROBOT", "sim")];
+    assert_eq!(group.env, expected.map(|(name, value)| (name.to_owned(), value.to_owned())));
+}
+
+#[test]
 fn a_check_has_the_arguments_of_the_test() {
     let bench = bench();
     bench.file(
@@ -239,14 +255,14 @@ fn a_check_has_the_arguments_of_the_test() {
     assert_eq!(
         shown(&["s.xml"]),
         [
-            r#"gtest ["cell/arm_test", "cell/build/gaze_test"] [] 30s"#,
-            r#"gtest ["cell/arm_test"] ["--robot", "${port:sim}"] 30s"#,
+            r#"gtest ["cell/arm_test", "cell/build/gaze_test"] [] 120s"#,
+            r#"gtest ["cell/arm_test"] ["--robot", "${port:sim}"] 120s"#,
             r#"tap ["cell/arm_test"] [] 30s"#,
             r#"cargo ["cell/build"] [] 600s"#,
-            r#"gtest ["cell/arm_test"] ["1"] 30s"#,
-            r#"gtest ["cell/arm_test"] ["2"] 30s"#,
+            r#"gtest ["cell/arm_test"] ["1"] 120s"#,
+            r#"gtest ["cell/arm_test"] ["2"] 120s"#,
         ]
     );
     // Only the cases of selected tests are listed.
-    assert_eq!(shown(&["s.xml::M[j=2]"]), [r#"gtest ["cell/arm_test"] ["2"] 30s"#]);
+    assert_eq!(shown(&["s.xml::M[j=2]"]), [r#"gtest ["cell/arm_test"] ["2"] 120s"#]);
 }

@@ -4,6 +4,8 @@ use std::process::ExitCode;
 
 use clap::ArgMatches;
 
+use rtf_plan::plan::TestPlan;
+
 use super::VerbResult;
 use crate::cli::InputArgs;
 use crate::diagnostics::count;
@@ -18,11 +20,17 @@ pub fn run(mut args: InputArgs, matches: &ArgMatches) -> VerbResult {
     planned.print_warnings()?;
     let plan = &planned.plan;
     let mut summary = format!(
-        "{}, {}, {}: no errors",
+        "{}, {}, {}",
         count(plan.suites.len(), "suite"),
         count(plan.fixtures as usize, "fixture"),
         count(plan.tests as usize, "test"),
     );
+    let tests = plan.suites.iter().flat_map(|suite| &suite.tests);
+    let cases: Vec<_> = tests.filter_map(TestPlan::known_cases).collect();
+    if !cases.is_empty() {
+        summary += &format!(", {}", count(cases.iter().map(Vec::len).sum(), "case"));
+    }
+    summary += ": no errors";
     if !planned.warnings.is_empty() {
         summary += &format!(", {}", count(planned.warnings.len(), "warning"));
     }

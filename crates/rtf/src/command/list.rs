@@ -1,11 +1,12 @@
-//! `rtf list`: the tests that `rtf run` would run.
+//! `rtf list`: the tests that `rtf run` would run, with the cases that are known before.
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::ArgMatches;
 use rtf_model::{ExpectedFailure, Parameter};
-use rtf_plan::plan::{Plan, SuitePlan, TestPlan};
+use rtf_plan::plan::{ListedCase, Plan, SuitePlan, TestPlan};
 use rtf_report::escape;
 use serde::Serialize;
 
@@ -41,8 +42,24 @@ fn write(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
     for (suite, test) in tests(plan) {
         let name = format!("{}/{}", suite.name, test.name);
         writeln!(out, "{}{}", escape::line(&name), notes(test))?;
+        for case in test.known_cases().unwrap_or_default() {
+            writeln!(out, "  {}{}", escape::line(&case.name), case_notes(&case))?;
+        }
     }
     Ok(())
+}
+
+fn case_notes(case: &ListedCase) -> String {
+    let disabled = case.disabled.then(|| "disabled".to_owned());
+    in_parentheses(disabled.into_iter().chain(tags(&case.tags)).collect())
+}
+
+fn tags(tags: &[String]) -> impl Iterator<Item = String> {
+    tags.iter().map(|tag| format!("#{}", escape::line(tag)))
+}
+
+fn in_parentheses(notes: Vec<String>) -> String {
+    if notes.is_empty() { String::new() } else { format!("  ({})", notes.join(", ")) }
 }
 
 fn notes(test: &TestPlan) -> String {
@@ -59,8 +76,8 @@ fn notes(test: &TestPlan) -> String {
     if let Some(expected) = &test.expected {
         notes.push(known_failure(expected));
     }
-    notes.extend(test.tags.iter().map(|tag| format!("#{}", escape::line(tag))));
-    if notes.is_empty() { String::new() } else { format!("  ({})", notes.join(", ")) }
+    notes.extend(tags(&test.tags));
+    in_parentheses(notes)
 }
 
 /// Describes a known failure: `expected to be failed until 2027-01-31: #12`.
@@ -109,6 +126,9 @@ struct ListedTest<'p> {
     /// Its known failure.
     #[serde(skip_serializing_if = "Option::is_none")]
     expected: Option<&'p ExpectedFailure>,
+    /// The cases that it runs, if they are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cases: Option<Vec<Cow<'p, ListedCase>>>,
 }
 
 fn write_json(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
@@ -127,6 +147,7 @@ fn write_json(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
             parallel: suite.settings.parallel,
             parameters: test.parameters(),
             expected: test.expected.as_deref(),
+            cases: test.known_cases(),
         })
         .collect();
     serde_json::to_writer_pretty(&mut *out, &TestList { tests })?;

@@ -40,6 +40,7 @@ mod hostile_fixtures;
 mod isolation;
 mod killed_runner;
 mod known_failures;
+mod listed_cases;
 mod locks;
 mod lost_results;
 mod matrix;

@@ -89,6 +89,8 @@ fn not_loadable(
     let (first, rest) = reason.split_once('\n').unwrap_or((reason, ""));
     let name = file_name(&entry.file);
     let mut message = match group.framework {
+        // The message of most hosts names the file.
+        Some(_) if first.contains(&format!("`{name}`")) => first.to_owned(),
         Some((kind, _)) => format!("`{name}` cannot be run as a test of type `{kind}`: {first}"),
         None => format!("the plug-in `{name}` cannot be loaded: {first}"),
     };
