@@ -76,15 +76,28 @@ fn similar(pattern: &str, listed: &[ListedCase]) -> Option<String> {
         return nearest(pattern, names()).map(str::to_owned);
     };
     let (head, tail) = (&pattern[..first], &pattern[last + 1..]);
-    let heads = names().filter_map(|name| Some(&name[..nth_char(name, head.chars().count())?]));
-    let with_head = nearest(head, heads).map(|near| format!("{near}{}", &pattern[first..]));
-    let tails = names().filter_map(|name| {
-        let skipped = name.chars().count().checked_sub(tail.chars().count())?;
-        Some(&name[nth_char(name, skipped)?..])
+    // A part of about the same length with the same separator next to the wildcard.
+    let heads = names().flat_map(|name| {
+        let ends = near_lengths(head).filter_map(|length| nth_char(name, length));
+        ends.map(|end| &name[..end])
     });
+    let heads = heads.filter(|near| near.chars().last() == head.chars().last());
+    let with_head = nearest(head, heads).map(|near| format!("{near}{}", &pattern[first..]));
+    let tails = names().flat_map(|name| {
+        let count = name.chars().count();
+        let starts = near_lengths(tail).filter_map(move |length| count.checked_sub(length));
+        starts.filter_map(|start| nth_char(name, start)).map(|start| &name[start..])
+    });
+    let tails = tails.filter(|near| near.chars().next() == tail.chars().next());
     let with_tail = nearest(tail, tails).map(|near| format!("{}{near}", &pattern[..=last]));
     let fits = |near: &String| names().any(|name| matches(near, name));
     with_head.filter(fits).or_else(|| with_tail.filter(fits))
+}
+
+/// Returns the number of characters of a text, and those that differ by one.
+fn near_lengths(text: &str) -> impl Iterator<Item = usize> {
+    let length = text.chars().count();
+    length.saturating_sub(1)..=length + 1
 }
 
 /// Returns the offset of the character at this index, or after the last one.
