@@ -31,7 +31,7 @@ fn folder(suite: &str) -> Folder {
     let folder = Folder::new();
     folder.file("arm_test", PROGRAM).file("arm.xml", suite);
     let program = folder.path().join("arm_test");
-    std::fs::set_permissions(program, std::fs::Permissions::from_mode(0o755)).unwrap();
+    std::fs::set_permissions(program, std::fs::Permissions::from_mode(0o755)).expect("a program");
     folder
 }
 
