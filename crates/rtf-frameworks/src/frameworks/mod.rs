@@ -6,6 +6,7 @@ mod catch2;
 mod doctest;
 mod go;
 mod gtest;
+mod junit;
 mod pytest;
 mod python;
 mod sections;
@@ -22,6 +23,7 @@ const TYPES: &[(&str, fn() -> AnyFramework)] = &[
     ("doctest", || Box::new(doctest::Doctest)),
     ("go", || Box::new(go::Go)),
     ("gtest", || Box::new(gtest::GoogleTest)),
+    ("junit", || Box::new(junit::JUnit)),
     ("pytest", || Box::new(pytest::Pytest)),
     ("unittest", || Box::new(unittest::Unittest)),
 ];

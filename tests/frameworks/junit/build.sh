@@ -1,0 +1,24 @@
+# shellcheck shell=bash
+# A JDK of the system, and the console launcher and JUnit 4 from Maven's repository.
+have javac && have jar || need_packages default-jdk-headless
+have mvn || need_packages maven
+
+launcher=$HOME/.m2/repository/org/junit/platform/junit-platform-console-standalone/6.1.0/junit-platform-console-standalone-6.1.0.jar
+junit4=$HOME/.m2/repository/junit/junit/4.13.2/junit-4.13.2.jar
+hamcrest=$HOME/.m2/repository/org/hamcrest/hamcrest-core/1.3/hamcrest-core-1.3.jar
+[ -e "$launcher" ] ||
+  quietly mvn --batch-mode dependency:get -Dartifact=org.junit.platform:junit-platform-console-standalone:6.1.0
+[ -e "$junit4" ] && [ -e "$hamcrest" ] ||
+  quietly mvn --batch-mode dependency:get -Dartifact=junit:junit:4.13.2
+
+# The corpus is a JAR that refers to JUnit 4, and a directory, as Maven and Gradle have one.
+if [ ! "$out/corpus.jar" -nt "$source/build.sh" ] || [ -n "$(find "$source/example" -newer "$out/corpus.jar")" ]; then
+  rm -rf "$out/classes" "$out/empty"
+  mkdir -p "$out/classes" "$out/empty"
+  quietly javac -nowarn -d "$out/classes" -cp "$launcher:$junit4:$hamcrest" "$source"/example/*.java
+  cp "$junit4" "$hamcrest" "$out/"
+  printf 'Class-Path: %s %s\n' "$(basename "$junit4")" "$(basename "$hamcrest")" >"$out/manifest"
+  quietly jar --create --file "$out/corpus.jar" --manifest "$out/manifest" -C "$out/classes" .
+  quietly jar --create --file "$out/empty.jar" -C "$out/empty" .
+fi
+setting RTF_JUNIT "$launcher"
