@@ -109,7 +109,7 @@ pub fn draft(inputs: &[InputPath], options: &Options) -> PlanDraft {
                         context.problems.extend(named_tests::retain(&mut suite.plan, &only));
                     }
                     let SuiteDraft { plan, frameworks } = suite;
-                    frameworks.add_checks(plan, &options.runner, &mut context.checks);
+                    frameworks.add_checks(plan, options, &mut context.checks);
                 }
                 suites.extend(suite);
             }

@@ -13,7 +13,7 @@ use super::hosts::HostKind;
 use super::search_scope::SearchScope;
 use super::use_site::{PluginRole, UseSite};
 use super::{
-    CaseSelection, CasesInPrograms, ListedCase, RunnerEnvironment, SuitePlan, TestPlan,
+    CaseListing, CaseSelection, CasesInPrograms, ListedCase, Options, SuitePlan, TestPlan,
     case_patterns,
 };
 use crate::suite::{DeclaredLimits, DeclaredTest, SourceText, Spanned, TestIsolation};
@@ -171,20 +171,20 @@ pub(super) struct FrameworkTests {
 impl FrameworkTests {
     /// Adds the checks of all tests of the suite. A test that is not selected is not
     /// checked: its framework may have to compile it.
-    pub fn add_checks(
-        &mut self,
-        suite: &SuitePlan,
-        runner: &RunnerEnvironment,
-        checks: &mut PluginChecks,
-    ) {
+    pub fn add_checks(&mut self, suite: &SuitePlan, options: &Options, checks: &mut PluginChecks) {
         if self.tests.is_empty() {
             return;
         }
         for test in &suite.tests {
             let Some(found) = self.tests.get_mut(&test.name) else { continue };
             let Some(framework) = found.kind.framework else { continue };
+            let selects = found.patterns.is_some() || found.separate || test.cases.is_some();
+            let is_needed = selects || framework.lists_before_run;
+            if options.case_listing == CaseListing::IfNeeded && !is_needed {
+                continue;
+            }
             let scope = SearchScope {
-                runner,
+                runner: &options.runner,
                 dir: &suite.folder,
                 fallback_dir: None,
                 suite_env: &suite.env,

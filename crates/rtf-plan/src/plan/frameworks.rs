@@ -14,6 +14,9 @@ pub(super) struct Framework {
     pub subject: TestSubject,
     /// Whether its cases can be listed before the run.
     pub lists_cases: bool,
+    /// Whether `rtf run` lists them although no case is selected: the list checks the program,
+    /// or compiles it.
+    pub lists_before_run: bool,
     /// The limit of the check of one file; `None` for the usual one.
     pub check_limit: Option<Duration>,
 }
@@ -54,14 +57,18 @@ const LIST_LIMIT: Option<Duration> = Some(Duration::from_secs(2 * 60));
 /// The limit of a check that compiles or starts a virtual machine.
 const COMPILE_LIMIT: Option<Duration> = Some(Duration::from_secs(10 * 60));
 
-const LISTED_PROGRAM: Framework =
-    Framework { subject: TestSubject::Program, lists_cases: true, check_limit: LIST_LIMIT };
+const LISTED_PROGRAM: Framework = Framework {
+    subject: TestSubject::Program,
+    lists_cases: true,
+    lists_before_run: true,
+    check_limit: LIST_LIMIT,
+};
 const UNLISTED_PROGRAM: Framework =
     Framework { lists_cases: false, check_limit: None, ..LISTED_PROGRAM };
 const PYTHON_TESTS: Framework =
-    Framework { subject: TestSubject::FileOrDirectory, lists_cases: true, check_limit: LIST_LIMIT };
+    Framework { subject: TestSubject::FileOrDirectory, lists_before_run: false, ..LISTED_PROGRAM };
 const BUILT_DIRECTORY: Framework =
-    Framework { subject: TestSubject::Directory, lists_cases: true, check_limit: COMPILE_LIMIT };
+    Framework { subject: TestSubject::Directory, check_limit: COMPILE_LIMIT, ..LISTED_PROGRAM };
 
 /// All frameworks.
 pub(super) static FRAMEWORKS: [HostKind; 15] = [
@@ -73,24 +80,14 @@ pub(super) static FRAMEWORKS: [HostKind; 15] = [
     kind(&["aunit"], UNLISTED_PROGRAM),
     HostKind {
         extensions: &["jar"],
-        ..kind(
-            &["junit"],
-            Framework {
-                subject: TestSubject::FileOrDirectory,
-                lists_cases: true,
-                check_limit: COMPILE_LIMIT,
-            },
-        )
+        ..kind(&["junit"], Framework { subject: TestSubject::FileOrDirectory, ..BUILT_DIRECTORY })
     },
     with_python_sdk(kind(&["pytest"], PYTHON_TESTS)),
     with_python_sdk(kind(&["unittest"], PYTHON_TESTS)),
     kind(&["ctest"], Framework { check_limit: LIST_LIMIT, ..BUILT_DIRECTORY }),
     HostKind {
         extensions: &["test"],
-        ..kind(
-            &["rostest"],
-            Framework { subject: TestSubject::File, lists_cases: false, check_limit: None },
-        )
+        ..kind(&["rostest"], Framework { subject: TestSubject::File, ..UNLISTED_PROGRAM })
     },
     kind(&["cargo"], BUILT_DIRECTORY),
     kind(&["go"], BUILT_DIRECTORY),

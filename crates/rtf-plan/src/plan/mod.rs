@@ -48,7 +48,7 @@ pub use case_selection::{CaseSelection, CaseSelectionOrigin};
 pub use checks::{CheckAnswer, CheckGroup, CheckReport};
 pub use draft::{PlanDraft, PlanOutcome, draft};
 pub use installed::{LocatedHost, find_in_path, installed_hosts, shipped_fixtures_dir};
-pub use options::{Compatibility, InputPath, Options};
+pub use options::{CaseListing, Compatibility, InputPath, Options};
 pub use process_types::*;
 pub use runner_environment::RunnerEnvironment;
 pub use types::*;

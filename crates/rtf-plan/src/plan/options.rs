@@ -51,6 +51,17 @@ pub enum Compatibility {
     Predecessor,
 }
 
+/// The tests of other frameworks whose cases are listed before the run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CaseListing {
+    /// All of them.
+    #[default]
+    All,
+    /// Those from whose cases some are selected, and those whose list also checks a program
+    /// or compiles it. The others announce their cases when they run.
+    IfNeeded,
+}
+
 /// The options of planning.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -68,6 +79,8 @@ pub struct Options {
     pub runner: RunnerEnvironment,
     /// The profile and the parameters.
     pub config_request: ConfigRequest,
+    /// The tests whose cases are listed.
+    pub case_listing: CaseListing,
     /// The local day on which the run starts, which known failures are compared with.
     pub today: Date,
 }
@@ -84,6 +97,7 @@ impl Options {
             compatibility: Compatibility::default(),
             runner,
             config_request: ConfigRequest::default(),
+            case_listing: CaseListing::default(),
             today: Zoned::now().date(),
         }
     }

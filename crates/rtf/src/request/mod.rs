@@ -16,6 +16,7 @@ use rtf_web::{Limits, Settings};
 
 use crate::cli::{Annotations, ReportFormat, RunArgs, StdoutFormat, WebAccessArgs};
 use crate::error::Failure;
+use rtf_plan::plan::CaseListing;
 
 pub use inputs::TestsRequest;
 
@@ -74,8 +75,12 @@ impl RunRequest {
             let error = format!("`{option}` has no effect without `--web`");
             return Err(Failure::input(error).hint("add `--web`"));
         }
+        let mut tests = TestsRequest::resolve(&args.input)?;
+        if tests.manifest.filters.is_empty() && !args.dry_run {
+            tests.options.case_listing = CaseListing::IfNeeded;
+        }
         Ok(Self {
-            tests: TestsRequest::resolve(&args.input)?,
+            tests,
             results: args.input.results.results.clone(),
             results_option: "`--results DIR`",
             web: args.web.web.map(|address| WebRequest {
