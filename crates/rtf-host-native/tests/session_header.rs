@@ -82,7 +82,11 @@ fn run(mode: &str, answer: impl Fn(&Value) -> Option<String>) -> Ran {
             packets.push(packet);
             break;
         };
+        let is_answered = packet["answer"] != false;
         packets.push(packet);
+        if !is_answered {
+            continue;
+        }
         send(&ours, answer.as_bytes(), SendFlags::NOSIGNAL).unwrap();
     }
     Ran::new(packets, child.wait_with_output().unwrap())
@@ -240,11 +244,22 @@ fn threads_wait_for_their_own_answers() {
 }
 
 #[test]
-fn other_processes_do_not_report() {
+fn a_forked_process_does_not_wait_for_answers() {
     let ran = run("forks", accept);
-    assert_eq!(ran.stdout, "rtf: true\nchild: true\nparent: true\n");
-    assert_eq!(ran.stderr, "rtf: a forked process cannot report results\n");
-    assert_eq!(ran.params("measured"), [json!({"name": "in the parent", "unit": "", "value": 1})]);
+    assert_eq!(ran.stdout, "rtf: true\nin the child: false\nchild: true\nparent: true\n");
+    let measured = [
+        json!({"name": "in a child", "unit": "", "low": 2, "value": 1}),
+        json!({"name": "in the parent", "unit": "", "value": 1}),
+    ];
+    assert_eq!(ran.params("measured"), measured);
+    let text = "a forked process cannot read values of fixtures";
+    assert_eq!(ran.params("message"), [json!({"kind": "error", "text": text})]);
+    let answers: Vec<bool> = ran.packets.iter().map(|it| it["answer"] != false).collect();
+    assert_eq!(answers, [false, false, true]);
+}
+
+#[test]
+fn a_program_that_the_program_starts_does_not_report() {
     let ran = run("executes", accept);
     assert_eq!(ran.params("measured"), [json!({"name": "in the parent", "unit": "", "value": 1})]);
     assert!(ran.stdout.contains("rtf: false\nfree: true\n"), "{}", ran.stdout);

@@ -40,9 +40,11 @@ public:
     // Whether a host listens to this process.
     bool is_open()
     {
-        // Checked first: after a fork, a lock that another thread held stays locked.
-        if (fd_ < 0 || !is_own_process()) {
+        if (fd_ < 0) {
             return false;
+        }
+        if (is_forked()) {
+            return is_connected();
         }
         const std::lock_guard<std::mutex> lock(mutex_);
         return is_connected();
@@ -54,11 +56,19 @@ public:
         if (!is_open()) {
             return std::string();
         }
+        if (is_forked()) {
+            // The parent may wait for an answer at the same time.
+            return send("{\"answer\":false," + packet.substr(1)) ? "0" : "";
+        }
         const std::lock_guard<std::mutex> lock(mutex_);
         const std::string answer = send(packet) ? receive() : std::string();
         is_broken_ = answer.empty();
         return answer;
     }
+
+    // Whether this process was forked without executing another program. Another thread may
+    // have held the lock at that time, so the process does not use it.
+    bool is_forked() const { return getpid() != owner_; }
 
     // Seconds since the program was loaded.
     double seconds() const
@@ -80,20 +90,6 @@ private:
         char *end = nullptr;
         const long number = std::strtol(variable + 3, &end, 10);
         return end != variable + 3 && *end == '\0' && number >= 0 ? static_cast<int>(number) : -1;
-    }
-
-    // The host expects one packet at a time. A child that dies while it waits would leave its
-    // answer to its parent.
-    bool is_own_process()
-    {
-        if (getpid() == owner_) {
-            return true;
-        }
-        if (!has_warned_) {
-            has_warned_ = true;
-            std::fputs("rtf: a forked process cannot report results\n", stderr);
-        }
-        return false;
     }
 
     bool is_connected()
@@ -150,7 +146,6 @@ private:
     const int fd_;
     bool is_checked_ = false;
     bool is_broken_ = false;
-    bool has_warned_ = false;
 };
 
 // Creates the channel before main(), so that `seconds` counts from there and a child that
@@ -164,23 +159,25 @@ struct AtStart
 template <class Unused>
 const bool AtStart<Unused>::is_created = (Channel::instance(), true);
 
-// A reporter that was loaded before the program exports its channel under this name. The
-// program uses that one, because the host expects one packet at a time. The answer is
-// allocated with malloc.
-using Exchange = char *(*)(const char *packet, std::size_t length, std::size_t *answer_length);
-
-inline Exchange loaded_exchange()
+// A function that a library which was loaded before the program exports; null if there is
+// none.
+template <class Function>
+Function loaded_function(const char *name)
 {
     void *(*const find)(void *, const char *) = dlsym;
-    void *const found = find == nullptr ? nullptr : find(RTLD_DEFAULT, "rtf_session_exchange");
-    Exchange exchange = nullptr;
-    std::memcpy(&exchange, &found, sizeof exchange);
-    return exchange;
+    void *const found = find == nullptr ? nullptr : find(RTLD_DEFAULT, name);
+    Function function = nullptr;
+    std::memcpy(&function, &found, sizeof function);
+    return function;
 }
+
+// The channel of a reporter in such a library. The program uses that one, because the host
+// expects one packet at a time. The answer is allocated with malloc.
+using Exchange = char *(*)(const char *packet, std::size_t length, std::size_t *answer_length);
 
 inline Exchange shared_exchange()
 {
-    static const Exchange exchange = loaded_exchange();
+    static const Exchange exchange = loaded_function<Exchange>("rtf_session_exchange");
     return exchange;
 }
 

@@ -194,6 +194,10 @@ inline std::vector<std::pair<std::string, std::string>> parse_values(const std::
 
 inline std::string fixture_value(const std::string &name, const std::string &otherwise, Caller here)
 {
+    if (Channel::instance().is_forked()) {
+        message("error", "a forked process cannot read values of fixtures", here);
+        return otherwise;
+    }
     const std::string answer = is_open() ? exchange(packet("fixture-values", "")) : std::string();
     if (answer.empty()) {
         return otherwise;
