@@ -19,7 +19,7 @@ case $goal in
   build) packages=(gcc) ;;
   demo) packages=(cmake g++ lua-socket python3-venv) ;;
   test) packages=(cmake g++ lua-socket python3-venv libxml2-utils gdb shellcheck clang-format
-    procps perl jq valgrind ruby ruby-minitest rubocop gnat gprbuild openssh-client openssh-server
+    procps perl jq valgrind ruby ruby-minitest rubocop gnat gprbuild libcppunit-dev openssh-client openssh-server
     chromium fonts-dejavu-core) ;;
   update) packages=() ;;
   *) die "no goal \`$goal\`: build, demo, test or update" ;;
@@ -34,6 +34,7 @@ is_present() {
     rustfmt*) cargo fmt --version >/dev/null 2>&1 ;;
     rust-*clippy) cargo clippy --version >/dev/null 2>&1 ;;
     gnat) have gnatmake ;;
+    libcppunit-dev) echo '#include <cppunit/TestResult.h>' | c++ -fsyntax-only -x c++ - 2>/dev/null ;;
     libxml2-utils) have xmllint ;;
     procps) have pgrep ;;
     perl) have prove ;;

@@ -331,7 +331,9 @@ fn the_c_header_is_also_cpp11_and_every_header_stands_alone() {
         let dir = driver::root().join("sdk/cpp/include").join(part);
         for entry in std::fs::read_dir(dir).unwrap() {
             let name = entry.unwrap().file_name().into_string().unwrap();
-            if name.ends_with(".hpp") {
+            // CppUnit may be missing; tests/frameworks/cppunit compiles these.
+            let needs_cppunit = ["cppunit.hpp", "CppUnitReporter.hpp"].contains(&name.as_str());
+            if name.ends_with(".hpp") && !needs_cppunit {
                 let text = format!("#include <{part}/{name}>\n");
                 build_text(&format!("header_{name}.cpp"), &text, &["-fsyntax-only"]);
                 count += 1;
