@@ -129,6 +129,12 @@ impl<'a> CaseReporter<'a> {
         self.wanted.is_empty() || self.wanted.iter().any(|wanted| wanted.selects(name))
     }
 
+    /// Whether top-level cases were announced.
+    #[must_use]
+    pub fn has_plan(&self) -> bool {
+        self.expected.is_some()
+    }
+
     /// Whether a top-level case is still to be run.
     #[must_use]
     pub fn is_awaited(&self, name: &str) -> bool {

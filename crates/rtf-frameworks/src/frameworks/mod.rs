@@ -1,8 +1,10 @@
 //! The adapters, one per framework.
 
 mod assertion;
+mod aunit;
 mod boost;
 mod catch2;
+mod cppunit;
 mod doctest;
 mod go;
 mod gtest;
@@ -10,6 +12,7 @@ mod junit;
 mod pytest;
 mod python;
 mod sections;
+mod session_program;
 mod unittest;
 
 use crate::framework::Framework;
@@ -18,8 +21,10 @@ type AnyFramework = Box<dyn Framework + Send + Sync>;
 
 /// All types, as suites name them.
 const TYPES: &[(&str, fn() -> AnyFramework)] = &[
+    ("aunit", || Box::new(aunit::AUnit)),
     ("boost", || Box::new(boost::BoostTest)),
     ("catch2", || Box::new(catch2::Catch2)),
+    ("cppunit", || Box::new(cppunit::CppUnit)),
     ("doctest", || Box::new(doctest::Doctest)),
     ("go", || Box::new(go::Go)),
     ("gtest", || Box::new(gtest::GoogleTest)),

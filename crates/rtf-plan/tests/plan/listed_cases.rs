@@ -3,9 +3,7 @@
 use std::collections::HashMap;
 
 use rtf_model::protocol::CaseSelector;
-use rtf_plan::plan::{
-    CaseListing, CheckAnswer, CheckGroup, CheckReport, ListedCase, Plan, PlanOutcome,
-};
+use rtf_plan::plan::{CheckAnswer, CheckReport, ListedCase, Plan, PlanOutcome};
 use rtf_plan::select::{Selected, Selection, parse, select};
 use rtf_plan::suite::SourceText;
 
@@ -191,35 +189,4 @@ fn a_rerun_keeps_cases_that_vanished() {
     let only = HashMap::from([(("s".to_owned(), "arm_test".to_owned()), cases)]);
     let selection = Selection { only: Some(only), ..Selection::default() };
     assert_eq!(selected(&select(plan("", "s.xml"), &selection).plan), ["load", "gone"]);
-}
-
-#[test]
-fn a_run_lists_python_cases_only_if_some_are_selected() {
-    let groups = |attributes: &str, path: &str| {
-        let mut bench = Bench::new();
-        bench.options.case_listing = CaseListing::IfNeeded;
-        bench.program("cell/arm_test", "exit 0");
-        bench.file("cell/test_arm.py", "");
-        bench.file(
-            "cell/s.xml",
-            &format!(
-                "<suite><test type='gtest'>arm_test</test>\
-                 <test type='pytest' {attributes}>test_arm.py</test></suite>"
-            ),
-        );
-        let draft = bench.draft(&[path]);
-        let files = draft.check_groups().iter().flat_map(CheckGroup::files);
-        files.map(|file| file.file_name().unwrap().to_string_lossy().into_owned()).collect()
-    };
-    let listed: [Vec<String>; 4] = [
-        groups("", "s.xml"),
-        groups("cases='*moves'", "s.xml"),
-        groups("isolation='case'", "s.xml"),
-        groups("", "s.xml::test_arm.py/test_arm.py::test_moves"),
-    ];
-    let [none, patterns, separate, named] = listed;
-    assert_eq!(none, ["arm_test"]);
-    assert_eq!(patterns, ["arm_test", "test_arm.py"]);
-    assert_eq!(separate, ["arm_test", "test_arm.py"]);
-    assert_eq!(named, ["test_arm.py"]);
 }
