@@ -68,6 +68,11 @@ put_link rtf bin/robottestingframework-testrunner # the command line of 2.x
 put 755 "$release/rtf-host-native" libexec/rtf/rtf-host-native
 put 755 "$release/rtf-host-lua" libexec/rtf/rtf-host-lua
 put 755 "$release/rtf-host-framework" libexec/rtf/rtf-host-framework
+if [ -e "$BUILD/librtf-cppunit.so" ]; then
+  put 644 "$BUILD/librtf-cppunit.so" libexec/rtf/librtf-cppunit.so
+else
+  say "note: librtf-cppunit.so was not built: CppUnit programs need rtf/cppunit.hpp in their main function"
+fi
 put_tree sdk/c/include include '*.h'
 put_tree sdk/cpp/include include '*.h' '*.hpp'
 put_tree sdk/cpp/cmake lib/cmake '*.cmake'
@@ -76,7 +81,9 @@ put_tree sdk/python/rtf share/rtf/python/rtf '*.py' py.typed
 put 644 sdk/python/robottestingframework.py share/rtf/python/robottestingframework.py
 put_tree sdk/ruby/lib share/rtf/ruby/lib '*.rb'
 put_tree sdk/ada/src share/rtf/ada/src '*.ads' '*.adb'
+put_tree sdk/ada/aunit share/rtf/ada/aunit '*.ads' '*.adb'
 put 644 sdk/ada/robottestingframework.gpr share/rtf/ada/robottestingframework.gpr
+put 644 sdk/ada/rtf_aunit.gpr share/rtf/ada/rtf_aunit.gpr
 put_tree fixtures share/rtf/fixtures '*.py' '*.json'
 put_tree spec share/rtf/spec '*.md' '*.xsd'
 put_tree schemas share/rtf/schemas '*.json'

@@ -19,6 +19,8 @@ for file in bin/rtf libexec/rtf/rtf-host-native libexec/rtf/rtf-host-lua \
   lib/cmake/rtf/rtf-config.cmake include/robottestingframework/TestCase.h include/rtf1/TestCase.h \
   share/rtf/python/robottestingframework.py share/rtf/ruby/lib/rtf/host.rb \
   share/rtf/ada/robottestingframework.gpr share/rtf/ada/src/robottestingframework.ads \
+  include/rtf/session.hpp include/rtf/cppunit.hpp include/rtf/internal/SessionReports.hpp \
+  libexec/rtf/librtf-cppunit.so share/rtf/ada/rtf_aunit.gpr share/rtf/ada/aunit/rtf_aunit.ads \
   share/doc/rtf/README.md; do
   [ -s "$prefix/$file" ] || die "$file was not installed"
 done
