@@ -19,8 +19,11 @@ use crate::framework::Framework;
 
 type AnyFramework = Box<dyn Framework + Send + Sync>;
 
-/// All types, as suites name them.
-const TYPES: &[(&str, fn() -> AnyFramework)] = &[
+/// A type, as suites name it, and its adapter.
+type FrameworkType = (&'static str, fn() -> AnyFramework);
+
+/// All types.
+const TYPES: &[FrameworkType] = &[
     ("aunit", || Box::new(aunit::AUnit)),
     ("boost", || Box::new(boost::BoostTest)),
     ("catch2", || Box::new(catch2::Catch2)),

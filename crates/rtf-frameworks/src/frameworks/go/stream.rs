@@ -130,10 +130,9 @@ impl Reader {
     }
 
     fn print(&mut self, test: &str, output: &str, cases: &mut CaseReporter<'_>) {
-        if let Some(running) = self.running.get_mut(test) {
-            if running.text.len() < TEXT_BYTES {
-                running.text.push_str(output);
-            }
+        let running = self.running.get_mut(test);
+        if let Some(running) = running.filter(|running| running.text.len() < TEXT_BYTES) {
+            running.text.push_str(output);
         }
         if !text::is_framing(output, test) {
             self.open(test, cases);
