@@ -5,6 +5,7 @@
 #![expect(unsafe_code, reason = "the program's entry point is C's")]
 
 use std::ffi::{CStr, c_char, c_int};
+use std::io::Write as _;
 use std::os::unix::ffi::OsStrExt as _;
 
 /// The exit code after an error of the host itself.
@@ -22,7 +23,7 @@ extern "C" fn main(argc: c_int, argv: *const *const c_char) -> c_int {
     match rtf_frameworks::run(args.collect()) {
         Ok(()) => 0,
         Err(error) => {
-            eprintln!("error: {error}");
+            drop(writeln!(std::io::stderr(), "error: {error}"));
             EXIT_ERROR
         }
     }
