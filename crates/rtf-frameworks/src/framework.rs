@@ -34,7 +34,7 @@ pub struct ListedCase {
     /// Its parameters.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub parameters: Vec<Parameter>,
-    /// Whether the framework does not run it unless it is told to.
+    /// Whether the framework runs it only on demand.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub disabled: bool,
     /// Why it is disabled; `disabled` if the framework gives no reason.
@@ -251,7 +251,7 @@ pub trait ReportReader {
     /// Reads output that the program wrote, which is passed on in any case.
     fn output(&mut self, _stream: OutputStream, _bytes: &[u8], _cases: &mut CaseReporter<'_>) {}
 
-    /// Whether the reader knows of cases that it has not reported yet.
+    /// Whether there are cases that the reader has not reported yet.
     fn holds_back(&self) -> bool {
         false
     }

@@ -1,4 +1,5 @@
 # shellcheck shell=bash
 # The Go of the system; any version that reads go.mod of the corpus. `go test` compiles it.
+: "${source:?}"
 have go || need_packages golang-go
 (cd "$source/arm" && quietly go test -list . .)

@@ -1,6 +1,9 @@
 # shellcheck shell=bash
 # A JDK of the system, and the console launcher and JUnit 4 from Maven's repository.
-have javac && have jar || need_packages default-jdk-headless
+: "${source:?}" "${out:?}"
+if ! have javac || ! have jar; then
+  need_packages default-jdk-headless
+fi
 have mvn || need_packages maven
 
 launcher=$HOME/.m2/repository/org/junit/platform/junit-platform-console-standalone/6.1.0/junit-platform-console-standalone-6.1.0.jar
@@ -8,8 +11,9 @@ junit4=$HOME/.m2/repository/junit/junit/4.13.2/junit-4.13.2.jar
 hamcrest=$HOME/.m2/repository/org/hamcrest/hamcrest-core/1.3/hamcrest-core-1.3.jar
 [ -e "$launcher" ] ||
   quietly mvn --batch-mode dependency:get -Dartifact=org.junit.platform:junit-platform-console-standalone:6.1.0
-[ -e "$junit4" ] && [ -e "$hamcrest" ] ||
+if [ ! -e "$junit4" ] || [ ! -e "$hamcrest" ]; then
   quietly mvn --batch-mode dependency:get -Dartifact=junit:junit:4.13.2
+fi
 
 # The corpus is a JAR that refers to JUnit 4, and a directory, as Maven and Gradle have one.
 if [ ! "$out/corpus.jar" -nt "$source/build.sh" ] || [ -n "$(find "$source/example" -newer "$out/corpus.jar")" ]; then

@@ -11,7 +11,7 @@ use crate::framework::StackDump;
 /// A program that dumps its stacks on a signal does so within this time, or not at all.
 const SIGNAL_WAIT: Duration = Duration::from_secs(2);
 
-/// The interval between looks at the file.
+/// The interval at which the file is polled.
 const INTERVAL: Duration = Duration::from_millis(20);
 
 /// Dumps the stacks of a process; `None` if they are in its output.

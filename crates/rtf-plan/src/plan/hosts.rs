@@ -1,7 +1,7 @@
 //! The catalogue of hosts: the types of plug-ins, and how to start the host of each.
 //!
 //! A new host is a new entry here; no other part of the runner depends on it. The types of
-//! other test frameworks are in [`frameworks`](super::frameworks).
+//! other test frameworks are in [`super::frameworks`].
 
 use std::path::{Path, PathBuf};
 

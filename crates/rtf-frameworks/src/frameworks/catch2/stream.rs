@@ -223,7 +223,7 @@ impl Reader {
     fn end_check(&mut self, cases: &mut CaseReporter<'_>) {
         let check = std::mem::take(&mut self.check);
         let Check { kind, passed, location, original, expanded, exception, infos, .. } = check;
-        // An exception in a check of exceptions is a failure; otherwise nobody expected it.
+        // An exception in a check of exceptions is a failure; otherwise it is an error.
         let expects = kind.contains("THROW");
         let text = match &exception {
             Some(exception) if original == UNKNOWN => format!("exception: {exception}"),
