@@ -177,8 +177,9 @@ class Reporter(FailureDetails):
         details = getattr(report, DETAILS, {})
         long = report.longreprtext
         if report.when not in {"setup", "call", "teardown"}:
-            # A worker of pytest-xdist died.
+            # A worker of pytest-xdist died, and nothing finishes the item.
             case.set("crashed", long)
+            self.pytest_runtest_logfinish(report.nodeid)
             return
         case.has_problem = True
         crash = getattr(report.longrepr, "reprcrash", None)

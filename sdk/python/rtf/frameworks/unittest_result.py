@@ -10,7 +10,7 @@ import unittest
 from rtf.frameworks.comparison import compared
 from rtf.frameworks.connection import portions
 from rtf.frameworks.stop import Stop
-from rtf.frameworks.unittest_tests import class_name, start
+from rtf.frameworks.unittest_tests import class_name, import_problem, start
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
@@ -61,9 +61,9 @@ class Reporter(unittest.TestResult):
 
     def report_import_problem(self, text: str) -> None:
         """Report a module that cannot be imported."""
-        first, last = text.partition("\n")[0], text.rpartition("\n")[2]
-        self._message("error", f"{first}: {last}" if last != first else first)
-        self._message("report", text)
+        short, long = import_problem(text)
+        self._message("error", short)
+        self._message("report", long)
 
     def finish(self) -> None:
         """Everything is reported."""

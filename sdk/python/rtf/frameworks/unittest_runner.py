@@ -18,7 +18,7 @@ from rtf.frameworks import stack_dump
 from rtf.frameworks.connection import Connection
 from rtf.frameworks.listing import Listing
 from rtf.frameworks.unittest_result import Reporter
-from rtf.frameworks.unittest_tests import leaves, retain, start
+from rtf.frameworks.unittest_tests import import_problem, leaves, retain, start
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
@@ -85,7 +85,7 @@ def _discover(loader: unittest.TestLoader, options: argparse.Namespace) -> unitt
 
 def _list(listing: Listing, suite: unittest.TestSuite, problems: Iterable[object]) -> None:
     for problem in problems:
-        listing.problem(str(problem).strip())
+        listing.problem("\n".join(import_problem(str(problem))))
     for test in leaves(suite):
         if not test.id().startswith(_FAILED_IMPORT):
             listing.case(start(test))
@@ -94,7 +94,7 @@ def _list(listing: Listing, suite: unittest.TestSuite, problems: Iterable[object
 
 def _run(reporter: Reporter, suite: unittest.TestSuite, problems: Iterable[object]) -> int:
     for problem in problems:
-        reporter.report_import_problem(str(problem).strip())
+        reporter.report_import_problem(str(problem))
     runs = reporter.plan(
         [test for test in leaves(suite) if not test.id().startswith(_FAILED_IMPORT)]
     )

@@ -44,9 +44,12 @@ def _is_test(thing: Any) -> bool:
 def start(test: Any) -> dict[str, object]:
     """Return what is known about a test before it runs."""
     params: dict[str, object] = {"name": test.id()}
-    function = getattr(test, getattr(test, "_testMethodName", ""), None)
-    code = getattr(inspect.unwrap(function), "__code__", None) if function else None
-    if code is not None:
+    method = getattr(test, getattr(test, "_testMethodName", ""), None)
+    # A `FunctionTestCase` has no method of the user.
+    function = inspect.unwrap(getattr(test, "_testFunc", method) or start)
+    code = getattr(function, "__code__", None)
+    is_ours = function is start or "__unittest" in getattr(function, "__globals__", {})
+    if code is not None and not is_ours:
         params["location"] = {"file": code.co_filename, "line": code.co_firstlineno}
     return params
 
@@ -54,3 +57,10 @@ def start(test: Any) -> dict[str, object]:
 def class_name(test: Any) -> str:
     """Return the name of a test's class, as unittest reports it for `setUpClass`."""
     return f"{type(test).__module__}.{type(test).__qualname__}"
+
+
+def import_problem(text: str) -> tuple[str, str]:
+    """Return the short and the long text of a module that cannot be imported."""
+    long = text.strip()
+    first, last = long.partition("\n")[0], long.rpartition("\n")[2]
+    return (first if first == last else f"{first}: {last}"), long

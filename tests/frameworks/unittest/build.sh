@@ -1,0 +1,3 @@
+# shellcheck shell=bash
+# unittest comes with Python.
+need_packages python3

@@ -1,0 +1,16 @@
+"""A module that ends the process after its tests."""
+
+import os
+import unittest
+
+
+def tearDownModule():  # noqa: N802
+    """Ends before the report is complete."""
+    os._exit(0)
+
+
+class LateExitTest(unittest.TestCase):
+    """Passes."""
+
+    def test_passes(self):
+        pass
