@@ -4,6 +4,8 @@ import json
 import sys
 import unittest
 
+# Only the numbers go to standard output.
+output, sys.stdout = sys.stdout, sys.stderr
 result = unittest.main(module=None, argv=["unittest", *sys.argv[1:]], exit=False).result
 
 
@@ -18,4 +20,4 @@ failed = ids(problems + result.unexpectedSuccesses)
 whole = [test for test, _ in result.skipped if not hasattr(test, "test_case")]
 skipped = ids(whole + [test for test, _ in result.expectedFailures]) - failed
 passed = result.testsRun - len(failed) - len(skipped)
-print(json.dumps({"passed": passed, "failed": len(failed), "skipped": len(skipped)}))
+print(json.dumps({"passed": passed, "failed": len(failed), "skipped": len(skipped)}), file=output)

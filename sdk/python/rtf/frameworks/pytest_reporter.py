@@ -18,6 +18,7 @@ from rtf.frameworks.pytest_texts import (
     skip_reason,
     subtest_name,
 )
+from rtf.frameworks.pytest_worker import VALUES
 from rtf.frameworks.stop import Stop
 
 if TYPE_CHECKING:
@@ -100,6 +101,11 @@ class Reporter(FailureDetails):
         """Plan what the workers of pytest-xdist have collected: all have the same items."""
         if not self._is_planned:
             self._plan(ids)
+
+    @pytest.hookimpl(optionalhook=True)
+    def pytest_configure_node(self, node: Any) -> None:
+        """Hand the values of fixtures to a worker of pytest-xdist."""
+        node.workerinput[VALUES] = self._connection.ask("fixture-values", {}).decode()
 
     def _plan(self, names: list[str]) -> dict[str, bool]:
         self._is_planned = True

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 # The file with the names of the selected items, a JSON list. Without it, all run.
 SELECTION_VARIABLE = "RTF_SELECTED_CASES"
 
+# The values of fixtures in the controller's input for a worker.
+VALUES = "rtf_fixture_values"
+
 
 class WorkerDetails(FailureDetails):
     """Adds everything that the controller does not know to the reports."""
@@ -27,7 +30,10 @@ class WorkerDetails(FailureDetails):
         super().__init__()
         self._root = str(config.rootpath)
         self._results: list[tuple[str, dict[str, object]]] = []
-        self._session = rtf_session.Session(lambda *result: self._results.append(result))
+        values = getattr(config, "workerinput", {}).get(VALUES, "[]").encode()
+        self._session = rtf_session.Session(
+            lambda *result: self._results.append(result), lambda: values
+        )
         rtf_session.enter(self._session)
 
     @pytest.hookimpl(hookwrapper=True, tryfirst=True)

@@ -9,6 +9,7 @@ import pytest
 def test_moves(joint, rtf):
     rtf.measure("effort", joint, "N")
     rtf.report(f"joint {joint} in a worker")
+    assert rtf.fixture_value("none.port", 7) == 7
 
 
 @pytest.mark.slow
