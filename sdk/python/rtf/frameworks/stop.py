@@ -16,10 +16,13 @@ class Stop:
     def __init__(self, exception: type[BaseException]) -> None:
         """Install the handler."""
         self.is_requested = False
+        # If false, the signal is only noted.
+        self.raises = True
         self._exception = exception
         if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
             signal.signal(signal.SIGTERM, self._on_signal)
 
     def _on_signal(self, _number: int, _frame: FrameType | None) -> None:
         self.is_requested = True
-        raise self._exception("the runner stops the test")
+        if self.raises:
+            raise self._exception("the runner stops the test")

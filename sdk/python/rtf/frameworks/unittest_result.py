@@ -43,6 +43,8 @@ class Reporter(unittest.TestResult):
         self._connection = connection
         self._session = session
         self._stop = Stop(Stopped)
+        # Between tests, an exception would end the run without `tearDownClass`.
+        self._stop.raises = False
         # Planned tests that have not started: their start, by name.
         self._pending: dict[str, list[Any]] = {}
         # The result of the running test, unless its messages decide it.
@@ -76,12 +78,16 @@ class Reporter(unittest.TestResult):
         """Start a case."""
         super().startTest(test)
         self._start(test.id(), start(test))
+        self._stop.raises = True
 
     def stopTest(self, test: Any) -> None:  # noqa: N802
         """Finish a case. After a stop request, the runner finishes it."""
+        self._stop.raises = False
         super().stopTest(test)
         self._session.send_samples()
-        if not self._stop.is_requested:
+        if self._stop.is_requested:
+            self.stop()
+        else:
             self._connection.post("case-finished", {"name": test.id(), **self._result})
 
     def addError(self, test: Any, err: Any) -> None:  # noqa: N802
