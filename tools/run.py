@@ -90,11 +90,11 @@ class Run:
     def events(self, kind: str = "") -> Iterator[Event]:
         """The events in the journal, or those of a kind, without an incomplete last line."""
         if self.journal.exists():
-            for line in self.journal.read_text().splitlines(keepends=True):
-                if line.endswith("\n"):
-                    event = json.loads(line)
-                    if not kind or is_a(event, kind):
-                        yield event
+            # `splitlines` would also split at other separators, which a name may contain.
+            for line in self.journal.read_text(encoding="utf-8").split("\n")[:-1]:
+                event = json.loads(line)
+                if not kind or is_a(event, kind):
+                    yield event
 
     def name(self, event: Event) -> str:
         """The name of an event's test."""

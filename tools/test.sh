@@ -103,6 +103,7 @@ lint_python() {
   "$checkers/mypy" benches/bench.py
   "$checkers/mypy" tests/predecessor/*.py
   "$checkers/mypy" tests/frameworks/*.py
+  "$checkers/mypy" tests/frameworks/public/*.py
 }
 
 sdk_python() {
@@ -227,6 +228,13 @@ example_08() {
   PATH="$simulation:$PATH" python3 tools/check_example_08.py "$TARGET/release/rtf" examples/08-cases
 }
 
+# The tests of a package on PyPI, compared with pytest's own report.
+public_pytest() {
+  local interpreter
+  interpreter=$(tools/venv.sh pytest)/python
+  python3 tests/frameworks/public/pytest_boltons.py "$TARGET/release/rtf" "$interpreter"
+}
+
 # The corpus of a test framework, see tests/frameworks/check.py.
 framework() {
   local settings
@@ -289,6 +297,9 @@ step_with 'fixture orocos' orocos fixture_orocos
 step 'framework gtest' framework gtest
 step 'framework cppunit' framework cppunit
 step 'framework aunit' framework aunit
+step 'framework pytest' framework pytest
+step 'framework pytest public' public_pytest
+step 'framework unittest' framework unittest
 step 'guide' tools/check_docs.py "$TARGET/release/rtf" README.md docs/getting-started.md \
   docs/writing-tests.md docs/isolation.md docs/simulation-time.md docs/migrating.md docs/migrating-others.md
 step 'guide commands' tools/check_running.py "$TARGET/release/rtf"

@@ -39,7 +39,7 @@ def test_fails_in_function():
 
 def test_has_handled_failure():
     try:
-        assert 1 == 2  # noqa: PLR0133
+        assert 1 == 2
     except AssertionError:
         pass
     raise ValueError("no power, joint 3 ü")  # line: raises

@@ -3,7 +3,7 @@
 import unittest
 
 
-def setUpModule():  # noqa: N802
+def setUpModule():
     """Fails."""
     raise OSError("no floor")  # line: no floor
 

@@ -4,7 +4,7 @@ import os
 import unittest
 
 
-def tearDownModule():  # noqa: N802
+def tearDownModule():
     """Ends before the report is complete."""
     os._exit(0)
 
