@@ -258,10 +258,19 @@ impl<'a> CaseReporter<'a> {
         self.session.forward(&Notification::Sampled(samples));
     }
 
-    /// Attaches a file, see [`Self::message`].
-    pub fn attach(&mut self, path: Option<&str>, mut attachment: Attachment) {
+    /// Attaches a copy of a file, see [`Self::message`]. Returns false after an error, which
+    /// was reported.
+    pub fn attach(&mut self, path: Option<&str>, mut attachment: Attachment) -> bool {
         attachment.case = self.mark(path, false);
-        self.session.forward(&Notification::Attached(attachment));
+        let file = attachment.path.clone();
+        match self.session.forward_attachment(attachment) {
+            Ok(()) => true,
+            Err(error) => {
+                let text = format!("`{file}` cannot be attached: {error}");
+                self.message(path, MessageKind::Error, text, None);
+                false
+            }
+        }
     }
 
     /// Reports a property of a case: a measurement if it is a number, else a message.

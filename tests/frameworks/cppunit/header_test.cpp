@@ -1,4 +1,6 @@
 // A program that links CppUnit statically, reports with the header, and measures.
+#include <cstdio>
+#include <fstream>
 #include <string>
 #include <thread>
 
@@ -14,9 +16,11 @@ class Header : public CppUnit::TestFixture
     CPPUNIT_TEST_SUITE(Header);
     CPPUNIT_TEST(measures);
     CPPUNIT_TEST(exceeds);
+    CPPUNIT_TEST(attachesDirectory);
     CPPUNIT_TEST(samples);
     CPPUNIT_TEST(crashes);
     CPPUNIT_TEST(readsValues);
+    CPPUNIT_TEST(readsUnknownValue);
     CPPUNIT_TEST_SUITE_END();
 
 public:
@@ -25,12 +29,18 @@ public:
         CPPUNIT_ASSERT(rtf::measure("settling time", 0.5, "s", 0, 0.8));
         rtf::report("a text");
         CPPUNIT_ASSERT(rtf::attach("/proc/self/status", "status.txt", "text/plain"));
+        const char *const deleted = "deleted.csv";
+        std::ofstream(deleted) << "1,2\n";
+        CPPUNIT_ASSERT(rtf::attach(deleted));
+        std::remove(deleted);
     }
 
     void exceeds()
     {
         rtf::measure("effort", 3, "Nm", 0, 2.5); // line: exceeds
     }
+
+    void attachesDirectory() { CPPUNIT_ASSERT(!rtf::attach("/proc")); }
 
     void samples()
     {
@@ -43,7 +53,12 @@ public:
 
     void readsValues()
     {
-        CPPUNIT_ASSERT_EQUAL(std::string("none"), rtf::fixture_value("arm.port", "none"));
+        CPPUNIT_ASSERT_EQUAL(std::string("40123"), rtf::fixture_value("arm.port"));
+    }
+
+    void readsUnknownValue()
+    {
+        CPPUNIT_ASSERT_EQUAL(std::string("none"), rtf::fixture_value("arm.speed", "none"));
     }
 };
 

@@ -36,6 +36,7 @@ impl Framework for CppUnit {
         let mut command = Command::new(&launch.test.file);
         command.args(&launch.test.args);
         if let Some(library) = library() {
+            let library = preloadable(library, launch.scratch)?;
             command.env("LD_PRELOAD", joined(library.into(), "LD_PRELOAD"));
             // It demands to be the first library.
             let options = joined("verify_asan_link_order=0".into(), "ASAN_OPTIONS");
@@ -61,6 +62,18 @@ fn joined(first: OsString, variable: &str) -> OsString {
         list.push(user);
     }
     list
+}
+
+/// A path of the library that `LD_PRELOAD` can contain, which separates paths with blanks and
+/// colons.
+fn preloadable(library: PathBuf, scratch: &Path) -> Result<PathBuf, String> {
+    if !library.to_string_lossy().contains([' ', ':']) {
+        return Ok(library);
+    }
+    let copy = scratch.join(LIBRARY);
+    let copied = std::fs::copy(&library, &copy);
+    copied.map_err(|error| format!("`{}` cannot be copied: {error}", library.display()))?;
+    Ok(copy)
 }
 
 /// Finds the library: next to this program, or in the build directory of its source tree.

@@ -136,7 +136,7 @@ fn carry_out(packet: Packet, values: &[FixtureValue], cases: &mut CaseReporter<'
     match packet {
         Packet::Measured(it) => cases.measure(it.case.as_deref(), it.report),
         Packet::Sampled(it) => cases.sample(it.case.as_deref(), it.report),
-        Packet::Attached(it) => cases.attach(it.case.as_deref(), it.report),
+        Packet::Attached(it) => return answer(cases.attach(it.case.as_deref(), it.report)),
         Packet::Message(it) => cases.full_message(it.case.as_deref(), it.report),
         Packet::FixtureValues {} => return serde_json::to_vec(values).unwrap_or_default(),
         Packet::CasesPlanned { names } => {

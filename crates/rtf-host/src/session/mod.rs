@@ -152,6 +152,15 @@ impl Session {
     /// # Errors
     /// It cannot be copied.
     pub fn attach(&self, mut attachment: Attachment) -> std::io::Result<()> {
+        attachment.case = self.0.cases.current();
+        self.forward_attachment(attachment)
+    }
+
+    /// Does the same for a program that the host started, which knows the case.
+    ///
+    /// # Errors
+    /// It cannot be copied.
+    pub fn forward_attachment(&self, mut attachment: Attachment) -> std::io::Result<()> {
         let path = Path::new(&attachment.path);
         let mut source = unix::open_regular(path)?;
         // Without a directory, the runner copies the file as soon as it can.
@@ -160,7 +169,6 @@ impl Session {
             std::io::copy(&mut source, &mut std::fs::File::create(&copy)?)?;
             attachment.path = copy.to_string_lossy().into_owned();
         }
-        attachment.case = self.0.cases.current();
         self.notify(&Notification::Attached(attachment));
         Ok(())
     }

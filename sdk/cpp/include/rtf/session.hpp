@@ -65,8 +65,9 @@ inline bool sample(const std::string &name, const std::vector<SamplePoint> &poin
     return internal::session::sample({name, unit, low, high, here}, points);
 }
 
-// Adds a copy of a file to the results, by default under its own name. A file that cannot be
-// attached is an error of the case; the function then returns false.
+// Adds a copy of a file to the results, by default under its own name. The file may be
+// deleted afterwards. A file that cannot be attached is an error of the case; the function
+// then returns false.
 inline bool attach(const std::string &path, const std::string &name = "",
                    const std::string &media_type = "",
                    internal::session::Caller here = internal::session::Caller::current()) noexcept

@@ -84,11 +84,8 @@ inline bool send(const std::string &content, const std::string &name, Caller her
         message("error", "the report of `" + name.substr(0, 100) + "` is longer than 64 KiB", here);
         return false;
     }
-    const bool is_accepted = exchange(content) == "0";
-    if (!is_accepted && is_open()) {
-        message("error", "rtf did not accept the report of `" + name + "`", here);
-    }
-    return is_accepted;
+    // The host reports why it does not accept a packet.
+    return exchange(content) == "0";
 }
 
 // The fields of a signal and of a measurement.
