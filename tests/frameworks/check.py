@@ -31,15 +31,18 @@ The corpus is `tests/frameworks/TYPE`; `build.sh TYPE` has built it, and its exp
                   "location": "arm_test.cpp: fails",    of its first failure or error
                   "starts": "arm_test.cpp: Fails",      of the case itself
                   "tags": [], "parameters": {}, "measured": {},   exactly these
+                  "measures": ["…"],           instead of `measured`: only the names
                   "messages": ["…"]            each is a part of a message of the case
       …
       "own": [
         {
           "command": ["{out}/arm_test", "--gtest_output=xml:{report}/a.xml"],
-          "format": "junit",                   or `counts`: it prints {"passed":1,"failed":2,…}
+          "format": "junit",                   or `counts`: it prints {"passed":1,"failed":2,…};
+                                               or the `summary` of Catch2 and doctest, `boost`
           "compare": ["all", "arm_test"],      the run and its test
           "cases": "top",                      or `leaves`
-          "left_out": ["Arm.Crashes"]          cases that the command does not run
+          "left_out": ["Arm.Crashes"],         cases that the command does not run
+          "verdicts": ["passed", "failed"]     the compared numbers; default also `skipped`
         }
       ]
     }
@@ -147,7 +150,10 @@ class Corpus:
         self.expect_reason(title, got.reason, expected)
         self.expect(f"{title}: tags", sorted(got.tags), sorted(expected.get("tags", [])))
         self.expect(f"{title}: parameters", got.parameters, expected.get("parameters", {}))
-        self.expect(f"{title}: measured", got.measured, expected.get("measured", {}))
+        if "measures" in expected:
+            self.expect(f"{title}: measured", sorted(got.measured), sorted(expected["measures"]))
+        else:
+            self.expect(f"{title}: measured", got.measured, expected.get("measured", {}))
         self.expect_messages(title, got.messages, expected)
         for key, location in (("location", got.problem_location), ("starts", got.location)):
             if key in expected:
@@ -170,7 +176,9 @@ class Corpus:
         run, test = own["compare"]
         title = f"{run}: {test}: counts of the framework"
         got = rtf_counts(results[run][test], own.get("cases", "top"), own.get("left_out", []))
-        self.expect(title, got, own_counts(own, self.source, self.out))
+        theirs = own_counts(own, self.source, self.out)
+        for verdict in own.get("verdicts", ["passed", "failed", "skipped"]):
+            self.expect(f"{title}: {verdict}", got[verdict], theirs[verdict])
 
     def marked(self, location: str) -> str:
         """The `FILE:LINE` of a `FILE: MARKER`."""

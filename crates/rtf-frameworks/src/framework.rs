@@ -202,6 +202,11 @@ pub trait Framework {
     /// A reader for the report of one process. Called after [`Self::command`].
     fn reader(&self, launch: &Launch<'_>) -> Box<dyn ReportReader>;
 
+    /// Whether a run of all cases neither runs nor reports the disabled ones.
+    fn omits_disabled(&self) -> bool {
+        false
+    }
+
     /// Whether each case needs a process, in which the supervisor starts the case.
     fn needs_separate_processes(&self) -> bool {
         false

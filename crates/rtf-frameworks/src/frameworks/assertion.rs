@@ -1,5 +1,7 @@
 //! Results of checks that C++ frameworks report, as messages.
 
+use std::collections::HashMap;
+
 use rtf_model::{Comparison, Location, Message, MessageKind};
 
 use crate::case_reporter::StartedCase;
@@ -52,15 +54,20 @@ pub(super) fn comparison(expanded: &str) -> Option<Comparison> {
     Some(Comparison { expected: json(expected), got: json(got), tolerance, worst: None })
 }
 
-/// Gives cases of the same name different names: `NAME#2`. Their `id` is the common name.
+/// Gives cases of the same name different names: `NAME#2`. Only these have an `id`, the
+/// common name.
 pub(super) fn unique_names(cases: &mut [ListedCase]) {
-    let mut seen = std::collections::HashMap::<String, usize>::new();
+    let mut numbers = HashMap::<String, usize>::new();
+    for case in cases.iter() {
+        *numbers.entry(case.name.clone()).or_default() += 1;
+    }
+    numbers.retain(|_, number| std::mem::take(number) > 1);
     for case in cases {
-        let number = seen.entry(case.name.clone()).or_default();
+        let Some(number) = numbers.get_mut(&case.name) else { continue };
         *number += 1;
+        case.id = Some(case.name.clone());
         if *number > 1 {
-            case.id = Some(std::mem::take(&mut case.name));
-            case.name = format!("{}#{number}", case.id.as_deref().unwrap_or_default());
+            case.name = format!("{}#{number}", case.name);
         }
     }
 }
@@ -79,9 +86,9 @@ impl RunningCases {
     /// framework cannot exclude.
     pub fn start(&self, name: &str, location: Option<Location>) -> Option<StartedCase> {
         let has_name = |case: &&ListedCase| case.id.as_deref().unwrap_or(&case.name) == name;
-        let line = |location: &Option<Location>| location.as_ref().map(|location| location.line);
+        let is_same = |case: &&&ListedCase| case.id.is_none() || case.location == location;
         let of_name: Vec<&ListedCase> = self.0.iter().filter(has_name).collect();
-        let found = of_name.iter().find(|case| line(&case.location) == line(&location));
+        let found = of_name.iter().find(is_same);
         match (found, of_name.is_empty()) {
             (Some(case), _) => Some(case.start()),
             (None, true) => {

@@ -86,6 +86,10 @@ impl Framework for Catch2 {
         Box::new(stream::Reader::new(launch.cases.cases))
     }
 
+    fn omits_disabled(&self) -> bool {
+        true
+    }
+
     fn accepts_exit(&self, code: i32, has_problem: bool) -> bool {
         // The reader checks whether all cases were skipped.
         code == 0 || has_problem || code == ALL_SKIPPED
@@ -145,7 +149,8 @@ fn parse_list(text: &[u8]) -> Option<Vec<ListedCase>> {
             "File" => text.trim().clone_into(&mut location.file),
             "Line" => location.line = text.trim().parse().unwrap_or(0),
             "TestCase" => {
-                case.location = Some(location.clone());
+                let is_known = !location.file.is_empty();
+                case.location = is_known.then(|| location.clone());
                 cases.push(std::mem::take(&mut case));
             }
             _ => {}

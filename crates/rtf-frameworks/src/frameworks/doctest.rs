@@ -95,6 +95,10 @@ impl Framework for Doctest {
     fn reader(&self, launch: &Launch<'_>) -> Box<dyn ReportReader> {
         Box::new(stream::Reader::new(launch.cases.cases))
     }
+
+    fn omits_disabled(&self) -> bool {
+        true
+    }
 }
 
 fn command(test: &TestProgram) -> Command {

@@ -83,7 +83,7 @@ impl Test {
         let parameter = |name: &str, value: String| Parameter { name: name.to_owned(), value };
         named
             .into_iter()
-            .filter_map(|(name, value)| Some(parameter(name, value.clone()?)))
+            .filter_map(|(name, value)| Some(parameter(name, utf8(value.as_deref()?))))
             .collect()
     }
 }
@@ -141,6 +141,10 @@ impl Framework for GoogleTest {
     fn reader(&self, launch: &Launch<'_>) -> Box<dyn ReportReader> {
         Box::new(stream::Reader::new(launch.cases.cases, report_file(launch.scratch)))
     }
+
+    fn omits_disabled(&self) -> bool {
+        true
+    }
 }
 
 fn command(test: &TestProgram) -> Command {
@@ -150,6 +154,12 @@ fn command(test: &TestProgram) -> Command {
         command.env_remove(name);
     }
     command
+}
+
+/// Restores UTF-8: GoogleTest up to 1.12 writes each of its bytes as a character.
+fn utf8(text: &str) -> String {
+    let bytes: Option<Vec<u8>> = text.chars().map(|it| u8::try_from(u32::from(it)).ok()).collect();
+    bytes.and_then(|bytes| String::from_utf8(bytes).ok()).unwrap_or_else(|| text.to_owned())
 }
 
 fn report_file(scratch: &Path) -> std::path::PathBuf {
@@ -193,4 +203,16 @@ fn not_gtest(file: &Path, listed: &listing::Listed) -> ListError {
     } else {
         format!("{message}\nit printed\n{quote}")
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_that_were_written_as_characters_are_utf8_again() {
+        assert_eq!(utf8("\u{c3}\u{bc} a"), "\u{fc} a");
+        assert_eq!(utf8("\u{fc} \u{20ac}"), "\u{fc} \u{20ac}");
+        assert_eq!(utf8("\u{e9}"), "\u{e9}");
+    }
 }

@@ -11,6 +11,8 @@ mod gtest;
 mod junit;
 mod pytest;
 mod python;
+#[cfg(test)]
+mod recorded;
 mod sections;
 mod session_program;
 mod unittest;

@@ -25,9 +25,14 @@ pub(super) struct Reader {
     has_begun: bool,
     /// The messages, which may be expected failures: the report contains the verdict.
     messages: Vec<Message>,
+    /// Failures of global fixtures and of fixtures of suites around the case.
+    fixture_failures: Vec<Message>,
     entry: Entry,
+    /// Whether the case was run: the report calls it passed if a fixture failed before.
+    has_run: bool,
     skipped: Option<String>,
-    is_signal: bool,
+    /// The signal that ended the case.
+    signal: Option<String>,
 }
 
 /// An entry of the log whose element is open.
@@ -55,9 +60,11 @@ impl Reader {
             path: Vec::new(),
             has_begun: false,
             messages: Vec::new(),
+            fixture_failures: Vec::new(),
             entry: Entry::default(),
+            has_run: false,
             skipped: None,
-            is_signal: false,
+            signal: None,
         }
     }
 
@@ -69,10 +76,11 @@ impl Reader {
         match name {
             "TestSuite" | "TestCase" => {
                 self.path.push(attributes.get("name").to_owned());
-                let is_outer = || self.case.starts_with(&format!("{}/", self.present()));
-                if attributes.get("skipped") == "yes" && (self.is_in_case() || is_outer()) {
+                let is_skipped = attributes.get("skipped") == "yes";
+                if is_skipped && (self.is_in_case() || self.is_around_case()) {
                     self.skipped = Some(attributes.get("reason").to_owned());
                 }
+                self.has_run |= self.is_in_case() && !is_skipped;
             }
             "Info" | "Message" | "Warning" | "Error" | "FatalError" | "Exception" => {
                 let location = assertion::location(attributes, "file");
@@ -107,17 +115,25 @@ impl Reader {
             _ => return,
         };
         let Entry { location, frames, checkpoint } = std::mem::take(&mut self.entry);
-        if !self.is_in_case() {
-            // Of other cases, on which the case depends, and of global fixtures.
+        let is_fixture = self.is_around_case();
+        if !self.is_in_case() && !is_fixture {
+            // Of other cases, on which the case depends.
             return;
         }
-        self.is_signal |= name == "Exception" && SIGNALS.iter().any(|it| text.starts_with(it));
+        if name == "Exception" && SIGNALS.iter().any(|signal| text.starts_with(signal)) {
+            self.signal = Some(text.to_owned());
+        }
         let checkpoint = checkpoint.map(|text| format!("last checkpoint: {text}"));
         let lines: Vec<String> = frames.into_iter().chain(checkpoint).collect();
         let text = assertion::with_lines(text.to_owned(), &lines);
         let mut message = assertion::message(kind, &text, location);
         message.comparison = comparison(&message.text);
-        self.messages.push(message);
+        match kind {
+            MessageKind::Failure | MessageKind::Error if is_fixture => {
+                self.fixture_failures.push(message);
+            }
+            _ => self.messages.push(message),
+        }
     }
 
     /// The path of the present suite or case.
@@ -127,6 +143,12 @@ impl Reader {
 
     fn is_in_case(&self) -> bool {
         self.present() == self.case
+    }
+
+    /// Whether it is in a suite around the case, or in the program itself.
+    fn is_around_case(&self) -> bool {
+        let present = self.present();
+        present.is_empty() || self.case.starts_with(&format!("{present}/"))
     }
 
     /// The verdict in the report; `None` if there is no complete report.
@@ -158,18 +180,17 @@ impl Reader {
     }
 
     fn result(&self, verdict: Verdict, has_failure: bool) -> CaseResult {
+        if let Some(signal) = &self.signal {
+            return CaseResult::new(Outcome::Crashed, signal);
+        }
         match verdict {
-            _ if self.is_signal => {
-                let signal = self.messages.iter().find(|it| it.kind == MessageKind::Error);
-                let text = signal.map_or("signal", |message| message.text.as_str());
-                CaseResult::new(Outcome::Crashed, text)
-            }
-            Verdict::Passed => CaseResult::default(),
+            _ if has_failure => CaseResult::default(),
+            Verdict::Passed if self.has_run => CaseResult::default(),
+            Verdict::Passed => CaseResult::new(Outcome::Error, "the case was not run"),
             Verdict::Skipped => {
                 let reason = self.skipped.as_deref().filter(|reason| !reason.is_empty());
                 CaseResult::new(Outcome::Skipped, reason.unwrap_or("skipped"))
             }
-            Verdict::Other if has_failure => CaseResult::default(),
             Verdict::Other => CaseResult::new(Outcome::Failed, "it failed without a message"),
         }
     }
@@ -190,7 +211,10 @@ impl ReportReader for Reader {
 
     fn finish(&mut self, end: ExitStatus, cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
         let verdict = self.verdict().filter(|_| self.stream.is_complete());
-        let mut has_failure = false;
+        let mut has_failure = !self.fixture_failures.is_empty();
+        for message in std::mem::take(&mut self.fixture_failures) {
+            cases.full_message(Some(&self.case), message);
+        }
         for mut message in std::mem::take(&mut self.messages) {
             if matches!(message.kind, MessageKind::Failure | MessageKind::Error) {
                 match verdict {
@@ -206,7 +230,7 @@ impl ReportReader for Reader {
         // Without a verdict, the program ended in the case.
         let Some(verdict) = verdict else { return Ok(()) };
         let result = self.result(verdict, has_failure);
-        let is_bad = has_failure || self.is_signal || verdict == Verdict::Other;
+        let is_bad = has_failure || self.signal.is_some();
         cases.finish(&self.case, result);
         // A skipped case may depend on one that failed.
         if let ExitStatus::Code(code) = end
@@ -233,14 +257,4 @@ fn comparison(text: &str) -> Option<Comparison> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_compared() {
-        let numbers = comparison("check position == 42 has failed [41 != 42]").expect("numbers");
-        assert_eq!((numbers.got[0], numbers.expected[0]), (Some(41.0), Some(42.0)));
-        assert_eq!(comparison("check speed != 2 has failed [2 == 2]"), None);
-        assert_eq!(comparison("critical"), None);
-    }
-}
+mod tests;

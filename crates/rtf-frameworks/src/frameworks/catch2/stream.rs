@@ -98,7 +98,7 @@ impl Reader {
                 self.check.location = location;
                 self.check.is_open = true;
             }
-            "Failure" | "Skip" | "Exception" | "FatalErrorCondition" => {
+            "Failure" | "Warning" | "Skip" | "Exception" | "FatalErrorCondition" => {
                 self.check.location = location;
             }
             "BenchmarkResults" => attributes.get("name").clone_into(&mut self.benchmark),
@@ -316,3 +316,6 @@ impl ReportReader for Reader {
 fn output(text: &str) -> Vec<u8> {
     [text.as_bytes(), b"\n"].concat()
 }
+
+#[cfg(test)]
+mod tests;

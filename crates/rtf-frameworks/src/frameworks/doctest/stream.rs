@@ -212,7 +212,8 @@ impl Reader {
         };
         let text = assertion::with_lines(text, &infos);
         let mut message = assertion::message(message_kind, &text, location);
-        message.comparison = (!passed).then(|| assertion::comparison(&expanded)).flatten();
+        let compares = !passed && !kind.contains("FALSE");
+        message.comparison = compares.then(|| assertion::comparison(&expanded)).flatten();
         self.report_message(message, cases);
     }
 
@@ -313,3 +314,6 @@ fn tolerate(message: &mut Message) {
     message.kind = MessageKind::Report;
     message.text = format!("tolerated: {}", message.text);
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,8 @@
+// A program without tests.
+
+#include <cstdio>
+
+int main()
+{
+    std::puts("Hello, arm.");
+}
