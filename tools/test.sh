@@ -235,6 +235,18 @@ public_pytest() {
   python3 tests/frameworks/public/pytest_boltons.py "$TARGET/release/rtf" "$interpreter"
 }
 
+example_09() {
+  local type settings build=$BUILD/examples/09-other-frameworks
+  for type in gtest catch2 cppunit aunit junit; do
+    settings=$(tests/frameworks/build.sh "$type")
+    eval "$settings"
+  done
+  RobotTestingFramework_DIR=$ROOT/sdk/cpp/cmake/RobotTestingFramework \
+    GPR_PROJECT_PATH=$ROOT/sdk/ada examples/09-other-frameworks/build.sh "$build"
+  PATH="$simulation:$PATH" RTF_PYTHON=$checkers/python RTF_PLUGIN_PATH=$build \
+    python3 tools/check_example_09.py "$TARGET/release/rtf" examples/09-other-frameworks
+}
+
 # The corpus of a test framework, see tests/frameworks/check.py.
 framework() {
   local settings

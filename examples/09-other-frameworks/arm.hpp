@@ -9,11 +9,20 @@
 
 #include "ArmClient.hpp"
 
-class Arm : public ArmClient
+// ArmClient reads its port from ARM_PORT.
+struct ArmPort
+{
+    ArmPort()
+    {
+        if (const char *port = std::getenv("RTF_FIXTURE_ARM_PORT")) {
+            ::setenv("ARM_PORT", port, 1);
+        }
+    }
+};
+
+class Arm : private ArmPort, public ArmClient
 {
 public:
-    Arm() : ArmClient(usePort()) {}
-
     // Moves a joint; whether it comes within 0.05 rad of the target in 5 s.
     bool reaches(const std::string &joint, double radians)
     {
@@ -25,13 +34,5 @@ public:
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
         return false;
-    }
-
-private:
-    // ArmClient reads its port from ARM_PORT.
-    static int usePort()
-    {
-        const char *port = std::getenv("RTF_FIXTURE_ARM_PORT");
-        return port ? ::setenv("ARM_PORT", port, 1) : 0;
     }
 };
