@@ -147,7 +147,7 @@ lint_language() {
 
 suites_are_valid() {
   # XML files in subdirectories of examples belong to the middleware.
-  files ':(glob)examples/*/*.xml' 'tests/install/*.xml' 'tests/fixtures/*/suite.xml' \
+  files ':(glob)examples/*/*.xml' 'tests/install/*.xml' 'tests/fixtures/*/suite.xml' 'tests/frameworks/*/suite.xml' \
     'tests/fixtures/yarp/suites/*.xml' 'tests/fixtures/ros1/*.xml' 'tests/fixtures/clock/*.xml' |
     xargs -d '\n' xmllint --noout --schema spec/suite.xsd
 }
@@ -307,6 +307,9 @@ step_with 'clock ros2' ros2 clock_ros2
 step_with 'fixture ros2launch' ros2 fixture_ros2launch
 step_with 'fixture orocos' orocos fixture_orocos
 step 'framework gtest' framework gtest
+step 'framework catch2' framework catch2
+step 'framework doctest' framework doctest
+step 'framework boost' framework boost
 step 'framework cppunit' framework cppunit
 step 'framework aunit' framework aunit
 step 'framework pytest' framework pytest
