@@ -13,6 +13,7 @@ use rtf_model::{
 };
 
 use crate::framework::{CaseResult, Selection};
+use crate::wanted::WantedCases;
 
 /// How many names a message lists.
 const NAMES_SHOWN: usize = 5;
@@ -55,8 +56,8 @@ pub struct CaseReporter<'a> {
     skipped: usize,
     /// The top-level cases that are expected; `None` if any is.
     expected: Option<HashSet<String>>,
-    /// The cases that the runner wants, if the program announces its cases itself; empty: all.
-    wanted: Vec<CaseSelector>,
+    /// The cases that the runner wants, if the program announces its cases itself.
+    wanted: Option<WantedCases>,
     /// Whether cases that the present process announces are new: later ones run the rest.
     is_first_process: bool,
     /// The top-level cases that the present process runs; `None` if all.
@@ -81,7 +82,7 @@ impl<'a> CaseReporter<'a> {
             results: HashMap::new(),
             skipped: 0,
             expected: None,
-            wanted: Vec::new(),
+            wanted: None,
             is_first_process: true,
             selection: None,
             has_problem: false,
@@ -102,7 +103,7 @@ impl<'a> CaseReporter<'a> {
 
     /// Sets the cases that the runner wants, for a program that announces its cases itself.
     pub fn want(&mut self, wanted: &[CaseSelector]) {
-        self.wanted = wanted.to_vec();
+        self.wanted = Some(WantedCases::new(wanted, std::iter::empty()));
     }
 
     /// The program announces top-level cases. Returns for each one whether it runs in the
@@ -126,7 +127,7 @@ impl<'a> CaseReporter<'a> {
     }
 
     fn is_wanted(&self, name: &str) -> bool {
-        self.wanted.is_empty() || self.wanted.iter().any(|wanted| wanted.selects(name))
+        self.wanted.as_ref().is_none_or(|wanted| wanted.includes(name))
     }
 
     /// Whether top-level cases were announced.

@@ -13,6 +13,7 @@ mod frameworks;
 mod host;
 mod listing;
 mod supervisor;
+mod wanted;
 mod xml_stream;
 
 use std::ffi::OsString;

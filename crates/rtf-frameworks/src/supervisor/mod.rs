@@ -5,6 +5,7 @@ mod process;
 mod session_socket;
 mod stack;
 
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -17,6 +18,7 @@ use rustix::process::{Pid, Signal, kill_process_group};
 
 use crate::case_reporter::CaseReporter;
 use crate::framework::{CaseResult, Framework, ListedCase, Selection, StackDump, TestProgram};
+use crate::wanted::WantedCases;
 use process::{ProcessEnd, Termination};
 
 /// The process that runs cases at the moment, for other threads.
@@ -129,21 +131,20 @@ impl TestRun<'_> {
 
     /// Runs a test whose cases are known.
     fn listed(&self, listed: &[ListedCase], wanted: &[CaseSelector], cases: &mut CaseReporter<'_>) {
-        let is_wanted = |case: &&ListedCase| {
-            wanted.is_empty() || wanted.iter().any(|it| it.selects(&case.name))
-        };
-        let selected: Vec<ListedCase> = listed.iter().filter(is_wanted).cloned().collect();
+        let wanted = WantedCases::new(wanted, listed.iter().map(|case| case.name.as_str()));
+        let selected = listed.iter().filter(|case| wanted.includes(&case.name));
+        let selected: Vec<ListedCase> = selected.cloned().collect();
         let is_all = selected.len() == listed.len();
         let selected = self.framework.order(listed, selected);
         if selected.is_empty() {
-            let text = match wanted.is_empty() {
+            let text = match wanted.is_all() {
                 true => "the program has no case",
                 false => "the program has none of the selected cases",
             };
             return cases.test_error(text.to_owned());
         }
         cases.plan(selected.iter().map(|case| case.name.clone()));
-        let mut queue = Vec::with_capacity(selected.len());
+        let mut queue = VecDeque::with_capacity(selected.len());
         let mut all_run = is_all;
         for case in selected {
             if case.disabled {
@@ -151,15 +152,14 @@ impl TestRun<'_> {
                 cases.add(case.start(), CaseResult::new(Outcome::Skipped, reason));
                 all_run &= self.framework.omits_disabled();
             } else {
-                queue.push(case);
+                queue.push_back(case);
             }
         }
         while !queue.is_empty() && !self.is_stopping() {
             let goes_on = if self.separate {
-                let case = queue.remove(0);
-                self.separate_case(&case, cases)
+                queue.pop_front().is_some_and(|case| self.separate_case(&case, cases))
             } else {
-                let selection = Selection { cases: &queue, is_all: all_run };
+                let selection = Selection { cases: queue.make_contiguous(), is_all: all_run };
                 let goes_on = self.process(selection, cases);
                 queue.retain(|case| !cases.results().contains_key(&case.name));
                 all_run = false;
