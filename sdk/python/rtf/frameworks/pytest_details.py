@@ -44,7 +44,7 @@ def as_text(value: object) -> str:
     else:
         try:
             text = repr(value)
-        except Exception as problem:  # noqa: BLE001 - whatever the user's class raises
+        except Exception as problem:  # noqa: BLE001 - any exception of the user
             text = f"<{type(value).__qualname__}: {problem!r}>"
     text = _ADDRESS.sub("", text)
     return text if len(text) <= _VALUE_CHARACTERS else text[: _VALUE_CHARACTERS - 1] + "…"
