@@ -200,3 +200,39 @@ def test_problems_are_listed(tmp_path: Path) -> None:
     problem, skipped, end = listed(tmp_path, *PYTEST, "--collect-only", "-qq", ".")
     assert "cannot be collected: ModuleNotFoundError" in problem["problem"]["text"]
     assert (skipped, end) == ({"case": {"name": "test_skipped.py"}}, {"finished": True})
+
+
+def test_the_fixture_can_be_installed_in_addition(tmp_path: Path) -> None:
+    host = run(
+        tmp_path, "def test_a(rtf): rtf.measure('x', 1)\n", "-p", "rtf.frameworks.pytest_fixture"
+    )
+    assert host.results() == {"test_arm.py::test_a": "passed"}
+    assert host.of("measured")[0]["value"] == 1
+
+
+def test_a_fixture_of_the_user_has_precedence(tmp_path: Path) -> None:
+    write(tmp_path, "@pytest.fixture\ndef rtf(): return 7\n", "conftest.py")
+    host = run(tmp_path, "def test_a(rtf): assert rtf == 7\n")
+    assert host.results() == {"test_arm.py::test_a": "passed"}
+
+
+def test_doctests_are_cases(tmp_path: Path) -> None:
+    text = "def increment(n):\n    '''\n    >>> 1 + 1\n    3\n    '''\n"
+    host = run(tmp_path, text, "--doctest-modules")
+    assert host.results() == {"test_arm.py::test_arm.increment": "failure"}
+    (failure,) = [message for message in host.of("message") if message["kind"] == "failure"]
+    assert "Expected:\n    3\nGot:\n    2" in failure["text"]
+
+
+def test_a_report_with_another_outcome_is_a_message(tmp_path: Path) -> None:
+    hook = (
+        "@pytest.hookimpl(hookwrapper=True)\n"
+        "def pytest_runtest_makereport(item, call):\n"
+        "    report = (yield).get_result()\n"
+        "    if report.failed: report.outcome = 'rerun'\n"
+    )
+    write(tmp_path, hook, "conftest.py")
+    host = run(tmp_path, "def test_a(): assert 1 == 2\n")
+    (message,) = host.of("message")
+    assert message["kind"] == "report"
+    assert message["text"].startswith("rerun: ")

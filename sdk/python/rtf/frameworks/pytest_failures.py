@@ -102,6 +102,8 @@ def of_failure(
     assert call.excinfo is not None  # noqa: S101 - the caller's condition
     problem = call.excinfo.value
     is_failure = isinstance(problem, (AssertionError, pytest.fail.Exception))
+    # Of `--doctest-modules`.
+    is_failure |= type(problem).__name__ in {"DocTestFailure", "MultipleDoctestFailures"}
     kind = "failure" if call.when == "call" and is_failure else "error"
     details: dict[str, object] = {"kind": kind}
     place = _line_in(str(item.path), call.excinfo.tb)

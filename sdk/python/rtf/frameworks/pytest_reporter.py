@@ -18,7 +18,7 @@ from rtf.frameworks.pytest_texts import (
     skip_reason,
     subtest_name,
 )
-from rtf.frameworks.pytest_worker import VALUES
+from rtf.frameworks.pytest_worker import SELECTION_VARIABLE, VALUES
 from rtf.frameworks.stop import Stop
 
 if TYPE_CHECKING:
@@ -99,8 +99,12 @@ class Reporter(FailureDetails):
     @pytest.hookimpl(optionalhook=True)
     def pytest_xdist_node_collection_finished(self, ids: list[str]) -> None:
         """Plan what the workers of pytest-xdist have collected: all have the same items."""
-        if not self._is_planned:
-            self._plan(ids)
+        if self._is_planned:
+            return
+        runs = self._plan(ids)
+        if SELECTION_VARIABLE not in os.environ and not all(runs[name] for name in ids):
+            text = "cases cannot be selected: `-n` of pytest-xdist must be in `param`"
+            self._connection.post("message", {"kind": "error", "text": text})
 
     @pytest.hookimpl(optionalhook=True)
     def pytest_configure_node(self, node: Any) -> None:
@@ -176,6 +180,9 @@ class Reporter(FailureDetails):
             self._message(case, "report", report.longreprtext)
         elif report.skipped:
             case.set("skipped", skip_reason(report))
+        elif not report.passed:
+            # `rerun`, of pytest-rerunfailures
+            self._message(case, "report", f"{report.outcome}: {report.longreprtext}")
         elif expected is not None:
             self._message(case, "report", "; ".join(filter(None, ("unexpected pass", expected))))
 
