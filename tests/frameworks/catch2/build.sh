@@ -6,6 +6,7 @@
 unpack_backport() {
   local dir=$1 work options archive
   # The archive from which the system gets its packages, which may be a mirror.
+  # shellcheck disable=SC2016 # apt-get's fields
   archive=$(apt-get indextargets --format '$(RELEASE) $(REPO_URI)' 'Created-By: Packages' |
     sed -n 's/^bookworm //p' | head -n 1)
   [ -n "$archive" ] || die "Catch2 3 is missing, and this is not Debian 12" \
