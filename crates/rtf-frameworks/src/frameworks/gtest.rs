@@ -26,6 +26,9 @@ const LIST_LIMIT: Duration = Duration::from_secs(60);
 /// Above this length, the filter is passed in a file: an argument has at most 128 KiB.
 const FILTER_BYTES: usize = 64 * 1024;
 
+/// Without it, the output shows which tests were skipped.
+const BRIEF: &str = "--gtest_brief";
+
 const RUN_DISABLED: &str = "--gtest_also_run_disabled_tests";
 
 /// Flags that would change which tests run, or where results go.
@@ -39,7 +42,8 @@ const RESERVED: [&str; 6] = [
 ];
 
 /// Variables with the same effect.
-const VARIABLES: [&str; 7] = [
+const VARIABLES: [&str; 8] = [
+    "GTEST_BRIEF",
     "GTEST_FILTER",
     "GTEST_OUTPUT",
     "GTEST_LIST_TESTS",
@@ -149,7 +153,7 @@ impl Framework for GoogleTest {
 
 fn command(test: &TestProgram) -> Command {
     let mut command = Command::new(&test.file);
-    command.args(&test.args);
+    command.args(test.args.iter().filter(|arg| !arg.starts_with(BRIEF)));
     for name in VARIABLES {
         command.env_remove(name);
     }
