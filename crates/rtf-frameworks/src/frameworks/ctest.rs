@@ -1,0 +1,180 @@
+//! `CTest`: the tests of a build directory of `CMake`.
+//!
+//! `ctest --show-only=json-v1` lists them. This host runs their commands itself, and judges
+//! them as `ctest` does: exit code, regular expressions, `WILL_FAIL`, `SKIP_RETURN_CODE`.
+
+mod environment;
+mod fixtures;
+mod judge;
+mod measurements;
+mod properties;
+mod regex_dialect;
+
+use std::collections::{HashMap, HashSet};
+use std::path::Path;
+use std::process::Command;
+use std::sync::OnceLock;
+use std::time::Duration;
+
+use rtf_model::{Location, Outcome};
+
+use crate::framework::{
+    CaseResult, Framework, Launch, ListError, ListedCase, ReportChannel, ReportReader, TestProgram,
+};
+use crate::listing;
+use properties::CTestCase;
+
+/// The limit for listing: `gtest_discover_tests` can start programs then.
+const LIST_LIMIT: Duration = Duration::from_secs(120);
+
+/// The options for the configuration of a multi-configuration generator.
+const CONFIG_OPTIONS: [&str; 2] = ["-C", "--build-config"];
+
+/// The adapter.
+#[derive(Debug, Default)]
+pub struct CTest {
+    tests: OnceLock<Vec<CTestCase>>,
+}
+
+impl Framework for CTest {
+    fn list(&self, test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
+        let tests = read_tests(test)?;
+        let cases = tests.iter().map(listed).collect();
+        // A host runs one test.
+        drop(self.tests.set(tests));
+        Ok(Some(cases))
+    }
+
+    fn channel(&self) -> ReportChannel {
+        ReportChannel::None
+    }
+
+    fn watches_output(&self) -> bool {
+        true
+    }
+
+    fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
+        let test = self.launched(launch).ok_or("`ctest` does not list the test any more")?;
+        let (program, args) = test.command.split_first().ok_or("the test has no command")?;
+        let mut command = Command::new(program);
+        command.args(args);
+        if let Some(dir) = &test.working_dir {
+            if !dir.is_dir() {
+                return Err(format!("the working directory `{}` does not exist", dir.display()));
+            }
+            command.current_dir(dir);
+        }
+        let inherited = |name: &str| std::env::var(name).ok();
+        let changes =
+            environment::changes(&test.environment, &test.environment_changes, inherited)?;
+        for (name, value) in changes {
+            match value {
+                Some(value) => command.env(name, value),
+                None => command.env_remove(name),
+            };
+        }
+        Ok(command)
+    }
+
+    fn reader(&self, launch: &Launch<'_>) -> Box<dyn ReportReader> {
+        let test = self.launched(launch).cloned().unwrap_or_default();
+        Box::new(judge::Judge::new(test))
+    }
+
+    fn needs_separate_processes(&self) -> bool {
+        true
+    }
+
+    fn order(&self, listed: &[ListedCase], selected: Vec<ListedCase>) -> Vec<ListedCase> {
+        let selected: HashSet<&str> = selected.iter().map(|case| case.name.as_str()).collect();
+        let all = fixtures::with_fixtures(self.tests(), &selected);
+        listed.iter().filter(|case| all.contains(case.name.as_str())).cloned().collect()
+    }
+
+    fn decide(&self, case: &ListedCase, results: &HashMap<String, bool>) -> Option<CaseResult> {
+        let test = self.tests().iter().find(|test| test.name == case.name)?;
+        let failed = fixtures::set_ups(self.tests(), test)
+            .find(|(_, set_up)| results.get(*set_up).is_none_or(|passed| !passed));
+        let error = |reason: String| Some(CaseResult::new(Outcome::Error, reason));
+        if let Some((fixture, set_up)) = failed {
+            return error(format!(
+                "the test did not run, because its fixture `{fixture}` was not set up: \
+                 `{set_up}` did not pass"
+            ));
+        }
+        let dir = test.working_dir.as_deref().unwrap_or(Path::new("."));
+        if let Some(file) = test.required_files.iter().find(|file| !dir.join(file).exists()) {
+            return error(format!("the test did not run, because `{file}` does not exist"));
+        }
+        match test.command.first() {
+            None => error(
+                "the test did not run, because its program was not found: build it, or choose a \
+                 configuration with `param=\"-C Release\"`"
+                    .to_owned(),
+            ),
+            Some(_) => None,
+        }
+    }
+
+    fn accepts_exit(&self, _code: i32, _has_problem: bool) -> bool {
+        true
+    }
+}
+
+impl CTest {
+    fn tests(&self) -> &[CTestCase] {
+        self.tests.get().map(Vec::as_slice).unwrap_or_default()
+    }
+
+    fn launched(&self, launch: &Launch<'_>) -> Option<&CTestCase> {
+        let case = launch.cases.cases.first()?;
+        self.tests().iter().find(|test| test.name == case.name)
+    }
+}
+
+fn listed(test: &CTestCase) -> ListedCase {
+    ListedCase {
+        name: test.name.clone(),
+        location: test.location.clone().map(|(file, line)| Location { file, line }),
+        tags: test.labels.clone(),
+        disabled: test.disabled,
+        timeout: test.timeout,
+        ..ListedCase::default()
+    }
+}
+
+/// Lists the tests of a build directory, in the order in which they run.
+fn read_tests(test: &TestProgram) -> Result<Vec<CTestCase>, ListError> {
+    if !test.file.join("CTestTestfile.cmake").is_file() {
+        let message = "no build directory of CMake with tests: it contains no \
+                       `CTestTestfile.cmake` (configure it; its project calls `enable_testing()`)";
+        return Err(ListError::new(message));
+    }
+    let mut command = Command::new("ctest");
+    command.current_dir(&test.file).arg("--show-only=json-v1").args(config(&test.args)?);
+    let found = listing::run(command, LIST_LIMIT).map_err(|error| {
+        let is_missing = error.message.contains("cannot be started");
+        let hint = if is_missing { "; install CMake (Debian: cmake), version 3.14 or later" } else { "" };
+        ListError::new(format!("{error}{hint}"))
+    })?;
+    let tests = properties::parse(&found.stdout).and_then(fixtures::ordered);
+    tests.map_err(|error| ListError::new(format!("{error}\n{}", found.quote()).trim_end()))
+}
+
+/// The arguments for `ctest`: only the configuration.
+fn config(args: &[String]) -> Result<&[String], ListError> {
+    let is_config = |arg: &String| CONFIG_OPTIONS.contains(&arg.as_str());
+    match args {
+        [] => Ok(args),
+        [option, _] if is_config(option) => Ok(args),
+        [option] if option.starts_with("--build-config=") => Ok(args),
+        _ => {
+            let args = args.join(" ");
+            let message = format!(
+                "`{args}`: the only argument is `-C CONFIGURATION`; rtf runs the tests itself; \
+                 select them with `cases`"
+            );
+            Err(ListError::new(message))
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Any program: its exit code is the verdict.
+
+use std::process::Command;
+
+use rtf_model::{ExitStatus, Outcome};
+
+use crate::framework::{
+    CaseResult, Framework, Launch, ListError, ListedCase, NoReport, ReportChannel, ReportReader,
+    TestProgram,
+};
+
+/// The exit code of a test that skips itself, as in Automake and Meson.
+const SKIPPED: i32 = 77;
+
+/// A shell's exit code for a program that cannot be executed.
+const NOT_EXECUTABLE: i32 = 126;
+
+/// A shell's exit code for a program that does not exist.
+const NOT_FOUND: i32 = 127;
+
+/// The adapter.
+#[derive(Clone, Copy, Debug)]
+pub struct Program;
+
+impl Framework for Program {
+    fn list(&self, _test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
+        Ok(None)
+    }
+
+    fn channel(&self) -> ReportChannel {
+        ReportChannel::None
+    }
+
+    fn watches_output(&self) -> bool {
+        true
+    }
+
+    fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
+        let mut command = Command::new(&launch.test.file);
+        command.args(&launch.test.args);
+        Ok(command)
+    }
+
+    fn reader(&self, _launch: &Launch<'_>) -> Box<dyn ReportReader> {
+        Box::new(NoReport)
+    }
+
+    fn program_result(&self, end: ExitStatus, last_error_line: &str) -> Option<CaseResult> {
+        let with_line = |reason: String| match last_error_line {
+            "" => reason,
+            line => format!("{reason}: {line}"),
+        };
+        Some(match end {
+            ExitStatus::Code(0) => CaseResult::default(),
+            ExitStatus::Code(SKIPPED) => {
+                let reason = match last_error_line {
+                    "" => "exit code 77",
+                    line => line,
+                };
+                CaseResult::new(Outcome::Skipped, reason)
+            }
+            ExitStatus::Code(code @ (NOT_EXECUTABLE | NOT_FOUND)) => {
+                let what = if code == NOT_FOUND { "was not found" } else { "cannot be executed" };
+                let reason = format!("exit code {code}: a program {what}");
+                CaseResult::new(Outcome::Error, with_line(reason))
+            }
+            ExitStatus::Code(_) => CaseResult::new(Outcome::Failed, with_line(end.to_string())),
+            ExitStatus::Signal(_) => {
+                CaseResult::new(Outcome::Crashed, with_line(format!("the program ended with {end}")))
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn result(end: ExitStatus, line: &str) -> (Option<Outcome>, Option<String>) {
+        let result = Program.program_result(end, line).unwrap();
+        (result.outcome, result.reason)
+    }
+
+    #[test]
+    fn exit_codes() {
+        let with = |outcome, reason: &str| (Some(outcome), Some(reason.to_owned()));
+        assert_eq!(result(ExitStatus::Code(0), "warning"), (None, None));
+        assert_eq!(result(ExitStatus::Code(77), "no arm"), with(Outcome::Skipped, "no arm"));
+        assert_eq!(result(ExitStatus::Code(77), ""), with(Outcome::Skipped, "exit code 77"));
+        assert_eq!(result(ExitStatus::Code(3), "too slow"), with(Outcome::Failed, "exit code 3: too slow"));
+        let missing = result(ExitStatus::Code(127), "sh: 1: x: not found");
+        let text = "exit code 127: a program was not found: sh: 1: x: not found";
+        assert_eq!(missing, with(Outcome::Error, text));
+        let crash = result(ExitStatus::Signal(11), "");
+        assert_eq!(crash, with(Outcome::Crashed, "the program ended with signal 11 (SIGSEGV)"));
+    }
+}
