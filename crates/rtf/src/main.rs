@@ -68,6 +68,7 @@ fn run(verb: Verb, matches: &ArgMatches) -> VerbResult {
         Verb::Report(args) => command::report::run(args, matches),
         Verb::Merge(args) => command::merge::run(args, matches),
         Verb::Serve(args) => command::serve::run(&args),
+        Verb::Import { verb } => command::import::run(&verb),
         Verb::Config { verb: ConfigVerb::Show(args) } => command::config::show(&args),
         Verb::Completions { shell } => command::completions::run(shell),
         Verb::Man { dir } => command::man::run(&dir),

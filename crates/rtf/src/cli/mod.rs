@@ -2,6 +2,7 @@
 
 mod doctor;
 mod formats;
+mod import;
 mod inputs;
 mod past;
 mod run;
@@ -16,6 +17,7 @@ use rtf_plan::suite::parse_duration;
 
 pub use doctor::{DoctorArgs, DoctorFormat};
 pub use formats::{Annotations, ReportFormat, StdoutFormat, parse_report};
+pub use import::{ImportOutput, ImportVerb};
 pub use inputs::{FlakyResult, InputArgs, ProfileArgs, RepeatArgs, RerunVerdict, ResultsArgs};
 pub use past::{MergeArgs, ReportArgs, ShowArgs};
 pub use run::{ListArgs, ListFormat, RunArgs};
@@ -81,6 +83,12 @@ pub enum Verb {
     Merge(MergeArgs),
     /// Show active and past runs in a browser
     Serve(ServeArgs),
+    /// Write a suite with the tests of a build directory or workspace
+    Import {
+        /// Where the tests are
+        #[command(subcommand)]
+        verb: ImportVerb,
+    },
     /// Show the configuration from `rtf.toml`, the command line and variables
     Config {
         /// The verb

@@ -19,6 +19,7 @@ pub mod check;
 pub mod completions;
 pub mod config;
 pub mod doctor;
+pub mod import;
 pub mod list;
 pub mod locks;
 pub mod man;
