@@ -69,6 +69,8 @@ pub struct CaseReporter<'a> {
     /// How many top-level cases finished in the present process.
     finished: usize,
     last_finished: Option<String>,
+    /// Whether the program skipped itself.
+    is_skipped: bool,
 }
 
 impl<'a> CaseReporter<'a> {
@@ -89,6 +91,7 @@ impl<'a> CaseReporter<'a> {
             is_complete: false,
             finished: 0,
             last_finished: None,
+            is_skipped: false,
         }
     }
 
@@ -300,6 +303,12 @@ impl<'a> CaseReporter<'a> {
         drop(std::io::stderr().lock().write_all(bytes));
     }
 
+    /// Skips the test: the program reported that it has no cases to run.
+    pub fn skip_test(&mut self, reason: &str) {
+        self.is_skipped = true;
+        self.session.record_result(Outcome::Skipped, reason);
+    }
+
     /// Reports an error of the test, outside of its cases.
     pub fn test_error(&mut self, text: String) {
         let (kind, location, comparison) = (MessageKind::Error, None, None);
@@ -347,6 +356,12 @@ impl<'a> CaseReporter<'a> {
     #[must_use]
     pub fn finished(&self) -> usize {
         self.finished
+    }
+
+    /// Whether the present process reported neither a case nor a problem.
+    #[must_use]
+    pub fn has_no_result(&self) -> bool {
+        self.finished == 0 && !self.has_problem() && !self.is_skipped
     }
 
     /// The top-level case that finished last.

@@ -192,6 +192,12 @@ pub trait Framework {
         false
     }
 
+    /// Whether a process has one pipe for both outputs, which then are standard output. Only
+    /// with [`Self::watches_output`].
+    fn merges_output(&self, _launch: &Launch<'_>) -> bool {
+        false
+    }
+
     /// The command that runs cases. The supervisor adds its own environment variables, and
     /// sets streams and process group.
     ///

@@ -53,6 +53,11 @@ impl Framework for CTest {
         true
     }
 
+    fn merges_output(&self, launch: &Launch<'_>) -> bool {
+        // As in `ctest`, whose expressions search both outputs in order.
+        self.launched(launch).is_some_and(CTestCase::searches_output)
+    }
+
     fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
         let test = self.launched(launch).ok_or("`ctest` does not list the test any more")?;
         let (program, args) = test.command.split_first().ok_or("the test has no command")?;
@@ -154,11 +159,22 @@ fn read_tests(test: &TestProgram) -> Result<Vec<CTestCase>, ListError> {
     command.current_dir(&test.file).arg("--show-only=json-v1").args(config(&test.args)?);
     let found = listing::run(command, LIST_LIMIT).map_err(|error| {
         let is_missing = error.message.contains("cannot be started");
-        let hint = if is_missing { "; install CMake (Debian: cmake), version 3.14 or later" } else { "" };
+        let hint =
+            if is_missing { "; install CMake (Debian: cmake), version 3.14 or later" } else { "" };
         ListError::new(format!("{error}{hint}"))
     })?;
+    let is_empty = |tests: &Vec<CTestCase>| tests.is_empty() && test.args.is_empty();
     let tests = properties::parse(&found.stdout).and_then(fixtures::ordered);
-    tests.map_err(|error| ListError::new(format!("{error}\n{}", found.quote()).trim_end()))
+    match tests {
+        Ok(tests) if is_empty(&tests) => Err(ListError::new(
+            "the build directory has no tests; with several configurations, choose one with \
+             `param=\"-C Release\"`",
+        )),
+        Ok(tests) => Ok(tests),
+        Err(error) => Err(ListError::new(
+            format!("{error}\n{}", String::from_utf8_lossy(found.stderr.trim_ascii())).trim_end(),
+        )),
+    }
 }
 
 /// The arguments for `ctest`: only the configuration.

@@ -5,16 +5,26 @@ mod aunit;
 mod boost;
 mod catch2;
 mod cppunit;
+mod ctest;
 mod doctest;
 mod go;
 mod gtest;
 mod junit;
+mod program;
 mod pytest;
 mod python;
-#[cfg(test)]
 mod recorded;
+mod rostest;
 mod sections;
 mod session_program;
+mod tap;
+mod unittest;
+#[cfg(test)]
+mod recorded;
+mod rostest;
+mod sections;
+mod session_program;
+mod tap;
 mod unittest;
 
 use crate::framework::Framework;
@@ -30,11 +40,15 @@ const TYPES: &[FrameworkType] = &[
     ("boost", || Box::new(boost::BoostTest)),
     ("catch2", || Box::new(catch2::Catch2)),
     ("cppunit", || Box::new(cppunit::CppUnit)),
+    ("ctest", || Box::new(ctest::CTest::default())),
     ("doctest", || Box::new(doctest::Doctest)),
     ("go", || Box::new(go::Go)),
     ("gtest", || Box::new(gtest::GoogleTest)),
     ("junit", || Box::new(junit::JUnit)),
+    ("program", || Box::new(program::Program)),
     ("pytest", || Box::new(pytest::Pytest)),
+    ("rostest", || Box::new(rostest::Rostest)),
+    ("tap", || Box::new(tap::Tap)),
     ("unittest", || Box::new(unittest::Unittest)),
 ];
 

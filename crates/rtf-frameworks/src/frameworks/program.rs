@@ -65,9 +65,10 @@ impl Framework for Program {
                 CaseResult::new(Outcome::Error, with_line(reason))
             }
             ExitStatus::Code(_) => CaseResult::new(Outcome::Failed, with_line(end.to_string())),
-            ExitStatus::Signal(_) => {
-                CaseResult::new(Outcome::Crashed, with_line(format!("the program ended with {end}")))
-            }
+            ExitStatus::Signal(_) => CaseResult::new(
+                Outcome::Crashed,
+                with_line(format!("the program ended with {end}")),
+            ),
         })
     }
 }
@@ -87,7 +88,10 @@ mod tests {
         assert_eq!(result(ExitStatus::Code(0), "warning"), (None, None));
         assert_eq!(result(ExitStatus::Code(77), "no arm"), with(Outcome::Skipped, "no arm"));
         assert_eq!(result(ExitStatus::Code(77), ""), with(Outcome::Skipped, "exit code 77"));
-        assert_eq!(result(ExitStatus::Code(3), "too slow"), with(Outcome::Failed, "exit code 3: too slow"));
+        assert_eq!(
+            result(ExitStatus::Code(3), "too slow"),
+            with(Outcome::Failed, "exit code 3: too slow")
+        );
         let missing = result(ExitStatus::Code(127), "sh: 1: x: not found");
         let text = "exit code 127: a program was not found: sh: 1: x: not found";
         assert_eq!(missing, with(Outcome::Error, text));

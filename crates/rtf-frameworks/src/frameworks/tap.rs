@@ -188,16 +188,9 @@ impl TapReader {
         // Descriptions need not be unique.
         let name = if *count == 1 { name } else { format!("{name}#{count}") };
         let start = StartedCase { name: name.clone(), ..StartedCase::default() };
-        let path = match self.open.last() {
-            None => {
-                cases.start(start);
-                name
-            }
-            Some(outer) => {
-                cases.start_in(Some(&outer.path), start);
-                format!("{}/{name}", outer.path)
-            }
-        };
+        let outer = self.open.last().map(|outer| outer.path.as_str());
+        let path = outer.map_or(name.clone(), |outer| format!("{outer}/{name}"));
+        cases.start_case(outer, start);
         self.open.push(OpenSubtest { path, names: HashMap::new() });
     }
 
@@ -216,9 +209,10 @@ impl TapReader {
             (_, Some(Directive::Skip(reason))) => {
                 (MessageKind::Report, skipped(if reason.is_empty() { "skipped" } else { &reason }))
             }
-            (false, Some(Directive::Todo(reason))) => {
-                (MessageKind::Report, skipped(format!("expected failure: {reason}").trim_end_matches([' ', ':'])))
-            }
+            (false, Some(Directive::Todo(reason))) => (
+                MessageKind::Report,
+                skipped(format!("expected failure: {reason}").trim_end_matches([' ', ':'])),
+            ),
             (true, Some(Directive::Todo(reason))) => {
                 let text = format!("the test passed although it is marked TODO: {reason}");
                 let text = text.trim_end_matches([' ', ':']);

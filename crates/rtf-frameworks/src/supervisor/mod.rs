@@ -295,7 +295,7 @@ impl TestRun<'_> {
                     cases.test_error(format!(
                         "the program ended with {status} before its report was complete"
                     ));
-                } else if cases.finished() == 0 && !has_rest && !cases.has_problem() {
+                } else if cases.has_no_result() && !has_rest {
                     cases.test_error(format!(
                         "the program ended with {status} and reported no case"
                     ));

@@ -67,9 +67,11 @@ pub(super) fn run(
         .map_err(|error| format!("the channel for the report cannot be opened: {error}"))?;
     let (program, scratch) = (&test.program, test.scratch);
     let launch = Launch { test: program, cases: selection, channel, scratch };
-    let command = test.framework.command(&launch)?;
+    let mut command = test.framework.command(&launch)?;
     let (session, session_end) =
         session_socket::pair().map_err(|error| format!("the session cannot be opened: {error}"))?;
+    let merged = open_outputs(&mut command, test, &launch)
+        .map_err(|error| format!("the outputs of the program cannot be opened: {error}"))?;
     let mut child = spawn(command, test, &session_end)?;
     // Otherwise the end of the program's report would never arrive.
     drop((theirs, session_end));
@@ -83,7 +85,7 @@ pub(super) fn run(
         test,
         session,
         source: source.or_else(|| stdout_source(&mut child, &launch.channel)),
-        outputs: outputs(&mut child),
+        outputs: outputs(&mut child, merged),
         reader: test.framework.reader(&launch),
         limit,
         termination: Termination::Exited,
@@ -117,11 +119,26 @@ pub(super) fn run(
     Ok(ProcessEnd { status, termination, last_error_line: last_error.text(), crash_reason })
 }
 
-fn spawn(mut command: Command, test: &TestRun<'_>, session: &OwnedFd) -> Result<Child, String> {
+/// Sets the streams of a program, and returns the pipe of merged outputs.
+fn open_outputs(
+    command: &mut Command,
+    test: &TestRun<'_>,
+    launch: &Launch<'_>,
+) -> std::io::Result<Option<OwnedFd>> {
     let watches = test.framework.watches_output();
+    command.stdin(Stdio::null());
+    if watches && test.framework.merges_output(launch) {
+        let (ours, theirs) = rustix::pipe::pipe_with(PipeFlags::CLOEXEC)?;
+        command.stdout(theirs.try_clone()?).stderr(theirs);
+        return Ok(Some(ours));
+    }
     let is_piped = watches || test.framework.channel() == ReportChannel::Stdout;
     let stream = |is_piped| if is_piped { Stdio::piped() } else { Stdio::inherit() };
-    command.stdin(Stdio::null()).stdout(stream(is_piped)).stderr(stream(watches));
+    command.stdout(stream(is_piped)).stderr(stream(watches));
+    Ok(None)
+}
+
+fn spawn(mut command: Command, test: &TestRun<'_>, session: &OwnedFd) -> Result<Child, String> {
     command.process_group(0);
     command.env(SESSION_VARIABLE, format!("fd:{}", session.as_raw_fd()));
     command.env(STACK_FILE_VARIABLE, &test.stack_file);
@@ -178,8 +195,9 @@ fn stdout_source(child: &mut Child, channel: &OpenChannel) -> Option<Source> {
 }
 
 /// The watched outputs.
-fn outputs(child: &mut Child) -> Vec<(OutputStream, File)> {
-    let stdout = child.stdout.take().map(|it| (OutputStream::Stdout, OwnedFd::from(it)));
+fn outputs(child: &mut Child, merged: Option<OwnedFd>) -> Vec<(OutputStream, File)> {
+    let stdout = child.stdout.take().map(OwnedFd::from).or(merged);
+    let stdout = stdout.map(|it| (OutputStream::Stdout, it));
     let stderr = child.stderr.take().map(|it| (OutputStream::Stderr, OwnedFd::from(it)));
     let outputs = stdout.into_iter().chain(stderr);
     outputs.filter_map(|(stream, fd)| Some((stream, non_blocking(fd)?))).collect()

@@ -27,7 +27,9 @@ pub fn changes(
             Some((name, operation, value))
         });
         let Some((name, operation, value)) = parsed else {
-            return Err(format!("`{text}` in ENVIRONMENT_MODIFICATION is not `NAME=OPERATION:VALUE`"));
+            return Err(format!(
+                "`{text}` in ENVIRONMENT_MODIFICATION is not `NAME=OPERATION:VALUE`"
+            ));
         };
         let current = || match changes.get(name) {
             Some(value) => value.clone().unwrap_or_default(),
@@ -51,7 +53,9 @@ pub fn changes(
             "path_list_prepend" => joined(":", false),
             "cmake_list_append" => joined(";", true),
             "cmake_list_prepend" => joined(";", false),
-            _ => return Err(format!("unknown operation `{operation}` in ENVIRONMENT_MODIFICATION")),
+            _ => {
+                return Err(format!("unknown operation `{operation}` in ENVIRONMENT_MODIFICATION"));
+            }
         };
         changes.insert(name.to_owned(), new);
     }

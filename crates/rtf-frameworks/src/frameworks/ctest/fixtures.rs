@@ -35,7 +35,10 @@ fn predecessors(tests: &[CTestCase]) -> Vec<Vec<usize>> {
     let set_ups = by_fixture(tests, |test| &test.sets_up);
     let users = by_fixture(tests, |test| &test.requires);
     let find = |map: &HashMap<&str, Vec<usize>>, fixtures: &[String]| {
-        fixtures.iter().flat_map(|it| map.get(it.as_str()).cloned().unwrap_or_default()).collect::<Vec<_>>()
+        fixtures
+            .iter()
+            .flat_map(|it| map.get(it.as_str()).cloned().unwrap_or_default())
+            .collect::<Vec<_>>()
     };
     let mut all = Vec::with_capacity(tests.len());
     for (index, test) in tests.iter().enumerate() {
@@ -69,10 +72,12 @@ pub fn with_fixtures<'a>(tests: &'a [CTestCase], selected: &HashSet<&str>) -> Ha
     let mut all: HashSet<&str> =
         tests.iter().map(|it| it.name.as_str()).filter(|name| selected.contains(name)).collect();
     loop {
-        let included = tests.iter().filter(|test| all.contains(test.name.as_str()) && !test.disabled);
+        let included =
+            tests.iter().filter(|test| all.contains(test.name.as_str()) && !test.disabled);
         let fixtures: HashSet<&String> = included.flat_map(|test| &test.requires).collect();
         let serves = |test: &&CTestCase| {
-            !test.disabled && test.sets_up.iter().chain(&test.cleans_up).any(|it| fixtures.contains(it))
+            !test.disabled
+                && test.sets_up.iter().chain(&test.cleans_up).any(|it| fixtures.contains(it))
         };
         let count = all.len();
         all.extend(tests.iter().filter(serves).map(|test| test.name.as_str()));

@@ -69,18 +69,27 @@ impl Judge {
     fn judge(&self, code: i32, output: &str) -> Judgement {
         let CTestCase { pass, fail, skip, .. } = &self.test;
         if let Some((pattern, _)) = first_match(skip, output) {
-            return Judgement::Skipped(format!("the output matches SKIP_REGULAR_EXPRESSION `{pattern}`"));
+            return Judgement::Skipped(format!(
+                "the output matches SKIP_REGULAR_EXPRESSION `{pattern}`"
+            ));
         }
         if self.test.skip_code == Some(code) {
             let line = last_line(output);
             let reason = format!("exit code {code} is its SKIP_RETURN_CODE");
-            return Judgement::Skipped(if line.is_empty() { reason } else { format!("{line} ({reason})") });
+            return Judgement::Skipped(if line.is_empty() {
+                reason
+            } else {
+                format!("{line} ({reason})")
+            });
         }
         let problem = if let Some((pattern, _)) = first_match(fail, output) {
             Some(format!("the output matches FAIL_REGULAR_EXPRESSION `{pattern}`"))
         } else if !pass.is_empty() && first_match(pass, output).is_none() {
             let patterns: Vec<String> = pass.iter().map(|(it, _)| format!("`{it}`")).collect();
-            Some(format!("the output does not match PASS_REGULAR_EXPRESSION {}", patterns.join(" or ")))
+            Some(format!(
+                "the output does not match PASS_REGULAR_EXPRESSION {}",
+                patterns.join(" or ")
+            ))
         } else if pass.is_empty() && code != 0 {
             Some(format!("exit code {code}"))
         } else {
@@ -89,12 +98,14 @@ impl Judge {
         match (problem, self.test.will_fail) {
             (None, false) | (Some(_), true) => Judgement::Passed,
             (Some(problem), false) => Judgement::Failed(problem),
-            (None, true) => Judgement::Failed("the test passed, and its property WILL_FAIL requires a failure".to_owned()),
+            (None, true) => Judgement::Failed(
+                "the test passed, and its property WILL_FAIL requires a failure".to_owned(),
+            ),
         }
     }
 
     /// Reports everything that the test has measured and attached.
-    fn report(&self, output: &str, has_failed: bool, cases: &mut CaseReporter<'_>) {
+    fn report_results(&self, output: &str, has_failed: bool, cases: &mut CaseReporter<'_>) {
         for (name, value) in &self.test.measurements {
             cases.property(None, name, value);
         }
@@ -106,7 +117,9 @@ impl Judge {
         for printed in measurements::find(output) {
             match printed {
                 Printed::Value(name, value) => cases.property(None, &name, &value),
-                Printed::File { name, path, media_type } => self.attach(&name, &path, &media_type, cases),
+                Printed::File { name, path, media_type } => {
+                    self.attach(&name, &path, &media_type, cases)
+                }
                 Printed::Details(text) => cases.message(None, MessageKind::Report, text, None),
                 Printed::Label(label) => {
                     cases.message(None, MessageKind::Report, format!("label: {label}"), None);
@@ -148,21 +161,25 @@ impl ReportReader for Judge {
             ExitStatus::Code(code) => self.judge(code, &output),
             ExitStatus::Signal(_) => Judgement::Failed(format!("the test ended with {end}")),
         };
-        self.report(&output, matches!(judgement, Judgement::Failed(_)), cases);
-        let has_expressions = [&self.test.pass, &self.test.fail, &self.test.skip].iter().any(|it| !it.is_empty());
+        self.report_results(&output, matches!(judgement, Judgement::Failed(_)), cases);
         let result = if let Some(limit) = self.exceeded() {
-            let reason = format!("the test ran longer than {limit:?} after the match of TIMEOUT_AFTER_MATCH");
+            let reason = format!(
+                "the test ran longer than {limit:?} after the match of TIMEOUT_AFTER_MATCH"
+            );
             CaseResult::new(Outcome::TimedOut, reason)
         } else if let ExitStatus::Signal(_) = end {
             // The supervisor finishes the case: it has crashed, whatever its properties are.
             return Ok(());
-        } else if self.is_cut && has_expressions {
-            let reason = "the test printed more than 64 MiB, which its regular expressions cannot search";
+        } else if self.is_cut && self.test.searches_output() {
+            let reason =
+                "the test printed more than 64 MiB, which its regular expressions cannot search";
             CaseResult::new(Outcome::Error, reason)
         } else {
             match judgement {
                 Judgement::Passed => CaseResult::default(),
-                Judgement::Failed(reason) => CaseResult::new(Outcome::Failed, with_quote(&reason, &output)),
+                Judgement::Failed(reason) => {
+                    CaseResult::new(Outcome::Failed, with_quote(&reason, &output))
+                }
                 Judgement::Skipped(reason) => CaseResult::new(Outcome::Skipped, reason),
             }
         };
@@ -171,7 +188,10 @@ impl ReportReader for Judge {
     }
 }
 
-fn first_match<'a>(expressions: &'a [(String, Regex)], output: &str) -> Option<&'a (String, Regex)> {
+fn first_match<'a>(
+    expressions: &'a [(String, Regex)],
+    output: &str,
+) -> Option<&'a (String, Regex)> {
     expressions.iter().find(|(_, regex)| regex.is_match(output))
 }
 
@@ -220,7 +240,10 @@ mod tests {
         let pass = || CTestCase { pass: expressions("ye+s"), ..test() };
         // The exit code does not matter then.
         assert_eq!(judged(pass(), 4, "yes\n"), "passed");
-        assert_eq!(judged(pass(), 0, "no\n"), "failed: the output does not match PASS_REGULAR_EXPRESSION `ye+s`");
+        assert_eq!(
+            judged(pass(), 0, "no\n"),
+            "failed: the output does not match PASS_REGULAR_EXPRESSION `ye+s`"
+        );
         let fail = CTestCase { fail: expressions("bad"), ..pass() };
         assert!(judged(fail, 0, "yes bad\n").starts_with("failed: the output matches FAIL"));
         let inverted = || CTestCase { will_fail: true, ..pass() };
@@ -229,7 +252,10 @@ mod tests {
         let skip = CTestCase { skip: expressions("no arm"), will_fail: true, ..test() };
         assert!(judged(skip, 1, "no arm\n").starts_with("skipped: the output matches"));
         let code = || CTestCase { skip_code: Some(77), ..test() };
-        assert_eq!(judged(code(), 77, "a\nno arm\n\n"), "skipped: no arm (exit code 77 is its SKIP_RETURN_CODE)");
+        assert_eq!(
+            judged(code(), 77, "a\nno arm\n\n"),
+            "skipped: no arm (exit code 77 is its SKIP_RETURN_CODE)"
+        );
         assert_eq!(judged(code(), 77, ""), "skipped: exit code 77 is its SKIP_RETURN_CODE");
         assert_eq!(judged(code(), 0, ""), "passed");
     }

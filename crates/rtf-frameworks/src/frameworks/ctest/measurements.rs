@@ -27,7 +27,7 @@ pub enum Printed {
 /// `(?s)`, because texts can have several lines. The names of the elements of CTest before 3.21
 /// begin with `Dart`.
 static ELEMENT: LazyLock<Option<Regex>> = LazyLock::new(|| {
-    let element = "(?s)<(CTest|Dart)(Measurement|MeasurementFile|Details|Label)([^>]*)>(.*?)</(CTest|Dart)(Measurement|MeasurementFile|Details|Label)>";
+    let element = "(?s)<(CTest|Dart)(MeasurementFile|Measurement|Details|Label)([^>]*)>(.*?)</(CTest|Dart)(MeasurementFile|Measurement|Details|Label)>";
     Regex::new(element).ok()
 });
 
@@ -49,7 +49,9 @@ pub fn find(output: &str) -> Vec<Printed> {
                 "MeasurementFile" => Printed::File {
                     name: attribute("name"),
                     path: value,
-                    media_type: Some(attribute("type")).filter(|it| it.contains('/') && it != "file/file").unwrap_or_default(),
+                    media_type: Some(attribute("type"))
+                        .filter(|it| it.contains('/') && it != "file/file")
+                        .unwrap_or_default(),
                 },
                 "Details" => Printed::Details(value),
                 _ => Printed::Label(value),
@@ -81,7 +83,11 @@ mod tests {
                       <CTestDetails>slow</CTestDetails><CTestLabel>nightly</CTestLabel>";
         let expected = [
             Printed::Value("speed".into(), "1.5".into()),
-            Printed::File { name: "plot".into(), path: "a/b.png".into(), media_type: "image/png".into() },
+            Printed::File {
+                name: "plot".into(),
+                path: "a/b.png".into(),
+                media_type: "image/png".into(),
+            },
             Printed::Value("note".into(), "a < b\nc".into()),
             Printed::Details("slow".into()),
             Printed::Label("nightly".into()),

@@ -61,6 +61,14 @@ pub struct CTestCase {
     pub measurements: Vec<(String, String)>,
 }
 
+impl CTestCase {
+    /// Whether its output decides its result.
+    pub fn searches_output(&self) -> bool {
+        let expressions = [&self.pass, &self.fail, &self.skip];
+        expressions.iter().any(|it| !it.is_empty()) || self.timeout_after_match.is_some()
+    }
+}
+
 #[derive(Deserialize)]
 struct Document {
     kind: String,
@@ -105,8 +113,8 @@ struct Node {
 /// # Errors
 /// It is not such a document, or an expression is not valid.
 pub fn parse(json: &[u8]) -> Result<Vec<CTestCase>, String> {
-    let document: Document =
-        serde_json::from_slice(json).map_err(|error| format!("`ctest` printed no list of tests: {error}"))?;
+    let document: Document = serde_json::from_slice(json)
+        .map_err(|error| format!("`ctest` printed no list of tests: {error}"))?;
     if document.kind != "ctestInfo" {
         return Err(format!("`ctest` printed a document of the kind `{}`", document.kind));
     }
@@ -122,7 +130,10 @@ pub fn parse(json: &[u8]) -> Result<Vec<CTestCase>, String> {
                 number => format!("{}#{number}", test.name),
             };
             let location = test.backtrace.and_then(|node| document.backtraces.location(node));
-            read_test(CTestCase { name, command: test.command, location, ..CTestCase::default() }, &test.properties)
+            read_test(
+                CTestCase { name, command: test.command, location, ..CTestCase::default() },
+                &test.properties,
+            )
         })
         .collect()
 }
@@ -168,7 +179,9 @@ fn read_test(mut test: CTestCase, properties: &[Property]) -> Result<CTestCase, 
             "PASS_REGULAR_EXPRESSION" => test.pass = compiled()?,
             "FAIL_REGULAR_EXPRESSION" => test.fail = compiled()?,
             "SKIP_REGULAR_EXPRESSION" => test.skip = compiled()?,
-            "SKIP_RETURN_CODE" => test.skip_code = value.as_i64().and_then(|code| i32::try_from(code).ok()),
+            "SKIP_RETURN_CODE" => {
+                test.skip_code = value.as_i64().and_then(|code| i32::try_from(code).ok())
+            }
             "DISABLED" => test.disabled = is_true(value),
             "LABELS" => test.labels = texts(value),
             "DEPENDS" => test.depends = texts(value),
@@ -208,7 +221,9 @@ fn texts(value: &Value) -> Vec<String> {
 fn is_true(value: &Value) -> bool {
     match value {
         Value::Bool(value) => *value,
-        Value::String(text) => matches!(text.to_ascii_uppercase().as_str(), "1" | "ON" | "TRUE" | "YES" | "Y"),
+        Value::String(text) => {
+            matches!(text.to_ascii_uppercase().as_str(), "1" | "ON" | "TRUE" | "YES" | "Y")
+        }
         other => other.as_f64().is_some_and(|number| number != 0.0),
     }
 }
@@ -249,12 +264,19 @@ mod tests {
         assert_eq!(test.measurements, [("m".to_owned(), "3".to_owned())]);
         assert_eq!((test.will_fail, test.skip_code), (true, Some(4)));
         assert_eq!(test.timeout_after_match.as_ref().unwrap().0, Duration::from_secs(5));
-        assert_eq!((tests[1].name.as_str(), tests[1].timeout, tests[1].command.len()), ("a#2", None, 0));
+        assert_eq!(
+            (tests[1].name.as_str(), tests[1].timeout, tests[1].command.len()),
+            ("a#2", None, 0)
+        );
     }
 
     #[test]
     fn bad_documents() {
-        assert!(parse(b"Test project /x\n").unwrap_err().starts_with("`ctest` printed no list of tests"));
+        assert!(
+            parse(b"Test project /x\n")
+                .unwrap_err()
+                .starts_with("`ctest` printed no list of tests")
+        );
         assert!(parse(br#"{"kind":"other","tests":[]}"#).is_err());
         let bad_regex = br#"{"kind":"ctestInfo","tests":[{"name":"a","properties":[
             {"name":"FAIL_REGULAR_EXPRESSION","value":["(x"]}]}]}"#;

@@ -183,7 +183,8 @@ fn location_of(text: &str) -> Option<(String, u32)> {
     };
     let (rest, last) = text.rsplit_once(':')?;
     let last: u32 = last.trim().parse().ok()?;
-    let with_column = rest.rsplit_once(':').and_then(|(file, line)| Some((file, line.parse().ok()?)));
+    let with_column =
+        rest.rsplit_once(':').and_then(|(file, line)| Some((file, line.parse().ok()?)));
     let (file, line) = with_column.unwrap_or((rest, last));
     (!file.is_empty()).then(|| (file.strip_prefix("file://").unwrap_or(file).to_owned(), line))
 }
@@ -284,14 +285,20 @@ mod tests {
 
     #[test]
     fn comments_of_producers() {
-        let perl = comments("  Failed test 'x'\n  at t/arm.t line 3.\n         got: '1'\n    expected: '2'\n");
+        let perl = comments(
+            "  Failed test 'x'\n  at t/arm.t line 3.\n         got: '1'\n    expected: '2'\n",
+        );
         assert_eq!(perl.location, at("t/arm.t", 3));
         assert_eq!((perl.actual.as_deref(), perl.expected.as_deref()), (Some("'1'"), Some("'2'")));
         assert_eq!(perl.message, None);
-        let bats = comments("(from function `f' in file a.bash, line 9,\n in test file t.bats, line 2)\n  `f' failed");
+        let bats = comments(
+            "(from function `f' in file a.bash, line 9,\n in test file t.bats, line 2)\n  `f' failed",
+        );
         assert_eq!(bats.location, at("t.bats", 2));
         assert!(bats.message.is_some_and(|text| text.ends_with("`f' failed")));
-        let python = comments("Traceback:\n  File \"case.py\", line 57, in x\n  File \"t.py\", line 9, in y\nAssertionError: 1 != 0");
+        let python = comments(
+            "Traceback:\n  File \"case.py\", line 57, in x\n  File \"t.py\", line 9, in y\nAssertionError: 1 != 0",
+        );
         assert_eq!(python.location, at("t.py", 9));
     }
 }

@@ -78,7 +78,10 @@ impl TapLine {
         if line.trim_end() == "}" {
             return Self::BlockEnd;
         }
-        parse_plan(line).map(Self::Plan).or_else(|| parse_point(line).map(Self::Point)).unwrap_or(Self::Other)
+        parse_plan(line)
+            .map(Self::Plan)
+            .or_else(|| parse_point(line).map(Self::Point))
+            .unwrap_or(Self::Other)
     }
 }
 
@@ -141,9 +144,8 @@ fn split_directive(text: &str) -> (&str, Option<Directive>) {
             continue;
         }
         let word = text[index + 1..].trim_start();
-        let explanation = |rest: &str| {
-            rest.trim_start_matches(|c: char| !c.is_whitespace()).trim().to_owned()
-        };
+        let explanation =
+            |rest: &str| rest.trim_start_matches(|c: char| !c.is_whitespace()).trim().to_owned();
         if let Some(rest) = strip_ignoring_case(word, "skip") {
             return (text[..index].trim_end(), Some(Directive::Skip(explanation(rest))));
         }
@@ -191,7 +193,10 @@ mod tests {
     #[test]
     fn test_lines() {
         let all = point("not ok 12 - moves the arm");
-        assert_eq!((all.ok, all.number, all.description.as_str()), (false, Some(12), "moves the arm"));
+        assert_eq!(
+            (all.ok, all.number, all.description.as_str()),
+            (false, Some(12), "moves the arm")
+        );
         assert_eq!(point("ok"), TestPoint { ok: true, ..TestPoint::default() });
         assert_eq!(point("ok moves").description, "moves");
         assert_eq!(point("ok - moves").description, "moves");
@@ -214,7 +219,8 @@ mod tests {
         assert_eq!(point("not ok 4 x # TODO").directive, todo(""));
         assert_eq!(point("not ok 4 x # todo later # really").description, "x");
         // Not directives.
-        for line in [r"ok 1 - a \# SKIP b", "ok 1 - issue #12", "ok 1 a # todos", "ok 1 - C# skip"] {
+        for line in [r"ok 1 - a \# SKIP b", "ok 1 - issue #12", "ok 1 a # todos", "ok 1 - C# skip"]
+        {
             assert_eq!(point(line).directive, None, "{line}");
         }
         assert_eq!(point(r"ok 1 - a \# b \\ c \n").description, r"a # b \ c \n");

@@ -140,11 +140,6 @@ impl TapParser {
         top.seen > 0 || top.plan.is_some() || self.streams.len() > 1 || self.has_bailed_out
     }
 
-    /// The test line whose diagnostics may still arrive.
-    pub fn pending_point(&mut self) -> Option<&mut ReportedPoint> {
-        self.top().pending.as_mut().map(|pending| &mut pending.reported)
-    }
-
     /// Reads a line of a YAML block, or the first line of one.
     fn read_yaml(&mut self, line: &str, indentation: usize) -> bool {
         let Some(yaml) = &mut self.yaml else {
@@ -187,7 +182,9 @@ impl TapParser {
                     pending.accepts_comments &= line.is_empty();
                 }
                 if self.is_strict && !line.trim().is_empty() {
-                    self.problem(&format!("a line is not TAP, which `pragma +strict` forbids: {line}"));
+                    self.problem(&format!(
+                        "a line is not TAP, which `pragma +strict` forbids: {line}"
+                    ));
                 }
                 self.output();
             }

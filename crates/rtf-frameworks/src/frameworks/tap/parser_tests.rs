@@ -99,12 +99,21 @@ fn wrong_counts_and_numbers() {
     assert_eq!(read("ok 1 a\n").last().unwrap(), "!there is no plan (`1..N`)");
     assert_eq!(read("1..2\nok 1 a\nok 1 b\n")[1], "!the test number 1 is used twice");
     let beyond = read("1..1\nok 1 a\nok 2 b\n");
-    assert_eq!(beyond[1..], ["!test 2 is not in the plan, 1..1", "b: ok", "!2 of 1 planned tests were reported"]);
+    assert_eq!(
+        beyond[1..],
+        ["!test 2 is not in the plan, 1..1", "b: ok", "!2 of 1 planned tests were reported"]
+    );
     assert_eq!(read("1..1\nok 1 a\n1..1\n").last().unwrap(), "!there is a second plan");
-    assert!(read("ok 1 a\n1..2\nok 2 b\n").contains(&"!test 2 follows the plan, which is at the end".to_owned()));
+    assert!(
+        read("ok 1 a\n1..2\nok 2 b\n")
+            .contains(&"!test 2 follows the plan, which is at the end".to_owned())
+    );
     // Producers that run tests in parallel.
     assert_eq!(read("1..2\nok 2 b\nok 1 a\n"), ["b: ok", "a: ok"]);
-    assert_eq!(read("    ok 1 - b\nok 1 - a\n1..1\n"), ["+a", "b: ok", "!there is no plan (`1..N`)", "-a: ok"]);
+    assert_eq!(
+        read("    ok 1 - b\nok 1 - a\n1..1\n"),
+        ["+a", "b: ok", "!there is no plan (`1..N`)", "-a: ok"]
+    );
     assert_eq!(read("1..0\nok 1 a\n").last().unwrap(), "!1 of 0 planned tests were reported");
 }
 
@@ -123,13 +132,16 @@ fn a_killed_program_leaves_its_subtest_open() {
     assert_eq!(read_until(bare, false), ["+unnamed subtest", "c: ok"]);
     let yaml = "1..5\nnot ok 1 a\n  ---\n  message: x\n";
     assert_eq!(read_until(yaml, false), ["a: not ok yaml"]);
-    assert_eq!(read_until("1..1\n# Subtest: b\n    ok 1 c\n    1..1\n", true), [
-        "+b",
-        "c: ok",
-        "!the subtest has no test line of its own",
-        "-: not ok",
-        "!0 of 1 planned tests were reported",
-    ]);
+    assert_eq!(
+        read_until("1..1\n# Subtest: b\n    ok 1 c\n    1..1\n", true),
+        [
+            "+b",
+            "c: ok",
+            "!the subtest has no test line of its own",
+            "-: not ok",
+            "!0 of 1 planned tests were reported",
+        ]
+    );
 }
 
 #[test]

@@ -137,7 +137,8 @@ mod tests {
         assert_eq!(perl.read(b"warning\n#   Failed test 'b'\n#   at t.t "), []);
         assert_eq!(perl.read(b"line 3.\n#          got: '1'\n"), []);
         assert_eq!(perl.add(point(false, "d")), []);
-        let block_of_d = b"    #   Failed test at t.t line 4.\n# Looks like you failed 2 tests of 4.\n";
+        let block_of_d =
+            b"    #   Failed test at t.t line 4.\n# Looks like you failed 2 tests of 4.\n";
         let released = [("b".to_owned(), 3), ("c".to_owned(), 0), ("d".to_owned(), 1)];
         assert_eq!(shown(perl.read(block_of_d)), released);
     }

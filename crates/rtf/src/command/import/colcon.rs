@@ -89,7 +89,8 @@ fn package_name(dir: &Path) -> Option<String> {
         let (_, rest) = text.split_once("<name>")?;
         return Some(rest.split_once("</name>")?.0.trim().to_owned());
     }
-    let is_python = ["setup.py", "setup.cfg", "pyproject.toml"].iter().any(|it| dir.join(it).is_file());
+    let is_python =
+        ["setup.py", "setup.cfg", "pyproject.toml"].iter().any(|it| dir.join(it).is_file());
     let name = dir.file_name()?.to_string_lossy().into_owned();
     is_python.then_some(name)
 }

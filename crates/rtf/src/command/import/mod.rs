@@ -80,8 +80,7 @@ fn refuse_existing(output: &ImportOutput) -> Result<(), Failure> {
 
 fn exists(file: &Path) -> Failure {
     let error = format!("`{}` exists", file.display());
-    Failure::input(error)
-        .hint("`--force` overwrites it, `--output FILE` writes to another file")
+    Failure::input(error).hint("`--force` overwrites it, `--output FILE` writes to another file")
 }
 
 fn write(import: &Import, output: &ImportOutput) -> Result<(), Failure> {

@@ -105,12 +105,7 @@ fn import(test: &ListedTest, found: Recognized) -> ImportedTest {
     }
 }
 
-fn remaining(
-    rest: &[&ListedTest],
-    all: usize,
-    build: &Path,
-    config: Option<&str>,
-) -> ImportedTest {
+fn remaining(rest: &[&ListedTest], all: usize, build: &Path, config: Option<&str>) -> ImportedTest {
     let names = rest.iter().map(|test| test.name.clone());
     let cases = if rest.len() == all { Vec::new() } else { names.clone().collect() };
     let args = config.map_or(Vec::new(), |config| vec!["-C".to_owned(), config.to_owned()]);
@@ -279,7 +274,11 @@ mod tests {
         let discovered = |name: &str| {
             let filter = format!("--gtest_filter={name}");
             let command = [arm.as_str(), &filter, "--gtest_also_run_disabled_tests"];
-            ListedTest::new(name, &command, &[("SKIP_REGULAR_EXPRESSION", r"\[  SKIPPED \]"), ("TIMEOUT", "9")])
+            ListedTest::new(
+                name,
+                &command,
+                &[("SKIP_REGULAR_EXPRESSION", r"\[  SKIPPED \]"), ("TIMEOUT", "9")],
+            )
         };
         let own_filter = ListedTest::new("own", &[&arm, "--gtest_filter=A.*"], &[]);
         let with_args = ListedTest::new("args", &[&arm, "--robot", "sim"], &[("LABELS", "slow")]);
@@ -287,8 +286,16 @@ mod tests {
         let elsewhere = ListedTest::new("elsewhere", &[&arm], &[("WORKING_DIRECTORY", "/usr")]);
         let first = ListedTest::new("first", &[&arm], &[]);
         let second = ListedTest::new("second", &["/bin/sh"], &[("DEPENDS", "first")]);
-        let listed =
-            [discovered("A.a"), own_filter, discovered("A.b"), with_args, inverted, elsewhere, first, second];
+        let listed = [
+            discovered("A.a"),
+            own_filter,
+            discovered("A.b"),
+            with_args,
+            inverted,
+            elsewhere,
+            first,
+            second,
+        ];
         let tests = tests(&listed, dir.path(), None);
         let expected = [
             "gtest arm_test [] [] A.a+A.b",
@@ -309,10 +316,14 @@ mod tests {
             let words = [&wrapper[..], options, &["--command"], rest].concat();
             ListedTest::new("test_arm", &words, &[("REQUIRED_FILES", &arm), ("TIMEOUT", "600")])
         };
-        let gtest = command(&["--env", "A=1", "B=x=y", "--output-file", "o"], &[&arm, "--gtest_output=xml:r.xml"]);
+        let gtest = command(
+            &["--env", "A=1", "B=x=y", "--output-file", "o"],
+            &[&arm, "--gtest_output=xml:r.xml"],
+        );
         let found = tests(&[gtest], dir.path(), None);
         assert_eq!(shown(&found), ["gtest test_arm [] [] test_arm"]);
-        let env = [("A", "1"), ("B", "x=y")].map(|(name, value)| (name.to_owned(), value.to_owned()));
+        let env =
+            [("A", "1"), ("B", "x=y")].map(|(name, value)| (name.to_owned(), value.to_owned()));
         assert_eq!(found[0].env, env);
         assert_eq!(found[0].timeout.as_deref(), Some("600"));
         let skipped = command(&["--skip-test"], &[&arm]);
@@ -321,7 +332,8 @@ mod tests {
 
     #[test]
     fn pytest_without_the_options_for_reports() {
-        let command = "/usr/bin/python3 -u -m pytest /p/test_py.py -o cache_dir=/c --junit-xml=x -k fast";
+        let command =
+            "/usr/bin/python3 -u -m pytest /p/test_py.py -o cache_dir=/c --junit-xml=x -k fast";
         let words: Vec<&str> = command.split(' ').collect();
         let listed = [ListedTest::new("test_py", &words, &[])];
         let found = tests(&listed, Path::new("/b"), None);
@@ -329,6 +341,9 @@ mod tests {
         assert_eq!(found[0].subject, "/p/test_py.py");
         // Two files are not one test.
         let listed = [ListedTest::new("two", &["pytest", "/a.py", "/b.py"], &[])];
-        assert_eq!(shown(&tests(&listed, Path::new("/b"), Some("Debug"))), [r#"ctest ctest ["-C", "Debug"] [] two"#]);
+        assert_eq!(
+            shown(&tests(&listed, Path::new("/b"), Some("Debug"))),
+            [r#"ctest ctest ["-C", "Debug"] [] two"#]
+        );
     }
 }

@@ -65,7 +65,8 @@ fn push_test(text: &mut String, test: &ImportedTest, name: &str, dir: &Path) {
     };
     push("param", &words(&test.args));
     push("cases", &words(&test.cases.iter().map(|case| pattern(case)).collect::<Vec<_>>()));
-    let seconds = |limit: &Option<String>| limit.as_ref().map_or(String::new(), |it| format!("{it}s"));
+    let seconds =
+        |limit: &Option<String>| limit.as_ref().map_or(String::new(), |it| format!("{it}s"));
     push("timeout", &seconds(&test.timeout));
     push("case-timeout", &seconds(&test.case_timeout));
     // Tags are separated by spaces and commas.
@@ -90,7 +91,9 @@ fn explanation(test: &ImportedTest) -> Option<String> {
     let dots = if names.len() > NAMES_SHOWN { ", …" } else { "" };
     let replaced = match (test.kind, names.len()) {
         (_, 0) => None,
-        ("ctest", _) => Some("Tests that only CTest can run, or whose framework is not known".to_owned()),
+        ("ctest", _) => {
+            Some("Tests that only CTest can run, or whose framework is not known".to_owned())
+        }
         (_, 1) => Some(format!("CTest: {shown}")),
         (_, count) => Some(format!("{count} tests of CTest: {shown}{dots}")),
     };
