@@ -76,6 +76,7 @@ struct TapReader {
     skip_reason: Option<String>,
     bail_out: Option<String>,
     has_problem: bool,
+    has_ended: bool,
     first_line: Option<String>,
     last_error: String,
 }
@@ -121,6 +122,7 @@ impl ReportReader for TapReader {
         } else if !self.line.is_empty() {
             self.read_line(cases);
         }
+        self.has_ended = true;
         let events = self.parser.finish(!was_killed);
         self.add(events, cases);
         if let Some(mut perl) = self.perl.take() {
@@ -170,8 +172,12 @@ impl TapReader {
                     self.close(reported, false, cases);
                 }
                 TapEvent::Closed(reported) => self.close(reported, true, cases),
-                TapEvent::Problem(text) => {
+                TapEvent::Problem(mut text) => {
                     self.has_problem = true;
+                    // Why the rest of the plan is missing.
+                    if self.has_ended && !self.last_error.is_empty() {
+                        text = format!("{text}: {}", self.last_error);
+                    }
                     cases.message(None, MessageKind::Error, text, None);
                 }
                 TapEvent::SkippedAll(reason) => self.skip_reason = Some(reason),
@@ -246,7 +252,8 @@ impl TapReader {
             )));
         } else if let (Some(reason), 0, 0) = (&self.skip_reason, code, cases.finished()) {
             cases.skip_test(if reason.is_empty() { "the plan is 1..0" } else { reason });
-        } else if code != 0 && !cases.has_problem() && !self.has_problem {
+        } else if code != 0 && !cases.has_problem() && !self.has_problem && self.bail_out.is_none()
+        {
             cases.test_error(error(format!(
                 "the program ended with exit code {code} although no test line is `not ok`"
             )));
@@ -269,11 +276,9 @@ fn report(found: Diagnostics, kind: MessageKind, path: &str, cases: &mut CaseRep
     let is_failure = kind == MessageKind::Failure;
     let comparison = comparison(expected.as_deref(), actual.as_deref());
     let mut lines: Vec<String> = message.into_iter().collect();
-    if comparison.is_none() || !is_failure {
-        let labelled = [("expected", expected), ("actual", actual)];
-        let labelled = labelled.into_iter().filter_map(|(label, text)| Some((label, text?)));
-        lines.extend(labelled.map(|(label, text)| entry(label, &text)));
-    }
+    let labelled = [("expected", expected), ("actual", actual)];
+    let labelled = labelled.into_iter().filter_map(|(label, text)| Some((label, text?)));
+    lines.extend(labelled.map(|(label, text)| entry(label, &text)));
     if lines.is_empty() && is_failure {
         lines.push("not ok".to_owned());
     }

@@ -211,7 +211,8 @@ fn with_quote(reason: &str, output: &str) -> String {
     match &lines[start..] {
         [] => reason.to_owned(),
         [line] => format!("{reason}: {line}"),
-        quoted => format!("{reason}, after the output\n{}", quoted.join("\n")),
+        // The first line is all that an overview shows.
+        [.., last] => format!("{reason}: {last}\n{}", lines[start..].join("\n")),
     }
 }
 
@@ -265,6 +266,6 @@ mod tests {
         assert_eq!(with_quote("exit code 1", ""), "exit code 1");
         assert_eq!(with_quote("exit code 1", "no arm\n\n"), "exit code 1: no arm");
         let long = (1..=20).map(|line| format!("{line}\n")).collect::<String>();
-        assert!(with_quote("x", &long).starts_with("x, after the output\n11\n12\n"));
+        assert!(with_quote("x", &long).starts_with("x: 20\n11\n12\n"));
     }
 }

@@ -10,6 +10,9 @@ use serde_json::Value;
 
 use super::regex_dialect;
 
+/// Commands that read another file.
+const INCLUDES: [&str; 2] = ["include", "find_package"];
+
 /// A test of a build directory.
 #[derive(Clone, Debug, Default)]
 pub struct CTestCase {
@@ -96,6 +99,8 @@ struct Property {
 #[derive(Default, Deserialize)]
 struct Backtraces {
     #[serde(default)]
+    commands: Vec<String>,
+    #[serde(default)]
     files: Vec<String>,
     #[serde(default)]
     nodes: Vec<Node>,
@@ -103,6 +108,7 @@ struct Backtraces {
 
 #[derive(Deserialize)]
 struct Node {
+    command: Option<usize>,
     file: usize,
     line: Option<u32>,
     parent: Option<usize>,
@@ -139,21 +145,19 @@ pub fn parse(json: &[u8]) -> Result<Vec<CTestCase>, String> {
 }
 
 impl Backtraces {
-    /// The outermost call, in the project's own file, not in a module of CMake.
+    /// The outermost call, so that tests that a function adds have the lines of its calls.
     fn location(&self, node: usize) -> Option<(String, u32)> {
         let mut found = None;
         let mut next = Some(node);
         // A damaged graph could be circular.
         for _ in 0..self.nodes.len() {
             let Some(node) = next.and_then(|index| self.nodes.get(index)) else { break };
-            if let (Some(line), Some(file)) = (node.line, self.files.get(node.file)) {
-                let is_own = file.ends_with("CMakeLists.txt");
-                if found.is_none() || is_own {
-                    found = Some((file.clone(), line));
-                }
-                if is_own {
-                    break;
-                }
+            let command = node.command.and_then(|index| self.commands.get(index));
+            let includes = command.is_some_and(|name| INCLUDES.contains(&name.as_str()));
+            if let (Some(line), Some(file), false) =
+                (node.line, self.files.get(node.file), includes)
+            {
+                found = Some((file.clone(), line));
             }
             next = node.parent;
         }
@@ -245,9 +249,9 @@ mod tests {
 
     #[test]
     fn properties_of_a_test() {
-        let json = r#"{"kind":"ctestInfo","backtraceGraph":{"commands":["add_test","my_test"],
+        let json = r#"{"kind":"ctestInfo","backtraceGraph":{"commands":["add_test","my_test","include"],
             "files":["/p/my.cmake","/p/CMakeLists.txt"],
-            "nodes":[{"file":1},{"file":1,"line":7,"parent":0},{"command":0,"file":0,"line":3,"parent":1}]},
+            "nodes":[{"command":2,"file":1,"line":2},{"command":1,"file":1,"line":7,"parent":0},{"command":0,"file":0,"line":3,"parent":1}]},
             "tests":[{"name":"a","command":["/bin/sh","-c","x"],"backtrace":2,"properties":[
                 {"name":"TIMEOUT","value":1.5},{"name":"WILL_FAIL","value":true},
                 {"name":"LABELS","value":["l1","l2"]},{"name":"PASS_REGULAR_EXPRESSION","value":["a","b+"]},
