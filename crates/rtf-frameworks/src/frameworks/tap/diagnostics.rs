@@ -95,7 +95,14 @@ impl Diagnostics {
         // The innermost frame of a Python traceback.
         let frame = lines.iter().rev().find_map(|line| python_location(line.trim()));
         found.location = found.location.or(frame);
-        let rest = rest.join("\n");
+        let last = rest.iter().rev().find(|line| !line.trim().is_empty()).map(|it| it.trim());
+        let rest = match (rest.first(), last) {
+            // The exception is at the end; overviews show the first line.
+            (Some(first), Some(last)) if first.starts_with("Traceback") => {
+                format!("{last}\n{}", rest.join("\n"))
+            }
+            _ => rest.join("\n"),
+        };
         found.message = (!rest.trim().is_empty()).then_some(rest);
         found
     }
@@ -300,5 +307,10 @@ mod tests {
             "Traceback:\n  File \"case.py\", line 57, in x\n  File \"t.py\", line 9, in y\nAssertionError: 1 != 0",
         );
         assert_eq!(python.location, at("t.py", 9));
+        assert!(
+            python
+                .message
+                .is_some_and(|text| text.starts_with("AssertionError: 1 != 0\nTraceback"))
+        );
     }
 }

@@ -312,7 +312,8 @@ impl TapParser {
 
     /// `}`: the test line of the subtest was before it.
     fn end_block(&mut self) {
-        if let Some(owner) = self.top().owner.take() {
+        if let Some(mut owner) = self.top().owner.take() {
+            owner.point.opens_block = false;
             let subtest = self.top().ended.take();
             let pending = Pending { reported: owner, subtest, accepts_comments: false };
             self.top().pending = Some(pending);

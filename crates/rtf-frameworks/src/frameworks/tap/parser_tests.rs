@@ -76,6 +76,8 @@ fn subtests_in_braces() {
                 ok 2 - not a block {\n1..2\n";
     let expected = ["+a", "+b", "c: ok", "-b: ok", "-a: ok", "not a block {: ok"];
     assert_eq!(read(text), expected);
+    let next = read("1..2\nok 1 - a {\n  ok 1 - b\n  1..1\n}\n    1..1\n    ok 1 - d\nok 2 - c\n");
+    assert_eq!(next, ["+a", "b: ok", "-a: ok", "+c", "d: ok", "-c: ok"]);
     let cut = read("1..1\nok 1 - a {\n    ok 1 - b\n    1..1\n");
     assert_eq!(cut, ["+a", "b: ok", "!the subtest has no end (`}`)", "-: not ok"]);
 }

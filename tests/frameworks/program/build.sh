@@ -1,0 +1,3 @@
+# shellcheck shell=bash
+# Programs without a framework; they need only a shell.
+:

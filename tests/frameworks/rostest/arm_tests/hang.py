@@ -1,0 +1,6 @@
+#!/usr/bin/python3
+"""Reports nothing."""
+
+import time
+
+time.sleep(1000)

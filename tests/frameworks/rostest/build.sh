@@ -1,0 +1,4 @@
+# shellcheck shell=bash
+# rostest, on a roscore of the suite; tools/middleware.sh installs the rest of ROS 1.
+need_packages python3-rostest
+setting ROS_PACKAGE_PATH "$source:/usr/share"
