@@ -276,9 +276,6 @@ pub trait ReportReader {
         None
     }
 
-    /// The process was killed at the limit of a case, and everything that it wrote was read.
-    fn flush(&mut self, _cases: &mut CaseReporter<'_>) {}
-
     /// The process has ended, and everything that it wrote was read.
     ///
     /// # Errors
