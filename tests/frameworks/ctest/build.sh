@@ -1,4 +1,5 @@
 # shellcheck shell=bash
+# shellcheck disable=SC2154 # source, out: set by tests/frameworks/build.sh
 # CTest comes with CMake.
 need_packages cmake gcc ninja-build
 quietly cmake -S "$source" -B "$out/arm"

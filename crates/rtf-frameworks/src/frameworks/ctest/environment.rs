@@ -22,9 +22,9 @@ pub fn changes(
     }
     let assigned = changes.clone();
     for text in modifications {
-        let parsed = text.split_once('=').and_then(|(name, change)| {
+        let parsed = text.split_once('=').map(|(name, change)| {
             let (operation, value) = change.split_once(':').unwrap_or((change, ""));
-            Some((name, operation, value))
+            (name, operation, value)
         });
         let Some((name, operation, value)) = parsed else {
             return Err(format!(
