@@ -168,7 +168,7 @@ impl ReportReader for Judge {
             );
             CaseResult::new(Outcome::TimedOut, reason)
         } else if let ExitStatus::Signal(_) = end {
-            // The supervisor finishes the case: it has crashed, whatever its properties are.
+            // The supervisor finishes the case: it has crashed in any case.
             return Ok(());
         } else if self.is_cut && self.test.searches_output() {
             let reason =

@@ -1,7 +1,7 @@
 //! Diagnostics of a test line: a YAML block, or comments as Test::More, bats and tap.py write
 //! them.
 //!
-//! Producers write YAML by hand and often not correctly (unquoted text, `diff` with tabs), and
+//! Producers print YAML without a library, and often not correctly (unquoted text, `diff` with tabs), and
 //! a block that a strict parser rejects must not be lost. So this reads the mapping of the
 //! block line by line, and keeps the text of everything else.
 
