@@ -13,12 +13,6 @@ mod junit;
 mod program;
 mod pytest;
 mod python;
-mod recorded;
-mod rostest;
-mod sections;
-mod session_program;
-mod tap;
-mod unittest;
 #[cfg(test)]
 mod recorded;
 mod rostest;
