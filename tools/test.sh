@@ -319,6 +319,7 @@ step 'framework ctest' framework ctest
 step 'framework tap' framework tap
 step 'framework program' framework program
 step_with 'framework rostest' ros1 framework rostest
+step 'example 09' example_09
 step 'guide' tools/check_docs.py "$TARGET/release/rtf" README.md docs/getting-started.md \
   docs/writing-tests.md docs/isolation.md docs/simulation-time.md docs/migrating.md docs/migrating-others.md
 step 'guide commands' tools/check_running.py "$TARGET/release/rtf"
