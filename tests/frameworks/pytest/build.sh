@@ -1,4 +1,5 @@
 # shellcheck shell=bash
+# shellcheck disable=SC2154 # tests/frameworks/build.sh sets the directories
 # pytest with pytest-xdist, in a virtual environment.
 venv=$(tools/venv.sh pytest)
 
