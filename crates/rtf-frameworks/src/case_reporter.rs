@@ -69,6 +69,8 @@ pub struct CaseReporter<'a> {
     /// How many top-level cases finished in the present process.
     finished: usize,
     last_finished: Option<String>,
+    /// The path of the open case in which the program is, if it is not the innermost one.
+    current: Option<String>,
     /// Whether the program skipped itself.
     is_skipped: bool,
 }
@@ -91,6 +93,7 @@ impl<'a> CaseReporter<'a> {
             is_complete: false,
             finished: 0,
             last_finished: None,
+            current: None,
             is_skipped: false,
         }
     }
@@ -180,7 +183,13 @@ impl<'a> CaseReporter<'a> {
         }
         self.started = id.0;
         let started = Instant::now();
+        self.current = None;
         self.open.push(OpenCase { path, case: id, parent, started, has_problem: false });
+    }
+
+    /// The program is in the open case with this path, until another case starts or finishes.
+    pub fn set_current(&mut self, path: &str) {
+        self.current = Some(path.to_owned());
     }
 
     /// Finishes the open case with this path. The cases in it must have finished.
@@ -196,6 +205,7 @@ impl<'a> CaseReporter<'a> {
         }
         let Some(index) = self.open.iter().rposition(|open| open.case == case) else { return };
         let open = self.open.remove(index);
+        self.current = None;
         let CaseResult { outcome, reason } = result;
         let is_bad = outcome.is_some_and(|it| !matches!(it, Outcome::Passed | Outcome::Skipped));
         let has_problem = open.has_problem || is_bad;
@@ -422,6 +432,7 @@ impl<'a> CaseReporter<'a> {
 
     /// The case of a report, which may be a problem of it.
     fn mark(&mut self, path: Option<&str>, is_problem: bool) -> Option<CaseId> {
+        let path = path.or(self.current.as_deref());
         let open = match path {
             Some(path) => self.open.iter_mut().rfind(|open| open.path == path),
             None => self.open.last_mut(),

@@ -59,6 +59,7 @@ impl Sections {
             && open.name == name
             && open.location == location
         {
+            cases.set_current(&open.path);
             self.depth += 1;
             return;
         }
@@ -83,13 +84,12 @@ impl Sections {
     pub fn leave(&mut self, result: CaseResult, cases: &mut CaseReporter<'_>) -> bool {
         let Some(depth) = self.depth.checked_sub(1) else { return false };
         self.depth = depth;
-        if self.open[depth].has_inner {
-            return false;
-        }
-        if let Some(section) = self.open.pop() {
+        let is_leaf = !self.open[depth].has_inner;
+        if is_leaf && let Some(section) = self.open.pop() {
             cases.finish(&section.path, result);
         }
-        true
+        cases.set_current(self.path());
+        is_leaf
     }
 
     /// Finishes the sections that the program has left.
@@ -106,5 +106,50 @@ impl Sections {
         self.depth = 0;
         self.close_left(cases);
         cases.finish(&self.top, result);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Read as _;
+    use std::os::unix::net::UnixStream;
+
+    use rtf_host::Session;
+    use rtf_model::MessageKind;
+
+    use super::*;
+
+    #[test]
+    fn a_report_belongs_to_the_section_in_which_the_program_is() {
+        let (mut ours, theirs) = UnixStream::pair().expect("sockets");
+        let session = Session::over(theirs);
+        let mut cases = CaseReporter::new(&session);
+        let start = StartedCase { name: "case".to_owned(), ..StartedCase::default() };
+        let mut sections = Sections::start_case(start, &mut cases);
+        let report = |cases: &mut CaseReporter<'_>| {
+            cases.message(None, MessageKind::Report, "report", None);
+        };
+        sections.enter("outer", None, &mut cases);
+        sections.enter("inner", None, &mut cases);
+        report(&mut cases);
+        sections.leave(CaseResult::default(), &mut cases);
+        report(&mut cases);
+        sections.leave(CaseResult::default(), &mut cases);
+        report(&mut cases);
+        sections.enter("outer", None, &mut cases);
+        report(&mut cases);
+        sections.enter("second", None, &mut cases);
+        report(&mut cases);
+        sections.finish_case(CaseResult::default(), &mut cases);
+        drop(cases);
+        drop(session);
+        let mut text = String::new();
+        ours.read_to_string(&mut text).expect("text");
+        let case = |line: &str| {
+            let line: serde_json::Value = serde_json::from_str(line).expect("JSON");
+            (line["method"] == "message").then(|| line["params"]["case"].as_u64())?
+        };
+        let reported: Vec<u64> = text.lines().filter_map(case).collect();
+        assert_eq!(reported, [3, 2, 1, 2, 4]);
     }
 }

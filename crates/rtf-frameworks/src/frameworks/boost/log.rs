@@ -14,6 +14,9 @@ const ROOT: &str = "TestLog";
 /// Texts with which exceptions begin that are signals.
 const SIGNALS: [&str; 2] = ["signal:", "memory access violation"];
 
+/// A message after a signal.
+const ABORTED: &str = "Test is aborted";
+
 /// The reader of one process.
 #[derive(Debug)]
 pub(super) struct Reader {
@@ -116,8 +119,9 @@ impl Reader {
         };
         let Entry { location, frames, checkpoint } = std::mem::take(&mut self.entry);
         let is_fixture = self.is_around_case();
-        if !self.is_in_case() && !is_fixture {
-            // Of other cases, on which the case depends.
+        let is_other = !self.is_in_case() && !is_fixture;
+        if is_other || (is_fixture && text == ABORTED) {
+            // Of other cases, on which the case depends, or repeated for each suite.
             return;
         }
         if name == "Exception" && SIGNALS.iter().any(|signal| text.starts_with(signal)) {
