@@ -23,6 +23,7 @@ The corpus is `tests/frameworks/TYPE`; `build.sh TYPE` has built it, and its exp
               "silent": ["<?xml"],             texts that its output must not contain
               "stacks": ["…"],                 parts of its stack dumps
               "measured": {}, "messages": ["…"],    outside of its cases, as below
+              "counts": {"passed": 9},         instead of `cases`: how many have each verdict
               "cases": {                       exactly the cases that it reports
                 "Arm.Passes": "passed",        short for {"verdict": "passed"}
                 "Arm.Fails": {                 a path: `CASE/CASE IN IT`
@@ -60,6 +61,7 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -137,6 +139,10 @@ class Corpus:
             self.expect_part(f"{title}: stack dump", got.stacks, text)
         self.expect(f"{title}: measured", got.measured, expected.get("measured", {}))
         self.expect_messages(title, got.messages, expected)
+        if "counts" in expected:
+            counts = Counter(case.verdict for case in got.cases.values())
+            self.expect(f"{title}: counts", dict(counts), expected["counts"])
+            return
         cases = expected.get("cases", {})
         self.expect(f"{title}: cases", sorted(got.cases), sorted(cases))
         for path in cases.keys() & got.cases.keys():
