@@ -8,7 +8,7 @@ use super::reference;
 use super::schema::{self, check};
 
 /// Variables that only the runner sets. `RTF_PORT_*` and `RTF_FIXTURE_*` are reserved as well.
-const RESERVED: [&str; 13] = [
+const RESERVED: [&str; 15] = [
     protocol::CHANNEL_VARIABLE,
     protocol::FORK_SERVER_VARIABLE,
     protocol::SCOPE_VARIABLE,
@@ -22,6 +22,8 @@ const RESERVED: [&str; 13] = [
     "RTF_HOOK_TRIGGER",
     "RTF_HOOK_REASON",
     "RTF_HOOK_TEST",
+    "RTF_SELECTED_CASES",
+    "RTF_LISTING",
 ];
 
 /// Reads the `<env>` children of an element.
