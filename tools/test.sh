@@ -102,6 +102,7 @@ lint_python() {
   "$checkers/mypy" tests/fixtures/clock/*.py
   "$checkers/mypy" benches/bench.py
   "$checkers/mypy" tests/predecessor/*.py
+  "$checkers/mypy" tests/import/*.py
   "$checkers/mypy" tests/frameworks/*.py
   "$checkers/mypy" tests/frameworks/public/*.py
 }
@@ -247,6 +248,25 @@ example_09() {
     python3 tools/check_example_09.py "$TARGET/release/rtf" examples/09-other-frameworks
 }
 
+# GoogleTest's own tests, compared with its own report.
+public_gtest() {
+  # shellcheck source=/dev/null
+  . tools/packages.sh
+  need_packages googletest cmake g++
+  python3 tests/frameworks/public/gtest_googletest.py "$TARGET/release/rtf"
+}
+
+# `rtf import` of a colcon workspace with packages of ament and plain CMake.
+import_colcon() {
+  local colcon
+  # shellcheck source=/dev/null
+  . tools/packages.sh
+  need_packages ament-cmake ament-cmake-googletest ament-cmake-pytest libgtest-dev cmake g++
+  colcon=$(tools/venv.sh colcon)
+  PATH="$colcon:$PATH" RTF_PYTHON=$colcon/python \
+    python3 tests/import/check.py "$TARGET/release/rtf" "$BUILD/import"
+}
+
 # The corpus of a test framework, see tests/frameworks/check.py.
 framework() {
   local settings
@@ -307,6 +327,8 @@ step_with 'clock ros2' ros2 clock_ros2
 step_with 'fixture ros2launch' ros2 fixture_ros2launch
 step_with 'fixture orocos' orocos fixture_orocos
 step 'framework gtest' framework gtest
+step 'framework gtest public' public_gtest
+step 'import colcon' import_colcon
 step 'framework catch2' framework catch2
 step 'framework doctest' framework doctest
 step 'framework boost' framework boost

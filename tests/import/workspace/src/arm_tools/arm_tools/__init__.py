@@ -1,0 +1,3 @@
+"""A Python package of a workspace."""
+
+SPEED = 3
