@@ -89,11 +89,15 @@ def run_gtest(build: Path, program: str, directory: Path) -> dict[str, str]:
     report = directory / f"{program}.xml"
     command = [str(build / program), f"--gtest_output=xml:{report}"]
     subprocess.run(command, cwd=directory, stdout=subprocess.DEVNULL, check=False)
-    cases = list(ET.parse(report).getroot().iter("testcase"))
-    # Failures outside of tests are a case without a name.
-    return {
-        f"{it.get('classname')}.{it.get('name')}": outcome(it) for it in cases if it.get("name")
-    }
+    outcomes: dict[str, str] = {}
+    for case in ET.parse(report).getroot().iter("testcase"):
+        name = f"{case.get('classname')}.{case.get('name')}"
+        # rtf gives the second test of a name a number.
+        name = f"{name}#2" if name in outcomes else name
+        # Failures outside of tests are a case without a name.
+        if case.get("name"):
+            outcomes[name] = outcome(case)
+    return outcomes
 
 
 def outcome(case: ET.Element) -> str:
