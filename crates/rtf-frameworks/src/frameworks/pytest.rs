@@ -109,3 +109,18 @@ fn explain(listed: &Listed) -> Option<String> {
         )
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::has_workers;
+
+    #[test]
+    fn arguments_that_start_workers_are_recognized() {
+        let has = |words: &[&str]| {
+            has_workers(&words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>())
+        };
+        assert!(has(&["-q", "-n", "4"]) && has(&["-nauto"]) && has(&["--numprocesses=2"]));
+        assert!(has(&["--dist=loadfile"]));
+        assert!(!has(&["-m", "not slow", "--no-header"]));
+    }
+}

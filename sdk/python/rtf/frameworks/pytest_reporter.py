@@ -10,7 +10,7 @@ import pytest
 
 from rtf import session as rtf_session
 from rtf.frameworks import pytest_details
-from rtf.frameworks.connection import portions
+from rtf.frameworks.connection import Rejected, portions
 from rtf.frameworks.pytest_failures import DETAILS, FailureDetails
 from rtf.frameworks.pytest_texts import (
     collection_problem,
@@ -223,7 +223,11 @@ class Reporter(FailureDetails):
             if text.strip():
                 self._message(case, "report", f"{heading}\n{text.rstrip()}")
         for method, params in getattr(report, DETAILS, {}).get("results", ()):
-            self._connection.request(method, {**params, "case": case.path})
+            try:
+                self._connection.request(method, {**params, "case": case.path})
+            except Rejected as problem:
+                case.has_problem = True
+                self._message(case, "error", str(problem))
         if with_properties:
             for name, value in report.user_properties:
                 self._report_property(case, name, value)

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 def expected_failure(reason: str) -> str:
     """Return the reason of a case that failed as expected."""
-    reason = reason.removeprefix("reason: ") if hasattr(reason, "removeprefix") else reason
+    reason = reason.removeprefix("reason: ")
     return f"expected failure: {reason}" if reason else "expected failure"
 
 

@@ -11,6 +11,7 @@ import pytest
 from rtf import session as rtf_session
 from rtf.frameworks import pytest_details
 from rtf.frameworks.pytest_failures import DETAILS, FailureDetails
+from rtf.frameworks.stop import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -35,6 +36,8 @@ class WorkerDetails(FailureDetails):
             lambda *result: self._results.append(result), lambda: values
         )
         rtf_session.enter(self._session)
+        # The signal reaches all processes of the group.
+        Stop(KeyboardInterrupt)
 
     @pytest.hookimpl(hookwrapper=True, tryfirst=True)
     def pytest_collection_modifyitems(
