@@ -332,10 +332,10 @@ impl<'a> CaseReporter<'a> {
         self.open.last().map(|open| open.path.as_str())
     }
 
-    /// The path of the top-level case that was started last and is open, and its start.
+    /// The path of the open top-level case that was started first, and its start.
     #[must_use]
     pub fn running(&self) -> Option<(&str, Instant)> {
-        let top = self.open.iter().rfind(|open| open.parent.is_none())?;
+        let top = self.open.iter().find(|open| open.parent.is_none())?;
         Some((&top.path, top.started))
     }
 
