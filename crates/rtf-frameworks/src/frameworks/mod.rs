@@ -3,6 +3,7 @@
 mod assertion;
 mod aunit;
 mod boost;
+mod cargo;
 mod catch2;
 mod cppunit;
 mod ctest;
@@ -32,6 +33,7 @@ type FrameworkType = (&'static str, fn() -> AnyFramework);
 const TYPES: &[FrameworkType] = &[
     ("aunit", || Box::new(aunit::AUnit)),
     ("boost", || Box::new(boost::BoostTest)),
+    ("cargo", || Box::new(cargo::Cargo::default())),
     ("catch2", || Box::new(catch2::Catch2)),
     ("cppunit", || Box::new(cppunit::CppUnit)),
     ("ctest", || Box::new(ctest::CTest::default())),

@@ -23,7 +23,7 @@ fn unwraps() {
 
 #[test]
 fn returns_error() -> Result<(), String> {
-    Err("no robot".to_owned())
+    Err("no robot, \"left\"".to_owned())
 }
 
 #[test]
@@ -42,7 +42,7 @@ fn should_panic() {
 
 #[test]
 #[should_panic]
-fn should_panic_but_returns() {}
+fn should_panic_but_returns() {} // line: should_panic_but_returns
 
 #[test]
 #[should_panic(expected = "too fast")]
@@ -71,6 +71,7 @@ fn panics_in_thread() {
 #[test]
 fn is_in_its_package() {
     assert!(std::path::Path::new("Cargo.toml").exists());
+    assert_eq!(std::env::var("CARGO_PKG_VERSION_MAJOR").as_deref(), Ok("0"));
     assert_eq!(std::env::var("CARGO_PKG_NAME").as_deref(), Ok("arm"));
     assert_eq!(std::env::var("CARGO_MANIFEST_DIR").map(Into::into), Ok(std::env::current_dir().unwrap()));
     let park = std::process::Command::new(env!("CARGO_BIN_EXE_park")).status();
@@ -79,6 +80,19 @@ fn is_in_its_package() {
 
 #[test]
 fn größe_ist_ok() {}
+
+/// The second panic ends the process.
+#[test]
+fn panics_twice() {
+    struct Arm;
+    impl Drop for Arm {
+        fn drop(&mut self) {
+            panic!("cannot park");
+        }
+    }
+    let _arm = Arm;
+    panic!("too hot");
+}
 
 #[test]
 fn aborts() {

@@ -1,0 +1,7 @@
+# shellcheck shell=bash
+# The cargo that builds rtf; the corpus has no dependencies.
+setting CARGO_TARGET_DIR "$out/target"
+for package in arm silent; do
+  quietly env CARGO_TARGET_DIR="$out/target" cargo test --offline --no-run \
+    --manifest-path "$source/$package/Cargo.toml"
+done
