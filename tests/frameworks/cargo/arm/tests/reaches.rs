@@ -73,7 +73,10 @@ fn is_in_its_package() {
     assert!(std::path::Path::new("Cargo.toml").exists());
     assert_eq!(std::env::var("CARGO_PKG_VERSION_MAJOR").as_deref(), Ok("0"));
     assert_eq!(std::env::var("CARGO_PKG_NAME").as_deref(), Ok("arm"));
-    assert_eq!(std::env::var("CARGO_MANIFEST_DIR").map(Into::into), Ok(std::env::current_dir().unwrap()));
+    assert_eq!(
+        std::env::var("CARGO_MANIFEST_DIR").map(Into::into),
+        Ok(std::env::current_dir().unwrap())
+    );
     let park = std::process::Command::new(env!("CARGO_BIN_EXE_park")).status();
     assert!(park.unwrap().success());
 }
