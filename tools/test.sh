@@ -105,6 +105,8 @@ lint_python() {
   "$checkers/mypy" tests/import/*.py
   "$checkers/mypy" tests/frameworks/*.py
   "$checkers/mypy" tests/frameworks/public/*.py
+  "$checkers/mypy" tests/frameworks/go/own.py
+  "$checkers/mypy" tests/frameworks/cargo/own.py
 }
 
 sdk_python() {
@@ -342,6 +344,10 @@ step 'framework tap' framework tap
 step 'framework program' framework program
 step_with 'framework rostest' ros1 framework rostest
 step 'example 09' example_09
+step 'framework junit' framework junit
+step 'framework go' framework go
+step 'framework public go' tests/frameworks/public/go.sh "$TARGET/release/rtf"
+step 'framework cargo' framework cargo
 step 'guide' tools/check_docs.py "$TARGET/release/rtf" README.md docs/getting-started.md \
   docs/writing-tests.md docs/isolation.md docs/simulation-time.md docs/migrating.md docs/migrating-others.md
 step 'guide commands' tools/check_running.py "$TARGET/release/rtf"

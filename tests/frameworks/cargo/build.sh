@@ -1,4 +1,5 @@
 # shellcheck shell=bash
+# shellcheck disable=SC2154 # tests/frameworks/build.sh sets the directories
 # The cargo that builds rtf; the corpus has no dependencies.
 setting CARGO_TARGET_DIR "$out/target"
 for package in arm silent; do

@@ -1,4 +1,5 @@
 # shellcheck shell=bash
+# shellcheck disable=SC2154 # tests/frameworks/build.sh sets the directories
 # A JDK of the system, and the console launcher and JUnit 4 from Maven's repository.
 : "${source:?}" "${out:?}"
 if ! have javac || ! have jar; then

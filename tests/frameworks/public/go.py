@@ -16,7 +16,6 @@ ROOT = Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "tests/frameworks")]
 
 from observed import observe  # noqa: E402
-
 from run import Run  # noqa: E402
 
 VERDICTS = {"pass": "passed", "fail": "failed", "skip": "skipped"}

@@ -61,8 +61,6 @@ pub(super) struct Reader {
     started: usize,
     /// The test in which the process died, and why.
     crash: Option<(String, Crash)>,
-    /// How the process of the tests ended, if not with 0 or a signal.
-    exit_status: Option<String>,
 }
 
 impl Reader {
@@ -75,14 +73,11 @@ impl Reader {
             running: HashMap::new(),
             started: 0,
             crash: None,
-            exit_status: None,
         }
     }
 
     fn carry_out(&mut self, event: Event, cases: &mut CaseReporter<'_>) {
         let Some(test) = event.test else {
-            let status = event.output.trim().strip_prefix("exit status ");
-            self.exit_status = status.map(str::to_owned).or(self.exit_status.take());
             return cases.output(event.output.as_bytes());
         };
         match event.action.as_str() {
@@ -249,12 +244,6 @@ impl ReportReader for Reader {
     }
 
     fn crash_reason(&self) -> Option<String> {
-        match (&self.crash, &self.exit_status) {
-            (Some((_, crash)), _) => Some(crash.reason.clone()),
-            (None, Some(status)) => {
-                Some(format!("the test ended its process with exit status {status}"))
-            }
-            (None, None) => None,
-        }
+        self.crash.as_ref().map(|(_, crash)| crash.reason.clone())
     }
 }

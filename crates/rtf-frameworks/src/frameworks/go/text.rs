@@ -58,7 +58,7 @@ pub(super) fn crash(text: &str, dir: &Path) -> Option<Crash> {
         ["panic: ", "fatal error: ", "SIGSEGV"].iter().any(|start| line.starts_with(start))
     };
     let mut lines = text.lines().skip_while(|line| !is_start(line));
-    let Some(first) = lines.next() else { return signal(text) };
+    let Some(first) = lines.next() else { return end_of_process(text) };
     let mut reason = first.to_owned();
     for line in lines.by_ref().take_while(|line| !line.is_empty()) {
         reason.push('\n');
@@ -71,10 +71,12 @@ pub(super) fn crash(text: &str, dir: &Path) -> Option<Crash> {
     Some(Crash { reason, location: calls.find_map(|line| call(line, dir)) })
 }
 
-/// The last line of the output of a killed process: `signal: killed`.
-fn signal(text: &str) -> Option<Crash> {
-    let last = text.lines().last().filter(|line| line.starts_with("signal: "))?;
-    Some(Crash { reason: format!("the test ended with {last}"), location: None })
+/// How a process ended that printed no reason: its last line is `signal: killed` or
+/// `exit status 3`.
+fn end_of_process(text: &str) -> Option<Crash> {
+    let is_end = |line: &&str| line.starts_with("signal: ") || line.starts_with("exit status ");
+    let last = text.lines().last().filter(is_end)?;
+    Some(Crash { reason: format!("the test ended its process with {last}"), location: None })
 }
 
 /// A call in a file of the package: `\t/home/robot/arm/arm_test.go:17 +0x25`.

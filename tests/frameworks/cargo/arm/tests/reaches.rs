@@ -94,7 +94,7 @@ fn panics_twice() {
         }
     }
     let _arm = Arm;
-    panic!("too hot");
+    panic!("too hot"); // line: panics_twice
 }
 
 #[test]
