@@ -76,7 +76,7 @@ impl Reader {
             let longest = SUMMARIES.iter().map(|start| overlap(&self.held, start)).max();
             self.held.len() - longest.unwrap_or(0)
         });
-        cases.output(self.held[..end].as_bytes());
+        cases.output(&self.held.as_bytes()[..end]);
         self.held.drain(..end);
     }
 
