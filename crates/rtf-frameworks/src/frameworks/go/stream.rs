@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use rtf_model::{ExitStatus, MessageKind, Outcome};
 use serde::Deserialize;
 
-use super::text::{self, Crash};
+use super::text::{self, Crash, LogEntry};
 use crate::case_reporter::{CaseReporter, StartedCase};
 use crate::framework::{CaseResult, Garbage, ListedCase, ReportReader};
 
-/// How much text of a test is kept for its log and the reason of a failure.
+/// How much text of a test is kept at most, for its log and the reason of a failure.
 const TEXT_BYTES: usize = 1024 * 1024;
 
 /// The longest quote of a bad line.
@@ -67,7 +67,8 @@ impl Reader {
     pub fn new(dir: &Path, cases: &[ListedCase]) -> Self {
         let starts = cases.iter().map(|case| (case.name.clone(), case.start())).collect();
         Self {
-            dir: dir.to_owned(),
+            // Stack traces have no symbolic links.
+            dir: dir.canonicalize().unwrap_or_else(|_| dir.to_owned()),
             starts,
             line: Vec::new(),
             running: HashMap::new(),
@@ -125,9 +126,13 @@ impl Reader {
     }
 
     fn print(&mut self, test: &str, output: &str, cases: &mut CaseReporter<'_>) {
-        let running = self.running.get_mut(test);
-        if let Some(running) = running.filter(|running| running.text.len() < TEXT_BYTES) {
+        if let Some(running) = self.running.get_mut(test) {
             running.text.push_str(output);
+            // The end says why the test failed.
+            if running.text.len() > TEXT_BYTES {
+                let half = running.text.ceil_char_boundary(TEXT_BYTES / 2);
+                running.text.drain(..half);
+            }
         }
         if !text::is_framing(output, test) {
             self.open(test, cases);
@@ -156,29 +161,33 @@ impl Reader {
                 CaseResult::new(Outcome::Skipped, reason.unwrap_or_else(|| "skipped".to_owned()))
             }
             _ => {
-                // The log does not distinguish errors from other entries, but mostly ends
-                // with one.
-                let last = entries.pop();
-                for entry in entries {
-                    let location = Some(entry.location);
-                    cases.message(Some(test), MessageKind::Report, entry.text, location);
-                }
-                let example = text::example_failure(&running.text);
-                let (text, location) = match (last, example) {
-                    (Some(entry), _) => (entry.text, Some(entry.location)),
-                    (None, Some(text)) => {
-                        (text, self.starts.get(test).and_then(|start| start.location.clone()))
-                    }
-                    (None, None) => (String::new(), None),
-                };
-                if !text.is_empty() || location.is_some() {
-                    cases.message(Some(test), MessageKind::Failure, text, location);
-                }
+                self.report_failure(test, entries, text::example_failure(&running.text), cases);
                 CaseResult::new(Outcome::Failed, "it failed without a message")
             }
         };
         self.running.remove(test);
         cases.finish(test, result);
+    }
+
+    /// Reports why a test failed. Its log does not distinguish errors from other entries, but
+    /// mostly ends with one.
+    fn report_failure(
+        &self,
+        test: &str,
+        mut entries: Vec<LogEntry>,
+        example: Option<String>,
+        cases: &mut CaseReporter<'_>,
+    ) {
+        let last = entries.pop();
+        for LogEntry { text, location } in entries {
+            cases.message(Some(test), MessageKind::Report, text, Some(location));
+        }
+        if let Some(LogEntry { text, location }) = last {
+            cases.message(Some(test), MessageKind::Failure, text, Some(location));
+        } else if let Some(text) = example {
+            let location = self.starts.get(test).and_then(|start| start.location.clone());
+            cases.message(Some(test), MessageKind::Failure, text, location);
+        }
     }
 
     /// Finds the test in which the process died: that which says so, or the last one.
