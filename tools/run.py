@@ -11,7 +11,7 @@ from typing import Any
 
 Event = dict[str, Any]
 
-RUN_SECS = 120
+RUN_SECS = 600
 """A run takes some ten seconds; a busy machine needs more."""
 
 
