@@ -47,8 +47,8 @@ pub fn run(mut command: Command, limit: Duration) -> Result<Listed, ListError> {
     command.process_group(0).env_remove(SESSION_VARIABLE);
     let program = command.get_program().to_string_lossy().into_owned();
     let started = command.spawn();
-    let mut child = started
-        .map_err(|error| ListError::new(format!("`{program}` cannot be started: {error}")))?;
+    let mut child =
+        started.map_err(|error| ListError::new(not_started(command.get_program(), &error)))?;
     let pid = Pid::from_child(&child);
     let (stdout, stderr) = (read(child.stdout.take()), read(child.stderr.take()));
     let (sender, ended) = channel();
@@ -83,6 +83,28 @@ fn read(stream: Option<impl Read + Send + 'static>) -> std::thread::JoinHandle<V
     })
 }
 
+/// Debian's packages with the programs that frameworks need.
+const PACKAGES: [(&str, &str); 6] = [
+    ("cargo", "cargo"),
+    ("ctest", "cmake"),
+    ("go", "golang-go"),
+    ("java", "default-jre-headless"),
+    ("python3", "python3"),
+    ("rostest", "python3-rostest"),
+];
+
+/// The message for a program that cannot be started, with what installs it.
+#[must_use]
+pub fn not_started(program: &OsStr, error: &std::io::Error) -> String {
+    let program = program.to_string_lossy();
+    let message = format!("`{program}` cannot be started: {error}");
+    let package = PACKAGES.iter().find(|(name, _)| *name == program);
+    match package.filter(|_| error.kind() == std::io::ErrorKind::NotFound) {
+        Some((_, package)) => format!("{message}\nDebian's package is `{package}`"),
+        None => message,
+    }
+}
+
 /// The first argument that `rtf` sets itself, and its name without a value.
 #[must_use]
 pub fn reserved<'a>(args: &'a [String], reserved: &[&str]) -> Option<&'a str> {
@@ -94,4 +116,28 @@ pub fn reserved<'a>(args: &'a [String], reserved: &[&str]) -> Option<&'a str> {
 #[must_use]
 pub fn file_name(file: &std::path::Path) -> String {
     file.file_name().unwrap_or(OsStr::new("?")).to_string_lossy().into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_missing_program_is_named_with_its_package() {
+        let missing = std::io::Error::from(std::io::ErrorKind::NotFound);
+        let message = not_started(OsStr::new("go"), &missing);
+        assert!(message.ends_with("\nDebian's package is `golang-go`"), "{message}");
+        let message = not_started(OsStr::new("./arm_test"), &missing);
+        assert!(!message.contains("Debian"), "{message}");
+        let denied = std::io::Error::from(std::io::ErrorKind::PermissionDenied);
+        assert!(!not_started(OsStr::new("go"), &denied).contains("Debian"));
+    }
+
+    #[test]
+    fn a_program_that_lists_for_too_long_is_killed() {
+        let mut command = Command::new("sh");
+        command.args(["-c", "sleep 600 & sleep 600"]);
+        let error = run(command, Duration::from_millis(100)).unwrap_err();
+        assert!(error.message.contains("did not list its cases within 100ms"), "{error}");
+    }
 }

@@ -157,12 +157,7 @@ fn read_tests(test: &TestProgram) -> Result<Vec<CTestCase>, ListError> {
     }
     let mut command = Command::new("ctest");
     command.current_dir(&test.file).arg("--show-only=json-v1").args(config(&test.args)?);
-    let found = listing::run(command, LIST_LIMIT).map_err(|error| {
-        let is_missing = error.message.contains("cannot be started");
-        let hint =
-            if is_missing { "; install CMake (Debian: cmake), version 3.14 or later" } else { "" };
-        ListError::new(format!("{error}{hint}"))
-    })?;
+    let found = listing::run(command, LIST_LIMIT)?;
     let is_empty = |tests: &Vec<CTestCase>| tests.is_empty() && test.args.is_empty();
     let tests = properties::parse(&found.stdout).and_then(fixtures::ordered);
     match tests {

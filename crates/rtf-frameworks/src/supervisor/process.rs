@@ -22,6 +22,7 @@ use crate::case_reporter::CaseReporter;
 use crate::framework::{
     Garbage, Launch, OpenChannel, OutputStream, ReportChannel, ReportReader, Selection,
 };
+use crate::listing;
 
 /// How much is read at once.
 const PIECE: usize = 64 * 1024;
@@ -143,9 +144,7 @@ fn spawn(mut command: Command, test: &TestRun<'_>, session: &OwnedFd) -> Result<
     command.env(SESSION_VARIABLE, format!("fd:{}", session.as_raw_fd()));
     command.env(STACK_FILE_VARIABLE, &test.stack_file);
     drop(std::fs::remove_file(&test.stack_file));
-    command.spawn().map_err(|error| {
-        format!("`{}` cannot be started: {error}", command.get_program().to_string_lossy())
-    })
+    command.spawn().map_err(|error| listing::not_started(command.get_program(), &error))
 }
 
 /// Where the report arrives.
