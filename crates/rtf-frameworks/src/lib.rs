@@ -35,6 +35,6 @@ pub fn run(args: Vec<OsString>) -> Result<(), Box<dyn std::error::Error>> {
         return Ok(check::check(&*framework, &rest[1..])?);
     }
     let session = Session::open()?;
-    let host = host::FrameworkHost::new(name, framework, session.clone())?;
+    let host = host::FrameworkHost::new(name, framework, session.clone());
     Ok(rtf_host::serve(&session, host)?)
 }

@@ -33,6 +33,7 @@ mod documented;
 mod fixture_values;
 mod forked_children;
 mod forked_hosts;
+mod framework_programs;
 mod guard;
 mod hooks;
 mod host_modes;
