@@ -25,6 +25,8 @@ pub(super) struct SharedLimits {
 impl SharedLimits {
     /// Returns the limits, with the defaults for undeclared ones.
     pub fn get(&mut self, declared: DeclaredLimits) -> Arc<TestLimits> {
+        // The limit of cases is in [`CasesInPrograms`](super::CasesInPrograms).
+        let declared = DeclaredLimits { case: None, ..declared };
         let limits = self.known.entry(declared).or_insert_with(|| {
             Arc::new(TestLimits {
                 load: declared.load.unwrap_or(defaults::TEST.load),

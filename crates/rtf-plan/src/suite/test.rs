@@ -1,5 +1,7 @@
 //! `<test>`.
 
+use std::time::Duration;
+
 use roxmltree::Node;
 use rtf_model::Diagnostic;
 
@@ -35,17 +37,20 @@ pub(super) fn read(
         teardown: declared.teardown.or(default.teardown),
         slow: declared.slow.or(default.slow),
         grace: declared.grace.or(default.grace),
-        case: reader.duration(node, "case-timeout"),
+        case: None,
     };
-    let isolation = isolation(reader, node);
+    let has_cases = node.attributes().any(|attribute| CASE_ATTRIBUTES.contains(&attribute.name()));
+    let cases =
+        if has_cases { CaseAttributes::read(reader, node) } else { CaseAttributes::default() };
     let settings = TestSettings {
         repetitions: reader.number(node, "repetition", 1).unwrap_or(1),
         critical: reader.boolean(node, "critical").unwrap_or(false),
         exclusive: reader.boolean(node, "exclusive").unwrap_or(false),
-        shared: isolation == Some(TestIsolation::Shared),
+        shared: cases.shared,
         ..inherited_settings(reader, node, defaults.settings)
     };
-    let cases = cases(reader, node, isolation).map(Box::new);
+    let limits = DeclaredLimits { case: cases.timeout, ..limits };
+    let cases = cases.declared.map(Box::new);
     let tags = values(reader.words(node, "tags"));
     let env = env::read(reader, node);
     let known_failure = known_failure::read(reader, node).map(Box::new);
@@ -66,6 +71,26 @@ pub(super) fn read(
         matrix,
         combination,
     })
+}
+
+/// The attributes about processes and cases. Most tests have none of them.
+const CASE_ATTRIBUTES: [&str; 3] = ["cases", "case-timeout", "isolation"];
+
+/// The values of [`CASE_ATTRIBUTES`].
+#[derive(Default)]
+struct CaseAttributes {
+    timeout: Option<Duration>,
+    shared: bool,
+    declared: Option<DeclaredCases>,
+}
+
+impl CaseAttributes {
+    fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Self {
+        let timeout = reader.duration(node, "case-timeout");
+        let isolation = isolation(reader, node);
+        let shared = isolation == Some(TestIsolation::Shared);
+        Self { timeout, shared, declared: cases(reader, node, isolation) }
+    }
 }
 
 fn isolation(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<TestIsolation> {
