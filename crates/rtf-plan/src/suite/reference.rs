@@ -18,6 +18,10 @@ pub(super) struct ReferenceSyntax {
 
 /// Records the references of a value and reports invalid ones. Returns whether all are valid.
 pub(super) fn check(reader: &mut ElementReader<'_>, what: &str, value: &Spanned<String>) -> bool {
+    // Most values have no reference.
+    if !value.value.contains('$') {
+        return true;
+    }
     let before = reader.problems.len();
     port_reference::check(reader, what, value);
     fixture_reference::check(reader, what, value);
