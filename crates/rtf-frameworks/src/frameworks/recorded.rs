@@ -1,5 +1,6 @@
 //! Replays recorded reports to a reader, for its tests.
 
+use std::collections::BTreeMap;
 use std::io::Read as _;
 use std::os::unix::net::UnixStream;
 
@@ -39,7 +40,20 @@ pub(super) fn replay(
 fn show(line: &str) -> String {
     let message: Value = serde_json::from_str(line).expect("JSON");
     let method = message["method"].as_str().expect("a method");
-    format!("{method} {}", message["params"])
+    format!("{method} {}", sorted(message["params"].clone()))
+}
+
+/// The value with the fields of objects in alphabetical order: that of `serde_json` depends
+/// on the features that other crates of a build select.
+fn sorted(value: Value) -> Value {
+    match value {
+        Value::Object(fields) => {
+            let fields: BTreeMap<String, Value> = fields.into_iter().collect();
+            fields.into_iter().map(|(name, value)| (name, sorted(value))).collect()
+        }
+        Value::Array(values) => values.into_iter().map(sorted).collect(),
+        other => other,
+    }
 }
 
 /// Checks that the size of the pieces does not matter, and returns the notifications.

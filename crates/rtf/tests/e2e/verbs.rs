@@ -102,6 +102,7 @@ fn help_lists_the_exit_codes() {
       report       Write a report of a past run
       merge        Merge several runs into one, for example the shards of `--shard`
       serve        Show active and past runs in a browser
+      import       Write a suite with the tests of a build directory or workspace
       config       Show the configuration from `rtf.toml`, the command line and variables
       completions  Print shell completions
       help         Print this message or the help of the given subcommand(s)
@@ -281,6 +282,9 @@ fn man_writes_a_page_for_each_verb() {
         "config-show",
         "config",
         "doctor",
+        "import-colcon",
+        "import-ctest",
+        "import",
         "list",
         "locks",
         "merge",
