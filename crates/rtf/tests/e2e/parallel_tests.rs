@@ -155,9 +155,9 @@ fn no_more_run_at_once_than_the_suite_says_and_an_exclusive_one_alone() {
 #[test]
 fn a_collapse_interrupts_both_and_each_goes_its_own_way() {
     let folder = Folder::new();
+    test(&folder, "A", &awaits("never"));
     // At its second attempt, `again` is there.
     let once = "if io.open('again') then return end\n  ";
-    test(&folder, "A", &(once.to_owned() + &awaits("never")));
     let kills = format!(
         "{once}{}io.open('again', 'w'):close()\n  io.open('die', 'w'):close()\n  {}",
         awaits("A.runs"),
