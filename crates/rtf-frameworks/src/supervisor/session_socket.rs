@@ -4,7 +4,7 @@ use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 
 use rtf_model::protocol::FixtureValue;
 use rtf_model::{Attachment, Location, Measurement, Message, Outcome, Parameter, Samples};
-use rustix::io::FdFlags;
+use rustix::io::{Errno, FdFlags};
 use rustix::net::{
     AddressFamily, RecvFlags, SendFlags, SocketFlags, SocketType, recv, send, socketpair,
 };
@@ -21,22 +21,28 @@ const PACKET: usize = 256 * 1024;
 const YES: u8 = b'0';
 /// It was not, or the case does not run.
 const NO: u8 = b'1';
+/// An empty list of values.
+const NO_VALUES: &[u8] = b"[]";
 
 /// Our end.
 #[derive(Debug)]
-pub(super) struct SessionSocket(OwnedFd);
+pub(super) struct SessionSocket {
+    socket: OwnedFd,
+    /// For received packets.
+    buffer: Vec<u8>,
+}
 
 /// Opens a socket; the second descriptor is inherited by the program.
 pub(super) fn pair() -> std::io::Result<(SessionSocket, OwnedFd)> {
     let flags = SocketFlags::CLOEXEC;
     let (ours, theirs) = socketpair(AddressFamily::UNIX, SocketType::SEQPACKET, flags, None)?;
     rustix::io::fcntl_setfd(&theirs, FdFlags::empty())?;
-    Ok((SessionSocket(ours), theirs))
+    Ok((SessionSocket { socket: ours, buffer: vec![0; PACKET] }, theirs))
 }
 
 impl AsFd for SessionSocket {
     fn as_fd(&self) -> BorrowedFd<'_> {
-        self.0.as_fd()
+        self.socket.as_fd()
     }
 }
 
@@ -103,13 +109,11 @@ struct Finish {
 
 impl SessionSocket {
     /// The next packet, if there is one.
-    pub fn receive(&self) -> Option<Vec<u8>> {
-        let mut buffer = vec![0; PACKET];
-        let flags = RecvFlags::DONTWAIT;
-        let received = rustix::io::retry_on_intr(|| recv(&self.0, &mut buffer[..], flags));
+    pub fn receive(&mut self) -> Option<Vec<u8>> {
+        let (socket, buffer, flags) = (&self.socket, &mut self.buffer, RecvFlags::DONTWAIT);
+        let received = rustix::io::retry_on_intr(|| recv(socket, &mut buffer[..], flags));
         let (_, length) = received.ok().filter(|(_, length)| *length > 0)?;
-        buffer.truncate(length);
-        Some(buffer)
+        Some(buffer[..length].to_vec())
     }
 
     /// Carries out a packet, and answers it if the program waits for that.
@@ -126,8 +130,17 @@ impl SessionSocket {
         if answered.is_ok_and(|it| !it.answer) {
             return;
         }
-        // Fails if the program has ended.
-        let _ = rustix::io::retry_on_intr(|| send(&self.0, &answer, SendFlags::NOSIGNAL));
+        if self.send(&answer) == Err(Errno::MSGSIZE) {
+            // Without an answer, the program would wait.
+            let text = "the values of the fixtures are longer than a packet of the session";
+            cases.test_error(text.to_owned());
+            let _ = self.send(NO_VALUES);
+        }
+    }
+
+    /// Sends an answer. Fails if the program has ended.
+    fn send(&self, answer: &[u8]) -> Result<usize, Errno> {
+        rustix::io::retry_on_intr(|| send(&self.socket, answer, SendFlags::NOSIGNAL))
     }
 }
 
@@ -157,4 +170,39 @@ fn carry_out(packet: Packet, values: &[FixtureValue], cases: &mut CaseReporter<'
         Packet::Finished {} => cases.complete_report(),
     }
     answer(true)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::os::unix::net::UnixStream;
+
+    use rtf_host::Session;
+
+    use super::*;
+
+    /// Asks for values of this length, and returns the answer.
+    fn ask_for_values(bytes: usize) -> Vec<u8> {
+        let (_runner, theirs) = UnixStream::pair().unwrap();
+        let session = Session::over(theirs);
+        let mut cases = CaseReporter::new(&session);
+        let (mut ours, program) = pair().unwrap();
+        let value = |name: &str| {
+            let value = Value::String("x".repeat(bytes));
+            FixtureValue { name: name.to_owned(), value }
+        };
+        let request = br#"{"method":"fixture-values","params":{}}"#;
+        send(&program, request, SendFlags::NOSIGNAL).unwrap();
+        let packet = ours.receive().unwrap();
+        ours.handle(&packet, &[value("arm.port"), value("arm.model")], &mut cases);
+        let mut answer = vec![0; 4 * PACKET];
+        let (_, length) = recv(&program, &mut answer[..], RecvFlags::DONTWAIT).unwrap();
+        answer.truncate(length);
+        answer
+    }
+
+    #[test]
+    fn a_program_always_gets_an_answer() {
+        assert!(ask_for_values(10).starts_with(br#"[{"name":"arm.port","value":"xxxxxxxxxx"}"#));
+        assert_eq!(ask_for_values(64 * 1024 * 1024), NO_VALUES);
+    }
 }
