@@ -105,6 +105,20 @@ pub fn not_started(program: &OsStr, error: &std::io::Error) -> String {
     }
 }
 
+/// Refuses arguments that `rtf` sets itself.
+///
+/// # Errors
+/// There is such an argument.
+pub fn refuse_reserved(args: &[String], reserved_names: &[&str]) -> Result<(), ListError> {
+    match reserved(args, reserved_names) {
+        Some(name) => {
+            let message = format!("`{name}` is set by rtf; select cases with `cases`");
+            Err(ListError::new(message))
+        }
+        None => Ok(()),
+    }
+}
+
 /// The first argument that `rtf` sets itself, and its name without a value.
 #[must_use]
 pub fn reserved<'a>(args: &'a [String], reserved: &[&str]) -> Option<&'a str> {

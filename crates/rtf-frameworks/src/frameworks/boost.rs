@@ -67,10 +67,7 @@ impl Framework for BoostTest {
     fn list(&self, test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
         // Arguments after `--` are for the tests.
         let own = test.args.iter().take_while(|arg| *arg != "--").cloned().collect::<Vec<_>>();
-        if let Some(parameter) = listing::reserved(&own, &RESERVED) {
-            let message = format!("`{parameter}` is set by rtf; select cases with `cases`");
-            return Err(ListError::new(message));
-        }
+        listing::refuse_reserved(&own, &RESERVED)?;
         let mut command = command(&test.file);
         command.arg("--list_content=DOT").args(&test.args);
         let listed = listing::run(command, LIST_LIMIT)?;

@@ -51,13 +51,8 @@ fn split(args: &[String]) -> (&[String], &[String]) {
 impl Framework for Cargo {
     fn list(&self, test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
         let (cargo_args, program_args) = split(&test.args);
-        let reserved = listing::reserved(cargo_args, &RESERVED)
-            .or_else(|| listing::reserved(program_args, &RESERVED_FOR_PROGRAMS));
-        if let Some(arg) = reserved {
-            return Err(ListError::new(format!(
-                "`{arg}` is set by rtf; select cases with `cases`"
-            )));
-        }
+        listing::refuse_reserved(cargo_args, &RESERVED)?;
+        listing::refuse_reserved(program_args, &RESERVED_FOR_PROGRAMS)?;
         let build = build::build(&test.file, cargo_args)?;
         let mut cases = Vec::new();
         for (index, binary) in build.binaries.iter().enumerate() {

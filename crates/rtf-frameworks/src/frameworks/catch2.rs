@@ -47,10 +47,7 @@ pub struct Catch2;
 
 impl Framework for Catch2 {
     fn list(&self, test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
-        if let Some(option) = listing::reserved(&test.args, &RESERVED) {
-            let message = format!("`{option}` is set by rtf; select cases with `cases`");
-            return Err(ListError::new(message));
-        }
+        listing::refuse_reserved(&test.args, &RESERVED)?;
         let mut cases = list(test, None)?;
         // Hidden cases do not run by default.
         for hidden in list(test, Some("[.]"))? {

@@ -49,10 +49,7 @@ pub struct Doctest;
 
 impl Framework for Doctest {
     fn list(&self, test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
-        if let Some(option) = listing::reserved(&test.args, &RESERVED) {
-            let message = format!("`{option}` is set by rtf; select cases with `cases`");
-            return Err(ListError::new(message));
-        }
+        listing::refuse_reserved(&test.args, &RESERVED)?;
         let enabled = list(test, &[])?;
         let mut cases = list(test, &["--no-skip=true"])?;
         for case in &mut cases {

@@ -94,10 +94,7 @@ impl Test {
 
 impl Framework for GoogleTest {
     fn list(&self, test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
-        if let Some(flag) = listing::reserved(&test.args, &RESERVED) {
-            let message = format!("`{flag}` is set by rtf; select cases with `cases`");
-            return Err(ListError::new(message));
-        }
+        listing::refuse_reserved(&test.args, &RESERVED)?;
         let dir = tempfile::tempdir().map_err(|error| ListError::new(error.to_string()))?;
         let report = dir.path().join("list.json");
         let mut command = command(test);

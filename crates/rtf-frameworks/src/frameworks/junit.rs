@@ -63,10 +63,7 @@ pub struct JUnit;
 
 impl Framework for JUnit {
     fn list(&self, test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
-        if let Some(option) = listing::reserved(&test.args, &RESERVED) {
-            let message = format!("`{option}` is set by rtf; select cases with `cases`");
-            return Err(ListError::new(message));
-        }
+        listing::refuse_reserved(&test.args, &RESERVED)?;
         let dir = tempfile::tempdir().map_err(|error| ListError::new(error.to_string()))?;
         let mut command = command(test, None).map_err(ListError::new)?;
         command.arg(scan(test));
