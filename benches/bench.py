@@ -2,7 +2,7 @@
 """Compares speed and memory of rtf with its peers, and judges the results.
 
 The exit code is 1 if a line exceeds its limit, 2 if something could not be measured.
-docs/performance.md explains the lines.
+docs/explanation/performance.md explains the lines.
 """
 
 from __future__ import annotations

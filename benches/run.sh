@@ -27,4 +27,8 @@ else
   say "warning: pytest is missing; its lines will not be measured"
 fi
 
+# Without them, Python keeps compiled modules, as it does for most users. pip has compiled
+# those of the peers in any case.
+unset PYTHONDONTWRITEBYTECODE PYTHONUNBUFFERED
+
 exec python3 -B benches/bench.py "$@"

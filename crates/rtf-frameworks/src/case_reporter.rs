@@ -1,16 +1,14 @@
 //! Reports the cases of a test to the runner: numbers them, keeps the open ones, and
 //! compares them with the selected ones.
 
+mod reports;
+
 use std::collections::{HashMap, HashSet};
-use std::io::Write as _;
 use std::time::Instant;
 
 use rtf_host::Session;
 use rtf_model::protocol::{CaseSelector, Notification};
-use rtf_model::{
-    Attachment, CaseId, CaseStart, Location, Measurement, Message, MessageKind, Outcome, Parameter,
-    Samples,
-};
+use rtf_model::{CaseId, CaseStart, Location, Outcome, Parameter};
 
 use crate::framework::{CaseResult, Selection};
 use crate::wanted::WantedCases;
@@ -237,93 +235,10 @@ impl<'a> CaseReporter<'a> {
         }
     }
 
-    /// Reports a message in the case with this path; without a path, in the innermost open
-    /// case; if there is none, of the test.
-    pub fn message(
-        &mut self,
-        path: Option<&str>,
-        kind: MessageKind,
-        text: impl Into<String>,
-        location: Option<Location>,
-    ) {
-        let text = text.into();
-        let message =
-            Message { kind, text, location, comparison: None, critical: false, case: None };
-        self.full_message(path, message);
-    }
-
-    /// Reports a message with all its fields, see [`Self::message`].
-    pub fn full_message(&mut self, path: Option<&str>, mut message: Message) {
-        let is_problem = matches!(message.kind, MessageKind::Failure | MessageKind::Error);
-        message.case = self.mark(path, is_problem);
-        self.session.forward(&Notification::Message(message));
-    }
-
-    /// Reports a measurement, see [`Self::message`].
-    pub fn measure(&mut self, path: Option<&str>, mut measurement: Measurement) {
-        measurement.case = self.mark(path, !measurement.is_within_limits());
-        self.session.forward(&Notification::Measured(measurement));
-    }
-
-    /// Reports samples, see [`Self::message`].
-    pub fn sample(&mut self, path: Option<&str>, mut samples: Samples) {
-        let is_problem = samples.outside().next().is_some();
-        samples.case = self.mark(path, is_problem);
-        self.session.forward(&Notification::Sampled(samples));
-    }
-
-    /// Attaches a copy of a file, see [`Self::message`]. Returns false after an error, which
-    /// was reported.
-    pub fn attach(&mut self, path: Option<&str>, mut attachment: Attachment) -> bool {
-        attachment.case = self.mark(path, false);
-        let file = attachment.path.clone();
-        match self.session.forward_attachment(attachment) {
-            Ok(()) => true,
-            Err(error) => {
-                let text = format!("`{file}` cannot be attached: {error}");
-                self.message(path, MessageKind::Error, text, None);
-                false
-            }
-        }
-    }
-
-    /// Reports a property of a case: a measurement if it is a number, else a message.
-    pub fn property(&mut self, path: Option<&str>, name: &str, value: &str) {
-        match value.trim().parse::<f64>() {
-            Ok(number) if number.is_finite() => {
-                let (name, unit) = (name.to_owned(), String::new());
-                let (low, high, location, case) = (None, None, None, None);
-                let value = Some(number);
-                self.measure(path, Measurement { name, value, unit, low, high, location, case });
-            }
-            _ => self.message(path, MessageKind::Report, format!("{name}: {value}"), None),
-        }
-    }
-
-    /// Passes on output of the program that is not part of its report.
-    #[expect(clippy::unused_self, reason = "only readers of reports have output")]
-    pub fn output(&mut self, bytes: &[u8]) {
-        let mut stdout = std::io::stdout().lock();
-        drop(stdout.write_all(bytes).and_then(|()| stdout.flush()));
-    }
-
-    /// Passes on text that the program wrote to standard error, if its report contains it.
-    #[expect(clippy::unused_self, reason = "only readers of reports have output")]
-    pub fn error_output(&mut self, bytes: &[u8]) {
-        drop(std::io::stderr().lock().write_all(bytes));
-    }
-
     /// Skips the test: the program reported that it has no cases to run.
     pub fn skip_test(&mut self, reason: &str) {
         self.is_skipped = true;
         self.session.record_result(Outcome::Skipped, reason);
-    }
-
-    /// Reports an error of the test, outside of its cases.
-    pub fn test_error(&mut self, text: String) {
-        let (kind, location, comparison) = (MessageKind::Error, None, None);
-        let message = Message { kind, text, location, comparison, critical: false, case: None };
-        self.session.forward(&Notification::Message(message));
     }
 
     /// The path of the innermost open case.
@@ -428,24 +343,5 @@ impl<'a> CaseReporter<'a> {
 
     fn find(&self, path: &str) -> Option<&OpenCase> {
         self.open.iter().rfind(|open| open.path == path)
-    }
-
-    /// The case of a report, which may be a problem of it.
-    fn mark(&mut self, path: Option<&str>, is_problem: bool) -> Option<CaseId> {
-        let path = path.or(self.current.as_deref());
-        let open = match path {
-            Some(path) => self.open.iter_mut().rfind(|open| open.path == path),
-            None => self.open.last_mut(),
-        };
-        match open {
-            Some(open) => {
-                open.has_problem |= is_problem;
-                Some(open.case)
-            }
-            None => {
-                self.has_problem |= is_problem;
-                None
-            }
-        }
     }
 }

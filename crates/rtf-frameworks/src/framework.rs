@@ -20,6 +20,16 @@ pub struct TestProgram {
     pub args: Vec<String>,
 }
 
+impl TestProgram {
+    /// The command that starts it with its arguments.
+    #[must_use]
+    pub fn command(&self) -> Command {
+        let mut command = Command::new(&self.file);
+        command.args(&self.args);
+        command
+    }
+}
+
 /// A case that a framework lists before the run.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct ListedCase {
@@ -188,7 +198,7 @@ pub trait Framework {
     fn channel(&self) -> ReportChannel;
 
     /// Whether [`ReportReader::output`] needs the program's output.
-    fn watches_output(&self) -> bool {
+    fn watches_output(&self, _launch: &Launch<'_>) -> bool {
         false
     }
 
@@ -216,6 +226,12 @@ pub trait Framework {
     /// Whether each case needs a process, in which the supervisor starts the case.
     fn needs_separate_processes(&self) -> bool {
         false
+    }
+
+    /// A command that starts the same program with the same environment as [`Self::command`],
+    /// but would only list the cases; `None` if the program's processes must be executed.
+    fn fork_server_command(&self, _test: &TestProgram) -> Option<Command> {
+        None
     }
 
     /// The cases to run for these selected ones, in order: a framework may add cases on

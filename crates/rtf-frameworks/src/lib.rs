@@ -8,10 +8,12 @@
 
 mod case_reporter;
 mod check;
+mod elf;
 mod framework;
 mod frameworks;
 mod host;
 mod listing;
+mod preload;
 mod supervisor;
 mod wanted;
 mod xml_stream;

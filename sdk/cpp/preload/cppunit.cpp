@@ -5,7 +5,7 @@
 //
 // The variable is inherited, so the library is also loaded into programs without CppUnit, for
 // example a shell script that starts the tests. It therefore does not link CppUnit, but uses
-// the one in the program, if there is one: tools/cppunit.sh makes its symbols weak.
+// the one in the program, if there is one: tools/preload.sh makes its symbols weak.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

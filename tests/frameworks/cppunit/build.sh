@@ -2,7 +2,7 @@
 # shellcheck disable=SC2154 # tests/frameworks/build.sh sets the directories
 # CppUnit of the system, and the library that rtf loads into its programs.
 need_packages libcppunit-dev g++
-quietly tools/cppunit.sh
+quietly tools/preload.sh
 
 # NAME, of a source, options of the compiler. Depends also on the headers of the SDK.
 cppunit_program() {

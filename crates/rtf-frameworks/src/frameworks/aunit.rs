@@ -25,9 +25,7 @@ impl Framework for AUnit {
     }
 
     fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
-        let mut command = Command::new(&launch.test.file);
-        command.args(&launch.test.args);
-        Ok(command)
+        Ok(launch.test.command())
     }
 
     fn reader(&self, _launch: &Launch<'_>) -> Box<dyn ReportReader> {

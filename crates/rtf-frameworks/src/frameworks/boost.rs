@@ -106,6 +106,12 @@ impl Framework for BoostTest {
         true
     }
 
+    fn fork_server_command(&self, test: &TestProgram) -> Option<Command> {
+        let mut command = command(&test.file);
+        command.arg("--list_content=DOT");
+        Some(command)
+    }
+
     fn accepts_exit(&self, _code: i32, _has_problem: bool) -> bool {
         // It also depends on other cases, on which the case depends: the reader checks it.
         true

@@ -69,7 +69,7 @@ impl Framework for Cargo {
         ReportChannel::Stdout
     }
 
-    fn watches_output(&self) -> bool {
+    fn watches_output(&self, _launch: &Launch<'_>) -> bool {
         true
     }
 

@@ -87,6 +87,12 @@ impl Framework for Catch2 {
         true
     }
 
+    fn fork_server_command(&self, test: &TestProgram) -> Option<Command> {
+        let mut command = command(test);
+        command.arg("--list-tests");
+        Some(command)
+    }
+
     fn accepts_exit(&self, code: i32, has_problem: bool) -> bool {
         // The reader checks whether all cases were skipped.
         code == 0 || has_problem || code == ALL_SKIPPED
@@ -94,8 +100,7 @@ impl Framework for Catch2 {
 }
 
 fn command(test: &TestProgram) -> Command {
-    let mut command = Command::new(&test.file);
-    command.args(&test.args);
+    let mut command = test.command();
     // Bazel's variables select cases and add a report.
     for name in ["BAZEL_TEST", "TESTBRIDGE_TEST_ONLY", "TEST_SHARD_INDEX", "TEST_TOTAL_SHARDS"] {
         command.env_remove(name);

@@ -49,7 +49,7 @@ impl Framework for CTest {
         ReportChannel::None
     }
 
-    fn watches_output(&self) -> bool {
+    fn watches_output(&self, _launch: &Launch<'_>) -> bool {
         true
     }
 

@@ -67,7 +67,7 @@ impl Framework for Doctest {
     }
 
     fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
-        let mut command = command(launch.test);
+        let mut command = launch.test.command();
         command.arg("--reporters=xml");
         if let OpenChannel::Descriptor(path) = &launch.channel {
             command.arg(format!("--out={}", path.display()));
@@ -96,12 +96,12 @@ impl Framework for Doctest {
     fn omits_disabled(&self) -> bool {
         true
     }
-}
 
-fn command(test: &TestProgram) -> Command {
-    let mut command = Command::new(&test.file);
-    command.args(&test.args);
-    command
+    fn fork_server_command(&self, test: &TestProgram) -> Option<Command> {
+        let mut command = test.command();
+        command.arg("--list-test-cases");
+        Some(command)
+    }
 }
 
 /// The name by which the framework knows the case.
@@ -120,7 +120,7 @@ fn escape(name: &str) -> String {
 fn list(test: &TestProgram, options: &[&str]) -> Result<Vec<ListedCase>, ListError> {
     let dir = tempfile::tempdir().map_err(|error| ListError::new(error.to_string()))?;
     let report = dir.path().join("list.xml");
-    let mut command = command(test);
+    let mut command = test.command();
     command.args(["--list-test-cases", "--reporters=xml"]).args(options);
     command.arg(format!("--out={}", report.display()));
     let listed = listing::run(command, LIST_LIMIT)?;

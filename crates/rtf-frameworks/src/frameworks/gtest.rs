@@ -3,7 +3,8 @@
 //! The result stream (`--gtest_stream_result_to`) reports the start and the end of each
 //! test as it happens. In it, a skipped test looks like a failed one (google/googletest#3411),
 //! so the verdict of such a test is taken from the program's output, which contains
-//! `[  SKIPPED ]` or `[  FAILED  ]`. Properties are in the JSON report, at the end.
+//! `[  SKIPPED ]` or `[  FAILED  ]`; if the process runs only this test, from the JSON report.
+//! Properties are in that report, at the end.
 
 mod stream;
 
@@ -82,6 +83,10 @@ struct Test {
 }
 
 impl Test {
+    fn was_skipped(&self) -> bool {
+        self.rest.get("result").is_some_and(|result| result == "SKIPPED")
+    }
+
     fn parameters(&self) -> Vec<Parameter> {
         let named = [("type", &self.type_param), ("value", &self.value_param)];
         let parameter = |name: &str, value: String| Parameter { name: name.to_owned(), value };
@@ -112,8 +117,8 @@ impl Framework for GoogleTest {
         ReportChannel::Socket
     }
 
-    fn watches_output(&self) -> bool {
-        true
+    fn watches_output(&self, launch: &Launch<'_>) -> bool {
+        !is_only_case(launch)
     }
 
     fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
@@ -140,12 +145,25 @@ impl Framework for GoogleTest {
     }
 
     fn reader(&self, launch: &Launch<'_>) -> Box<dyn ReportReader> {
-        Box::new(stream::Reader::new(launch.cases.cases, report_file(launch.scratch)))
+        let report = report_file(launch.scratch);
+        Box::new(stream::Reader::new(launch.cases.cases, report, is_only_case(launch)))
     }
 
     fn omits_disabled(&self) -> bool {
         true
     }
+
+    fn fork_server_command(&self, test: &TestProgram) -> Option<Command> {
+        let mut command = command(test);
+        command.arg("--gtest_list_tests");
+        Some(command)
+    }
+}
+
+/// Whether the process runs one selected case, so that nothing is lost if its verdict is taken
+/// from the JSON report at the end.
+fn is_only_case(launch: &Launch<'_>) -> bool {
+    launch.cases.cases.len() == 1 && !launch.cases.is_all
 }
 
 fn command(test: &TestProgram) -> Command {

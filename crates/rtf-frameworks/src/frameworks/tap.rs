@@ -42,14 +42,12 @@ impl Framework for Tap {
         ReportChannel::Stdout
     }
 
-    fn watches_output(&self) -> bool {
+    fn watches_output(&self, _launch: &Launch<'_>) -> bool {
         true
     }
 
     fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
-        let mut command = Command::new(&launch.test.file);
-        command.args(&launch.test.args);
-        Ok(command)
+        Ok(launch.test.command())
     }
 
     fn reader(&self, launch: &Launch<'_>) -> Box<dyn ReportReader> {

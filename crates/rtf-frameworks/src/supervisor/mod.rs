@@ -1,10 +1,13 @@
 //! Runs the cases of a test in one process after the other, until each selected case has
 //! finished or the test is stopped.
 
+mod fork_server;
 mod process;
 mod session_socket;
 mod stack;
+mod streams;
 
+use std::cell::Cell;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,6 +22,7 @@ use rustix::process::{Pid, Signal, kill_process_group};
 use crate::case_reporter::CaseReporter;
 use crate::framework::{CaseResult, Framework, ListedCase, Selection, StackDump, TestProgram};
 use crate::wanted::WantedCases;
+use fork_server::ForkServer;
 use process::{ProcessEnd, Termination};
 
 /// The process that runs cases at the moment, for other threads.
@@ -78,6 +82,8 @@ struct TestRun<'a> {
     scratch: &'a Path,
     /// Where the program writes its stacks on a signal.
     stack_file: PathBuf,
+    /// Forks the processes of the program. Taken while a process starts.
+    fork_server: Cell<Option<ForkServer>>,
 }
 
 /// Runs a test, and reports its cases and problems to the session.
@@ -109,6 +115,7 @@ pub fn run(
         fixture_values: &plugin.fixture_values,
         scratch,
         stack_file: scratch.join("stacks"),
+        fork_server: Cell::default(),
     };
     match listed {
         Some(listed) => run.listed(&listed, &plugin.cases, &mut cases),
@@ -155,6 +162,9 @@ impl TestRun<'_> {
                 queue.push_back(case);
             }
         }
+        if self.separate && queue.len() > 1 {
+            self.fork_server.set(self.start_fork_server());
+        }
         while !queue.is_empty() && !self.is_stopping() {
             let goes_on = if self.separate {
                 queue.pop_front().is_some_and(|case| self.separate_case(&case, cases))
@@ -172,6 +182,11 @@ impl TestRun<'_> {
         if let (Some(missing), false) = (cases.missing(), self.is_stopping()) {
             cases.test_error(missing);
         }
+    }
+
+    fn start_fork_server(&self) -> Option<ForkServer> {
+        let command = self.framework.fork_server_command(&self.program)?;
+        ForkServer::start(command, self.scratch, || self.is_stopping())
     }
 
     /// Runs a test whose cases are not known, or are announced by the program.

@@ -3,25 +3,23 @@
 
 use std::fs::File;
 use std::io::{Read as _, Write as _};
-use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::os::fd::{AsFd, AsRawFd as _, BorrowedFd, OwnedFd};
-use std::os::unix::process::{CommandExt as _, ExitStatusExt as _};
-use std::process::{Child, Command, Stdio};
+use std::os::unix::process::CommandExt as _;
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use rtf_model::ExitStatus;
 use rtf_model::protocol::{SESSION_VARIABLE, STACK_FILE_VARIABLE};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use rustix::io::{Errno, FdFlags};
-use rustix::pipe::PipeFlags;
-use rustix::process::{Pid, PidfdFlags, Signal, pidfd_open};
+use rustix::io::{Errno, retry_on_intr};
+use rustix::process::{Pid, PidfdFlags, Signal, WaitOptions, pidfd_open, waitpid};
 
+use super::fork_server::ProgramEnds;
 use super::session_socket::{self, SessionSocket};
+use super::streams::{self, Source};
 use super::{TestRun, stack};
 use crate::case_reporter::CaseReporter;
-use crate::framework::{
-    Garbage, Launch, OpenChannel, OutputStream, ReportChannel, ReportReader, Selection,
-};
+use crate::framework::{Garbage, Launch, OutputStream, ReportChannel, ReportReader, Selection};
 use crate::listing;
 
 /// How much is read at once.
@@ -64,44 +62,18 @@ pub(super) fn run(
     limit: Option<Duration>,
     cases: &mut CaseReporter<'_>,
 ) -> Result<ProcessEnd, String> {
-    let (source, theirs, channel) = open_channel(test.framework.channel())
-        .map_err(|error| format!("the channel for the report cannot be opened: {error}"))?;
-    let (program, scratch) = (&test.program, test.scratch);
-    let launch = Launch { test: program, cases: selection, channel, scratch };
-    let mut command = test.framework.command(&launch)?;
-    let (session, session_end) =
-        session_socket::pair().map_err(|error| format!("the session cannot be opened: {error}"))?;
-    let merged = open_outputs(&mut command, test, &launch)
-        .map_err(|error| format!("the outputs of the program cannot be opened: {error}"))?;
-    let mut child = spawn(command, test, &session_end)?;
-    // Otherwise the end of the program's report would never arrive.
-    drop((theirs, session_end));
-    let pid = Pid::from_child(&child);
+    let mut process = start(test, selection, limit)?;
+    let pid = process.pid;
     test.running.set(Some(pid));
     // A stop request may have arrived before there was a process to stop.
     if test.session.interrupted() {
         test.running.signal(Signal::TERM);
     }
-    let mut process = RunningProcess {
-        test,
-        session,
-        source: source.or_else(|| stdout_source(&mut child, &launch.channel)),
-        outputs: outputs(&mut child, merged),
-        reader: test.framework.reader(&launch),
-        limit,
-        termination: Termination::Exited,
-        last_error: LastLine::default(),
-        piece: vec![0; PIECE],
-    };
     let exited = pidfd_open(pid, PidfdFlags::empty());
     let exited = exited.map_err(|error| format!("the program cannot be watched: {error}"))?;
-    process.read_until(exited.as_fd(), pid, cases);
+    process.read_until(exited.as_fd(), cases);
     test.running.set(None);
-    let status = child.wait().map_err(|error| format!("the program was lost: {error}"))?;
-    let status = match (status.code(), status.signal()) {
-        (Some(code), _) => ExitStatus::Code(code),
-        (None, signal) => ExitStatus::Signal(signal.unwrap_or_default()),
-    };
+    let status = wait_for(pid).map_err(|error| format!("the program was lost: {error}"))?;
     process.drain(cases);
     // What the program left in its group must not run next to the next process.
     let _ = rustix::process::kill_process_group(pid, Signal::KILL);
@@ -120,91 +92,84 @@ pub(super) fn run(
     Ok(ProcessEnd { status, termination, last_error_line: last_error.text(), crash_reason })
 }
 
-/// Sets the streams of a program, and returns the pipe of merged outputs.
-fn open_outputs(
-    command: &mut Command,
-    test: &TestRun<'_>,
-    launch: &Launch<'_>,
-) -> std::io::Result<Option<OwnedFd>> {
-    let watches = test.framework.watches_output();
-    command.stdin(Stdio::null());
-    if watches && test.framework.merges_output(launch) {
-        let (ours, theirs) = rustix::pipe::pipe_with(PipeFlags::CLOEXEC)?;
-        command.stdout(theirs.try_clone()?).stderr(theirs);
-        return Ok(Some(ours));
-    }
-    let is_piped = watches || test.framework.channel() == ReportChannel::Stdout;
-    let stream = |is_piped| if is_piped { Stdio::piped() } else { Stdio::inherit() };
-    command.stdout(stream(is_piped)).stderr(stream(watches));
-    Ok(None)
-}
-
-fn spawn(mut command: Command, test: &TestRun<'_>, session: &OwnedFd) -> Result<Child, String> {
-    command.process_group(0);
-    command.env(SESSION_VARIABLE, format!("fd:{}", session.as_raw_fd()));
+/// Starts a process: forks it if there is a fork server, which is given up when it fails.
+fn start<'a>(
+    test: &'a TestRun<'a>,
+    selection: Selection<'_>,
+    limit: Option<Duration>,
+) -> Result<RunningProcess<'a>, String> {
+    let server = test.fork_server.take();
+    let report_number = server.as_ref().map(super::fork_server::ForkServer::report_number);
+    let channel = streams::open_channel(test.framework.channel(), report_number)
+        .map_err(|error| format!("the channel for the report cannot be opened: {error}"))?;
+    let launch = Launch {
+        test: &test.program,
+        cases: selection,
+        channel: channel.address,
+        scratch: test.scratch,
+    };
+    let mut command = test.framework.command(&launch)?;
+    let (session, session_end) =
+        session_socket::pair().map_err(|error| format!("the session cannot be opened: {error}"))?;
+    let outputs = streams::open_outputs(test.framework, &launch)
+        .map_err(|error| format!("the outputs of the program cannot be opened: {error}"))?;
     command.env(STACK_FILE_VARIABLE, &test.stack_file);
     drop(std::fs::remove_file(&test.stack_file));
-    command.spawn().map_err(|error| listing::not_started(command.get_program(), &error))
-}
-
-/// Where the report arrives.
-enum Source {
-    File(File),
-    /// The program has not connected yet.
-    Listener(TcpListener),
-    Stream(TcpStream),
-}
-
-impl AsFd for Source {
-    fn as_fd(&self) -> BorrowedFd<'_> {
-        match self {
-            Self::File(file) => file.as_fd(),
-            Self::Listener(listener) => listener.as_fd(),
-            Self::Stream(stream) => stream.as_fd(),
+    let ends = ProgramEnds {
+        outputs: &outputs.theirs,
+        session: &session_end,
+        report: channel.theirs.as_ref(),
+    };
+    let pid = match server {
+        None => execute(command, &ends)?,
+        Some(server) => {
+            command.env(SESSION_VARIABLE, format!("fd:{}", server.session_number()));
+            let Ok(pid) = server.fork(&command, &ends) else {
+                drop(server);
+                return start(test, selection, limit);
+            };
+            test.fork_server.set(Some(server));
+            pid
         }
-    }
-}
-
-/// Opens the channel: our end, the program's end, and its address.
-fn open_channel(
-    channel: ReportChannel,
-) -> std::io::Result<(Option<Source>, Option<OwnedFd>, OpenChannel)> {
-    Ok(match channel {
-        ReportChannel::None => (None, None, OpenChannel::None),
-        ReportChannel::Stdout => (None, None, OpenChannel::Stdout),
-        ReportChannel::Descriptor => {
-            let (ours, theirs) = rustix::pipe::pipe_with(PipeFlags::CLOEXEC)?;
-            rustix::io::ioctl_fionbio(&ours, true)?;
-            rustix::io::fcntl_setfd(&theirs, FdFlags::empty())?;
-            let path = format!("/dev/fd/{}", theirs.as_raw_fd());
-            (Some(Source::File(ours.into())), Some(theirs), OpenChannel::Descriptor(path.into()))
-        }
-        ReportChannel::Socket => {
-            let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0))?;
-            listener.set_nonblocking(true)?;
-            let address = listener.local_addr()?;
-            (Some(Source::Listener(listener)), None, OpenChannel::Socket(address))
-        }
+    };
+    // The program's ends are closed here. Otherwise the end of its report would never arrive.
+    Ok(RunningProcess {
+        test,
+        pid,
+        session,
+        source: channel.source.or(outputs.report),
+        outputs: outputs.watched,
+        reader: test.framework.reader(&launch),
+        limit,
+        termination: Termination::Exited,
+        last_error: LastLine::default(),
+        piece: vec![0; PIECE],
     })
 }
 
-fn stdout_source(child: &mut Child, channel: &OpenChannel) -> Option<Source> {
-    let stdout = child.stdout.take_if(|_| *channel == OpenChannel::Stdout)?;
-    non_blocking(OwnedFd::from(stdout)).map(Source::File)
+/// Executes a program.
+fn execute(mut command: Command, ends: &ProgramEnds<'_>) -> Result<Pid, String> {
+    let own = |fd: &OwnedFd| fd.try_clone().map(Stdio::from);
+    let [stdout, stderr] = ends.outputs;
+    let outputs = own(stdout).and_then(|stdout| Ok((stdout, own(stderr)?)));
+    let (stdout, stderr) =
+        outputs.map_err(|error| format!("the outputs of the program cannot be opened: {error}"))?;
+    command.stdin(Stdio::null()).stdout(stdout).stderr(stderr);
+    command.env(SESSION_VARIABLE, format!("fd:{}", ends.session.as_raw_fd()));
+    command.process_group(0);
+    let child = command.spawn();
+    let child = child.map_err(|error| listing::not_started(command.get_program(), &error))?;
+    Ok(Pid::from_child(&child))
 }
 
-/// The watched outputs.
-fn outputs(child: &mut Child, merged: Option<OwnedFd>) -> Vec<(OutputStream, File)> {
-    let stdout = child.stdout.take().map(OwnedFd::from).or(merged);
-    let stdout = stdout.map(|it| (OutputStream::Stdout, it));
-    let stderr = child.stderr.take().map(|it| (OutputStream::Stderr, OwnedFd::from(it)));
-    let outputs = stdout.into_iter().chain(stderr);
-    outputs.filter_map(|(stream, fd)| Some((stream, non_blocking(fd)?))).collect()
-}
-
-fn non_blocking(fd: OwnedFd) -> Option<File> {
-    rustix::io::ioctl_fionbio(&fd, true).ok()?;
-    Some(fd.into())
+/// Waits for the end of a child process.
+fn wait_for(pid: Pid) -> rustix::io::Result<ExitStatus> {
+    let ended = retry_on_intr(|| waitpid(Some(pid), WaitOptions::empty()))?;
+    let (_, status) = ended.ok_or(Errno::CHILD)?;
+    Ok(match status.exit_status() {
+        Some(code) => ExitStatus::Code(code),
+        None => ExitStatus::Signal(status.terminating_signal().unwrap_or_default()),
+    })
 }
 
 /// The last line of a stream that is not blank.
@@ -249,6 +214,7 @@ enum Wakeup {
 /// The state of a running process.
 struct RunningProcess<'a> {
     test: &'a TestRun<'a>,
+    pid: Pid,
     session: SessionSocket,
     source: Option<Source>,
     outputs: Vec<(OutputStream, File)>,
@@ -261,11 +227,11 @@ struct RunningProcess<'a> {
 
 impl RunningProcess<'_> {
     /// Reads until the process has ended.
-    fn read_until(&mut self, exited: BorrowedFd<'_>, pid: Pid, cases: &mut CaseReporter<'_>) {
+    fn read_until(&mut self, exited: BorrowedFd<'_>, cases: &mut CaseReporter<'_>) {
         loop {
             let wait = self.time_left(cases);
             if wait == Some(Duration::ZERO) {
-                self.end_case(pid);
+                self.end_case();
             }
             let release = self.reader.holds_back().then_some(RELEASE_WAIT);
             let wakeup = self.wait(exited, wait.into_iter().chain(release).min());
@@ -286,9 +252,9 @@ impl RunningProcess<'_> {
     }
 
     /// Ends a process whose case exceeded its limit.
-    fn end_case(&mut self, pid: Pid) {
+    fn end_case(&mut self) {
         let Some(limit) = self.limit else { return };
-        let dump = stack::dump(self.test.framework.stack_dump(), pid, &self.test.stack_file);
+        let dump = stack::dump(self.test.framework.stack_dump(), self.pid, &self.test.stack_file);
         if let Some(text) = dump {
             self.test.session.stack(text);
         }

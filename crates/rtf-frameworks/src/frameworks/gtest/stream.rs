@@ -33,6 +33,8 @@ const OTHER_EVENTS: [&str; 6] = [
 #[derive(Debug)]
 pub(super) struct Reader {
     report: PathBuf,
+    /// Whether the report decides which tests were skipped, not the output.
+    report_decides: bool,
     starts: HashMap<String, StartedCase>,
     /// The end of the stream that is not a whole line yet.
     line: Vec<u8>,
@@ -75,9 +77,10 @@ enum Event {
 }
 
 impl Reader {
-    pub fn new(cases: &[ListedCase], report: PathBuf) -> Self {
+    pub fn new(cases: &[ListedCase], report: PathBuf, report_decides: bool) -> Self {
         Self {
             report,
+            report_decides,
             starts: cases.iter().map(|case| (case.name.clone(), case.start())).collect(),
             line: Vec::new(),
             queue: VecDeque::new(),
@@ -149,15 +152,21 @@ impl Reader {
         cases.finish(&name, result);
     }
 
-    /// Reads the JSON report: the properties, and whether the tests were skipped. A test can
-    /// print a mark itself.
-    fn read_report(&self, cases: &mut CaseReporter<'_>) {
-        let text = std::fs::read(&self.report).unwrap_or_default();
-        let Ok(report) = serde_json::from_slice::<Report>(&text) else { return };
+    /// Takes from the report which tests were skipped.
+    fn mark_skipped(&mut self, report: &Report) {
+        for suite in &report.testsuites {
+            for test in &suite.testsuite {
+                self.marks.insert(format!("{}.{}", suite.name, test.name), test.was_skipped());
+            }
+        }
+    }
+
+    /// Reports the properties, and compares the skipped tests: a test can print a mark itself.
+    fn read_report(&self, report: &Report, cases: &mut CaseReporter<'_>) {
         for suite in &report.testsuites {
             for test in &suite.testsuite {
                 let test_name = format!("{}.{}", suite.name, test.name);
-                let was_skipped = test.rest.get("result").is_some_and(|it| it == "SKIPPED");
+                let was_skipped = test.was_skipped();
                 if self.skipped.contains(&test_name) && !was_skipped {
                     let text =
                         format!("`{test_name}` was not skipped, as its output had suggested");
@@ -196,14 +205,19 @@ impl ReportReader for Reader {
     }
 
     fn finish(&mut self, end: ExitStatus, cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
+        let text = std::fs::read(&self.report).unwrap_or_default();
+        let report = serde_json::from_slice::<Report>(&text).ok();
+        if let (Some(report), true) = (&report, self.report_decides) {
+            self.mark_skipped(report);
+        }
         // After a crash, a test without a mark has failed.
         self.advance(true, cases);
         if let Some(Running { name, parts }) = self.running.take() {
             // The failures of a test that did not end.
             parts.into_iter().for_each(|part| report_failure(Some(&name), part, cases));
         }
-        if let ExitStatus::Code(_) = end {
-            self.read_report(cases);
+        if let (Some(report), ExitStatus::Code(_)) = (&report, end) {
+            self.read_report(report, cases);
         }
         Ok(())
     }

@@ -1,0 +1,217 @@
+//! The fork server of a program whose cases run in a process each: the program is executed
+//! and linked once, and stops before its own constructors. See "Forked programs" in
+//! `spec/frameworks.md`.
+
+use std::ffi::{OsStr, OsString};
+use std::fs::File;
+use std::io::{self, IoSlice};
+use std::mem::MaybeUninit;
+use std::os::fd::{AsFd, AsRawFd as _, BorrowedFd, OwnedFd, RawFd};
+use std::os::unix::ffi::OsStrExt as _;
+use std::os::unix::process::CommandExt as _;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use rtf_model::protocol::{FORK_VARIABLE, PROGRAM_FORKS_VARIABLE};
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::io::{Errno, FdFlags, retry_on_intr};
+use rustix::net::{
+    AddressFamily, RecvFlags, SendAncillaryBuffer, SendAncillaryMessage, SendFlags, SocketFlags,
+    SocketType, recv, sendmsg, socketpair,
+};
+use rustix::process::Pid;
+
+use crate::{elf, preload};
+
+const LIBRARY: &str = "librtf-fork-server.so";
+
+/// Variables of the dynamic linker whose libraries may not support forks.
+const LINKER_VARIABLES: [&str; 2] = ["LD_PRELOAD", "LD_AUDIT"];
+
+/// Has the linker resolve all functions in the server, instead of in each process.
+const BIND_VARIABLE: &str = "LD_BIND_NOW";
+
+/// The time to execute and link a program. Without an answer, its cases are executed.
+const START_LIMIT: Duration = Duration::from_secs(10);
+
+/// How often a wait checks whether the test is being stopped.
+const STOP_CHECK: Duration = Duration::from_millis(50);
+
+/// A program that waits before its start, and is forked for each case.
+#[derive(Debug)]
+pub(super) struct ForkServer {
+    socket: OwnedFd,
+    process: Child,
+    /// Keep their numbers free in all processes of the program.
+    session: File,
+    report: File,
+}
+
+/// The descriptors of a forked program.
+#[derive(Debug)]
+pub(super) struct ProgramEnds<'a> {
+    pub outputs: &'a [OwnedFd; 2],
+    pub session: &'a OwnedFd,
+    pub report: Option<&'a OwnedFd>,
+}
+
+impl ForkServer {
+    /// Starts a server with a command that would only list the cases, if the server did not
+    /// stop it. `None` if the program's processes must be executed.
+    pub(super) fn start(
+        command: Command,
+        scratch: &Path,
+        is_stopping: impl Fn() -> bool,
+    ) -> Option<Self> {
+        let inherits = LINKER_VARIABLES.iter().any(|name| std::env::var_os(name).is_some());
+        let is_disabled = std::env::var_os(FORK_VARIABLE).is_some_and(|mode| mode == "never");
+        if inherits || is_disabled || !elf::loads_libraries(Path::new(command.get_program())) {
+            return None;
+        }
+        let server = Self::spawn(command, scratch)?;
+        server.answers(is_stopping).then_some(server)
+    }
+
+    fn spawn(mut command: Command, scratch: &Path) -> Option<Self> {
+        preload::add(&mut command, preload::library(LIBRARY)?, scratch).ok()?;
+        let (session, report) = (placeholder().ok()?, placeholder().ok()?);
+        let flags = SocketFlags::CLOEXEC;
+        let (socket, theirs) =
+            socketpair(AddressFamily::UNIX, SocketType::SEQPACKET, flags, None).ok()?;
+        rustix::io::fcntl_setfd(&theirs, FdFlags::empty()).ok()?;
+        command.env(PROGRAM_FORKS_VARIABLE, theirs.as_raw_fd().to_string());
+        command.env(BIND_VARIABLE, "1");
+        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+        let process = command.process_group(0).spawn().ok()?;
+        Some(Self { socket, process, session, report })
+    }
+
+    /// Waits for the first packet: the server's process id.
+    fn answers(&self, is_stopping: impl Fn() -> bool) -> bool {
+        let limit = Instant::now() + START_LIMIT;
+        let slice = Timespec::try_from(STOP_CHECK).unwrap_or_default();
+        while Instant::now() < limit && !is_stopping() {
+            let mut fds = [PollFd::new(&self.socket, PollFlags::IN)];
+            match poll(&mut fds, Some(&slice)) {
+                Ok(0) | Err(Errno::INTR) => {}
+                Ok(_) => return self.number().is_ok_and(|id| id == i64::from(self.process.id())),
+                Err(_) => return false,
+            }
+        }
+        false
+    }
+
+    /// The number of the session's descriptor in the program.
+    pub(super) fn session_number(&self) -> RawFd {
+        self.session.as_raw_fd()
+    }
+
+    /// The number of the report's descriptor in the program.
+    pub(super) fn report_number(&self) -> RawFd {
+        self.report.as_raw_fd()
+    }
+
+    /// Forks a process, which runs this command in a new process group. It is a child of this
+    /// process.
+    pub(super) fn fork(&self, command: &Command, ends: &ProgramEnds<'_>) -> io::Result<Pid> {
+        let [stdout, stderr] = ends.outputs;
+        let mut fds: Vec<(RawFd, BorrowedFd<'_>)> = vec![
+            (rustix::stdio::raw_stdout(), stdout.as_fd()),
+            (rustix::stdio::raw_stderr(), stderr.as_fd()),
+            (self.session_number(), ends.session.as_fd()),
+        ];
+        fds.extend(ends.report.map(|report| (self.report_number(), report.as_fd())));
+        let (numbers, descriptors): (Vec<_>, Vec<_>) = fds.into_iter().unzip();
+        self.send(&request(&numbers, command), &descriptors)?;
+        let pid = i32::try_from(self.number()?).ok().filter(|pid| *pid > 0);
+        let pid = pid.and_then(Pid::from_raw);
+        let pid = pid.ok_or_else(|| io::Error::other("the program cannot be forked"))?;
+        // The process does the same. Either way, the group exists from now on.
+        let _ = rustix::process::setpgid(Some(pid), Some(pid));
+        Ok(pid)
+    }
+
+    fn send(&self, request: &[u8], descriptors: &[BorrowedFd<'_>]) -> io::Result<()> {
+        let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(4))];
+        let mut control = SendAncillaryBuffer::new(&mut space);
+        if !control.push(SendAncillaryMessage::ScmRights(descriptors)) {
+            return Err(io::Error::other("there are too many descriptors"));
+        }
+        let packet = [IoSlice::new(request)];
+        let flags = SendFlags::NOSIGNAL;
+        retry_on_intr(|| sendmsg(&self.socket, &packet, &mut control, flags))?;
+        Ok(())
+    }
+
+    /// Receives a number; it is negative after an error.
+    fn number(&self) -> io::Result<i64> {
+        let mut bytes = [0; 32];
+        let (length, _) = retry_on_intr(|| recv(&self.socket, &mut bytes, RecvFlags::empty()))?;
+        let text = std::str::from_utf8(&bytes[..length]).unwrap_or_default();
+        text.parse().map_err(|_| io::Error::other("the fork server has ended"))
+    }
+}
+
+impl Drop for ForkServer {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+/// A descriptor that programs inherit.
+fn placeholder() -> io::Result<File> {
+    let file = File::open("/dev/null")?;
+    rustix::io::fcntl_setfd(&file, FdFlags::empty())?;
+    Ok(file)
+}
+
+/// The strings of a request, each with a zero byte at its end.
+fn request(numbers: &[RawFd], command: &Command) -> Vec<u8> {
+    let numbers: Vec<String> = numbers.iter().map(RawFd::to_string).collect();
+    let args: Vec<&OsStr> =
+        std::iter::once(command.get_program()).chain(command.get_args()).collect();
+    let mut strings = vec![numbers.join(",").into(), OsString::from(args.len().to_string())];
+    strings.extend(args.into_iter().map(OsStr::to_owned));
+    // The server's own variables. The command may set them again.
+    strings.push(PROGRAM_FORKS_VARIABLE.into());
+    for name in preload::VARIABLES.into_iter().chain([BIND_VARIABLE]) {
+        strings.push(assignment(OsStr::new(name), std::env::var_os(name).as_deref()));
+    }
+    strings.extend(command.get_envs().map(|(name, value)| assignment(name, value)));
+    strings.iter().flat_map(|string| string.as_bytes().iter().copied().chain([0])).collect()
+}
+
+/// `NAME=VALUE`, or `NAME` for a variable to remove.
+fn assignment(name: &OsStr, value: Option<&OsStr>) -> OsString {
+    let mut text = name.to_owned();
+    if let Some(value) = value {
+        text.push("=");
+        text.push(value);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_request_has_descriptors_arguments_and_variables() {
+        let mut command = Command::new("/arm_test");
+        command
+            .arg("--case=Arm.Moves")
+            .arg("")
+            .env("RTF_SESSION", "fd:7")
+            .env_remove("GTEST_FILTER");
+        let text = String::from_utf8(request(&[1, 2, 7], &command)).unwrap();
+        let own = |name| assignment(OsStr::new(name), std::env::var_os(name).as_deref());
+        let own = ["LD_PRELOAD", "ASAN_OPTIONS", "LD_BIND_NOW"].map(own);
+        let own = own.map(|it| it.into_string().unwrap()).join("|");
+        let expected = format!(
+            "1,2,7|3|/arm_test|--case=Arm.Moves||RTF_PROGRAM_FORKS|{own}|GTEST_FILTER|RTF_SESSION=fd:7|"
+        );
+        assert_eq!(text.replace('\0', "|"), expected);
+    }
+}
