@@ -93,6 +93,11 @@ impl ForkServers {
         Self { mode, seen: Vec::new(), servers: Vec::new(), refused: Vec::new() }
     }
 
+    /// When hosts are forked.
+    pub fn mode(&self) -> ForkMode {
+        self.mode
+    }
+
     /// Stops all servers, or those in the given namespaces.
     pub fn stop(&mut self, within: Option<&Namespaces>) {
         let remains = |spec: &HostSpec| {

@@ -8,6 +8,7 @@
 pub mod cgroup;
 pub mod codec;
 pub mod descriptor_passing;
+pub mod foreground;
 pub mod fork_server;
 mod http;
 pub mod launch;

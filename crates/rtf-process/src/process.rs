@@ -8,6 +8,7 @@ use tokio::io::unix::AsyncFd;
 use tokio::net::UnixStream;
 use tokio::process::{Child, ChildStderr, ChildStdout};
 
+use crate::foreground::Foreground;
 use crate::{tree, unix};
 
 /// A started process.
@@ -21,6 +22,8 @@ pub struct StartedProcess {
     pub stdout: Option<ChildStdout>,
     /// Its standard error.
     pub stderr: Option<ChildStderr>,
+    /// The foreground of the terminal, if it has it.
+    pub foreground: Option<Foreground>,
     /// Its end.
     pub end: ProcessEnd,
 }

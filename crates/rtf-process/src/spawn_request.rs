@@ -15,6 +15,9 @@ pub enum Streams {
     StdoutOnly,
     /// None; both are discarded.
     None,
+    /// None: the process has those of the runner, its standard input, and the foreground
+    /// of its terminal.
+    Terminal,
 }
 
 /// What a process is for. Decides on reserved descriptors, on the out-of-memory score

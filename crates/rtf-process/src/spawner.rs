@@ -11,11 +11,12 @@ use std::os::fd::{AsFd, AsRawFd, OwnedFd};
 use std::process::Stdio;
 use std::sync::Arc;
 
-use rtf_model::protocol::CHANNEL_VARIABLE;
+use rtf_model::protocol::{CHANNEL_VARIABLE, FORK_VARIABLE};
 use tokio::net::UnixStream;
 use tokio::process::{Child, ChildStderr, ChildStdout, Command};
 use tokio::sync::oneshot;
 
+use crate::foreground::Foreground;
 use crate::fork_server::{ChildEnds, ForkMode, ForkServers};
 use crate::namespaces::Namespaces;
 use crate::process::{ProcessEnd, StartedChild, StartedProcess};
@@ -135,7 +136,7 @@ fn spawn(request: &SpawnRequest, servers: &mut ForkServers) -> io::Result<Starte
         // It inherits the limits of its server.
         Some(process) => process,
         None => {
-            let process = execute(request, theirs)?;
+            let process = execute(request, theirs, servers.mode())?;
             resources::limit_descriptors(process.pid);
             if matches!(request.role, Some(ProcessRole::Test | ProcessRole::Fixture)) {
                 resources::make_expendable(process.pid);
@@ -169,7 +170,14 @@ fn fork(
     let child =
         unix::open_process(pid).map(StartedChild::Forked).inspect_err(|_| tree::kill_tree(pid))?;
     let end = ProcessEnd::new(pid, child);
-    Ok(Some(StartedProcess { pid, channel: None, stdout: Some(stdout), stderr: Some(stderr), end }))
+    Ok(Some(StartedProcess {
+        pid,
+        channel: None,
+        stdout: Some(stdout),
+        stderr: Some(stderr),
+        foreground: None,
+        end,
+    }))
 }
 
 /// Whether a command takes its channel as its standard input.
@@ -177,19 +185,18 @@ fn uses_stdin(command: &[String]) -> bool {
     start_gate::is_behind(command) || ssh::is_remote(command)
 }
 
-fn execute(request: &SpawnRequest, channel: Option<OwnedFd>) -> io::Result<StartedProcess> {
+fn execute(
+    request: &SpawnRequest,
+    channel: Option<OwnedFd>,
+    mode: ForkMode,
+) -> io::Result<StartedProcess> {
     let Some((program, arguments)) = request.command.split_first() else {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "an empty command"));
     };
     let mut command = Command::new(program);
     command.args(arguments).envs(request.env.iter().map(|(name, value)| (name, value)));
-    command.stdin(Stdio::null()).process_group(0).kill_on_drop(true);
-    let (stdout, stderr) = match request.streams {
-        Streams::Both => (Stdio::piped(), Stdio::piped()),
-        Streams::StdoutOnly => (Stdio::piped(), Stdio::null()),
-        Streams::None => (Stdio::null(), Stdio::null()),
-    };
-    command.stdout(stdout).stderr(stderr);
+    command.process_group(0).kill_on_drop(true);
+    set_streams(&mut command, request.streams);
     if let Some(dir) = &request.working_dir {
         command.current_dir(dir);
     }
@@ -198,6 +205,10 @@ fn execute(request: &SpawnRequest, channel: Option<OwnedFd>) -> io::Result<Start
     }
     if channel.is_none() {
         resources::limit_descriptors_of(command.as_std_mut());
+    }
+    if channel.is_some() && mode == ForkMode::Never {
+        // Hosts that fork programs follow it.
+        command.env(FORK_VARIABLE, "never");
     }
     let mut theirs = None;
     match channel {
@@ -215,7 +226,26 @@ fn execute(request: &SpawnRequest, channel: Option<OwnedFd>) -> io::Result<Start
     drop(theirs);
     let mut child = child?;
     let pid = child.id().and_then(|pid| i32::try_from(pid).ok()).unwrap_or_default();
+    // Before its greeting: it does not read the terminal yet.
+    let foreground = match request.streams {
+        Streams::Terminal => Some(Foreground::give(pid)?),
+        _ => None,
+    };
     let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
     let end = ProcessEnd::new(pid, StartedChild::Executed(child));
-    Ok(StartedProcess { pid, channel: None, stdout, stderr, end })
+    Ok(StartedProcess { pid, channel: None, stdout, stderr, foreground, end })
+}
+
+fn set_streams(command: &mut Command, streams: Streams) {
+    let (stdin, stdout, stderr) = match streams {
+        Streams::Both => (Stdio::null(), Stdio::piped(), Stdio::piped()),
+        Streams::StdoutOnly => (Stdio::null(), Stdio::piped(), Stdio::null()),
+        Streams::None => (Stdio::null(), Stdio::null(), Stdio::null()),
+        Streams::Terminal => {
+            // It inherits this. The shell could not continue it.
+            unix::ignore_suspension();
+            (Stdio::inherit(), Stdio::inherit(), Stdio::inherit())
+        }
+    };
+    command.stdin(stdin).stdout(stdout).stderr(stderr);
 }

@@ -180,6 +180,12 @@ pub fn is_child(pid: i32) -> bool {
     Pid::from_raw(pid).is_some_and(|pid| rustix::process::waitid(WaitId::Pid(pid), options).is_ok())
 }
 
+/// Makes this process, and those that it starts from now on, ignore SIGTSTP.
+pub fn ignore_suspension() {
+    // SAFETY: no handler is replaced that anything relies on.
+    unsafe { libc::signal(libc::SIGTSTP, libc::SIG_IGN) };
+}
+
 /// Makes a child the leader of a new process group.
 pub fn lead_group(pid: i32) {
     // Fails if it leads a group already or has ended.

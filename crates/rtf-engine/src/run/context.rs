@@ -21,13 +21,34 @@ pub struct RunContext {
     pub scratch_dir: PathBuf,
     /// The connection to the guard.
     pub guard: Arc<Link>,
+    /// How the only test is debugged.
+    pub debug: Option<DebugOptions>,
+}
+
+/// How the only test of a run is debugged, see `spec/debugging.md`.
+#[derive(Clone, Copy, Debug)]
+pub struct DebugOptions {
+    /// Its connection to a debugger.
+    pub mode: DebugMode,
+    /// Called with the id of its process when that has the terminal, or waits.
+    pub notify: fn(DebugMode, i32),
+}
+
+/// How a test is connected to a debugger.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DebugMode {
+    /// Its process has the terminal.
+    Terminal,
+    /// Its process waits before the test until a debugger is attached.
+    Wait,
 }
 
 impl RunContext {
     /// Returns the owner of a process that belongs to this test, fixture or hook.
     pub(super) fn process_owner(&self, source: Source) -> Arc<dyn ProcessOwner> {
         let (sink, guard) = (self.sink.clone(), self.guard.clone());
-        Arc::new(SourceOwner { source, sink, guard })
+        let debug = self.debug.filter(|_| matches!(source, Source::Test(_)));
+        Arc::new(SourceOwner { source, sink, guard, debug })
     }
 }
 
@@ -46,15 +67,25 @@ struct SourceOwner {
     source: Source,
     sink: Arc<dyn EventSink>,
     guard: Arc<Link>,
+    debug: Option<DebugOptions>,
 }
 
 impl ProcessOwner for SourceOwner {
     fn process_started(&self, pid: i32, streams: &[(ProcessStream, BorrowedFd<'_>)]) {
         self.guard.process_started(self.source, pid, streams);
+        if let Some(debug) = self.debug.filter(|debug| debug.mode == DebugMode::Terminal) {
+            (debug.notify)(debug.mode, pid);
+        }
     }
 
     fn process_ended(&self, pid: i32) {
         self.guard.process_ended(self.source, pid);
+    }
+
+    fn debugger_awaited(&self, pid: i32) {
+        if let Some(debug) = self.debug {
+            (debug.notify)(debug.mode, pid);
+        }
     }
 
     fn backlog(&self) -> usize {

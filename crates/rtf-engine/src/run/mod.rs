@@ -26,6 +26,7 @@ use rtf_model::{
 use tokio::sync::watch;
 
 use context::RunContext;
+pub use context::{DebugMode, DebugOptions};
 use fail_limit::FailLimit;
 use suite_queue::SuiteQueue;
 use suite_task::SuiteRequests;
@@ -67,6 +68,8 @@ pub struct RunOptions {
     pub controls: Controls,
     /// How the run waits for locks.
     pub locks: LockOptions,
+    /// How the only test is debugged.
+    pub debug: Option<DebugOptions>,
 }
 
 /// Runs every suite of a plan.
@@ -90,6 +93,7 @@ pub async fn execute(
         sink: sink.clone(),
         scratch_dir: scratch.clone(),
         guard: options.guard.clone(),
+        debug: options.debug,
     };
     let events = Events::new(options.started.run.clone(), sink);
     options.guard.run_started(&options.journal, scratch.clone(), events.start());

@@ -33,6 +33,9 @@ pub trait ProcessOwner: fmt::Debug + Send + Sync {
     /// The process has ended.
     fn process_ended(&self, pid: i32);
 
+    /// The requests of the process wait until a debugger is attached.
+    fn debugger_awaited(&self, pid: i32);
+
     /// How many bytes of the process's messages wait to be reported.
     fn backlog(&self) -> usize;
 }
@@ -55,6 +58,8 @@ pub struct ProcessJob {
     pub is_measured: bool,
     /// The probes of a process fixture.
     pub probes: Option<Probes>,
+    /// Whether its requests wait until a debugger is attached.
+    pub waits_for_debugger: bool,
 }
 
 /// The resources that the tasks of all processes share.

@@ -7,6 +7,7 @@
 mod attached;
 mod attachments;
 mod command;
+mod debugger;
 mod event;
 mod file_copy;
 mod input;
@@ -40,6 +41,7 @@ use crate::process::StartedProcess;
 use crate::spawn_request::ProcessRole;
 use crate::tree::Effort;
 use crate::{ssh, stack_dump, start_gate, tree, unix};
+use debugger::DebuggerWait;
 use file_copy::FileCopy;
 use line_assembly::LineAssembly;
 use shared_host::SharedHost;
@@ -103,6 +105,8 @@ struct ProcessTask {
     /// The messages received after an attachment that is being copied.
     held_back: VecDeque<Result<HostMessage, String>>,
     copy: Option<FileCopy>,
+    /// Whether requests wait for a debugger.
+    debugger: DebuggerWait,
     /// The requested liveness check.
     check: Option<ProbeSelection>,
     /// Probes and stack dumps; they end with the task.
@@ -116,6 +120,10 @@ impl ProcessTask {
         process: StartedProcess,
         events: EventSender,
     ) -> Self {
+        let debugger = match job.waits_for_debugger {
+            true => DebuggerWait::Starting,
+            false => DebuggerWait::Over,
+        };
         Self {
             job,
             context,
@@ -127,6 +135,7 @@ impl ProcessTask {
             throttle: Throttle::default(),
             held_back: VecDeque::new(),
             copy: None,
+            debugger,
             check: None,
             background: JoinSet::new(),
         }
@@ -159,8 +168,12 @@ impl ProcessTask {
             tokio::select! {
                 biased;
                 Some(command) = commands.recv() => self.carry_out(command).await,
-                () = self.outgoing.write(&process.channel), if self.outgoing.has_work() => {}
+                () = self.outgoing.write(&process.channel),
+                    if self.outgoing.has_work() && self.debugger.is_over() => {}
+                () = self.debugger.attached(), if !self.debugger.is_over() =>
+                    self.debugger = DebuggerWait::Over,
                 () = receive(&process.channel, &mut buffers.channel), if is_read => {
+                    self.wait_for_debugger();
                     self.received(&buffers.channel).await;
                     self.update_throttle().await;
                 }
@@ -187,6 +200,8 @@ impl ProcessTask {
         commands: &mut mpsc::UnboundedReceiver<ProcessCommand>,
     ) {
         self.background.abort_all();
+        // What follows is printed on a terminal with its usual settings.
+        self.process.foreground = None;
         // Hosts of tests are only in a group if each leak counts.
         let is_strict = self.job.is_grouped && self.role() == Some(ProcessRole::Test);
         let effort = if is_strict { Effort::Thorough } else { Effort::Once };
@@ -207,6 +222,10 @@ impl ProcessTask {
             self.throttle.is_stopping = true;
             self.update_throttle().await;
             self.abandon_copy().await;
+            if !self.debugger.is_over() {
+                // The test has not begun: there is nothing to tear down.
+                return self.job.launch.kill(&self.process);
+            }
         }
         match command {
             ProcessCommand::Assign(assignment) => self.assign(assignment),

@@ -6,7 +6,7 @@ use tokio::sync::mpsc;
 
 use super::SuiteTask;
 use crate::guard::HookStart;
-use crate::run::context::attachments_dir;
+use crate::run::context::{DebugMode, attachments_dir};
 use crate::run::machine::{HostId, Program, StartRequest};
 use crate::run::probes;
 use rtf_plan::plan::{Leaks, ProcessPlan, TestPlan};
@@ -49,6 +49,7 @@ impl SuiteTask<'_> {
             is_grouped: self.is_grouped(source),
             is_measured: self.is_measured(source, process.as_deref()),
             probes: process.map(|process| probes::convert(&process.probes, self.network.clone())),
+            waits_for_debugger: self.debug_mode(role_of(source)) == Some(DebugMode::Wait),
         };
         let tasks = self.context.tasks.clone();
         tokio::spawn(run_process(job, tasks, queue, self.inputs.clone()));
@@ -81,6 +82,9 @@ impl SuiteTask<'_> {
     }
 
     pub(super) fn spawn_ahead(&mut self, starts: Vec<StartRequest>) {
+        if self.context.debug.is_some() {
+            return;
+        }
         let mut before = std::mem::take(&mut self.prelaunched);
         for start in starts {
             let request = self.request(start, ProcessRole::Test);
@@ -139,11 +143,20 @@ impl SuiteTask<'_> {
             env,
             working_dir: Some(start.folder),
             channel,
-            streams: Streams::Both,
+            streams: match self.debug_mode(role) {
+                Some(DebugMode::Terminal) => Streams::Terminal,
+                _ => Streams::Both,
+            },
             can_fork,
             namespaces: self.network.as_ref().map(|network| network.namespaces().clone()),
             role: Some(role),
         }
+    }
+
+    /// How a process is debugged, if it is that of the test.
+    fn debug_mode(&self, role: ProcessRole) -> Option<DebugMode> {
+        let debug = self.context.debug.filter(|_| role == ProcessRole::Test);
+        debug.map(|debug| debug.mode)
     }
 
     fn launch(&mut self, request: SpawnRequest) -> Launch {

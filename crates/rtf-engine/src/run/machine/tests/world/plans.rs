@@ -85,6 +85,7 @@ fn test(index: usize) -> TestPlan {
     TestPlan {
         id: TestId(u32::try_from(index).unwrap()),
         name: format!("test{index}"),
+        line: 0,
         plugin: plugin(),
         env: Vec::new(),
         limits: Arc::new(limits),

@@ -1,0 +1,7 @@
+TestCase = {}
+
+function TestCase.run()
+  angle = 42
+  debug.debug()
+  rtf.check(angle == 42, 'the angle')
+end
