@@ -48,6 +48,13 @@ pub const CLOCK_FILE_VARIABLE: &str = "RTF_CLOCK_FILE";
 /// `fd:N`, then blanks as room for the variables of a [`ForkRequest`].
 pub const FORK_SERVER_VARIABLE: &str = "RTF_FORK_SERVER";
 
+/// The environment variable with the descriptor at which a program waits to be forked for
+/// each of its cases (`spec/frameworks.md`).
+pub const PROGRAM_FORKS_VARIABLE: &str = "RTF_PROGRAM_FORKS";
+
+/// Is `never` if the user wants all processes of tests to be executed.
+pub const FORK_VARIABLE: &str = "RTF_FORK";
+
 /// The environment variable that names the socket of a program of another framework:
 /// `fd:N`. `spec/frameworks.md` documents it.
 pub const SESSION_VARIABLE: &str = "RTF_SESSION";

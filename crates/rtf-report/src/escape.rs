@@ -26,6 +26,16 @@ pub fn line(text: &str) -> Cow<'_, str> {
     }
 }
 
+/// As [`line()`], but with tabs: a line of a block.
+#[must_use]
+pub fn line_with_tabs(text: &str) -> Cow<'_, str> {
+    if text.chars().any(|c| c != '\t' && is_harmful(c)) {
+        Cow::Owned(written_out(text, &['\t']))
+    } else {
+        Cow::Borrowed(text)
+    }
+}
+
 fn is_harmful(c: char) -> bool {
     let changes_direction = matches!(
         c,

@@ -4,7 +4,7 @@
 mod location;
 mod test;
 
-use rtf_model::{HookRunRecord, Record, Severity, SuiteRecord};
+use rtf_model::{HookRunRecord, Record, Severity, SuiteRecord, TestRecord};
 
 pub(crate) use location::{RepositoryLocation, Roots};
 
@@ -51,7 +51,7 @@ pub(crate) fn all(record: &Record, roots: &Roots<'_>) -> Vec<Finding> {
     let mut findings: Vec<Finding> = of_run(record, roots).into_iter().collect();
     findings.extend(record.suites.iter().flat_map(|suite| of_hooks(record, suite, roots)));
     findings.extend(record.suites.iter().flat_map(|suite| of_fixtures(record, suite, roots)));
-    findings.extend(record.tests.iter().flat_map(|test| test::of(record, test, roots)));
+    findings.extend(record.tests.iter().flat_map(|test| of_test(record, test, roots)));
     findings.extend(record.warnings.iter().map(|warning| of_warning(warning, roots)));
     findings
 }
@@ -71,6 +71,16 @@ pub(crate) fn run_problem(record: &Record) -> Option<String> {
     } else {
         None
     }
+}
+
+/// Whether a test has findings.
+pub(crate) fn is_problem(record: &Record, test: &TestRecord) -> bool {
+    test::is_problem(record, test)
+}
+
+/// The findings of one test.
+pub(crate) fn of_test(record: &Record, test: &TestRecord, roots: &Roots<'_>) -> Vec<Finding> {
+    test::of(record, test, roots)
 }
 
 fn of_run(record: &Record, roots: &Roots<'_>) -> Option<Finding> {

@@ -4,8 +4,8 @@
 //! [`Reporter`] in a separate thread. The [`journal`] is the authoritative record, from which
 //! every other report can be generated; [`console`] shows the run while it
 //! continues; [`text`] and [`junit`] write a file at its end; [`logs`] keeps the output of
-//! each process. [`tap`], [`event_stream`], [`github`], [`gitlab`] and
-//! [`code_quality`] are for other programs. [`run_dir`] is the directory of all results.
+//! each process. [`tap`], [`event_stream`], [`github`], [`gitlab`],
+//! [`code_quality`] and [`markdown`] are for other programs. [`run_dir`] is the directory of all results.
 //! [`merge`] merges several runs.
 //! [`predecessor`] has the output formats of robot-testing-framework 2.x.
 //!
@@ -30,7 +30,9 @@ pub mod journal;
 pub mod junit;
 mod known_failure;
 pub mod logs;
+pub mod markdown;
 pub mod merge;
+mod outcome;
 pub mod output_file;
 pub mod predecessor;
 mod private_resources;

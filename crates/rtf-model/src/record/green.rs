@@ -29,12 +29,26 @@ impl Record {
     /// and its journal is not damaged.
     #[must_use]
     pub fn is_green(&self) -> bool {
+        self.is_green_without_tests()
+            && !self.tests.is_empty()
+            && self.tests.iter().all(|test| self.has_green_result(test))
+    }
+
+    /// Whether there is no problem apart from the tests: the run finished, no fixture or
+    /// hook failed, and its journal is not damaged.
+    #[must_use]
+    pub fn is_green_without_tests(&self) -> bool {
         !self.is_damaged()
             && self.state == RunState::Finished { interrupted: None }
-            && !self.tests.is_empty()
-            && self.tests.iter().all(|test| test.verdict().is_some() && self.is_test_green(test))
-            && !(self.flaky_fails() && self.tests.iter().any(TestRecord::is_flaky))
             && self.suites.iter().all(|s| self.suite_problems(s.plan.suite).is_empty())
+    }
+
+    /// Whether a test has finished and does not make the run red.
+    #[must_use]
+    pub fn has_green_result(&self, test: &TestRecord) -> bool {
+        test.verdict().is_some()
+            && self.is_test_green(test)
+            && !(self.flaky_fails() && test.is_flaky())
     }
 
     /// Whether a test does not make the run red: it passed, its failure is known, or it

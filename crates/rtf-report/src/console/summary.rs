@@ -3,16 +3,14 @@
 
 use std::collections::BTreeMap;
 
-use anstyle::Style;
 use rtf_model::{Record, Significance, TestId, Verdict};
 
 use super::page::ConsoleLines;
 use super::style::{self, BAD, BOLD, GOOD, LOUD};
 use super::{ConsoleOptions, case_summary, failed_tests, hooks};
-use crate::cases::CaseTotals;
 use crate::growth::{self, Growing, Within};
 use crate::repetition_summary::Repeated;
-use crate::{cause, escape, explain, known_failure, words};
+use crate::{cause, escape, explain, outcome, words};
 
 /// Maximum number of skipped tests that are listed per reason.
 const NAMES: usize = 5;
@@ -181,64 +179,7 @@ fn killed(page: &mut ConsoleLines, record: &Record) {
 }
 
 fn result(page: &mut ConsoleLines, record: &Record) {
-    let tests = words::count(record.tests.len() as u64, "test");
-    let suites = words::count(record.suites.len() as u64, "suite");
-    let time = words::time(record.last_at.as_duration());
-    let (style, word) = outcome(record);
-    let counts = match test_counts(record) {
-        counts if counts.is_empty() => counts,
-        counts => format!(": {counts}"),
-    };
-    let totals = CaseTotals::of_run(record);
-    let (cases, case_counts) = match totals.total {
-        0 => (String::new(), String::new()),
-        total => {
-            let counts = format!("; cases: {}", totals.describe());
-            (format!(", {}", words::count(total, "case")), counts)
-        }
-    };
-    let flaky = match record.tests.iter().filter(|test| test.is_flaky()).count() {
-        0 => String::new(),
-        flaky => format!(" ({flaky} flaky)"),
-    };
-    let failed = record.failed_hooks().count();
-    let hooks = match failed {
-        0 => String::new(),
-        failed => format!("; {} failed", words::count(failed as u64, "hook")),
-    };
-    let rest = format!("{tests}{cases} in {suites}, {time}{counts}{flaky}{case_counts}{hooks}");
-    page.line(&format!("{}  {rest}", style::paint(style, &word)));
-}
-
-/// `9 passed, 1 failed, 1 expected`.
-fn test_counts(record: &Record) -> String {
-    let words = Verdict::ALL.map(Verdict::as_str).into_iter().chain(["expected", "quarantined"]);
-    let mut counts: Vec<_> = words.map(|word| (word, 0_u32)).collect();
-    for test in &record.tests {
-        let word = known_failure::word(test);
-        counts.iter_mut().filter(|(counted, _)| *counted == word).for_each(|(_, n)| *n += 1);
-    }
-    let counts = counts.iter().filter(|(_, count)| *count > 0);
-    counts.map(|(word, count)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
-}
-
-/// The result as a word, with its reason.
-fn outcome(record: &Record) -> (Style, String) {
-    if record.is_green() {
-        return (GOOD, "PASSED".to_owned());
-    }
-    let word = if record.is_damaged() {
-        "DAMAGED (the journal cannot be trusted)".to_owned()
-    } else if let Some(reason) = record.runner_death() {
-        format!("INCOMPLETE (the runner died: {})", escape::line(reason))
-    } else if !record.is_complete() {
-        "INCOMPLETE (the runner did not reach the end)".to_owned()
-    } else if let Some(reason) = record.interrupted() {
-        format!("INTERRUPTED ({})", escape::line(reason))
-    } else if record.tests.is_empty() {
-        "FAILED (there are no tests)".to_owned()
-    } else {
-        "FAILED".to_owned()
-    };
-    (BAD, word)
+    let style = if record.is_green() { GOOD } else { BAD };
+    let word = style::paint(style, &outcome::word(record));
+    page.line(&format!("{word}  {}", outcome::totals(record)));
 }

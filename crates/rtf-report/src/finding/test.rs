@@ -10,18 +10,21 @@ use crate::{escape, explain, known_failure};
 /// Maximum number of cases of a test with a finding.
 const CASES: usize = 100;
 
-/// The findings of a test. A known failure has none.
+/// Whether a test has findings. A known failure has none.
+pub(super) fn is_problem(record: &Record, test: &TestRecord) -> bool {
+    let verdict = test.final_verdict();
+    // The reason why the runner skipped it is a separate finding.
+    let is_red = !verdict.is_green() && verdict != Verdict::Skipped;
+    !known_failure::is_known(test) && (is_red || known_failure::red_reason(record, test).is_some())
+}
+
+/// The findings of a test.
 pub(super) fn of(record: &Record, test: &TestRecord, roots: &Roots<'_>) -> Vec<Finding> {
-    if known_failure::is_known(test) {
+    if !is_problem(record, test) {
         return Vec::new();
     }
     if let Some(reason) = known_failure::red_reason(record, test) {
         return vec![of_red(record, test, &reason, roots)];
-    }
-    let verdict = test.final_verdict();
-    // The reason why the runner skipped it is a separate finding.
-    if verdict.is_green() || verdict == Verdict::Skipped {
-        return Vec::new();
     }
     let Some(cases) = TestCases::of(test) else { return vec![of_test(record, test, roots)] };
     let mut findings = Vec::new();

@@ -69,7 +69,7 @@ pub enum RunDirError {
         #[source]
         source: io::Error,
     },
-    /// The link to the newest run cannot be replaced.
+    /// A link to the run cannot be replaced.
     #[error("cannot make `{}` lead to this run", path.display())]
     Latest {
         /// The link.
@@ -114,6 +114,22 @@ pub fn create(results: &Path) -> Result<RunDir, RunDirError> {
     Ok(RunDir { path, name, started_at })
 }
 
+/// Makes `link` lead to the directory of a run, in place of an earlier link.
+///
+/// # Errors
+/// Something else is there, or it cannot be written.
+pub fn link(dir: &RunDir, link: &Path) -> Result<(), RunDirError> {
+    let failed = |source| RunDirError::Latest { path: link.to_owned(), source };
+    if link.symlink_metadata().is_ok_and(|found| !found.is_symlink()) {
+        return Err(failed(io::ErrorKind::AlreadyExists.into()));
+    }
+    let target = std::path::absolute(&dir.path).map_err(failed)?;
+    let mut beside = link.as_os_str().to_owned();
+    beside.push(format!("-{}", dir.name));
+    let beside = PathBuf::from(beside);
+    symlink_dir(&target, &beside).and_then(|()| fs::rename(&beside, link)).map_err(failed)
+}
+
 /// Names sort by time: the last four digits are the fraction of the second, in
 /// steps of 1/65536 s. They also keep runs of one second apart.
 fn name(now: &Zoned) -> String {
@@ -144,12 +160,12 @@ fn cannot_link(error: &io::Error) -> bool {
 }
 
 #[cfg(unix)]
-fn symlink_dir(target: &str, link: &Path) -> io::Result<()> {
+fn symlink_dir(target: impl AsRef<Path>, link: &Path) -> io::Result<()> {
     std::os::unix::fs::symlink(target, link)
 }
 
 #[cfg(windows)]
-fn symlink_dir(target: &str, link: &Path) -> io::Result<()> {
+fn symlink_dir(target: impl AsRef<Path>, link: &Path) -> io::Result<()> {
     std::os::windows::fs::symlink_dir(target, link)
 }
 
@@ -198,6 +214,21 @@ mod tests {
         fs::write(&file, "").unwrap();
         let error = create(&file).unwrap_err();
         assert!(matches!(error, RunDirError::Create { .. }), "{error}");
+    }
+
+    #[test]
+    fn a_link_leads_to_the_run_that_was_linked_last() {
+        let results = tempfile::tempdir().unwrap();
+        let path = results.path().join("run");
+        for _ in 0..2 {
+            let dir = create(results.path()).unwrap();
+            link(&dir, &path).unwrap();
+            assert_eq!(fs::read_link(&path).unwrap(), dir.path);
+        }
+        let file = results.path().join("notes.txt");
+        fs::write(&file, "mine").unwrap();
+        link(&create(results.path()).unwrap(), &file).unwrap_err();
+        assert_eq!(fs::read_to_string(&file).unwrap(), "mine");
     }
 
     #[test]

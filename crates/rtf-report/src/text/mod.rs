@@ -8,7 +8,7 @@ mod tests;
 
 use std::io::{self, Write};
 
-use rtf_model::{Record, SuiteRecord, Verdict};
+use rtf_model::{Record, SuiteRecord, TestRecord, Verdict};
 
 use crate::cases::CaseTotals;
 use crate::growth::{self, Within};
@@ -27,6 +27,36 @@ pub fn write(out: &mut dyn Write, record: &Record) -> io::Result<()> {
         show_suite(&mut lines, out, record, suite)?;
     }
     result(&mut lines, record);
+    lines.write_to(out)
+}
+
+/// Writes one test of a record.
+///
+/// # Errors
+/// `out` cannot be written.
+pub fn write_test(out: &mut dyn Write, record: &Record, test: &TestRecord) -> io::Result<()> {
+    let mut lines = TextLines::default();
+    head(&mut lines, record);
+    let suite = record.suites.get(test.plan.suite.index());
+    lines.at(0, "");
+    lines.fact(0, "suite", suite.map_or("", |suite| &suite.plan.name));
+    tests::show(&mut lines, record, test);
+    lines.write_to(out)
+}
+
+/// Writes a record without its tests.
+///
+/// # Errors
+/// `out` cannot be written.
+pub fn write_without_tests(out: &mut dyn Write, record: &Record) -> io::Result<()> {
+    let mut lines = TextLines::default();
+    head(&mut lines, record);
+    for suite in &record.suites {
+        show_suite_head(&mut lines, record, suite);
+        show_problems(&mut lines, record, suite);
+    }
+    lines.at(0, "");
+    show_end(&mut lines, record);
     lines.write_to(out)
 }
 
@@ -62,6 +92,17 @@ fn show_suite(
     record: &Record,
     suite: &SuiteRecord,
 ) -> io::Result<()> {
+    show_suite_head(lines, record, suite);
+    for test in suite.tests.iter().filter_map(|id| record.tests.get(id.index())) {
+        tests::show(lines, record, test);
+        lines.write_to(out)?;
+    }
+    show_problems(lines, record, suite);
+    lines.write_to(out)
+}
+
+/// Everything of a suite that precedes its tests.
+fn show_suite_head(lines: &mut TextLines, record: &Record, suite: &SuiteRecord) {
     lines.at(0, "");
     lines.fact(0, "suite", &suite.plan.name);
     lines.fact(2, "file", &suite.plan.file);
@@ -86,18 +127,16 @@ fn show_suite(
     for hook in suite.hooks.iter().filter_map(|id| record.hooks.get(id.index())) {
         hooks::show(lines, record, hook);
     }
-    for test in suite.tests.iter().filter_map(|id| record.tests.get(id.index())) {
-        tests::show(lines, record, test);
-        lines.write_to(out)?;
-    }
+}
+
+fn show_problems(lines: &mut TextLines, record: &Record, suite: &SuiteRecord) {
     for problem in record.suite_problems(suite.plan.suite) {
         lines.fact(2, "problem", &problem);
     }
-    lines.write_to(out)
 }
 
-fn result(lines: &mut TextLines, record: &Record) {
-    lines.at(0, "");
+/// How the run ended.
+fn show_end(lines: &mut TextLines, record: &Record) {
     if let Some(reason) = record.interrupted() {
         lines.fact(0, "interrupted", reason);
     }
@@ -106,6 +145,11 @@ fn result(lines: &mut TextLines, record: &Record) {
     } else if !record.is_complete() {
         lines.at(0, "incomplete: the runner did not reach the end of this run");
     }
+}
+
+fn result(lines: &mut TextLines, record: &Record) {
+    lines.at(0, "");
+    show_end(lines, record);
     let left = record.leaked_processes();
     if !left.is_empty() {
         lines.at(0, "left behind and killed:");

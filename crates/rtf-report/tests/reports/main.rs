@@ -10,6 +10,7 @@ mod hosts;
 mod journal;
 mod junit;
 mod logs;
+mod markdown;
 mod merge;
 mod mutate;
 mod mutations;

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::mutate::{Random, mutate};
 use crate::support::*;
 use rtf_report::console::{Console, ConsoleOptions};
-use rtf_report::{Reporter, code_quality, github, journal, tap, text};
+use rtf_report::{Reporter, code_quality, github, journal, markdown, tap, text};
 
 const MUTATIONS: u64 = 100_000;
 /// One in so many is shown in every format.
@@ -37,6 +37,9 @@ fn show(journal: &[u8]) {
     tap::write(&mut reports, &record).unwrap();
     github::write(&mut reports, &record, None).unwrap();
     code_quality::write(&mut reports, &record, None).unwrap();
+    let mut summary = Vec::new();
+    markdown::write(&mut summary, &record, &markdown_options()).unwrap();
+    assert!(summary.starts_with("## ❌".as_bytes()), "{}", String::from_utf8_lossy(&summary));
     assert_eq!(record.is_damaged(), said.contains("DAMAGED"), "{said}");
     assert!(!said.contains("PASSED"), "{said}");
 }

@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex};
 use rtf_model::{Event, LineSealer, Record};
 use rtf_report::console::{Console, ConsoleOptions};
 use rtf_report::journal::{self, Stored};
+use rtf_report::markdown::MarkdownOptions;
 
 /// The one stream that ends as a killed runner leaves it.
 pub const KILLED: &str = "killed";
@@ -84,4 +85,14 @@ pub fn junit(name: &str) -> String {
     let folder = Path::new("rtf-results/run");
     rtf_report::junit::write(&mut xml, &record(name), Some(folder)).unwrap();
     String::from_utf8(xml).unwrap()
+}
+
+/// Options of a summary without names of this machine.
+pub fn markdown_options() -> MarkdownOptions<'static> {
+    MarkdownOptions {
+        repository: None,
+        dir: Some(Path::new("rtf-results/run")),
+        url: Some("https://ci.example/results/7"),
+        rerun: Box::new(rtf_report::console::rerun_suite),
+    }
 }
