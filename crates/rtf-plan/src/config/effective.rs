@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use super::keys::{KEYS, ValueFormat};
+use super::keys::{KEYS, Key, ValueFormat};
 use super::param_reference;
 use super::profile_view::{ConfigRequest, ProfileView};
 use super::run_config::RunValue;
@@ -48,7 +48,7 @@ type SettingCandidate = (Vec<String>, String);
 #[must_use]
 pub fn effective_settings(query: &SettingsQuery<'_>) -> Vec<Setting> {
     let mut settings = Vec::new();
-    for (key, format) in KEYS {
+    for Key { name: key, format, .. } in KEYS {
         match format {
             ValueFormat::Named(_) => {
                 for name in query.names(key) {
@@ -56,7 +56,7 @@ pub fn effective_settings(query: &SettingsQuery<'_>) -> Vec<Setting> {
                 }
             }
             ValueFormat::Table(keys) => {
-                for (name, _) in *keys {
+                for Key { name, .. } in *keys {
                     settings.extend(query.setting(format!("{key}.{name}")));
                 }
             }

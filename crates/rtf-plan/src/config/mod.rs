@@ -15,6 +15,7 @@ mod param_reference;
 mod profile_view;
 mod quarantine;
 mod run_config;
+mod schema;
 mod toml_reader;
 mod unknown_profile;
 
@@ -25,6 +26,7 @@ pub use param_reference::is_name;
 pub use profile_view::{ConfigRequest, ProfileView};
 pub use quarantine::Quarantine;
 pub use run_config::{RunConfig, RunValue, input_dir};
+pub use schema::json_schema;
 pub use toml_reader::{Entry, Layer};
 
 pub(crate) use overlay::{DirectPluginConfig, direct_plugin_config, overlay_suite};

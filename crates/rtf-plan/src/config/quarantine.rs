@@ -11,7 +11,7 @@ use crate::wording::{nearest, quoted};
 /// The key of the tables.
 pub(super) const QUARANTINE: &str = "quarantine";
 
-const KEYS: [&str; 5] = ["filter", "issue", "reason", "until", "verdicts"];
+pub(super) const KEYS: [&str; 5] = ["filter", "issue", "reason", "until", "verdicts"];
 
 /// A table.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 use rtf_model::Diagnostic;
 use toml::de::{DeTable, DeValue};
 
-use super::keys::{KEYS, NameKind, REPORTS, ValueFormat};
+use super::keys::{KEYS, Key, NameKind, REPORTS, ValueFormat};
 use super::quarantine::{self, QUARANTINE, Quarantine};
 use super::unknown_profile::suggest_profile;
 use crate::suite::{SourceText, Span, Spanned, is_reserved, parse_duration};
@@ -110,7 +110,7 @@ impl TomlReader<'_> {
         &mut self,
         table: &DeTable<'_>,
         prefix: &str,
-        keys: &'static [(&'static str, ValueFormat)],
+        keys: &'static [Key],
         layer: &mut Layer,
     ) {
         for (key, value) in table {
@@ -122,7 +122,7 @@ impl TomlReader<'_> {
         &mut self,
         key: &TomlKey<'_>,
         value: &TomlValue<'_>,
-        (prefix, keys): (&str, &'static [(&'static str, ValueFormat)]),
+        (prefix, keys): (&str, &'static [Key]),
         layer: &mut Layer,
     ) {
         let name = key.get_ref().as_ref();
@@ -130,7 +130,7 @@ impl TomlReader<'_> {
             let found = quarantine::read(self, value);
             return layer.quarantines.extend(found);
         }
-        let Some((_, form)) = keys.iter().find(|(known, _)| *known == name) else {
+        let Some(Key { format: form, .. }) = keys.iter().find(|known| known.name == name) else {
             return self.unknown(key, prefix, keys);
         };
         let whole = format!("{prefix}{name}");
@@ -256,9 +256,9 @@ impl TomlReader<'_> {
         self.problems.push(problem.label(self.source.label(span(value), "")));
     }
 
-    fn unknown(&mut self, key: &TomlKey<'_>, prefix: &str, keys: &[(&str, ValueFormat)]) {
+    fn unknown(&mut self, key: &TomlKey<'_>, prefix: &str, keys: &[Key]) {
         let name = key.get_ref().as_ref();
-        let mut known: Vec<&str> = keys.iter().map(|(known, _)| *known).collect();
+        let mut known: Vec<&str> = keys.iter().map(|known| known.name).collect();
         if prefix.is_empty() {
             known.extend([QUARANTINE, "profile", "default-profile"]);
         }

@@ -201,10 +201,7 @@ impl Sdk {
     /// Puts the module's directory before the user's ones. If the directory is
     /// missing, the interpreter may still find an installed module.
     fn env(&self, scope: &SearchScope<'_>) -> Result<Vec<(String, String)>, Box<Diagnostic>> {
-        let executable = &scope.runner.executable;
-        let installed = scope.runner.prefix().map(|prefix| prefix.join(self.installed));
-        let source = executable.ancestors().skip(1).map(|dir| dir.join(self.source));
-        let found = installed.into_iter().chain(source).find(|sdk| sdk.join(self.marker).exists());
+        let found = scope.runner.shipped(&[self.installed], self.source, self.marker);
         let Some(dir) = found else { return Ok(Vec::new()) };
         let mut value = utf8(&dir)?;
         if let Some(user) = scope.variable(self.variable).filter(|user| !user.is_empty()) {

@@ -24,6 +24,18 @@ pub fn shipped_fixtures_dir(runner: &RunnerEnvironment) -> Option<PathBuf> {
     plugin_search::shipped_dir(&SearchScope::of_runner(runner))
 }
 
+/// Returns the directory of the CMake packages `rtf` and `RobotTestingFramework`.
+#[must_use]
+pub fn cmake_dir(runner: &RunnerEnvironment) -> Option<PathBuf> {
+    runner.shipped(&["lib/cmake", "share/cmake"], "sdk/cpp/cmake", "rtf/rtf-config.cmake")
+}
+
+/// Returns the directory of the Ada SDK's projects.
+#[must_use]
+pub fn ada_dir(runner: &RunnerEnvironment) -> Option<PathBuf> {
+    runner.shipped(&["share/rtf/ada"], "sdk/ada", "robottestingframework.gpr")
+}
+
 /// Finds a program in the user's `PATH`.
 #[must_use]
 pub fn find_in_path(name: &str, runner: &RunnerEnvironment) -> Option<PathBuf> {

@@ -47,7 +47,9 @@ mod use_site;
 pub use case_selection::{CaseSelection, CaseSelectionOrigin};
 pub use checks::{CheckAnswer, CheckGroup, CheckReport};
 pub use draft::{PlanDraft, PlanOutcome, draft};
-pub use installed::{LocatedHost, find_in_path, installed_hosts, shipped_fixtures_dir};
+pub use installed::{
+    LocatedHost, ada_dir, cmake_dir, find_in_path, installed_hosts, shipped_fixtures_dir,
+};
 pub use options::{CaseListing, Compatibility, InputPath, Options};
 pub use process_types::*;
 pub use runner_environment::RunnerEnvironment;

@@ -134,10 +134,7 @@ pub(super) fn user_dirs(scope: &SearchScope<'_>) -> Vec<PathBuf> {
 /// Finds the directory of the shipped fixture managers: in the prefix, or in the
 /// source tree.
 pub(super) fn shipped_dir(scope: &SearchScope<'_>) -> Option<PathBuf> {
-    let installed = scope.runner.prefix().map(|prefix| prefix.join("share/rtf/fixtures"));
-    let above = scope.runner.executable.ancestors().skip(1);
-    let source = above.map(|dir| dir.join("fixtures"));
-    installed.into_iter().chain(source).find(|dir| dir.join("rtf_fixtures").is_dir())
+    scope.runner.shipped(&["share/rtf/fixtures"], "fixtures", "rtf_fixtures")
 }
 
 /// Returns the possible paths of a plug-in's file. Only the extension of the

@@ -42,6 +42,21 @@ impl RunnerEnvironment {
     pub(super) fn prefix(&self) -> Option<&Path> {
         self.executable.parent()?.parent()
     }
+
+    /// Finds a directory that comes with `rtf`, which contains `marker`: at one of the paths in
+    /// the installation's prefix, or at a path in the source tree.
+    pub(super) fn shipped(
+        &self,
+        installed: &[&str],
+        source: &str,
+        marker: &str,
+    ) -> Option<PathBuf> {
+        let prefix = self.prefix().into_iter();
+        let installed = prefix.flat_map(|prefix| installed.iter().map(|path| prefix.join(path)));
+        let above = self.executable.ancestors().skip(1);
+        let source = above.map(|dir| dir.join(source));
+        installed.chain(source).find(|dir| dir.join(marker).exists())
+    }
 }
 
 /// Explains the usual cause: without `/proc`, no part of `rtf` works.

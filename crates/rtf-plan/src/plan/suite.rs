@@ -139,6 +139,7 @@ pub(super) fn plan_direct_plugins(
         tests.push(TestPlan {
             id: TestId(0),
             name: names.unique(base_name(&direct.file.name)),
+            line: 0,
             plugin,
             env: Vec::new(),
             limits: Arc::clone(&limits),

@@ -97,7 +97,7 @@ impl<'p, 'a, 'c> TestPlanner<'p, 'a, 'c> {
             self.check(&test, framework.as_ref());
         }
         let tags = tags(suite_tags, &test);
-        let DeclaredTest { name, plugin, env, limits, settings, known_failure, .. } = test;
+        let DeclaredTest { span, name, plugin, env, limits, settings, known_failure, .. } = test;
         let declared = NamedPlugin { name, plugin, env: &env };
         let (name, plugin, combination) = match combination {
             None => {
@@ -114,6 +114,7 @@ impl<'p, 'a, 'c> TestPlanner<'p, 'a, 'c> {
         self.plans.push(TestPlan {
             id: TestId(0),
             name,
+            line: self.source.line(span),
             combination: combination.map(Box::new),
             plugin,
             env,

@@ -8,9 +8,10 @@ use super::reference;
 use super::schema::{self, check};
 
 /// Variables that only the runner sets. `RTF_PORT_*` and `RTF_FIXTURE_*` are reserved as well.
-const RESERVED: [&str; 15] = [
+const RESERVED: [&str; 16] = [
     protocol::CHANNEL_VARIABLE,
     protocol::FORK_SERVER_VARIABLE,
+    protocol::PROGRAM_FORKS_VARIABLE,
     protocol::SCOPE_VARIABLE,
     protocol::OWNER_VARIABLE,
     protocol::ENVIRONMENT_VARIABLE,

@@ -93,6 +93,12 @@ impl SourceText {
         Label { file: self.name.clone(), line, column, start: start as u64, end: end as u64, text }
     }
 
+    /// Returns the line, from 1, in which a span starts.
+    #[must_use]
+    pub fn line(&self, span: Span) -> u32 {
+        self.line_column(self.boundary(span.start as usize)).0
+    }
+
     /// Returns the span of a line without the white space around it. Lines start at 1.
     #[must_use]
     pub fn line_span(&self, line: u32) -> Option<Span> {
@@ -155,6 +161,7 @@ mod tests {
         let source = SourceText::new("a.xml", "é\nöäü<x/>\n");
         let label = source.label(Span::new(9..11), "");
         assert_eq!((label.line, label.column, label.start, label.end), (2, 4, 9, 11));
+        assert_eq!(source.line(Span::new(9..11)), 2);
         // An offset inside a character moves to its start.
         assert_eq!(source.label(Span::new(1..1), "").start, 0);
         assert_eq!(source.line_span(2), Some(Span::new(3..13)));
