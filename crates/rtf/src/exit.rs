@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use rtf_engine::signal;
-use rtf_model::Record;
+use rtf_model::{Record, TestRecord, Verdict};
 
 /// Everything passed.
 pub const PASSED: u8 = 0;
@@ -18,9 +18,30 @@ pub const BROKEN: u8 = 3;
 pub const HOOK_FAILED: u8 = 4;
 /// The runner died; the guard stopped everything.
 pub const RUNNER_DIED: u8 = 5;
+/// `rtf show --single-test`: the test skipped itself. Automake and CTest know this code.
+const SKIPPED: u8 = 77;
 
 /// The exit code of a run.
 pub fn of_run(record: &Record) -> ExitCode {
+    of_result(record, record.is_green())
+}
+
+/// The exit code of a run apart from its tests.
+pub fn without_tests(record: &Record) -> ExitCode {
+    of_result(record, record.is_green_without_tests())
+}
+
+/// The exit code of a test.
+pub fn of_test(record: &Record, test: &TestRecord) -> ExitCode {
+    let is_green = !record.is_damaged() && record.has_green_result(test);
+    ExitCode::from(match test.final_verdict() {
+        Verdict::Skipped if is_green => SKIPPED,
+        _ if is_green => PASSED,
+        _ => FAILED,
+    })
+}
+
+fn of_result(record: &Record, is_green: bool) -> ExitCode {
     let interrupted = record.interrupted().map(|by| signal::exit_code(by).unwrap_or(FAILED));
     ExitCode::from(match interrupted {
         _ if record.hook_failed() => HOOK_FAILED,
@@ -28,7 +49,7 @@ pub fn of_run(record: &Record) -> ExitCode {
         _ if record.is_damaged() => FAILED,
         _ if record.runner_death().is_some() => RUNNER_DIED,
         Some(code) => code,
-        None if record.is_green() => PASSED,
+        None if is_green => PASSED,
         None => FAILED,
     })
 }
@@ -60,6 +81,11 @@ mod tests {
             let code = format!("{:?}", of_run(&one));
             let wanted = format!("{:?}", ExitCode::from(columns[1].parse::<u8>().unwrap()));
             assert_eq!((columns[0], code), (test.plan.name.as_str(), wanted));
+            let skipped = columns[0].ends_with("-skipped") && columns[0] != "case-skipped";
+            let wanted = if skipped { SKIPPED } else { columns[1].parse().unwrap() };
+            let code = format!("{:?}", of_test(&all, test));
+            assert_eq!(code, format!("{:?}", ExitCode::from(wanted)), "{}", columns[0]);
+            assert_eq!(format!("{:?}", without_tests(&one)), format!("{:?}", ExitCode::SUCCESS));
         }
     }
 }

@@ -6,6 +6,7 @@
 mod cli;
 mod command;
 mod control;
+mod debug;
 mod diagnostics;
 mod error;
 mod exit;
@@ -70,6 +71,10 @@ fn run(verb: Verb, matches: &ArgMatches) -> VerbResult {
         Verb::Serve(args) => command::serve::run(&args),
         Verb::Import { verb } => command::import::run(&verb),
         Verb::Config { verb: ConfigVerb::Show(args) } => command::config::show(&args),
+        Verb::New(args) => command::new::run(&args),
+        Verb::Init(args) => command::init::run(&args),
+        Verb::CmakeDir => command::sdk_dir::cmake(),
+        Verb::AdaDir => command::sdk_dir::ada(),
         Verb::Completions { shell } => command::completions::run(shell),
         Verb::Man { dir } => command::man::run(&dir),
     }

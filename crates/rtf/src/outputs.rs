@@ -13,6 +13,7 @@ use rtf_report::tap::TapStream;
 use rtf_report::{AnnotationReporter, FailureNotice, Reporter, escape};
 
 use crate::cli::{Annotations, ReportFormat, StdoutFormat};
+use crate::reports::Place;
 use crate::request::OutputRequest;
 use crate::{reports, rerun_command, terminal};
 
@@ -26,7 +27,10 @@ pub fn reporters(
         StdoutFormat::Json => Box::new(EventStream::new(Box::new(stdout.for_stream()))),
         StdoutFormat::Tap => Box::new(TapStream::new(Box::new(stdout.for_stream()))),
         StdoutFormat::Console => {
-            let options = console_options(&dir.path, request.verbose);
+            let options = ConsoleOptions {
+                progress: request.progress,
+                ..console_options(&dir.path, request.verbose)
+            };
             let console = Box::new(Console::over(stdout, options));
             match request.annotations {
                 Annotations::Gitlab => {
@@ -92,5 +96,5 @@ pub fn console_options(dir: &Path, verbose: bool) -> ConsoleOptions {
 }
 
 fn annotate(record: &Record) -> io::Result<()> {
-    reports::write(ReportFormat::Github, &mut io::stderr(), record, None)
+    reports::write(ReportFormat::Github, &mut io::stderr(), record, &Place::default())
 }

@@ -10,6 +10,7 @@ use rtf_plan::plan::{self, Plan, PlanDraft, PlanOutcome};
 use rtf_plan::select::{self, Selection, select};
 use rtf_plan::suite::{SourceMap, SourceText};
 
+use crate::debug::DebugRequest;
 use crate::diagnostics::{self, count};
 use crate::error::Failure;
 use crate::request::TestsRequest;
@@ -33,10 +34,19 @@ impl Planned {
 
 /// Plans; prints all problems if one of them is an error.
 pub fn plan(request: &TestsRequest) -> Result<Planned, Failure> {
+    plan_debugged(request, None)
+}
+
+/// As [`plan()`], and prepares the only test for a debugger.
+pub fn plan_debugged(
+    request: &TestsRequest,
+    debug: Option<&DebugRequest>,
+) -> Result<Planned, Failure> {
     let Draft { plan, total, problems, sources } =
         draft(request, |draft| verify::verify(draft, verify::DEFAULT_LIMIT));
     let Some(mut plan) = plan else { return Err(diagnostics::refuse(&problems, &sources)) };
     set_repetition(&mut plan, &request.manifest);
+    debug.map(|debug| debug.prepare(&mut plan)).transpose()?;
     let selected_from = if plan.tests as usize == total { 0 } else { total };
     Ok(Planned {
         plan: Arc::new(plan),

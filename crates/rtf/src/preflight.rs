@@ -38,6 +38,13 @@ pub fn prepare(
         let hint = format!("choose another directory with {}", request.results_option);
         Failure::input(error).hint(hint)
     })?;
+    if let Some(link) = &request.symlink {
+        run_dir::link(&dir, link).map_err(|error| {
+            // Nothing will run: remove the empty directory.
+            drop(std::fs::remove_dir(&dir.path));
+            Failure::input(error).hint("choose another path with `--symlink PATH`")
+        })?;
+    }
     let journal = Journal::create(&dir.journal()).map_err(Failure::input)?;
     let control = Arc::new(ControlChannels::new(request.shutdown_timeout));
     let role = Capabilities::Runner(dir.name.clone(), control.clone());

@@ -4,10 +4,12 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use rtf_model::Record;
+use rtf_report::markdown::{self, MarkdownOptions};
 use rtf_report::{ReportError, ReportFile, Reporter, code_quality, github, junit, tap, text};
 
 use crate::cli::ReportFormat;
 use crate::error::Failure;
+use crate::rerun_command;
 
 /// Opens the reports of a run in `results`. They are written when the run has
 /// finished, but this function finds out whether that is possible.
@@ -34,7 +36,7 @@ pub fn open(format: ReportFormat, path: &Path, results: &Path) -> Result<ReportF
     let results = results.to_owned();
     let write = move |out: &mut dyn Write, record: &Record| {
         let dir = record.run.as_ref().map(|started| results.join(&started.run));
-        write(format, out, record, dir.as_deref())
+        write(format, out, record, &Place { dir: dir.as_deref(), url: None })
     };
     ReportFile::new(title(format), path, Box::new(write))
 }
@@ -46,19 +48,38 @@ pub fn finish(report: Result<impl Reporter, ReportError>, record: &Record) {
     }
 }
 
-/// Writes a report. `dir` is the run directory.
+/// Where the results of a run are.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Place<'a> {
+    /// The run directory.
+    pub dir: Option<&'a Path>,
+    /// The address of the results on the web, for links.
+    pub url: Option<&'a str>,
+}
+
+/// Writes a report.
 pub fn write(
     format: ReportFormat,
     out: &mut dyn Write,
     record: &Record,
-    dir: Option<&Path>,
+    place: &Place<'_>,
 ) -> io::Result<()> {
     match format {
         ReportFormat::Text => text::write(out, record),
-        ReportFormat::Junit => junit::write(out, record, dir),
+        ReportFormat::Junit => junit::write(out, record, place.dir),
         ReportFormat::Tap => tap::write(out, record),
         ReportFormat::CodeQuality => code_quality::write(out, record, repository().as_deref()),
         ReportFormat::Github => github::write(out, record, repository().as_deref()),
+        ReportFormat::Markdown => markdown::write(
+            out,
+            record,
+            &MarkdownOptions {
+                repository: repository().as_deref(),
+                dir: place.dir,
+                url: place.url,
+                rerun: rerun_command::for_run(),
+            },
+        ),
         ReportFormat::Json => Err(io::Error::other("a record contains no events")),
     }
 }
@@ -71,6 +92,7 @@ pub fn title(format: ReportFormat) -> &'static str {
         ReportFormat::Tap => "the TAP report",
         ReportFormat::CodeQuality => "the code quality report",
         ReportFormat::Github => "the annotations",
+        ReportFormat::Markdown => "the Markdown summary",
         ReportFormat::Json => "the events",
     }
 }

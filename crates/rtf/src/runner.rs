@@ -17,6 +17,7 @@ use tokio::runtime::Runtime;
 
 use crate::command::VerbResult;
 use crate::control::ControlChannels;
+use crate::debug::DebugRequest;
 use crate::error::Failure;
 use crate::plan::Planned;
 use crate::preflight::Prepared;
@@ -66,6 +67,7 @@ fn run_options(
         controls: control.controls.subscribe(),
         locks: request.locks.clone(),
         jobs: request.jobs.into(),
+        debug: request.debug.as_ref().map(DebugRequest::options),
         soak_time: request.tests.manifest.for_ms.map(Duration::from_millis),
     })
 }

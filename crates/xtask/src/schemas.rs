@@ -1,5 +1,5 @@
 //! The JSON Schemas of the event stream, the host protocol and the web API, for programs
-//! that are not written in Rust.
+//! that are not written in Rust, and that of `rtf.toml`, for editors.
 
 use std::fs;
 use std::io;
@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use rtf_model::protocol::{Answer, Initialized, Notification, Request};
 use rtf_model::{Diagnostic, Event};
 use schemars::{JsonSchema, SchemaGenerator};
+use serde::Serialize;
 
 use crate::openapi;
 
@@ -77,14 +78,17 @@ fn all() -> Result<Vec<Named>, SchemaError> {
         ("notification.json", schema::<Notification>()?),
         ("initialized.json", schema::<Initialized>()?),
         ("answer.json", schema::<Answer>()?),
+        ("config.json", text(&rtf_plan::config::json_schema())?),
         ("openapi.json", openapi::description().map_err(SchemaError::Text)? + "\n"),
     ])
 }
 
 fn schema<T: JsonSchema>() -> Result<String, SchemaError> {
-    let schema = SchemaGenerator::default().into_root_schema_for::<T>();
-    let text = serde_json::to_string_pretty(&schema).map_err(SchemaError::Text)?;
-    Ok(text + "\n")
+    text(&SchemaGenerator::default().into_root_schema_for::<T>())
+}
+
+fn text(schema: &impl Serialize) -> Result<String, SchemaError> {
+    Ok(serde_json::to_string_pretty(schema).map_err(SchemaError::Text)? + "\n")
 }
 
 fn write(folder: &Path, schemas: &[Named]) -> Result<(), SchemaError> {

@@ -18,17 +18,20 @@ pub enum ReportFormat {
     CodeQuality,
     /// Workflow commands of GitHub Actions.
     Github,
+    /// A summary in Markdown.
+    Markdown,
     /// The event stream.
     Json,
 }
 
 /// The formats of `--report`, whose reports are written when the run has ended.
-const REPORTS: [(&str, ReportFormat); 5] = [
+const REPORTS: [(&str, ReportFormat); 6] = [
     ("junit", ReportFormat::Junit),
     ("text", ReportFormat::Text),
     ("tap", ReportFormat::Tap),
     ("code-quality", ReportFormat::CodeQuality),
     ("github", ReportFormat::Github),
+    ("markdown", ReportFormat::Markdown),
 ];
 
 /// The format of standard output.

@@ -1,10 +1,12 @@
 //! The command line: verbs and options, as the user gives them.
 
+mod debug;
 mod doctor;
 mod formats;
 mod import;
 mod inputs;
 mod past;
+mod project;
 mod run;
 mod values;
 mod web;
@@ -15,11 +17,13 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use rtf_plan::suite::parse_duration;
 
+pub use debug::{DebugArgs, RunVerbArgs};
 pub use doctor::{DoctorArgs, DoctorFormat};
 pub use formats::{Annotations, ReportFormat, StdoutFormat, parse_report};
 pub use import::{ImportOutput, ImportVerb};
 pub use inputs::{FlakyResult, InputArgs, ProfileArgs, RepeatArgs, RerunVerdict, ResultsArgs};
 pub use past::{MergeArgs, ReportArgs, ShowArgs};
+pub use project::{InitArgs, Language, NewArgs, ProjectKind};
 pub use run::{ListArgs, ListFormat, RunArgs};
 pub use values::{parse_fork_mode, unset_when_empty};
 pub use web::{ServeArgs, WebAccessArgs, WebRunArgs};
@@ -64,10 +68,10 @@ pub enum Color {
 #[derive(Debug, Subcommand)]
 pub enum Verb {
     /// Run suites and plug-ins
-    Run(RunArgs),
+    Run(RunVerbArgs),
     /// Rerun the tests whenever a suite, a plug-in or an `rtf.toml` changes
     Watch(RunArgs),
-    /// Report every problem of suites and plug-ins without running them
+    /// Report the problems of suites and plug-ins without running them
     Check(InputArgs),
     /// List the tests that `rtf run` would run
     List(ListArgs),
@@ -95,6 +99,14 @@ pub enum Verb {
         #[command(subcommand)]
         verb: ConfigVerb,
     },
+    /// Write a small project that runs at once: a suite, a test or a fixture
+    New(NewArgs),
+    /// Add `rtf.toml`, `.gitignore` and jobs for GitHub and GitLab to a project
+    Init(InitArgs),
+    /// Print the directory of the CMake packages, for `rtf_DIR`
+    CmakeDir,
+    /// Print the directory of the Ada SDK, for `gprbuild -aP`
+    AdaDir,
     /// Print shell completions
     Completions {
         /// The shell

@@ -20,6 +20,17 @@ pub struct ShowArgs {
     /// Print every message, measurement and output
     #[arg(short, long)]
     pub verbose: bool,
+
+    /// Print one test, and exit with its result
+    ///
+    /// The exit code is 0 if the test does not make the run red, 77 if it skipped itself, and
+    /// 1 otherwise.
+    #[arg(long, value_name = "SUITE/TEST", conflicts_with = "verbose")]
+    pub single_test: Option<String>,
+
+    /// Print suites without their tests, and exit with the result of fixtures, hooks and run
+    #[arg(long, conflicts_with_all = ["verbose", "single_test"])]
+    pub without_tests: bool,
 }
 
 /// Options of `rtf report`.
@@ -39,6 +50,10 @@ pub struct ReportArgs {
     /// Output file [default: standard output]
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
+
+    /// Address of the results, for the link in `markdown`
+    #[arg(long, value_name = "URL")]
+    pub link: Option<String>,
 }
 
 /// Options of `rtf merge`.

@@ -22,9 +22,14 @@ pub struct RunArgs {
     #[arg(long, value_name = "FORMAT", default_value = "console")]
     pub format: StdoutFormat,
 
-    /// Also write a report: `junit=PATH`, `text=`, `tap=`, `code-quality=` or `github=`
+    /// Also write a report: `junit=PATH`, `text=`, `tap=`, `code-quality=`, `github=`
+    /// or `markdown=`
     #[arg(long = "report", value_name = "FORMAT=PATH", value_parser = parse_report)]
     pub reports: Vec<(ReportFormat, PathBuf)>,
+
+    /// Also make PATH a symbolic link to the directory of the run
+    #[arg(long, value_name = "PATH")]
+    pub symlink: Option<PathBuf>,
 
     /// Print annotations for a code host, on standard error or in the job log
     #[arg(long, value_name = "HOST", default_value = "auto")]

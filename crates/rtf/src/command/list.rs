@@ -104,7 +104,7 @@ struct TestList<'p> {
     tests: Vec<ListedTest<'p>>,
 }
 
-/// A test; `docs/running.md` documents the fields.
+/// A test; `docs/how-to/running.md` documents the fields.
 #[derive(Serialize)]
 struct ListedTest<'p> {
     suite: &'p str,
@@ -112,6 +112,8 @@ struct ListedTest<'p> {
     /// The argument with which `rtf run` runs only this test.
     select: Option<String>,
     file: &'p str,
+    /// The line of its tag in the suite; 0 for a plug-in on the command line.
+    line: u32,
     r#type: &'p str,
     plugin: String,
     tags: &'p [String],
@@ -138,6 +140,7 @@ fn write_json(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
             name: &test.name,
             select: (!suite.file.is_empty()).then(|| format!("{}::{}", suite.file, test.name)),
             file: &suite.file,
+            line: test.line,
             r#type: &test.plugin.plugin_type,
             plugin: test.plugin.file.to_string_lossy().into_owned(),
             tags: &test.tags,

@@ -34,7 +34,8 @@ pub fn run(mut args: ReportArgs, matches: &ArgMatches) -> VerbResult {
         }
         format => {
             let record = journal::read(&journal).map_err(past_run::unreadable)?.record;
-            write(&args, |out| reports::write(format, out, &record, journal.parent()))?;
+            let place = reports::Place { dir: journal.parent(), url: args.link.as_deref() };
+            write(&args, |out| reports::write(format, out, &record, &place))?;
         }
     }
     Ok(ExitCode::from(if damages.is_empty() { exit::PASSED } else { exit::FAILED }))

@@ -15,6 +15,7 @@ use rtf_process::fork_server::ForkMode;
 use rtf_web::{Limits, Settings};
 
 use crate::cli::{Annotations, ReportFormat, RunArgs, StdoutFormat, WebAccessArgs};
+use crate::debug::DebugRequest;
 use crate::error::Failure;
 use rtf_plan::plan::CaseListing;
 
@@ -26,6 +27,8 @@ pub struct RunRequest {
     pub results: PathBuf,
     /// How to choose another results directory, for hints.
     pub results_option: &'static str,
+    /// A further symbolic link to the directory of the run.
+    pub symlink: Option<PathBuf>,
     pub web: Option<WebRequest>,
     pub fork_mode: ForkMode,
     /// The number of failed tests after which the remaining tests are skipped.
@@ -34,6 +37,8 @@ pub struct RunRequest {
     pub jobs: NonZeroU16,
     /// How long the run may take to end after a signal or a request to stop.
     pub shutdown_timeout: Duration,
+    /// How the only test is debugged.
+    pub debug: Option<DebugRequest>,
 }
 
 /// What `rtf run` prints, and the reports that it writes.
@@ -45,6 +50,8 @@ pub struct OutputRequest {
     pub reports: Vec<(ReportFormat, PathBuf)>,
     /// The results directory.
     pub results: PathBuf,
+    /// Whether a progress bar may be shown.
+    pub progress: bool,
 }
 
 /// The web server of a run.
@@ -64,6 +71,7 @@ impl OutputRequest {
             annotations: detect_host(args.annotations),
             reports: args.reports.clone(),
             results: args.input.results.results.clone(),
+            progress: true,
         }
     }
 }
@@ -83,6 +91,7 @@ impl RunRequest {
             tests,
             results: args.input.results.results.clone(),
             results_option: "`--results DIR`",
+            symlink: args.symlink.clone(),
             web: args.web.web.map(|address| WebRequest {
                 settings: web_settings(address, &args.web.access),
                 hint: None,
@@ -93,6 +102,7 @@ impl RunRequest {
             locks: LockOptions { dir: locks_dir(), limit: args.lock_timeout },
             jobs: args.jobs,
             shutdown_timeout: args.shutdown_timeout,
+            debug: None,
         })
     }
 }

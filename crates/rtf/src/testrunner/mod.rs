@@ -132,6 +132,7 @@ fn request(args: &Args, results: &Path) -> Result<RunRequest, Failure> {
         },
         results: results.to_owned(),
         results_option: "the variable `RTF_RESULTS`",
+        symlink: None,
         web: args.web_reporter.then(|| WebRequest {
             settings: web_settings(address, &WebAccessArgs::default()),
             hint: Some("choose another port with `--web-port N`"),
@@ -142,6 +143,7 @@ fn request(args: &Args, results: &Path) -> Result<RunRequest, Failure> {
         locks: LockOptions { dir: locks_dir(), limit: None },
         jobs: NonZeroU16::MIN,
         shutdown_timeout: SHUTDOWN_TIMEOUT,
+        debug: None,
     })
 }
 

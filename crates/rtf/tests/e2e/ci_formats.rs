@@ -251,3 +251,50 @@ fn when_the_runner_dies_its_guard_ends_what_is_told() {
         assert!(nothing_left(&folder));
     }
 }
+
+#[test]
+fn a_summary_for_the_page_of_a_job() {
+    let folder = folder();
+    folder.rtf(&["run", "tests/arm.xml", "--report", "markdown=summary.md"]);
+    let written = std::fs::read_to_string(folder.path().join("summary.md")).expect("a report");
+    let later = folder.rtf(&["report", "--format", "markdown"]);
+    assert_eq!((later.code, &later.stdout), (Some(0), &written));
+    let linked = folder.rtf(&["report", "--format", "markdown", "--link", "https://ci.example/7"]);
+    assert_snapshot!(folder.redact(&linked.stdout), @"
+    ## ❌ FAILED
+
+    3 tests in 1 suite, [TIME]: 1 passed, 1 failed, 1 skipped
+
+    run <code>[RUN]</code> · [results](<https://ci.example/7>) · directory <code>rtf-results/[RUN]</code>
+
+    ### Tests that did not pass
+
+    <details>
+    <summary><code>arm/Brake</code> <b>failed</b>: <code>100%: the brake, it is open</code></summary>
+
+    - at <code>tests/Brake.lua:4</code>
+    - log <code>rtf-results/[RUN]/logs/arm.Brake.log</code>
+    - rerun <code>rtf run tests/arm.xml::Brake</code>
+
+    ```text
+    failure: 100%: the brake, it is open
+      at [FOLDER]/tests/Brake.lua:4
+    ```
+
+    1 line of output:
+
+    ```text
+    7 A
+    ```
+
+    </details>
+
+    ### Skipped tests
+
+    - 1 test: <code>the critical test &#96;Brake&#96; did not pass: it is failed</code>: <code>arm/after</code>
+
+    ### Warnings
+
+    - <code>tests/arm.xml:2: &#96;--&#96; in a comment is not legal XML; accepted</code>
+    ");
+}

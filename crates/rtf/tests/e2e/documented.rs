@@ -86,7 +86,7 @@ fn every_option() {
         let words: Vec<_> = verb.split_whitespace().chain(["--help"]).collect();
         folder.rtf(&words).stdout
     };
-    let mut verbs = found(r"(?m)^  ([a-z]+)  ", &help(""));
+    let mut verbs = found(r"(?m)^  ([a-z-]+)  ", &help(""));
     verbs.insert("config show".to_owned());
     assert!(verbs.len() > 10, "{verbs:?}");
     let documents = documents();

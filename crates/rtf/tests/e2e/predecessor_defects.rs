@@ -1,5 +1,5 @@
 //! Regression tests for the defects of robot-testing-framework 2.x. The numbers are those in
-//! `docs/migrating.md`.
+//! `docs/how-to/migrating-rtf2.md`.
 
 use rtf_model::{MessageKind, TestId, Verdict};
 

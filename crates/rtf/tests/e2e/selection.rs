@@ -122,6 +122,7 @@ fn the_list_for_programs() {
           "name": "Limits",
           "select": "arm.xml::Limits",
           "file": "arm.xml",
+          "line": 2,
           "type": "lua",
           "plugin": "[FOLDER]/P.lua",
           "tags": [

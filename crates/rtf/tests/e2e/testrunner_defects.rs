@@ -1,5 +1,5 @@
 //! Defects of the predecessor's runner that its replacement does not have. The numbers are those
-//! in `docs/migrating.md`.
+//! in `docs/how-to/migrating-rtf2.md`.
 
 use insta::assert_snapshot;
 use rtf_model::EventKind;

@@ -94,7 +94,7 @@ fn help_lists_the_exit_codes() {
     Commands:
       run          Run suites and plug-ins
       watch        Rerun the tests whenever a suite, a plug-in or an `rtf.toml` changes
-      check        Report every problem of suites and plug-ins without running them
+      check        Report the problems of suites and plug-ins without running them
       list         List the tests that `rtf run` would run
       doctor       Check this machine for missing dependencies
       locks        List the locks that are held on this machine, or wait for locks
@@ -104,6 +104,10 @@ fn help_lists_the_exit_codes() {
       serve        Show active and past runs in a browser
       import       Write a suite with the tests of a build directory or workspace
       config       Show the configuration from `rtf.toml`, the command line and variables
+      new          Write a small project that runs at once: a suite, a test or a fixture
+      init         Add `rtf.toml`, `.gitignore` and jobs for GitHub and GitLab to a project
+      cmake-dir    Print the directory of the CMake packages, for `rtf_DIR`
+      ada-dir      Print the directory of the Ada SDK, for `gprbuild -aP`
       completions  Print shell completions
       help         Print this message or the help of the given subcommand(s)
 
@@ -167,7 +171,8 @@ fn help_of_run() {
           --format <FORMAT>              Format of standard output [default: console] [possible values:
                                          console, json, tap]
           --report <FORMAT=PATH>         Also write a report: `junit=PATH`, `text=`, `tap=`,
-                                         `code-quality=` or `github=`
+                                         `code-quality=`, `github=` or `markdown=`
+          --symlink <PATH>               Also make PATH a symbolic link to the directory of the run
           --annotations <HOST>           Print annotations for a code host, on standard error or in the
                                          job log [default: auto] [possible values: auto, github, gitlab,
                                          none]
@@ -219,6 +224,14 @@ fn help_of_run() {
                                    machines may connect
           --web-key <FILE>         Private key of the TLS certificate (PEM)
           --web-host <NAME>        Additional host name of the server
+
+    Debugging:
+          --debug               Give the terminal to the test, which must be the only one, and suspend
+                                its limits: for `breakpoint()`, `binding.irb`, `io.read`
+          --debugger <COMMAND>  As `--debug`, and start the test's process with this debugger: `gdb
+                                --args`
+          --debug-wait          Print the process of the test, which begins when a debugger is attached,
+                                and suspend its limits
     ----- stderr
     ");
 }
@@ -277,7 +290,9 @@ fn man_writes_a_page_for_each_verb() {
         .collect();
     names.sort();
     let verbs = [
+        "ada-dir",
         "check",
+        "cmake-dir",
         "completions",
         "config-show",
         "config",
@@ -285,9 +300,11 @@ fn man_writes_a_page_for_each_verb() {
         "import-colcon",
         "import-ctest",
         "import",
+        "init",
         "list",
         "locks",
         "merge",
+        "new",
         "report",
         "run",
         "serve",

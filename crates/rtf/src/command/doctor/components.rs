@@ -120,7 +120,8 @@ fn check_network() -> CheckResult {
     let found = check().map(|()| "rtf can create network namespaces".to_owned());
     let about = "suites with isolate=\"network\"";
     let install = "run as root, or `sysctl kernel.unprivileged_userns_clone=1 \
-                   user.max_user_namespaces=10000`, or in a container `--cap-add SYS_ADMIN`";
+                   user.max_user_namespaces=10000`, on Ubuntu `sysctl \
+                   kernel.apparmor_restrict_unprivileged_userns=0`, or in a container `--cap-add SYS_ADMIN`";
     finding("network", Component::Optional, about, found, install)
 }
 

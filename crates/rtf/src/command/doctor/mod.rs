@@ -17,7 +17,7 @@ use crate::cli::{DoctorArgs, DoctorFormat};
 use crate::error::Failure;
 use crate::exit;
 
-/// The result of a check; `docs/doctor.md` documents the fields.
+/// The result of a check; `docs/how-to/doctor.md` documents the fields.
 #[derive(Debug, Serialize)]
 struct CheckResult {
     name: String,

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::suite_file::ImportedTest;
-use super::{Import, ctest, recognize};
+use super::{Import, ctest, recognize, rtf_suites};
 use crate::error::Failure;
 
 /// Directories with tests of a Python package.
@@ -31,30 +31,37 @@ pub fn import(workspace: &Path) -> Result<Import, Failure> {
     let mut sources = Vec::new();
     find_packages(workspace, DEPTH, &mut sources);
     let mut tests = Vec::new();
+    let mut suites = Vec::new();
     for package in &packages {
         let name = package.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let found = if package.join("CTestTestfile.cmake").is_file() {
-            recognize::tests(&ctest::list(package, None)?, package, None)
+            let (listed, found) = rtf_suites::take(ctest::list(package, None)?);
+            found.into_iter().for_each(|suite| rtf_suites::add(&mut suites, suite));
+            recognize::tests(&listed, package, None)
         } else if package.join("CMakeCache.txt").is_file() {
             // Built without tests.
             Vec::new()
         } else {
             python_tests(&name, &sources)
         };
+        if let Some((_, dir)) = sources.iter().find(|(known, _)| *known == name) {
+            let exported = rtf_suites::exported(dir)?;
+            exported.into_iter().for_each(|suite| rtf_suites::add(&mut suites, suite));
+        }
         // Names are unique in a package only.
         tests.extend(found.into_iter().map(|test| ImportedTest {
             name: if test.name.is_empty() { name.clone() } else { format!("{name}.{}", test.name) },
             ..test
         }));
     }
-    if tests.is_empty() {
+    if tests.is_empty() && suites.is_empty() {
         let error = format!("the packages in `{}` have no tests", build.display());
         let hint = "build them with `colcon build --cmake-args -DBUILD_TESTING=ON`";
         return Err(Failure::input(error).hint(hint));
     }
     let name = workspace.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let source = format!("the colcon workspace {}", workspace.display());
-    Ok(Import { name, source, tests, set_up: set_up(workspace) })
+    Ok(Import { name, source, tests, suites, set_up: set_up(workspace) })
 }
 
 /// The command that makes the packages of the workspace available.

@@ -2,10 +2,12 @@
 //!
 //! [`ctest`] lists the tests of CTest, [`recognize`] finds the framework of each,
 //! [`colcon`] finds the packages of a workspace, and [`suite_file`] writes the suite.
+//! [`rtf_suites`] finds suites that exist already.
 
 mod colcon;
 mod ctest;
 mod recognize;
+mod rtf_suites;
 mod suite_file;
 
 use std::collections::BTreeMap;
@@ -19,6 +21,7 @@ use super::VerbResult;
 use crate::cli::{ImportOutput, ImportVerb};
 use crate::error::Failure;
 use crate::terminal;
+use rtf_suites::ExistingSuite;
 use suite_file::ImportedTest;
 
 /// The tests that were found, and how to run them.
@@ -28,6 +31,8 @@ struct Import {
     /// Where they were found.
     source: String,
     tests: Vec<ImportedTest>,
+    /// Suites that exist already.
+    suites: Vec<ExistingSuite>,
     /// A shell command that has to run before `rtf`.
     set_up: Option<String>,
 }
@@ -50,9 +55,9 @@ pub fn run(verb: &ImportVerb) -> VerbResult {
 
 fn from_ctest(build: &Path, config: Option<&str>) -> Result<Import, Failure> {
     let build = absolute(build)?;
-    let listed = ctest::list(&build, config)?;
+    let (listed, suites) = rtf_suites::take(ctest::list(&build, config)?);
     let tests = recognize::tests(&listed, &build, config);
-    if tests.is_empty() {
+    if tests.is_empty() && suites.is_empty() {
         let error = format!("`{}` has no tests", build.display());
         let hint = match ctest::has_configurations(&build) && config.is_none() {
             true => "choose a configuration, for example with `-C Release`",
@@ -62,7 +67,7 @@ fn from_ctest(build: &Path, config: Option<&str>) -> Result<Import, Failure> {
     }
     let name = ctest::project_name(&build);
     let source = format!("the build directory {}", build.display());
-    Ok(Import { name, source, tests, set_up: None })
+    Ok(Import { name, source, tests, suites, set_up: None })
 }
 
 fn absolute(path: &Path) -> Result<PathBuf, Failure> {
@@ -84,6 +89,9 @@ fn exists(file: &Path) -> Failure {
 }
 
 fn write(import: &Import, output: &ImportOutput) -> Result<(), Failure> {
+    if import.tests.is_empty() {
+        return print(import, None);
+    }
     let file = &output.output;
     let dir = match file.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => absolute(parent)?,
@@ -99,23 +107,49 @@ fn write(import: &Import, output: &ImportOutput) -> Result<(), Failure> {
         io::ErrorKind::AlreadyExists => exists(file),
         _ => Failure::input(format!("`{}` cannot be written: {error}", file.display())),
     })?;
-    print(import, file)
+    print(import, Some(file))
 }
 
-/// Prints the tests by type, and the next command.
-fn print(import: &Import, file: &Path) -> Result<(), Failure> {
+/// Prints the tests by type, the suites that exist already, and the next commands.
+fn print(import: &Import, file: Option<&Path>) -> Result<(), Failure> {
     let mut by_type: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for test in &import.tests {
         by_type.entry(test.kind).or_default().push(&test.name);
     }
-    let (count, file) = (import.tests.len(), file.display().to_string());
+    let (count, file) = (import.tests.len(), file.map(|file| file.display().to_string()));
     let plural = if count == 1 { "" } else { "s" };
     let set_up = import.set_up.as_ref().map_or(String::new(), |command| format!("{command} && "));
     terminal::stdout(|out| {
-        writeln!(out, "wrote {}: {count} test{plural}", escape::line(&file))?;
+        if let Some(file) = &file {
+            writeln!(out, "wrote {}: {count} test{plural}", escape::line(file))?;
+        }
         for (kind, names) in &by_type {
             writeln!(out, "  {kind}: {}", escape::line(&names.join(", ")))?;
         }
-        writeln!(out, "next: {}rtf run {}", escape::line(&set_up), escape::line(&file))
+        for command in existing_suites(&import.suites) {
+            writeln!(out, "next: {}{}", escape::line(&set_up), escape::line(&command))?;
+        }
+        let Some(file) = &file else { return Ok(()) };
+        writeln!(out, "next: {}rtf run {}", escape::line(&set_up), escape::line(file))
     })
+}
+
+/// The commands that run suites: one for suites with the same environment.
+fn existing_suites(suites: &[ExistingSuite]) -> Vec<String> {
+    let mut commands: Vec<(&[String], String)> = Vec::new();
+    for suite in suites {
+        let file = suite.file.to_string_lossy();
+        let file = shell_words::quote(&file);
+        if let Some((_, command)) = commands.iter_mut().find(|(env, _)| *env == suite.env) {
+            *command += &format!(" {file}");
+            continue;
+        }
+        let assignment = |text: &String| match text.split_once('=') {
+            Some((name, value)) => format!("{name}={} ", shell_words::quote(value)),
+            None => String::new(),
+        };
+        let env: String = suite.env.iter().map(assignment).collect();
+        commands.push((&suite.env, format!("{env}rtf run {file}")));
+    }
+    commands.into_iter().map(|(_, command)| command).collect()
 }

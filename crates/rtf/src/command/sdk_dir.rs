@@ -1,0 +1,34 @@
+//! `rtf cmake-dir` and `rtf ada-dir`: where builds of plug-ins find the SDKs of C++ and Ada.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use rtf_plan::plan::{self, RunnerEnvironment};
+
+use super::VerbResult;
+use crate::error::Failure;
+use crate::terminal;
+
+/// Prints the directory of the CMake packages.
+pub fn cmake() -> VerbResult {
+    print("CMake packages", plan::cmake_dir)
+}
+
+/// Prints the directory of the Ada SDK.
+pub fn ada() -> VerbResult {
+    print("Ada SDK", plan::ada_dir)
+}
+
+fn print(sdk: &str, find: fn(&RunnerEnvironment) -> Option<PathBuf>) -> VerbResult {
+    let runner = RunnerEnvironment::from_current_process().map_err(Failure::internal)?;
+    let dir = find(&runner).ok_or_else(|| {
+        let program = runner.executable.display();
+        Failure::input(format!("`{program}` has no {sdk}"))
+            .hint("`make install` and the package `rtf-dev` install them")
+    })?;
+    terminal::raw_stdout(|out| {
+        out.write_all(dir.as_os_str().as_encoded_bytes())?;
+        out.write_all(b"\n")
+    })?;
+    Ok(ExitCode::SUCCESS)
+}
