@@ -20,6 +20,7 @@ function(robottestingframework_add_plugin target)
   endif()
 
   add_library(${target} MODULE ${arg_SOURCES} ${arg_HEADERS})
+  set_property(GLOBAL APPEND PROPERTY rtf_plugins ${target}) # for rtf_add_suite
   set_property(TARGET ${target} APPEND PROPERTY
     LINK_LIBRARIES RobotTestingFramework::RTF ${arg_LIBRARIES})
   set_target_properties(${target} PROPERTIES PREFIX "")

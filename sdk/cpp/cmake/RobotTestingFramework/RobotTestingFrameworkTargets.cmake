@@ -2,7 +2,9 @@
 #
 # This file works where it is installed (<prefix>/lib/cmake/…, headers in
 # <prefix>/include, programs in <prefix>/bin) and in the source tree
-# (sdk/cpp/cmake/…; the programs are those that cargo has built).
+# (sdk/cpp/cmake/…; the programs are those that cargo has built). Without such a
+# program, the `rtf` in PATH is used: the source tree may be there for its headers only.
+# The cache variable rtf_EXECUTABLE selects another one.
 #
 # Sets rtf_INCLUDE_DIRS, rtf_INCLUDE_DIR_1 (the headers of RTF 1.x), rtf_BIN_DIR,
 # and rtf_PROBLEM, which is empty when all headers are there.
@@ -30,7 +32,12 @@ else()
 endif()
 
 set(rtf_PROBLEM "")
-foreach(_rtf_header rtf/TestCase.hpp rtf/plugin.h robottestingframework/TestCase.h)
+set(_rtf_headers rtf/TestCase.hpp rtf/plugin.h)
+if(NOT CMAKE_FIND_PACKAGE_NAME STREQUAL "rtf")
+  # In Debian, these are in the package robot-testing-framework-compat.
+  list(APPEND _rtf_headers robottestingframework/TestCase.h)
+endif()
+foreach(_rtf_header IN LISTS _rtf_headers)
   unset(_rtf_found)
   foreach(_rtf_folder IN LISTS rtf_INCLUDE_DIRS)
     if(EXISTS "${_rtf_folder}/${_rtf_header}")
@@ -45,19 +52,31 @@ foreach(_rtf_header rtf/TestCase.hpp rtf/plugin.h robottestingframework/TestCase
 endforeach()
 
 set(rtf_BIN_DIR "")
+if(rtf_EXECUTABLE)
+  set(_rtf_bin_folders "")
+endif()
 foreach(_rtf_folder IN LISTS _rtf_bin_folders)
   if(NOT rtf_BIN_DIR AND EXISTS "${_rtf_folder}/rtf${CMAKE_EXECUTABLE_SUFFIX}")
     set(rtf_BIN_DIR "${_rtf_folder}")
   endif()
 endforeach()
+if(NOT rtf_BIN_DIR)
+  find_program(rtf_EXECUTABLE NAMES rtf DOC "The program rtf")
+  if(rtf_EXECUTABLE)
+    get_filename_component(rtf_BIN_DIR "${rtf_EXECUTABLE}" DIRECTORY)
+  endif()
+endif()
 
 if(NOT TARGET RobotTestingFramework::RTF)
-  set(THREADS_PREFER_PTHREAD_FLAG TRUE)
-  find_package(Threads REQUIRED QUIET)
   add_library(RobotTestingFramework::RTF INTERFACE IMPORTED)
   set_target_properties(RobotTestingFramework::RTF PROPERTIES
-    INTERFACE_INCLUDE_DIRECTORIES "${rtf_INCLUDE_DIRS}"
-    INTERFACE_LINK_LIBRARIES "Threads::Threads;${CMAKE_DL_LIBS}")
+    INTERFACE_INCLUDE_DIRECTORIES "${rtf_INCLUDE_DIRS}")
+  if(CMAKE_C_COMPILER_LOADED OR CMAKE_CXX_COMPILER_LOADED) # A project may have only scripts.
+    set(THREADS_PREFER_PTHREAD_FLAG TRUE)
+    find_package(Threads REQUIRED QUIET)
+    set_target_properties(RobotTestingFramework::RTF PROPERTIES
+      INTERFACE_LINK_LIBRARIES "Threads::Threads;${CMAKE_DL_LIBS}")
+  endif()
   if(CMAKE_CXX_COMPILER_LOADED) # A project may be in C alone.
     # C++17, but a project that has chosen its standard keeps it: the headers of
     # robot-testing-framework 2.x need C++11.
@@ -104,5 +123,6 @@ unset(_rtf_up)
 unset(_rtf_folder)
 unset(_rtf_bin_folders)
 unset(_rtf_header)
+unset(_rtf_headers)
 unset(_rtf_found)
 unset(_rtf_part)

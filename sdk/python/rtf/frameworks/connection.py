@@ -64,9 +64,10 @@ class Connection:
         """Send a packet without waiting for an answer."""
         if not self.is_ours():
             return
+        packet: dict[str, object] = {"method": method, "answer": False, "params": params}
         try:
-            for packet in _packets({"method": method, "answer": False, "params": params}):
-                self._socket.send(packet)
+            for part in _packets(packet):
+                self._socket.send(part)
         except (BrokenPipeError, ConnectionResetError):
             end_without_runner()
 
@@ -129,15 +130,18 @@ def _finite(value: object) -> object:
     return value
 
 
-def _packets(packet: dict[str, object]) -> Iterator[bytes]:
+def _packets(packet: dict[str, object]) -> list[bytes]:
     """Encode a packet; a text that is too long for one is sent in parts."""
     data = _encode(packet)
+    if len(data) <= PACKET_BYTES:
+        return [data]
     params: Any = packet["params"]
     text = params.get("text")
-    if len(data) <= PACKET_BYTES or not isinstance(text, str):
-        yield data
-        return
+    if not isinstance(text, str):
+        return [data]
     # Between two lines, if they are not too long.
     middle = text.rfind("\n", len(text) // 4, len(text) // 2) + 1 or len(text) // 2
-    for part in (text[:middle], text[middle:]):
-        yield from _packets({**packet, "params": {**params, "text": part}})
+    parts = (
+        {**packet, "params": {**params, "text": part}} for part in (text[:middle], text[middle:])
+    )
+    return [encoded for part in parts for encoded in _packets(part)]

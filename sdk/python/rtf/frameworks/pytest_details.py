@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pytest
@@ -19,20 +19,42 @@ _ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
 _VALUE_CHARACTERS = 200
 
 
-def start(item: pytest.Item, root: str) -> dict[str, object]:
-    """Return what is known about an item before it runs."""
-    params: dict[str, object] = {"name": item.nodeid}
-    path, line, _ = item.location
-    if line is not None:
-        params["location"] = {"file": f"{root}/{path}", "line": line + 1}
-    tags = {mark.name for mark in item.iter_markers()} - _NO_TAGS
-    if tags:
-        params["tags"] = sorted(tags)
-    callspec = getattr(item, "callspec", None)
-    if callspec is not None and callspec.params:
-        values = callspec.params.items()
-        params["parameters"] = [{"name": name, "value": as_text(value)} for name, value in values]
-    return params
+class Starts:
+    """What is known about items before they run."""
+
+    def __init__(self, root: str) -> None:
+        """Locations of items are relative to `root`."""
+        self._root = root
+        # The tags of modules and classes.
+        self._tags: dict[pytest.Item | pytest.Collector | None, frozenset[str]] = {
+            None: frozenset()
+        }
+
+    def of(self, item: pytest.Item) -> dict[str, object]:
+        """Return the parameters of `case-started`."""
+        params: dict[str, object] = {"name": item.nodeid}
+        path, line, _ = item.location
+        if line is not None:
+            params["location"] = {"file": f"{self._root}/{path}", "line": line + 1}
+        tags = self._tags_of(item.parent)
+        if item.own_markers:
+            tags = tags.union(mark.name for mark in item.own_markers) - _NO_TAGS
+        if tags:
+            params["tags"] = sorted(tags)
+        callspec = getattr(item, "callspec", None)
+        if callspec is not None and callspec.params:
+            values = callspec.params.items()
+            params["parameters"] = [
+                {"name": name, "value": as_text(value)} for name, value in values
+            ]
+        return params
+
+    def _tags_of(self, node: Any) -> frozenset[str]:
+        tags = self._tags.get(node)
+        if tags is None:
+            tags = self._tags_of(node.parent).union(mark.name for mark in node.own_markers)
+            tags = self._tags[node] = tags - _NO_TAGS
+        return tags
 
 
 def as_text(value: object) -> str:

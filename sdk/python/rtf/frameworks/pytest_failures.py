@@ -10,7 +10,6 @@ import pytest
 from rtf.frameworks.comparison import compared
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
     from types import CodeType, TracebackType
 
 # An attribute of reports with our details. Reports of pytest-xdist's workers carry it.
@@ -18,7 +17,7 @@ DETAILS = "_rtf_details"
 
 
 class FailureDetails:
-    """Adds details to the reports of failures, also in the workers of pytest-xdist."""
+    """Collects details of failures, also in the workers of pytest-xdist."""
 
     def __init__(self) -> None:
         """Start without a failed comparison."""
@@ -33,21 +32,13 @@ class FailureDetails:
             code, line = frame
             self._comparison = FailedComparison(left, right, code, line)
 
-    @pytest.hookimpl(hookwrapper=True, tryfirst=True)
-    def pytest_runtest_makereport(
-        self, item: pytest.Item, call: pytest.CallInfo[Any]
-    ) -> Generator[None, Any, None]:
-        """Add details to a report, after other plug-ins have changed it."""
-        outcome = yield
-        self.complete(item, call, outcome.get_result())
-
-    def complete(
-        self, item: pytest.Item, call: pytest.CallInfo[Any], report: pytest.TestReport
-    ) -> None:
-        """Add details to a report."""
-        if call.excinfo is not None:
-            setattr(report, DETAILS, of_failure(item, call, self._comparison))
-            self._comparison = None
+    def details_of(self, item: pytest.Item, call: pytest.CallInfo[Any]) -> dict[str, object]:
+        """Return the details of a problem; empty without one."""
+        if call.excinfo is None:
+            return {}
+        details = of_failure(item, call, self._comparison)
+        self._comparison = None
+        return details
 
 
 def _frame_of_test() -> tuple[Any, int] | None:

@@ -19,7 +19,7 @@ class Lister:
     def __init__(self, config: pytest.Config, listing: Listing) -> None:
         """List to this file."""
         self._listing = listing
-        self._root = str(config.rootpath)
+        self._starts = pytest_details.Starts(str(config.rootpath))
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         """List modules that skip themselves, and report problems."""
@@ -32,7 +32,7 @@ class Lister:
     def pytest_collection_finish(self, session: pytest.Session) -> None:
         """List all items."""
         for item in session.items:
-            self._listing.case(pytest_details.start(item, self._root))
+            self._listing.case(self._starts.of(item))
 
     def pytest_internalerror(self, excrepr: object) -> None:
         """Report an error of pytest or a plug-in."""

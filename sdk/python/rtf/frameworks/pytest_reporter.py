@@ -66,10 +66,13 @@ class Reporter(FailureDetails):
         self._session = rtf_session.connect(connection)
         self._stop = Stop(KeyboardInterrupt)
         self._root = str(config.rootpath)
+        self._starts = pytest_details.Starts(self._root)
         self._items: dict[str, pytest.Item] = {}
         self._open: dict[str, OpenCase] = {}
         # Modules that skip themselves: name and reason.
         self._skipped_modules: dict[str, str] = {}
+        # Of problems whose reports have not arrived: by the item's name and the phase.
+        self._details: dict[tuple[str, str | None], dict[str, object]] = {}
         self._is_planned = False
 
     # Collection
@@ -132,12 +135,28 @@ class Reporter(FailureDetails):
         """Start a case. With pytest-xdist, its first report starts it, which has its tags."""
         item = self._items.get(nodeid)
         if item is not None:
-            self._start(nodeid, pytest_details.start(item, self._root))
+            self._start(nodeid, self._starts.of(item))
 
     def _start(self, nodeid: str, params: dict[str, object]) -> OpenCase:
         case = self._open[nodeid] = OpenCase(nodeid)
         self._connection.post("case-started", params)
         return case
+
+    def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[Any]) -> None:
+        """Keep the details of a problem for its report, which pytest makes.
+
+        Those that pytest calls first put the problem of a `unittest.TestCase` into the call.
+        """
+        if call.excinfo is not None:
+            self._details[item.nodeid, call.when] = self.details_of(item, call)
+        elif self._details:
+            # Of a subtest, which did not need them.
+            self._details.pop((item.nodeid, call.when), None)
+
+    def _details_of(self, report: pytest.TestReport) -> dict[str, Any]:
+        """Return the details of a report; a worker of pytest-xdist adds them to it."""
+        details: dict[str, Any] | None = getattr(report, DETAILS, None)
+        return self._details.pop((report.nodeid, report.when), {}) if details is None else details
 
     @pytest.hookimpl(trylast=True)
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
@@ -157,6 +176,7 @@ class Reporter(FailureDetails):
     def pytest_runtest_logfinish(self, nodeid: str) -> None:
         """Finish a case."""
         self._session.send_samples()
+        self._details.clear()
         case = self._open.pop(nodeid, None)
         if case is not None:
             self._connection.post("case-finished", case.result())
@@ -180,14 +200,14 @@ class Reporter(FailureDetails):
             self._message(case, "report", report.longreprtext)
         elif report.skipped:
             case.set("skipped", skip_reason(report))
-        elif not report.passed:
+        elif report.outcome != "passed":
             # `rerun`, of pytest-rerunfailures
             self._message(case, "report", f"{report.outcome}: {report.longreprtext}")
         elif expected is not None:
             self._message(case, "report", "; ".join(filter(None, ("unexpected pass", expected))))
 
     def _report_problem(self, case: OpenCase, report: pytest.TestReport) -> None:
-        details = getattr(report, DETAILS, {})
+        details = self._details_of(report)
         long = report.longreprtext
         if report.when not in {"setup", "call", "teardown"}:
             # A worker of pytest-xdist died, and nothing finishes the item.

@@ -29,7 +29,7 @@ class WorkerDetails(FailureDetails):
     def __init__(self, config: pytest.Config) -> None:
         """Collect the results of the fixture `rtf` for the report."""
         super().__init__()
-        self._root = str(config.rootpath)
+        self._starts = pytest_details.Starts(str(config.rootpath))
         self._results: list[tuple[str, dict[str, object]]] = []
         values = getattr(config, "workerinput", {}).get(VALUES, "[]").encode()
         self._session = rtf_session.Session(
@@ -53,15 +53,19 @@ class WorkerDetails(FailureDetails):
             items[:] = [item for item in items if item.nodeid in selected]
             config.hook.pytest_deselected(items=dropped)
 
-    def complete(
-        self, item: pytest.Item, call: pytest.CallInfo[Any], report: pytest.TestReport
-    ) -> None:
-        """Add tags and parameters to the first report, and results to the last one."""
-        super().complete(item, call, report)
-        details = getattr(report, DETAILS, {})
+    @pytest.hookimpl(hookwrapper=True, tryfirst=True)
+    def pytest_runtest_makereport(
+        self, item: pytest.Item, call: pytest.CallInfo[Any]
+    ) -> Generator[None, Any, None]:
+        """Add details to a report, after other plug-ins have changed it.
+
+        The first report also gets tags and parameters, and the last one results.
+        """
+        outcome = yield
+        details = self.details_of(item, call)
         if call.when == "setup":
-            details["start"] = pytest_details.start(item, self._root)
+            details["start"] = self._starts.of(item)
         elif call.when == "teardown":
             self._session.send_samples()
             details["results"], self._results[:] = list(self._results), []
-        setattr(report, DETAILS, details)
+        setattr(outcome.get_result(), DETAILS, details)

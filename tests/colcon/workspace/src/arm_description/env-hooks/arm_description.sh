@@ -1,0 +1,2 @@
+# shellcheck shell=sh
+export ARM_JOINTS=6

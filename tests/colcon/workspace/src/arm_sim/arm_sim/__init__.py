@@ -1,0 +1,1 @@
+"""A simulated arm that answers each line with a joint angle."""
