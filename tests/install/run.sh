@@ -11,6 +11,14 @@ prefix=$work/prefix
 
 PREFIX=$prefix DESTDIR='' tools/install.sh
 cp -R tests/install/downstream "$work/project"
+cp -R tests/install/embedded "$work/embedded"
+
+# A repository with the SDK as it is, for FetchContent.
+mkdir "$work/source"
+git ls-files --cached --others --exclude-standard sdk/c sdk/cpp | xargs -d '\n' cp --parents -t "$work/source"
+git -C "$work/source" init --quiet
+git -C "$work/source" add .
+git -C "$work/source" -c user.name=test -c user.email=test@example.org commit --quiet --message=SDK
 
 for file in bin/rtf libexec/rtf/rtf-host-native libexec/rtf/rtf-host-lua \
   libexec/rtf/rtf-host-framework share/man/man1/rtf.1 \
@@ -20,8 +28,9 @@ for file in bin/rtf libexec/rtf/rtf-host-native libexec/rtf/rtf-host-lua \
   share/rtf/python/robottestingframework.py share/rtf/ruby/lib/rtf/host.rb \
   share/rtf/ada/robottestingframework.gpr share/rtf/ada/src/robottestingframework.ads \
   include/rtf/session.hpp include/rtf/cppunit.hpp include/rtf/internal/SessionReports.hpp \
-  libexec/rtf/librtf-cppunit.so share/rtf/ada/rtf_aunit.gpr share/rtf/ada/aunit/rtf_aunit.ads \
-  share/doc/rtf/README.md; do
+  libexec/rtf/librtf-cppunit.so libexec/rtf/librtf-fork-server.so share/rtf/ada/rtf_aunit.gpr share/rtf/ada/aunit/rtf_aunit.ads \
+  share/rtf/ament/ament_cmake_rtf/package.xml \
+  share/doc/rtf/README.md share/doc/rtf/docs/images/live.png share/doc/rtf/examples/07-levels/rtf.toml; do
   [ -s "$prefix/$file" ] || die "$file was not installed"
 done
 
@@ -52,7 +61,7 @@ cd project/build
 ctest --show-only=json-v1 >../../ctest.json
 ctest --label-regex '^bench$' --parallel 2 >../../ctest.txt && exit 1 # FailingTest is in the suite
 cat ../../ctest.txt
-for name in CppTest all/CppTest all/LuaTest all/PythonTest; do
+for name in CppTest all all/CppTest all/LuaTest all/PythonTest all:suite; do
   grep -E "Test +#[0-9]+: $name .*Passed" ../../ctest.txt
 done
 grep -E 'Test +#[0-9]+: all/FailingTest .*Failed' ../../ctest.txt
@@ -60,6 +69,39 @@ mv CppTest.so away.so
 ctest --output-on-failure >../../missing.txt && exit 1 # a plug-in is missing
 grep -E 'Test +#[0-9]+: all .*Failed' ../../missing.txt
 grep 'there is no plug-in `CppTest`' ../../missing.txt
+cd ../..
+
+# The SDK without an installation, and the installed rtf in PATH.
+PATH=$PWD/prefix/bin:$PATH
+for how in subdirectory fetch; do
+  cmake -S embedded -B "embedded-$how" -D HOW="$how" -D SDK_SOURCE="$PWD/source"
+  cmake --build "embedded-$how"
+  ctest --test-dir "embedded-$how" --output-on-failure | tee embedded.txt
+  grep -E 'Test +#[0-9]+: CppTest .*Passed' embedded.txt
+  grep -E 'Test +#[0-9]+: suite/OldTest .*Passed' embedded.txt
+done
+grep -q "^rtf_EXECUTABLE:FILEPATH=$PWD/prefix/bin/rtf$" embedded-fetch/CMakeCache.txt
+
+# A new project, and its CI jobs.
+test "$(rtf cmake-dir)" = "$PWD/prefix/lib/cmake"
+test "$(rtf ada-dir)" = "$PWD/prefix/share/rtf/ada"
+rtf new suite --language cpp elbow >new.txt
+bash -eux <(sed '1,/^next:/d' new.txt)
+cd elbow
+rtf init
+# Each job's shell steps, except the download of rtf.
+ruby -r yaml -e '
+  workflow = YAML.load_file(".github/workflows/rtf.yml")
+  puts workflow["jobs"]["test"]["steps"].filter_map { |step| step["run"] }' >../github.sh
+ruby -r yaml -e 'puts YAML.load_file(".gitlab/rtf.yml")["rtf"]["script"]' >../gitlab.sh
+export RTF_PLUGIN_PATH=build GITHUB_STEP_SUMMARY=$PWD/summary.md
+for job in github gitlab; do
+  rm -rf build junit.xml
+  grep -q '^pip install robot-testing-framework$' "../$job.sh"
+  bash -eux <(grep -v '^pip install' "../$job.sh")
+  grep -q '<testsuites .*tests="1" .*failures="0"' junit.xml
+done
+test -s summary.md
 SESSION
 
 session=(env -i "PATH=$(dirname "$(command -v python3)"):/usr/bin:/bin" "HOME=$work" LC_ALL=C.UTF-8
@@ -100,13 +142,16 @@ done
 python3 - "$work/ctest.json" <<'PYTHON'
 import json, sys
 
-suite = {"LABELS": ["bench", "slow"], "RESOURCE_LOCK": ["robot", "table"], "TIMEOUT": 120.0}
+suite = {"LABELS": ["bench", "slow"]}
+# rtf stops a run after its TIMEOUT; CTest kills it 90 s later.
 wanted = {
+    "all": suite | {"RESOURCE_LOCK": ["robot", "table"], "TIMEOUT": 210.0},
     "all/CppTest": suite | {"LABELS": ["bench", "quick", "slow"]},
     "all/LuaTest": suite,
     "all/PythonTest": suite,
     "all/FailingTest": suite,
-    "CppTest": {"LABELS": ["bench"], "RESOURCE_LOCK": ["robot"], "TIMEOUT": 60.0},
+    "all:suite": suite,
+    "CppTest": {"LABELS": ["bench"], "RESOURCE_LOCK": ["robot"], "TIMEOUT": 150.0},
 }
 for test in json.load(open(sys.argv[1]))["tests"]:
     got = {entry["name"]: entry["value"] for entry in test["properties"]}
