@@ -4,13 +4,15 @@ PREFIX ?= /usr/local
 DESTDIR ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help build web screenshots demo icub test test-quick chaos bench counts install uninstall clean
+.PHONY: help build wheels web screenshots docs demo icub test test-quick chaos bench counts install uninstall packages release clean
 
 help:
 	@echo "make demo       install requirements, build, and test a simulated robot arm"
 	@echo "make icub       the same with a humanoid, the iCub, behind YARP (builds YARP once, ten minutes)"
 	@echo "make build      build rtf and its hosts (target/release)"
+	@echo "make docs       build the user's guide (build/docs/html/index.html)"
 	@echo "make web        build the page that rtf serves (included in make build)"
+	@echo "make wheels     build and test the wheels for pip, x86-64 and aarch64 (half an hour)"
 	@echo "make test       run all checks: Rust, SDKs, examples, lints, installation"
 	@echo "make test-quick the same without steps that need middleware (ROS, YARP), which it lists"
 	@echo "make chaos      kill fixtures, hosts and runners at random moments, for half an hour"
@@ -18,6 +20,8 @@ help:
 	@echo "make counts     record the instruction counts of the hot paths (make test compares them)"
 	@echo "make install    install into PREFIX=$(PREFIX), below DESTDIR if set"
 	@echo "make uninstall  remove the installed files"
+	@echo "make packages   build the Debian packages into dist"
+	@echo "make release    build all packages of the last commit into dist, with checksums"
 	@echo "make clean      remove build results"
 
 build:
@@ -27,9 +31,17 @@ build:
 web:
 	@tools/web.sh
 
+wheels: build
+	@wheel=$$(tools/wheel.sh x86_64) && tests/wheel/run.sh "$$wheel"
+	@wheel=$$(tools/wheel.sh aarch64) && tests/wheel/aarch64.sh "$$wheel"
+
 # The pictures in docs/images.
 screenshots:
 	@tools/screenshots.sh
+
+# The guide contains the command line of the built program.
+docs: build
+	@tools/docs.sh
 
 demo:
 	@tools/demo.sh
@@ -60,6 +72,13 @@ install:
 uninstall:
 	@PREFIX='$(PREFIX)' DESTDIR='$(DESTDIR)' tools/uninstall.sh
 
+packages:
+	@packaging/deb/build.sh dist
+
+release:
+	@packaging/release.sh
+
 clean:
-	rm -rf build web/dist web/node_modules web/src/generated
+	rm -rf build dist web/dist web/node_modules web/src/generated \
+	  editors/vscode/dist editors/vscode/node_modules editors/vscode/schemas editors/vscode/LICENSE
 	bash -c '. tools/env.sh && cargo clean'

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the missing requirements of a goal.
 #
-#   tools/bootstrap.sh build|demo|test
+#   tools/bootstrap.sh build|demo|test|docs
 #   tools/bootstrap.sh update             updates apt-get's package lists
 #
 # Programs and libraries come from Debian or Ubuntu; on other systems the script lists
@@ -12,17 +12,18 @@
 . "$(dirname "$0")/env.sh"
 . tools/packages.sh
 
-goal=${1:?goal: build, demo, test or update}
+goal=${1:?goal: build, demo, test, docs or update}
 
 # The Debian packages of each goal.
 case $goal in
   build) packages=(gcc) ;;
   demo) packages=(cmake g++ lua-socket python3-venv) ;;
   test) packages=(cmake g++ lua-socket python3-venv libxml2-utils gdb shellcheck clang-format
-    procps perl jq valgrind ruby ruby-minitest rubocop gnat gprbuild libcppunit-dev openssh-client openssh-server
+    procps perl jq curl valgrind ruby ruby-minitest rubocop gnat gprbuild libcppunit-dev openssh-client openssh-server
     chromium fonts-dejavu-core) ;;
+  docs) packages=(python3-venv doxygen yard lua-ldoc) ;;
   update) packages=() ;;
-  *) die "no goal \`$goal\`: build, demo, test or update" ;;
+  *) die "no goal \`$goal\`: build, demo, test, docs or update" ;;
 esac
 
 # Checks for the programs, not for dpkg's packages: Python and the compiler may come from
@@ -36,6 +37,7 @@ is_present() {
     gnat) have gnatmake ;;
     libcppunit-dev) echo '#include <cppunit/TestResult.h>' | c++ -fsyntax-only -x c++ - 2>/dev/null ;;
     libxml2-utils) have xmllint ;;
+    lua-ldoc) have ldoc ;;
     procps) have pgrep ;;
     perl) have prove ;;
     ruby-minitest) have ruby && ruby -e 'require "minitest"' 2>/dev/null ;;

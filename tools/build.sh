@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the page, and rtf and its hosts, optimised, and the library for CppUnit.
+# Builds the page, rtf and its hosts (optimised), and the libraries for programs of other frameworks.
 #
 # RTF_PAGE=none does not build the page, for machines without npm or network.
 
@@ -7,4 +7,4 @@
 
 [ "${RTF_PAGE:-}" = none ] || tools/web.sh
 cargo build --release --locked --bins
-tools/cppunit.sh
+tools/preload.sh

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Runs every command of docs/running.md in a directory with the page's suites.
+"""Runs every command of the pages about `rtf run`, each in a directory with their suites.
 
-    check_running.py RTF
+    check_running.py RTF PAGE…
 
-Exit code 1 is allowed, because the page needs a failing test; other errors are not.
+Exit code 1 is allowed, because the pages need a failing test; other errors are not.
 `rtf watch` is skipped, because it does not end.
 """
 
@@ -16,11 +16,13 @@ import sys
 import tempfile
 from pathlib import Path
 
-PAGE = Path(__file__).resolve().parent.parent / "docs" / "running.md"
-
 BLOCK = re.compile(r"^```(sh|toml)\n(.*?)^```$", re.M | re.S)
 # Substitutes for times and runs that only the reader has.
-INSTEAD = {"--for 8h": "--for 1s", "2026-11-21T10-22-13Z-4f7b": "latest"}
+INSTEAD = {
+    "--for 8h": "--for 1s",
+    "--repeat 1000": "--repeat 2",
+    "2026-11-21T10-22-13Z-4f7b": "latest",
+}
 
 LUA = "TestCase = {}\nfunction TestCase.run() end\n"
 ARM = """\
@@ -58,28 +60,30 @@ class GripTest(rtf.TestCase):
 
 
 def main() -> None:
-    """Runs the commands in order."""
+    """Checks each page."""
     rtf = Path(sys.argv[1]).resolve()
-    blocks = BLOCK.findall(PAGE.read_text())
-    commands = [line for kind, text in blocks if kind == "sh" for line in text.splitlines()]
-    commands = [line for line in commands if not line.startswith("rtf watch ")]
-    if len(commands) < 15:
-        raise SystemExit(f"{PAGE.name} has only {len(commands)} commands: was its format changed?")
-    with tempfile.TemporaryDirectory() as name:
-        directory = Path(name)
-        for place in (directory, directory / "suites", directory / "tests"):
-            fill(place)
-        (directory / "tests" / "hand.xml").unlink()
-        (directory / "tests" / "rtf.toml").write_text(
-            "".join(text for kind, text in blocks if kind == "toml")
-        )
-        for part in ("1/2", "2/2"):
-            options = ["--shard", part, "--shard-by", "count", "--results", f"parts/{part[0]}"]
-            call(directory, rtf, ["rtf", "run", "arm.xml", "hand.xml", *options])
-        for command in map(possible, commands):
-            if "--rerun" in command:
-                call(directory, rtf, ["rtf", "run", "hand.xml"])
-            call(directory, rtf, ["bash", "-o", "pipefail", "-c", command])
+    for page in map(Path, sys.argv[2:]):
+        with tempfile.TemporaryDirectory() as directory:
+            check(rtf, page, Path(directory))
+
+
+def check(rtf: Path, page: Path, directory: Path) -> None:
+    """Runs the commands of a page in order."""
+    blocks = BLOCK.findall(page.read_text())
+    lines = [line for kind, text in blocks if kind == "sh" for line in text.splitlines()]
+    commands = [line for line in lines if line and not line.startswith("rtf watch ")]
+    if len(commands) < 2:
+        raise SystemExit(f"{page} has only {len(commands)} commands: was its format changed?")
+    for place in (directory, directory / "suites", directory / "tests"):
+        fill(place)
+    (directory / "tests" / "hand.xml").unlink()
+    settings = "".join(text for kind, text in blocks if kind == "toml")
+    (directory / "rtf.toml").write_text(settings)
+    for command in map(possible, commands):
+        print(f"{page.name}: {command}", flush=True)
+        if "--rerun" in command:
+            call(directory, rtf, ["rtf", "run", "hand.xml"])
+        call(directory, rtf, ["bash", "-o", "pipefail", "-c", command])
 
 
 def possible(command: str) -> str:
@@ -102,7 +106,6 @@ def fill(directory: Path) -> None:
 
 def call(directory: Path, rtf: Path, command: list[str]) -> None:
     """Runs a command, which may exit with 0 or 1."""
-    print(f"{PAGE.name}: {command[-1] if command[0] == 'bash' else ' '.join(command)}", flush=True)
     # Locks of other runs must not block this one.
     own = {"PATH": f"{rtf.parent}:{os.environ['PATH']}", "RTF_LOCKS": str(directory / "locks")}
     ran = subprocess.run(

@@ -51,6 +51,23 @@ quietly() {
 # The Rust version that Cargo.toml requires.
 RUST_VERSION=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
 
+# The version of rtf, for all packages.
+version_of_rtf() {
+  sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml
+}
+
+# The time of the last commit, in seconds since 1970: the timestamps of all packages. All files
+# in a source archive have it.
+time_of_commit() {
+  if [ -n "${SOURCE_DATE_EPOCH:-}" ]; then
+    printf '%s' "$SOURCE_DATE_EPOCH"
+  elif [ -e .git ]; then
+    git log -1 --format=%ct
+  else
+    stat --format=%Y Cargo.toml
+  fi
+}
+
 # Whether a version is RUST_VERSION or later.
 is_new_rust() {
   [[ $1 == [0-9]* ]] && printf '%s\n' "$RUST_VERSION" "${1%%-*}" | sort -V -C

@@ -1,55 +1,19 @@
 #!/usr/bin/env bash
-# Tests the first steps of a new user in a temporary chroot with only Debian's base system,
-# make, git and ca-certificates. It uses the machine's apt-get, npm and pip settings.
+# Tests the bootstrap in a minimal Debian, see tools/minimal_debian.sh: an old Rust stays,
+# Debian's is used. tests/install/fresh_machine.sh runs the whole `make demo`.
 #
-#   tools/front_door.sh           the bootstrap: an old Rust stays, Debian's is used
-#   tools/front_door.sh demo      make demo, from a fresh checkout (includes a release build)
-#
-# It needs root, or sudo without a password. The base system is kept in the user's cache.
+# Needs root, or sudo without a password.
 
 . "$(dirname "$0")/env.sh"
 . tools/packages.sh
+. tools/minimal_debian.sh
 
-goal=${1:-packages}
-
-if [ "$(id -u)" -ne 0 ]; then
-  exec sudo -n --preserve-env "$0" "$@"
-fi
-have mmdebstrap || install_packages mmdebstrap
-
-# The sources of Debian's packages, as lines of sources.list.
-# shellcheck disable=SC2016 # apt-get fills that in
-sources=$(apt-get indextargets --format '$(ORIGIN) deb $(REPO_URI) $(RELEASE) $(COMPONENT)' \
-  'Created-By: Packages' | sed -n 's/^Debian //p' | sort -u)
-[ -n "$sources" ] || die "apt-get has no lists of Debian's packages" "sudo apt-get update; not tested on Ubuntu"
-settings=$(apt-config dump Acquire | grep '::.*::' || true)
-release=$(. /etc/os-release && printf '%s' "$VERSION_CODENAME")
-
-key=$(printf '%s\n' "$release" "$sources" "$settings" | sha256sum | cut -c1-12)
-base=$CACHE/debian-$release-$key
-mkdir -p "$base/archives"
-exec 9>"$base/lock"
-flock 9
-
-if [ ! -e "$base/root.tar" ]; then
-  say "creating a base of Debian $release in $base"
-  printf '%s\n' "$settings" >"$base/apt.conf"
-  quietly mmdebstrap --format=tar --variant=minbase --include=ca-certificates,make,git --aptopt="$base/apt.conf" \
-    "$release" "$base/root.tar.new" <<<"$sources" || die "mmdebstrap could not create it"
-  mv "$base/root.tar.new" "$base/root.tar"
-fi
-
+become_root "$@"
+need_base
 work=$(mktemp -d)
 debian=$work/debian
-# The mounts disappear with the session's namespace.
 trap 'rm -rf --one-file-system "$work"' EXIT
-mkdir "$debian"
-tar -xf "$base/root.tar" -C "$debian" --exclude './dev/*'
-cp -L /etc/resolv.conf /etc/hosts "$debian/etc/"
-cp -L /etc/ssl/certs/ca-certificates.crt "$debian/etc/ssl/certs/"
-for file in /etc/pip.conf "$HOME/.config/pip/pip.conf" "$HOME/.npmrc" "$HOME/.cargo/config.toml"; do
-  [ ! -e "$file" ] || install -D -m 600 "$file" "$debian${file/#"$HOME"/\/root}"
-done
+unpack_base "$debian"
 mkdir "$debian/checkout"
 git ls-files -z --cached --others --exclude-standard | tar -c --null --files-from=- | tar -x -C "$debian/checkout"
 # An old Rust, as on a machine of a user who installed it long ago.
@@ -59,11 +23,7 @@ for tool in cargo rustc; do
   chmod +x "$debian/old/bin/$tool"
 done
 
-case $goal in
-  packages) cat >"$debian/session.sh" ;;
-  demo) cat >/dev/null && printf 'set -eux\nmake demo\n' >"$debian/session.sh" ;;
-  *) die "no goal \`$goal\`: packages or demo" ;;
-esac <<'SESSION'
+cat >"$debian/session.sh" <<'SESSION'
 set -eux
 [ -z "$(command -v cc cargo python3 cmake)" ]
 
@@ -91,23 +51,6 @@ printf 'fn main() {}\n' >/tmp/a.rs && bash -c '. tools/env.sh; rustc -o /tmp/a /
 python3 -m venv /tmp/venv && /tmp/venv/bin/pip --version
 SESSION
 
-# This session's variables that package managers read.
-environment=(PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8)
-while IFS= read -r name; do
-  environment+=("$name=${!name}")
-done < <(compgen -e | grep -E -i '^(.*_proxy|pip_.*|npm_config_.*|cargo_http_.*|cargo_registr.*|ssl_cert_.*|node_extra_ca_certs)$' || true)
-
-export debian base
 started=$SECONDS
-# shellcheck disable=SC2016 # the shell in the namespace expands that
-unshare --mount --propagation private bash -euc '
-  mount --bind "$debian" "$debian"
-  mount --rbind /dev "$debian/dev"
-  mount -t proc proc "$debian/proc"
-  mount --rbind /sys "$debian/sys"
-  mount -t tmpfs tmpfs "$debian/run"
-  mkdir -p "$debian/var/cache/apt/archives"
-  mount --bind "$base/archives" "$debian/var/cache/apt/archives"
-  exec chroot "$debian" env -i "$@" sh -c "cd /checkout && exec bash /session.sh"
-' - "${environment[@]}" </dev/null
-say "$goal: $((SECONDS - started)) s"
+run_in_base "$debian" network /checkout /session.sh
+say "the bootstrap: $((SECONDS - started)) s"

@@ -1,6 +1,12 @@
 #!/usr/bin/env bash
 # Installs rtf below PREFIX; with DESTDIR, below DESTDIR/PREFIX (for packages).
 # tools/uninstall.sh reads the list of installed files from share/rtf/manifest.txt.
+#
+# PROGRAMS=DIR installs the programs in DIR, which may be for another processor, and builds
+# nothing; target/release/rtf must exist, because it prints the man pages.
+#
+# PARTS=FILE also writes a line `part path` for each file into FILE, for Debian packages: the
+# parts are `rtf`, `rtf-dev` and `robot-testing-framework-compat`.
 
 . "$(dirname "$0")/env.sh"
 
@@ -12,20 +18,28 @@ case $PREFIX in
 esac
 top=$DESTDIR$PREFIX
 release=$TARGET/release
+programs=${PROGRAMS:-$release}
+libraries=${PROGRAMS:-$BUILD}
 
 stage=$(mktemp -d)
 trap 'rm -rf "$stage"' EXIT
 
+part=rtf
+record() {
+  printf '%s\n' "$1" >>"$stage/manifest.txt"
+  printf '%s %s\n' "$part" "$1" >>"$stage/parts.txt"
+}
+
 # Installs one file: mode, source, destination below the prefix.
 put() {
   install -D -m "$1" "$2" "$top/$3"
-  printf '%s\n' "$3" >>"$stage/manifest.txt"
+  record "$3"
 }
 
 # Installs a link: target, destination below the prefix.
 put_link() {
   ln -sfn "$1" "$top/$2"
-  printf '%s\n' "$2" >>"$stage/manifest.txt"
+  record "$2"
 }
 
 # Installs the files of a directory whose names match one of the patterns, except build
@@ -44,12 +58,12 @@ put_tree() {
 }
 
 # Do not build under sudo: root would own files in the checkout.
-if [ -z "${SUDO_USER:-}" ]; then
+if [ -z "${SUDO_USER:-}${PROGRAMS:-}" ]; then
   tools/bootstrap.sh build
   tools/build.sh
 fi
-for program in rtf rtf-host-native rtf-host-lua rtf-host-framework; do
-  [ -x "$release/$program" ] || die "$release/$program is missing" "run \`make build\` first"
+for program in "$release/rtf" "$programs"/{rtf,rtf-host-native,rtf-host-lua,rtf-host-framework}; do
+  [ -x "$program" ] || die "$program is missing" "run \`make build\` first"
 done
 if [ -e "$top" ] && [ ! -w "$top" ]; then
   die "$top cannot be written" "sudo make install, or choose another PREFIX"
@@ -63,27 +77,21 @@ for shell in bash zsh fish; do
   "$release/rtf" completions "$shell" >"$stage/rtf.$shell"
 done
 
-put 755 "$release/rtf" bin/rtf
-put_link rtf bin/robottestingframework-testrunner # the command line of 2.x
-put 755 "$release/rtf-host-native" libexec/rtf/rtf-host-native
-put 755 "$release/rtf-host-lua" libexec/rtf/rtf-host-lua
-put 755 "$release/rtf-host-framework" libexec/rtf/rtf-host-framework
-if [ -e "$BUILD/librtf-cppunit.so" ]; then
-  put 644 "$BUILD/librtf-cppunit.so" libexec/rtf/librtf-cppunit.so
-else
-  say "note: librtf-cppunit.so was not built: CppUnit programs need rtf/cppunit.hpp in their main function"
-fi
-put_tree sdk/c/include include '*.h'
-put_tree sdk/cpp/include include '*.h' '*.hpp'
-put_tree sdk/cpp/cmake lib/cmake '*.cmake'
+put 755 "$programs/rtf" bin/rtf
+put 755 "$programs/rtf-host-native" libexec/rtf/rtf-host-native
+put 755 "$programs/rtf-host-lua" libexec/rtf/rtf-host-lua
+put 755 "$programs/rtf-host-framework" libexec/rtf/rtf-host-framework
+for library in librtf-fork-server.so librtf-cppunit.so; do
+  if [ -e "$libraries/$library" ]; then
+    put 644 "$libraries/$library" "libexec/rtf/$library"
+  else
+    say "note: $library was not built, see docs/frameworks"
+  fi
+done
 # The Lua SDK is part of rtf-host-lua.
 put_tree sdk/python/rtf share/rtf/python/rtf '*.py' py.typed
 put 644 sdk/python/robottestingframework.py share/rtf/python/robottestingframework.py
 put_tree sdk/ruby/lib share/rtf/ruby/lib '*.rb'
-put_tree sdk/ada/src share/rtf/ada/src '*.ads' '*.adb'
-put_tree sdk/ada/aunit share/rtf/ada/aunit '*.ads' '*.adb'
-put 644 sdk/ada/robottestingframework.gpr share/rtf/ada/robottestingframework.gpr
-put 644 sdk/ada/rtf_aunit.gpr share/rtf/ada/rtf_aunit.gpr
 put_tree fixtures share/rtf/fixtures '*.py' '*.json'
 put_tree spec share/rtf/spec '*.md' '*.xsd'
 put_tree schemas share/rtf/schemas '*.json'
@@ -94,8 +102,34 @@ put 644 "$stage/rtf.fish" share/fish/vendor_completions.d/rtf.fish
 for page in README.md CHANGELOG.md LICENSE; do
   put 644 "$page" "share/doc/rtf/$page"
 done
-put_tree docs share/doc/rtf/docs '*.md'
-put_tree examples share/doc/rtf/examples '*.md' '*.xml' '*.py' '*.lua' '*.rb' '*.cpp' '*.hpp' '*.launch' CMakeLists.txt
+put_tree docs share/doc/rtf/docs '*.md' '*.png' '*.svg'
+put_tree examples share/doc/rtf/examples '*.md' '*.xml' '*.toml' '*.launch' '*.sh' CMakeLists.txt \
+  '*.py' '*.lua' '*.rb' '*.cpp' '*.hpp' '*.ads' '*.adb' '*.gpr' '*.java'
+
+part=rtf-dev
+put_tree sdk/c/include include '*.h'
+put_tree sdk/cpp/include/rtf include/rtf '*.hpp'
+put_tree sdk/cpp/cmake/rtf lib/cmake/rtf '*.cmake'
+put_tree packaging/ament share/rtf/ament '*.xml' '*.txt' '*.cmake'
+put_tree sdk/ada/src share/rtf/ada/src '*.ads' '*.adb'
+put_tree sdk/ada/aunit share/rtf/ada/aunit '*.ads' '*.adb'
+put 644 sdk/ada/robottestingframework.gpr share/rtf/ada/robottestingframework.gpr
+put 644 sdk/ada/rtf_aunit.gpr share/rtf/ada/rtf_aunit.gpr
+for shared in Targets AddPlugin AddSuite; do
+  put 644 sdk/cpp/cmake/RobotTestingFramework/RobotTestingFramework$shared.cmake \
+    lib/cmake/RobotTestingFramework/RobotTestingFramework$shared.cmake
+done
+
+# The names of robot-testing-framework 1.x and 2.x.
+part=robot-testing-framework-compat
+put_link rtf bin/robottestingframework-testrunner
+put_tree sdk/cpp/include/robottestingframework include/robottestingframework '*.h'
+put_tree sdk/cpp/include/rtf1 include/rtf1 '*.h'
+for package in Config ConfigVersion; do
+  put 644 sdk/cpp/cmake/RobotTestingFramework/RobotTestingFramework$package.cmake \
+    lib/cmake/RobotTestingFramework/RobotTestingFramework$package.cmake
+done
 
 install -D -m 644 "$stage/manifest.txt" "$top/share/rtf/manifest.txt"
+[ -z "${PARTS:-}" ] || cp "$stage/parts.txt" "$PARTS"
 say "installed $(wc -l <"$stage/manifest.txt") files below $top"

@@ -1,6 +1,9 @@
 """The files, suites and commands in a page of the guide.
 
-A code block whose first line is a comment with a file name is that file.
+A code block whose first line is a comment with a file name is that file. The commands of an `sh`
+block are run, unless a comment `<!-- not run: REASON -->` is above it. A comment `# exit code 1`
+at the end of the block is the expected exit code; a `text` block directly below is the expected
+output, in which `…` stands for any text.
 """
 
 from __future__ import annotations
@@ -9,6 +12,8 @@ import os
 import re
 import shutil
 import subprocess
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from run import Run, expect
@@ -19,6 +24,48 @@ _FILE = re.compile(
     r"^```\w+\n((?://|--|#|<!--) (\S+\.\w+)(?:: [^\n]*)?(?: -->)?\n.*?)^```$", re.M | re.S
 )
 _COMMANDS = re.compile(r"^```sh\n(.*?)^```$", re.M | re.S)
+_RUN = re.compile(
+    r"(?P<not_run><!-- not run: [^>]+ -->\n)?^```sh\n(?P<text>.*?)^```$"
+    r"(?:\n+^```text\n(?P<output>.*?)^```$)?",
+    re.M | re.S,
+)
+_EXIT_CODE = re.compile(r"# exit code (\d+)$")
+# What differs in each run: times, names of runs, process ids, ports.
+_VARIABLE = re.compile(r"\d+\.\d+ s|\d{4}-\d\d-\d\dT[\d-]+Z-[0-9a-f]{4}|process \d+|port=\d+|…")
+
+
+@dataclass
+class Commands:
+    """The commands of one block, their exit code, and their output if the page shows it."""
+
+    text: str
+    exit_code: int
+    output: str | None
+
+    def matches(self, output: str) -> bool:
+        """Whether the page shows this output, apart from times and names of runs."""
+        if self.output is None:
+            return True
+        return re.fullmatch(_pattern(self.output.split()), " ".join(output.split())) is not None
+
+
+def _pattern(words: list[str]) -> str:
+    """A regular expression for an output on a page."""
+    text, pattern, position = " ".join(words), "", 0
+    for variable in _VARIABLE.finditer(text):
+        pattern += re.escape(text[position : variable.start()])
+        is_gap = variable.group() == "…"
+        pattern += "[^\0]*?" if is_gap else f"(?:{_VARIABLE.pattern})"
+        position = variable.end()
+    return pattern + re.escape(text[position:])
+
+
+def commands(page: Path) -> Iterator[Commands]:
+    """The commands of a page that are run."""
+    for block in _RUN.finditer(page.read_text()):
+        if not block["not_run"]:
+            code = _EXIT_CODE.search(block["text"].rstrip())
+            yield Commands(block["text"], int(code[1]) if code else 0, block["output"])
 
 
 def write_files(page: Path, directory: Path) -> list[Path]:

@@ -9,5 +9,5 @@ dir=${1:?a directory with a CMakeLists.txt}
 
 cmake -S "$dir" -B "$BUILD/$dir" \
   -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-  -DRobotTestingFramework_DIR="$ROOT/sdk/cpp/cmake/RobotTestingFramework"
+  -Drtf_DIR="$ROOT/sdk/cpp/cmake/rtf"
 cmake --build "$BUILD/$dir" --parallel "$JOBS"

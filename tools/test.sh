@@ -86,8 +86,12 @@ lint_cpp() {
 }
 
 lint_python() {
-  "$checkers/ruff" check examples fixtures tools tests benches web/tests
-  "$checkers/ruff" format --check examples fixtures tools tests benches web/tests
+  local template
+  "$checkers/ruff" check examples fixtures packaging tools tests benches web/tests crates/rtf/templates
+  "$checkers/ruff" format --check examples fixtures packaging tools tests benches web/tests crates/rtf/templates
+  for template in crates/rtf/templates/new/python/*/; do
+    "$checkers/mypy" "$template"/*.py
+  done
   "$checkers/mypy" examples/01-simulated-arm/*.py tools/*.py
   "$checkers/mypy" examples/02-supervised-simulator/*.py
   "$checkers/mypy" examples/03-yarp/*.py
@@ -100,9 +104,15 @@ lint_python() {
   "$checkers/mypy" tests/fixtures/*.py tests/fixtures/ros2launch/*.py \
     tests/fixtures/orocos/*.py tests/fixtures/yarp/*.py
   "$checkers/mypy" tests/fixtures/clock/*.py
+  "$checkers/mypy" packaging/*.py
   "$checkers/mypy" benches/bench.py
   "$checkers/mypy" tests/predecessor/*.py
+  "$checkers/mypy" tests/wheel/*.py
   "$checkers/mypy" tests/import/*.py
+  "$checkers/mypy" tests/ci/*.py
+  "$checkers/mypy" tests/debug/*.py
+  "$checkers/mypy" tests/ctest/*.py
+  "$checkers/mypy" tests/colcon/*.py
   "$checkers/mypy" tests/frameworks/*.py
   "$checkers/mypy" tests/frameworks/public/*.py
   "$checkers/mypy" tests/frameworks/go/own.py
@@ -128,9 +138,9 @@ rust_docs() {
 
 lint_ruby() {
   (cd sdk/ruby && rubocop .)
-  # Plug-ins are named after their files and described by one comment.
+  # Plug-ins are named after their class and described by one comment.
   files '*.rb' | grep -v '^sdk/ruby/' | xargs -d '\n' rubocop --config sdk/ruby/.rubocop.yml --except \
-    Style/Documentation,Style/FrozenStringLiteralComment,Lint/BinaryOperatorWithIdenticalOperands
+    Naming/FileName,Style/Documentation,Style/FrozenStringLiteralComment,Lint/BinaryOperatorWithIdenticalOperands
 }
 
 sdk_ruby() {
@@ -144,13 +154,14 @@ sdk_ruby() {
 }
 
 lint_language() {
-  files '*.md' Makefile .ci/run 'tools/*' 'benches/*' 'tests/install/*' 'tests/predecessor/*' 'crates/*/src/*.rs' |
+  files '*.md' Makefile .ci/run 'tools/*' 'benches/*' 'tests/install/*' 'packaging/*' 'tests/predecessor/*' 'tests/wheel/*' 'crates/*/src/*.rs' |
     grep -v -e '\.json$' -e '^tools/check_language.py$' | xargs -d '\n' tools/check_language.py
 }
 
 suites_are_valid() {
   # XML files in subdirectories of examples belong to the middleware.
-  files ':(glob)examples/*/*.xml' 'tests/install/*.xml' 'tests/fixtures/*/suite.xml' 'tests/frameworks/*/suite.xml' \
+  files ':(glob)examples/*/*.xml' 'crates/rtf/templates/*.xml' 'tests/install/*.xml' 'tests/wheel/*.xml' 'tests/fixtures/*/suite.xml' 'tests/frameworks/*/suite.xml' \
+    'tests/ctest/project/arm.xml' 'tests/colcon/workspace/src/*/test/*.xml' \
     'tests/fixtures/yarp/suites/*.xml' 'tests/fixtures/ros1/*.xml' 'tests/fixtures/clock/*.xml' |
     xargs -d '\n' xmllint --noout --schema spec/suite.xsd
 }
@@ -244,7 +255,7 @@ example_09() {
     settings=$(tests/frameworks/build.sh "$type")
     eval "$settings"
   done
-  RobotTestingFramework_DIR=$ROOT/sdk/cpp/cmake/RobotTestingFramework \
+  rtf_DIR=$ROOT/sdk/cpp/cmake/rtf \
     GPR_PROJECT_PATH=$ROOT/sdk/ada examples/09-other-frameworks/build.sh "$build"
   PATH="$simulation:$PATH" RTF_PYTHON=$checkers/python RTF_PLUGIN_PATH=$build \
     python3 tools/check_example_09.py "$TARGET/release/rtf" examples/09-other-frameworks
@@ -269,12 +280,59 @@ import_colcon() {
     python3 tests/import/check.py "$TARGET/release/rtf" "$BUILD/import"
 }
 
+# `rtf_add_suite`: one run of a suite has the results of its CTest tests.
+suites_in_ctest() {
+  python3 tests/ctest/check.py "$TARGET/release/rtf" sdk/cpp/cmake/rtf "$BUILD/ctest"
+}
+
+# `ament_add_rtf_suite` in a colcon workspace with packages of ament and Python.
+suites_in_colcon() {
+  local colcon
+  # shellcheck source=/dev/null
+  . tools/packages.sh
+  need_packages ament-cmake cmake g++
+  colcon=$(tools/venv.sh colcon)
+  PATH="$colcon:$PATH" RTF_PYTHON=$colcon/python \
+    python3 tests/colcon/check.py "$TARGET/release/rtf" sdk/cpp/cmake/rtf "$BUILD/colcon"
+}
+
+# The tutorial, with the installed rtf and real nodes.
+tutorial_ros2_workspace() {
+  local colcon prefix=$BUILD/tutorial/prefix
+  # shellcheck source=/dev/null
+  . tools/packages.sh
+  need_packages ament-cmake cmake g++
+  colcon=$(tools/venv.sh colcon)
+  PREFIX=$prefix DESTDIR='' tools/install.sh
+  # Python is that of rclpy; colcon has its own.
+  mkdir -p "$BUILD/tutorial/bin"
+  ln -sf "$colcon/colcon" "$BUILD/tutorial/bin/colcon"
+  PATH="$BUILD/tutorial/bin:$PATH" \
+    python3 tests/colcon/tutorial.py "$prefix" "$BUILD/tutorial/workspace"
+}
+
 # The corpus of a test framework, see tests/frameworks/check.py.
 framework() {
   local settings
   settings=$(tests/frameworks/build.sh "$1")
   eval "$settings"
   python3 tests/frameworks/check.py "$TARGET/release/rtf" "$1"
+}
+
+# The GitHub action, the GitLab template and the Jenkinsfile: their shell steps are run.
+ci_helpers() {
+  local python
+  tools/actionlint.sh packaging/action/example.yml
+  python=$(tools/venv.sh ci)/python
+  "$python" tests/ci/check.py "$TARGET/release/rtf"
+}
+
+# Sessions with the debuggers of each language on a pseudo-terminal.
+debugging() {
+  mkdir -p "$BUILD/debug"
+  c++ -std=c++17 -g -O0 -shared -fPIC -Isdk/cpp/include -Isdk/c/include tests/debug/reach.cpp \
+    -o "$BUILD/debug/libreach.so"
+  python3 tests/debug/check.py "$TARGET/release/rtf" "$BUILD/debug"
 }
 
 # Runs an npm script of the page.
@@ -292,6 +350,7 @@ step 'lint shell' lint_shell
 step 'lint rust format' cargo fmt --all --check -- --color never
 step 'lint c++ format' lint_cpp
 step 'lint python' lint_python
+step 'lint versions' tools/version.py
 step 'lint ruby' lint_ruby
 step 'lint suites' suites_are_valid
 step 'lint language' lint_language
@@ -302,6 +361,7 @@ step 'generated schemas' cargo run --quiet --locked -p xtask -- schemas --check
 step 'generated c header' cargo run --quiet --locked -p xtask -- header --check
 step 'page' tools/web.sh
 step 'page unit tests' in_web test
+step 'vscode' tools/vscode.sh
 step 'build' cargo build --workspace --locked
 step 'sdk python' sdk_python
 step 'sdk ruby' sdk_ruby
@@ -331,6 +391,9 @@ step_with 'fixture orocos' orocos fixture_orocos
 step 'framework gtest' framework gtest
 step 'framework gtest public' public_gtest
 step 'import colcon' import_colcon
+step 'suites in ctest' suites_in_ctest
+step 'suites in colcon' suites_in_colcon
+step_with 'tutorial ros2 workspace' ros2 tutorial_ros2_workspace
 step 'framework catch2' framework catch2
 step 'framework doctest' framework doctest
 step 'framework boost' framework boost
@@ -348,11 +411,21 @@ step 'framework junit' framework junit
 step 'framework go' framework go
 step 'framework public go' tests/frameworks/public/go.sh "$TARGET/release/rtf"
 step 'framework cargo' framework cargo
-step 'guide' tools/check_docs.py "$TARGET/release/rtf" README.md docs/getting-started.md \
-  docs/writing-tests.md docs/isolation.md docs/simulation-time.md docs/migrating.md docs/migrating-others.md
-step 'guide commands' tools/check_running.py "$TARGET/release/rtf"
+step 'debugging' debugging
+step 'ci helpers' ci_helpers
+step 'guide' env RTF_PYTHON="$checkers/python" tools/check_docs.py "$TARGET/release/rtf" README.md \
+  docs/tutorials/{first-test,first-fixture,cpp-plugin}.md docs/explanation/isolation.md \
+  docs/how-to/{writing-tests,simulation-time,recorders,real-robot}.md \
+  docs/how-to/migrating-{rtf2,launch-testing,pytest,robot-framework}.md docs/reference/junit.md
+step 'guide commands' tools/check_running.py "$TARGET/release/rtf" \
+  docs/how-to/{running,flaky-tests,soak,parallel,profiles,doctor,sharding}.md
+step 'guide requests' tools/check_web_page.py "$TARGET/release/rtf"
+step 'guide build' tools/docs.sh "$TARGET/release/rtf"
 step 'page in a browser' tools/web-tests.sh
+step 'vscode in a browser' tools/vscode.sh browser
 step 'installed copy' tests/install/run.sh
+step 'wheel' tests/wheel/run.sh
+step 'packages deb' tests/install/deb.sh
 step 'front door' tools/front_door.sh
 step 'predecessor command line' tests/predecessor/run.sh command
 step 'predecessor compared' tests/predecessor/run.sh compare
