@@ -1,7 +1,7 @@
 """The outcome of each case with the predecessor and with rtf, and the reason of a difference.
 
 An outcome is `colour | verdicts | log of the plug-ins`. If the predecessor is right, both are the
-same, and there is no reason. A number is that of the defect in docs/migrating.md.
+same, and there is no reason. A number is that of the defect in docs/how-to/migrating-rtf2.md.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The command lines for both runners, and their outcomes.
 
 `old` is the outcome with 2.x, `new` that with ours if it differs, and `why` the reason. A number
-is that of the defect in docs/migrating.md.
+is that of the defect in docs/how-to/migrating-rtf2.md.
 """
 
 from __future__ import annotations
