@@ -61,7 +61,7 @@ def main() -> int:
 
 def follow(directory: Path, environment: dict[str, str]) -> str:
     """Writes the files and runs the commands of the page, in one shell, as a reader does."""
-    script = ["set -eux\n"]
+    script = ["set -ex\n"]
     for language, text in BLOCK.findall(PAGE.read_text()):
         named = FILE.match(text)
         if named:
