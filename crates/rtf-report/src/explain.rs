@@ -42,7 +42,7 @@ pub(crate) type Sink<'a> = &'a mut dyn FnMut(Tone, &str);
 /// what was reported in a case.
 pub(crate) fn explain(attempt: &AttemptRecord, extent: Extent, sink: Sink<'_>) {
     let reason = attempt.finished.as_ref().and_then(|(_, finished)| finished.reason.as_deref());
-    if let Some(reason) = reason.filter(|reason| !is_told_with_its_place(attempt, reason)) {
+    if let Some(reason) = reason.filter(|reason| !is_reported_with_its_place(attempt, reason)) {
         block(Tone::Bad, reason, "", sink);
     }
     let failures = own_failures(attempt);
@@ -69,9 +69,9 @@ pub(crate) fn case_problems(
     extent: Extent,
     sink: Sink<'_>,
 ) {
-    let is_told = reported.failures.iter().any(|failure| failure.text == reason)
+    let is_reported = reported.failures.iter().any(|failure| failure.text == reason)
         || reported.violations.iter().any(|value| value.problem().as_deref() == Some(reason));
-    if !is_told {
+    if !is_reported {
         block(Tone::Bad, reason, "", sink);
     }
     problems(&reported.failures, &reported.violations, extent, sink);
@@ -98,8 +98,8 @@ fn is_in_case(attempt: &AttemptRecord, case: Option<CaseId>) -> bool {
 /// Explains why a run of a hook failed: problem, failures, stacks,
 /// leaked processes. Output is not included.
 pub(crate) fn hook(run: &HookRunRecord, extent: Extent, sink: Sink<'_>) {
-    let is_told = |problem: &&str| run.messages.iter().any(|message| message.text == *problem);
-    if let Some(problem) = run.problem().filter(|problem| !is_told(problem)) {
+    let is_reported = |problem: &&str| run.messages.iter().any(|message| message.text == *problem);
+    if let Some(problem) = run.problem().filter(|problem| !is_reported(problem)) {
         block(Tone::Bad, problem, "", sink);
     }
     run.messages.iter().take(extent.items).for_each(|failure| message(failure, sink));
@@ -112,7 +112,7 @@ pub(crate) fn hook(run: &HookRunRecord, extent: Extent, sink: Sink<'_>) {
 
 /// Whether the reason is one of the failures or measurements that are
 /// listed with their locations: usually it is the first one.
-fn is_told_with_its_place(attempt: &AttemptRecord, reason: &str) -> bool {
+fn is_reported_with_its_place(attempt: &AttemptRecord, reason: &str) -> bool {
     attempt.failures().any(|failure| failure.text == reason)
         || attempt.violations().any(|value| value.problem().as_deref() == Some(reason))
         || attempt.series.iter().any(|series| series.problem.as_deref() == Some(reason))

@@ -43,16 +43,16 @@ fn failed_test(
     let cases = TestCases::of(test);
     failed_title(page, record, test);
     // The reason is that of a case, which is listed.
-    let is_told = cases.as_ref().is_some_and(|cases| !cases.has_test_problem(test));
+    let is_reported = cases.as_ref().is_some_and(|cases| !cases.has_test_problem(test));
     let red_reason = known_failure::red_reason(record, test);
     match red_reason.as_deref().or(test.reason()) {
-        Some(reason) if red_reason.is_some() || !is_told => {
+        Some(reason) if red_reason.is_some() || !is_reported => {
             page.fact("reason", &words::first_line(reason));
         }
         None if !record.is_complete() => page.fact("reason", "the run ended before the test did"),
         _ => {}
     }
-    if !is_told {
+    if !is_reported {
         first_problem(page, test);
     }
     case_summary::mark(page, test);

@@ -102,9 +102,9 @@ fn facts(
 
 /// The last messages that are no problems: problems are listed above.
 fn last_messages(page: &mut String, attempt: &AttemptRecord) {
-    let is_told = |kind| matches!(kind, MessageKind::Report | MessageKind::Check);
+    let is_reported = |kind| matches!(kind, MessageKind::Report | MessageKind::Check);
     let messages: Vec<_> =
-        attempt.messages.iter().filter(|message| is_told(message.kind)).collect();
+        attempt.messages.iter().filter(|message| is_reported(message.kind)).collect();
     let mut lines = Vec::new();
     for message in &messages[messages.len().saturating_sub(LAST)..] {
         explain::message(message, &mut |_, line| lines.push(line.to_owned()));

@@ -1,0 +1,3 @@
+//! Results over time: `spec/history.md`.
+
+pub mod statistics;

@@ -1,0 +1,1 @@
+//! Statistics of series of results. Pure functions: no store, no clock.
