@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // librtf-fork-server.so: rtf preloads it (LD_PRELOAD) into a program whose cases run in a
 // process each. The program is executed and linked once; it stops before its first
-// constructor, and forks a process for each case. See "Forked programs" in
-// spec/frameworks.md.
+// constructor, and forks a process for each case, the next one ahead. See "Forked programs"
+// in spec/frameworks.md.
 //
 // It uses the C library only, because the program may not contain C++.
 #define _GNU_SOURCE
@@ -198,31 +198,64 @@ static char **program_strings(const struct Request *request, char *string, int *
     return strings;
 }
 
-// Serves requests. Returns the strings of the program in a new process only.
+// Waits for a request in a process that was forked ahead, and becomes the program of it.
+static char **await_request(int socket, int taken, int *count)
+{
+    static char text[REQUEST_BYTES];
+    struct Request request = {.text = text};
+    const char byte = 0;
+    setpgid(0, 0);
+    // The server forks the next process while this one runs.
+    if (!receive(socket, &request) || write(taken, &byte, sizeof byte) != sizeof byte) {
+        _exit(0);
+    }
+    close(taken);
+    close(socket);
+    place_descriptors(&request, request.text);
+    return program_strings(&request, next(request.text), count);
+}
+
+// Whether the process that was forked ahead has got a request.
+static int was_taken(int taken)
+{
+    char byte = 0;
+    ssize_t length = -1;
+    do {
+        length = read(taken, &byte, sizeof byte);
+    } while (length < 0 && errno == EINTR);
+    return length == sizeof byte;
+}
+
+// Keeps one process ahead of the requests. Returns the strings of the program in a new process
+// only.
 static char **serve(int socket, int *count)
 {
     struct Thread thread;
-    static char text[REQUEST_BYTES];
-    struct Request request = {.text = text};
     if (!has_one_thread() || read_thread(&thread) != 0) {
         answer(socket, -1);
         _exit(0);
     }
     answer(socket, getpid());
-    while (receive(socket, &request)) {
-        const long pid = fork_sibling(&thread);
+    for (;;) {
+        int taken[2];
+        long pid = -1;
+        if (pipe2(taken, O_CLOEXEC) == 0) {
+            pid = fork_sibling(&thread);
+        }
         if (pid == 0) {
-            setpgid(0, 0);
-            close(socket);
-            place_descriptors(&request, request.text);
-            return program_strings(&request, next(request.text), count);
+            close(taken[0]);
+            return await_request(socket, taken[1], count);
         }
         answer(socket, pid);
-        for (int index = 0; index < request.descriptor_count; ++index) {
-            close(request.descriptors[index]);
+        if (pid < 0) {
+            _exit(0);
         }
+        close(taken[1]);
+        if (!was_taken(taken[0])) {
+            _exit(0);
+        }
+        close(taken[0]);
     }
-    _exit(0);
 }
 
 // Called by the start code of each program, before the program's own constructors.

@@ -15,12 +15,12 @@ use std::time::{Duration, Instant};
 
 use rtf_model::protocol::{FORK_VARIABLE, PROGRAM_FORKS_VARIABLE};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use rustix::io::{Errno, FdFlags, retry_on_intr};
+use rustix::io::{FdFlags, retry_on_intr};
 use rustix::net::{
-    AddressFamily, RecvFlags, SendAncillaryBuffer, SendAncillaryMessage, SendFlags, SocketFlags,
-    SocketType, recv, sendmsg, socketpair,
+    AddressFamily, RecvFlags, SendAncillaryBuffer, SendAncillaryMessage, SendFlags, Shutdown,
+    SocketFlags, SocketType, recv, sendmsg, socketpair,
 };
-use rustix::process::Pid;
+use rustix::process::{Pid, Signal, WaitOptions, kill_process, waitpid};
 
 use crate::{elf, preload};
 
@@ -37,6 +37,9 @@ const START_LIMIT: Duration = Duration::from_secs(10);
 
 /// How often a wait checks whether the test is being stopped.
 const STOP_CHECK: Duration = Duration::from_millis(50);
+
+/// The time that the server has to end by itself.
+const END_LIMIT: Duration = Duration::from_secs(1);
 
 /// A program that waits before its start, and is forked for each case.
 #[derive(Debug)]
@@ -90,12 +93,12 @@ impl ForkServer {
     /// Waits for the first packet: the server's process id.
     fn answers(&self, is_stopping: impl Fn() -> bool) -> bool {
         let limit = Instant::now() + START_LIMIT;
-        let slice = Timespec::try_from(STOP_CHECK).unwrap_or_default();
         while Instant::now() < limit && !is_stopping() {
-            let mut fds = [PollFd::new(&self.socket, PollFlags::IN)];
-            match poll(&mut fds, Some(&slice)) {
-                Ok(0) | Err(Errno::INTR) => {}
-                Ok(_) => return self.number().is_ok_and(|id| id == i64::from(self.process.id())),
+            match is_readable(&self.socket, STOP_CHECK) {
+                Ok(false) => {}
+                Ok(true) => {
+                    return self.number().is_ok_and(|id| id == i64::from(self.process.id()));
+                }
                 Err(_) => return false,
             }
         }
@@ -112,8 +115,8 @@ impl ForkServer {
         self.report.as_raw_fd()
     }
 
-    /// Forks a process, which runs this command in a new process group. It is a child of this
-    /// process.
+    /// Runs this command in the process that the server has forked ahead, in a new process
+    /// group. It is a child of this process.
     pub(super) fn fork(&self, command: &Command, ends: &ProgramEnds<'_>) -> io::Result<Pid> {
         let [stdout, stderr] = ends.outputs;
         let mut fds: Vec<(RawFd, BorrowedFd<'_>)> = vec![
@@ -123,13 +126,17 @@ impl ForkServer {
         ];
         fds.extend(ends.report.map(|report| (self.report_number(), report.as_fd())));
         let (numbers, descriptors): (Vec<_>, Vec<_>) = fds.into_iter().unzip();
-        self.send(&request(&numbers, command), &descriptors)?;
-        let pid = i32::try_from(self.number()?).ok().filter(|pid| *pid > 0);
-        let pid = pid.and_then(Pid::from_raw);
-        let pid = pid.ok_or_else(|| io::Error::other("the program cannot be forked"))?;
+        let pid = self.process_ahead()?;
         // The process does the same. Either way, the group exists from now on.
         let _ = rustix::process::setpgid(Some(pid), Some(pid));
+        self.send(&request(&numbers, command), &descriptors)?;
         Ok(pid)
+    }
+
+    /// The process that waits for the next request.
+    fn process_ahead(&self) -> io::Result<Pid> {
+        let pid = i32::try_from(self.number()?).ok().filter(|pid| *pid > 0);
+        pid.and_then(Pid::from_raw).ok_or_else(|| io::Error::other("the program cannot be forked"))
     }
 
     fn send(&self, request: &[u8], descriptors: &[BorrowedFd<'_>]) -> io::Result<()> {
@@ -154,10 +161,31 @@ impl ForkServer {
 }
 
 impl Drop for ForkServer {
+    /// Ends the server and the process that it has forked ahead, which exit when nothing more
+    /// can be requested.
     fn drop(&mut self) {
+        let _ = rustix::net::shutdown(&self.socket, Shutdown::Write);
+        let mut ahead = Vec::new();
+        while is_readable(&self.socket, END_LIMIT).unwrap_or(false) {
+            match self.process_ahead() {
+                Ok(pid) => ahead.push(pid),
+                Err(_) => break,
+            }
+        }
         let _ = self.process.kill();
         let _ = self.process.wait();
+        for pid in ahead {
+            let _ = kill_process(pid, Signal::KILL);
+            let _ = retry_on_intr(|| waitpid(Some(pid), WaitOptions::empty()));
+        }
     }
+}
+
+/// Waits until there is something to receive, or the other end is closed.
+fn is_readable(socket: &OwnedFd, limit: Duration) -> rustix::io::Result<bool> {
+    let limit = Timespec::try_from(limit).unwrap_or_default();
+    let mut fds = [PollFd::new(socket, PollFlags::IN)];
+    Ok(retry_on_intr(|| poll(&mut fds, Some(&limit)))? > 0)
 }
 
 /// A descriptor that programs inherit.
