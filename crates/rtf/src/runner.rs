@@ -30,6 +30,10 @@ pub fn run(request: &RunRequest, planned: &Planned, prepared: Prepared, guard: L
     let fanout = Fanout::start(reporters).map_err(Failure::internal)?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(Failure::internal)?;
+    let mut signals = {
+        let _context = runtime.enter();
+        SignalListener::install().map_err(Failure::internal)?
+    };
     let guard = Arc::new(guard);
     let options = run_options(request, planned, &dir, &control, &guard).map_err(Failure::internal);
     let ended = options.and_then(|options| {
@@ -42,7 +46,7 @@ pub fn run(request: &RunRequest, planned: &Planned, prepared: Prepared, guard: L
     if let (Some(server), Some(time)) = (&server, linger)
         && !control.is_interrupted()
     {
-        web::linger(server, time)?;
+        runtime.block_on(web::linger(server, time, &mut signals));
     }
     // An error of the server does not concern the run.
     drop(server.map(WebServer::stop));

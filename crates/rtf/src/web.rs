@@ -36,21 +36,18 @@ pub fn serve(bound: BoundServer, results: &Path, role: Capabilities) -> Result<W
     Ok(server)
 }
 
-/// Continues to serve for this time or until a signal.
-pub fn linger(server: &WebServer, time: Duration) -> Result<(), Failure> {
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-    runtime.map_err(Failure::internal)?.block_on(async {
-        let mut signals = SignalListener::install().map_err(Failure::internal)?;
-        server.linger(time);
-        terminal::notice(format_args!(
-            "{LABEL}: the run has finished; serving it for {time:?}, or until Ctrl-C"
-        ));
-        tokio::select! {
-            _ = signals.next() => {}
-            () = tokio::time::sleep(time) => {}
-        }
-        Ok(())
-    })
+/// Continues to serve for this time or until a signal, which may have arrived while the reports
+/// were written.
+pub async fn linger(server: &WebServer, time: Duration, signals: &mut SignalListener) {
+    server.linger(time);
+    terminal::notice(format_args!(
+        "{LABEL}: the run has finished; serving it for {time:?}, or until Ctrl-C"
+    ));
+    tokio::select! {
+        biased;
+        _ = signals.next() => {}
+        () = tokio::time::sleep(time) => {}
+    }
 }
 
 fn report_wrong_token(WrongToken { client, count }: WrongToken) {

@@ -88,3 +88,19 @@ fn a_run_that_was_interrupted_does_not_linger() {
     crate::web::until_test_runs(&mut web.events("?from=0&details=none"), 0);
     assert_eq!(web.end("INT").code, Some(130));
 }
+
+#[test]
+fn a_run_that_is_interrupted_while_it_writes_its_reports_does_not_linger() {
+    let folder = Folder::new();
+    let lines = "for i = 1, 5000 do rtf.report(('x'):rep(100)) end";
+    folder.file("wordy.lua", &format!("function TestCase.run() {lines} end\n"));
+    let args = ["run", "-v", "--web=127.0.0.1:0", "--web-linger=10min", "wordy.lua"];
+    let web = Web::start(&folder, &args);
+    // Nobody reads its standard output yet, so the reports are not finished.
+    crate::support::wait_until("the end of the run", || {
+        let run = get(web.address, "/api/v1/runs/current").json();
+        (run["state"] == "finished").then_some(())
+    });
+    let finished = web.end("TERM");
+    assert_eq!(finished.code, Some(0), "the verdict is the run's: {}", finished.stderr);
+}
