@@ -56,6 +56,8 @@ class Bench:
         self.environment = os.environ | {
             "RTF_PLUGIN_PATH": str(plugins),
             "TERM": "dumb",
+            # Otherwise, `CI=true` asks for colours.
+            "NO_COLOR": "1",
             "HOME": str(directory),
         }
 
