@@ -1,1 +1,14 @@
-//! Statistics of series of results. Pure functions: no store, no clock.
+//! Statistics of series of results. Pure functions: no store, no clock, no randomness.
+//!
+//! Every function takes slices and returns structures. Values are in the unit of the measurement;
+//! rates, sizes and p values have none.
+
+pub mod change_points;
+pub mod flips;
+pub mod robust;
+pub mod wilson;
+
+pub use change_points::{Basis, ChangePoint, ChangePoints, Segment, Size, find_change_points};
+pub use flips::{Attempt, Flips, Outcome};
+pub use robust::{LearnedLimits, TooFewValues, learn_limits};
+pub use wilson::{Rate, rate};
