@@ -117,6 +117,7 @@ lint_python() {
   "$checkers/mypy" tests/frameworks/public/*.py
   "$checkers/mypy" tests/frameworks/go/own.py
   "$checkers/mypy" tests/frameworks/cargo/own.py
+  "$checkers/mypy" tests/history/*.py
 }
 
 sdk_python() {
@@ -335,6 +336,15 @@ debugging() {
   python3 tests/debug/check.py "$TARGET/release/rtf" "$BUILD/debug"
 }
 
+# Change points, compared with those of Apache Otava and with planted changes.
+history_change_points() {
+  local python
+  # Without dependencies: see tools/requirements-history.txt.
+  python=$(PIP_NO_DEPS=1 tools/venv.sh history)/python
+  cargo build --quiet --locked -p rtf-history --example change_points
+  "$python" tests/history/check.py "$TARGET/debug/examples/change_points"
+}
+
 # Runs an npm script of the page.
 in_web() {
   tools/web.sh modules
@@ -411,6 +421,7 @@ step 'framework junit' framework junit
 step 'framework go' framework go
 step 'framework public go' tests/frameworks/public/go.sh "$TARGET/release/rtf"
 step 'framework cargo' framework cargo
+step 'history change points' history_change_points
 step 'debugging' debugging
 step 'ci helpers' ci_helpers
 step 'guide' env RTF_PYTHON="$checkers/python" tools/check_docs.py "$TARGET/release/rtf" README.md \

@@ -9,11 +9,9 @@ distribution is downloaded from PyPI once, into the user's cache. PYTHON has pyt
 
 from __future__ import annotations
 
-import hashlib
 import os
 import subprocess
 import sys
-import tarfile
 import tempfile
 import xml.etree.ElementTree as ET
 from pathlib import Path
@@ -23,6 +21,7 @@ sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "tests/frameworks")]
 
 from observed import observe  # noqa: E402
 from run import Run  # noqa: E402
+from sdist import fetch  # noqa: E402
 
 NAME = "boltons"
 VERSION = "26.2.0"
@@ -40,7 +39,7 @@ SUITE = """<suite name="boltons">
 def main() -> int:
     """Prints all differences; the exit code is 1 if there is any."""
     rtf, python = str(Path(sys.argv[1]).resolve()), str(Path(sys.argv[2]).absolute())
-    source = fetch(python)
+    source = fetch(python, NAME, VERSION, SHA256)
     with tempfile.TemporaryDirectory() as directory:
         own = run_pytest(python, source, Path(directory) / "own.xml")
         ours = run_rtf(rtf, python, source, Path(directory))
@@ -53,27 +52,6 @@ def main() -> int:
         return 1
     print(f"{len(names) - len(different)} passed, {len(different)} failed")
     return 1 if different else 0
-
-
-def fetch(python: str) -> Path:
-    """Downloads and unpacks the package, unless it is in the cache."""
-    cache = Path(os.environ.get("CACHE") or Path.home() / ".cache/rtf")
-    source = cache / "public" / f"{NAME}-{VERSION}"
-    if source.exists():
-        return source
-    source.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=source.parent) as directory:
-        pip = [python, "-m", "pip", "download", "--quiet", "--disable-pip-version-check"]
-        package = ["--no-deps", "--no-binary", ":all:", f"{NAME}=={VERSION}"]
-        subprocess.run([*pip, "--dest", directory, *package], check=True)
-        (archive,) = Path(directory).glob("*.tar.gz")
-        if hashlib.sha256(archive.read_bytes()).hexdigest() != SHA256:
-            raise SystemExit(f"{archive.name} has another checksum")
-        with tarfile.open(archive) as files:
-            files.extractall(directory, filter="data")
-        # In one step: an interrupted download leaves nothing.
-        (Path(directory) / source.name).rename(source)
-    return source
 
 
 def run_pytest(python: str, source: Path, report: Path) -> dict[str, str]:

@@ -19,7 +19,7 @@ pub(super) struct Split {
 ///
 /// For n values before τ and m in `τ..κ`, the divergence is
 /// `2/(n+m)·Σ|before−after| − 2m/((n+m)(n−1))·Σ|before| − 2n/((n+m)(m−1))·Σ|after|`,
-/// where the last two sums are over pairs of values on one side.
+/// where the last two are sums of pairs of values on one side.
 ///
 /// Time: O(n²). Memory: O(n).
 pub(super) fn best_split(values: &[f64]) -> Option<Split> {

@@ -11,7 +11,8 @@ pub(super) fn merge(
     options: &Options,
     min_support: usize,
 ) -> Vec<ChangePoint> {
-    let merge = Merge { values, options, min_support };
+    let max_p = options.max_p(values.len());
+    let merge = Merge { values, options, max_p, min_support };
     let mut points: Vec<ChangePoint> =
         bounds(values.len(), splits).windows(3).map(|b| merge.point(b[0], b[1], b[2])).collect();
     while let Some(weakest) = merge.weakest(&points) {
@@ -64,6 +65,7 @@ fn bounds(count: usize, splits: &[usize]) -> Vec<usize> {
 struct Merge<'a> {
     values: &'a [f64],
     options: &'a Options,
+    max_p: f64,
     min_support: usize,
 }
 
@@ -71,7 +73,7 @@ impl Merge<'_> {
     /// The point to remove next: that with the largest p value, then that with the smallest size.
     fn weakest(&self, points: &[ChangePoint]) -> Option<usize> {
         let weakest = position_of_max(points, |p| p.p_value)?;
-        if points[weakest].p_value >= self.options.max_p {
+        if points[weakest].p_value >= self.max_p {
             return Some(weakest);
         }
         let magnitude = |p: &ChangePoint| p.size.map_or(f64::INFINITY, |size| size.fraction.abs());

@@ -4,9 +4,9 @@
 //!
 //! 1. *Split.* A window moves over the series by half its length. In it, the split with the
 //!    highest energy divergence is found ([`divergence`]); if a t-test with a relaxed limit
-//!    (10 × [`Options::max_p`]) accepts it, both parts are split further. The result is weak points.
+//!    (10 × that of [`Options::level`]) accepts it, both parts are split further. The result is weak points.
 //! 2. *Merge.* The weak points are tested again, between their neighbours. The weakest is removed
-//!    and its neighbours are tested again, until all are below [`Options::max_p`].
+//!    and its neighbours are tested again, until all are below that of [`Options::level`].
 //! 3. *Outliers.* Segments of fewer than [`Options::min_segment`] values are outliers, or a change
 //!    too recent to be sure of. They are set aside, and the rest is merged again. A change is
 //!    called only if at least `min_segment` values on each side are nearer to the mean of their
@@ -32,8 +32,8 @@ pub use t_test::Segment;
 pub struct Options {
     /// The number of values in which a change must stand out, at least 2.
     pub window: usize,
-    /// The p value, 0 to 1, below which a difference is a change.
-    pub max_p: f64,
+    /// How unlikely a difference must be by chance.
+    pub level: Level,
     /// The fewest values before and after a change. 1 calls a change from a single value, as Otava
     /// does.
     pub min_segment: usize,
@@ -44,9 +44,38 @@ pub struct Options {
     pub limits_span: Option<f64>,
 }
 
+/// The significance level, a probability.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Level {
+    /// The p value below which a difference is a change, as in Otava. A series with 1000 values
+    /// and no change has more than 100 possible splits, so `PerTest(0.001)` calls a false change in
+    /// every second one.
+    PerTest(f64),
+    /// About the probability that a series without changes has one called: the p value is this
+    /// divided by the number of values (C. E. Bonferroni's correction).
+    PerSeries(f64),
+}
+
+impl Options {
+    /// The p value below which a difference is a change, in a series of `count` values.
+    #[expect(clippy::cast_precision_loss, reason = "counts of values are far below 2^53")]
+    fn max_p(&self, count: usize) -> f64 {
+        match self.level {
+            Level::PerTest(p) => p,
+            Level::PerSeries(p) => p / count.max(1) as f64,
+        }
+    }
+}
+
 impl Default for Options {
     fn default() -> Self {
-        Self { window: 50, max_p: 0.001, min_segment: 3, min_size: 0.0, limits_span: None }
+        Self {
+            window: 50,
+            level: Level::PerSeries(0.001),
+            min_segment: 3,
+            min_size: 0.0,
+            limits_span: None,
+        }
     }
 }
 
@@ -73,7 +102,7 @@ pub struct ChangePoint {
     pub before: Segment,
     /// The values until the next change, without those set aside.
     pub after: Segment,
-    /// The p value of the t-test of both segments, below [`Options::max_p`].
+    /// The p value of the t-test of both segments, below that of [`Options::level`].
     pub p_value: f64,
     /// `None` if there are no limits and zero is within the noise before the change: a relative
     /// size would be arbitrarily large.
@@ -101,8 +130,8 @@ pub enum Basis {
 
 /// The changes of the mean of `values`, which are in the order of their runs.
 ///
-/// Values that are NaN or infinite are left out and counted. The result depends on nothing else
-/// than the arguments. Time: O(n · window) for a few changes, at most O(n²).
+/// Values that are NaN or infinite are left out and counted. The result depends only on the
+/// arguments. Time: O(n · window) for a few changes, O(n · window² + n²) if every value is one.
 #[must_use]
 pub fn find_change_points(values: &[f64], options: &Options) -> ChangePoints {
     let finite: Vec<usize> = (0..values.len()).filter(|i| values[*i].is_finite()).collect();

@@ -149,10 +149,10 @@ proptest! {
         window in 0_usize..60,
     ) {
         let values: Vec<f64> = values.into_iter().map(f64::from).collect();
-        let options = Options { min_segment, window, max_p: 0.05, ..Options::default() };
+        let options = Options { min_segment, window, level: Level::PerTest(0.05), ..Options::default() };
         let found = find_change_points(&values, &options);
         for point in &found.points {
-            prop_assert!(point.p_value < options.max_p);
+            prop_assert!(point.p_value < 0.05);
             prop_assert!(point.before.count >= min_segment && point.after.count >= min_segment);
         }
         for pair in found.points.windows(2) {

@@ -13,8 +13,11 @@ const WEAK: f64 = 10.0;
 /// of the previous one or after it.
 pub(super) fn weak_points(values: &[f64], options: &Options) -> Vec<usize> {
     let length = options.window.max(2);
-    let windows =
-        Windows { values, scaled: scaled(values), max_p: (WEAK * options.max_p).min(1.0) };
+    let windows = Windows {
+        values,
+        scaled: scaled(values),
+        max_p: (WEAK * options.max_p(values.len())).min(1.0),
+    };
     let mut points = Vec::new();
     let mut start = 0;
     while start < values.len() {
