@@ -8,7 +8,9 @@ pub mod flips;
 pub mod robust;
 pub mod wilson;
 
-pub use change_points::{Basis, ChangePoint, ChangePoints, Segment, Size, find_change_points};
+pub use change_points::{
+    Basis, ChangePoint, ChangePoints, Level, Segment, Size, find_change_points,
+};
 pub use flips::{Attempt, Flips, Outcome};
 pub use robust::{LearnedLimits, TooFewValues, learn_limits};
 pub use wilson::{Rate, rate};
