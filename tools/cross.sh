@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds rtf and its hosts for a processor and glibc 2.28, with Zig as the linker and the C
-# compiler, and prints the directory of the programs.
+# Builds rtf, its hosts and librtf-fork-server.so for a processor and glibc 2.28, with Zig as
+# the linker and the C compiler, and prints the directory of the programs.
 #
 #   tools/cross.sh x86_64|aarch64
 #
@@ -42,4 +42,6 @@ ZIG=$("$tools/python" -c 'import ziglang, pathlib; print(pathlib.Path(ziglang.__
 export ZIG CARGO_ZIGBUILD_ZIG_PATH=$ROOT/tools/zig.sh CARGO_ZIGBUILD_PYTHON_PATH=/bin/false
 PATH=$tools:$PATH "${CARGO:-cargo}" zigbuild --release --locked --target "$target.2.28" --bins \
   -p rtf -p rtf-host-native -p rtf-host-lua -p rtf-frameworks >&2
-printf '%s\n' "$TARGET/$target/release"
+programs=$TARGET/$target/release
+CC="tools/zig.sh cc --target=$processor-linux-gnu.2.28" tools/preload.sh "$programs" fork_server
+printf '%s\n' "$programs"

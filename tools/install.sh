@@ -3,7 +3,8 @@
 # tools/uninstall.sh reads the list of installed files from share/rtf/manifest.txt.
 #
 # PROGRAMS=DIR installs the programs in DIR, which may be for another processor, and builds
-# nothing; target/release/rtf must exist, because it prints the man pages.
+# nothing; target/release/rtf must exist, because it prints the man pages. LIBRARIES is the
+# directory of the libraries that rtf preloads, by default the same.
 #
 # PARTS=FILE also writes a line `part path` for each file into FILE, for Debian packages: the
 # parts are `rtf`, `rtf-dev` and `robot-testing-framework-compat`.
@@ -19,7 +20,7 @@ esac
 top=$DESTDIR$PREFIX
 release=$TARGET/release
 programs=${PROGRAMS:-$release}
-libraries=${PROGRAMS:-$BUILD}
+libraries=${LIBRARIES:-${PROGRAMS:-$BUILD}}
 
 stage=$(mktemp -d)
 trap 'rm -rf "$stage"' EXIT

@@ -4,19 +4,31 @@
 # after env.sh and packages.sh; needs root.
 #
 # The base system and downloaded packages are kept in the user's cache, for each release and
-# set of sources.
+# set of sources. Sessions for arm64 run under qemu's user emulation, see tools/binfmt.sh.
 
 # Restarts the script with sudo, if it is not run by root.
 become_root() {
   [ "$(id -u)" -eq 0 ] || exec sudo -n --preserve-env "$0" "$@"
 }
 
+# The architecture of the base, unless it is the machine's, and what runs its programs.
+architecture=
+emulation=()
+
+# The following sessions are in a Debian for arm64.
+use_arm64() {
+  need_packages qemu-user-static arch-test
+  architecture=arm64
+  emulation=("$ROOT/tools/binfmt.sh" aarch64)
+}
+
 # Sets `base`, the directory with root.tar and apt-get's archives; creates it if necessary.
 # Other sessions wait until the script ends or calls release_base, because sessions write into
 # the archives.
 need_base() {
-  local sources settings release key
+  local sources settings release key options=()
   have mmdebstrap || install_packages mmdebstrap
+  [ -z "$architecture" ] || options=("--architectures=$architecture" --mode=root)
   # The sources of Debian's packages, as lines of sources.list.
   # shellcheck disable=SC2016 # apt-get fills that in
   sources=$(apt-get indextargets --format '$(ORIGIN) deb $(REPO_URI) $(RELEASE) $(COMPONENT)' \
@@ -26,17 +38,19 @@ need_base() {
   release=$(. /etc/os-release && printf '%s' "$VERSION_CODENAME")
 
   key=$(printf '%s\n' "$release" "$sources" "$settings" | sha256sum | cut -c1-12)
-  base=$CACHE/debian-$release-$key
+  base=$CACHE/debian-$release${architecture:+-$architecture}-$key
   mkdir -p "$base/archives"
   exec 8>"$base/lock"
   flock 8
   # Newer packages replace those of an old base slowly.
   [ -z "$(find "$base" -maxdepth 1 -name root.tar -mtime +30)" ] || rm "$base/root.tar"
   [ ! -e "$base/root.tar" ] || return 0
-  say "creating a base of Debian $release in $base"
+  say "creating a base of Debian $release${architecture:+ for $architecture} in $base"
   printf '%s\n' "$settings" >"$base/apt.conf"
-  quietly mmdebstrap --format=tar --variant=minbase --include=ca-certificates,make,git --aptopt="$base/apt.conf" \
-    "$release" "$base/root.tar.new" <<<"$sources" || die "mmdebstrap could not create it"
+  printf '%s\n' "$sources" >"$base/sources.list"
+  quietly "${emulation[@]}" mmdebstrap "${options[@]}" --format=tar --variant=minbase --aptopt="$base/apt.conf" \
+    --include=ca-certificates,make,git "$release" "$base/root.tar.new" "$base/sources.list" ||
+    die "mmdebstrap could not create it"
   mv "$base/root.tar.new" "$base/root.tar"
 }
 
@@ -52,6 +66,7 @@ unpack_base() {
   mkdir -p "$debian"
   tar -xf "$base/root.tar" -C "$debian" --exclude './dev/*'
   echo force-unsafe-io >"$debian/etc/dpkg/dpkg.cfg.d/temporary" # no fsync
+  sed -i '/DEP-11/d' "$debian/etc/apt/apt.conf.d/99mmdebstrap"  # lists for graphical programs
   cp -L /etc/resolv.conf /etc/hosts "$debian/etc/"
   cp -L /etc/ssl/certs/ca-certificates.crt "$debian/etc/ssl/certs/"
   for file in /etc/pip.conf "$HOME/.config/pip/pip.conf" "$HOME/.npmrc" "$HOME/.cargo/config.toml"; do
@@ -74,7 +89,7 @@ run_in_base() {
   fi
   # The mounts and all processes disappear with the namespaces, also if this script is killed.
   # shellcheck disable=SC2016 # the shell in the namespace expands that
-  debian=$1 base=$base directory=$3 script=$4 unshare "${namespaces[@]}" bash -euc "$settings"'
+  debian=$1 base=$base directory=$3 script=$4 "${emulation[@]}" unshare "${namespaces[@]}" bash -euc "$settings"'
     mount --bind "$debian" "$debian"
     mount --rbind /dev "$debian/dev"
     mount -t proc proc "$debian/proc"

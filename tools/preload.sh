@@ -1,14 +1,20 @@
 #!/usr/bin/env bash
 # Builds the libraries that rtf preloads into programs of other frameworks:
-# build/librtf-fork-server.so, and build/librtf-cppunit.so. Without CppUnit's headers or a C++
-# compiler, prints a note and does not build the latter.
+# librtf-fork-server.so, and librtf-cppunit.so. Without CppUnit's headers or a C++ compiler,
+# prints a note and does not build the latter.
+#
+#   tools/preload.sh [DIRECTORY [LIBRARY]]     default: build, both; fork_server or cppunit
+#
+# CC, CXX and OBJCOPY may be those for another processor; CC may have options.
 
 . "$(dirname "$0")/env.sh"
 
 sources=sdk/cpp/preload
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-mkdir -p "$BUILD"
+directory=${1:-$BUILD}
+mkdir -p "$directory"
+read -r -a cc <<<"${CC:-cc}"
 
 # Whether a library is missing or older than one of its sources: library, sources.
 is_outdated() {
@@ -18,15 +24,15 @@ is_outdated() {
 }
 
 build_fork_server() {
-  local library=$BUILD/librtf-fork-server.so
+  local library=$directory/librtf-fork-server.so
   is_outdated "$library" $sources/fork_server.c || return 0
-  "${CC:-cc}" -std=gnu11 -O2 -g0 -fPIC -fvisibility=hidden -Wall -Wextra -Wpedantic -Werror -shared \
+  "${cc[@]}" -std=gnu11 -O2 -g0 -fPIC -fvisibility=hidden -Wall -Wextra -Wpedantic -Werror -shared -s \
     $sources/fork_server.c -o "$work/fork-server.so" -ldl
   mv "$work/fork-server.so" "$library" # a running program keeps the old one
 }
 
 build_cppunit() {
-  local library=$BUILD/librtf-cppunit.so compiler=${CXX:-c++}
+  local library=$directory/librtf-cppunit.so compiler=${CXX:-c++}
   local options=(-std=c++11 -O2 -g0 -fPIC -fvisibility=hidden -pthread -Isdk/cpp/include)
   if ! have "$compiler" ||
     ! "$compiler" "${options[@]}" -fsyntax-only -include cppunit/TestResult.h -x c++ /dev/null 2>/dev/null; then
@@ -36,11 +42,12 @@ build_cppunit() {
   is_outdated "$library" $sources/cppunit.cpp sdk/cpp/include/rtf || return 0
   "$compiler" "${options[@]}" -Wall -Wextra -Wpedantic -Werror -c $sources/cppunit.cpp -o "$work/cppunit.o"
   # The library is also loaded into programs without CppUnit.
-  objcopy --wildcard --weaken-symbol='_ZN7CppUnit*' --weaken-symbol='_ZNK7CppUnit*' \
+  "${OBJCOPY:-objcopy}" --wildcard --weaken-symbol='_ZN7CppUnit*' --weaken-symbol='_ZNK7CppUnit*' \
     --weaken-symbol='_ZTIN7CppUnit*' --weaken-symbol='_ZTVN7CppUnit*' "$work/cppunit.o"
   "$compiler" -shared -pthread "$work/cppunit.o" -o "$work/cppunit.so" -ldl
   mv "$work/cppunit.so" "$library"
 }
 
-build_fork_server
-build_cppunit
+for library in ${2:-fork_server cppunit}; do
+  "build_$library"
+done

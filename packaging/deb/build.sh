@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Builds the Debian packages rtf, rtf-dev and robot-testing-framework-compat.
 #
-#   packaging/deb/build.sh [DIRECTORY]     default: dist
+#   packaging/deb/build.sh [DIRECTORY]           default: dist
+#   packaging/deb/build.sh DIRECTORY arm64       the package rtf for arm64; the others are for all
 #
 # Contains the files that tools/install.sh installs. All timestamps are SOURCE_DATE_EPOCH, by
 # default the time of the last commit, so the same build results give the same packages.
@@ -10,6 +11,7 @@
 . tools/packages.sh
 
 output=${1:-dist}
+architecture=${2:-}
 need_packages debhelper dpkg-dev
 mkdir -p "$output"
 output=$(cd "$output" && pwd)
@@ -19,6 +21,18 @@ umask 022
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+if [ "$architecture" = arm64 ]; then
+  need_packages g++-aarch64-linux-gnu libcppunit-dev
+  PROGRAMS=$(tools/cross.sh aarch64)
+  LIBRARIES=$work/libraries
+  CC=aarch64-linux-gnu-gcc CXX=aarch64-linux-gnu-g++ OBJCOPY=aarch64-linux-gnu-objcopy tools/preload.sh "$LIBRARIES"
+  settings=$(dpkg-architecture --host-arch arm64 --print-set --force)
+  eval "$settings"
+  export PROGRAMS LIBRARIES DH_OPTIONS=--package=rtf
+elif [ -n "$architecture" ]; then
+  die "no architecture \`$architecture\`: arm64"
+fi
+
 mkdir "$work/debian"
 cp packaging/deb/{control,copyright,rtf.*} "$work/debian"
 cat >"$work/debian/changelog" <<CHANGELOG

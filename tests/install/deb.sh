@@ -13,20 +13,32 @@ become_root "$@"
 need_packages lintian
 work=$(mktemp -d)
 debian=$work/debian
-trap 'rm -rf --one-file-system "$work"' EXIT
+checks=
+cleanup() {
+  [ -z "$checks" ] || { kill "$checks" 2>/dev/null && wait "$checks"; } || true
+  rm -rf --one-file-system "$work"
+}
+trap cleanup EXIT
 
 SOURCE_DATE_EPOCH=$(time_of_commit)
 export SOURCE_DATE_EPOCH
 packaging/deb/build.sh "$work/packages"
-packaging/deb/build.sh "$work/again"
-for package in "$work/packages"/*.deb; do
-  cmp "$package" "$work/again/$(basename "$package")"
-done
-lintian --allow-root --fail-on error "$work/packages"/*.deb
+
+check_packages() {
+  local package
+  packaging/deb/build.sh "$work/again"
+  for package in "$work/packages"/*.deb; do
+    cmp "$package" "$work/again/$(basename "$package")"
+  done
+  lintian --allow-root --fail-on error "$work/packages"/*.deb
+}
+# Needs one processor; the session uses another one.
+check_packages >"$work/checks.log" 2>&1 &
+checks=$!
 
 need_base
 unpack_base "$debian"
-mv "$work/packages" "$debian/packages"
+cp -R "$work/packages" "$debian/packages"
 cp -R tests/install/downstream "$debian/project"
 
 cat >"$debian/session.sh" <<'SESSION'
@@ -89,3 +101,9 @@ SESSION
 started=$SECONDS
 run_in_base "$debian" network /project /session.sh
 say "in a minimal Debian: $((SECONDS - started)) s"
+
+status=0
+wait "$checks" || status=$?
+checks=
+cat "$work/checks.log"
+[ "$status" -eq 0 ] || die "two builds differ, or lintian found an error"
