@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds all packages of the last commit into dist/: Debian packages, the wheel, the source
-# archive, bills of materials, and SHA256SUMS. Another build of the same commit with the same
-# tools gives the same bytes.
+# Builds all packages of the last commit into dist/: Debian packages and wheels for x86-64 and
+# aarch64, the source archive, the bill of materials, and SHA256SUMS. Another build of the same
+# commit with the same tools gives the same bytes.
 
 . "$(dirname "$0")/../tools/env.sh"
 
@@ -18,7 +18,11 @@ trap 'rm -rf "$work"' EXIT
 git archive --format=tar --prefix="rtf-$version/" HEAD | gzip -9 --no-name >"$dist/rtf-$version.tar.gz"
 
 packaging/deb/build.sh "$dist"
-cp "$(tools/wheel.sh)" "$dist"
+packaging/deb/build.sh "$dist" arm64
+for processor in x86_64 aarch64; do
+  wheel=$(tools/wheel.sh "$processor")
+  cp "$wheel" "$dist"
+done
 
 # Bills of materials: of each program, and of the page.
 cyclonedx=$(tools/cargo_tool.sh cargo-cyclonedx 0.5.9)

@@ -27,7 +27,8 @@ unpack_base "$debian"
 mv "$work/packages" "$debian/packages"
 cp -R tests/install/downstream "$debian/project"
 cmake -S "$debian/project" -B "$work/build" -DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64 \
-  -DCMAKE_CXX_COMPILER=aarch64-linux-gnu-g++ "-Drtf_DIR=$ROOT/sdk/cpp/cmake/rtf"
+  -DCMAKE_CXX_COMPILER=aarch64-linux-gnu-g++ "-Drtf_DIR=$ROOT/sdk/cpp/cmake/rtf" \
+  "-Drtf_EXECUTABLE=$TARGET/release/rtf"
 cmake --build "$work/build"
 mkdir "$debian/project/plugins"
 cp "$work/build"/*.so "$debian/project/plugins"
