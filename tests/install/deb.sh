@@ -10,19 +10,18 @@
 . tools/minimal_debian.sh
 
 become_root "$@"
-need_packages lintian
+need_packages lintian debhelper dpkg-dev mmdebstrap
 work=$(mktemp -d)
 debian=$work/debian
 checks=
 cleanup() {
-  [ -z "$checks" ] || { kill "$checks" 2>/dev/null && wait "$checks"; } || true
+  [ -z "$checks" ] || wait "$checks" || true
   rm -rf --one-file-system "$work"
 }
 trap cleanup EXIT
 
 SOURCE_DATE_EPOCH=$(time_of_commit)
 export SOURCE_DATE_EPOCH
-packaging/deb/build.sh "$work/packages"
 
 check_packages() {
   local package
@@ -32,12 +31,25 @@ check_packages() {
   done
   lintian --allow-root --fail-on error "$work/packages"/*.deb
 }
-# Needs one processor; the session uses another one.
+
+# Waits for what runs in the background, and prints its output.
+finish_checks() {
+  local status=0
+  wait "$checks" || status=$?
+  checks=
+  cat "$work/checks.log"
+  [ "$status" -eq 0 ] || die "$1"
+}
+
+# One processor builds and checks the packages, another one creates the base and uses it.
+packaging/deb/build.sh "$work/packages" >"$work/checks.log" 2>&1 &
+checks=$!
+need_base
+unpack_base "$debian"
+finish_checks "the packages were not built"
 check_packages >"$work/checks.log" 2>&1 &
 checks=$!
 
-need_base
-unpack_base "$debian"
 cp -R "$work/packages" "$debian/packages"
 cp -R tests/install/downstream "$debian/project"
 
@@ -101,9 +113,4 @@ SESSION
 started=$SECONDS
 run_in_base "$debian" network /project /session.sh
 say "in a minimal Debian: $((SECONDS - started)) s"
-
-status=0
-wait "$checks" || status=$?
-checks=
-cat "$work/checks.log"
-[ "$status" -eq 0 ] || die "two builds differ, or lintian found an error"
+finish_checks "two builds differ, or lintian found an error"
