@@ -5,6 +5,9 @@
 
 . "$(dirname "$0")/env.sh"
 
+# Cargo compiles the crates with C code again if it changes, which is the case for each commit.
+unset SOURCE_DATE_EPOCH
+
 [ "${RTF_PAGE:-}" = none ] || tools/web.sh
 cargo build --release --locked --bins
 tools/preload.sh

@@ -12,6 +12,7 @@
 
 processor=${1:?processor: x86_64 or aarch64}
 target=$processor-unknown-linux-gnu
+unset SOURCE_DATE_EPOCH # as in tools/build.sh
 case $processor in
   x86_64) architecture=amd64 ;;
   aarch64) architecture=arm64 ;;
