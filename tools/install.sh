@@ -3,7 +3,7 @@
 # tools/uninstall.sh reads the list of installed files from share/rtf/manifest.txt.
 #
 # PROGRAMS=DIR installs the programs in DIR, which may be for another processor, and builds
-# nothing; target/release/rtf must exist, because it prints the man pages. LIBRARIES is the
+# nothing. If they do not run here, target/release/rtf prints the man pages. LIBRARIES is the
 # directory of the libraries that rtf preloads, by default the same.
 #
 # PARTS=FILE also writes a line `part path` for each file into FILE, for Debian packages: the
@@ -63,7 +63,9 @@ if [ -z "${SUDO_USER:-}${PROGRAMS:-}" ]; then
   tools/bootstrap.sh build
   tools/build.sh
 fi
-for program in "$release/rtf" "$programs"/{rtf,rtf-host-native,rtf-host-lua,rtf-host-framework}; do
+printer=$programs/rtf
+"$printer" --version >/dev/null 2>&1 || printer=$release/rtf
+for program in "$printer" "$programs"/{rtf,rtf-host-native,rtf-host-lua,rtf-host-framework}; do
   [ -x "$program" ] || die "$program is missing" "run \`make build\` first"
 done
 if [ -e "$top" ] && [ ! -w "$top" ]; then
@@ -73,9 +75,9 @@ if [ -e "$top/share/rtf/manifest.txt" ]; then
   tools/uninstall.sh # files of an older version that the new one does not have
 fi
 
-"$release/rtf" man "$stage/man"
+"$printer" man "$stage/man"
 for shell in bash zsh fish; do
-  "$release/rtf" completions "$shell" >"$stage/rtf.$shell"
+  "$printer" completions "$shell" >"$stage/rtf.$shell"
 done
 
 put 755 "$programs/rtf" bin/rtf
