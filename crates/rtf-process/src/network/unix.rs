@@ -25,7 +25,7 @@ pub fn loopback_up(socket: impl AsFd) -> io::Result<()> {
     // SAFETY: all zeroes are a valid `ifreq`.
     let mut request = unsafe { MaybeUninit::<libc::ifreq>::zeroed().assume_init() };
     for (place, byte) in request.ifr_name.iter_mut().zip(b"lo") {
-        *place = byte.cast_signed();
+        *place = libc::c_char::from_ne_bytes([*byte]);
     }
     let flags = libc::IFF_UP | libc::IFF_RUNNING | libc::IFF_LOOPBACK | libc::IFF_MULTICAST;
     request.ifr_ifru.ifru_flags = i16::try_from(flags).map_err(io::Error::other)?;
@@ -55,7 +55,7 @@ fn internet(address: [u8; 4]) -> libc::sockaddr {
     socket.sa_family = libc::sa_family_t::try_from(libc::AF_INET).unwrap_or_default();
     // Two bytes of port come first.
     for (place, byte) in socket.sa_data[2..].iter_mut().zip(address) {
-        *place = byte.cast_signed();
+        *place = libc::c_char::from_ne_bytes([byte]);
     }
     socket
 }
