@@ -1,4 +1,4 @@
-// Requests to the server that the page came from (spec/web.md).
+// Requests to the server that the page came from (spec/web.md), or to the data in a report.
 
 import type { RunFilter } from './run-filter';
 import type {
@@ -22,6 +22,19 @@ export class ApiError extends Error {
         super(message);
     }
 }
+
+/** Responds to a request for a path with the server's JSON. */
+export type Source = (path: string) => Promise<unknown>;
+
+let embedded: Source | null = null;
+
+/** Reads from here instead of from a server. */
+export function readFrom(source: Source): void {
+    embedded = source;
+}
+
+/** Whether this page is a report: it has one run, and no server. */
+export const isReport = () => embedded !== null;
 
 interface Options {
     method?: 'GET' | 'POST' | 'DELETE';
@@ -61,6 +74,7 @@ async function reason(response: Response): Promise<string> {
 }
 
 export async function get<T>(path: string, signal: AbortSignal | null = null): Promise<T> {
+    if (embedded !== null) return (await embedded(path)) as T;
     return (await (await request(path, { signal })).json()) as T;
 }
 

@@ -30,7 +30,7 @@ const PAGE = 1000;
 /** Growing curves are reloaded after this time. */
 const SIGNALS_EVERY = 1000;
 
-type Page = { next?: number } & { [list in ListName]?: Said[] };
+type Page = { next?: number; omitted?: number } & { [list in ListName]?: Said[] };
 
 export class Details {
     /** Incremented with each change of the lists. */
@@ -41,6 +41,8 @@ export class Details {
     problem: string | null = $state(null);
     /** Lists with more pages on the server, and where they continue. */
     more: Partial<Record<ListName, number>> = $state.raw({});
+    /** Numbers of entries that a report omits. */
+    omitted: Partial<Record<ListName, number>> = $state.raw({});
     /** The signals of a test. */
     signals: readonly Signal[] = $state.raw([]);
     /** The cases of a test. */
@@ -191,6 +193,8 @@ export class Details {
             );
             const entries = this.all[list] as Said[];
             for (const entry of answer[list] ?? []) append(entries, entry);
+            if (answer.omitted !== undefined)
+                this.omitted = { ...this.omitted, [list]: answer.omitted };
             after = answer.next;
             this.version += 1;
             if (after === undefined) break;

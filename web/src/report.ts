@@ -1,0 +1,24 @@
+// The page as a report in one file: with the run's data, and without a server.
+
+import { mount } from 'svelte';
+import App from './components/App.svelte';
+import { readFrom } from './lib/api';
+import { Answers } from './lib/report/answers';
+import { EmbeddedData } from './lib/report/embedded';
+import './styles/base.css';
+import './styles/ansi.css';
+
+const target = document.getElementById('app');
+if (target !== null) void start(target);
+
+async function start(target: HTMLElement): Promise<void> {
+    try {
+        const answers = await Answers.open(new EmbeddedData(document));
+        readFrom((path) => answers.get(path));
+        target.replaceChildren();
+        mount(App, { target });
+    } catch (problem) {
+        const reason = problem instanceof Error ? problem.message : String(problem);
+        target.textContent = `This report cannot be read, the file may be damaged: ${reason}`;
+    }
+}
