@@ -14,6 +14,7 @@ mod app;
 mod capabilities;
 mod connections;
 mod feed;
+pub mod html_report;
 mod index;
 mod journal_notifier;
 mod legacy;

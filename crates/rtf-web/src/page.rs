@@ -1,6 +1,8 @@
 //! The page: what was built in `web/`, embedded. A build without it says how to
 //! get it.
 
+use std::borrow::Cow;
+
 use axum::extract::Request;
 use axum::http::{HeaderValue, StatusCode, Uri, header};
 use axum::middleware::Next;
@@ -41,11 +43,19 @@ const BARE_DOCS: &str = "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-
 <title>API of the Robot Testing Framework</title>\n<p>This build has no viewer. The description is \
 <a href=\"/api/v1/openapi.json\">/api/v1/openapi.json</a>.</p>\n</html>\n";
 
+/// The page as a report, without data; see [`crate::html_report`].
+const REPORT: &str = "report.html";
+
+/// The page as a report, if it was built.
+pub fn report_template() -> Option<Cow<'static, [u8]>> {
+    Dist::get(REPORT).map(|file| file.data)
+}
+
 /// The page, or a file of it.
 pub async fn page(uri: Uri) -> Response {
     let path = uri.path().trim_start_matches('/');
     let name = if path.is_empty() { "index.html" } else { path };
-    match Dist::get(name) {
+    match Dist::get(name).filter(|_| name != REPORT) {
         Some(file) => asset(name, file),
         None if path.is_empty() => Html(UNBUILT).into_response(),
         None => Problem::not_found("there is no such page").into_response(),

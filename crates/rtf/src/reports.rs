@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use rtf_model::Record;
 use rtf_report::markdown::{self, MarkdownOptions};
+use rtf_report::run_dir::JOURNAL;
 use rtf_report::{ReportError, ReportFile, Reporter, code_quality, github, junit, tap, text};
+use rtf_web::html_report::{self, ReportSource};
 
 use crate::cli::ReportFormat;
 use crate::error::Failure;
@@ -26,6 +28,7 @@ pub fn open_all(
             let error = format!("two reports would be written to `{}`", path.display());
             return Err(failure(error.into()));
         }
+        check_build(*format)?;
         opened.push(open(*format, path, results).map_err(|error| failure(error.into()))?);
     }
     Ok(opened)
@@ -33,12 +36,23 @@ pub fn open_all(
 
 /// Opens a report of a run in `results`.
 pub fn open(format: ReportFormat, path: &Path, results: &Path) -> Result<ReportFile, ReportError> {
-    let results = results.to_owned();
+    let (results, output) = (results.to_owned(), path.to_owned());
     let write = move |out: &mut dyn Write, record: &Record| {
         let dir = record.run.as_ref().map(|started| results.join(&started.run));
-        write(format, out, record, &Place { dir: dir.as_deref(), url: None })
+        let journal = dir.as_ref().map(|dir| dir.join(JOURNAL));
+        let journal = journal.as_deref();
+        write(format, out, record, &Place { journal, output: Some(&output), url: None })
     };
     ReportFile::new(title(format), path, Box::new(write))
+}
+
+/// Checks that this build can write reports of this format.
+pub fn check_build(format: ReportFormat) -> Result<(), Failure> {
+    if format != ReportFormat::Html || html_report::is_available() {
+        return Ok(());
+    }
+    let hint = "run `make web` in the sources of rtf, then build it again";
+    Err(Failure::input("this build of rtf has no page for the HTML report").hint(hint))
 }
 
 /// Writes an open report.
@@ -51,10 +65,19 @@ pub fn finish(report: Result<impl Reporter, ReportError>, record: &Record) {
 /// Where the results of a run are.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Place<'a> {
-    /// The run directory.
-    pub dir: Option<&'a Path>,
+    /// The journal, in the run directory.
+    pub journal: Option<&'a Path>,
+    /// The report's file; `None`: standard output.
+    pub output: Option<&'a Path>,
     /// The address of the results on the web, for links.
     pub url: Option<&'a str>,
+}
+
+impl<'a> Place<'a> {
+    /// The run directory.
+    fn dir(&self) -> Option<&'a Path> {
+        self.journal.and_then(Path::parent)
+    }
 }
 
 /// Writes a report.
@@ -66,7 +89,7 @@ pub fn write(
 ) -> io::Result<()> {
     match format {
         ReportFormat::Text => text::write(out, record),
-        ReportFormat::Junit => junit::write(out, record, place.dir),
+        ReportFormat::Junit => junit::write(out, record, place.dir()),
         ReportFormat::Tap => tap::write(out, record),
         ReportFormat::CodeQuality => code_quality::write(out, record, repository().as_deref()),
         ReportFormat::Github => github::write(out, record, repository().as_deref()),
@@ -75,11 +98,17 @@ pub fn write(
             record,
             &MarkdownOptions {
                 repository: repository().as_deref(),
-                dir: place.dir,
+                dir: place.dir(),
                 url: place.url,
                 rerun: rerun_command::for_run(),
             },
         ),
+        ReportFormat::Html => {
+            let missing = || io::Error::other("the run has no journal");
+            let journal = place.journal.ok_or_else(missing)?;
+            let rerun = &rerun_command::for_run();
+            html_report::write(out, &ReportSource { journal, output: place.output, rerun })
+        }
         ReportFormat::Json => Err(io::Error::other("a record contains no events")),
     }
 }
@@ -93,6 +122,7 @@ pub fn title(format: ReportFormat) -> &'static str {
         ReportFormat::CodeQuality => "the code quality report",
         ReportFormat::Github => "the annotations",
         ReportFormat::Markdown => "the Markdown summary",
+        ReportFormat::Html => "the HTML report",
         ReportFormat::Json => "the events",
     }
 }

@@ -48,7 +48,8 @@ pub(super) enum NameKind {
 }
 
 /// The report formats.
-pub const REPORTS: [&str; 6] = ["junit", "text", "tap", "code-quality", "github", "markdown"];
+pub const REPORTS: [&str; 7] =
+    ["junit", "text", "tap", "code-quality", "github", "markdown", "html"];
 
 /// The keys of a file and of each profile.
 pub(super) const KEYS: &[Key] = &[

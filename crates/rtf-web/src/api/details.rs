@@ -187,8 +187,7 @@ pub async fn measurements(
     app.with_run(run, move |run| {
         let (measurements, next) = part.read(run, |event| {
             let EventKind::Measured { measurement, .. } = event.kind else { return None };
-            let within = measurement.is_within_limits();
-            Some(Measured { seq: event.seq, at: event.at.0, measurement, within })
+            Some(Measured::of(event.seq, event.at.0, measurement))
         })?;
         JsonText::of(&Measurements { measurements, next })
     })
@@ -248,9 +247,7 @@ async fn output(
     app.with_run(run, move |run| {
         let (output, next) = part.read(run, |event| {
             let EventKind::Output(output) = event.kind else { return None };
-            let omitted = Some(output.omitted_bytes).filter(|omitted| *omitted > 0);
-            let (stream, text) = (output.stream, output.text);
-            Some(Printed { seq: event.seq, at: event.at.0, stream, omitted_bytes: omitted, text })
+            Some(Printed::of(event.seq, event.at.0, output))
         })?;
         JsonText::of(&OutputPage { output, next })
     })

@@ -57,7 +57,7 @@ fn encoded_part(text: &str) -> String {
 }
 
 /// As it may stand in a path; a `/` stays one.
-fn encoded(text: &str) -> String {
+pub fn encoded(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for byte in text.bytes() {
         match byte {
@@ -115,7 +115,7 @@ pub async fn file(
 
 /// What a file is to a browser.
 #[derive(Debug, PartialEq, Eq)]
-struct ServedType {
+pub struct ServedType {
     name: String,
     media_type: String,
     shown: bool,
@@ -123,7 +123,7 @@ struct ServedType {
 
 impl ServedType {
     /// The test's media type counts; without one, the ending of the name decides.
-    fn of(path: &str, said: Option<&AttachmentInfo>) -> Self {
+    pub fn of(path: &str, said: Option<&AttachmentInfo>) -> Self {
         let guessed = |name: &str| mime_guess::from_path(name).first_raw();
         let given = said.map(|said| essence(&said.media_type)).filter(|kind| !kind.is_empty());
         let named = || said.and_then(|said| guessed(&said.name)).map(str::to_owned);
@@ -137,10 +137,15 @@ impl ServedType {
         Self { name, media_type, shown }
     }
 
-    fn describe(&self, headers: &mut HeaderMap) {
+    /// The media type under which a browser receives it.
+    pub fn content_type(&self) -> String {
         let kind = if self.shown { &*self.media_type } else { "application/octet-stream" };
         let text = if kind.starts_with("text/") { "; charset=utf-8" } else { "" };
-        insert(headers, header::CONTENT_TYPE, &format!("{kind}{text}"));
+        format!("{kind}{text}")
+    }
+
+    fn describe(&self, headers: &mut HeaderMap) {
+        insert(headers, header::CONTENT_TYPE, &self.content_type());
         let place = if self.shown { "inline" } else { "attachment" };
         let disposition = format!("{place}; filename*=UTF-8''{}", encoded_part(&self.name));
         insert(headers, header::CONTENT_DISPOSITION, &disposition);
@@ -188,7 +193,8 @@ fn open(run: &Run, path: &str) -> Result<(File, u64), Problem> {
     Ok((file, metadata.len()))
 }
 
-fn is_attachment(path: &str) -> bool {
+/// Whether this is the path of an attachment in a run directory.
+pub fn is_attachment(path: &str) -> bool {
     let parts: Vec<_> = path.split('/').collect();
     let odd = |part: &&str| part.is_empty() || *part == "." || *part == "..";
     let below = parts.first() == Some(&FOLDER) && parts.len() > 1 && !parts.iter().any(odd);

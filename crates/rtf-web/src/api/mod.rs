@@ -4,7 +4,7 @@ mod cases;
 mod control;
 mod details;
 mod events;
-mod files;
+pub mod files;
 mod logs;
 mod plan;
 mod problems;
@@ -21,7 +21,10 @@ use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-pub use types::{RunInfo, model};
+pub use types::{
+    Attached, Cases, Measured, Printed, RunInfo, Said, Signal, SignalList, Snapshot, Stack,
+    TestDetail, model,
+};
 
 use crate::app::App;
 use crate::problem::Problem;

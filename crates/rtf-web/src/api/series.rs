@@ -2,14 +2,14 @@
 //! are drawn. The samples themselves are in the journal.
 
 use axum::extract::State;
-use rtf_model::{EventKind, Samples, SignalOutline, SignalSummary, Source, TestId};
+use rtf_model::{EventKind, Samples, Source, TestId};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
 use super::details::{DetailQuery, JsonResult, Path3};
 use super::problems::Problems;
 use super::query::{At, PageQuery, QueryParams};
-use super::types::{Signal, Signals};
+use super::types::{SignalList, Signals};
 use crate::app::{App, JsonText};
 use crate::problem::Problem;
 
@@ -54,23 +54,12 @@ pub async fn series(
     let page = PageQuery { after: None, limit: None };
     let part = DetailQuery { source: Source::Test(TestId(test)), number, kind: "sampled", page };
     app.with_run(run, move |run| {
-        let mut all: Vec<(SignalSummary, SignalOutline)> = Vec::new();
+        let mut all = SignalList::default();
         part.each(run, |event| {
             let EventKind::Sampled { samples, .. } = event.kind else { return };
-            match all.iter_mut().find(|(series, _)| series.name == samples.name) {
-                Some((series, curve)) => {
-                    series.extend(&samples);
-                    curve.extend(&window.of(samples));
-                }
-                None => {
-                    let (series, mut curve) =
-                        (SignalSummary::new(&samples), SignalOutline::default());
-                    curve.extend(&window.of(samples));
-                    all.push((series, curve));
-                }
-            }
+            all.extend(samples, |samples| window.of(samples));
         })?;
-        let series = all.into_iter().map(|(series, curve)| Signal::of(series, &curve)).collect();
+        let series = all.into_signals();
         JsonText::of(&Signals { series })
     })
     .await

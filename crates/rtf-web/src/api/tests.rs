@@ -8,7 +8,7 @@ use utoipa::IntoParams;
 use super::plan::entry;
 use super::problems::Problems;
 use super::query::{At, QueryParams, limit, words};
-use super::types::{Attempt, Test, TestDetail, TestPage, TestState};
+use super::types::{Test, TestDetail, TestPage, TestState};
 use crate::app::{App, JsonText};
 use crate::problem::Problem;
 
@@ -118,11 +118,8 @@ pub async fn test(
     let rerun = app.rerun;
     app.read(run, move |_, index| {
         let test = entry(&index.record().tests, test, "test")?;
-        let attempts = test.attempts.iter().zip(1..).map(|(a, number)| Attempt::of(a, number));
-        let attempts = attempts.collect();
         let command = rerun()(index.record(), test.plan.test, None);
-        let test = Test::of(test, index.record(), index.state().is_over());
-        Ok(TestDetail { test, attempts, command })
+        Ok(TestDetail::of(test, index.record(), index.state().is_over(), command))
     })
     .await
 }

@@ -61,6 +61,8 @@ pub struct Index {
     offset: u64,
     /// When the journal was last modified, once it has been read to its end.
     modified: Option<SystemTime>,
+    /// Whether a run without an end is shown as one that continues.
+    follows: bool,
 }
 
 impl Index {
@@ -75,7 +77,14 @@ impl Index {
             attached: AttachmentIndex::default(),
             offset: 0,
             modified: None,
+            follows: true,
         }
+    }
+
+    /// The index of a journal as it is now: a run without an end is incomplete.
+    #[must_use]
+    pub fn ended(file: File) -> Self {
+        Self { follows: false, ..Self::new(file) }
     }
 
     /// Whether the journal was modified, but did not grow: it was rewritten in place.
@@ -135,7 +144,7 @@ impl Index {
             RunState::Finished { interrupted: None } => State::Finished,
             RunState::Finished { interrupted: Some(_) } => State::Interrupted,
             RunState::Died { .. } => State::Died,
-            RunState::Running if journal::is_written(&self.file) => State::Running,
+            RunState::Running if self.follows && journal::is_written(&self.file) => State::Running,
             RunState::Running => State::Incomplete,
         }
     }

@@ -20,18 +20,21 @@ pub enum ReportFormat {
     Github,
     /// A summary in Markdown.
     Markdown,
+    /// The page with the run's data, in one file.
+    Html,
     /// The event stream.
     Json,
 }
 
 /// The formats of `--report`, whose reports are written when the run has ended.
-const REPORTS: [(&str, ReportFormat); 6] = [
+const REPORTS: [(&str, ReportFormat); 7] = [
     ("junit", ReportFormat::Junit),
     ("text", ReportFormat::Text),
     ("tap", ReportFormat::Tap),
     ("code-quality", ReportFormat::CodeQuality),
     ("github", ReportFormat::Github),
     ("markdown", ReportFormat::Markdown),
+    ("html", ReportFormat::Html),
 ];
 
 /// The format of standard output.

@@ -22,8 +22,8 @@ pub struct RunArgs {
     #[arg(long, value_name = "FORMAT", default_value = "console")]
     pub format: StdoutFormat,
 
-    /// Also write a report: `junit=PATH`, `text=`, `tap=`, `code-quality=`, `github=`
-    /// or `markdown=`
+    /// Also write a report: `junit=PATH`, `text=`, `tap=`, `code-quality=`, `github=`,
+    /// `markdown=` or `html=`
     #[arg(long = "report", value_name = "FORMAT=PATH", value_parser = parse_report)]
     pub reports: Vec<(ReportFormat, PathBuf)>,
 

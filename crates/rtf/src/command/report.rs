@@ -34,7 +34,9 @@ pub fn run(mut args: ReportArgs, matches: &ArgMatches) -> VerbResult {
         }
         format => {
             let record = journal::read(&journal).map_err(past_run::unreadable)?.record;
-            let place = reports::Place { dir: journal.parent(), url: args.link.as_deref() };
+            reports::check_build(format)?;
+            let (output, url) = (args.output.as_deref(), args.link.as_deref());
+            let place = reports::Place { journal: Some(&journal), output, url };
             write(&args, |out| reports::write(format, out, &record, &place))?;
         }
     }

@@ -41,19 +41,19 @@ fn a_report_that_cannot_be_written() {
 
 #[test]
 fn an_unknown_format() {
-    assert_snapshot!(refused(&folder(), &["run", "EncoderTest.lua", "--report", "html=report.html"]), @"
-    error: invalid value 'html=report.html' for '--report <FORMAT=PATH>': unknown format `html`, expected `junit=PATH`, `text=PATH`, `tap=PATH`, `code-quality=PATH`, `github=PATH`, `markdown=PATH`
+    assert_snapshot!(refused(&folder(), &["run", "EncoderTest.lua", "--report", "pdf=report.pdf"]), @"
+    error: invalid value 'pdf=report.pdf' for '--report <FORMAT=PATH>': unknown format `pdf`, expected `junit=PATH`, `text=PATH`, `tap=PATH`, `code-quality=PATH`, `github=PATH`, `markdown=PATH`, `html=PATH`
 
     For more information, try '--help'.
     ");
     assert_snapshot!(refused(&folder(), &["run", "EncoderTest.lua", "--report", "junit"]), @"
-    error: invalid value 'junit' for '--report <FORMAT=PATH>': expected `junit=PATH`, `text=PATH`, `tap=PATH`, `code-quality=PATH`, `github=PATH`, `markdown=PATH`
+    error: invalid value 'junit' for '--report <FORMAT=PATH>': expected `junit=PATH`, `text=PATH`, `tap=PATH`, `code-quality=PATH`, `github=PATH`, `markdown=PATH`, `html=PATH`
 
     For more information, try '--help'.
     ");
-    assert_snapshot!(refused(&folder(), &["report", "latest", "--format", "html"]), @"
-    error: invalid value 'html' for '--format <FORMAT>'
-      [possible values: junit, text, tap, code-quality, github, markdown, json]
+    assert_snapshot!(refused(&folder(), &["report", "latest", "--format", "pdf"]), @"
+    error: invalid value 'pdf' for '--format <FORMAT>'
+      [possible values: junit, text, tap, code-quality, github, markdown, html, json]
 
     For more information, try '--help'.
     ");

@@ -68,6 +68,27 @@ pub struct Cases {
     pub not_run: Vec<String>,
 }
 
+/// How many announced cases that did not run are listed.
+const NOT_RUN: usize = 1000;
+
+impl Cases {
+    /// All cases of an attempt, on one page.
+    pub fn all(cases: &AttemptCases) -> Self {
+        let not_run = cases.not_run().names().take(NOT_RUN).map(str::to_owned);
+        Self {
+            cases: cases.kept().iter().map(Case::of).collect(),
+            next: None,
+            omitted: cases.omitted(),
+            not_run: not_run.collect(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.cases.is_empty() && self.not_run.is_empty() && self.omitted == 0
+    }
+}
+
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde requires a reference")]
 fn is_zero(number: &u64) -> bool {
     *number == 0

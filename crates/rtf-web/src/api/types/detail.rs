@@ -1,6 +1,6 @@
 //! What one attempt, start or run reported and printed, page by page.
 
-use rtf_model::{Attachment, Measurement, Message, Stream};
+use rtf_model::{Attachment, Measurement, Message, Output, Stream};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -30,6 +30,14 @@ pub struct Measured {
     pub measurement: Measurement,
     /// Whether it lies within its limits.
     pub within: bool,
+}
+
+impl Measured {
+    /// A measurement, judged.
+    pub fn of(seq: u64, at: u64, measurement: Measurement) -> Self {
+        let within = measurement.is_within_limits();
+        Self { seq, at, measurement, within }
+    }
 }
 
 /// An attached file.
@@ -72,6 +80,14 @@ pub struct Printed {
     pub omitted_bytes: Option<u64>,
     /// The text.
     pub text: String,
+}
+
+impl Printed {
+    /// A piece of output.
+    pub fn of(seq: u64, at: u64, output: Output) -> Self {
+        let omitted_bytes = Some(output.omitted_bytes).filter(|omitted| *omitted > 0);
+        Self { seq, at, stream: output.stream, omitted_bytes, text: output.text }
+    }
 }
 
 macro_rules! page {

@@ -19,7 +19,7 @@ pub use detail::{
 pub use fixture::{Fixture, Fixtures};
 pub use hook::{Hook, Hooks};
 pub use info::{RunInfo, RunList, Totals};
-pub use signal::{Signal, Signals};
+pub use signal::{Signal, SignalList, Signals};
 pub use significance::Significance;
 pub use suite::{Snapshot, Suite, Suites};
-pub use test::{Attempt, Test, TestDetail, TestPage, TestState};
+pub use test::{Test, TestDetail, TestPage, TestState};

@@ -1,6 +1,6 @@
 //! A signal that a test sampled.
 
-use rtf_model::{SignalOutline, SignalSummary};
+use rtf_model::{Samples, SignalOutline, SignalSummary};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -49,9 +49,35 @@ pub struct Signal {
     pub values: Vec<f64>,
 }
 
+/// The signals of an attempt while its samples are read.
+#[derive(Debug, Default)]
+pub struct SignalList(Vec<(SignalSummary, SignalOutline)>);
+
+impl SignalList {
+    /// Adds samples to the signal of their name; its curve gets those that `shown` returns.
+    pub fn extend(&mut self, samples: Samples, shown: impl Fn(Samples) -> Samples) {
+        match self.0.iter_mut().find(|(signal, _)| signal.name == samples.name) {
+            Some((signal, curve)) => {
+                signal.extend(&samples);
+                curve.extend(&shown(samples));
+            }
+            None => {
+                let (signal, mut curve) = (SignalSummary::new(&samples), SignalOutline::default());
+                curve.extend(&shown(samples));
+                self.0.push((signal, curve));
+            }
+        }
+    }
+
+    /// The signals, in the order of their first samples.
+    pub fn into_signals(self) -> Vec<Signal> {
+        self.0.into_iter().map(|(signal, curve)| Signal::of(signal, &curve)).collect()
+    }
+}
+
 impl Signal {
     /// The view of a signal and of its curve.
-    pub fn of(series: SignalSummary, curve: &SignalOutline) -> Self {
+    fn of(series: SignalSummary, curve: &SignalOutline) -> Self {
         let (times, values) = curve.points().into_iter().unzip();
         let SignalSummary { name, unit, low, high, count, min, mean, max, last, .. } = series;
         let (outside, problem) = (series.outside, series.problem);

@@ -148,6 +148,15 @@ pub struct TestDetail {
     pub command: Option<String>,
 }
 
+impl TestDetail {
+    /// A view of a test with its attempts; `over`: its run has ended.
+    #[must_use]
+    pub fn of(test: &TestRecord, record: &Record, over: bool, command: Option<String>) -> Self {
+        let attempts = test.attempts.iter().zip(1..).map(|(a, number)| Attempt::of(a, number));
+        Self { test: Test::of(test, record, over), attempts: attempts.collect(), command }
+    }
+}
+
 /// One attempt of a test.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Attempt {
