@@ -1,14 +1,11 @@
 // The page by keyboard, on a narrow screen, and for assistive technology.
 
 import assert from 'node:assert/strict';
-import { readFile } from 'node:fs/promises';
-import { createRequire } from 'node:module';
 import { after, before, test } from 'node:test';
+import { violations } from './support/axe.mjs';
 import { Guarded, launch } from './support/browser.mjs';
 import { Bench } from './support/rtf.mjs';
 import { MIXED } from './support/suites.mjs';
-
-const AXE = await readFile(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
 let browser;
 let bench;
@@ -48,24 +45,6 @@ function places() {
 async function goTo(guarded, { hash, ready }) {
     await guarded.page.evaluate((to) => (location.hash = to), hash);
     await guarded.page.getByText(ready).first().waitFor({ state: 'attached' });
-}
-
-/** Rules that are disabled, or that axe rates lower than we do. */
-const RULES = ['target-size', 'region', 'empty-table-header', 'page-has-heading-one'];
-
-/** Serious violations that axe finds, one line each. */
-async function violations({ page }) {
-    await page.evaluate(AXE);
-    const options = { rules: Object.fromEntries(RULES.map((rule) => [rule, { enabled: true }])) };
-    const { violations: found } = await page.evaluate(
-        (given) => globalThis.axe.run(given),
-        options,
-    );
-    return found
-        .filter(
-            ({ id, impact }) => RULES.includes(id) || impact === 'serious' || impact === 'critical',
-        )
-        .flatMap(({ id, nodes }) => nodes.map(({ html }) => `${id}: ${html.slice(0, 160)}`));
 }
 
 for (const colorScheme of ['light', 'dark']) {

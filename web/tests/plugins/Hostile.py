@@ -22,6 +22,7 @@ class Hostile(rtf.TestCase):
         write("x" * 1_000_000 + "\n")
         write("the last line\n")
         self.report(SCRIPT)
+        self.report("end </script></style><!-- <!--rtf-data--> \u2028 \u2029 ]]> of it")
         self.measure("<b>bold</b>", 1.0, '"unit"')
         page = DIR / "page.html"
         page.write_text(SCRIPT, encoding="utf-8")

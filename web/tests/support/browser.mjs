@@ -54,7 +54,9 @@ export class Guarded {
         });
         page.on('request', (request) => {
             this.requests.push(request);
-            if (new URL(request.url()).origin !== origin) {
+            const { protocol, origin: from } = new URL(request.url());
+            // What is in the page is requested from nowhere.
+            if (from !== origin && protocol !== 'data:') {
                 this.mistakes.push(`a request to ${request.url()}`);
             }
         });

@@ -4,7 +4,7 @@ import { spawn } from 'node:child_process';
 import { mkdir, mkdtemp, readdir, rm, writeFile, cp } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
-import { fileURLToPath } from 'node:url';
+import { fileURLToPath, pathToFileURL } from 'node:url';
 
 const TOP = fileURLToPath(new URL('../../../', import.meta.url));
 const RTF = process.env['RTF'] ?? path.join(TOP, 'target/release/rtf');
@@ -44,10 +44,22 @@ export class Bench {
     }
 
     /** A run without a page. */
-    async runToEnd(suite) {
+    async runToEnd(suite, ...options) {
         await this.write('suite.xml', suite);
-        const program = this.spawn(['run', 'suite.xml']);
+        const program = this.spawn(['run', ...options, 'suite.xml']);
         await program.ended;
+    }
+
+    /** Writes the HTML report of a run; returns its address. */
+    async report(run, file = 'report.html') {
+        const program = this.spawn(['report', run, '--format', 'html', '-o', file]);
+        const code = await within('the report', program.ended);
+        if (code !== 0) throw new Error(`rtf report ended with ${code}: ${program.printed}`);
+        return this.fileUrl(file);
+    }
+
+    fileUrl(file) {
+        return pathToFileURL(path.join(this.dir, file)).href;
     }
 
     /** A finished run with these events, numbered here. */
