@@ -56,6 +56,7 @@ fn before() -> Vec<EventKind> {
             environment: String::new(),
             tolerates_collapse: false,
             parallel: 1,
+            requires: Vec::new(),
             skips_fail: false,
         }),
     ];
@@ -69,6 +70,8 @@ fn before() -> Vec<EventKind> {
             repetitions: 1,
             tags: vec!["quick".into()],
             timed: false,
+            plugin_hash: None,
+            was: None,
             expected: None,
             parameters: Vec::new(),
         })

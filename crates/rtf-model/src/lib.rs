@@ -34,7 +34,7 @@ pub use event::{
 };
 pub use ids::{CaseId, FixtureId, HookId, Micros, SuiteId, TestId};
 pub use journal::{Damage, EventCheck, LineCheck, LineChecker, LineSealer, StreamChecker};
-pub use manifest::{Manifest, Revision};
+pub use manifest::{Manifest, Origin, Revision};
 pub use order::{OrderChecker, OrderError};
 pub use private_resources::{SuiteNetwork, SuitePort, SuitePrepared, SuiteVariable};
 pub use record::{

@@ -66,6 +66,9 @@ pub struct Manifest {
     /// The Git revision of the sources in the run's working directory.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub revision: Option<Revision>,
+    /// Which run it is, and where it was started.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub origin: Option<Origin>,
     /// Number of tests before filters were applied.
     #[serde(skip_serializing_if = "is_default")]
     pub selected_from: u32,
@@ -81,6 +84,35 @@ pub struct Revision {
     /// The branch, if one was checked out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub branch: Option<String>,
+    /// The working directory of the run, relative to the root of the repository.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dir: Option<String>,
+    /// Whether tracked files differed from the commit, if Git could find out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dirty: Option<bool>,
+    /// The author time of the commit, as RFC 3339, if Git could find out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub author_time: Option<String>,
+}
+
+/// Which run it is, and where it was started.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default)]
+pub struct Origin {
+    /// The identity of the run: a UUID.
+    pub id: String,
+    /// The name of the machine.
+    pub host: String,
+    /// The number of CPUs that the runner may use.
+    pub cpus: u32,
+    /// The load of the machine when the run started: the average number of runnable
+    /// threads in the last minute, in percent of its CPUs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_percent: Option<u32>,
+    /// The address of the CI job.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ci_job: Option<String>,
 }
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {

@@ -76,6 +76,7 @@ fn before() -> Vec<EventKind> {
             environment: String::new(),
             tolerates_collapse: false,
             parallel: 1,
+            requires: Vec::new(),
             skips_fail: false,
         }),
         EventKind::TestPlanned(TestPlanned {
@@ -87,6 +88,8 @@ fn before() -> Vec<EventKind> {
             repetitions: 1,
             timed: false,
             tags: Vec::new(),
+            plugin_hash: None,
+            was: None,
             expected: None,
             parameters: Vec::new(),
         }),

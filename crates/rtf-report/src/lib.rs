@@ -51,3 +51,4 @@ pub use report_file::{
     AnnotationReporter, FailureNotice, PrintAnnotations, ReportFile, WriteReport,
 };
 pub use reporter::{ReportError, Reporter};
+pub use words::{count as format_count, time as format_duration};

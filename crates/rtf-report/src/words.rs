@@ -8,7 +8,8 @@ use rtf_model::{AttemptRecord, Record, TestRecord};
 use crate::escape;
 
 /// `1 test`, `2 tests`, `2 processes`.
-pub(crate) fn count(number: u64, noun: &str) -> String {
+#[must_use]
+pub fn count(number: u64, noun: &str) -> String {
     format!("{number} {}", plural(number, noun))
 }
 
@@ -22,7 +23,8 @@ pub(crate) fn plural(number: u64, noun: &str) -> Cow<'_, str> {
 }
 
 /// `0.012 s`, `12.345 s`, `3 min 05 s`, `2 h 03 min`.
-pub(crate) fn time(duration: Duration) -> String {
+#[must_use]
+pub fn time(duration: Duration) -> String {
     let secs = duration.as_secs();
     match secs {
         0..60 => format!("{:.3} s", duration.as_secs_f64()),

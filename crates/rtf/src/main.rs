@@ -11,6 +11,8 @@ mod diagnostics;
 mod error;
 mod exit;
 mod guarded;
+mod history;
+mod origin;
 mod outputs;
 mod plan;
 mod preflight;
@@ -68,6 +70,7 @@ fn run(verb: Verb, matches: &ArgMatches) -> VerbResult {
         Verb::Show(args) => command::show::run(args, matches),
         Verb::Report(args) => command::report::run(args, matches),
         Verb::Merge(args) => command::merge::run(args, matches),
+        Verb::History { verb } => command::history::run(*verb, matches),
         Verb::Serve(args) => command::serve::run(&args),
         Verb::Import { verb } => command::import::run(&verb),
         Verb::Config { verb: ConfigVerb::Show(args) } => command::config::show(&args),

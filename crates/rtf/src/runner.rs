@@ -22,7 +22,7 @@ use crate::error::Failure;
 use crate::plan::Planned;
 use crate::preflight::Prepared;
 use crate::request::RunRequest;
-use crate::{exit, revision, web};
+use crate::{exit, history, origin, web};
 
 /// Runs, and serves the run for as long as requested.
 pub fn run(request: &RunRequest, planned: &Planned, prepared: Prepared, guard: Link) -> VerbResult {
@@ -41,6 +41,9 @@ pub fn run(request: &RunRequest, planned: &Planned, prepared: Prepared, guard: L
     });
     let finished = runtime.block_on(finish_reports(fanout, &stdout)).map_err(Failure::internal)?;
     guard.finish();
+    if let Some(history) = &request.history {
+        history::import_run(history, &finished.record);
+    }
     let code = ended.map(|killed_by| exit_code(killed_by, finished));
     let linger = request.web.as_ref().and_then(|web| web.linger);
     if let (Some(server), Some(time)) = (&server, linger)
@@ -81,7 +84,8 @@ fn run_started(request: &RunRequest, planned: &Planned, dir: &RunDir) -> RunStar
     let working_dir = &tests.options.runner.current_dir;
     let manifest = Manifest {
         jobs: Some(request.jobs.get().into()).filter(|jobs| *jobs > 1),
-        revision: revision::find(working_dir),
+        revision: request.revision.finish(),
+        origin: Some(origin::find()),
         selected_from: planned.selected_from,
         ..tests.manifest.clone()
     };

@@ -9,6 +9,7 @@ mod control_queue;
 mod deadlines;
 mod fail_limit;
 pub mod machine;
+mod plugin_hash;
 mod probes;
 mod suite_queue;
 mod suite_task;
@@ -28,6 +29,7 @@ use tokio::sync::watch;
 use context::RunContext;
 pub use context::{DebugMode, DebugOptions};
 use fail_limit::FailLimit;
+use plugin_hash::PluginHashes;
 use suite_queue::SuiteQueue;
 use suite_task::SuiteRequests;
 
@@ -214,6 +216,7 @@ fn emit_planned(suite: &SuitePlan, timed: bool, events: &Events) {
         tolerates_collapse: suite.settings.tolerates_collapse,
         parallel: suite.settings.parallel,
         skips_fail: suite.settings.skips_fail,
+        requires: suite.settings.requires.iter().map(|it| it.name.clone()).collect(),
     }));
     for fixture in &suite.fixtures {
         events.emit(EventKind::FixturePlanned(FixturePlanned {
@@ -227,8 +230,11 @@ fn emit_planned(suite: &SuitePlan, timed: bool, events: &Events) {
         let (hook, suite, name, on) = (hook.id, suite.id, hook.name.clone(), hook.on.clone());
         events.emit(EventKind::HookPlanned(HookPlanned { hook, suite, name, on }));
     }
+    let mut hashes = PluginHashes::default();
     for test in &suite.tests {
-        events.emit(EventKind::TestPlanned(planned(suite, test, timed)));
+        let plugin_hash = hashes.of(&test.plugin.file);
+        let planned = TestPlanned { plugin_hash, ..planned(suite, test, timed) };
+        events.emit(EventKind::TestPlanned(planned));
     }
 }
 
@@ -247,10 +253,12 @@ fn planned(suite: &SuitePlan, test: &TestPlan, timed: bool) -> TestPlanned {
         name: test.name.clone(),
         plugin_type: test.plugin.plugin_type.to_string(),
         plugin: shown(&test.plugin.file),
+        plugin_hash: None,
         repetitions: test.settings.repetitions,
         timed,
         tags: test.tags.clone(),
         parameters: test.parameters().to_vec(),
+        was: test.was.as_deref().map(str::to_owned),
         expected: test.expected.clone(),
     }
 }

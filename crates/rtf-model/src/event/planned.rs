@@ -56,6 +56,9 @@ pub struct SuitePlanned {
     /// Maximum number of its tests that run at the same time.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub parallel: u32,
+    /// The names of the exclusive resources that it requires, for example a robot.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub requires: Vec<String>,
 }
 
 /// A fixture that will be set up.
@@ -150,6 +153,9 @@ pub struct TestPlanned {
     pub plugin_type: String,
     /// The plug-in's file.
     pub plugin: String,
+    /// The hash of the plug-in's file: 64 bits as hexadecimal digits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plugin_hash: Option<String>,
     /// Number of repetitions; when `timed`, in each round.
     pub repetitions: u32,
     /// Whether it is repeated, round by round, for a given time.
@@ -161,6 +167,9 @@ pub struct TestPlanned {
     /// Its values of a matrix.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub parameters: Vec<Parameter>,
+    /// Its former name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub was: Option<String>,
     /// Its known failure.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expected: Option<Box<ExpectedFailure>>,

@@ -38,6 +38,7 @@ pub(super) fn suite(index: u32) -> SuiteRecord {
         tolerates_collapse: false,
         skips_fail: false,
         parallel: 1,
+        requires: Vec::new(),
     })
 }
 
@@ -66,6 +67,8 @@ pub(super) fn test(index: u32, suite: SuiteId) -> TestRecord {
         timed: false,
         tags: Vec::new(),
         parameters: Vec::new(),
+        plugin_hash: None,
+        was: None,
         expected: None,
     })
 }

@@ -33,6 +33,7 @@ pub fn suite(id: u32) -> EventKind {
         environment: String::new(),
         tolerates_collapse: false,
         parallel: 1,
+        requires: Vec::new(),
         skips_fail: false,
     })
 }
@@ -56,6 +57,8 @@ pub fn test(id: u32, suite: u32, repetitions: u32) -> EventKind {
         repetitions,
         timed: false,
         tags: Vec::new(),
+        plugin_hash: None,
+        was: None,
         expected: None,
         parameters: Vec::new(),
     })

@@ -115,6 +115,7 @@ impl SettingsQuery<'_> {
         let variable = match key {
             "results" => "RTF_RESULTS".to_owned(),
             "fork" => "RTF_FORK".to_owned(),
+            "history.url" => "RTF_HISTORY_URL".to_owned(),
             _ => match key.strip_prefix("param.") {
                 Some(name) => param_reference::variable(name),
                 None => return found,
@@ -153,6 +154,7 @@ fn built_in(key: &str) -> Option<String> {
         "timeouts.hook" => defaults::HOOK,
         "timeouts.scale" => return Some("1".to_owned()),
         "results" => return Some("rtf-results".to_owned()),
+        "history.enabled" => return Some("true".to_owned()),
         "fork" | "annotations" => return Some("auto".to_owned()),
         "shutdown-timeout" => return Some("60s".to_owned()),
         "jobs" => return Some("1".to_owned()),

@@ -15,6 +15,8 @@ pub(super) enum ValueFormat {
     Scale,
     /// A whole number from the first to the second bound, inclusive.
     Count(u32, u32),
+    /// `true` or `false`.
+    Boolean,
     /// One of these words.
     Words(&'static [&'static str]),
     /// A table of user-defined names with texts, numbers or booleans as values.
@@ -113,6 +115,7 @@ pub(super) const KEYS: &[Key] = &[
         ValueFormat::Count(1, u32::MAX),
         "Skip the remaining tests after this number of failed tests, as --max-fail",
     ),
+    key("history", ValueFormat::Table(HISTORY), "The history: results of many runs"),
 ];
 
 /// The keys that apply to a whole run.
@@ -128,6 +131,13 @@ pub(super) const RUN_KEYS: &[&str] = &[
     "retries",
     "flaky-result",
     "max-fail",
+    "history.enabled",
+    "history.url",
+];
+
+const HISTORY: &[Key] = &[
+    key("enabled", ValueFormat::Boolean, "Whether runs are imported when they end"),
+    key("url", ValueFormat::Path, "The database, by default history.db in the results directory"),
 ];
 
 const TIMEOUTS: &[Key] = &[

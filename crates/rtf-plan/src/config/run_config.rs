@@ -73,7 +73,7 @@ impl RunConfig {
             return;
         };
         // Equal relative paths in two directories differ.
-        let is_path = matches!(key, "results" | "reports");
+        let is_path = matches!(key, "results" | "reports" | "history.url");
         if is_path || texts(&known.entry) != texts(entry) {
             let message = format!("`{key}` applies to the whole run, and two files set it");
             let problem = Diagnostic::error("several-values", message)

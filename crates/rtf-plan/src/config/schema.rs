@@ -42,10 +42,11 @@ pub fn json_schema() -> Value {
     profile["description"] = json!("Settings of a profile");
     schema["definitions"] = json!({
         "duration": duration(),
+        "history": table("history"),
         "profile": profile,
         "quarantine": quarantine_table(),
         "scalar": { "type": ["string", "number", "boolean"] },
-        "timeouts": timeouts(),
+        "timeouts": table("timeouts"),
     });
     schema
 }
@@ -65,16 +66,17 @@ fn layer() -> Map<String, Value> {
     properties
 }
 
-fn timeouts() -> Value {
+/// The schema of a table of keys.
+fn table(name: &str) -> Value {
     let keys = KEYS.iter().find_map(|key| match key.format {
-        ValueFormat::Table(keys) => Some(keys),
+        ValueFormat::Table(keys) if key.name == name => Some(keys),
         _ => None,
     });
     object(properties(keys.unwrap_or_default()))
 }
 
 fn properties(keys: &[Key]) -> Map<String, Value> {
-    let property = |key: &Key| (key.name.to_owned(), described(value(key.format), key.summary));
+    let property = |key: &Key| (key.name.to_owned(), described(value(key), key.summary));
     keys.iter().map(property).collect()
 }
 
@@ -91,8 +93,8 @@ fn described(mut value: Value, description: &str) -> Value {
     value
 }
 
-fn value(format: ValueFormat) -> Value {
-    match format {
+fn value(key: &Key) -> Value {
+    match key.format {
         ValueFormat::Text => json!({ "type": "string" }),
         ValueFormat::Path => json!({ "type": "string", "minLength": 1 }),
         ValueFormat::Reports => {
@@ -104,9 +106,10 @@ fn value(format: ValueFormat) -> Value {
         ValueFormat::Count(least, most) => {
             json!({ "type": "integer", "minimum": least, "maximum": most })
         }
+        ValueFormat::Boolean => json!({ "type": "boolean" }),
         ValueFormat::Words(words) => json!({ "type": "string", "enum": words }),
         ValueFormat::Named(names) => named(names),
-        ValueFormat::Table(_) => json!({ "$ref": "#/definitions/timeouts" }),
+        ValueFormat::Table(_) => json!({ "$ref": format!("#/definitions/{}", key.name) }),
     }
 }
 

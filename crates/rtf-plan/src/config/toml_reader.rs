@@ -184,6 +184,9 @@ impl TomlReader<'_> {
                 let good = number.is_some_and(|n| (least..=most).contains(&n));
                 (good, format!("a whole number from {least} to {most}"))
             }
+            ValueFormat::Boolean => {
+                (matches!(value.get_ref(), DeValue::Boolean(_)), "`true` or `false`".to_owned())
+            }
             ValueFormat::Words(words) => {
                 let list: Vec<_> = words.iter().map(|word| format!("`\"{word}\"`")).collect();
                 let good = text.as_ref().is_some_and(|text| words.contains(&text.as_str()));

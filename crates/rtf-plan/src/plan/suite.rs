@@ -149,6 +149,7 @@ pub(super) fn plan_direct_plugins(
             expected: None,
             cases: None,
             cases_in_programs: None,
+            was: None,
         });
     }
     SuitePlan {

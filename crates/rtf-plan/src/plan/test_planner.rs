@@ -97,7 +97,8 @@ impl<'p, 'a, 'c> TestPlanner<'p, 'a, 'c> {
             self.check(&test, framework.as_ref());
         }
         let tags = tags(suite_tags, &test);
-        let DeclaredTest { span, name, plugin, env, limits, settings, known_failure, .. } = test;
+        let DeclaredTest { span, name, was, plugin, env, limits, settings, .. } = test;
+        let known_failure = test.known_failure;
         let declared = NamedPlugin { name, plugin, env: &env };
         let (name, plugin, combination) = match combination {
             None => {
@@ -107,6 +108,11 @@ impl<'p, 'a, 'c> TestPlanner<'p, 'a, 'c> {
             Some(combination) => self.combination(combination, declared, framework.as_ref()),
         };
         let Some(plugin) = plugin else { return };
+        let was = was.map(|was| match &combination {
+            Some(combination) => matrix::combination_name(&was, &combination.parameters),
+            None => was,
+        });
+        let was = was.map(String::into_boxed_str);
         let cases_in_programs = framework.as_ref().map(|test| Box::new(test.plan(limits)));
         if let Some(framework) = framework {
             self.frameworks.tests.insert(name.clone(), framework);
@@ -114,6 +120,7 @@ impl<'p, 'a, 'c> TestPlanner<'p, 'a, 'c> {
         self.plans.push(TestPlan {
             id: TestId(0),
             name,
+            was,
             line: self.source.line(span),
             combination: combination.map(Box::new),
             plugin,

@@ -220,6 +220,8 @@ pub struct TestPlan {
     pub id: TestId,
     /// The name, unique in the suite.
     pub name: String,
+    /// The former name.
+    pub was: Option<Box<str>>,
     /// The line of its tag in the file of the suite; 0 for a plug-in on the command line.
     pub line: u32,
     /// The plug-in.

@@ -98,6 +98,18 @@ pub enum Matcher {
     Matches(Regex),
 }
 
+/// A test, planned or stored, whose values a filter compares.
+pub trait FilterSubject {
+    /// Calls `visit` with each value of a subject.
+    fn visit_values(&self, subject: Subject, visit: &mut dyn FnMut(&str));
+}
+
+impl FilterSubject for Candidate<'_> {
+    fn visit_values(&self, subject: Subject, visit: &mut dyn FnMut(&str)) {
+        self.for_each_value(subject, |value| visit(&value));
+    }
+}
+
 /// A test and its suite.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate<'p> {
@@ -160,7 +172,7 @@ impl<'p> Candidate<'p> {
 impl Filter {
     /// Applies the filter to a test.
     #[must_use]
-    pub fn apply(&self, candidate: &Candidate<'_>) -> FilterMatch {
+    pub fn apply(&self, candidate: &impl FilterSubject) -> FilterMatch {
         match self {
             Self::All => FilterMatch::All,
             Self::None => FilterMatch::None,
@@ -169,7 +181,7 @@ impl Filter {
             Self::Or(left, right) => left.apply(candidate).or(right.apply(candidate)),
             Self::Has(subject, matcher) => {
                 let mut found = false;
-                candidate.for_each_value(*subject, |value| found |= matcher.matches(&value));
+                candidate.visit_values(*subject, &mut |value| found |= matcher.matches(value));
                 FilterMatch::new(found)
             }
             Self::Case(selector) => FilterMatch::Cases(vec![selector.clone()]),

@@ -79,6 +79,7 @@ pub(super) const TEST: ElementSchema = ElementSchema {
         "expect",
         "issue",
         "until",
+        "was",
     ],
     elements: &["env", "matrix", "matrix-exclude"],
     text: true,

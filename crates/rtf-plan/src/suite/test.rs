@@ -29,6 +29,7 @@ pub(super) fn read(
 ) -> Option<DeclaredTest> {
     check(reader, node, &schema::TEST);
     let name = reader.word(node, "name");
+    let was = reader.word(node, "was").map(|was| was.value);
     let (declared, default) = (limits(reader, node, ""), defaults.limits);
     let limits = DeclaredLimits {
         load: declared.load.or(default.load),
@@ -61,6 +62,7 @@ pub(super) fn read(
     Some(DeclaredTest {
         span,
         name,
+        was,
         plugin,
         limits,
         settings,

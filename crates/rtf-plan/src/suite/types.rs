@@ -143,6 +143,8 @@ pub struct DeclaredTest {
     pub span: Span,
     /// The name.
     pub name: Option<Spanned<String>>,
+    /// Its former name.
+    pub was: Option<String>,
     /// The plug-in and its parameters.
     pub plugin: DeclaredPlugin,
     /// The limits, including those of the suite.

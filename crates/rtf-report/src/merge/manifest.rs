@@ -45,7 +45,13 @@ fn divisions(parts: &[MergeInput]) -> Vec<Division> {
         let shard = shard.and_then(|(part, of)| Some((part.parse().ok()?, of.parse().ok()?)));
         let (part, of) = shard.unzip();
         // The merged run has one suite at a time.
-        let asked = Manifest { shard: None, jobs: None, revision: None, ..(*run.manifest).clone() };
+        let asked = Manifest {
+            shard: None,
+            jobs: None,
+            revision: None,
+            origin: None,
+            ..(*run.manifest).clone()
+        };
         let manifest = match (of, asked.selected_from) {
             (Some(_), 0) => Manifest { selected_from: run.tests, ..asked },
             _ => asked,

@@ -89,6 +89,8 @@ fn names_that_look_alike_get_files_of_their_own() {
             repetitions: 2,
             timed: false,
             tags: Vec::new(),
+            plugin_hash: None,
+            was: None,
             expected: None,
             parameters: Vec::new(),
         }));

@@ -220,7 +220,11 @@ fn runs_are_found_by_what_they_were() {
         let mut past = Writer::new(world.temp.path(), name);
         past.plan_of(suite, &["only"], &|started| {
             let commit = format!("{name:0<40}").replace('-', "a");
-            let revision = rtf_model::Revision { commit, branch: Some(branch.to_owned()) };
+            let revision = rtf_model::Revision {
+                commit,
+                branch: Some(branch.to_owned()),
+                ..rtf_model::Revision::default()
+            };
             started.started_at = format!("{name}T06:30:12+01:00");
             started.manifest.revision = Some(revision);
             started.manifest.profile = Some(format!("{branch} profile"));

@@ -143,6 +143,7 @@ impl Writer {
             environment: String::new(),
             tolerates_collapse: false,
             parallel: 1,
+            requires: Vec::new(),
             skips_fail: false,
         }));
         for (id, name) in (0..).zip(tests) {
@@ -155,6 +156,8 @@ impl Writer {
                 repetitions: 1,
                 timed: false,
                 tags: Vec::new(),
+                plugin_hash: None,
+                was: None,
                 expected: None,
                 parameters: Vec::new(),
             };

@@ -3,6 +3,7 @@
 mod debug;
 mod doctor;
 mod formats;
+mod history;
 mod import;
 mod inputs;
 mod past;
@@ -20,6 +21,12 @@ use rtf_plan::suite::parse_duration;
 pub use debug::{DebugArgs, RunVerbArgs};
 pub use doctor::{DoctorArgs, DoctorFormat};
 pub use formats::{Annotations, ReportFormat, StdoutFormat, parse_report};
+pub use history::{
+    ExportFormat, ExportTable, HistoryArgs, HistoryChangesArgs, HistoryCompareArgs,
+    HistoryDoctorArgs, HistoryExportArgs, HistoryFileArgs, HistoryFormat, HistoryImportArgs,
+    HistoryPruneArgs, HistoryRunsArgs, HistoryShowArgs, HistoryTestsArgs, HistoryTrendArgs,
+    HistoryVerb, ResultSelectArgs, RunSelectArgs,
+};
 pub use import::{ImportOutput, ImportVerb};
 pub use inputs::{FlakyResult, InputArgs, ProfileArgs, RepeatArgs, RerunVerdict, ResultsArgs};
 pub use past::{MergeArgs, ReportArgs, ShowArgs};
@@ -85,6 +92,12 @@ pub enum Verb {
     Report(ReportArgs),
     /// Merge several runs into one, for example the shards of `--shard`
     Merge(MergeArgs),
+    /// Show results of many runs: flaky and slow tests, trends, comparisons
+    History {
+        /// The question
+        #[command(subcommand)]
+        verb: Box<HistoryVerb>,
+    },
     /// Show active and past runs in a browser
     Serve(ServeArgs),
     /// Write a suite with the tests of a build directory or workspace

@@ -5,6 +5,7 @@
 //!   cli         │             │ ├► output                       rtf list, rtf check
 //!               │             │ └► watched files ─► rtf run     rtf watch
 //!               ├► journal of a past run ─► output              rtf show, report, merge
+//!               ├► history ─► answer ─► output                  rtf history
 //!               └► web server ─► rtf run --rerun                rtf serve
 //! ```
 //!
@@ -19,6 +20,7 @@ pub mod check;
 pub mod completions;
 pub mod config;
 pub mod doctor;
+pub mod history;
 pub mod import;
 pub mod init;
 pub mod list;

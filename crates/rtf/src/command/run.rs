@@ -1,16 +1,18 @@
 //! `rtf run`.
 
 use std::os::fd::AsFd;
+use std::path::Path;
 
 use clap::ArgMatches;
+use rtf_model::Record;
 
 use super::{VerbResult, list};
 use crate::cli::{ListFormat, RunVerbArgs};
 use crate::debug::DebugRequest;
 use crate::error::Failure;
 use crate::guarded::{self, Supervision};
-use crate::request::{OutputRequest, RunRequest, config};
-use crate::{outputs, plan, preflight, reports, runner};
+use crate::request::{OutputRequest, RunRequest, config, history_target};
+use crate::{history, outputs, plan, preflight, reports, runner};
 
 /// Runs tests.
 pub fn run(args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
@@ -25,7 +27,9 @@ pub fn run(args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
         keeps_journal: true,
     };
     let run = |guard| {
-        let request = RunRequest { debug, ..RunRequest::resolve(&args)? };
+        let mut request = RunRequest { debug, ..RunRequest::resolve(&args)? };
+        // A session with a debugger says nothing about the test.
+        request.history = request.history.filter(|_| request.debug.is_none());
         let planned = plan::plan_debugged(&request.tests, request.debug.as_ref())?;
         if args.dry_run {
             return list::print(&planned, ListFormat::Text);
@@ -35,5 +39,11 @@ pub fn run(args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
         let prepared = preflight::prepare(&request, reports, print)?;
         runner::run(&request, &planned, prepared, guard)
     };
-    guarded::run(supervision, run, |journal, record| outputs::complete(&output, journal, record))
+    let complete = |journal: &Path, record: &Record| {
+        outputs::complete(&output, journal, record);
+        if let Ok(Some(history)) = history_target(&args) {
+            history::import_run(&history, record);
+        }
+    };
+    guarded::run(supervision, run, complete)
 }

@@ -9,8 +9,8 @@ use rtf_plan::config::{self, ConfigFiles, ConfigRequest, RunConfig, RunValue};
 use rtf_plan::suite::parse_duration;
 
 use crate::cli::{
-    Annotations, FlakyResult, InputArgs, ProfileArgs, ResultsArgs, RunArgs, parse_fork_mode,
-    parse_report,
+    Annotations, FlakyResult, HistoryFileArgs, InputArgs, ProfileArgs, ResultsArgs, RunArgs,
+    parse_fork_mode, parse_report,
 };
 use crate::diagnostics;
 use crate::error::Failure;
@@ -37,6 +37,10 @@ pub fn fill_run(args: &mut RunArgs, matches: &ArgMatches) -> Result<(), Failure>
     let result = |text: &str| FlakyResult::from_str(text, false).ok().map(Some);
     defaults.fill("flaky-result", &mut repeat.flaky_result, result);
     args.reports.extend(defaults.reports());
+    defaults.fill_history(&mut args.history);
+    if let Some(value) = defaults.value("history.enabled", "no_history") {
+        args.no_history = text(value) == "false";
+    }
     let select = &mut args.input.select;
     let names_test = |input: &PathBuf| input.to_string_lossy().contains("::");
     if select.rerun.is_empty() && !args.input.inputs.iter().any(names_test) {
@@ -63,12 +67,28 @@ pub fn fill_watched_results(args: &mut InputArgs, matches: &ArgMatches) -> Resul
 
 /// Fills in the results directory of a verb that reads past runs.
 pub fn fill_past_results(results: &mut ResultsArgs, matches: &ArgMatches) -> Result<(), Failure> {
+    past_defaults(matches)?.fill_results(results);
+    Ok(())
+}
+
+fn past_defaults(matches: &ArgMatches) -> Result<ConfigDefaults<'_>, Failure> {
     let profile = std::env::var("RTF_PROFILE").ok().filter(|name| !name.is_empty());
     let mut defaults =
         ConfigDefaults::find(&[], &ConfigRequest { profile, ..Default::default() }, matches)?;
     // Problems of the run's settings concern only new runs.
     defaults.config.problems.clone_from(&defaults.files.problems);
-    defaults.accepted()?.fill_results(results);
+    defaults.accepted()
+}
+
+/// Fills in the results directory and the database of `rtf history`.
+pub fn fill_history(
+    results: &mut ResultsArgs,
+    history: &mut HistoryFileArgs,
+    matches: &ArgMatches,
+) -> Result<(), Failure> {
+    let defaults = past_defaults(matches)?;
+    defaults.fill_results(results);
+    defaults.fill_history(history);
     Ok(())
 }
 
@@ -129,6 +149,16 @@ impl<'a> ConfigDefaults<'a> {
         if let Some(value) = self.value("results", "results") {
             args.results = self.path(value, Path::new(text(value)));
         }
+    }
+
+    fn fill_history(&self, args: &mut HistoryFileArgs) {
+        let Some(value) = self.value("history.url", "history") else { return };
+        let url = text(value);
+        let path = url.strip_prefix("file:").unwrap_or(url);
+        args.history = Some(match url.contains("://") {
+            true => url.to_owned(),
+            false => self.path(value, Path::new(path)).to_string_lossy().into_owned(),
+        });
     }
 
     /// The reports, which are written in addition to those of the command line.

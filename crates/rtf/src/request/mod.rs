@@ -17,6 +17,8 @@ use rtf_web::{Limits, Settings};
 use crate::cli::{Annotations, ReportFormat, RunArgs, StdoutFormat, WebAccessArgs};
 use crate::debug::DebugRequest;
 use crate::error::Failure;
+use crate::history::{self, HistoryTarget};
+use crate::revision::RevisionQuery;
 use rtf_plan::plan::CaseListing;
 
 pub use inputs::TestsRequest;
@@ -39,6 +41,10 @@ pub struct RunRequest {
     pub shutdown_timeout: Duration,
     /// How the only test is debugged.
     pub debug: Option<DebugRequest>,
+    /// Where the run is imported when it has ended.
+    pub history: Option<HistoryTarget>,
+    /// The revision of the sources, which Git finds out during the planning.
+    pub revision: RevisionQuery,
 }
 
 /// What `rtf run` prints, and the reports that it writes.
@@ -87,6 +93,7 @@ impl RunRequest {
         if tests.manifest.filters.is_empty() && !args.dry_run {
             tests.options.case_listing = CaseListing::IfNeeded;
         }
+        let revision = RevisionQuery::start(&tests.options.runner.current_dir);
         Ok(Self {
             tests,
             results: args.input.results.results.clone(),
@@ -103,8 +110,20 @@ impl RunRequest {
             jobs: args.jobs,
             shutdown_timeout: args.shutdown_timeout,
             debug: None,
+            history: history_target(args)?,
+            revision,
         })
     }
+}
+
+/// Where a run is imported when it has ended.
+pub fn history_target(args: &RunArgs) -> Result<Option<HistoryTarget>, Failure> {
+    if args.no_history {
+        return Ok(None);
+    }
+    let results = args.input.results.results.clone();
+    let path = history::resolve(args.history.history.as_deref(), &results)?;
+    Ok(Some(HistoryTarget { path, results }))
 }
 
 /// Resolves [`Annotations::Auto`].

@@ -26,6 +26,7 @@ use crate::command::VerbResult;
 use crate::error::Failure;
 use crate::guarded::{self, Supervision};
 use crate::request::{RunRequest, TestsRequest, WebRequest, locks_dir, web_settings};
+use crate::revision::RevisionQuery;
 use crate::{exit, plan, preflight, reports, runner, terminal};
 use args::{Args, OutputType};
 
@@ -123,6 +124,7 @@ fn request(args: &Args, results: &Path) -> Result<RunRequest, Failure> {
         ..Options::new(runner)
     };
     let address = SocketAddr::from((Ipv4Addr::LOCALHOST, args.web_port));
+    let revision = RevisionQuery::start(&options.runner.current_dir);
     Ok(RunRequest {
         tests: TestsRequest {
             inputs: args.inputs(),
@@ -144,6 +146,8 @@ fn request(args: &Args, results: &Path) -> Result<RunRequest, Failure> {
         jobs: NonZeroU16::MIN,
         shutdown_timeout: SHUTDOWN_TIMEOUT,
         debug: None,
+        history: None,
+        revision,
     })
 }
 

@@ -88,6 +88,9 @@ fn every_option() {
     };
     let mut verbs = found(r"(?m)^  ([a-z-]+)  ", &help(""));
     verbs.insert("config show".to_owned());
+    let questions = found(r"(?m)^  ([a-z-]+)  ", &help("history"));
+    verbs.extend(questions.iter().map(|question| format!("history {question}")));
+    verbs.remove("history help");
     assert!(verbs.len() > 10, "{verbs:?}");
     let documents = documents();
     for verb in verbs {

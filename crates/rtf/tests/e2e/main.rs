@@ -35,6 +35,7 @@ mod forked_children;
 mod forked_hosts;
 mod framework_programs;
 mod guard;
+mod history;
 mod hooks;
 mod host_modes;
 mod hostile_fixtures;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use insta::assert_snapshot;
-use rtf_model::{EventKind, FixtureState, Phase, Record, TestId, Verdict};
+use rtf_model::{EventKind, FixtureState, Manifest, Phase, Record, TestId, Verdict};
 
 use crate::support::{Folder, Journal, nothing_left};
 
@@ -70,7 +70,10 @@ fn three_parts_merged_are_the_whole() {
     let starts: Vec<_> = merged.fixtures.iter().map(|fixture| fixture.starts).collect();
     assert_eq!(starts, [2, 2], "the second part has tests of both suites");
     assert!(merged.fixtures.iter().all(|fixture| fixture.state == FixtureState::Stopped));
-    let manifest = |record: &Record| record.run.as_ref().expect("a run").manifest.clone();
+    let manifest = |record: &Record| {
+        let run = record.run.as_ref().expect("a run");
+        Manifest { origin: None, ..(*run.manifest).clone() }
+    };
     assert_eq!(manifest(&merged), manifest(&record), "it can be run again as the whole can");
     let shown = folder.rtf(&["show", "--results", "merged"]);
     assert_eq!((shown.code, &shown.stdout), (finished.code, &finished.stdout));

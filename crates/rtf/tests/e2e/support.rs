@@ -64,6 +64,7 @@ impl Folder {
         // Cargo sets the library path, in which plug-ins are searched.
         for variable in [
             "RTF_RESULTS",
+            "RTF_HISTORY_URL",
             "RTF_PLUGIN_PATH",
             "RTF_PYTHON",
             "RTF_RUBY",

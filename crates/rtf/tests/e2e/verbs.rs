@@ -101,6 +101,7 @@ fn help_lists_the_exit_codes() {
       show         Show a past run, even if its runner was killed
       report       Write a report of a past run
       merge        Merge several runs into one, for example the shards of `--shard`
+      history      Show results of many runs: flaky and slow tests, trends, comparisons
       serve        Show active and past runs in a browser
       import       Write a suite with the tests of a build directory or workspace
       config       Show the configuration from `rtf.toml`, the command line and variables
@@ -187,6 +188,9 @@ fn help_of_run() {
           --fork <WHEN>                  Fork the hosts of C, C++, Lua and Python tests from a warm
                                          host: `auto` (from the second test on), `always`, or `never`
                                          [env: RTF_FORK=] [default: auto]
+          --history <FILE>               History database [default: `history.db` in the results
+                                         directory] [env: RTF_HISTORY_URL=]
+          --no-history                   Do not import the run into the history
       -h, --help                         Print help (see more with '--help')
       -V, --version                      Print version
 
@@ -297,6 +301,18 @@ fn man_writes_a_page_for_each_verb() {
         "config-show",
         "config",
         "doctor",
+        "history-changes",
+        "history-compare",
+        "history-doctor",
+        "history-export",
+        "history-flaky",
+        "history-import",
+        "history-prune",
+        "history-runs",
+        "history-show",
+        "history-slow",
+        "history-trend",
+        "history",
         "import-colcon",
         "import-ctest",
         "import",

@@ -28,6 +28,7 @@ fn beginning(events: usize) -> String {
         environment: String::new(),
         tolerates_collapse: false,
         parallel: 1,
+        requires: Vec::new(),
         skips_fail: false,
     };
     let on = vec![Trigger::Interrupt];

@@ -1,6 +1,23 @@
 use super::*;
 use crate::{Phase, RunStarted, SuitePlanned, TestFinished, TestId, TestPlanned, Verdict};
 
+fn test(id: u32) -> TestPlanned {
+    TestPlanned {
+        test: TestId(id),
+        suite: SuiteId(0),
+        name: format!("t{id}"),
+        plugin_type: String::new(),
+        plugin: String::new(),
+        plugin_hash: None,
+        repetitions: 1,
+        timed: false,
+        tags: Vec::new(),
+        parameters: Vec::new(),
+        was: None,
+        expected: None,
+    }
+}
+
 fn stream() -> Vec<Event> {
     let started = RunStarted {
         version: 1,
@@ -21,19 +38,8 @@ fn stream() -> Vec<Event> {
         environment: String::new(),
         tolerates_collapse: false,
         parallel: 1,
+        requires: Vec::new(),
         skips_fail: false,
-    };
-    let test = |id| TestPlanned {
-        test: TestId(id),
-        suite: SuiteId(0),
-        name: format!("t{id}"),
-        plugin_type: String::new(),
-        plugin: String::new(),
-        repetitions: 1,
-        timed: false,
-        tags: Vec::new(),
-        expected: None,
-        parameters: Vec::new(),
     };
     let mut kinds = vec![
         EventKind::RunStarted(started),

@@ -132,6 +132,7 @@ impl Run {
             environment: String::new(),
             tolerates_collapse: number == 0,
             parallel: 1,
+            requires: Vec::new(),
             skips_fail: false,
         }));
         for place in 0..suite.fixtures {
@@ -162,6 +163,8 @@ impl Run {
                 repetitions: test.repetitions.len() as u32,
                 timed: false,
                 tags: Vec::new(),
+                plugin_hash: None,
+                was: None,
                 expected: None,
                 parameters: Vec::new(),
             }));

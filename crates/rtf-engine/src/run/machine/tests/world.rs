@@ -107,6 +107,7 @@ impl<'p> World<'p> {
             environment: String::new(),
             tolerates_collapse: false,
             parallel: plan.settings.parallel,
+            requires: Vec::new(),
             skips_fail: plan.settings.skips_fail,
         }));
         for fixture in &plan.fixtures {
@@ -133,6 +134,8 @@ impl<'p> World<'p> {
                 repetitions: test.settings.repetitions,
                 timed,
                 tags: Vec::new(),
+                plugin_hash: None,
+                was: None,
                 expected: test.expected.clone(),
                 parameters: Vec::new(),
             }));

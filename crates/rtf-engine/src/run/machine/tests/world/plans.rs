@@ -95,5 +95,6 @@ fn test(index: usize) -> TestPlan {
         expected: None,
         cases: None,
         cases_in_programs: None,
+        was: None,
     }
 }

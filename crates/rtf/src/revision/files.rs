@@ -10,13 +10,20 @@ const MAX_REFERENCES: usize = 5;
 
 /// Finds the revision that is checked out in a directory or in one above it.
 pub fn find(dir: &Path) -> Option<Revision> {
-    let git = dir.ancestors().find_map(|dir| git_dir(&dir.join(".git")))?;
+    let find_git = |root: &Path| Some((root.to_owned(), git_dir(&root.join(".git"))?));
+    let (root, git) = dir.ancestors().find_map(find_git)?;
+    let below_root = dir.strip_prefix(&root).unwrap_or(Path::new(""));
+    let of_commit = |commit| Revision {
+        commit,
+        dir: Some(below_root.to_string_lossy().into_owned()),
+        ..Revision::default()
+    };
     let head = first_line(&git.join("HEAD"))?;
     let Some(reference) = head.strip_prefix("ref: ") else {
-        return commit(&head).map(|commit| Revision { commit, branch: None });
+        return commit(&head).map(of_commit);
     };
     let branch = reference.strip_prefix("refs/heads/").map(str::to_owned);
-    resolve(&git, reference).map(|commit| Revision { commit, branch })
+    resolve(&git, reference).map(|commit| Revision { branch, ..of_commit(commit) })
 }
 
 /// The Git directory: `.git` itself, or the target of the file `.git` in a worktree.
@@ -77,10 +84,11 @@ mod tests {
             std::fs::create_dir_all(path.parent().unwrap()).unwrap();
             std::fs::write(path, text).unwrap();
         };
-        let found = |branch: Option<&str>| {
-            let branch = branch.map(str::to_owned);
-            Some(Revision { commit: HASH.to_owned(), branch })
+        let found_in = |dir: &str, branch: Option<&str>| {
+            let (dir, branch) = (Some(dir.to_owned()), branch.map(str::to_owned));
+            Some(Revision { commit: HASH.to_owned(), branch, dir, ..Revision::default() })
         };
+        let found = |branch: Option<&str>| found_in("a/b", branch);
         write("top/.git/HEAD", &format!("{HASH}\n"));
         assert_eq!(find(&deep), found(None), "a commit alone");
         write("top/.git/HEAD", "ref: refs/heads/arm/new\n");
@@ -88,10 +96,10 @@ mod tests {
         write("top/.git/packed-refs", &format!("# pack-refs\n{HASH} refs/heads/arm/new\n"));
         assert_eq!(find(&deep), found(Some("arm/new")));
         write("top/.git/refs/heads/arm/new", &format!("{HASH}\n"));
-        assert_eq!(find(&top), found(Some("arm/new")));
+        assert_eq!(find(&top), found_in("", Some("arm/new")));
         write("tree/.git", "gitdir: ../top/.git/worktrees/tree\n");
         write("top/.git/worktrees/tree/HEAD", "ref: refs/heads/arm/new\n");
         write("top/.git/worktrees/tree/commondir", "../..\n");
-        assert_eq!(find(&temp.path().join("tree")), found(Some("arm/new")));
+        assert_eq!(find(&temp.path().join("tree")), found_in("", Some("arm/new")));
     }
 }

@@ -1,0 +1,21 @@
+//! Questions to the store, and their answers. The answers serialise to the JSON of
+//! `rtf history`.
+
+mod changes;
+mod compare;
+mod export;
+mod flaky;
+mod run_info;
+mod scope;
+mod slow;
+mod test_history;
+mod trend;
+
+pub use changes::SeriesChange;
+pub use compare::{Comparison, NumberChange, TestComparison, VerdictCounts};
+pub use export::{PointLine, ResultLine};
+pub use flaky::FlakyTest;
+pub use run_info::{RunCounts, RunInfo};
+pub use slow::SlowTest;
+pub use test_history::{TestHistory, TestResult};
+pub use trend::{SeriesPoint, TestSeries};

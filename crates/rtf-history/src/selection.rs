@@ -1,0 +1,68 @@
+//! Which runs and tests a question is about.
+
+use std::collections::HashSet;
+
+use jiff::Timestamp;
+
+use crate::TestIdentity;
+use crate::answers::RunInfo;
+
+/// Which runs a question is about. The default is all runs.
+#[derive(Clone, Debug, Default)]
+pub struct RunSelection {
+    /// Only runs of this branch.
+    pub branch: Option<String>,
+    /// Only runs of commits whose hash starts with this.
+    pub commit: Option<String>,
+    /// Only results of suites that require this resource.
+    pub robot: Option<String>,
+    /// Only runs with this profile.
+    pub profile: Option<String>,
+    /// Only runs on this machine.
+    pub host: Option<String>,
+    /// Only runs that started at this time or later.
+    pub since: Option<Timestamp>,
+    /// Only the newest of the remaining runs.
+    pub last: Option<usize>,
+    /// Only runs with these identities.
+    pub ids: Option<HashSet<String>>,
+}
+
+impl RunSelection {
+    /// Applies everything except `last` and `robot` to a run.
+    #[must_use]
+    pub fn matches(&self, run: &RunInfo) -> bool {
+        let equals = |wanted: &Option<String>, found: &Option<String>| {
+            wanted.is_none() || wanted.as_deref() == Some(found.as_deref().unwrap_or_default())
+        };
+        let commit = run.commit.as_deref().unwrap_or_default();
+        equals(&self.branch, &run.branch)
+            && equals(&self.profile, &run.profile)
+            && equals(&self.host, &run.host)
+            && self.commit.as_deref().is_none_or(|start| commit.starts_with(start))
+            && self.since.is_none_or(|since| run.started >= since)
+            && self.ids.as_ref().is_none_or(|ids| ids.contains(&run.id))
+    }
+
+    /// Whether a result on these robots (names separated by spaces) is meant.
+    #[must_use]
+    pub fn matches_robot(&self, robots: &str) -> bool {
+        self.robot.as_deref().is_none_or(|wanted| robots.split(' ').any(|name| name == wanted))
+    }
+}
+
+/// A test, for a [`TestSelection`].
+#[derive(Clone, Debug, Default)]
+pub struct TestAttributes {
+    /// The identity.
+    pub identity: TestIdentity,
+    /// The type of its plug-in in its newest run.
+    pub plugin_type: String,
+    /// Its tags in its newest run.
+    pub tags: Vec<String>,
+    /// Its values of a matrix, as name and value.
+    pub parameters: Vec<(String, String)>,
+}
+
+/// Which tests a question is about: a condition on each of them.
+pub type TestSelection<'a> = &'a dyn Fn(&TestAttributes) -> bool;

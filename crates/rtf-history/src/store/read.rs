@@ -1,0 +1,241 @@
+//! Reads rows.
+
+use jiff::Timestamp;
+use rtf_model::Verdict;
+use rusqlite::{Row, ToSql};
+
+use super::{Store, StoreError, sql};
+use crate::answers::RunInfo;
+use crate::entry::{NumberKind, NumberSummary, RunEnd, SeriesName};
+use crate::{TestAttributes, TestIdentity};
+
+/// A test.
+#[derive(Clone, Debug)]
+pub(crate) struct TestRow {
+    pub id: i64,
+    pub attributes: TestAttributes,
+    /// The test that has this one's history.
+    pub renamed_to: Option<i64>,
+}
+
+/// The result of a test in a run.
+#[derive(Clone, Debug)]
+pub(crate) struct ResultRow {
+    pub run: i64,
+    pub verdict: Verdict,
+    pub is_flaky: bool,
+    pub attempts: u32,
+    pub problems: u32,
+    pub duration_us: Option<i64>,
+    pub reason: Option<String>,
+    pub robot: String,
+    pub plugin_hash: Option<String>,
+}
+
+/// The numbers of a run in a series.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PointRow {
+    pub run: i64,
+    pub series: i64,
+    pub summary: NumberSummary,
+}
+
+/// Number of rows of the tables.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct StoreCounts {
+    /// Runs.
+    pub runs: u64,
+    /// Tests and cases.
+    pub tests: u64,
+    /// Results of tests and cases.
+    pub results: u64,
+    /// Series of measurements and signals.
+    pub series: u64,
+    /// Points of series.
+    pub points: u64,
+    /// Runs that were pruned.
+    pub pruned: u64,
+}
+
+impl Store {
+    pub(super) fn rows<T>(
+        &self,
+        sql: &str,
+        values: &[&dyn ToSql],
+        read: fn(&Row<'_>) -> rusqlite::Result<T>,
+    ) -> Result<Vec<T>, StoreError> {
+        let read_all = || {
+            let mut statement = self.connection.prepare_cached(sql)?;
+            statement.query_map(values, read)?.collect::<rusqlite::Result<Vec<_>>>()
+        };
+        read_all().map_err(|error| self.error(error))
+    }
+
+    /// All runs, the oldest first.
+    pub(crate) fn all_runs(&self) -> Result<Vec<(i64, RunInfo)>, StoreError> {
+        self.rows(sql::RUNS, &[], run)
+    }
+
+    /// All tests and cases, in the order of their identities.
+    pub(crate) fn all_tests(&self) -> Result<Vec<TestRow>, StoreError> {
+        self.rows(sql::TESTS, &[], test)
+    }
+
+    pub(crate) fn results_of_test(&self, test: i64) -> Result<Vec<ResultRow>, StoreError> {
+        self.rows(sql::RESULTS_OF_TEST, &[&test], result)
+    }
+
+    pub(crate) fn series_of_test(&self, test: i64) -> Result<Vec<(i64, SeriesName)>, StoreError> {
+        self.rows(sql::SERIES_OF_TEST, &[&test], series)
+    }
+
+    pub(crate) fn points_of_test(&self, test: i64) -> Result<Vec<PointRow>, StoreError> {
+        self.rows(sql::POINTS_OF_TEST, &[&test], point)
+    }
+
+    pub(crate) fn tests_with_problems(&self) -> Result<Vec<i64>, StoreError> {
+        self.rows(sql::TESTS_WITH_PROBLEMS, &[], |row| row.get(0))
+    }
+
+    pub(crate) fn tests_with_series(&self, name: &str) -> Result<Vec<i64>, StoreError> {
+        self.rows(sql::TESTS_WITH_SERIES, &[&name], |row| row.get(0))
+    }
+
+    /// The names of all measurements and signals.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub fn series_names(&self) -> Result<Vec<String>, StoreError> {
+        self.rows(sql::SERIES_NAMES, &[], |row| row.get(0))
+    }
+
+    /// The names of stored and pruned runs.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub fn run_names(&self) -> Result<Vec<String>, StoreError> {
+        self.rows(sql::RUN_NAMES, &[], |row| row.get(0))
+    }
+
+    /// Number of rows.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub fn counts(&self) -> Result<StoreCounts, StoreError> {
+        let read = |row: &Row<'_>| {
+            Ok(StoreCounts {
+                runs: row.get(0)?,
+                tests: row.get(1)?,
+                results: row.get(2)?,
+                series: row.get(3)?,
+                points: row.get(4)?,
+                pruned: row.get(5)?,
+            })
+        };
+        Ok(self.rows(sql::COUNTS, &[], read)?.pop().unwrap_or_default())
+    }
+
+    /// Checks the structure of the database; returns what is wrong with it.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub fn check(&self) -> Result<Vec<String>, StoreError> {
+        let mut found: Vec<String> = self.rows("PRAGMA quick_check(10)", &[], |row| row.get(0))?;
+        found.retain(|line| line != "ok");
+        let foreign = self.rows("PRAGMA foreign_key_check", &[], |row| {
+            row.get::<_, String>(0).map(|table| format!("a row of `{table}` refers to nothing"))
+        })?;
+        found.extend(foreign.into_iter().take(10));
+        Ok(found)
+    }
+}
+
+fn time(micros: i64) -> Timestamp {
+    Timestamp::from_microsecond(micros).unwrap_or_default()
+}
+
+fn list<T: serde::de::DeserializeOwned>(row: &Row<'_>, index: usize) -> rusqlite::Result<Vec<T>> {
+    let text: String = row.get(index)?;
+    Ok(serde_json::from_str(&text).unwrap_or_default())
+}
+
+fn run(row: &Row<'_>) -> rusqlite::Result<(i64, RunInfo)> {
+    let mut counts = [0; Verdict::ALL.len()];
+    for (index, count) in counts.iter_mut().enumerate() {
+        *count = row.get(7 + index)?;
+    }
+    let ended: String = row.get(5)?;
+    let info = RunInfo {
+        id: row.get(1)?,
+        name: row.get(2)?,
+        started: time(row.get(3)?),
+        duration: row.get::<_, i64>(4)? as f64 / 1e6,
+        end: RunEnd::parse(&ended).unwrap_or(RunEnd::Unfinished),
+        green: row.get(6)?,
+        counts: counts.into(),
+        commit: row.get(15)?,
+        branch: row.get(16)?,
+        dirty: row.get(17)?,
+        author_time: row.get(18)?,
+        ci_job: row.get(19)?,
+        host: row.get(20)?,
+        cpus: row.get(21)?,
+        load_percent: row.get(22)?,
+        profile: row.get(23)?,
+        parameters: list(row, 24)?,
+        rtf: row.get(25)?,
+    };
+    Ok((row.get(0)?, info))
+}
+
+fn test(row: &Row<'_>) -> rusqlite::Result<TestRow> {
+    let identity = TestIdentity {
+        suite_file: row.get(1)?,
+        suite: row.get(2)?,
+        test: row.get(3)?,
+        case: row.get(4)?,
+    };
+    let attributes = TestAttributes {
+        identity,
+        plugin_type: row.get(5)?,
+        tags: list(row, 6)?,
+        parameters: list(row, 7)?,
+    };
+    Ok(TestRow { id: row.get(0)?, attributes, renamed_to: row.get(8)? })
+}
+
+fn result(row: &Row<'_>) -> rusqlite::Result<ResultRow> {
+    let verdict = row.get_ref(1)?.as_str().unwrap_or_default();
+    let verdict = Verdict::ALL.into_iter().find(|known| known.as_str() == verdict);
+    Ok(ResultRow {
+        run: row.get(0)?,
+        verdict: verdict.unwrap_or(Verdict::Error),
+        is_flaky: row.get(2)?,
+        attempts: row.get(3)?,
+        problems: row.get(4)?,
+        duration_us: row.get(5)?,
+        reason: row.get(6)?,
+        robot: row.get(7)?,
+        plugin_hash: row.get(8)?,
+    })
+}
+
+fn series(row: &Row<'_>) -> rusqlite::Result<(i64, SeriesName)> {
+    let kind: String = row.get(1)?;
+    let kind = NumberKind::parse(&kind).unwrap_or(NumberKind::Measurement);
+    Ok((row.get(0)?, SeriesName { kind, name: row.get(2)?, unit: row.get(3)? }))
+}
+
+fn point(row: &Row<'_>) -> rusqlite::Result<PointRow> {
+    let summary = NumberSummary {
+        value: row.get(2)?,
+        min: row.get(3)?,
+        max: row.get(4)?,
+        count: row.get(5)?,
+        not_finite: row.get(6)?,
+        outside: row.get(7)?,
+        low: row.get(8)?,
+        high: row.get(9)?,
+    };
+    Ok(PointRow { run: row.get(0)?, series: row.get(1)?, summary })
+}

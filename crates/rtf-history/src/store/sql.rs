@@ -1,0 +1,209 @@
+//! All SQL of the store.
+//!
+//! The statements are portable: `$1` parameters in the order of their numbers, `ON CONFLICT`,
+//! no type that only one database has. The migrations are those of SQLite.
+
+/// Identifies the store among SQLite databases (`PRAGMA application_id`): "RTFH".
+pub const APPLICATION_ID: i64 = 0x5254_4648;
+
+/// The migrations, in order. A released one is never changed.
+pub const MIGRATIONS: &[&str] = &[VERSION_1];
+
+const VERSION_1: &str = "
+CREATE TABLE run (
+  id INTEGER PRIMARY KEY,
+  uid TEXT NOT NULL UNIQUE,
+  name TEXT NOT NULL,
+  started_us BIGINT NOT NULL,
+  duration_us BIGINT NOT NULL,
+  ended TEXT NOT NULL,
+  green SMALLINT NOT NULL,
+  passed INTEGER NOT NULL,
+  failed INTEGER NOT NULL,
+  error INTEGER NOT NULL,
+  crashed INTEGER NOT NULL,
+  timed_out INTEGER NOT NULL,
+  collapsed INTEGER NOT NULL,
+  skipped INTEGER NOT NULL,
+  interrupted INTEGER NOT NULL,
+  commit_hash TEXT,
+  branch TEXT,
+  dirty SMALLINT,
+  author_time TEXT,
+  ci_job TEXT,
+  host TEXT,
+  cpus INTEGER,
+  load_percent INTEGER,
+  profile TEXT,
+  parameters TEXT NOT NULL,
+  rtf TEXT NOT NULL,
+  events BIGINT NOT NULL,
+  started TEXT NOT NULL
+);
+CREATE INDEX run_name ON run (name);
+
+CREATE TABLE test (
+  id INTEGER PRIMARY KEY,
+  suite_file TEXT NOT NULL,
+  suite TEXT NOT NULL,
+  name TEXT NOT NULL,
+  case_path TEXT NOT NULL,
+  plugin_type TEXT NOT NULL,
+  tags TEXT NOT NULL,
+  parameters TEXT NOT NULL,
+  seen_us BIGINT NOT NULL,
+  renamed_to BIGINT REFERENCES test (id),
+  UNIQUE (suite_file, suite, name, case_path)
+);
+
+CREATE TABLE result (
+  test_id BIGINT NOT NULL REFERENCES test (id),
+  run_id BIGINT NOT NULL REFERENCES run (id),
+  verdict TEXT NOT NULL,
+  flaky SMALLINT NOT NULL,
+  attempts INTEGER NOT NULL,
+  problems INTEGER NOT NULL,
+  duration_us BIGINT,
+  reason TEXT,
+  robot TEXT NOT NULL,
+  plugin_hash TEXT,
+  PRIMARY KEY (test_id, run_id)
+) WITHOUT ROWID;
+CREATE INDEX result_run ON result (run_id);
+CREATE INDEX result_problem ON result (test_id) WHERE verdict <> 'passed' OR flaky = 1;
+
+CREATE TABLE series (
+  id INTEGER PRIMARY KEY,
+  test_id BIGINT NOT NULL REFERENCES test (id),
+  kind TEXT NOT NULL,
+  name TEXT NOT NULL,
+  unit TEXT NOT NULL,
+  UNIQUE (test_id, kind, name, unit)
+);
+CREATE INDEX series_name ON series (name);
+
+CREATE TABLE point (
+  test_id BIGINT NOT NULL REFERENCES test (id),
+  run_id BIGINT NOT NULL REFERENCES run (id),
+  series_id BIGINT NOT NULL REFERENCES series (id),
+  value DOUBLE PRECISION,
+  min DOUBLE PRECISION,
+  max DOUBLE PRECISION,
+  count BIGINT NOT NULL,
+  not_finite BIGINT NOT NULL,
+  outside BIGINT NOT NULL,
+  low DOUBLE PRECISION,
+  high DOUBLE PRECISION,
+  PRIMARY KEY (test_id, run_id, series_id)
+) WITHOUT ROWID;
+CREATE INDEX point_run ON point (run_id);
+
+CREATE TABLE pruned (
+  uid TEXT PRIMARY KEY,
+  name TEXT NOT NULL
+);
+";
+
+/// The stored state of a run with an identity.
+pub const FIND_RUN: &str = "SELECT id, events, started FROM run WHERE uid = $1";
+/// Whether the run was pruned.
+pub const FIND_PRUNED: &str = "SELECT 1 FROM pruned WHERE uid = $1";
+/// The names of stored and pruned runs.
+pub const RUN_NAMES: &str = "SELECT name FROM run UNION SELECT name FROM pruned";
+
+/// Adds a run.
+pub const INSERT_RUN: &str = "
+INSERT INTO run (uid, name, started_us, duration_us, ended, green, passed, failed, error, crashed,
+  timed_out, collapsed, skipped, interrupted, commit_hash, branch, dirty, author_time, ci_job,
+  host, cpus, load_percent, profile, parameters, rtf, events, started)
+VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20,
+  $21, $22, $23, $24, $25, $26, $27)
+RETURNING id";
+/// The parts of a run, in the order in which they are deleted.
+pub const DELETE_RUN: [&str; 3] = [
+    "DELETE FROM point WHERE run_id = $1",
+    "DELETE FROM result WHERE run_id = $1",
+    "DELETE FROM run WHERE id = $1",
+];
+/// Deletes series, and then tests, that no run has any more.
+pub const DELETE_UNUSED: [&str; 2] = [
+    "DELETE FROM series WHERE NOT EXISTS
+       (SELECT 1 FROM point WHERE point.test_id = series.test_id AND point.series_id = series.id)",
+    "DELETE FROM test WHERE renamed_to IS NULL
+       AND NOT EXISTS (SELECT 1 FROM result WHERE result.test_id = test.id)
+       AND NOT EXISTS (SELECT 1 FROM series WHERE series.test_id = test.id)
+       AND NOT EXISTS (SELECT 1 FROM test AS former WHERE former.renamed_to = test.id)",
+];
+/// Remembers that a run was pruned.
+pub const INSERT_PRUNED: &str =
+    "INSERT INTO pruned (uid, name) VALUES ($1, $2) ON CONFLICT (uid) DO NOTHING";
+/// Forgets that a run was pruned.
+pub const DELETE_PRUNED: &str = "DELETE FROM pruned WHERE uid = $1";
+
+/// Adds a test, or updates its attributes if this run is its newest one.
+pub const UPSERT_TEST: &str = "
+INSERT INTO test (suite_file, suite, name, case_path, plugin_type, tags, parameters, seen_us)
+VALUES ($1, $2, $3, $4, $5, $6, $7, $8)
+ON CONFLICT (suite_file, suite, name, case_path) DO UPDATE SET
+  plugin_type = CASE WHEN excluded.seen_us >= test.seen_us
+    THEN excluded.plugin_type ELSE test.plugin_type END,
+  tags = CASE WHEN excluded.seen_us >= test.seen_us THEN excluded.tags ELSE test.tags END,
+  parameters = CASE WHEN excluded.seen_us >= test.seen_us
+    THEN excluded.parameters ELSE test.parameters END,
+  seen_us = CASE WHEN excluded.seen_us >= test.seen_us
+    THEN excluded.seen_us ELSE test.seen_us END
+RETURNING id";
+/// Leads from a former name to the current one.
+pub const RENAME_TEST: &str = "UPDATE test SET renamed_to = $1 WHERE id = $2";
+/// Adds the result of a test.
+pub const INSERT_RESULT: &str = "
+INSERT INTO result (test_id, run_id, verdict, flaky, attempts, problems, duration_us, reason,
+  robot, plugin_hash)
+VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10)";
+/// The identity of a series.
+pub const FIND_SERIES: &str =
+    "SELECT id FROM series WHERE test_id = $1 AND kind = $2 AND name = $3 AND unit = $4";
+/// Adds a series.
+pub const INSERT_SERIES: &str =
+    "INSERT INTO series (test_id, kind, name, unit) VALUES ($1, $2, $3, $4) RETURNING id";
+/// Adds a point of a series.
+pub const INSERT_POINT: &str = "
+INSERT INTO point (test_id, run_id, series_id, value, min, max, count, not_finite, outside, low,
+  high)
+VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11)";
+
+/// All runs, the oldest first.
+pub const RUNS: &str = "
+SELECT id, uid, name, started_us, duration_us, ended, green, passed, failed, error, crashed,
+  timed_out, collapsed, skipped, interrupted, commit_hash, branch, dirty, author_time, ci_job,
+  host, cpus, load_percent, profile, parameters, rtf
+FROM run ORDER BY started_us, uid";
+/// All tests.
+pub const TESTS: &str = "
+SELECT id, suite_file, suite, name, case_path, plugin_type, tags, parameters, renamed_to
+FROM test ORDER BY suite_file, suite, name, case_path";
+/// The results of a test.
+pub const RESULTS_OF_TEST: &str = "
+SELECT run_id, verdict, flaky, attempts, problems, duration_us, reason, robot, plugin_hash
+FROM result WHERE test_id = $1";
+/// The tests with at least one result that is not a plain pass.
+pub const TESTS_WITH_PROBLEMS: &str =
+    "SELECT DISTINCT test_id FROM result WHERE verdict <> 'passed' OR flaky = 1";
+/// The tests that passed in a run.
+pub const PASSED_TESTS_OF_RUN: &str =
+    "SELECT test_id FROM result WHERE run_id = $1 AND verdict = 'passed'";
+/// The series of a test.
+pub const SERIES_OF_TEST: &str =
+    "SELECT id, kind, name, unit FROM series WHERE test_id = $1 ORDER BY kind, name, unit";
+/// The tests that have a series of this name.
+pub const TESTS_WITH_SERIES: &str = "SELECT DISTINCT test_id FROM series WHERE name = $1";
+/// All names of series.
+pub const SERIES_NAMES: &str = "SELECT DISTINCT name FROM series ORDER BY name";
+/// The points of a test, in all its series.
+pub const POINTS_OF_TEST: &str = "
+SELECT run_id, series_id, value, min, max, count, not_finite, outside, low, high
+FROM point WHERE test_id = $1";
+/// Number of rows.
+pub const COUNTS: &str = "
+SELECT (SELECT COUNT(*) FROM run), (SELECT COUNT(*) FROM test), (SELECT COUNT(*) FROM result),
+  (SELECT COUNT(*) FROM series), (SELECT COUNT(*) FROM point), (SELECT COUNT(*) FROM pruned)";

@@ -1,0 +1,115 @@
+//! Imports: repeated, replaced, in any order, concurrent.
+
+use rtf_history::{ImportOutcome, Store, StoreError};
+use rtf_model::Verdict::{Failed, Passed};
+
+use crate::world::{Run, Test, World, all_runs, all_tests, dump, record};
+
+fn runs(number: u32) -> Vec<Run> {
+    let run = |day| {
+        let verdict = if day % 3 == 0 { Failed } else { Passed };
+        let mut moves = Test::new("Moves", verdict);
+        moves.measured = vec![("lag", Some(f64::from(day)), "ms"), ("lag", None, "s")];
+        Run::new(day, "aaaa", vec![moves, Test::new("Stops", Passed)])
+    };
+    (1..=number).map(run).collect()
+}
+
+#[test]
+fn a_run_is_imported_once() {
+    let runs = runs(3);
+    let mut world = World::with(&runs);
+    let before = world.dump();
+    for run in &runs {
+        assert_eq!(world.import(run), ImportOutcome::Known);
+    }
+    assert_eq!(world.dump(), before);
+    assert_eq!(world.store.counts().expect("counts").runs, 3);
+}
+
+#[test]
+fn the_order_of_imports_does_not_matter() {
+    let mut runs = runs(5);
+    runs[3].tests[0].was = Some("Turns");
+    runs[1].tests[0].name = "Turns";
+    let forward = World::with(&runs).dump();
+    runs.reverse();
+    assert_eq!(World::with(&runs).dump(), forward);
+}
+
+#[test]
+fn a_run_with_more_events_replaces_the_same_run() {
+    let run = &runs(1)[0];
+    let events = run.events();
+    let mut world = World::new();
+    let import = |world: &mut World, events: &[_]| world.store.import(&record(events));
+    let torn = import(&mut world, &events[..6]).expect("an import");
+    assert_eq!(torn, ImportOutcome::Imported);
+    assert_eq!(world.import(run), ImportOutcome::Replaced);
+    assert_eq!(import(&mut world, &events[..6]).expect("no import"), ImportOutcome::Known);
+    assert_eq!(world.dump(), World::with(std::slice::from_ref(run)).dump());
+}
+
+#[test]
+fn two_runs_of_one_id_are_refused() {
+    let mut runs = runs(1);
+    let mut world = World::with(&runs);
+    let before = world.dump();
+    runs[0].commit = "bbbb";
+    let error = world.store.import(&runs[0].record()).expect_err("a conflict");
+    assert!(matches!(&error, StoreError::Conflict { id } if id == "id-001"), "{error}");
+    assert_eq!(world.dump(), before);
+}
+
+#[test]
+fn concurrent_writers_lose_nothing() {
+    let dir = tempfile::tempdir().expect("a directory");
+    let path = dir.path().join("new/history.db");
+    let all = runs(40);
+    std::thread::scope(|scope| {
+        for part in all.chunks(10) {
+            let path = &path;
+            // Each of them may be the one that creates the database.
+            scope.spawn(move || {
+                let mut store = Store::open(path).expect("a store");
+                for run in part {
+                    store.import(&run.record()).expect("an import");
+                }
+            });
+        }
+    });
+    let store = Store::open(&path).expect("a store");
+    assert_eq!(dump(&store), World::with(&all).dump());
+}
+
+#[test]
+fn numbers_that_are_not_finite_are_counted() {
+    let world = World::with(&runs(2));
+    let series = world.store.trend("lag", None, &all_runs(), &all_tests).expect("series");
+    let [ms, s] = series.as_slice() else { panic!("{series:?}") };
+    assert_eq!((ms.series.unit.as_str(), ms.other_units.as_slice()), ("ms", &["s".to_owned()][..]));
+    let values: Vec<_> = ms.points.iter().map(|point| point.value).collect();
+    assert_eq!(values, [Some(1.0), Some(2.0)]);
+    let not_finite: Vec<_> =
+        s.points.iter().map(|point| (point.value, point.count, point.not_finite)).collect();
+    assert_eq!(not_finite, [(None, 1, 1), (None, 1, 1)]);
+}
+
+#[test]
+fn a_renamed_test_keeps_its_history() {
+    let mut runs = runs(4);
+    for run in &mut runs[..2] {
+        run.tests[1].name = "Halts";
+    }
+    runs[2].tests[1].was = Some("Halts");
+    let world = World::with(&runs);
+    let is_meant = |test: &rtf_history::TestAttributes| test.identity.test == "Stops";
+    let found = world.store.test_histories(&all_runs(), &is_meant).expect("histories");
+    let [stops] = found.as_slice() else { panic!("{found:?}") };
+    assert_eq!(
+        (stops.results.len(), stops.former_names.as_slice()),
+        (4, &["Halts".to_owned()][..])
+    );
+    let names = world.store.identities().expect("names");
+    assert!(names.iter().all(|identity| identity.test != "Halts"), "{names:?}");
+}

@@ -1,0 +1,9 @@
+//! The store and its answers, over runs that are made up.
+
+#![expect(clippy::expect_used, reason = "a helper that cannot continue fails its test")]
+
+mod answers;
+mod bad_input;
+mod importing;
+mod pruning;
+mod world;

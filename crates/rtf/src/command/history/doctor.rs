@@ -1,0 +1,80 @@
+//! `rtf history doctor`.
+
+use std::collections::HashSet;
+use std::process::ExitCode;
+
+use clap::ArgMatches;
+use rtf_history::Store;
+use rtf_history::store::StoreCounts;
+use rtf_report::{escape, format_count};
+use serde::Serialize;
+
+use super::{failure, open, print};
+use crate::cli::HistoryDoctorArgs;
+use crate::command::VerbResult;
+use crate::exit;
+use crate::history::journals;
+
+/// The state of the database.
+#[derive(Debug, Serialize)]
+struct HistoryChecks {
+    /// The database.
+    path: String,
+    /// Its size with its write-ahead log.
+    bytes: u64,
+    #[serde(flatten)]
+    counts: StoreCounts,
+    /// What is wrong with it.
+    problems: Vec<String>,
+    /// Journals in the results directory that are not imported.
+    missing: Vec<String>,
+}
+
+/// Checks the database.
+pub fn run(mut args: HistoryDoctorArgs, matches: &ArgMatches) -> VerbResult {
+    let store = open(&mut args.history, matches)?;
+    let known: HashSet<_> = store.run_names().map_err(failure)?.into_iter().collect();
+    let missing = journals::missing(&args.history.results.results, &known);
+    let checks = HistoryChecks {
+        path: store.path().display().to_string(),
+        bytes: bytes(&store),
+        counts: store.counts().map_err(failure)?,
+        problems: store.check().map_err(failure)?,
+        missing: missing.iter().map(|journal| journal.display().to_string()).collect(),
+    };
+    print(args.history.format, "checks", &checks, |out| {
+        let counts = &checks.counts;
+        let count = |number, noun| format_count(number, noun);
+        writeln!(out, "{}  ({} KiB)", escape::line(&checks.path), checks.bytes.div_ceil(1024))?;
+        writeln!(
+            out,
+            "  {}, {}, {}, {} series, {}",
+            count(counts.runs, "run"),
+            count(counts.tests, "test"),
+            count(counts.results, "result"),
+            counts.series,
+            count(counts.points, "point"),
+        )?;
+        if counts.pruned > 0 {
+            writeln!(out, "  {} pruned", count(counts.pruned, "run"))?;
+        }
+        for problem in &checks.problems {
+            writeln!(out, "  \u{1b}[31mproblem\u{1b}[0m  {}", escape::line(problem))?;
+        }
+        for journal in &checks.missing {
+            writeln!(out, "  not imported  {}", escape::line(journal))?;
+        }
+        if !checks.missing.is_empty() {
+            writeln!(out, "  `rtf history import` imports them")?;
+        }
+        Ok(())
+    })?;
+    Ok(ExitCode::from(if checks.problems.is_empty() { exit::PASSED } else { exit::FAILED }))
+}
+
+fn bytes(store: &Store) -> u64 {
+    let mut log = store.path().as_os_str().to_owned();
+    log.push("-wal");
+    let size = |path: &std::path::Path| path.metadata().map_or(0, |found| found.len());
+    size(store.path()) + size(log.as_ref())
+}

@@ -1,0 +1,97 @@
+//! `rtf history`: questions to the results of many runs.
+
+mod changes;
+mod compare;
+mod doctor;
+mod export;
+mod flaky;
+mod import;
+mod prune;
+mod runs;
+mod select;
+mod show;
+mod slow;
+mod text;
+mod time;
+mod trend;
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::ArgMatches;
+use rtf_history::{Store, StoreError};
+use serde::Serialize;
+
+use super::VerbResult;
+use crate::cli::{HistoryArgs, HistoryFileArgs, HistoryFormat, HistoryVerb, ResultsArgs};
+use crate::error::Failure;
+use crate::request::config;
+use crate::{history, terminal};
+
+/// The version of the JSON documents.
+const VERSION: u32 = 1;
+
+/// Answers a question.
+pub fn run(verb: HistoryVerb, matches: &ArgMatches) -> VerbResult {
+    let matches = matches.subcommand().map_or(matches, |(_, matches)| matches);
+    match verb {
+        HistoryVerb::Runs(args) => runs::run(args, matches),
+        HistoryVerb::Show(args) => show::run(args, matches),
+        HistoryVerb::Flaky(args) => flaky::run(args, matches),
+        HistoryVerb::Slow(args) => slow::run(args, matches),
+        HistoryVerb::Trend(args) => trend::run(args, matches),
+        HistoryVerb::Changes(args) => changes::run(args, matches),
+        HistoryVerb::Compare(args) => compare::run(args, matches),
+        HistoryVerb::Export(args) => export::run(args, matches),
+        HistoryVerb::Prune(args) => prune::run(args, matches),
+        HistoryVerb::Import(args) => import::run(args, matches),
+        HistoryVerb::Doctor(args) => doctor::run(args, matches),
+    }
+}
+
+/// Fills in the arguments from `rtf.toml`, and resolves the database.
+fn resolve(
+    results: &mut ResultsArgs,
+    file: &mut HistoryFileArgs,
+    matches: &ArgMatches,
+) -> Result<PathBuf, Failure> {
+    config::fill_history(results, file, matches)?;
+    history::resolve(file.history.as_deref(), &results.results)
+}
+
+/// Opens the database for questions.
+fn open(args: &mut HistoryArgs, matches: &ArgMatches) -> Result<Store, Failure> {
+    let path = resolve(&mut args.results, &mut args.file, matches)?;
+    Store::open_existing(&path).map_err(failure)
+}
+
+/// An error of the database: bad input, unless it cannot be written.
+fn failure(error: StoreError) -> Failure {
+    let hint = error.hint();
+    match error {
+        StoreError::Io { .. } | StoreError::Locked { .. } => Failure::internal(error),
+        error => Failure::input(error),
+    }
+    .maybe_hint(hint)
+}
+
+/// Prints an answer as text, or as a JSON document in the field `name`.
+fn print<T: Serialize>(
+    format: HistoryFormat,
+    name: &str,
+    answer: &T,
+    write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> VerbResult {
+    match format {
+        HistoryFormat::Text => terminal::stdout(write)?,
+        HistoryFormat::Json => terminal::raw_stdout(|out| write_json(out, name, answer))?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn write_json<T: Serialize>(out: &mut dyn Write, name: &str, answer: &T) -> std::io::Result<()> {
+    write!(out, "{{\"version\":{VERSION},\"{name}\":")?;
+    serde_json::to_writer(&mut *out, answer)?;
+    writeln!(out, "}}")
+}

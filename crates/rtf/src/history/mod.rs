@@ -1,0 +1,92 @@
+//! The history of a run: which database, and the import when the run has ended. Nothing here
+//! changes the verdict or the exit code of a run.
+
+pub mod journals;
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use rtf_history::{Store, StoreError};
+use rtf_model::Record;
+use rtf_report::run_dir::JOURNAL;
+
+use crate::error::Failure;
+use crate::terminal;
+use journals::JournalImport;
+
+/// The name of the database in the results directory.
+const FILE_NAME: &str = "history.db";
+
+/// How long the end of a run may be delayed by imports of earlier runs.
+const CATCH_UP_LIMIT: Duration = Duration::from_secs(1);
+
+/// Where runs are imported when they end.
+#[derive(Clone, Debug)]
+pub struct HistoryTarget {
+    /// The database.
+    pub path: PathBuf,
+    /// The results directory, in which earlier runs may be missing in the database.
+    pub results: PathBuf,
+}
+
+/// Resolves the database: a path or a `file:` URL, by default in the results directory.
+pub fn resolve(url: Option<&str>, results: &Path) -> Result<PathBuf, Failure> {
+    let Some(url) = url else { return Ok(results.join(FILE_NAME)) };
+    match url.split_once("://") {
+        _ if url.is_empty() => Err(Failure::input("the path of the history is empty")),
+        Some(("file", path)) => Ok(PathBuf::from(path)),
+        // The rest may contain a password.
+        Some((scheme, _)) => {
+            let error = format!("a history of the type `{scheme}://` is not supported");
+            Err(Failure::input(error).hint("give the path of a SQLite database"))
+        }
+        None => Ok(PathBuf::from(url.strip_prefix("file:").unwrap_or(url))),
+    }
+}
+
+/// Imports a run that has ended, and earlier ones that are not in the history. Prints one
+/// warning if that fails.
+pub fn import_run(target: &HistoryTarget, record: &Record) {
+    let dir = record.run.as_ref().map(|run| target.results.join(&run.run));
+    // Without its journal, the run cannot be shown, and an error was printed.
+    if !dir.is_some_and(|dir| dir.join(JOURNAL).is_file()) {
+        return;
+    }
+    let imported = Store::open(&target.path).and_then(|mut store| {
+        store.import(record)?;
+        catch_up(&mut store, &target.results)
+    });
+    if let Err(error) = imported {
+        terminal::notice(format!("warning: {}", warning(&error)));
+    }
+}
+
+fn warning(error: &StoreError) -> String {
+    let mut text = format!("the run was not imported into the history: {error}");
+    if let Some(cause) = std::error::Error::source(error) {
+        text += &format!(": {cause}");
+    }
+    match error.hint() {
+        Some(hint) => format!("{text} ({hint})"),
+        None => format!("{text} (the next run imports it)"),
+    }
+}
+
+/// Imports earlier runs whose runner and guard were killed, or that could not be imported.
+/// `rtf history import` reports the journals that cannot be imported.
+fn catch_up(store: &mut Store, results: &Path) -> Result<(), StoreError> {
+    let started = Instant::now();
+    let known = store.run_names()?.into_iter().collect();
+    for journal in journals::missing(results, &known) {
+        if started.elapsed() > CATCH_UP_LIMIT {
+            break;
+        }
+        let imported = journals::import(&journal, |record| store.import(record));
+        if let JournalImport::Store(error @ (StoreError::Locked { .. } | StoreError::Io { .. })) =
+            imported
+        {
+            return Err(error);
+        }
+    }
+    Ok(())
+}
