@@ -23,4 +23,4 @@ exec "$ROOT/tools/binfmt.sh" "$processor" bash -euc '
     mkdir -p "$guest$dir"
     mount --rbind "$dir" "$guest$dir"
   done
-  exec chroot "$guest" /usr/bin/env --chdir="$here" "$@"' "$guest" "$ROOT" "$@"
+  exec /usr/sbin/chroot "$guest" /usr/bin/env --chdir="$here" "$@"' "$guest" "$ROOT" "$@"
