@@ -1,6 +1,6 @@
 //! A run as one HTML file: the page without a server, with the run's data in it.
 //!
-//! The data is that of the API: [`write`] reads the journal as the server does, and the
+//! The data is that of the API: [`write()`] reads the journal as the server does, and the
 //! page reads the data in place of requests. See `spec/reports.md`.
 
 mod attachments;
