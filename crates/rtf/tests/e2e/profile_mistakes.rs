@@ -10,7 +10,7 @@ fn every_mistake_is_told_at_its_place() {
     let folder = folder();
     folder.file(
         "rtf.toml",
-        "default-profile = \"reel\"\nenviroment = \"--robot icub\"\nreports = [\"html=x\"]\n\
+        "default-profile = \"reel\"\nenviroment = \"--robot icub\"\nreports = [\"pdf=x\"]\n\
          shutdown-timeout = \"soon\"\nfork = \"sometimes\"\n\n[profile.real]\n",
     );
     folder.file("tests/arm.xml", &SUITE.replace("${param:n=3}", "${param:n}"));
@@ -51,11 +51,11 @@ fn every_mistake_is_told_at_its_place() {
       = note: the keys are `environment`, `env`, `param`, `timeouts`, `parallel`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `jobs`, `lock-timeout`, `retries`, `flaky-result`, `max-fail`, `history`, `quarantine`, `profile`, `default-profile`
       = help: did you mean `environment`?
 
-    error: `reports` has to be `"FORMAT=PATH"`, where FORMAT is one of `junit`, `text`, `tap`, `code-quality`, `github`, `markdown`
+    error: `reports` has to be `"FORMAT=PATH"`, where FORMAT is one of `junit`, `text`, `tap`, `code-quality`, `github`, `markdown`, `html`
      --> rtf.toml:3:12
       |
-    3 | reports = ["html=x"]
-      |            ^^^^^^^^
+    3 | reports = ["pdf=x"]
+      |            ^^^^^^^
 
     error: `shutdown-timeout` has to be a duration like `"[TIME]"`, `"2min"` or `90` (seconds)
      --> rtf.toml:4:20
