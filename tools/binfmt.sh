@@ -5,19 +5,26 @@
 #   tools/binfmt.sh PROCESSOR COMMAND ARGUMENT…
 #
 # Linux 6.7 or later has a table of interpreters for each user namespace (binfmt_misc), so the
-# machine's is unchanged.
+# machine's is unchanged. qemu before 10 refuses to make a process a child subreaper, which rtf
+# needs.
 
 . "$(dirname "$0")/env.sh"
 
 processor=${1:?a processor: aarch64}
 shift
-cd "$OLDPWD"
 # An ELF file for 64 bits, little endian, executable or shared, of machine 183.
 # shellcheck disable=SC2016 # the kernel's notation
 [ "$processor" = aarch64 ] || die "no processor \`$processor\`: aarch64"
 magic='\x7fELF\x02\x01\x01\x00\x00\x00\x00\x00\x00\x00\x00\x00\x02\x00\xb7\x00'
 mask='\xff\xff\xff\xff\xff\xff\xff\x00\xff\xff\xff\xff\xff\xff\xff\xff\xfe\xff\xff\xff'
-qemu=$(command -v "qemu-$processor-static") || die "qemu-$processor-static is missing" "apt-get install qemu-user-static"
+version=$("qemu-$processor-static" --version 2>/dev/null | sed -n 's/.*version \([0-9]*\).*/\1/p')
+if [ "${version:-0}" -ge 10 ]; then
+  qemu=$(command -v "qemu-$processor-static")
+else
+  qemu=$(tools/backport.sh qemu-10 qemu-user)/bin/qemu-$processor
+fi
+
+cd "$OLDPWD"
 
 # Writes this process's users into the namespace that the process creates below.
 map_users() {

@@ -17,7 +17,7 @@ emulation=()
 
 # The following sessions are in a Debian for arm64.
 use_arm64() {
-  need_packages qemu-user-static arch-test
+  need_packages arch-test
   architecture=arm64
   emulation=("$ROOT/tools/binfmt.sh" aarch64)
 }

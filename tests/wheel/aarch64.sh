@@ -8,7 +8,7 @@
 . tools/packages.sh
 
 wheel=$(realpath "${1:?a wheel}")
-need_packages g++-aarch64-linux-gnu cmake qemu-user-static
+need_packages g++-aarch64-linux-gnu cmake
 guest=$(tools/arm64_root.sh)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
