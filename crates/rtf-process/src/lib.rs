@@ -28,4 +28,4 @@ pub mod tree;
 mod unix;
 mod usage;
 
-pub use unix::{prepare_process, signal_group, signal_process, unreadable_proc};
+pub use unix::{adopt_orphans, prepare_process, signal_group, signal_process, unreadable_proc};

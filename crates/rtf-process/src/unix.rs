@@ -33,8 +33,23 @@ pub fn prepare_process() -> io::Result<()> {
         let fd = unsafe { BorrowedFd::borrow_raw(fd) };
         let _ = fcntl_setfd(fd, FdFlags::CLOEXEC);
     }
-    rustix::process::set_child_subreaper(Some(rustix::process::getpid()))?;
-    Ok(())
+    adopt_orphans()
+}
+
+/// Makes this process a child subreaper: it becomes the parent of processes below it whose
+/// parent has ended.
+///
+/// # Errors
+/// The kernel, or an emulator, refused.
+pub fn adopt_orphans() -> io::Result<()> {
+    rustix::process::set_child_subreaper(Some(rustix::process::getpid())).map_err(|error| {
+        let error = io::Error::from(error);
+        let text = format!(
+            "rtf cannot become the parent of processes that tests leave behind, which qemu \
+             emulates since version 10: prctl(PR_SET_CHILD_SUBREAPER): {error}"
+        );
+        io::Error::new(error.kind(), text)
+    })
 }
 
 /// Checks that `/proc` shows this PID namespace. Otherwise the state of a fixture would

@@ -62,7 +62,7 @@ pub fn split(lifeline: Option<OwnedFd>, patience: Duration) -> io::Result<Side> 
     resources::raise_descriptor_limit();
     let (guards, runners) = UnixStream::pair()?;
     let (heartbeat, runners_heartbeat) = UnixStream::pair()?;
-    rustix::process::set_child_subreaper(Some(rustix::process::getpid()))?;
+    rtf_process::adopt_orphans()?;
     let forked = Instant::now();
     // No signal may arrive before its handler is installed.
     let blocked = unix::BlockedSignals::block();

@@ -36,7 +36,7 @@ test.each([
     ['jobs = 0', '/jobs must be >= 1'],
     ['job = 2', ' must NOT have additional properties'],
     ['profile.real.retries = -1', '/profile/real/retries must be >= 0'],
-    ['reports = ["html=x"]', '/reports/0 must match pattern'],
+    ['reports = ["pdf=x"]', '/reports/0 must match pattern'],
     ['param.1st = 1', '/param must match pattern'],
     ['fork = "sometimes"', '/fork must be equal to one of the allowed values'],
     ['timeouts.scale = 0', '/timeouts/scale must be > 0'],
