@@ -84,8 +84,10 @@ fn parent(file: &Path) -> PathBuf {
 
 /// Where large attachments of a report at `output` are.
 fn copies(output: &Path, run: &Path) -> Option<LargeFiles> {
-    // A pipe or a terminal has no directory for files.
-    if std::fs::metadata(output).is_ok_and(|found| !found.is_file()) {
+    // A pipe or a terminal has no directory for files. `/dev/stdout` has none either, even if it
+    // is a file.
+    let is_stream = std::fs::metadata(output).is_ok_and(|found| !found.is_file());
+    if is_stream || output.starts_with("/dev") {
         return None;
     }
     let directory = parent(output);
