@@ -109,7 +109,7 @@ def interrupted_loop(bench: Bench) -> None:
         session.expect("^turning$")
         session.interrupt()
         session.expect(r"\(Pdb\) ")
-        session.send("p turns > 0\n")
+        session.send("p turns >= 0\n")
         session.expect("^True\n")
         session.send("q\n")
         bench.finish(session, 1, "FAILED  1 test ")
