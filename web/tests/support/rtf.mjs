@@ -71,8 +71,11 @@ export class Bench {
     }
 
     async names() {
-        const names = await readdir(path.join(this.dir, 'rtf-results'));
-        return names.filter((name) => name !== 'latest').sort();
+        const entries = await readdir(path.join(this.dir, 'rtf-results'), { withFileTypes: true });
+        return entries
+            .filter((entry) => entry.isDirectory())
+            .map((entry) => entry.name)
+            .sort();
     }
 
     async start(args) {
