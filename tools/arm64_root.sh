@@ -7,7 +7,7 @@
 
 need_packages mmdebstrap arch-test
 release=$(. /etc/os-release && printf '%s' "$VERSION_CODENAME")
-packages=bash,coreutils,procps,libstdc++6,python3-minimal,python3,python3-venv,lua-socket
+packages=bash,dash,coreutils,procps,libstdc++6,python3-minimal,python3,python3-venv,lua-socket
 # shellcheck disable=SC2016 # apt-get fills that in
 sources=$(apt-get indextargets --format '$(ORIGIN) deb $(REPO_URI) $(RELEASE) $(COMPONENT)' \
   'Created-By: Packages' | sed -n 's/^Debian //p' | sort -u)
