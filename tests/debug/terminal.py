@@ -13,6 +13,13 @@ from types import TracebackType
 LIMIT = 120.0
 
 
+def _keep_output_at_signals() -> None:
+    """Otherwise, the kernel drops what was printed just after Ctrl-C was typed."""
+    settings = termios.tcgetattr(0)
+    settings[3] |= termios.NOFLSH
+    termios.tcsetattr(0, termios.TCSANOW, settings)
+
+
 class Terminal:
     """A session on a pseudo-terminal, whose leader is the program."""
 
@@ -23,9 +30,12 @@ class Terminal:
         self._status: int | None = None
         self.pid, self._terminal = pty.fork()
         if self.pid == 0:
+            _keep_output_at_signals()
             os.chdir(directory)
             os.execvpe(command[0], command, environment)
-        self._settings = termios.tcgetattr(self._terminal)
+        while not (settings := termios.tcgetattr(self._terminal))[3] & termios.NOFLSH:
+            time.sleep(0.001)
+        self._settings = settings
 
     def __enter__(self) -> "Terminal":
         """Return the session."""
