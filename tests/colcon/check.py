@@ -9,9 +9,11 @@ workspace is built in DIRECTORY.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -78,6 +80,12 @@ class Workspace:
         """How often the fixture was started by the last command."""
         return len(self.starts.read_text().splitlines())
 
+    def end_fixtures(self) -> None:
+        """End the fixtures that the last command has left."""
+        for process in self.starts.read_text().split():
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(int(process), signal.SIGTERM)
+
 
 def main() -> int:
     """Prints all differences; the exit code is 1 if there is any."""
@@ -126,6 +134,8 @@ def check_red(workspace: Workspace) -> None:
 def check_killed(workspace: Workspace) -> None:
     """The runner and its guard are killed: the results of the run before do not remain."""
     check("killed", workspace.test("--packages-select", "arm_driver", ARM_GRIP="kill"), 1)
+    # Nothing is left that could stop them.
+    workspace.end_fixtures()
     code, files = workspace.results()
     check("test-result of the killed run", code, 1)
     for name in ("arm", "each"):

@@ -17,7 +17,7 @@ class Arm(socketserver.StreamRequestHandler):
 if __name__ == "__main__":
     if starts := os.environ.get("ARM_STARTS"):
         with Path(starts).open("a", encoding="utf-8") as file:
-            file.write("start\n")
+            file.write(f"{os.getpid()}\n")
     with socketserver.ThreadingTCPServer(("127.0.0.1", 0), Arm) as server:
         print(f"listening on port {server.server_address[1]}", flush=True)
         server.serve_forever()
