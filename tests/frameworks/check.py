@@ -33,6 +33,7 @@ The corpus is `tests/frameworks/TYPE`; `build.sh TYPE` has built it, and its exp
                   "starts": "arm_test.cpp: Fails",      of the case itself
                   "tags": [], "parameters": {}, "measured": {},   exactly these
                   "measures": ["…"],           instead of `measured`: only the names
+                  "takes": 0.2,                at least this many seconds
                   "messages": ["…"]            each is a part of a message of the case
       …
       "own": [
@@ -161,6 +162,8 @@ class Corpus:
         else:
             self.expect(f"{title}: measured", got.measured, expected.get("measured", {}))
         self.expect_messages(title, got.messages, expected)
+        if got.seconds < expected.get("takes", 0.0):
+            self.expect(f"{title}: seconds", got.seconds, expected["takes"])
         for key, location in (("location", got.problem_location), ("starts", got.location)):
             if key in expected:
                 line = self.marked(expected[key])

@@ -25,6 +25,8 @@ class CaseResult:
     messages: list[str] = field(default_factory=list)
     measured: dict[str, float | None] = field(default_factory=dict)
     problem_location: str = ""
+    started: int = 0
+    seconds: float = 0.0
 
 
 @dataclass
@@ -55,6 +57,7 @@ class TestResult:
             location=located(event),
             tags=event.get("tags", []),
             parameters={each["name"]: each["value"] for each in parameters},
+            started=event["at"],
         )
 
     def add_message(self, message: Event) -> None:
@@ -99,6 +102,7 @@ def add(test: TestResult, event: Event) -> None:
         case "case-finished":
             case = test.by_id[event["case"]]
             case.verdict, case.reason = event["verdict"], event.get("reason", "")
+            case.seconds = event.get("duration_us", event["at"] - case.started) / 1e6
         case "message":
             test.add_message(event["message"])
         case "measured":

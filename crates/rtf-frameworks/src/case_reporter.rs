@@ -204,7 +204,8 @@ impl<'a> CaseReporter<'a> {
         let Some(index) = self.open.iter().rposition(|open| open.case == case) else { return };
         let open = self.open.remove(index);
         self.current = None;
-        let CaseResult { outcome, reason } = result;
+        let CaseResult { outcome, reason, duration } = result;
+        let duration_us = duration.map(|it| u64::try_from(it.as_micros()).unwrap_or(u64::MAX));
         let is_bad = outcome.is_some_and(|it| !matches!(it, Outcome::Passed | Outcome::Skipped));
         let has_problem = open.has_problem || is_bad;
         self.has_problem |= has_problem;
@@ -219,10 +220,11 @@ impl<'a> CaseReporter<'a> {
             self.last_finished = Some(open.path.clone());
             self.results.insert(open.path, !has_problem);
         }
-        let finished = Notification::CaseFinished { case, outcome, reason };
+        let finished = Notification::CaseFinished { case, outcome, reason, duration_us };
         if !self.session.interrupted() && !self.session.forward(&finished) {
             let reason = Some("the reason is longer than 16 MiB".to_owned());
-            self.session.forward(&Notification::CaseFinished { case, outcome, reason });
+            let end = Notification::CaseFinished { case, outcome, reason, duration_us };
+            self.session.forward(&end);
         }
     }
 

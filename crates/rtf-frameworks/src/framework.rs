@@ -155,12 +155,15 @@ pub struct CaseResult {
     pub outcome: Option<Outcome>,
     /// The reason for the outcome.
     pub reason: Option<String>,
+    /// How long the case took, if the framework measured it. Otherwise it is the time between
+    /// the arrivals of its start and its end.
+    pub duration: Option<Duration>,
 }
 
 impl CaseResult {
     /// A result with a reason.
     pub fn new(outcome: Outcome, reason: impl Into<String>) -> Self {
-        Self { outcome: Some(outcome), reason: Some(reason.into()) }
+        Self { outcome: Some(outcome), reason: Some(reason.into()), duration: None }
     }
 }
 

@@ -197,8 +197,9 @@ impl Cases {
                 }
                 _ => (None, None),
             };
-            let outcome_only = Notification::CaseFinished { case, outcome, reason: None };
-            if !send(&Notification::CaseFinished { case, outcome, reason }) {
+            let outcome_only =
+                Notification::CaseFinished { case, outcome, reason: None, duration_us: None };
+            if !send(&Notification::CaseFinished { case, outcome, reason, duration_us: None }) {
                 send(&outcome_only);
             }
         }

@@ -370,6 +370,10 @@ pub enum Notification {
         /// The reason for this outcome.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         reason: Option<String>,
+        /// Its duration in microseconds, if the host knows it better than the time between
+        /// the two notifications.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        duration_us: Option<u64>,
     },
     /// A fixture provides a value for tests, hooks and other fixtures, in its set-up.
     Provided {

@@ -126,7 +126,8 @@ mod tests {
                 verdict: Verdict::Failed,
                 reason: Some("x".repeat(50)),
                 decided_by: None,
-                carried_us: None,
+                duration_us: None,
+                carried: false,
             }),
         ];
         for (kind, bytes) in kinds.into_iter().zip([300, 550, 800]) {

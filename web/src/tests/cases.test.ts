@@ -79,7 +79,7 @@ describe('the cases of an attempt', () => {
     test('that were carried keep their durations', () => {
         const list = listOf([
             started(1, 'Home'),
-            { ...finished(1, 20, 'passed'), carried_us: 700 } as Event,
+            { ...finished(1, 20, 'passed'), duration_us: 700, carried: true } as Event,
             started(2, 'Wave'),
         ]);
         expect(list.get(1)).toMatchObject({ carried: true, duration_us: 700 });

@@ -28,6 +28,9 @@ const PIECE: usize = 64 * 1024;
 /// How long nothing arrives before a reader reports cases that it holds back.
 const RELEASE_WAIT: Duration = Duration::from_millis(200);
 
+/// How long packets are collected for which nobody waits.
+const PAUSE: Duration = Duration::from_millis(2);
+
 /// The longest line of standard error that a reason quotes.
 const ERROR_LINE_BYTES: usize = 500;
 
@@ -238,6 +241,7 @@ impl RunningProcess<'_> {
             self.drain(cases);
             match wakeup {
                 Wakeup::Exit => return,
+                Wakeup::Input if self.session.is_relaxed() => std::thread::sleep(PAUSE),
                 Wakeup::Input => {}
                 Wakeup::Limit => self.reader.release(cases),
             }

@@ -1,6 +1,7 @@
 //! The socket of `RTF_SESSION`, over which a program reports while it runs.
 
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
+use std::time::Duration;
 
 use rtf_model::protocol::FixtureValue;
 use rtf_model::{Attachment, Location, Measurement, Message, Outcome, Parameter, Samples};
@@ -30,6 +31,26 @@ pub(super) struct SessionSocket {
     socket: OwnedFd,
     /// For received packets.
     buffer: Vec<u8>,
+    pace: Pace,
+}
+
+/// Whether the packets can be read less often: the program measures its cases itself, and
+/// waits for no answer.
+#[derive(Debug, Default)]
+struct Pace {
+    /// Whether a packet was answered since the last end of a case.
+    any_answer: bool,
+    is_relaxed: bool,
+}
+
+impl Pace {
+    fn on_answer(&mut self) {
+        *self = Self { any_answer: true, is_relaxed: false };
+    }
+
+    fn on_case_end(&mut self, is_measured: bool) {
+        *self = Self { any_answer: false, is_relaxed: is_measured && !self.any_answer };
+    }
 }
 
 /// Opens a socket; the second descriptor is inherited by the program.
@@ -37,7 +58,7 @@ pub(super) fn pair() -> std::io::Result<(SessionSocket, OwnedFd)> {
     let flags = SocketFlags::CLOEXEC;
     let (ours, theirs) = socketpair(AddressFamily::UNIX, SocketType::SEQPACKET, flags, None)?;
     rustix::io::fcntl_setfd(&theirs, FdFlags::empty())?;
-    Ok((SessionSocket { socket: ours, buffer: vec![0; PACKET] }, theirs))
+    Ok((SessionSocket { socket: ours, buffer: vec![0; PACKET], pace: Pace::default() }, theirs))
 }
 
 impl AsFd for SessionSocket {
@@ -105,9 +126,16 @@ struct Finish {
     name: String,
     outcome: Option<Outcome>,
     reason: Option<String>,
+    duration_us: Option<u64>,
 }
 
 impl SessionSocket {
+    /// Whether nobody waits for what arrives next. Each packet that wakes the host takes time
+    /// of the program that sends it.
+    pub fn is_relaxed(&self) -> bool {
+        self.pace.is_relaxed
+    }
+
     /// The next packet, if there is one.
     pub fn receive(&mut self) -> Option<Vec<u8>> {
         let (socket, buffer, flags) = (&self.socket, &mut self.buffer, RecvFlags::DONTWAIT);
@@ -117,9 +145,14 @@ impl SessionSocket {
     }
 
     /// Carries out a packet, and answers it if the program waits for that.
-    pub fn handle(&self, packet: &[u8], values: &[FixtureValue], cases: &mut CaseReporter<'_>) {
+    pub fn handle(&mut self, packet: &[u8], values: &[FixtureValue], cases: &mut CaseReporter<'_>) {
         let answer = match serde_json::from_slice(packet) {
-            Ok(packet) => carry_out(packet, values, cases),
+            Ok(packet) => {
+                if let Packet::CaseFinished(Finish { duration_us, .. }) = &packet {
+                    self.pace.on_case_end(duration_us.is_some());
+                }
+                carry_out(packet, values, cases)
+            }
             Err(error) => {
                 let start: String = String::from_utf8_lossy(packet).chars().take(200).collect();
                 cases.test_error(format!("a packet of the session is malformed: {error}: {start}"));
@@ -130,6 +163,7 @@ impl SessionSocket {
         if answered.is_ok_and(|it| !it.answer) {
             return;
         }
+        self.pace.on_answer();
         if self.send(&answer) == Err(Errno::MSGSIZE) {
             // Without an answer, the program would wait.
             let text = "the values of the fixtures are longer than a packet of the session";
@@ -164,8 +198,9 @@ fn carry_out(packet: Packet, values: &[FixtureValue], cases: &mut CaseReporter<'
             }
             cases.start_case(parent.as_deref(), StartedCase { name, parameters, tags, location });
         }
-        Packet::CaseFinished(Finish { name, outcome, reason }) => {
-            cases.finish(&name, CaseResult { outcome, reason });
+        Packet::CaseFinished(Finish { name, outcome, reason, duration_us }) => {
+            let duration = duration_us.map(Duration::from_micros);
+            cases.finish(&name, CaseResult { outcome, reason, duration });
         }
         Packet::Finished {} => cases.complete_report(),
     }
@@ -198,6 +233,30 @@ mod tests {
         let (_, length) = recv(&program, &mut answer[..], RecvFlags::DONTWAIT).unwrap();
         answer.truncate(length);
         answer
+    }
+
+    #[test]
+    fn packets_are_read_less_often_unless_the_program_waits_for_answers() {
+        let (_runner, theirs) = UnixStream::pair().unwrap();
+        let session = Session::over(theirs);
+        let mut cases = CaseReporter::new(&session);
+        let (mut ours, _program) = pair().unwrap();
+        let mut is_relaxed_after = |packet: &str| {
+            ours.handle(packet.as_bytes(), &[], &mut cases);
+            ours.is_relaxed()
+        };
+        let start = r#"{"method":"case-started","answer":false,"params":{"name":"a"}}"#;
+        let end = r#"{"method":"case-finished","answer":false,"params":{"name":"a"}}"#;
+        let measured_end = &end.replace(r#""a"}"#, r#""a","duration_us":5}"#);
+        let request = r#"{"method":"message","params":{"kind":"report","text":"x"}}"#;
+        assert!(!is_relaxed_after(start));
+        assert!(is_relaxed_after(measured_end));
+        assert!(is_relaxed_after(start));
+        assert!(!is_relaxed_after(request));
+        assert!(!is_relaxed_after(measured_end), "the next case may ask, too");
+        assert!(!is_relaxed_after(start));
+        assert!(is_relaxed_after(measured_end));
+        assert!(!is_relaxed_after(end), "the host measures the case");
     }
 
     #[test]

@@ -64,8 +64,11 @@ pub struct CaseFinished {
     /// or its process ended.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub decided_by: Option<CaseId>,
-    /// For a case that finished in an earlier attempt, which a collapse interrupted: its
-    /// duration there, in microseconds.
+    /// Its duration in microseconds, if its framework measured it or it is carried. Otherwise
+    /// it is the time since its start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub carried_us: Option<u64>,
+    pub duration_us: Option<u64>,
+    /// It finished in an earlier attempt, which a collapse interrupted.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub carried: bool,
 }

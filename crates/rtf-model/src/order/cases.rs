@@ -39,11 +39,10 @@ impl OrderChecker {
         let test = self.test(id)?;
         let is_retry = test.last.is_some_and(|(_, attempt)| attempt > 1);
         let cases = &mut test.cases;
-        let is_carried = end.carried_us.is_some();
-        ensure(!is_carried || (is_retry && !cases.any_finished), || {
+        ensure(!end.carried || (is_retry && !cases.any_finished), || {
             format!("test {id}: case {case} of an earlier attempt is out of order")
         })?;
-        cases.any_finished |= !is_carried;
+        cases.any_finished |= !end.carried;
         let position = cases.open.iter().rposition(|(open, _)| *open == case);
         let position = position.ok_or_else(|| format!("test {id}: case {case} is not open"))?;
         ensure(!cases.open.iter().any(|(_, parent)| *parent == Some(case)), || {

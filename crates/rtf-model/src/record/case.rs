@@ -43,13 +43,13 @@ impl CaseRecord {
     #[must_use]
     pub fn duration(&self) -> Option<Duration> {
         let (at, finished) = self.finished.as_ref()?;
-        Some(finished.carried_us.map_or_else(|| at.since(self.started), Duration::from_micros))
+        Some(finished.duration_us.map_or_else(|| at.since(self.started), Duration::from_micros))
     }
 
     /// Whether it finished in an earlier attempt, which has its messages.
     #[must_use]
     pub fn is_carried(&self) -> bool {
-        self.finished.as_ref().is_some_and(|(_, finished)| finished.carried_us.is_some())
+        self.finished.as_ref().is_some_and(|(_, finished)| finished.carried)
     }
 }
 

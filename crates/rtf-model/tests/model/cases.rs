@@ -29,7 +29,8 @@ fn case_ends_after(number: u32, verdict: Verdict, carried_us: Option<u64>) -> Ev
         verdict,
         reason,
         decided_by: None,
-        carried_us,
+        duration_us: carried_us,
+        carried: carried_us.is_some(),
     })
 }
 

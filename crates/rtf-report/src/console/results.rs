@@ -23,7 +23,7 @@ pub(super) fn case_finished(
     record: &Record,
     end: &CaseFinished,
 ) {
-    if !end.verdict.is_problem() || end.carried_us.is_some() {
+    if !end.verdict.is_problem() || end.carried {
         return;
     }
     let Some(test) = record.tests.get(end.test.index()) else { return };

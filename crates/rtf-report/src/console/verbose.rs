@@ -119,7 +119,7 @@ impl Verbose {
             EventKind::Message { message, .. } => Some(lines(&message.text).max(1)),
             EventKind::Measured { .. } | EventKind::Attached { .. } => Some(1),
             EventKind::CaseFinished(end) if !end.verdict.is_problem() => {
-                end.carried_us.is_none().then_some(1)
+                (!end.carried).then_some(1)
             }
             EventKind::Output(output) => {
                 // The next piece would not continue this line.
@@ -192,7 +192,7 @@ fn name_in_case(record: &Record, source: Source, case: Option<CaseId>) -> String
 /// always shown.
 fn case_finished(page: &mut ConsoleLines, record: &Record, end: &CaseFinished) {
     let word = match end.verdict {
-        _ if end.carried_us.is_some() => return,
+        _ if end.carried => return,
         Verdict::Passed => (GOOD, "passed"),
         Verdict::Skipped => (LOUD, "skipped"),
         _ => return,

@@ -29,7 +29,8 @@ fn finish(run: &mut Writer, case: u32, verdict: Verdict) {
         verdict,
         reason,
         decided_by: None,
-        carried_us: None,
+        duration_us: None,
+        carried: false,
     }));
 }
 

@@ -32,11 +32,12 @@ _PHASES = {"setup": "set-up: ", "teardown": "tear-down: "}
 class OpenCase:
     """A case that runs."""
 
-    __slots__ = ("has_problem", "outcome", "path", "reason")
+    __slots__ = ("has_problem", "outcome", "path", "reason", "seconds")
 
     def __init__(self, path: str) -> None:
         """Its result is that of its messages, unless a report says otherwise."""
         self.path = path
+        self.seconds = 0.0
         self.has_problem = False
         self.outcome: str | None = None
         self.reason: str | None = None
@@ -49,6 +50,8 @@ class OpenCase:
     def result(self) -> dict[str, object]:
         """Return the parameters of `case-finished`."""
         params: dict[str, object] = {"name": self.path}
+        if self.seconds:
+            params["duration_us"] = int(self.seconds * 1e6)
         if self.outcome is not None and not self.has_problem:
             params["outcome"] = self.outcome
             params["reason"] = self.reason
@@ -192,6 +195,7 @@ class Reporter(FailureDetails):
         self._connection.post("case-finished", case.result())
 
     def _judge(self, case: OpenCase, report: pytest.TestReport) -> None:
+        case.seconds += report.duration
         expected = getattr(report, "wasxfail", None)
         if report.failed:
             self._report_problem(case, report)

@@ -6,6 +6,7 @@ import re
 import sys
 import traceback
 import unittest
+from time import perf_counter_ns
 
 from rtf.frameworks.comparison import compared
 from rtf.frameworks.connection import portions
@@ -49,6 +50,7 @@ class Reporter(unittest.TestResult):
         self._pending: dict[str, list[Any]] = {}
         # The result of the running test, unless its messages decide it.
         self._result: dict[str, object] = {}
+        self._started = 0
 
     def plan(self, tests: list[Any]) -> dict[str, bool]:
         """Announce tests. Returns for each name whether it runs."""
@@ -78,6 +80,7 @@ class Reporter(unittest.TestResult):
         """Start a case."""
         super().startTest(test)
         self._start(test.id(), start(test))
+        self._started = perf_counter_ns()
         self._stop.raises = True
 
     def stopTest(self, test: Any) -> None:  # noqa: N802
@@ -88,7 +91,9 @@ class Reporter(unittest.TestResult):
         if self._stop.is_requested:
             self.stop()
         else:
-            self._connection.post("case-finished", {"name": test.id(), **self._result})
+            duration = (perf_counter_ns() - self._started) // 1000
+            params = {"name": test.id(), "duration_us": duration, **self._result}
+            self._connection.post("case-finished", params)
 
     def addError(self, test: Any, err: Any) -> None:  # noqa: N802
         """Report an exception, also of a function for several tests."""

@@ -1,6 +1,7 @@
 """Tests that run in workers of pytest-xdist."""
 
 import ctypes
+import time
 
 import pytest
 
@@ -9,6 +10,7 @@ import pytest
 def test_moves(joint, rtf):
     rtf.measure("effort", joint, "N")
     rtf.report(f"joint {joint} in a worker")
+    time.sleep(joint / 10)
     assert rtf.fixture_value("none.port", 7) == 7
 
 

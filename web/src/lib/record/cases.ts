@@ -56,8 +56,8 @@ export class CaseList {
                 this.byId.set(event.case, {
                     ...found,
                     verdict: event.verdict,
-                    duration_us: event.carried_us ?? event.at - found.started,
-                    ...(event.carried_us == null ? {} : { carried: true }),
+                    duration_us: event.duration_us ?? event.at - found.started,
+                    ...(event.carried ? { carried: true } : {}),
                     ...(event.reason == null ? {} : { reason: event.reason }),
                 });
                 break;

@@ -75,7 +75,8 @@ impl PastCase {
         event.decided_by.iter_mut().for_each(renumber);
         problem.iter_mut().filter_map(|problem| problem.case.as_mut()).for_each(renumber);
         let duration = at.saturating_sub(self.started).as_micros();
-        event.carried_us.get_or_insert(u64::try_from(duration).unwrap_or(u64::MAX));
+        event.duration_us.get_or_insert(u64::try_from(duration).unwrap_or(u64::MAX));
+        event.carried = true;
     }
 }
 

@@ -228,8 +228,8 @@ impl TestRun<'_> {
     pub(super) fn finish_case(
         &mut self,
         case: CaseId,
-        outcome: Option<Outcome>,
-        reason: Option<String>,
+        (outcome, reason): (Option<Outcome>, Option<String>),
+        duration_us: Option<u64>,
         cx: &mut Context<'_>,
     ) {
         let Some(number) = self.cases.open(Some(case)) else {
@@ -248,7 +248,7 @@ impl TestRun<'_> {
             Some(Outcome::Crashed) => Verdict::Crashed,
             Some(Outcome::TimedOut) => Verdict::TimedOut,
         };
-        self.end_case(number, CaseResult::OfCase(verdict, reason), cx);
+        self.end_case(number, CaseResult::OfCase(verdict, reason), duration_us, cx);
     }
 
     /// Adds the finished cases of an earlier attempt.
@@ -280,12 +280,18 @@ impl TestRun<'_> {
                     CaseResult::OfCase(Verdict::Error, Some(reason))
                 }
             };
-            self.end_case(open.id, result, cx);
+            self.end_case(open.id, result, None, cx);
         }
     }
 
     /// Judges a case: by its first problem, an inner problem, or `result` if that is worse.
-    fn end_case(&mut self, case: CaseId, result: CaseResult, cx: &mut Context<'_>) {
+    fn end_case(
+        &mut self,
+        case: CaseId,
+        result: CaseResult,
+        duration_us: Option<u64>,
+        cx: &mut Context<'_>,
+    ) {
         let Some(index) = self.cases.open.iter().rposition(|open| open.id == case) else { return };
         let mut open = self.cases.open.remove(index);
         let (test, phase) = (self.plan.id, self.phase);
@@ -306,7 +312,8 @@ impl TestRun<'_> {
             _ => {}
         }
         let outer = problem.map(|problem| open.describe(problem));
-        let end = CaseFinished { test, case, verdict, reason, decided_by, carried_us: None };
+        let carried = false;
+        let end = CaseFinished { test, case, verdict, reason, decided_by, duration_us, carried };
         if let Some(history) = &mut self.cases.history {
             history.finish(&end, outer.as_ref(), cx.now());
         }

@@ -27,8 +27,8 @@ impl TestRun<'_> {
             Notification::Stack { text } => self.on_host_dump(text, cx),
             Notification::CasesPlanned { names } => self.plan_cases(names, cx),
             Notification::CaseStarted(start) => self.start_case(start, cx),
-            Notification::CaseFinished { case, outcome, reason } => {
-                self.finish_case(case, outcome, reason, cx);
+            Notification::CaseFinished { case, outcome, reason, duration_us } => {
+                self.finish_case(case, (outcome, reason), duration_us, cx);
             }
             Notification::Attached(_) => {}
             Notification::Provided { .. } => self.report_error(PROVIDED.to_owned(), cx),

@@ -138,7 +138,7 @@ fn finished_cases_are_carried_and_the_others_run_again() {
     2.0  fixture-ready fixture=0
     2.0  test-started attempt=2 repetition=1 test=0
     2.0  case-started case=1 name=a test=0
-    2.0  case-finished carried_us=1000000 case=1 test=0 verdict=passed
+    2.0  case-finished carried=true case=1 duration_us=1000000 test=0 verdict=passed
     2.0  test-phase phase=run test=0
     2.0  case-started case=2 name=b test=0
     2.0  message source={test:0}

@@ -31,7 +31,7 @@ fn run_case(world: &mut World<'_>, name: &str) {
         location: None,
     };
     world.input(TEST, ProcessEvent::Notified(Notification::CaseStarted(start)));
-    let end = Notification::CaseFinished { case, outcome: None, reason: None };
+    let end = Notification::CaseFinished { case, outcome: None, reason: None, duration_us: None };
     world.input(TEST, ProcessEvent::Notified(end));
 }
 

@@ -40,7 +40,12 @@ impl World<'_> {
         reason: Option<&str>,
     ) {
         let reason = reason.map(str::to_owned);
-        self.notified(Notification::CaseFinished { case: CaseId(case), outcome, reason });
+        self.notified(Notification::CaseFinished {
+            case: CaseId(case),
+            outcome,
+            reason,
+            duration_us: None,
+        });
     }
 
     pub(super) fn message_in(&mut self, case: u32, kind: MessageKind, text: &str) {

@@ -61,7 +61,7 @@ fn report(choice: u8) -> Notification {
         }
         3 => {
             let case = CaseId(1 + number / 128);
-            Notification::CaseFinished { case, outcome: None, reason: None }
+            Notification::CaseFinished { case, outcome: None, reason: None, duration_us: None }
         }
         _ => {
             let (kind, text, critical) = (MessageKind::Failure, "no".to_owned(), choice > 240);
