@@ -28,7 +28,7 @@ const PIECE: usize = 64 * 1024;
 /// How long nothing arrives before a reader reports cases that it holds back.
 const RELEASE_WAIT: Duration = Duration::from_millis(200);
 
-/// How long packets are collected for which nobody waits.
+/// How long packets are collected that the program does not expect answers to.
 const PAUSE: Duration = Duration::from_millis(2);
 
 /// The longest line of standard error that a reason quotes.

@@ -130,8 +130,8 @@ struct Finish {
 }
 
 impl SessionSocket {
-    /// Whether nobody waits for what arrives next. Each packet that wakes the host takes time
-    /// of the program that sends it.
+    /// Whether the next packets can wait: the program does not expect answers to them. Each
+    /// packet that wakes the host takes time of the program that sends it.
     pub fn is_relaxed(&self) -> bool {
         self.pace.is_relaxed
     }
