@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the wheel for aarch64 with pip in a root directory of Debian for arm64, under qemu,
-# and runs suites and the conformance corpus.
+# and runs suites, example 07 on its simulator, and the conformance corpus.
 #
 #   tests/wheel/aarch64.sh WHEEL
 
@@ -47,6 +47,17 @@ for suite in scripts suite; do
   [ "$status" -eq 1 ] || die "rtf exited with $status, expected 1"
   grep -q '3 passed, 1 failed' output.txt || die "not all of $suite.xml passed"
 done
+
+# The packages of the simulator for this processor are downloaded without the emulator.
+version=$(PROGRAM=/usr/bin/python3 "$work/emulated" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+demo=$ROOT/tools/requirements-demo.txt
+platforms=(--platform manylinux_2_28_aarch64 --platform manylinux2014_aarch64)
+"$("$ROOT/tools/venv.sh" wheel)/python" -m pip download --quiet --disable-pip-version-check --only-binary=:all: \
+  --python-version "$version" "${platforms[@]}" --requirement "$demo" --dest "$work/wheels"
+PROGRAM=pip "$work/emulated" install --quiet --disable-pip-version-check --no-index \
+  --find-links "$work/wheels" --requirement "$demo"
+cp -R "$ROOT/examples" "$work/examples"
+"$work/emulated" run "$work/examples/07-levels" --profile ci
 
 for processor in native emulated; do
   options=("-DRobotTestingFramework_DIR=$ROOT/sdk/cpp/cmake/RobotTestingFramework")
