@@ -6,7 +6,8 @@ use jiff::Timestamp;
 use rtf_model::Verdict;
 use serde::Serialize;
 
-use super::scope::{RunScope, ScopedResult, StoredTest};
+use super::columns::{ColumnResult, Depth, TestColumns};
+use super::scope::RunScope;
 use crate::entry::SeriesName;
 use crate::statistics::change_points::{ChangePoint, Options, find_change_points};
 use crate::{RunSelection, Store, StoreError, TestIdentity, TestSelection};
@@ -43,9 +44,6 @@ pub struct SeriesChange {
     pub change: ChangePoint,
 }
 
-/// Numbers of comparable runs: their robot and profile are equal.
-type Groups = BTreeMap<(String, Option<String>), Vec<(usize, f64)>>;
-
 impl Store {
     /// The changes in the selected tests, the newest first.
     ///
@@ -57,76 +55,101 @@ impl Store {
         tests: TestSelection<'_>,
     ) -> Result<Vec<SeriesChange>, StoreError> {
         let scope = self.run_scope(runs)?;
+        let columns = self.columns(self.selected_tests(tests)?, &scope, Depth::Points)?;
+        let search = ChangeSearch { scope: &scope, robots: &columns.robots };
         let mut changes = Vec::new();
-        for test in self.selected_tests(tests)? {
-            self.add_changes(&test, &scope, &mut changes)?;
-        }
+        columns.tests.iter().for_each(|test| search.add_changes(test, &mut changes));
         changes.sort_by(|a, b| b.started.cmp(&a.started).then(a.identity.cmp(&b.identity)));
         Ok(changes)
     }
+}
 
-    fn add_changes(
+/// Searches the series of tests.
+struct ChangeSearch<'a> {
+    scope: &'a RunScope,
+    robots: &'a [String],
+}
+
+/// Comparable runs: their robot and profile are equal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct GroupKey<'a> {
+    robot: &'a str,
+    profile: Option<&'a str>,
+}
+
+/// Numbers of comparable runs, each with the position of its run.
+type Groups<'a> = BTreeMap<GroupKey<'a>, Vec<(usize, f64)>>;
+
+impl<'a> ChangeSearch<'a> {
+    fn add_changes(&self, columns: &TestColumns, changes: &mut Vec<SeriesChange>) {
+        let identity = &columns.test.attributes.identity;
+        let durations = self.groups(columns, columns.results.iter().filter_map(passed_duration));
+        self.search(identity, (None, Options::default()), durations, changes);
+        for (name, series) in &columns.series {
+            let [low, high] = series.limits;
+            let limits_span = high.zip(low).map(|(high, low)| high - low);
+            let options = Options { limits_span, ..Options::default() };
+            let values = series.points.iter().filter_map(|it| Some((it.run, it.value?)));
+            let groups = self.groups(columns, values);
+            self.search(identity, (Some(name), options), groups, changes);
+        }
+    }
+
+    /// Groups numbers, which are in the order of their runs, by the robot and the profile of
+    /// the test in that run.
+    fn groups(
         &self,
-        test: &StoredTest,
-        scope: &RunScope,
-        changes: &mut Vec<SeriesChange>,
-    ) -> Result<(), StoreError> {
-        let results = self.results(test, scope)?;
-        let robots: BTreeMap<usize, &str> =
-            results.iter().map(|result| (result.run, result.row.robot.as_str())).collect();
-        let group = |run: usize| {
-            let robot = robots.get(&run).copied().unwrap_or_default().to_owned();
-            (robot, scope.runs[run].profile.clone())
-        };
-        let identity = &test.attributes.identity;
-        let mut durations = Groups::new();
-        for (run, seconds) in results.iter().filter_map(passed_duration) {
-            durations.entry(group(run)).or_default().push((run, seconds));
-        }
-        find(scope, identity, (None, Options::default()), durations, changes);
-        for (series, points) in self.points(test, scope, &results)? {
-            let limits = points.last().and_then(|(_, point)| Some(point.high? - point.low?));
-            let options = Options { limits_span: limits, ..Options::default() };
-            let mut groups = Groups::new();
-            for (run, value) in points.into_iter().filter_map(|(run, it)| Some((run, it.value?))) {
-                groups.entry(group(run)).or_default().push((run, value));
+        columns: &TestColumns,
+        numbers: impl Iterator<Item = (usize, f64)>,
+    ) -> Groups<'a> {
+        let mut groups: Vec<(GroupKey<'a>, Vec<(usize, f64)>)> = Vec::new();
+        let mut results = columns.results.as_slice();
+        for number in numbers {
+            let skipped = results.iter().take_while(|result| result.run < number.0).count();
+            results = &results[skipped..];
+            let result = results.first().filter(|result| result.run == number.0);
+            let robot = result.map_or("", |result| &self.robots[result.robot]);
+            let key = GroupKey { robot, profile: self.scope.runs[number.0].profile.as_deref() };
+            match groups.iter_mut().find(|(known, _)| *known == key) {
+                Some((_, group)) => group.push(number),
+                None => groups.push((key, vec![number])),
             }
-            find(scope, identity, (Some(&series), options), groups, changes);
         }
-        Ok(())
+        groups.into_iter().collect()
+    }
+
+    fn search(
+        &self,
+        identity: &TestIdentity,
+        (series, options): (Option<&SeriesName>, Options),
+        groups: Groups<'_>,
+        changes: &mut Vec<SeriesChange>,
+    ) {
+        for (GroupKey { robot, profile }, numbers) in groups {
+            let values: Vec<f64> = numbers.iter().map(|(_, value)| *value).collect();
+            for change in find_change_points(&values, &options).points {
+                let run_at = |index: usize| &self.scope.runs[numbers[index].0];
+                let run = run_at(change.index);
+                let before = change.index.checked_sub(1).map(run_at);
+                changes.push(SeriesChange {
+                    identity: identity.clone(),
+                    series: series.cloned(),
+                    robot: robot.to_owned(),
+                    profile: profile.map(str::to_owned),
+                    run: run.id.clone(),
+                    run_name: run.name.clone(),
+                    started: run.started,
+                    commit: run.commit.clone(),
+                    commit_before: before.and_then(|run| run.commit.clone()),
+                    change,
+                });
+            }
+        }
     }
 }
 
 /// The duration of a result in seconds. A failure may end a test early.
-fn passed_duration(result: &ScopedResult) -> Option<(usize, f64)> {
-    let micros = result.row.duration_us.filter(|_| result.row.verdict == Verdict::Passed)?;
+fn passed_duration(result: &ColumnResult) -> Option<(usize, f64)> {
+    let micros = result.duration_us.filter(|_| result.verdict == Verdict::Passed)?;
     Some((result.run, micros as f64 / 1e6))
-}
-
-fn find(
-    scope: &RunScope,
-    identity: &TestIdentity,
-    (series, options): (Option<&SeriesName>, Options),
-    groups: Groups,
-    changes: &mut Vec<SeriesChange>,
-) {
-    for ((robot, profile), numbers) in groups {
-        let values: Vec<f64> = numbers.iter().map(|(_, value)| *value).collect();
-        for change in find_change_points(&values, &options).points {
-            let run = &scope.runs[numbers[change.index].0];
-            let before = change.index.checked_sub(1).map(|index| &scope.runs[numbers[index].0]);
-            changes.push(SeriesChange {
-                identity: identity.clone(),
-                series: series.cloned(),
-                robot: robot.clone(),
-                profile: profile.clone(),
-                run: run.id.clone(),
-                run_name: run.name.clone(),
-                started: run.started,
-                commit: run.commit.clone(),
-                commit_before: before.and_then(|run| run.commit.clone()),
-                change,
-            });
-        }
-    }
 }

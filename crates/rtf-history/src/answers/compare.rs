@@ -1,11 +1,14 @@
 //! Differences between two sets of runs.
 
+use std::collections::BTreeMap;
+
 use rtf_model::Verdict;
 use serde::Serialize;
 
 use super::RunCounts;
-use super::scope::{ScopedResult, StoredTest};
-use crate::entry::{NumberSummary, SeriesName};
+use super::columns::{ColumnSeries, Depth, TestColumns};
+use super::scope::RunScope;
+use crate::entry::SeriesName;
 use crate::statistics::robust::median;
 use crate::{RunSelection, Store, StoreError, TestIdentity, TestSelection};
 
@@ -73,7 +76,7 @@ struct Side {
     verdicts: VerdictCounts,
     last: Verdict,
     duration: Option<f64>,
-    numbers: Vec<(SeriesName, Vec<(usize, NumberSummary)>)>,
+    numbers: BTreeMap<SeriesName, ColumnSeries>,
 }
 
 impl Store {
@@ -94,10 +97,9 @@ impl Store {
             only_a: Vec::new(),
             only_b: Vec::new(),
         };
-        for test in self.selected_tests(tests)? {
-            let sides = (self.side(&test, &scope_a)?, self.side(&test, &scope_b)?);
-            let identity = test.attributes.identity;
-            match sides {
+        let (sides_a, sides_b) = (self.sides(&scope_a, tests)?, self.sides(&scope_b, tests)?);
+        for ((identity, a), (_, b)) in sides_a.into_iter().zip(sides_b) {
+            match (a, b) {
                 (Some(a), Some(b)) => comparison.tests.push(TestComparison::new(identity, a, b)),
                 (Some(_), None) => comparison.only_a.push(identity),
                 (None, Some(_)) => comparison.only_b.push(identity),
@@ -107,27 +109,34 @@ impl Store {
         Ok(comparison)
     }
 
-    fn side(
+    /// The selected tests, each with its results in one set of runs.
+    fn sides(
         &self,
-        test: &StoredTest,
-        scope: &super::scope::RunScope,
-    ) -> Result<Option<Side>, StoreError> {
-        let results = self.results(test, scope)?;
-        let Some(last) = results.last().map(|result| result.row.verdict) else { return Ok(None) };
+        scope: &RunScope,
+        tests: TestSelection<'_>,
+    ) -> Result<Vec<(TestIdentity, Option<Side>)>, StoreError> {
+        let columns = self.columns(self.selected_tests(tests)?, scope, Depth::Points)?;
+        let side =
+            |columns: TestColumns| (columns.test.attributes.identity.clone(), Side::new(columns));
+        Ok(columns.tests.into_iter().map(side).collect())
+    }
+}
+
+impl Side {
+    fn new(TestColumns { results, series, .. }: TestColumns) -> Option<Self> {
+        let last = results.last()?.verdict;
         let mut verdicts = VerdictCounts::default();
-        results.iter().for_each(|result| verdicts.add(result.row.verdict));
-        let seconds = |result: &ScopedResult| Some(result.row.duration_us? as f64 / 1e6);
-        let seconds: Vec<_> = results.iter().filter_map(seconds).collect();
-        let numbers = self.points(test, scope, &results)?.into_iter().collect();
-        Ok(Some(Side { verdicts, last, duration: median(&seconds), numbers }))
+        results.iter().for_each(|result| verdicts.add(result.verdict));
+        let micros = results.iter().filter_map(|result| result.duration_us);
+        let seconds: Vec<_> = micros.map(|micros| micros as f64 / 1e6).collect();
+        Some(Self { verdicts, last, duration: median(&seconds), numbers: series })
     }
 }
 
 impl TestComparison {
     fn new(identity: TestIdentity, a: Side, b: Side) -> Self {
         let numbers = a.numbers.iter().filter_map(|(series, points)| {
-            let other = b.numbers.iter().find(|(other, _)| other == series);
-            other.map(|(_, other)| NumberChange::new(series.clone(), points, other))
+            Some(NumberChange::new(series.clone(), points, b.numbers.get(series)?))
         });
         Self {
             identity,
@@ -143,12 +152,11 @@ impl TestComparison {
 }
 
 impl NumberChange {
-    fn new(series: SeriesName, a: &[(usize, NumberSummary)], b: &[(usize, NumberSummary)]) -> Self {
-        let value = |points: &[(usize, NumberSummary)]| {
-            median(&points.iter().filter_map(|(_, point)| point.value).collect::<Vec<_>>())
+    fn new(series: SeriesName, a: &ColumnSeries, b: &ColumnSeries) -> Self {
+        let value = |series: &ColumnSeries| {
+            median(&series.points.iter().filter_map(|point| point.value).collect::<Vec<_>>())
         };
-        let outside =
-            |points: &[(usize, NumberSummary)]| points.iter().map(|(_, point)| point.outside).sum();
+        let outside = |series: &ColumnSeries| series.points.iter().map(|it| it.outside).sum();
         Self { series, a: value(a), b: value(b), outside_a: outside(a), outside_b: outside(b) }
     }
 }

@@ -4,7 +4,8 @@ use jiff::Timestamp;
 use rtf_model::Verdict;
 use serde::Serialize;
 
-use super::scope::{RunScope, ScopedResult};
+use super::columns::{ColumnResult, Depth, TestColumns};
+use super::scope::{RunScope, ScopedResult, StoredTest};
 use super::test_history::TestResult;
 use crate::statistics::{Attempt, Flips};
 use crate::{RunSelection, Store, StoreError, TestIdentity, TestSelection};
@@ -37,16 +38,13 @@ impl Store {
         let keys = commit_keys(&scope);
         let mut tests = self.selected_tests(tests)?;
         Self::keep_tests(&mut tests, self.tests_with_problems()?);
+        let columns = self.columns(tests, &scope, Depth::Results)?;
         let mut flaky = Vec::new();
-        for test in tests {
-            let results = self.results(&test, &scope)?;
-            let flips = count(&keys, &results);
+        for TestColumns { test, results, .. } in &columns.tests {
+            let flips = count(&keys, results, &columns.robots);
             if flips.is_flaky() {
-                let is_problem =
-                    |result: &&ScopedResult| result.row.verdict.is_problem() || result.row.is_flaky;
-                let last = results.iter().rev().find(is_problem);
-                let last_problem = last.map(|result| TestResult::new(&scope, result));
-                let identity = test.attributes.identity;
+                let last_problem = self.last_problem(test, results, &scope)?;
+                let identity = test.attributes.identity.clone();
                 flaky.push(FlakyTest { identity, flips, last_problem });
             }
         }
@@ -62,6 +60,23 @@ impl Store {
         });
         Ok(flaky)
     }
+
+    /// The newest result that is a problem, or a pass after a retry.
+    fn last_problem(
+        &self,
+        test: &StoredTest,
+        results: &[ColumnResult],
+        scope: &RunScope,
+    ) -> Result<Option<TestResult>, StoreError> {
+        let is_problem = |it: &&ColumnResult| it.verdict.is_problem() || it.is_flaky;
+        let Some(last) = results.iter().rev().find(is_problem) else { return Ok(None) };
+        for id in &test.ids {
+            if let Some(row) = self.result_of_test(*id, scope.id(last.run))? {
+                return Ok(Some(TestResult::new(scope, &ScopedResult { run: last.run, row })));
+            }
+        }
+        Ok(None)
+    }
 }
 
 /// What two comparable results of a run have in common, except the robot: `None` without a
@@ -75,19 +90,19 @@ fn commit_keys(scope: &RunScope) -> Vec<Option<String>> {
     scope.runs.iter().map(key).collect()
 }
 
-fn count(keys: &[Option<String>], results: &[ScopedResult]) -> Flips {
-    let with_robot = |result: &ScopedResult| {
+fn count(keys: &[Option<String>], results: &[ColumnResult], robots: &[String]) -> Flips {
+    let with_robot = |result: &ColumnResult| {
         let key = keys.get(result.run)?.as_ref()?;
-        Some(format!("{key}\0{}", result.row.robot))
+        Some(format!("{key}\0{}", robots.get(result.robot)?))
     };
     let keys: Vec<_> = results.iter().map(with_robot).collect();
     let mut attempts = Vec::with_capacity(results.len());
     for (result, key) in results.iter().zip(&keys) {
         let commit = key.as_deref();
-        if result.row.is_flaky {
+        if result.is_flaky {
             attempts.push(Attempt { commit, verdict: Verdict::Failed });
         }
-        attempts.push(Attempt { commit, verdict: result.row.verdict });
+        attempts.push(Attempt { commit, verdict: result.verdict });
     }
     Flips::count(&attempts)
 }

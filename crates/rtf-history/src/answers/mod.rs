@@ -2,6 +2,7 @@
 //! `rtf history`.
 
 mod changes;
+mod columns;
 mod compare;
 mod export;
 mod flaky;

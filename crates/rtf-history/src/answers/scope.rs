@@ -12,9 +12,38 @@ use crate::{RunSelection, Store, StoreError, TestAttributes, TestSelection};
 pub(super) struct RunScope {
     /// The oldest first.
     pub runs: Vec<RunInfo>,
+    /// The row of each run.
+    ids: Vec<i64>,
     /// The position of each run in `runs`.
     positions: HashMap<i64, usize>,
     selection: RunSelection,
+}
+
+impl RunScope {
+    /// The row of a run.
+    pub fn id(&self, position: usize) -> i64 {
+        self.ids[position]
+    }
+
+    /// The position of a run in `runs`.
+    pub fn position(&self, id: i64) -> Option<usize> {
+        self.positions.get(&id).copied()
+    }
+
+    /// The smallest and the largest row; `None` without runs.
+    pub fn id_range(&self) -> Option<(i64, i64)> {
+        Some((self.ids.iter().min().copied()?, self.ids.iter().max().copied()?))
+    }
+
+    /// Whether only results on a robot are meant.
+    pub fn has_robot(&self) -> bool {
+        self.selection.robot.is_some()
+    }
+
+    /// Whether a result on these robots is meant.
+    pub fn matches_robot(&self, robots: &str) -> bool {
+        self.selection.matches_robot(robots)
+    }
 }
 
 /// A test or a case, under all its names.
@@ -25,7 +54,7 @@ pub(super) struct StoredTest {
     /// The names of the test that it had before.
     pub former_names: Vec<String>,
     /// Its rows.
-    ids: Vec<i64>,
+    pub ids: Vec<i64>,
 }
 
 /// The result of a test in a run of a scope.
@@ -50,8 +79,8 @@ impl Store {
 
     pub(super) fn run_scope(&self, selection: &RunSelection) -> Result<RunScope, StoreError> {
         let (ids, runs): (Vec<_>, Vec<_>) = self.selected_runs(selection)?.into_iter().unzip();
-        let positions = ids.into_iter().zip(0..).collect();
-        Ok(RunScope { runs, positions, selection: selection.clone() })
+        let positions = ids.iter().copied().zip(0..).collect();
+        Ok(RunScope { runs, ids, positions, selection: selection.clone() })
     }
 
     /// The selected tests and cases, in the order of their identities.

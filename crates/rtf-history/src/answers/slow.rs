@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::columns::{Depth, TestColumns};
 use crate::statistics::robust::median;
 use crate::{RunSelection, Store, StoreError, TestIdentity, TestSelection};
 
@@ -32,10 +33,10 @@ impl Store {
         tests: TestSelection<'_>,
     ) -> Result<Vec<SlowTest>, StoreError> {
         let scope = self.run_scope(runs)?;
+        let columns = self.columns(self.selected_tests(tests)?, &scope, Depth::Results)?;
         let mut slow = Vec::new();
-        for test in self.selected_tests(tests)? {
-            let results = self.results(&test, &scope)?;
-            let micros = results.iter().filter_map(|result| result.row.duration_us);
+        for TestColumns { test, results, .. } in columns.tests {
+            let micros = results.iter().filter_map(|result| result.duration_us);
             let seconds: Vec<f64> = micros.map(|micros| micros as f64 / 1e6).collect();
             let (Some(median), Some(last)) = (median(&seconds), seconds.last()) else { continue };
             slow.push(SlowTest {

@@ -75,14 +75,14 @@ pub fn learn_limits(
 /// The middle of the finite values, or the mean of both middle ones. `None` without any.
 #[must_use]
 pub fn median(values: &[f64]) -> Option<f64> {
-    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let upper = *sorted.get(sorted.len() / 2)?;
-    if sorted.len() % 2 == 1 {
-        return Some(upper);
+    let mut finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    let (count, middle) = (finite.len(), finite.len() / 2);
+    if count == 0 {
+        return None;
     }
-    let lower = *sorted.get(sorted.len() / 2 - 1)?;
-    Some(lower.midpoint(upper))
+    let (below, upper, _) = finite.select_nth_unstable_by(middle, f64::total_cmp);
+    let lower = below.iter().copied().max_by(f64::total_cmp).filter(|_| count % 2 == 0);
+    Some(lower.map_or(*upper, |lower| lower.midpoint(*upper)))
 }
 
 /// The median distance of the finite values to their median, times [`NORMAL_CONSISTENCY`].

@@ -3,6 +3,7 @@
 use rtf_model::Record;
 use rusqlite::{OptionalExtension as _, Transaction, TransactionBehavior, params};
 
+use super::columns::{PackedResult, PointPacker, ResultPacker};
 use super::{Store, StoreError, sql};
 use crate::TestIdentity;
 use crate::entry::{NumberSummary, ResultEntry, RunEntry, SeriesName};
@@ -115,6 +116,7 @@ fn insert(transaction: &Transaction<'_>, run: &RunEntry) -> rusqlite::Result<()>
     transaction.execute(sql::DELETE_PRUNED, [&run.id])?;
     let run_id = insert_run(transaction, run)?;
     let started_us = run.started_at.as_microsecond();
+    let mut columns = (ResultPacker::default(), PointPacker::default());
     run.results.iter().try_for_each(|result| {
         let test_id = upsert_test(transaction, &result.identity, result, started_us)?;
         if let Some(was) = result.was.as_ref().filter(|was| **was != result.identity.test) {
@@ -122,8 +124,10 @@ fn insert(transaction: &Transaction<'_>, run: &RunEntry) -> rusqlite::Result<()>
             let former = upsert_test(transaction, &former, result, i64::MIN)?;
             transaction.prepare_cached(sql::RENAME_TEST)?.execute([test_id, former])?;
         }
-        insert_result(transaction, test_id, run_id, result)
-    })
+        insert_result(transaction, (test_id, run_id), result, &mut columns)
+    })?;
+    let values = params![run_id, columns.0.finish(), columns.1.finish()];
+    transaction.prepare_cached(sql::INSERT_RUN_COLUMNS)?.execute(values).map(drop)
 }
 
 fn insert_run(transaction: &Transaction<'_>, run: &RunEntry) -> rusqlite::Result<i64> {
@@ -177,10 +181,18 @@ fn upsert_test(
 
 fn insert_result(
     transaction: &Transaction<'_>,
-    test_id: i64,
-    run_id: i64,
+    (test_id, run_id): (i64, i64),
     result: &ResultEntry,
+    columns: &mut (ResultPacker, PointPacker),
 ) -> rusqlite::Result<()> {
+    let packed = PackedResult {
+        test: test_id,
+        verdict: result.verdict,
+        is_flaky: result.is_flaky,
+        robot: 0,
+        duration_us: result.duration_us,
+    };
+    columns.0.add(packed, &result.robot);
     transaction.prepare_cached(sql::INSERT_RESULT)?.execute(params![
         test_id,
         run_id,
@@ -195,6 +207,7 @@ fn insert_result(
     ])?;
     result.numbers.iter().try_for_each(|(series, summary)| {
         let series_id = find_series(transaction, test_id, series)?;
+        columns.1.add(series_id, summary);
         insert_point(transaction, (test_id, run_id, series_id), summary)
     })
 }

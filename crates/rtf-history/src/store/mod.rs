@@ -1,5 +1,6 @@
 //! The database: opening, importing and pruning runs, reading rows.
 
+mod columns;
 mod error;
 mod import;
 mod migrate;
@@ -14,6 +15,7 @@ use std::time::{Duration, Instant};
 
 use rusqlite::{Connection, OpenFlags};
 
+pub(crate) use columns::{PackedPoint, PackedPoints, PackedResult, PackedResults};
 pub use error::StoreError;
 pub use import::ImportOutcome;
 pub use prune::Keep;

@@ -85,6 +85,57 @@ impl Store {
         self.rows(sql::RESULTS_OF_TEST, &[&test], result)
     }
 
+    pub(crate) fn result_of_test(
+        &self,
+        test: i64,
+        run: i64,
+    ) -> Result<Option<ResultRow>, StoreError> {
+        Ok(self.rows(sql::RESULT_OF_TEST, &[&test, &run], result)?.pop())
+    }
+
+    /// Calls `visit` with the packed results of each run from `first` to `last`.
+    pub(crate) fn for_each_result_column(
+        &self,
+        (first, last): (i64, i64),
+        visit: impl FnMut(i64, &[u8]),
+    ) -> Result<(), StoreError> {
+        self.for_each_column(sql::RESULT_COLUMNS, (first, last), visit)
+    }
+
+    /// Calls `visit` with the packed points of each run from `first` to `last`.
+    pub(crate) fn for_each_point_column(
+        &self,
+        (first, last): (i64, i64),
+        visit: impl FnMut(i64, &[u8]),
+    ) -> Result<(), StoreError> {
+        self.for_each_column(sql::POINT_COLUMNS, (first, last), visit)
+    }
+
+    fn for_each_column(
+        &self,
+        sql: &str,
+        (first, last): (i64, i64),
+        mut visit: impl FnMut(i64, &[u8]),
+    ) -> Result<(), StoreError> {
+        let mut read_all = || -> rusqlite::Result<()> {
+            let mut statement = self.connection.prepare_cached(sql)?;
+            let mut rows = statement.query([first, last])?;
+            while let Some(row) = rows.next()? {
+                visit(row.get(0)?, row.get_ref(1)?.as_blob()?);
+            }
+            Ok(())
+        };
+        read_all().map_err(|error| self.error(error))
+    }
+
+    /// All series, each with its test, in the order of their ids.
+    pub(crate) fn all_series(&self) -> Result<Vec<(i64, SeriesName, i64)>, StoreError> {
+        self.rows(sql::SERIES, &[], |row| {
+            let (id, name) = series(row)?;
+            Ok((id, name, row.get(4)?))
+        })
+    }
+
     pub(crate) fn series_of_test(&self, test: i64) -> Result<Vec<(i64, SeriesName)>, StoreError> {
         self.rows(sql::SERIES_OF_TEST, &[&test], series)
     }

@@ -98,6 +98,12 @@ CREATE TABLE point (
 ) WITHOUT ROWID;
 CREATE INDEX point_run ON point (run_id);
 
+CREATE TABLE run_columns (
+  run_id BIGINT PRIMARY KEY REFERENCES run (id),
+  results BLOB NOT NULL,
+  points BLOB NOT NULL
+);
+
 CREATE TABLE pruned (
   uid TEXT PRIMARY KEY,
   name TEXT NOT NULL
@@ -120,7 +126,8 @@ VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $
   $21, $22, $23, $24, $25, $26, $27)
 RETURNING id";
 /// The parts of a run, in the order in which they are deleted.
-pub const DELETE_RUN: [&str; 3] = [
+pub const DELETE_RUN: [&str; 4] = [
+    "DELETE FROM run_columns WHERE run_id = $1",
     "DELETE FROM point WHERE run_id = $1",
     "DELETE FROM result WHERE run_id = $1",
     "DELETE FROM run WHERE id = $1",
@@ -171,6 +178,9 @@ pub const INSERT_POINT: &str = "
 INSERT INTO point (test_id, run_id, series_id, value, min, max, count, not_finite, outside, low,
   high)
 VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11)";
+/// Adds the packed results and points of a run.
+pub const INSERT_RUN_COLUMNS: &str =
+    "INSERT INTO run_columns (run_id, results, points) VALUES ($1, $2, $3)";
 
 /// All runs, the oldest first.
 pub const RUNS: &str = "
@@ -186,6 +196,16 @@ FROM test ORDER BY suite_file, suite, name, case_path";
 pub const RESULTS_OF_TEST: &str = "
 SELECT run_id, verdict, flaky, attempts, problems, duration_us, reason, robot, plugin_hash
 FROM result WHERE test_id = $1";
+/// The result of a test in a run.
+pub const RESULT_OF_TEST: &str = "
+SELECT run_id, verdict, flaky, attempts, problems, duration_us, reason, robot, plugin_hash
+FROM result WHERE test_id = $1 AND run_id = $2";
+/// The packed results of the runs in a range of ids.
+pub const RESULT_COLUMNS: &str = "
+SELECT run_id, results FROM run_columns WHERE run_id BETWEEN $1 AND $2 ORDER BY run_id";
+/// The packed points of the runs in a range of ids.
+pub const POINT_COLUMNS: &str = "
+SELECT run_id, points FROM run_columns WHERE run_id BETWEEN $1 AND $2 ORDER BY run_id";
 /// The tests with at least one result that is not a plain pass.
 pub const TESTS_WITH_PROBLEMS: &str =
     "SELECT DISTINCT test_id FROM result WHERE verdict <> 'passed' OR flaky = 1";
@@ -195,6 +215,8 @@ pub const PASSED_TESTS_OF_RUN: &str =
 /// The series of a test.
 pub const SERIES_OF_TEST: &str =
     "SELECT id, kind, name, unit FROM series WHERE test_id = $1 ORDER BY kind, name, unit";
+/// All series.
+pub const SERIES: &str = "SELECT id, kind, name, unit, test_id FROM series ORDER BY id";
 /// The tests that have a series of this name.
 pub const TESTS_WITH_SERIES: &str = "SELECT DISTINCT test_id FROM series WHERE name = $1";
 /// All names of series.

@@ -2,8 +2,8 @@
 //!
 //! E-divisive windows with a t-test and merging of weak points, as in Hunter and Apache Otava:
 //!
-//! 1. *Split.* A window moves over the series by half its length. In it, the split with the
-//!    highest energy divergence is found ([`divergence`]); if a t-test with a relaxed limit
+//! 1. *Split.* A window moves over the series by half its length. In it, unless no split could
+//!    pass the t-test ([`screen`]), the split with the highest energy divergence is found ([`divergence`]); if a t-test with a relaxed limit
 //!    (10 × that of [`Options::level`]) accepts it, both parts are split further. The result is weak points.
 //! 2. *Merge.* The weak points are tested again, between their neighbours. The weakest is removed
 //!    and its neighbours are tested again, until all are below that of [`Options::level`].
@@ -18,6 +18,7 @@
 
 mod divergence;
 mod merge;
+mod screen;
 mod t_test;
 #[cfg(test)]
 mod tests;

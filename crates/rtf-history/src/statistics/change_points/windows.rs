@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::divergence::best_split;
+use super::screen::Screen;
 use super::t_test::{Segment, p_value};
 use super::{Options, position_of_max};
 
@@ -13,16 +14,14 @@ const WEAK: f64 = 10.0;
 /// of the previous one or after it.
 pub(super) fn weak_points(values: &[f64], options: &Options) -> Vec<usize> {
     let length = options.window.max(2);
-    let windows = Windows {
-        values,
-        scaled: scaled(values),
-        max_p: (WEAK * options.max_p(values.len())).min(1.0),
-    };
+    let max_p = (WEAK * options.max_p(values.len())).min(1.0);
+    let windows = Windows { values, scaled: scaled(values), max_p, screen: Screen::new(max_p) };
     let mut points = Vec::new();
     let mut start = 0;
     while start < values.len() {
-        let end = values.len().min(start.saturating_add(length));
-        let found = windows.split(start..end);
+        let window = start..values.len().min(start.saturating_add(length));
+        let may_change = windows.screen.may_split(&windows.scaled[window.clone()]);
+        let found = if may_change { windows.split(window) } else { Vec::new() };
         start = (start + length / 2).max(found.last().copied().unwrap_or(0));
         points.extend(found);
     }
@@ -48,6 +47,7 @@ struct Windows<'a> {
     values: &'a [f64],
     scaled: Vec<f64>,
     max_p: f64,
+    screen: Screen,
 }
 
 /// The best split of a part of a window.
