@@ -259,6 +259,16 @@ mod tests {
         assert_eq!(found, expected);
     }
 
+    #[test]
+    fn the_numbers_of_verdicts_do_not_change() {
+        // They are stored: add new verdicts at the end.
+        let words = Verdict::ALL.map(Verdict::as_str);
+        let stored = ["passed", "failed", "error", "crashed", "timed-out", "collapsed", "skipped"];
+        assert_eq!(words[..7], stored);
+        assert_eq!(words[7], "interrupted");
+        assert_eq!(Verdict::ALL.map(|verdict| verdict as usize), [0, 1, 2, 3, 4, 5, 6, 7]);
+    }
+
     proptest! {
         #[test]
         fn points_are_read_as_they_were_packed(

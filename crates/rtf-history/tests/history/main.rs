@@ -4,6 +4,7 @@
 
 mod answers;
 mod bad_input;
+mod columns;
 mod importing;
 mod pruning;
 mod world;
