@@ -1,6 +1,6 @@
 //! Since which run a measurement, a signal or a duration is different.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use jiff::Timestamp;
 use rtf_model::Verdict;
@@ -56,7 +56,7 @@ impl Store {
     ) -> Result<Vec<SeriesChange>, StoreError> {
         let scope = self.run_scope(runs)?;
         let columns = self.columns(self.selected_tests(tests)?, &scope, Depth::Points)?;
-        let search = ChangeSearch { scope: &scope, robots: &columns.robots };
+        let search = ChangeSearch::new(&scope, &columns.robots);
         let mut changes = Vec::new();
         columns.tests.iter().for_each(|test| search.add_changes(test, &mut changes));
         changes.sort_by(|a, b| b.started.cmp(&a.started).then(a.identity.cmp(&b.identity)));
@@ -68,6 +68,8 @@ impl Store {
 struct ChangeSearch<'a> {
     scope: &'a RunScope,
     robots: &'a [String],
+    /// For each run, the first run with the same profile.
+    profiles: Vec<usize>,
 }
 
 /// Comparable runs: their robot and profile are equal.
@@ -81,6 +83,13 @@ struct GroupKey<'a> {
 type Groups<'a> = BTreeMap<GroupKey<'a>, Vec<(usize, f64)>>;
 
 impl<'a> ChangeSearch<'a> {
+    fn new(scope: &'a RunScope, robots: &'a [String]) -> Self {
+        let mut first = HashMap::new();
+        let runs = scope.runs.iter().enumerate();
+        let profiles = runs.map(|(at, run)| *first.entry(&run.profile).or_insert(at)).collect();
+        Self { scope, robots, profiles }
+    }
+
     fn add_changes(&self, columns: &TestColumns, changes: &mut Vec<SeriesChange>) {
         let identity = &columns.test.attributes.identity;
         let durations = self.groups(columns, columns.results.iter().filter_map(passed_duration));
@@ -89,7 +98,7 @@ impl<'a> ChangeSearch<'a> {
             let [low, high] = series.limits;
             let limits_span = high.zip(low).map(|(high, low)| high - low);
             let options = Options { limits_span, ..Options::default() };
-            let values = series.points.iter().filter_map(|it| Some((it.run, it.value?)));
+            let values = series.points.iter().filter_map(|it| Some((it.run(), it.value()?)));
             let groups = self.groups(columns, values);
             self.search(identity, (Some(name), options), groups, changes);
         }
@@ -102,20 +111,31 @@ impl<'a> ChangeSearch<'a> {
         columns: &TestColumns,
         numbers: impl Iterator<Item = (usize, f64)>,
     ) -> Groups<'a> {
-        let mut groups: Vec<(GroupKey<'a>, Vec<(usize, f64)>)> = Vec::new();
-        let mut results = columns.results.as_slice();
+        let count = columns.results.len();
+        // By the positions of robot and profile: comparing their names takes longer.
+        let mut groups: Vec<((Option<usize>, usize), Vec<(usize, f64)>)> = Vec::new();
+        let mut next = 0;
         for number in numbers {
-            let skipped = results.iter().take_while(|result| result.run < number.0).count();
-            results = &results[skipped..];
-            let result = results.first().filter(|result| result.run == number.0);
-            let robot = result.map_or("", |result| &self.robots[result.robot]);
-            let key = GroupKey { robot, profile: self.scope.runs[number.0].profile.as_deref() };
+            while next < count && columns.results[next].run < number.0 {
+                next += 1;
+            }
+            let result = columns.results.get(next).filter(|result| result.run == number.0);
+            let key = (result.map(|result| result.robot), self.profiles[number.0]);
             match groups.iter_mut().find(|(known, _)| *known == key) {
                 Some((_, group)) => group.push(number),
-                None => groups.push((key, vec![number])),
+                None => {
+                    let mut group = Vec::with_capacity(count);
+                    group.push(number);
+                    groups.push((key, group));
+                }
             }
         }
-        groups.into_iter().collect()
+        let named = groups.into_iter().map(|((robot, _), group)| {
+            let robot = robot.map_or("", |robot| &self.robots[robot]);
+            let profile = self.scope.runs[group[0].0].profile.as_deref();
+            (GroupKey { robot, profile }, group)
+        });
+        named.collect()
     }
 
     fn search(

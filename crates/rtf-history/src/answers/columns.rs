@@ -21,14 +21,35 @@ pub(super) struct ColumnResult {
     pub duration_us: Option<i64>,
 }
 
-/// A point of a series.
+/// A point of a series. Small, because there may be millions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ColumnPoint {
+    run: u32,
+    outside: u32,
+    /// NaN if it is unknown.
+    value: f64,
+}
+
+impl ColumnPoint {
+    fn new(run: usize, value: Option<f64>, outside: u64) -> Self {
+        let small = |number: u64| u32::try_from(number).unwrap_or(u32::MAX);
+        let value = value.unwrap_or(f64::NAN);
+        Self { run: small(run as u64), outside: small(outside), value }
+    }
+
     /// The position of the run in [`RunScope::runs`].
-    pub run: usize,
-    pub value: Option<f64>,
+    pub fn run(&self) -> usize {
+        self.run as usize
+    }
+
+    pub fn value(&self) -> Option<f64> {
+        (!self.value.is_nan()).then_some(self.value)
+    }
+
     /// Number of values outside the limits.
-    pub outside: u64,
+    pub fn outside(&self) -> u64 {
+        u64::from(self.outside)
+    }
 }
 
 /// The points of a series of a test, the oldest first.
@@ -37,7 +58,7 @@ pub(super) struct ColumnSeries {
     pub points: Vec<ColumnPoint>,
     /// The limits of the newest point.
     pub limits: [Option<f64>; 2],
-    newest: usize,
+    newest: u32,
 }
 
 impl ColumnSeries {
@@ -136,7 +157,7 @@ impl Store {
                     continue;
                 };
                 if on_robot.as_ref().is_none_or(|tests| tests[*test][run]) {
-                    series.add(ColumnPoint { run, value, outside }, limits);
+                    series.add(ColumnPoint::new(run, value, outside), limits);
                 }
             }
         })?;

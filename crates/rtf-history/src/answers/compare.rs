@@ -6,7 +6,7 @@ use rtf_model::Verdict;
 use serde::Serialize;
 
 use super::RunCounts;
-use super::columns::{ColumnSeries, Depth, TestColumns};
+use super::columns::{ColumnPoint, ColumnSeries, Depth, TestColumns};
 use super::scope::RunScope;
 use crate::entry::SeriesName;
 use crate::statistics::robust::median;
@@ -154,9 +154,9 @@ impl TestComparison {
 impl NumberChange {
     fn new(series: SeriesName, a: &ColumnSeries, b: &ColumnSeries) -> Self {
         let value = |series: &ColumnSeries| {
-            median(&series.points.iter().filter_map(|point| point.value).collect::<Vec<_>>())
+            median(&series.points.iter().filter_map(ColumnPoint::value).collect::<Vec<_>>())
         };
-        let outside = |series: &ColumnSeries| series.points.iter().map(|it| it.outside).sum();
+        let outside = |series: &ColumnSeries| series.points.iter().map(ColumnPoint::outside).sum();
         Self { series, a: value(a), b: value(b), outside_a: outside(a), outside_b: outside(b) }
     }
 }
