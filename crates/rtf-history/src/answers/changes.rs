@@ -79,8 +79,11 @@ struct GroupKey<'a> {
     profile: Option<&'a str>,
 }
 
-/// Numbers of comparable runs, each with the position of its run.
-type Groups<'a> = BTreeMap<GroupKey<'a>, Vec<(usize, f64)>>;
+/// Numbers, each with the position of its run.
+type Numbers = Vec<(usize, f64)>;
+
+/// Numbers of comparable runs.
+type Groups<'a> = BTreeMap<GroupKey<'a>, Numbers>;
 
 impl<'a> ChangeSearch<'a> {
     fn new(scope: &'a RunScope, robots: &'a [String]) -> Self {
@@ -113,7 +116,7 @@ impl<'a> ChangeSearch<'a> {
     ) -> Groups<'a> {
         let count = columns.results.len();
         // By the positions of robot and profile: comparing their names takes longer.
-        let mut groups: Vec<((Option<usize>, usize), Vec<(usize, f64)>)> = Vec::new();
+        let mut groups: Vec<((Option<usize>, usize), Numbers)> = Vec::new();
         let mut next = 0;
         for number in numbers {
             while next < count && columns.results[next].run < number.0 {

@@ -24,9 +24,9 @@ fn world() -> World {
         moves.was = (day == 33).then_some("Turns");
         let lag = 10.0 + noise + if late && robot == 0 { 5.0 } else { 0.0 };
         moves.measured =
-            vec![("lag", Some(lag).filter(|_| day % 9 != 0), "ms"), ("lag", None, "s")];
+            vec![("lag", Some(lag).filter(|_| !day.is_multiple_of(9)), "ms"), ("lag", None, "s")];
         moves.millis = 100 + u64::from(day * 31 % 7) + if late && robot == 1 { 50 } else { 0 };
-        let verdict = if day % 5 == 0 { Failed } else { Passed };
+        let verdict = if day.is_multiple_of(5) { Failed } else { Passed };
         let stops = Test { millis: u64::from(day), ..Test::new("Stops", verdict) };
         Run { robot: ROBOTS[robot], ..Run::new(day, "aaaa", vec![moves, stops]) }
     };
