@@ -32,7 +32,7 @@ web:
 	@tools/web.sh
 
 wheels: build
-	@wheel=$$(tools/wheel.sh x86_64) && tests/wheel/run.sh "$$wheel"
+	@wheel=$$(tools/wheel.sh x86_64) && tests/wheel/run.sh "$$wheel" && tests/wheel/minimal.sh "$$wheel"
 	@wheel=$$(tools/wheel.sh aarch64) && tests/wheel/aarch64.sh "$$wheel"
 
 # The pictures in docs/images.
