@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Runs all checks. If a step fails, the script prints the end of its output and continues;
-# build/test-logs has complete logs. The last line counts the steps.
+# build/test-logs has complete logs. The last line counts the steps. Steps with robots and
+# frameworks, which mostly wait, run at the same time as the other steps that need the release build.
 #
 #   tools/test.sh             all steps
 #   tools/test.sh quick       without steps that need middleware (ROS, YARP, …)
@@ -16,9 +17,9 @@ fi
 wanted=("$@")
 logs=$BUILD/test-logs
 mkdir -p "$logs"
-passed=0
-failed=()
-skipped=()
+# What happened, in order: `ok NAME`, `FAILED NAME` or `skipped NAME`. Steps run in two shells.
+results=$logs/results.txt
+: >"$results"
 
 is_wanted() {
   local word
@@ -29,6 +30,9 @@ is_wanted() {
   return 1
 }
 
+# Ctrl-C does not reach what runs in the background of a script.
+trap 'trap - INT TERM; kill -TERM 0' INT
+
 # Runs a step: name, command.
 step() {
   local name=$1 log started=$EPOCHREALTIME seconds verdict
@@ -37,17 +41,22 @@ step() {
   log=$logs/${name// /-}.log
   # In the background, because bash ignores `set -e` in a condition.
   "$@" >"$log" 2>&1 </dev/null &
-  if wait $!; then
-    passed=$((passed + 1))
-    verdict=ok
-  else
-    failed+=("$name")
-    verdict=FAILED
-    printf -- '--- %s: the last lines of %s\n' "$name" "${log#"$ROOT"/}"
-    tail -n 200 "$log"
-  fi
+  if wait $!; then verdict=ok; else verdict=FAILED; fi
   seconds=$(((${EPOCHREALTIME/./} - ${started/./}) / 100000))
-  printf '%-6s  %-28s %4d.%d s\n' "$verdict" "$name" $((seconds / 10)) $((seconds % 10))
+  {
+    flock 7
+    printf '%s %s\n' "$verdict" "$name" >&7
+    if [ $verdict = FAILED ]; then
+      printf -- '--- %s: the last lines of %s\n' "$name" "${log#"$ROOT"/}"
+      tail -n 200 "$log"
+    fi
+    printf '%-6s  %-28s %4d.%d s\n' "$verdict" "$name" $((seconds / 10)) $((seconds % 10))
+  } 7>>"$results"
+}
+
+# The names of the steps with a verdict.
+names_of() {
+  sed -n "s/^$1 //p" "$results"
 }
 
 # Runs a step that needs middleware: name, middleware, command.
@@ -56,7 +65,7 @@ step_with() {
   shift 2
   is_wanted "$name" || return 0
   if $quick; then
-    skipped+=("$name")
+    printf 'skipped %s\n' "$name" >>"$results"
   else
     step "$name" with_middleware "$middleware" "$@"
   fi
@@ -376,51 +385,56 @@ step 'build' cargo build --workspace --locked
 step 'sdk python' sdk_python
 step 'sdk ruby' sdk_ruby
 step 'fixtures python' fixtures_python
+step 'build release' tools/build.sh
+step 'instruction counts' tools/counts.py "$TARGET/release/rtf-counts"
+step 'example 01 plug-ins' tools/plugins.sh examples/01-simulated-arm
+robots_and_frameworks() {
+  step 'example 01' example_01
+  step 'example 02' example_02
+  step 'fixture mcap' fixture_mcap
+  step_with 'example 03' yarp example_03
+  step_with 'fixture yarp' yarp fixture_yarp
+  step_with 'clock yarp' yarp clock_yarp
+  step_with 'example 04' yarp example_04
+  step_with 'example 05' ros1 example_05
+  step_with 'clock ros1' ros1 clock_ros1
+  step_with 'example 06' ros2 example_06
+  step 'example 07' example_07
+  step 'example 08' example_08
+  step_with 'clock ros2' ros2 clock_ros2
+  step_with 'fixture ros2launch' ros2 fixture_ros2launch
+  step_with 'fixture orocos' orocos fixture_orocos
+  step 'framework gtest' framework gtest
+  step 'framework gtest public' public_gtest
+  step 'import colcon' import_colcon
+  step 'suites in ctest' suites_in_ctest
+  step 'suites in colcon' suites_in_colcon
+  step_with 'tutorial ros2 workspace' ros2 tutorial_ros2_workspace
+  step 'framework catch2' framework catch2
+  step 'framework doctest' framework doctest
+  step 'framework boost' framework boost
+  step 'framework cppunit' framework cppunit
+  step 'framework aunit' framework aunit
+  step 'framework pytest' framework pytest
+  step 'framework pytest public' public_pytest
+  step 'framework unittest' framework unittest
+  step 'framework ctest' framework ctest
+  step 'framework tap' framework tap
+  step 'framework program' framework program
+  step_with 'framework rostest' ros1 framework rostest
+  step 'example 09' example_09
+  step 'framework junit' framework junit
+  step 'framework go' framework go
+  step 'framework public go' tests/frameworks/public/go.sh "$TARGET/release/rtf"
+  step 'framework cargo' framework cargo
+}
+robots_and_frameworks &
+robots=$!
+
 # Also builds the plug-ins in sdk/c and sdk/cpp, with cc and c++.
 # `nohup make test` passes an ignored SIGHUP on, and `rtf` respects it; some tests send SIGHUP.
 step 'rust tests' env --default-signal=HUP cargo test --workspace --locked --no-fail-fast
 step 'web api' web_api
-step 'build release' tools/build.sh
-step 'instruction counts' tools/counts.py "$TARGET/release/rtf-counts"
-step 'example 01 plug-ins' tools/plugins.sh examples/01-simulated-arm
-step 'example 01' example_01
-step 'example 02' example_02
-step 'fixture mcap' fixture_mcap
-step_with 'example 03' yarp example_03
-step_with 'fixture yarp' yarp fixture_yarp
-step_with 'clock yarp' yarp clock_yarp
-step_with 'example 04' yarp example_04
-step_with 'example 05' ros1 example_05
-step_with 'clock ros1' ros1 clock_ros1
-step_with 'example 06' ros2 example_06
-step 'example 07' example_07
-step 'example 08' example_08
-step_with 'clock ros2' ros2 clock_ros2
-step_with 'fixture ros2launch' ros2 fixture_ros2launch
-step_with 'fixture orocos' orocos fixture_orocos
-step 'framework gtest' framework gtest
-step 'framework gtest public' public_gtest
-step 'import colcon' import_colcon
-step 'suites in ctest' suites_in_ctest
-step 'suites in colcon' suites_in_colcon
-step_with 'tutorial ros2 workspace' ros2 tutorial_ros2_workspace
-step 'framework catch2' framework catch2
-step 'framework doctest' framework doctest
-step 'framework boost' framework boost
-step 'framework cppunit' framework cppunit
-step 'framework aunit' framework aunit
-step 'framework pytest' framework pytest
-step 'framework pytest public' public_pytest
-step 'framework unittest' framework unittest
-step 'framework ctest' framework ctest
-step 'framework tap' framework tap
-step 'framework program' framework program
-step_with 'framework rostest' ros1 framework rostest
-step 'example 09' example_09
-step 'framework junit' framework junit
-step 'framework go' framework go
-step 'framework public go' tests/frameworks/public/go.sh "$TARGET/release/rtf"
-step 'framework cargo' framework cargo
 step 'history change points' history_change_points
 step 'debugging' debugging
 step 'ci helpers' ci_helpers
@@ -442,12 +456,14 @@ step 'predecessor command line' tests/predecessor/run.sh command
 step 'predecessor compared' tests/predecessor/run.sh compare
 step 'predecessor ours' tests/predecessor/run.sh ours
 
-for name in "${failed[@]}"; do
-  printf 'failed: %s\n' "$name"
-done
+wait $robots || die "the steps with robots and frameworks ended early"
+mapfile -t passed < <(names_of ok)
+mapfile -t failed < <(names_of FAILED)
+mapfile -t skipped < <(names_of skipped)
+[ ${#failed[@]} -eq 0 ] || printf 'failed: %s\n' "${failed[@]}"
 if [ ${#skipped[@]} -gt 0 ]; then
   printf 'skipped, because they need middleware: %s\n' "$(printf '%s, ' "${skipped[@]}" | sed 's/, $//')"
 fi
-printf '%d passed, %d failed\n' "$passed" ${#failed[@]}
+printf '%d passed, %d failed\n' ${#passed[@]} ${#failed[@]}
 [ ${#failed[@]} -eq 0 ] || exit 1
-[ "$passed" -gt 0 ] || die "no step has a name that contains: $*"
+[ ${#passed[@]} -gt 0 ] || die "no step has a name that contains: $*"
