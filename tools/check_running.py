@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs every command of the pages about `rtf run`, each in a directory with their suites.
+"""Runs every command of the pages about `rtf run` and the history, in a directory with suites.
 
     check_running.py RTF PAGE…
 
@@ -21,6 +21,7 @@ BLOCK = re.compile(r"^```(sh|toml)\n(.*?)^```$", re.M | re.S)
 INSTEAD = {
     "--for 8h": "--for 1s",
     "--repeat 1000": "--repeat 2",
+    "2026-11-20T07-13-25Z-01d2": "latest",
     "2026-11-21T10-22-13Z-4f7b": "latest",
 }
 
@@ -47,6 +48,16 @@ end
 HAND = """\
 <suite name="hand">
   <test type="python" tags="slow"> GripTest </test>
+</suite>
+"""
+# For the page about the history: a measurement, on two robots.
+ENCODER = """\
+TestCase = {}
+function TestCase.run() rtf.measure("lag", 12.5, "ms") end
+"""
+ROBOTS = """\
+<suite name="{robot}" requires="robot:{robot}">
+  <test type="lua"> EncoderTest </test>
 </suite>
 """
 GRIP = """\
@@ -77,6 +88,8 @@ def check(rtf: Path, page: Path, directory: Path) -> None:
     for place in (directory, directory / "suites", directory / "tests"):
         fill(place)
     (directory / "tests" / "hand.xml").unlink()
+    if page.stem == "history":
+        run_before(directory, rtf)
     settings = "".join(text for kind, text in blocks if kind == "toml")
     (directory / "rtf.toml").write_text(settings)
     for command in map(possible, commands):
@@ -84,6 +97,25 @@ def check(rtf: Path, page: Path, directory: Path) -> None:
         if "--rerun" in command:
             call(directory, rtf, ["rtf", "run", "hand.xml"])
         call(directory, rtf, ["bash", "-o", "pipefail", "-c", command])
+
+
+def run_before(directory: Path, rtf: Path) -> None:
+    """Runs on the branches and robots that the page compares, also in another directory."""
+    (directory / "EncoderTest.lua").write_text(ENCODER)
+    (directory / ".gitignore").write_text("rtf-results\nnightly-results\nlocks\n")
+    for robot in ("red", "blue"):
+        (directory / f"{robot}.xml").write_text(ROBOTS.format(robot=robot))
+    git = ["git", "-c", "user.name=x", "-c", "user.email=x@localhost"]
+    call(directory, rtf, ["git", "init", "--quiet", "--initial-branch", "main"])
+    call(directory, rtf, ["git", "add", "--all"])
+    call(directory, rtf, [*git, "commit", "--quiet", "--message", "suites"])
+    for _ in range(7):
+        call(directory, rtf, ["rtf", "run", "arm.xml"])
+    call(directory, rtf, ["git", "checkout", "--quiet", "-b", "arm"])
+    call(directory, rtf, ["rtf", "run", "arm.xml"])
+    call(directory, rtf, ["git", "checkout", "--quiet", "main"])
+    call(directory, rtf, ["rtf", "run", "red.xml", "blue.xml"])
+    call(directory, rtf, ["rtf", "run", "hand.xml", "--results", "nightly-results"])
 
 
 def possible(command: str) -> str:

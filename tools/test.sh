@@ -443,7 +443,7 @@ step 'guide' env RTF_PYTHON="$checkers/python" tools/check_docs.py "$TARGET/rele
   docs/how-to/{writing-tests,simulation-time,recorders,real-robot}.md \
   docs/how-to/migrating-{rtf2,launch-testing,pytest,robot-framework}.md docs/reference/junit.md
 step 'guide commands' tools/check_running.py "$TARGET/release/rtf" \
-  docs/how-to/{running,flaky-tests,soak,parallel,profiles,doctor,sharding}.md
+  docs/how-to/{running,flaky-tests,soak,parallel,profiles,doctor,sharding,history}.md
 step 'guide requests' tools/check_web_page.py "$TARGET/release/rtf"
 step 'guide build' tools/docs.sh "$TARGET/release/rtf"
 step 'page in a browser' tools/web-tests.sh
