@@ -8,6 +8,10 @@ import signal
 from collections.abc import Callable
 from pathlib import Path
 
+# The processes that this one starts inherit it.
+os.environ["RTF_CHECK"] = str(os.getpid())
+MARK = f"RTF_CHECK={os.getpid()}"
+
 
 def select(wanted: Callable[[Path, list[str], list[str]], bool]) -> list[int]:
     """The processes whose directory in /proc, command line and environment are wanted.
@@ -32,8 +36,12 @@ def lines(file: Path) -> list[str]:
 
 
 def running(program: str) -> list[int]:
-    """The processes whose program or script has this name."""
-    return select(lambda _, words, __: program in {Path(word).name for word in words[:2]})
+    """The processes whose program or script has this name, which this check has started."""
+
+    def is_ours(_: Path, words: list[str], environment: list[str]) -> bool:
+        return program in {Path(word).name for word in words[:2]} and MARK in environment
+
+    return select(is_ours)
 
 
 def children(pid: int) -> list[int]:
