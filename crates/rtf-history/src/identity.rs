@@ -29,16 +29,6 @@ impl std::fmt::Display for TestIdentity {
     }
 }
 
-/// The identity of a run. Journals of old runners and merged runs have no id.
-#[must_use]
-pub fn run_id(run: &RunStarted) -> String {
-    let id = run.manifest.origin.as_ref().map(|origin| origin.id.as_str());
-    match id.filter(|id| !id.is_empty()) {
-        Some(id) => id.to_owned(),
-        None => format!("run:{}", run.run),
-    }
-}
-
 /// Makes the names of suite files independent of the directory in which a run was started.
 #[derive(Debug)]
 pub struct SuiteFileBase {

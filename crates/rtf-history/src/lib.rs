@@ -14,6 +14,6 @@ mod selection;
 pub mod statistics;
 pub mod store;
 
-pub use identity::{SuiteFileBase, TestIdentity, run_id};
+pub use identity::{SuiteFileBase, TestIdentity};
 pub use selection::{RunSelection, TestAttributes, TestSelection};
 pub use store::{ImportOutcome, Store, StoreError};

@@ -69,6 +69,9 @@ pub struct Manifest {
     /// Which run it is, and where it was started.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub origin: Option<Origin>,
+    /// The ids of the runs that were merged into this one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<String>,
     /// Number of tests before filters were applied.
     #[serde(skip_serializing_if = "is_default")]
     pub selected_from: u32,

@@ -9,8 +9,6 @@ use rtf_model::{Record, RunStarted, RunState, Verdict};
 pub use number::{NumberKind, NumberSummary, SeriesName};
 pub use results::ResultEntry;
 
-use crate::run_id;
-
 /// Everything that the store keeps of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunEntry {
@@ -103,7 +101,7 @@ impl RunEntry {
         };
         let totals = record.final_totals();
         Ok(Self {
-            id: run_id(&started),
+            id: started.id(),
             started_at,
             duration_us: i64::try_from(record.last_at.0).unwrap_or(i64::MAX),
             end,

@@ -19,6 +19,8 @@ pub enum ImportOutcome {
     Known,
     /// The run was pruned, and was not imported.
     Pruned,
+    /// The run was merged from others, which have its results. It was not imported.
+    Merged,
 }
 
 /// Whether a run that was pruned is imported.
@@ -59,6 +61,13 @@ impl Store {
         // At once for writing: two readers that both want to write would fail.
         let behavior = TransactionBehavior::Immediate;
         let transaction = self.connection.transaction_with_behavior(behavior).map_err(failed)?;
+        if !run.started.manifest.parts.is_empty() {
+            // Remembered, so that its journal is not read again.
+            let values = [&run.id, &run.started.run];
+            let remembered = transaction.execute(sql::INSERT_PRUNED, values);
+            remembered.and_then(|_| transaction.commit()).map_err(failed)?;
+            return Ok(ImportOutcome::Merged);
+        }
         let outcome = match find(&transaction, run, pruned).map_err(failed)? {
             Found::Nothing => ImportOutcome::Imported,
             Found::Fewer(id) => {

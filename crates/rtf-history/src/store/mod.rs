@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags};
 
 pub(crate) use columns::{PackedPoint, PackedPoints, PackedResult, PackedResults};
@@ -31,6 +32,9 @@ const RETRY_INTERVAL: Duration = Duration::from_millis(10);
 /// Number of pages after which the write-ahead log is copied into the database: an import
 /// of a large run fits into it.
 const CHECKPOINT_PAGES: i64 = 8000;
+
+/// The same for a log that stays when the database is closed.
+const KEPT_PAGES: i64 = 250;
 
 /// The history: a SQLite database.
 #[derive(Debug)]
@@ -116,6 +120,21 @@ impl Store {
         self.connection.pragma_update(None, "foreign_keys", true)?;
         self.connection.set_prepared_statement_cache_capacity(32);
         Ok(())
+    }
+
+    /// Leaves the write-ahead log when the store is closed, so that closing waits for no disk.
+    /// A store that is opened for a question copies it into the database. The log stays short,
+    /// because opening the database reads it.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub fn keep_log(&self) -> Result<(), StoreError> {
+        let connection = &self.connection;
+        let keep = || -> rusqlite::Result<()> {
+            connection.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
+            connection.pragma_update(None, "wal_autocheckpoint", KEPT_PAGES)
+        };
+        keep().map_err(|error| self.error(error))
     }
 
     /// The path of the database.

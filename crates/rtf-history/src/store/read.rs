@@ -53,7 +53,7 @@ pub struct StoreCounts {
     pub series: u64,
     /// Points of series.
     pub points: u64,
-    /// Runs that were pruned.
+    /// Runs that are not stored because they were pruned, or merged from others.
     pub pruned: u64,
 }
 

@@ -141,7 +141,7 @@ pub const DELETE_UNUSED: [&str; 2] = [
        AND NOT EXISTS (SELECT 1 FROM series WHERE series.test_id = test.id)
        AND NOT EXISTS (SELECT 1 FROM test AS former WHERE former.renamed_to = test.id)",
 ];
-/// Remembers that a run was pruned.
+/// Remembers a run that is not stored: it was pruned, or merged from others.
 pub const INSERT_PRUNED: &str =
     "INSERT INTO pruned (uid, name) VALUES ($1, $2) ON CONFLICT (uid) DO NOTHING";
 /// Forgets that a run was pruned.

@@ -30,6 +30,18 @@ pub struct RunStarted {
     pub manifest: Box<Manifest>,
 }
 
+impl RunStarted {
+    /// The identity of the run. Journals of old runners and merged runs have no id.
+    #[must_use]
+    pub fn id(&self) -> String {
+        let id = self.manifest.origin.as_ref().map(|origin| origin.id.as_str());
+        match id.filter(|id| !id.is_empty()) {
+            Some(id) => id.to_owned(),
+            None => format!("run:{}", self.run),
+        }
+    }
+}
+
 /// A suite that will be run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -1,7 +1,7 @@
 //! What the merged run was asked for, and whether a part of it is missing.
 
 use jiff::Timestamp;
-use rtf_model::Manifest;
+use rtf_model::{Manifest, RunStarted};
 
 use super::{MergeInput, MergeProblem, count, started};
 
@@ -35,7 +35,8 @@ pub(super) fn join(parts: &[MergeInput], tests: usize) -> MergedManifest {
     };
     let selected_from =
         if manifest.selected_from > count(tests) { manifest.selected_from } else { 0 };
-    MergedManifest { manifest: Manifest { selected_from, ..manifest }, missing }
+    let ids = parts.iter().filter_map(started).map(RunStarted::id).collect();
+    MergedManifest { manifest: Manifest { selected_from, parts: ids, ..manifest }, missing }
 }
 
 fn divisions(parts: &[MergeInput]) -> Vec<Division> {
@@ -50,6 +51,7 @@ fn divisions(parts: &[MergeInput]) -> Vec<Division> {
             jobs: None,
             revision: None,
             origin: None,
+            parts: Vec::new(),
             ..(*run.manifest).clone()
         };
         let manifest = match (of, asked.selected_from) {

@@ -20,7 +20,7 @@ use crate::cli::MergeArgs;
 use crate::error::Failure;
 use crate::outputs::console_options;
 use crate::request::{config, past_run};
-use crate::{exit, terminal};
+use crate::{exit, history, terminal};
 
 /// A file that a test attached.
 struct AttachedFile {
@@ -37,12 +37,12 @@ pub fn run(mut args: MergeArgs, matches: &ArgMatches) -> VerbResult {
     let results = &args.results.results;
     let mut parts = Vec::new();
     let mut attached = Vec::new();
-    for (number, run) in args.runs.iter().enumerate() {
-        let journal = past_run::find_journal(results, run)?;
+    for (run, journal) in find_journals(results, &args.runs)? {
+        let number = parts.len();
         let events = read_events(run, &journal)?;
         let dir = journal.parent().unwrap_or(Path::new("."));
         attached.extend(attached_files(number, dir, &events));
-        parts.push(MergeInput { name: run.clone(), events });
+        parts.push(MergeInput { name: run.to_owned(), events });
     }
     let merged = merge::merge(parts, args.partial).map_err(|problems| refuse(&problems))?;
     let dir = run_dir::create(results).map_err(|error| {
@@ -56,6 +56,25 @@ pub fn run(mut args: MergeArgs, matches: &ArgMatches) -> VerbResult {
     };
     let record = write(&merged.events(header), &dir).map_err(Failure::internal)?;
     Ok(exit::of_run(&record))
+}
+
+/// The journals of the runs. `results/*` also names the history, which is left out, and the
+/// newest run by its link.
+fn find_journals<'a>(
+    results: &Path,
+    runs: &'a [String],
+) -> Result<Vec<(&'a str, PathBuf)>, Failure> {
+    let runs = runs.iter().filter(|run| !history::is_database(Path::new(run)));
+    let find = |run: &'a String| Ok((run.as_str(), past_run::find_journal(results, run)?));
+    let found = runs.map(find).collect::<Result<Vec<_>, Failure>>()?;
+    if found.is_empty() {
+        return Err(Failure::input("there are no runs to merge"));
+    }
+    let is_link = |run: &str| Path::new(run).is_symlink();
+    let is_named = |(run, journal): &(&str, PathBuf)| {
+        is_link(run) && found.iter().any(|other| !is_link(other.0) && other.1 == *journal)
+    };
+    Ok(found.iter().filter(|it| !is_named(it)).cloned().collect())
 }
 
 /// Reads a run that has ended.

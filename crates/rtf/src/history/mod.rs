@@ -3,6 +3,7 @@
 
 pub mod journals;
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -29,6 +30,13 @@ pub struct HistoryTarget {
     pub results: PathBuf,
 }
 
+/// Whether this is the database in a results directory, or its write-ahead log or index.
+pub fn is_database(path: &Path) -> bool {
+    let name = path.file_name().and_then(OsStr::to_str);
+    let rest = name.and_then(|name| name.strip_prefix(FILE_NAME));
+    matches!(rest, Some("" | "-wal" | "-shm")) && path.is_file()
+}
+
 /// Resolves the database: a path or a `file:` URL, by default in the results directory.
 pub fn resolve(url: Option<&str>, results: &Path) -> Result<PathBuf, Failure> {
     let Some(url) = url else { return Ok(results.join(FILE_NAME)) };
@@ -53,6 +61,7 @@ pub fn import_run(target: &HistoryTarget, record: &Record) {
         return;
     }
     let imported = Store::open(&target.path).and_then(|mut store| {
+        store.keep_log()?;
         store.import(record)?;
         catch_up(&mut store, &target.results)
     });

@@ -72,7 +72,7 @@ fn three_parts_merged_are_the_whole() {
     assert!(merged.fixtures.iter().all(|fixture| fixture.state == FixtureState::Stopped));
     let manifest = |record: &Record| {
         let run = record.run.as_ref().expect("a run");
-        Manifest { origin: None, ..(*run.manifest).clone() }
+        Manifest { origin: None, parts: Vec::new(), ..(*run.manifest).clone() }
     };
     assert_eq!(manifest(&merged), manifest(&record), "it can be run again as the whole can");
     let shown = folder.rtf(&["show", "--results", "merged"]);
@@ -83,6 +83,40 @@ fn three_parts_merged_are_the_whole() {
     assert_eq!(junit.matches("<testsuite ").count(), 2, "{junit}");
     assert!(junit.contains("failures=\"2\" errors=\"1\""), "{junit}");
     assert!(nothing_left(&folder));
+}
+
+/// The pattern `parts/*` names the history and the link to the newest run, too.
+#[test]
+fn all_of_a_results_directory_is_merged_and_not_counted_twice() {
+    let folder = folder();
+    let runs = |results: &str| -> u64 {
+        let history = ["history", "doctor", "--results", results, "--format", "json"];
+        let checks = serde_json::from_str(&folder.rtf(&history).stdout);
+        let checks: serde_json::Value = checks.expect("JSON");
+        checks["checks"]["runs"].as_u64().expect("a number")
+    };
+    for part in ["1/2", "2/2"] {
+        let run = ["run", "suites", "--shard", part, "--shard-by", "count", "--results", "parts"];
+        folder.rtf(&run);
+    }
+    let entries = std::fs::read_dir(folder.path().join("parts")).expect("results");
+    let entry = |entry: std::io::Result<std::fs::DirEntry>| {
+        format!("parts/{}", entry.expect("an entry").file_name().display())
+    };
+    let all: Vec<_> = entries.map(entry).collect();
+    assert!(all.contains(&"parts/history.db".to_owned()), "{all:?}");
+    assert!(all.contains(&"parts/latest".to_owned()), "{all:?}");
+    let mut args = vec!["merge", "--results", "parts"];
+    args.extend(all.iter().map(String::as_str));
+    let finished = folder.rtf(&args);
+    assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
+    let merged = folder.journal_in("parts").record;
+    assert_eq!(merged.tests.len(), 9);
+    assert_eq!(merged.run.expect("a run").manifest.parts.len(), 2);
+    let imported = folder.rtf(&["history", "import", "--results", "parts"]);
+    let text = "0 runs imported, 2 already there, 1 left out (merged from others)\n";
+    assert_eq!((imported.code, imported.stdout.as_str()), (Some(0), text));
+    assert_eq!(runs("parts"), 2);
 }
 
 #[test]

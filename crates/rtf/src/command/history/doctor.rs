@@ -56,7 +56,7 @@ pub fn run(mut args: HistoryDoctorArgs, matches: &ArgMatches) -> VerbResult {
             count(counts.points, "point"),
         )?;
         if counts.pruned > 0 {
-            writeln!(out, "  {} pruned", count(counts.pruned, "run"))?;
+            writeln!(out, "  {} pruned or merged from others", count(counts.pruned, "run"))?;
         }
         for problem in &checks.problems {
             writeln!(out, "  \u{1b}[31mproblem\u{1b}[0m  {}", escape::line(problem))?;

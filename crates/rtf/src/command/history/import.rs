@@ -21,6 +21,7 @@ struct ImportSummary {
     imported: u64,
     replaced: u64,
     known: u64,
+    merged: u64,
     active: Vec<String>,
     failed: Vec<FailedJournal>,
 }
@@ -49,6 +50,9 @@ pub fn run(mut args: HistoryImportArgs, matches: &ArgMatches) -> VerbResult {
         }
         if summary.known > 0 {
             write!(out, ", {} already there", summary.known)?;
+        }
+        if summary.merged > 0 {
+            write!(out, ", {} left out (merged from others)", summary.merged)?;
         }
         if !summary.active.is_empty() {
             write!(out, ", {} still active", summary.active.len())?;
@@ -91,6 +95,10 @@ impl ImportSummary {
             }
             JournalImport::Done(ImportOutcome::Known | ImportOutcome::Pruned) => {
                 self.known += 1;
+                return Ok(());
+            }
+            JournalImport::Done(ImportOutcome::Merged) => {
+                self.merged += 1;
                 return Ok(());
             }
             JournalImport::Active => {
