@@ -9,9 +9,31 @@ from __future__ import annotations
 from measuring.bench import Bench
 from measuring.model import Group
 
-from lines import collapse, frameworks, large, own_process, page, python, reports, startup, watched
+from lines import (
+    collapse,
+    frameworks,
+    history,
+    large,
+    own_process,
+    page,
+    python,
+    reports,
+    startup,
+    watched,
+)
 
-MODULES = (own_process, python, frameworks, startup, large, reports, collapse, page, watched)
+MODULES = (
+    own_process,
+    python,
+    frameworks,
+    startup,
+    history,
+    large,
+    reports,
+    collapse,
+    page,
+    watched,
+)
 
 
 def all_groups(bench: Bench) -> list[Group]:

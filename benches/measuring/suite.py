@@ -32,8 +32,14 @@ def tests(kind: str, plugin: str, count: int, isolation: str = "process") -> lis
 class Run:
     """A finished run of rtf; its directory is removed at the end of the context."""
 
-    def __init__(self, bench: Bench, suite: Path, codes: Sequence[int] = (0,)) -> None:
-        command = [str(bench.rtf), "run", "--results", str(bench.results), str(suite)]
+    def __init__(
+        self,
+        bench: Bench,
+        suite: Path,
+        codes: Sequence[int] = (0,),
+        options: Sequence[str] = (),
+    ) -> None:
+        command = [str(bench.rtf), "run", "--results", str(bench.results), *options, str(suite)]
         self.launched: Launched = bench.launch(command, codes=codes)
         self.directory = (bench.results / "latest").resolve()
 

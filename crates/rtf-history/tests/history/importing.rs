@@ -113,3 +113,39 @@ fn a_renamed_test_keeps_its_history() {
     let names = world.store.identities().expect("names");
     assert!(names.iter().all(|identity| identity.test != "Halts"), "{names:?}");
 }
+
+#[test]
+fn a_merged_run_is_left_out() {
+    let runs = runs(3);
+    let mut world = World::with(&runs);
+    let before = world.store.runs(&all_runs()).expect("runs");
+    let mut record = Run { day: 9, ..runs[2].clone() }.record();
+    let started = record.run.as_mut().expect("a start");
+    started.manifest.origin = None;
+    started.manifest.parts = vec![runs[0].id(), runs[1].id()];
+    for _ in 0..2 {
+        assert_eq!(world.store.import(&record).expect("no import"), ImportOutcome::Merged);
+        assert_eq!(world.store.restore(&record).expect("no import"), ImportOutcome::Merged);
+    }
+    assert_eq!(world.store.runs(&all_runs()).expect("runs"), before);
+    let names = world.store.run_names().expect("names");
+    assert!(names.contains(&"run-009".to_owned()), "its journal is not read again: {names:?}");
+}
+
+#[test]
+fn a_log_that_stays_is_read_by_the_next_process() {
+    let dir = tempfile::tempdir().expect("a directory");
+    let path = dir.path().join("history.db");
+    let all = runs(30);
+    for run in &all {
+        let mut store = Store::open(&path).expect("a store");
+        store.keep_log().expect("an option");
+        store.import(&run.record()).expect("an import");
+    }
+    let log = dir.path().join("history.db-wal");
+    assert!(log.metadata().is_ok_and(|log| log.len() > 0), "closing copies nothing");
+    let store = Store::open_existing(&path).expect("a store");
+    assert_eq!(dump(&store), World::with(&all).dump());
+    drop(store);
+    assert!(!log.exists(), "a question copies it");
+}
