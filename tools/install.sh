@@ -96,16 +96,22 @@ put_tree sdk/python/rtf share/rtf/python/rtf '*.py' py.typed
 put 644 sdk/python/robottestingframework.py share/rtf/python/robottestingframework.py
 put_tree sdk/ruby/lib share/rtf/ruby/lib '*.rb'
 put_tree fixtures share/rtf/fixtures '*.py' '*.json'
-put_tree spec share/rtf/spec '*.md' '*.xsd'
+put 644 spec/suite.xsd share/rtf/spec/suite.xsd
 put_tree schemas share/rtf/schemas '*.json'
 put_tree "$stage/man" share/man/man1 '*.1'
 put 644 "$stage/rtf.bash" share/bash-completion/completions/rtf
 put 644 "$stage/rtf.zsh" share/zsh/site-functions/_rtf
 put 644 "$stage/rtf.fish" share/fish/vendor_completions.d/rtf.fish
-for page in README.md CHANGELOG.md LICENSE; do
+for page in README.md ARCHITECTURE.md CHANGELOG.md CONTRIBUTING.md LICENSE; do
   put 644 "$page" "share/doc/rtf/$page"
 done
 put_tree docs share/doc/rtf/docs '*.md' '*.png' '*.svg'
+put_tree spec share/doc/rtf/spec '*.md' '*.xsd'
+# What the pages lead to.
+for file in sdk/{ada,lua,python,ruby}/README.md sdk/c/include/rtf/plugin.h fixtures/needs.json schemas/openapi.json \
+  packaging/action/{action,example}.yml packaging/gitlab/rtf.yml packaging/jenkins/Jenkinsfile; do
+  put 644 "$file" "share/doc/rtf/$file"
+done
 put_tree examples share/doc/rtf/examples '*.md' '*.xml' '*.toml' '*.launch' '*.sh' CMakeLists.txt \
   '*.py' '*.lua' '*.rb' '*.cpp' '*.hpp' '*.ads' '*.adb' '*.gpr' '*.java'
 

@@ -23,7 +23,7 @@ git -C "$work/source" -c user.name=test -c user.email=test@example.org commit --
 for file in bin/rtf libexec/rtf/rtf-host-native libexec/rtf/rtf-host-lua \
   libexec/rtf/rtf-host-framework share/man/man1/rtf.1 \
   share/man/man1/rtf-run.1 share/bash-completion/completions/rtf share/zsh/site-functions/_rtf \
-  share/fish/vendor_completions.d/rtf.fish share/rtf/spec/suite.md share/rtf/schemas/event.json \
+  share/fish/vendor_completions.d/rtf.fish share/doc/rtf/spec/suite.md share/rtf/spec/suite.xsd share/rtf/schemas/event.json \
   lib/cmake/rtf/rtf-config.cmake include/robottestingframework/TestCase.h include/rtf1/TestCase.h \
   share/rtf/python/robottestingframework.py share/rtf/ruby/lib/rtf/host.rb \
   share/rtf/ada/robottestingframework.gpr share/rtf/ada/src/robottestingframework.ads \
@@ -33,6 +33,8 @@ for file in bin/rtf libexec/rtf/rtf-host-native libexec/rtf/rtf-host-lua \
   share/doc/rtf/README.md share/doc/rtf/docs/images/live.png share/doc/rtf/examples/07-levels/rtf.toml; do
   [ -s "$prefix/$file" ] || die "$file was not installed"
 done
+
+python3 tools/check_links.py "$prefix/share/doc/rtf"
 
 # A session with the environment of a login shell and the installed rtf.
 cat >"$work/session.sh" <<'SESSION'

@@ -77,6 +77,7 @@ fn run(verb: Verb, matches: &ArgMatches) -> VerbResult {
         Verb::New(args) => command::new::run(&args),
         Verb::Init(args) => command::init::run(&args),
         Verb::CmakeDir => command::sdk_dir::cmake(),
+        Verb::AmentDir => command::sdk_dir::ament(),
         Verb::AdaDir => command::sdk_dir::ada(),
         Verb::Completions { shell } => command::completions::run(shell),
         Verb::Man { dir } => command::man::run(&dir),

@@ -36,6 +36,12 @@ pub fn ada_dir(runner: &RunnerEnvironment) -> Option<PathBuf> {
     runner.shipped(&["share/rtf/ada"], "sdk/ada", "robottestingframework.gpr")
 }
 
+/// Returns the directory with the package `ament_cmake_rtf`.
+#[must_use]
+pub fn ament_dir(runner: &RunnerEnvironment) -> Option<PathBuf> {
+    runner.shipped(&["share/rtf/ament"], "packaging/ament", "ament_cmake_rtf/package.xml")
+}
+
 /// Finds a program in the user's `PATH`.
 #[must_use]
 pub fn find_in_path(name: &str, runner: &RunnerEnvironment) -> Option<PathBuf> {

@@ -48,7 +48,7 @@ pub use case_selection::{CaseSelection, CaseSelectionOrigin};
 pub use checks::{CheckAnswer, CheckGroup, CheckReport};
 pub use draft::{PlanDraft, PlanOutcome, draft};
 pub use installed::{
-    LocatedHost, ada_dir, cmake_dir, find_in_path, installed_hosts, shipped_fixtures_dir,
+    LocatedHost, ada_dir, ament_dir, cmake_dir, find_in_path, installed_hosts, shipped_fixtures_dir,
 };
 pub use options::{CaseListing, Compatibility, InputPath, Options};
 pub use process_types::*;

@@ -118,6 +118,8 @@ pub enum Verb {
     Init(InitArgs),
     /// Print the directory of the CMake packages, for `rtf_DIR`
     CmakeDir,
+    /// Print the directory of `ament_cmake_rtf`, to be copied into a colcon workspace
+    AmentDir,
     /// Print the directory of the Ada SDK, for `gprbuild -aP`
     AdaDir,
     /// Print shell completions

@@ -1,4 +1,5 @@
-//! `rtf cmake-dir` and `rtf ada-dir`: where builds of plug-ins find the SDKs of C++ and Ada.
+//! `rtf cmake-dir`, `rtf ament-dir` and `rtf ada-dir`: where builds find CMake packages, the
+//! package for ament, and the Ada SDK.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -12,6 +13,11 @@ use crate::terminal;
 /// Prints the directory of the CMake packages.
 pub fn cmake() -> VerbResult {
     print("CMake packages", plan::cmake_dir)
+}
+
+/// Prints the directory of the packages for ament.
+pub fn ament() -> VerbResult {
+    print("package for ament", plan::ament_dir)
 }
 
 /// Prints the directory of the Ada SDK.

@@ -1,4 +1,4 @@
-//! `rtf cmake-dir` and `rtf ada-dir`, in the source tree and where rtf is installed.
+//! `rtf cmake-dir`, `rtf ament-dir` and `rtf ada-dir`, in the source tree and where rtf is installed.
 
 use std::path::Path;
 use std::process::Command;
@@ -16,11 +16,16 @@ fn run(program: &Path, verb: &str) -> Finished {
 #[test]
 fn in_the_source_tree() {
     let folder = Folder::new();
-    let shown = ["cmake-dir", "ada-dir"].map(|verb| folder.shown(&folder.rtf(&[verb])));
+    let shown =
+        ["cmake-dir", "ament-dir", "ada-dir"].map(|verb| folder.shown(&folder.rtf(&[verb])));
     assert_snapshot!(shown.concat(), @"
     exit code 0
     ----- stdout
     [ROOT]/sdk/cpp/cmake
+    ----- stderr
+    exit code 0
+    ----- stdout
+    [ROOT]/packaging/ament
     ----- stderr
     exit code 0
     ----- stdout
@@ -37,7 +42,8 @@ fn in_a_prefix() {
     // The prefix may be on another file system.
     let linked = std::fs::hard_link(RTF, &program);
     linked.or_else(|_| std::fs::copy(RTF, &program).map(drop)).expect("a copy");
-    let missing = ["cmake-dir", "ada-dir"].map(|verb| folder.shown(&run(&program, verb)));
+    let missing =
+        ["cmake-dir", "ament-dir", "ada-dir"].map(|verb| folder.shown(&run(&program, verb)));
     assert_snapshot!(missing.concat(), @"
     exit code 2
     ----- stdout
@@ -47,16 +53,27 @@ fn in_a_prefix() {
     exit code 2
     ----- stdout
     ----- stderr
+    error: `[FOLDER]/usr/bin/rtf` has no package for ament
+    hint: `make install` and the package `rtf-dev` install them
+    exit code 2
+    ----- stdout
+    ----- stderr
     error: `[FOLDER]/usr/bin/rtf` has no Ada SDK
     hint: `make install` and the package `rtf-dev` install them
     ");
     folder.file("usr/lib/cmake/rtf/rtf-config.cmake", "");
+    folder.file("usr/share/rtf/ament/ament_cmake_rtf/package.xml", "");
     folder.file("usr/share/rtf/ada/robottestingframework.gpr", "");
-    let shown = ["cmake-dir", "ada-dir"].map(|verb| folder.shown(&run(&program, verb)));
+    let shown =
+        ["cmake-dir", "ament-dir", "ada-dir"].map(|verb| folder.shown(&run(&program, verb)));
     assert_snapshot!(shown.concat(), @"
     exit code 0
     ----- stdout
     [FOLDER]/usr/lib/cmake
+    ----- stderr
+    exit code 0
+    ----- stdout
+    [FOLDER]/usr/share/rtf/ament
     ----- stderr
     exit code 0
     ----- stdout

@@ -108,6 +108,7 @@ fn help_lists_the_exit_codes() {
       new          Write a small project that runs at once: a suite, a test or a fixture
       init         Add `rtf.toml`, `.gitignore` and jobs for GitHub and GitLab to a project
       cmake-dir    Print the directory of the CMake packages, for `rtf_DIR`
+      ament-dir    Print the directory of `ament_cmake_rtf`, to be copied into a colcon workspace
       ada-dir      Print the directory of the Ada SDK, for `gprbuild -aP`
       completions  Print shell completions
       help         Print this message or the help of the given subcommand(s)
@@ -295,6 +296,7 @@ fn man_writes_a_page_for_each_verb() {
     names.sort();
     let verbs = [
         "ada-dir",
+        "ament-dir",
         "check",
         "cmake-dir",
         "completions",
