@@ -4,6 +4,7 @@ use jiff::Timestamp;
 use rtf_model::Verdict;
 use serde::Serialize;
 
+use super::RunInfo;
 use super::columns::{ColumnResult, Depth, TestColumns};
 use super::scope::{RunScope, ScopedResult, StoredTest};
 use super::test_history::TestResult;
@@ -79,20 +80,22 @@ impl Store {
     }
 }
 
-/// What two comparable results of a run have in common, except the robot: `None` without a
-/// commit, or with uncommitted changes.
-fn commit_keys(scope: &RunScope) -> Vec<Option<String>> {
-    let key = |run: &super::RunInfo| {
-        let commit = run.commit.as_ref().filter(|_| run.dirty != Some(true))?;
-        let profile = run.profile.as_deref().unwrap_or_default();
-        Some(format!("{commit}\0{profile}\0{}", run.parameters.join("\0")))
+/// What the comparable results have in common, except the robot. Without a commit, or with
+/// uncommitted changes, only those of one run are comparable.
+fn commit_keys(scope: &RunScope) -> Vec<String> {
+    let key = |(index, run): (usize, &RunInfo)| match &run.commit {
+        Some(commit) if run.is_committed() => {
+            let profile = run.profile.as_deref().unwrap_or_default();
+            format!("{commit}\0{profile}\0{}", run.parameters.join("\0"))
+        }
+        _ => format!("run {index}"),
     };
-    scope.runs.iter().map(key).collect()
+    scope.runs.iter().enumerate().map(key).collect()
 }
 
-fn count(keys: &[Option<String>], results: &[ColumnResult], robots: &[String]) -> Flips {
+fn count(keys: &[String], results: &[ColumnResult], robots: &[String]) -> Flips {
     let with_robot = |result: &ColumnResult| {
-        let key = keys.get(result.run)?.as_ref()?;
+        let key = keys.get(result.run)?;
         Some(format!("{key}\0{}", robots.get(result.robot)?))
     };
     let keys: Vec<_> = results.iter().map(with_robot).collect();
@@ -100,7 +103,9 @@ fn count(keys: &[Option<String>], results: &[ColumnResult], robots: &[String]) -
     for (result, key) in results.iter().zip(&keys) {
         let commit = key.as_deref();
         if result.is_flaky {
-            attempts.push(Attempt { commit, verdict: Verdict::Failed });
+            let is_passed = result.verdict == Verdict::Passed;
+            let verdict = if is_passed { Verdict::Failed } else { Verdict::Passed };
+            attempts.push(Attempt { commit, verdict });
         }
         attempts.push(Attempt { commit, verdict: result.verdict });
     }

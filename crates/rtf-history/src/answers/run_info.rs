@@ -59,6 +59,14 @@ pub struct RunInfo {
     pub rtf: String,
 }
 
+impl RunInfo {
+    /// Whether its sources are those of a commit, so that runs of the same commit are comparable.
+    #[must_use]
+    pub fn is_committed(&self) -> bool {
+        self.commit.is_some() && self.dirty != Some(true)
+    }
+}
+
 /// Number of tests by verdict. Serialised as a map without zeros.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RunCounts([u32; Verdict::ALL.len()]);

@@ -6,6 +6,7 @@ use std::time::Duration;
 use rtf_model::{AttemptRecord, CaseId, Record, RunStarted, TestRecord, Verdict};
 
 use super::number::{NumberCollector, NumberSummary, SeriesName};
+use crate::statistics::Outcome;
 use crate::statistics::robust::median;
 use crate::{SuiteFileBase, TestAttributes, TestIdentity};
 
@@ -24,7 +25,7 @@ pub struct ResultEntry {
     pub was: Option<String>,
     /// The final verdict.
     pub verdict: Verdict,
-    /// Whether it passed after an earlier attempt had failed.
+    /// Whether it both passed and failed: on a retry, or in repetitions.
     pub is_flaky: bool,
     /// Number of attempts, of all repetitions.
     pub attempts: u32,
@@ -90,7 +91,7 @@ fn add_test(test: &TestRecord, identity: TestIdentity, robot: &str, to: &mut Vec
         parameters: parameters.collect(),
         was: test.plan.was.clone(),
         verdict: test.final_verdict(),
-        is_flaky: test.is_flaky(),
+        is_flaky: test.is_flaky() || is_mixed(verdicts()),
         attempts: count(test.attempts.len()),
         problems: count(verdicts().filter(|verdict| verdict.is_problem()).count()),
         duration_us: median_us(durations),
@@ -109,9 +110,9 @@ fn add_test(test: &TestRecord, identity: TestIdentity, robot: &str, to: &mut Vec
             identity,
             was: None,
             verdict: case.verdict,
-            is_flaky: false,
+            is_flaky: is_mixed(case.verdicts.iter().copied()),
             attempts: count(case.durations.len()),
-            problems: case.problems,
+            problems: count(case.verdicts.iter().filter(|it| it.is_problem()).count()),
             duration_us: median_us(case.durations.into_iter()),
             reason: case.reason,
             numbers,
@@ -124,8 +125,18 @@ fn add_test(test: &TestRecord, identity: TestIdentity, robot: &str, to: &mut Vec
 struct CaseSummary {
     verdict: Verdict,
     reason: Option<String>,
-    problems: u32,
+    verdicts: Vec<Verdict>,
     durations: Vec<Duration>,
+}
+
+/// Whether there are both passes and failures, which are no problems of the bench.
+fn is_mixed(verdicts: impl Iterator<Item = Verdict>) -> bool {
+    let (mut any_passed, mut any_failed) = (false, false);
+    for outcome in verdicts.filter_map(Outcome::of) {
+        any_passed |= outcome == Outcome::Passed;
+        any_failed |= outcome == Outcome::Failed;
+    }
+    any_passed && any_failed
 }
 
 /// The finished cases by path.
@@ -137,13 +148,13 @@ fn cases(test: &TestRecord) -> BTreeMap<String, CaseSummary> {
         let known = cases.entry(case.path.clone()).or_insert_with(|| CaseSummary {
             verdict,
             reason: reason(),
-            problems: 0,
+            verdicts: Vec::new(),
             durations: Vec::new(),
         });
         if verdict.is_problem() && !known.verdict.is_problem() {
             (known.verdict, known.reason) = (verdict, reason());
         }
-        known.problems += u32::from(verdict.is_problem());
+        known.verdicts.push(verdict);
         known.durations.extend(case.duration());
     }
     cases

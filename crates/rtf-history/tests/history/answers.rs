@@ -54,6 +54,16 @@ fn a_pass_after_a_retry_is_flaky() {
 }
 
 #[test]
+fn without_a_commit_results_of_one_run_are_compared() {
+    let mut runs = [1, 2].map(|day| single(day, "aaaa", Passed));
+    runs[0].tests[0].verdicts = vec![Failed, Passed];
+    runs[0].dirty = true;
+    runs[1].dirty = true;
+    let found = flaky(&World::with(&runs), &all_runs());
+    assert_eq!((found[0].flips.flips, found[0].flips.pairs), (1, 1));
+}
+
+#[test]
 fn a_selection_of_runs() {
     let mut runs: Vec<_> = (1..=6).map(|day| single(day, "aaaa", Passed)).collect();
     runs[1].branch = "arm";

@@ -112,6 +112,28 @@ fn runs_and_the_history_of_a_test() {
 }
 
 #[test]
+fn a_test_that_fails_in_some_repetitions_is_flaky() {
+    let folder = Folder::new();
+    folder.file(
+        "Odd.lua",
+        "TestCase = {}\nfunction TestCase.run()\n  local file = io.open('runs', 'a')\n  \
+         file:write('x')\n  local count = file:seek('end')\n  file:close()\n  \
+         rtf.check(count % 2 == 1, 'odd')\nend\n",
+    );
+    assert_eq!(rtf(&folder, &["run", "Odd.lua", "--repeat", "4"]).code, Some(1));
+    assert_snapshot!(shown(&folder, &["flaky"]), @"
+    exit code 0
+    ----- stdout
+    plug-ins/Odd
+      1 flip in 1 pair of comparable results: 100 % (21 % … 100 %)
+      1 passed, 1 failed
+      last problem  [START]  failed: odd  ([RUN])
+    not compared with other runs, without a commit or with uncommitted changes: 1 run
+    ----- stderr
+    ");
+}
+
+#[test]
 fn a_test_that_changes_on_one_commit_is_flaky() {
     let folder = folder();
     for text in [PASSES, FAILS, PASSES] {
@@ -122,7 +144,7 @@ fn a_test_that_changes_on_one_commit_is_flaky() {
     exit code 0
     ----- stdout
     arm/Moves
-      2 flips in 2 pairs of results of one commit: 100 % (34 % … 100 %)
+      2 flips in 2 pairs of comparable results: 100 % (34 % … 100 %)
       2 passed, 1 failed
       last problem  [START]  failed: `lag` is [TIME], its limits are ≤ 20  ([RUN])
     ----- stderr

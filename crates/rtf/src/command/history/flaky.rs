@@ -21,7 +21,24 @@ pub fn run(mut args: HistoryTestsArgs, matches: &ArgMatches) -> VerbResult {
     };
     let mut flaky = store.flaky(&runs, &is_meant).map_err(failure)?;
     flaky.truncate(args.limit.unwrap_or(usize::MAX));
-    print(args.history.format, "tests", &flaky, |out| write(out, &flaky))
+    let uncommitted = store.runs(&runs).map_err(failure)?;
+    let uncommitted = uncommitted.iter().map(|run| u64::from(!run.is_committed())).sum();
+    print(args.history.format, "tests", &flaky, |out| {
+        write(out, &flaky)?;
+        write_uncommitted(out, uncommitted)
+    })
+}
+
+/// Says what was not compared, because that can be why a test is missing.
+fn write_uncommitted(out: &mut dyn Write, runs: u64) -> io::Result<()> {
+    if runs == 0 {
+        return Ok(());
+    }
+    let runs = format_count(runs, "run");
+    writeln!(
+        out,
+        "not compared with other runs, without a commit or with uncommitted changes: {runs}"
+    )
 }
 
 fn write(out: &mut dyn Write, tests: &[FlakyTest]) -> io::Result<()> {
@@ -33,7 +50,7 @@ fn write(out: &mut dyn Write, tests: &[FlakyTest]) -> io::Result<()> {
         let pairs = format_count(flips.pairs, "pair");
         writeln!(out, "{}", text::name(&test.identity))?;
         let flip = format_count(flips.flips, "flip");
-        writeln!(out, "  {flip} in {pairs} of results of one commit{}", rate(flips.flip_rate))?;
+        writeln!(out, "  {flip} in {pairs} of comparable results{}", rate(flips.flip_rate))?;
         writeln!(out, "  {} passed, {} failed{}", flips.passed, flips.failed, bench(test))?;
         test.last_problem.as_ref().map_or(Ok(()), |result| show::write_problem(out, result))
     })

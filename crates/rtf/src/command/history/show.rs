@@ -101,7 +101,7 @@ pub fn write_problem(out: &mut dyn Write, result: &TestResult) -> io::Result<()>
         out,
         "  last problem  {}  {}{reason}  ({})",
         time::minute(result.started),
-        if result.flaky { "flaky" } else { result.verdict.as_str() },
+        text::word(result),
         escape::line(&result.name),
     )
 }

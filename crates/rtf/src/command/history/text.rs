@@ -47,6 +47,14 @@ pub fn commit(commit: Option<&str>, dirty: Option<bool>) -> String {
     format!("{}{}", escape::line(short), if dirty == Some(true) { "*" } else { "" })
 }
 
+/// The verdict, or `flaky` for a pass after a failure.
+pub fn word(result: &TestResult) -> &'static str {
+    match result.verdict {
+        Verdict::Passed if result.flaky => "flaky",
+        verdict => verdict.as_str(),
+    }
+}
+
 /// The sign of a result in a strip.
 fn sign(verdict: Verdict, is_flaky: bool) -> char {
     match verdict {
@@ -66,10 +74,8 @@ fn sign(verdict: Verdict, is_flaky: bool) -> char {
 pub fn strip(results: &[TestResult]) -> (String, String) {
     let shown = &results[results.len().saturating_sub(WIDTH)..];
     let strip = shown.iter().map(|result| sign(result.verdict, result.flaky)).collect();
-    let meaning = |result: &TestResult| {
-        let word = if result.flaky { "flaky" } else { result.verdict.as_str() };
-        format!("{} {word}", sign(result.verdict, result.flaky))
-    };
+    let meaning =
+        |result: &TestResult| format!("{} {}", sign(result.verdict, result.flaky), word(result));
     let meanings: BTreeSet<String> = shown.iter().map(meaning).collect();
     (strip, meanings.into_iter().collect::<Vec<_>>().join(", "))
 }
