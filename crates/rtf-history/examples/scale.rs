@@ -181,7 +181,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let runs = args.next().transpose()?.unwrap_or(1000);
     let tests = args.next().transpose()?.unwrap_or(500);
     let dir = tempfile::tempdir()?;
-    let mut store = Store::open(&dir.path().join("history.db"))?;
+    let path = dir.path().join("history.db");
+    let mut store = Store::open(&path)?;
     let mut random = Random(1);
     let (mut importing, mut slowest) = (0.0, 0.0_f64);
     for run in 0..runs {
@@ -194,7 +195,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     println!("{runs} runs, {tests} tests, {MEASUREMENTS} measurements");
     println!("import: {:.1} runs/s, slowest {:.0} ms", f64::from(runs) / importing, slowest * 1e3);
-    println!("size: {} MiB", store.path().metadata()?.len() >> 20);
+    println!("size: {} MiB", path.metadata()?.len() >> 20);
     let all = RunSelection::default();
     let any = |_: &TestAttributes| true;
     timed("runs", || Ok(store.runs(&all)?))?;

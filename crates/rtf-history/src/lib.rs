@@ -16,4 +16,4 @@ pub mod store;
 
 pub use identity::{SuiteFileBase, TestIdentity};
 pub use selection::{RunSelection, TestAttributes, TestSelection};
-pub use store::{ImportOutcome, Store, StoreError};
+pub use store::{ImportOutcome, Location, Store, StoreError};

@@ -94,7 +94,9 @@ fn run_started(request: &RunRequest, planned: &Planned, dir: &RunDir) -> RunStar
         run: dir.name.clone(),
         rtf: env!("CARGO_PKG_VERSION").to_owned(),
         started_at: dir.started_at.clone(),
-        command: std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect(),
+        command: std::env::args_os()
+            .map(|arg| history::without_password(&arg.to_string_lossy()))
+            .collect(),
         working_dir: working_dir.to_string_lossy().into_owned(),
         suites: u32::try_from(planned.plan.suites.len()).unwrap_or(u32::MAX),
         tests: planned.plan.tests,

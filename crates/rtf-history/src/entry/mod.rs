@@ -108,7 +108,7 @@ impl RunEntry {
             is_green: record.is_green(),
             counts: Verdict::ALL.map(|verdict| totals.of(verdict)),
             events: record.events,
-            results: results::of_tests(record, &started),
+            results: results::without_nul(results::of_tests(record, &started)),
             started,
         })
     }

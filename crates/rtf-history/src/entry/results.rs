@@ -79,6 +79,20 @@ pub(super) fn of_tests(record: &Record, started: &RunStarted) -> Vec<ResultEntry
     results
 }
 
+/// Names are identities in every database, and PostgreSQL stores no NUL.
+pub(super) fn without_nul(mut results: Vec<ResultEntry>) -> Vec<ResultEntry> {
+    for result in &mut results {
+        let TestIdentity { suite_file, suite, test, case } = &mut result.identity;
+        let series = result.numbers.iter_mut().flat_map(|(it, _)| [&mut it.name, &mut it.unit]);
+        let names =
+            [suite_file, suite, test, case].into_iter().chain(&mut result.was).chain(series);
+        for name in names.filter(|name| name.contains('\0')) {
+            *name = name.replace('\0', "\u{fffd}");
+        }
+    }
+    results
+}
+
 fn add_test(test: &TestRecord, identity: TestIdentity, robot: &str, to: &mut Vec<ResultEntry>) {
     let verdicts = || test.attempts.iter().filter_map(AttemptRecord::verdict);
     let durations = test.deciding_attempts().filter_map(AttemptRecord::duration);

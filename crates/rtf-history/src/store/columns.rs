@@ -9,7 +9,7 @@ use std::collections::HashMap;
 
 use rtf_model::Verdict;
 
-use crate::entry::NumberSummary;
+use crate::entry::{NumberSummary, ResultEntry};
 
 /// A result of a test, as answers over many runs need it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +21,13 @@ pub(crate) struct PackedResult {
     /// The position of its robot in [`PackedResults::robots`].
     pub robot: usize,
     pub duration_us: Option<i64>,
+}
+
+impl PackedResult {
+    pub fn new(test: i64, result: &ResultEntry) -> Self {
+        let ResultEntry { verdict, is_flaky, duration_us, .. } = *result;
+        Self { test, verdict, is_flaky, robot: 0, duration_us }
+    }
 }
 
 /// A point of a series, as answers over many runs need it.

@@ -1,54 +1,57 @@
 //! Errors of the store.
 
-use std::path::PathBuf;
-
+use super::Location;
+use super::database::{DatabaseError, ErrorKind};
 use crate::entry::EntryError;
 
 /// The store cannot be used, or not with this run.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// There is no database.
-    #[error("there is no history `{}`", path.display())]
+    #[error("there is no history `{}`", location)]
     Missing {
         /// Where.
-        path: PathBuf,
+        location: Location,
     },
     /// The database was written by a newer program.
-    #[error("the history `{}` is of version {found}, this program reads up to version {known}", path.display())]
+    #[error(
+        "the history `{}` is of version {found}, this program reads up to version {known}",
+        location
+    )]
     Newer {
         /// Which.
-        path: PathBuf,
+        location: Location,
         /// Its version.
         found: i64,
         /// The newest known version.
         known: usize,
     },
     /// A database of another program.
-    #[error("`{}` is a database of another program", path.display())]
+    #[error("`{}` is a database of another program", location)]
     Foreign {
         /// Which.
-        path: PathBuf,
+        location: Location,
     },
     /// The file is damaged, or no database.
-    #[error("the history `{}` is damaged", path.display())]
+    #[error("the history `{}` is damaged", location)]
     Corrupt {
         /// Which.
-        path: PathBuf,
+        location: Location,
         /// What SQLite found.
         #[source]
-        source: rusqlite::Error,
+        source: Box<dyn std::error::Error + Send + Sync>,
     },
     /// Another process has written to the database for too long.
-    #[error("the history `{}` is locked by another process", path.display())]
+    #[error("the history `{}` is locked by another process", location)]
     Locked {
         /// Which.
-        path: PathBuf,
+        location: Location,
     },
     /// The database cannot be opened, read or written.
-    #[error("cannot use the history `{}`", path.display())]
+    #[error("cannot use the history `{}`", location)]
     Io {
         /// Which.
-        path: PathBuf,
+        location: Location,
         /// Why.
         #[source]
         source: Box<dyn std::error::Error + Send + Sync>,
@@ -65,14 +68,13 @@ pub enum StoreError {
 }
 
 impl StoreError {
-    /// Sorts an error of SQLite.
-    pub(super) fn sqlite(path: &std::path::Path, source: rusqlite::Error) -> Self {
-        use rusqlite::ErrorCode::{DatabaseBusy, DatabaseCorrupt, DatabaseLocked, NotADatabase};
-        let path = path.to_owned();
-        match source.sqlite_error_code() {
-            Some(DatabaseCorrupt | NotADatabase) => Self::Corrupt { path, source },
-            Some(DatabaseBusy | DatabaseLocked) => Self::Locked { path },
-            _ => Self::Io { path, source: source.into() },
+    /// Sorts an error of a database.
+    pub(super) fn new(location: &Location, source: DatabaseError) -> Self {
+        let location = location.clone();
+        match source.kind() {
+            ErrorKind::Corrupt => Self::Corrupt { location, source: source.into() },
+            ErrorKind::Locked => Self::Locked { location },
+            ErrorKind::Other => Self::Io { location, source: source.into() },
         }
     }
 

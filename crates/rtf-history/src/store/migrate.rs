@@ -1,57 +1,90 @@
 //! Versions of the database.
 
+use rusqlite::Connection;
 use rusqlite_migration::{M, Migrations};
 
-use super::{Store, StoreError, sql};
+use super::database::PostgresDatabase;
+use super::{Location, Store, StoreError, sql};
+
+/// Brings a SQLite database to the newest version.
+pub(super) fn migrate(connection: &mut Connection, at: &Location) -> Result<(), StoreError> {
+    if check_version(connection, at)? == sql::MIGRATIONS.len() {
+        return Ok(());
+    }
+    let steps = sql::MIGRATIONS.iter().map(|step| M::up(step)).collect();
+    match Migrations::new(steps).to_latest(connection) {
+        Ok(()) => {}
+        // Another process was faster.
+        Err(_) if check_version(connection, at)? == sql::MIGRATIONS.len() => {}
+        Err(rusqlite_migration::Error::RusqliteError { err, .. }) => {
+            return Err(StoreError::new(at, err.into()));
+        }
+        Err(other) => {
+            return Err(StoreError::Io { location: at.clone(), source: other.into() });
+        }
+    }
+    let id = sql::APPLICATION_ID;
+    let marked = connection.pragma_update(None, "application_id", id);
+    marked.map_err(|error| StoreError::new(at, error.into()))
+}
+
+/// Returns the version, unless it is unknown.
+pub(super) fn check_version(connection: &Connection, at: &Location) -> Result<usize, StoreError> {
+    let number = |name: &str| {
+        connection.query_row(&format!("PRAGMA {name}"), [], |row| row.get::<_, i64>(0))
+    };
+    let read = || -> rusqlite::Result<(i64, i64, bool)> {
+        let tables = "SELECT COUNT(*) FROM sqlite_master";
+        let tables = connection.query_row(tables, [], |row| row.get::<_, i64>(0))?;
+        Ok((number("user_version")?, number("application_id")?, tables == 0))
+    };
+    let (version, application, is_empty) =
+        read().map_err(|error| StoreError::new(at, error.into()))?;
+    // A creation that was killed may have no application id yet.
+    let is_ours = application == sql::APPLICATION_ID || is_empty || is_new_history(connection);
+    if is_ours {
+        known_version(version, at)
+    } else {
+        Err(StoreError::Foreign { location: at.clone() })
+    }
+}
+
+/// Returns the version, unless it is newer than this program.
+fn known_version(version: i64, at: &Location) -> Result<usize, StoreError> {
+    let known = sql::MIGRATIONS.len();
+    let newer = || StoreError::Newer { location: at.clone(), found: version, known };
+    usize::try_from(version).ok().filter(|version| *version <= known).ok_or_else(newer)
+}
+
+/// Whether the tables are ours although the application id was not set.
+fn is_new_history(connection: &Connection) -> bool {
+    let tables = "SELECT COUNT(*) FROM sqlite_master
+                  WHERE type = 'table' AND name IN ('run', 'test', 'result', 'point', 'pruned')";
+    connection.query_row(tables, [], |row| row.get::<_, i64>(0)) == Ok(5)
+}
 
 impl Store {
-    /// Brings the database to the newest version.
-    pub(super) fn migrate(&mut self) -> Result<(), StoreError> {
-        if self.check_version()? == sql::MIGRATIONS.len() {
-            return Ok(());
+    /// Brings a PostgreSQL database to the newest version.
+    pub(super) fn migrate_postgres(
+        database: &mut PostgresDatabase,
+        at: &Location,
+    ) -> Result<(), StoreError> {
+        let failed = |error| StoreError::new(at, error);
+        let version = database.version().map_err(failed)?.unwrap_or_default();
+        if known_version(version, at)? < sql::MIGRATIONS.len() {
+            database.migrate().map_err(failed)?;
         }
-        let steps = sql::MIGRATIONS.iter().map(|step| M::up(step)).collect();
-        match Migrations::new(steps).to_latest(&mut self.connection) {
-            Ok(()) => {}
-            // Another process was faster.
-            Err(_) if self.check_version()? == sql::MIGRATIONS.len() => {}
-            Err(rusqlite_migration::Error::RusqliteError { err, .. }) => {
-                return Err(self.error(err));
-            }
-            Err(other) => {
-                return Err(StoreError::Io { path: self.path.clone(), source: other.into() });
-            }
-        }
-        let id = sql::APPLICATION_ID;
-        self.connection.pragma_update(None, "application_id", id).map_err(|e| self.error(e))
+        Ok(())
     }
 
-    /// Returns the version, unless it is unknown.
-    pub(super) fn check_version(&self) -> Result<usize, StoreError> {
-        let number = |name: &str| {
-            self.connection.query_row(&format!("PRAGMA {name}"), [], |row| row.get::<_, i64>(0))
-        };
-        let read = || -> rusqlite::Result<(i64, i64, bool)> {
-            let tables = "SELECT COUNT(*) FROM sqlite_master";
-            let tables = self.connection.query_row(tables, [], |row| row.get::<_, i64>(0))?;
-            Ok((number("user_version")?, number("application_id")?, tables == 0))
-        };
-        let (version, application, is_empty) = read().map_err(|error| self.error(error))?;
-        let path = self.path.clone();
-        let known = sql::MIGRATIONS.len();
-        // A creation that was killed may have no application id yet.
-        let is_ours = application == sql::APPLICATION_ID || is_empty || self.is_new_history();
-        match usize::try_from(version) {
-            _ if !is_ours => Err(StoreError::Foreign { path }),
-            Ok(version) if version <= known => Ok(version),
-            _ => Err(StoreError::Newer { path, found: version, known }),
+    /// Accepts a PostgreSQL database that has a history.
+    pub(super) fn check_postgres(
+        database: &mut PostgresDatabase,
+        at: &Location,
+    ) -> Result<(), StoreError> {
+        match database.version().map_err(|error| StoreError::new(at, error))? {
+            None => Err(StoreError::Missing { location: at.clone() }),
+            Some(_) => Self::migrate_postgres(database, at),
         }
-    }
-
-    /// Whether the tables are ours although the application id was not set.
-    fn is_new_history(&self) -> bool {
-        let tables = "SELECT COUNT(*) FROM sqlite_master
-                      WHERE type = 'table' AND name IN ('run', 'test', 'result', 'point', 'pruned')";
-        self.connection.query_row(tables, [], |row| row.get::<_, i64>(0)) == Ok(5)
     }
 }

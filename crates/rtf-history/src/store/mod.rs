@@ -1,15 +1,19 @@
 //! The database: opening, importing and pruning runs, reading rows.
 
 mod columns;
+mod database;
 mod error;
 mod import;
+mod location;
 mod migrate;
 mod prune;
 mod read;
+mod rows;
 pub mod sql;
 
+use std::cell::RefCell;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -17,8 +21,11 @@ use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags};
 
 pub(crate) use columns::{PackedPoint, PackedPoints, PackedResult, PackedResults};
+use database::{Database, DatabaseError, PostgresDatabase};
+pub use database::{PostgresUrl, UrlError};
 pub use error::StoreError;
 pub use import::ImportOutcome;
+pub use location::Location;
 pub use prune::Keep;
 pub use read::StoreCounts;
 pub(crate) use read::{ResultRow, TestRow};
@@ -36,22 +43,51 @@ const CHECKPOINT_PAGES: i64 = 8000;
 /// The same for a log that stays when the database is closed.
 const KEPT_PAGES: i64 = 250;
 
-/// The history: a SQLite database.
+/// Number of statements that remain prepared.
+const STATEMENTS: usize = 64;
+
+/// The history: a SQLite or PostgreSQL database.
 #[derive(Debug)]
 pub struct Store {
-    connection: Connection,
-    path: PathBuf,
+    database: Database,
+    location: Location,
 }
 
 impl Store {
-    /// Opens the database for imports; creates it if it does not exist.
+    /// Opens the database for imports; creates its file or its tables if they do not exist.
     ///
     /// # Errors
-    /// The file cannot be written, is damaged, or is no history that this program knows.
-    pub fn open(path: &Path) -> Result<Self, StoreError> {
+    /// It cannot be written, is damaged, or is no history that this program knows.
+    pub fn open(location: impl Into<Location>) -> Result<Self, StoreError> {
+        match location.into() {
+            Location::File(path) => Self::open_file(&path),
+            Location::Postgres(url) => Self::connect(url, Self::migrate_postgres),
+        }
+    }
+
+    /// Opens an existing database for questions; it need not be writable.
+    ///
+    /// # Errors
+    /// It does not exist, cannot be read, is damaged, or is no history that this program
+    /// knows.
+    pub fn open_existing(location: impl Into<Location>) -> Result<Self, StoreError> {
+        let location = location.into();
+        match &location {
+            Location::File(path) if !path.is_file() => Err(StoreError::Missing { location }),
+            Location::File(path) => match Self::open_file(path) {
+                Err(StoreError::Io { .. } | StoreError::Locked { .. }) => {
+                    Self::open_read_only(path)
+                }
+                opened => opened,
+            },
+            Location::Postgres(url) => Self::connect(url.clone(), Self::check_postgres),
+        }
+    }
+
+    fn open_file(path: &Path) -> Result<Self, StoreError> {
         if let Some(dir) = path.parent().filter(|dir| !dir.as_os_str().is_empty()) {
             let failed = |source: std::io::Error| StoreError::Io {
-                path: path.to_owned(),
+                location: path.into(),
                 source: source.into(),
             };
             fs::create_dir_all(dir).map_err(failed)?;
@@ -59,7 +95,7 @@ impl Store {
         // Another process may be creating the database: SQLite does not wait for that.
         let started = Instant::now();
         loop {
-            match Self::open_once(path) {
+            match Self::open_file_once(path) {
                 Err(StoreError::Locked { .. }) if started.elapsed() < BUSY_TIMEOUT => {
                     thread::sleep(RETRY_INTERVAL);
                 }
@@ -68,36 +104,23 @@ impl Store {
         }
     }
 
-    fn open_once(path: &Path) -> Result<Self, StoreError> {
-        let failed = |source| StoreError::sqlite(path, source);
-        let connection = Connection::open(path).map_err(failed)?;
-        let mut store = Self { connection, path: path.to_owned() };
-        store.prepare().map_err(failed)?;
-        store.migrate()?;
-        Ok(store)
-    }
-
-    /// Opens an existing database for questions; it need not be writable.
-    ///
-    /// # Errors
-    /// It does not exist, cannot be read, is damaged, or is no history that this program
-    /// knows.
-    pub fn open_existing(path: &Path) -> Result<Self, StoreError> {
-        if !path.is_file() {
-            return Err(StoreError::Missing { path: path.to_owned() });
-        }
-        match Self::open(path) {
-            Err(StoreError::Io { .. } | StoreError::Locked { .. }) => Self::open_read_only(path),
-            opened => opened,
-        }
+    fn open_file_once(path: &Path) -> Result<Self, StoreError> {
+        let failed = |source: rusqlite::Error| StoreError::new(&path.into(), source.into());
+        let mut connection = Connection::open(path).map_err(failed)?;
+        prepare(&connection).map_err(failed)?;
+        migrate::migrate(&mut connection, &path.into())?;
+        Ok(Self { database: Database::Sqlite(connection), location: path.into() })
     }
 
     /// Without permission to write next to the database, SQLite reads it only if it may
     /// assume that no other process writes it.
     fn open_read_only(path: &Path) -> Result<Self, StoreError> {
-        let failed = |source| StoreError::sqlite(path, source);
-        let path = std::path::absolute(path)
-            .map_err(|source| StoreError::Io { path: path.to_owned(), source: source.into() })?;
+        let location = Location::from(path);
+        let failed = |source: rusqlite::Error| StoreError::new(&location, source.into());
+        let path = std::path::absolute(path).map_err(|source| StoreError::Io {
+            location: location.clone(),
+            source: source.into(),
+        })?;
         let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI;
         let open = |query: &str| {
             let connection = Connection::open_with_flags(uri(&path, query), flags)?;
@@ -105,21 +128,20 @@ impl Store {
             Ok(connection)
         };
         let connection = open("mode=ro").or_else(|_: rusqlite::Error| open("immutable=1"));
-        let store = Self { connection: connection.map_err(failed)?, path };
-        store.check_version()?;
-        Ok(store)
+        let connection = connection.map_err(failed)?;
+        migrate::check_version(&connection, &location)?;
+        Ok(Self { database: Database::Sqlite(connection), location: path.into() })
     }
 
-    fn prepare(&self) -> rusqlite::Result<()> {
-        self.connection.busy_timeout(BUSY_TIMEOUT)?;
-        // First of all: reports a file that is no database.
-        self.connection.query_row("PRAGMA schema_version", [], |_| Ok(()))?;
-        self.connection.pragma_update(None, "journal_mode", "WAL")?;
-        self.connection.pragma_update(None, "synchronous", "NORMAL")?;
-        self.connection.pragma_update(None, "wal_autocheckpoint", CHECKPOINT_PAGES)?;
-        self.connection.pragma_update(None, "foreign_keys", true)?;
-        self.connection.set_prepared_statement_cache_capacity(32);
-        Ok(())
+    fn connect(
+        url: PostgresUrl,
+        check: impl FnOnce(&mut PostgresDatabase, &Location) -> Result<(), StoreError>,
+    ) -> Result<Self, StoreError> {
+        let location = Location::Postgres(url.clone());
+        let connected = PostgresDatabase::connect(&url);
+        let mut database = connected.map_err(|error| StoreError::new(&location, error))?;
+        check(&mut database, &location)?;
+        Ok(Self { database: Database::Postgres(RefCell::new(database)), location })
     }
 
     /// Leaves the write-ahead log when the store is closed, so that closing waits for no disk.
@@ -129,7 +151,7 @@ impl Store {
     /// # Errors
     /// The database cannot be written.
     pub fn keep_log(&self) -> Result<(), StoreError> {
-        let connection = &self.connection;
+        let Database::Sqlite(connection) = &self.database else { return Ok(()) };
         let keep = || -> rusqlite::Result<()> {
             connection.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
             connection.pragma_update(None, "wal_autocheckpoint", KEPT_PAGES)
@@ -137,15 +159,27 @@ impl Store {
         keep().map_err(|error| self.error(error))
     }
 
-    /// The path of the database.
+    /// Where the database is.
     #[must_use]
-    pub fn path(&self) -> &Path {
-        &self.path
+    pub fn location(&self) -> &Location {
+        &self.location
     }
 
-    fn error(&self, source: rusqlite::Error) -> StoreError {
-        StoreError::sqlite(&self.path, source)
+    fn error(&self, source: impl Into<DatabaseError>) -> StoreError {
+        StoreError::new(&self.location, source.into())
     }
+}
+
+fn prepare(connection: &Connection) -> rusqlite::Result<()> {
+    connection.busy_timeout(BUSY_TIMEOUT)?;
+    // First of all: reports a file that is no database.
+    connection.query_row("PRAGMA schema_version", [], |_| Ok(()))?;
+    connection.pragma_update(None, "journal_mode", "WAL")?;
+    connection.pragma_update(None, "synchronous", "NORMAL")?;
+    connection.pragma_update(None, "wal_autocheckpoint", CHECKPOINT_PAGES)?;
+    connection.pragma_update(None, "foreign_keys", true)?;
+    connection.set_prepared_statement_cache_capacity(STATEMENTS);
+    Ok(())
 }
 
 /// A URI of SQLite.

@@ -3,7 +3,6 @@
 use std::collections::HashSet;
 
 use jiff::Timestamp;
-use rusqlite::TransactionBehavior;
 
 use super::{Store, StoreError, import, sql};
 use crate::answers::RunInfo;
@@ -33,21 +32,19 @@ impl Store {
     /// The database cannot be written; then nothing has changed.
     pub fn prune(&mut self, keep: Keep) -> Result<Vec<RunInfo>, StoreError> {
         let removed = self.find_prunable(keep)?;
-        let path = self.path.clone();
-        let remove = || -> rusqlite::Result<()> {
-            let behavior = TransactionBehavior::Immediate;
-            let transaction = self.connection.transaction_with_behavior(behavior)?;
+        let remove = || {
+            let transaction = self.database.begin()?;
             for (id, run) in &removed {
                 import::delete_run(&transaction, *id)?;
-                transaction.execute(sql::INSERT_PRUNED, [&run.id, &run.name])?;
+                let values = [(&run.id).into(), (&run.name).into()];
+                transaction.execute(sql::INSERT_PRUNED, &values)?;
             }
             for statement in sql::DELETE_UNUSED {
-                transaction.execute(statement, [])?;
+                transaction.execute(statement, &[])?;
             }
             transaction.commit()
         };
-        let mut remove = remove;
-        remove().map_err(|source| StoreError::sqlite(&path, source))?;
+        remove().map_err(|error| self.error(error))?;
         Ok(removed.into_iter().map(|(_, run)| run).collect())
     }
 
@@ -60,7 +57,8 @@ impl Store {
         let mut passed_later = HashSet::new();
         let mut prunable = Vec::new();
         for (index, (id, run)) in runs.iter().enumerate().rev() {
-            let passed: Vec<i64> = self.rows(sql::PASSED_TESTS_OF_RUN, &[id], |row| row.get(0))?;
+            let passed: Vec<i64> =
+                self.rows(sql::PASSED_TESTS_OF_RUN, &[(*id).into()], |row| row.get(0))?;
             let has_last_pass = passed.iter().any(|test| !passed_later.contains(test));
             passed_later.extend(passed);
             if !has_last_pass && !is_kept(index, run) {

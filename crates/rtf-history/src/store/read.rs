@@ -2,8 +2,8 @@
 
 use jiff::Timestamp;
 use rtf_model::Verdict;
-use rusqlite::{Row, ToSql};
 
+use super::database::{Database, DatabaseError, Row, Value};
 use super::{Store, StoreError, sql};
 use crate::answers::RunInfo;
 use crate::entry::{NumberKind, NumberSummary, RunEnd, SeriesName};
@@ -61,14 +61,10 @@ impl Store {
     pub(super) fn rows<T>(
         &self,
         sql: &str,
-        values: &[&dyn ToSql],
-        read: fn(&Row<'_>) -> rusqlite::Result<T>,
+        values: &[Value<'_>],
+        read: fn(&Row<'_>) -> Result<T, DatabaseError>,
     ) -> Result<Vec<T>, StoreError> {
-        let read_all = || {
-            let mut statement = self.connection.prepare_cached(sql)?;
-            statement.query_map(values, read)?.collect::<rusqlite::Result<Vec<_>>>()
-        };
-        read_all().map_err(|error| self.error(error))
+        self.database.rows(sql, values, read).map_err(|error| self.error(error))
     }
 
     /// All runs, the oldest first.
@@ -82,7 +78,7 @@ impl Store {
     }
 
     pub(crate) fn results_of_test(&self, test: i64) -> Result<Vec<ResultRow>, StoreError> {
-        self.rows(sql::RESULTS_OF_TEST, &[&test], result)
+        self.rows(sql::RESULTS_OF_TEST, &[test.into()], result)
     }
 
     pub(crate) fn result_of_test(
@@ -90,7 +86,7 @@ impl Store {
         test: i64,
         run: i64,
     ) -> Result<Option<ResultRow>, StoreError> {
-        Ok(self.rows(sql::RESULT_OF_TEST, &[&test, &run], result)?.pop())
+        Ok(self.rows(sql::RESULT_OF_TEST, &[test.into(), run.into()], result)?.pop())
     }
 
     /// Calls `visit` with the packed results of each run from `first` to `last`.
@@ -117,15 +113,11 @@ impl Store {
         (first, last): (i64, i64),
         mut visit: impl FnMut(i64, &[u8]),
     ) -> Result<(), StoreError> {
-        let mut read_all = || -> rusqlite::Result<()> {
-            let mut statement = self.connection.prepare_cached(sql)?;
-            let mut rows = statement.query([first, last])?;
-            while let Some(row) = rows.next()? {
-                visit(row.get(0)?, row.get_ref(1)?.as_blob()?);
-            }
+        let visited = self.database.for_each(sql, &[first.into(), last.into()], &mut |row| {
+            visit(row.get(0)?, row.bytes(1)?);
             Ok(())
-        };
-        read_all().map_err(|error| self.error(error))
+        });
+        visited.map_err(|error| self.error(error))
     }
 
     /// All series, each with its test, in the order of their ids.
@@ -137,11 +129,11 @@ impl Store {
     }
 
     pub(crate) fn series_of_test(&self, test: i64) -> Result<Vec<(i64, SeriesName)>, StoreError> {
-        self.rows(sql::SERIES_OF_TEST, &[&test], series)
+        self.rows(sql::SERIES_OF_TEST, &[test.into()], series)
     }
 
     pub(crate) fn points_of_test(&self, test: i64) -> Result<Vec<PointRow>, StoreError> {
-        self.rows(sql::POINTS_OF_TEST, &[&test], point)
+        self.rows(sql::POINTS_OF_TEST, &[test.into()], point)
     }
 
     pub(crate) fn tests_with_problems(&self) -> Result<Vec<i64>, StoreError> {
@@ -149,7 +141,7 @@ impl Store {
     }
 
     pub(crate) fn tests_with_series(&self, name: &str) -> Result<Vec<i64>, StoreError> {
-        self.rows(sql::TESTS_WITH_SERIES, &[&name], |row| row.get(0))
+        self.rows(sql::TESTS_WITH_SERIES, &[name.into()], |row| row.get(0))
     }
 
     /// The names of all measurements and signals.
@@ -191,10 +183,12 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub fn check(&self) -> Result<Vec<String>, StoreError> {
+        // A server checks its files itself.
+        let Database::Sqlite(_) = &self.database else { return Ok(Vec::new()) };
         let mut found: Vec<String> = self.rows("PRAGMA quick_check(10)", &[], |row| row.get(0))?;
         found.retain(|line| line != "ok");
         let foreign = self.rows("PRAGMA foreign_key_check", &[], |row| {
-            row.get::<_, String>(0).map(|table| format!("a row of `{table}` refers to nothing"))
+            row.get::<String>(0).map(|table| format!("a row of `{table}` refers to nothing"))
         })?;
         found.extend(foreign.into_iter().take(10));
         Ok(found)
@@ -205,12 +199,15 @@ fn time(micros: i64) -> Timestamp {
     Timestamp::from_microsecond(micros).unwrap_or_default()
 }
 
-fn list<T: serde::de::DeserializeOwned>(row: &Row<'_>, index: usize) -> rusqlite::Result<Vec<T>> {
+fn list<T: serde::de::DeserializeOwned>(
+    row: &Row<'_>,
+    index: usize,
+) -> Result<Vec<T>, DatabaseError> {
     let text: String = row.get(index)?;
     Ok(serde_json::from_str(&text).unwrap_or_default())
 }
 
-fn run(row: &Row<'_>) -> rusqlite::Result<(i64, RunInfo)> {
+fn run(row: &Row<'_>) -> Result<(i64, RunInfo), DatabaseError> {
     let mut counts = [0; Verdict::ALL.len()];
     for (index, count) in counts.iter_mut().enumerate() {
         *count = row.get(7 + index)?;
@@ -220,7 +217,7 @@ fn run(row: &Row<'_>) -> rusqlite::Result<(i64, RunInfo)> {
         id: row.get(1)?,
         name: row.get(2)?,
         started: time(row.get(3)?),
-        duration: row.get::<_, i64>(4)? as f64 / 1e6,
+        duration: row.get::<i64>(4)? as f64 / 1e6,
         end: RunEnd::parse(&ended).unwrap_or(RunEnd::Unfinished),
         green: row.get(6)?,
         counts: counts.into(),
@@ -239,15 +236,19 @@ fn run(row: &Row<'_>) -> rusqlite::Result<(i64, RunInfo)> {
     Ok((row.get(0)?, info))
 }
 
-fn test(row: &Row<'_>) -> rusqlite::Result<TestRow> {
-    let identity = TestIdentity {
+/// The identity of a test, from the columns after its id.
+pub(super) fn identity(row: &Row<'_>) -> Result<TestIdentity, DatabaseError> {
+    Ok(TestIdentity {
         suite_file: row.get(1)?,
         suite: row.get(2)?,
         test: row.get(3)?,
         case: row.get(4)?,
-    };
+    })
+}
+
+fn test(row: &Row<'_>) -> Result<TestRow, DatabaseError> {
     let attributes = TestAttributes {
-        identity,
+        identity: identity(row)?,
         plugin_type: row.get(5)?,
         tags: list(row, 6)?,
         parameters: list(row, 7)?,
@@ -255,8 +256,8 @@ fn test(row: &Row<'_>) -> rusqlite::Result<TestRow> {
     Ok(TestRow { id: row.get(0)?, attributes, renamed_to: row.get(8)? })
 }
 
-fn result(row: &Row<'_>) -> rusqlite::Result<ResultRow> {
-    let verdict = row.get_ref(1)?.as_str().unwrap_or_default();
+fn result(row: &Row<'_>) -> Result<ResultRow, DatabaseError> {
+    let verdict: String = row.get(1)?;
     let verdict = Verdict::ALL.into_iter().find(|known| known.as_str() == verdict);
     Ok(ResultRow {
         run: row.get(0)?,
@@ -271,13 +272,13 @@ fn result(row: &Row<'_>) -> rusqlite::Result<ResultRow> {
     })
 }
 
-fn series(row: &Row<'_>) -> rusqlite::Result<(i64, SeriesName)> {
+pub(super) fn series(row: &Row<'_>) -> Result<(i64, SeriesName), DatabaseError> {
     let kind: String = row.get(1)?;
     let kind = NumberKind::parse(&kind).unwrap_or(NumberKind::Measurement);
     Ok((row.get(0)?, SeriesName { kind, name: row.get(2)?, unit: row.get(3)? }))
 }
 
-fn point(row: &Row<'_>) -> rusqlite::Result<PointRow> {
+fn point(row: &Row<'_>) -> Result<PointRow, DatabaseError> {
     let summary = NumberSummary {
         value: row.get(2)?,
         min: row.get(3)?,

@@ -1,7 +1,10 @@
 //! All SQL of the store.
 //!
 //! The statements are portable: `$1` parameters in the order of their numbers, `ON CONFLICT`,
-//! no type that only one database has. The migrations are those of SQLite.
+//! no type that only one database has. The migrations are those of SQLite; for PostgreSQL, the
+//! types of columns are replaced.
+
+use super::database::Batch;
 
 /// Identifies the store among SQLite databases (`PRAGMA application_id`): "RTFH".
 pub const APPLICATION_ID: i64 = 0x5254_4648;
@@ -147,10 +150,13 @@ pub const INSERT_PRUNED: &str =
 /// Forgets that a run was pruned.
 pub const DELETE_PRUNED: &str = "DELETE FROM pruned WHERE uid = $1";
 
-/// Adds a test, or updates its attributes if this run is its newest one.
-pub const UPSERT_TEST: &str = "
+/// Adds tests, or updates the attributes of those of which this run is the newest one.
+pub(super) const UPSERT_TESTS: Batch = Batch {
+    head: "
 INSERT INTO test (suite_file, suite, name, case_path, plugin_type, tags, parameters, seen_us)
-VALUES ($1, $2, $3, $4, $5, $6, $7, $8)
+VALUES",
+    columns: 8,
+    tail: "
 ON CONFLICT (suite_file, suite, name, case_path) DO UPDATE SET
   plugin_type = CASE WHEN excluded.seen_us >= test.seen_us
     THEN excluded.plugin_type ELSE test.plugin_type END,
@@ -159,25 +165,40 @@ ON CONFLICT (suite_file, suite, name, case_path) DO UPDATE SET
     THEN excluded.parameters ELSE test.parameters END,
   seen_us = CASE WHEN excluded.seen_us >= test.seen_us
     THEN excluded.seen_us ELSE test.seen_us END
-RETURNING id";
+RETURNING id, suite_file, suite, name, case_path",
+};
 /// Leads from a former name to the current one.
 pub const RENAME_TEST: &str = "UPDATE test SET renamed_to = $1 WHERE id = $2";
-/// Adds the result of a test.
-pub const INSERT_RESULT: &str = "
+/// Adds results of tests.
+pub(super) const INSERT_RESULTS: Batch = Batch {
+    head: "
 INSERT INTO result (test_id, run_id, verdict, flaky, attempts, problems, duration_us, reason,
   robot, plugin_hash)
-VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10)";
-/// The identity of a series.
-pub const FIND_SERIES: &str =
-    "SELECT id FROM series WHERE test_id = $1 AND kind = $2 AND name = $3 AND unit = $4";
-/// Adds a series.
-pub const INSERT_SERIES: &str =
-    "INSERT INTO series (test_id, kind, name, unit) VALUES ($1, $2, $3, $4) RETURNING id";
-/// Adds a point of a series.
-pub const INSERT_POINT: &str = "
+VALUES",
+    columns: 10,
+    tail: "",
+};
+/// The series of tests.
+pub(super) const FIND_SERIES: Batch = Batch {
+    head: "SELECT id, kind, name, unit, test_id FROM series WHERE test_id IN (",
+    columns: 1,
+    tail: ")",
+};
+/// Adds series.
+pub(super) const INSERT_SERIES: Batch = Batch {
+    head: "INSERT INTO series (test_id, kind, name, unit) VALUES",
+    columns: 4,
+    tail: " RETURNING id, kind, name, unit, test_id",
+};
+/// Adds points of series.
+pub(super) const INSERT_POINTS: Batch = Batch {
+    head: "
 INSERT INTO point (test_id, run_id, series_id, value, min, max, count, not_finite, outside, low,
   high)
-VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11)";
+VALUES",
+    columns: 11,
+    tail: "",
+};
 /// Adds the packed results and points of a run.
 pub const INSERT_RUN_COLUMNS: &str =
     "INSERT INTO run_columns (run_id, results, points) VALUES ($1, $2, $3)";
@@ -229,3 +250,14 @@ FROM point WHERE test_id = $1";
 pub const COUNTS: &str = "
 SELECT (SELECT COUNT(*) FROM run), (SELECT COUNT(*) FROM test), (SELECT COUNT(*) FROM result),
   (SELECT COUNT(*) FROM series), (SELECT COUNT(*) FROM point), (SELECT COUNT(*) FROM pruned)";
+
+/// In PostgreSQL: the schema with the tables, and their version.
+pub const POSTGRES_SCHEMA: &str = "
+CREATE SCHEMA IF NOT EXISTS rtf_history;
+CREATE TABLE IF NOT EXISTS migration (version BIGINT PRIMARY KEY)";
+/// In PostgreSQL: whether there are tables.
+pub const POSTGRES_TABLE: &str = "SELECT to_regclass('rtf_history.migration')::text";
+/// In PostgreSQL: the number of the last migration.
+pub const POSTGRES_VERSION: &str = "SELECT MAX(version) FROM migration";
+/// In PostgreSQL: remembers a migration.
+pub const POSTGRES_MIGRATED: &str = "INSERT INTO migration (version) VALUES ($1)";

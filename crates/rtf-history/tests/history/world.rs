@@ -191,7 +191,7 @@ impl World {
     }
 
     pub fn path(&self) -> PathBuf {
-        self.store.path().to_owned()
+        self.store.location().file().expect("a file").to_owned()
     }
 
     pub fn import(&mut self, run: &Run) -> ImportOutcome {

@@ -9,8 +9,9 @@ use super::ResultsArgs;
 /// The database of results.
 #[derive(Clone, Debug, Args)]
 pub struct HistoryFileArgs {
-    /// History database [default: `history.db` in the results directory]
-    #[arg(long, value_name = "FILE", env = "RTF_HISTORY_URL")]
+    /// History database: a file, or `postgres://USER@HOST/DATABASE` [default: `history.db` in the
+    /// results directory]
+    #[arg(long, value_name = "FILE", env = "RTF_HISTORY_URL", hide_env_values = true)]
     pub history: Option<String>,
 }
 

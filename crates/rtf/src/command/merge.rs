@@ -52,7 +52,9 @@ pub fn run(mut args: MergeArgs, matches: &ArgMatches) -> VerbResult {
     let header = Header {
         run: dir.name.clone(),
         rtf: env!("CARGO_PKG_VERSION").to_owned(),
-        command: std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect(),
+        command: std::env::args_os()
+            .map(|arg| history::without_password(&arg.to_string_lossy()))
+            .collect(),
     };
     let record = write(&merged.events(header), &dir).map_err(Failure::internal)?;
     Ok(exit::of_run(&record))

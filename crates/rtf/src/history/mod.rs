@@ -7,7 +7,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use rtf_history::{Store, StoreError};
+use rtf_history::{Location, Store, StoreError};
 use rtf_model::Record;
 use rtf_report::run_dir::JOURNAL;
 
@@ -25,7 +25,7 @@ const CATCH_UP_LIMIT: Duration = Duration::from_secs(1);
 #[derive(Clone, Debug)]
 pub struct HistoryTarget {
     /// The database.
-    pub path: PathBuf,
+    pub database: Location,
     /// The results directory, in which earlier runs may be missing in the database.
     pub results: PathBuf,
 }
@@ -37,19 +37,33 @@ pub fn is_database(path: &Path) -> bool {
     matches!(rest, Some("" | "-wal" | "-shm")) && path.is_file()
 }
 
-/// Resolves the database: a path or a `file:` URL, by default in the results directory.
-pub fn resolve(url: Option<&str>, results: &Path) -> Result<PathBuf, Failure> {
-    let Some(url) = url else { return Ok(results.join(FILE_NAME)) };
+/// Resolves the database: a path, a `file:` URL or an address of PostgreSQL; by default a file
+/// in the results directory.
+pub fn resolve(url: Option<&str>, results: &Path) -> Result<Location, Failure> {
+    let Some(url) = url else { return Ok(results.join(FILE_NAME).into()) };
     match url.split_once("://") {
         _ if url.is_empty() => Err(Failure::input("the path of the history is empty")),
-        Some(("file", path)) => Ok(PathBuf::from(path)),
+        Some(("file", path)) => Ok(PathBuf::from(path).into()),
+        Some(("postgres" | "postgresql", _)) => Location::postgres(url).map_err(Failure::input),
         // The rest may contain a password.
         Some((scheme, _)) => {
             let error = format!("a history of the type `{scheme}://` is not supported");
-            Err(Failure::input(error).hint("give the path of a SQLite database"))
+            Err(Failure::input(error)
+                .hint("give the path of a SQLite database, or `postgres://USER@HOST/DATABASE`"))
         }
-        None => Ok(PathBuf::from(url.strip_prefix("file:").unwrap_or(url))),
+        None => Ok(PathBuf::from(url.strip_prefix("file:").unwrap_or(url)).into()),
     }
+}
+
+/// Replaces the password in an argument that is, or ends with, an address.
+pub fn without_password(argument: &str) -> String {
+    let masked = || {
+        let (scheme, rest) = argument.split_once("://")?;
+        let (user, host) = rest.rsplit_once('@')?;
+        let (user, _) = user.split_once(':')?;
+        Some(format!("{scheme}://{user}:***@{host}"))
+    };
+    masked().unwrap_or_else(|| argument.to_owned())
 }
 
 /// Imports a run that has ended, and earlier ones that are not in the history. Prints one
@@ -60,7 +74,7 @@ pub fn import_run(target: &HistoryTarget, record: &Record) {
     if !dir.is_some_and(|dir| dir.join(JOURNAL).is_file()) {
         return;
     }
-    let imported = Store::open(&target.path).and_then(|mut store| {
+    let imported = Store::open(&target.database).and_then(|mut store| {
         store.keep_log()?;
         store.import(record)?;
         catch_up(&mut store, &target.results)
@@ -98,4 +112,19 @@ fn catch_up(store: &mut Store, results: &Path) -> Result<(), StoreError> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn passwords_of_addresses_are_masked() {
+        let mask = |argument, expected: &str| assert_eq!(without_password(argument), expected);
+        mask("postgres://me:p@s:s@db/x", "postgres://me:***@db/x");
+        mask("--history=postgres://me:pass@db/x", "--history=postgres://me:***@db/x");
+        mask("postgres://me@db/x", "postgres://me@db/x");
+        mask("https://example.org/a:b", "https://example.org/a:b");
+        mask("arm.xml", "arm.xml");
+    }
 }

@@ -122,8 +122,8 @@ pub fn history_target(args: &RunArgs) -> Result<Option<HistoryTarget>, Failure> 
         return Ok(None);
     }
     let results = args.input.results.results.clone();
-    let path = history::resolve(args.history.history.as_deref(), &results)?;
-    Ok(Some(HistoryTarget { path, results }))
+    let database = history::resolve(args.history.history.as_deref(), &results)?;
+    Ok(Some(HistoryTarget { database, results }))
 }
 
 /// Resolves [`Annotations::Auto`].

@@ -20,8 +20,9 @@ use crate::history::journals;
 struct HistoryChecks {
     /// The database.
     path: String,
-    /// Its size with its write-ahead log.
-    bytes: u64,
+    /// The size of its file with its write-ahead log.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bytes: Option<u64>,
     #[serde(flatten)]
     counts: StoreCounts,
     /// What is wrong with it.
@@ -36,7 +37,7 @@ pub fn run(mut args: HistoryDoctorArgs, matches: &ArgMatches) -> VerbResult {
     let known: HashSet<_> = store.run_names().map_err(failure)?.into_iter().collect();
     let missing = journals::missing(&args.history.results.results, &known);
     let checks = HistoryChecks {
-        path: store.path().display().to_string(),
+        path: store.location().to_string(),
         bytes: bytes(&store),
         counts: store.counts().map_err(failure)?,
         problems: store.check().map_err(failure)?,
@@ -45,7 +46,8 @@ pub fn run(mut args: HistoryDoctorArgs, matches: &ArgMatches) -> VerbResult {
     print(args.history.format, "checks", &checks, |out| {
         let counts = &checks.counts;
         let count = |number, noun| format_count(number, noun);
-        writeln!(out, "{}  ({} KiB)", escape::line(&checks.path), checks.bytes.div_ceil(1024))?;
+        let size = checks.bytes.map(|bytes| format!("  ({} KiB)", bytes.div_ceil(1024)));
+        writeln!(out, "{}{}", escape::line(&checks.path), size.unwrap_or_default())?;
         writeln!(
             out,
             "  {}, {}, {}, {} series, {}",
@@ -72,9 +74,10 @@ pub fn run(mut args: HistoryDoctorArgs, matches: &ArgMatches) -> VerbResult {
     Ok(ExitCode::from(if checks.problems.is_empty() { exit::PASSED } else { exit::FAILED }))
 }
 
-fn bytes(store: &Store) -> u64 {
-    let mut log = store.path().as_os_str().to_owned();
+fn bytes(store: &Store) -> Option<u64> {
+    let file = store.location().file()?;
+    let mut log = file.as_os_str().to_owned();
     log.push("-wal");
     let size = |path: &std::path::Path| path.metadata().map_or(0, |found| found.len());
-    size(store.path()) + size(log.as_ref())
+    Some(size(file) + size(log.as_ref()))
 }

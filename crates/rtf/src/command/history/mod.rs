@@ -16,11 +16,10 @@ mod time;
 mod trend;
 
 use std::io::Write;
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::ArgMatches;
-use rtf_history::{Store, StoreError};
+use rtf_history::{Location, Store, StoreError};
 use serde::Serialize;
 
 use super::VerbResult;
@@ -55,7 +54,7 @@ fn resolve(
     results: &mut ResultsArgs,
     file: &mut HistoryFileArgs,
     matches: &ArgMatches,
-) -> Result<PathBuf, Failure> {
+) -> Result<Location, Failure> {
     config::fill_history(results, file, matches)?;
     history::resolve(file.history.as_deref(), &results.results)
 }

@@ -1,0 +1,67 @@
+//! Where a history is.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use super::database::{PostgresUrl, UrlError};
+
+/// Where a history is. It is printed without a password.
+#[derive(Clone, Debug)]
+pub enum Location {
+    /// A SQLite database.
+    File(PathBuf),
+    /// A PostgreSQL database.
+    Postgres(PostgresUrl),
+}
+
+impl Location {
+    /// Reads an address `postgres://…`.
+    ///
+    /// # Errors
+    /// It is invalid.
+    pub fn postgres(url: &str) -> Result<Self, UrlError> {
+        PostgresUrl::parse(url).map(Self::Postgres)
+    }
+
+    /// The file of a SQLite database.
+    #[must_use]
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::File(path) => Some(path),
+            Self::Postgres(_) => None,
+        }
+    }
+}
+
+impl fmt::Display for Location {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File(path) => write!(f, "{}", path.display()),
+            Self::Postgres(url) => write!(f, "{url}"),
+        }
+    }
+}
+
+impl From<&Path> for Location {
+    fn from(path: &Path) -> Self {
+        Self::File(path.to_owned())
+    }
+}
+
+impl From<&PathBuf> for Location {
+    fn from(path: &PathBuf) -> Self {
+        Self::File(path.clone())
+    }
+}
+
+impl From<PathBuf> for Location {
+    fn from(path: PathBuf) -> Self {
+        Self::File(path)
+    }
+}
+
+impl From<&Self> for Location {
+    fn from(location: &Self) -> Self {
+        location.clone()
+    }
+}

@@ -1,0 +1,153 @@
+//! The rows of the results of a run, written many at a time.
+
+use std::collections::{HashMap, HashSet};
+
+use super::columns::{PackedResult, PointPacker, ResultPacker};
+use super::database::{Database, DatabaseError, Row, Value};
+use super::import::json;
+use super::{read, sql};
+use crate::TestIdentity;
+use crate::entry::{ResultEntry, RunEntry, SeriesName};
+
+/// The results of a run, each with the row of its test.
+pub(super) type Results<'a> = Vec<(i64, &'a ResultEntry)>;
+
+/// Adds or updates the rows of the tests of a run.
+pub(super) fn results<'a>(
+    database: &Database,
+    run: &'a RunEntry,
+) -> Result<Results<'a>, DatabaseError> {
+    let started_us = run.started_at.as_microsecond();
+    let mut seen = HashSet::new();
+    let results = run.results.iter().filter(|result| seen.insert(&result.identity));
+    let results: Vec<_> = results.collect();
+    let current = results.iter().map(|result| (result.identity.clone(), *result));
+    let ids = upsert(database, current.collect(), started_us)?;
+    // Of several tests with one former name, the last one continues its history.
+    let former = results.iter().filter_map(|result| {
+        let was = result.was.as_ref().filter(|was| **was != result.identity.test)?;
+        Some((TestIdentity { test: was.clone(), ..result.identity.clone() }, *result))
+    });
+    let former: HashMap<_, _> = former.collect();
+    let former_ids =
+        upsert(database, former.iter().map(|(it, by)| (it.clone(), *by)).collect(), i64::MIN)?;
+    for (identity, result) in &former {
+        if let (Some(id), Some(former)) = (ids.get(&result.identity), former_ids.get(identity)) {
+            database.execute(sql::RENAME_TEST, &[(*id).into(), (*former).into()])?;
+        }
+    }
+    let with_ids = results.into_iter().filter_map(|it| Some((*ids.get(&it.identity)?, it)));
+    Ok(with_ids.collect())
+}
+
+/// Adds tests, or updates their attributes if no newer run is known; returns their rows.
+fn upsert(
+    database: &Database,
+    tests: Vec<(TestIdentity, &ResultEntry)>,
+    seen_us: i64,
+) -> Result<HashMap<TestIdentity, i64>, DatabaseError> {
+    let texts = tests.iter().map(|(_, result)| (json(&result.tags), json(&result.parameters)));
+    let texts: Vec<_> = texts.collect();
+    let mut values: Vec<Value<'_>> = Vec::with_capacity(tests.len() * sql::UPSERT_TESTS.columns);
+    for ((identity, result), (tags, parameters)) in tests.iter().zip(&texts) {
+        let TestIdentity { suite_file, suite, test, case } = identity;
+        let names = [suite_file, suite, test, case, &result.plugin_type, tags, parameters];
+        values.extend(names.map(Value::from));
+        values.push(seen_us.into());
+    }
+    let mut ids = HashMap::new();
+    database.batch(&sql::UPSERT_TESTS, &values, &mut |row| {
+        ids.insert(read::identity(row)?, row.get(0)?);
+        Ok(())
+    })?;
+    Ok(ids)
+}
+
+/// Adds results with their points.
+pub(super) fn insert(
+    database: &Database,
+    run_id: i64,
+    results: &Results<'_>,
+) -> Result<(), DatabaseError> {
+    let series = series(database, results)?;
+    let (mut packed_results, mut packed_points) = (ResultPacker::default(), PointPacker::default());
+    let (mut rows, mut points): (Vec<Value<'_>>, Vec<Value<'_>>) = (Vec::new(), Vec::new());
+    for (test, result) in results {
+        rows.extend(result_row(*test, run_id, result));
+        packed_results.add(PackedResult::new(*test, result), &result.robot);
+        for (name, summary) in &result.numbers {
+            let Some(series) = series.get(&(*test, name.clone())) else { continue };
+            packed_points.add(*series, summary);
+            points.extend::<[Value<'_>; 11]>([
+                (*test).into(),
+                run_id.into(),
+                (*series).into(),
+                summary.value.into(),
+                summary.min.into(),
+                summary.max.into(),
+                summary.count.into(),
+                summary.not_finite.into(),
+                summary.outside.into(),
+                summary.low.into(),
+                summary.high.into(),
+            ]);
+        }
+    }
+    database.batch(&sql::INSERT_RESULTS, &rows, &mut |_| Ok(()))?;
+    database.batch(&sql::INSERT_POINTS, &points, &mut |_| Ok(()))?;
+    let (results, points) = (packed_results.finish(), packed_points.finish());
+    let values = [run_id.into(), results.as_slice().into(), points.as_slice().into()];
+    database.execute(sql::INSERT_RUN_COLUMNS, &values)
+}
+
+fn result_row(test: i64, run: i64, result: &ResultEntry) -> [Value<'_>; 10] {
+    [
+        test.into(),
+        run.into(),
+        result.verdict.as_str().into(),
+        result.is_flaky.into(),
+        result.attempts.into(),
+        result.problems.into(),
+        result.duration_us.into(),
+        result.reason.as_ref().into(),
+        (&result.robot).into(),
+        result.plugin_hash.as_ref().into(),
+    ]
+}
+
+/// The rows of the series of the results; adds those that are new.
+fn series(
+    database: &Database,
+    results: &Results<'_>,
+) -> Result<HashMap<(i64, SeriesName), i64>, DatabaseError> {
+    let with_numbers = results.iter().filter(|(_, result)| !result.numbers.is_empty());
+    let tests: Vec<_> = with_numbers.map(|(test, _)| Value::Int(*test)).collect();
+    let mut known = HashMap::new();
+    let mut remember = |row: &Row<'_>| {
+        let (id, name) = read::series(row)?;
+        known.insert((row.get(4)?, name), id);
+        Ok(())
+    };
+    database.batch(&sql::FIND_SERIES, &tests, &mut remember)?;
+    let mut added = Vec::new();
+    for (test, result) in results {
+        for (name, _) in &result.numbers {
+            if !known.contains_key(&(*test, name.clone())) {
+                let SeriesName { kind, name, unit } = name;
+                added.extend::<[Value<'_>; 4]>([
+                    (*test).into(),
+                    kind.as_str().into(),
+                    name.into(),
+                    unit.into(),
+                ]);
+            }
+        }
+    }
+    let mut remember = |row: &Row<'_>| {
+        let (id, name) = read::series(row)?;
+        known.insert((row.get(4)?, name), id);
+        Ok(())
+    };
+    database.batch(&sql::INSERT_SERIES, &added, &mut remember)?;
+    Ok(known)
+}
