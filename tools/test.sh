@@ -354,6 +354,16 @@ history_change_points() {
   "$python" tests/history/check.py "$TARGET/debug/examples/change_points"
 }
 
+# The history in a PostgreSQL server, which the test starts and ends.
+history_postgres() {
+  local bin
+  # shellcheck source=tools/packages.sh
+  . tools/packages.sh
+  need_packages postgresql
+  bin=$(printf '%s\n' /usr/lib/postgresql/*/bin | sort -V | tail -n 1)
+  RTF_POSTGRES_BIN=$bin cargo test --quiet --locked -p rtf-history --test postgres -- --ignored
+}
+
 # Runs an npm script of the page.
 in_web() {
   tools/web.sh modules
@@ -436,6 +446,7 @@ robots=$!
 step 'rust tests' env --default-signal=HUP cargo test --workspace --locked --no-fail-fast
 step 'web api' web_api
 step 'history change points' history_change_points
+step 'history in PostgreSQL' history_postgres
 step 'debugging' debugging
 step 'ci helpers' ci_helpers
 step 'guide' env RTF_PYTHON="$checkers/python" tools/check_docs.py "$TARGET/release/rtf" README.md \

@@ -15,7 +15,7 @@ use super::VerbResult;
 use crate::cli::ConfigArgs;
 use crate::error::Failure;
 use crate::request::config::{absolute, request};
-use crate::{diagnostics, terminal};
+use crate::{diagnostics, history, terminal};
 
 /// The column of comments.
 const COMMENT_COLUMN: usize = 44;
@@ -80,7 +80,9 @@ fn header(view: Option<&ProfileView>, request: &ConfigRequest) -> String {
 }
 
 fn line(setting: &Setting) -> String {
-    let quote = |text: &String| format!("\"{}\"", text.escape_debug());
+    let quote = |text: &String| {
+        format!("\"{}\"", history::without_password(text).escape_debug())
+    };
     let value = match setting.key.as_str() {
         "reports" => {
             format!("[{}]", setting.values.iter().map(quote).collect::<Vec<_>>().join(", "))

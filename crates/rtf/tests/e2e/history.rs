@@ -173,9 +173,40 @@ fn no_history_is_made_where_it_is_not_wanted() {
     assert!(folder.path().join("there/team.db").exists());
     let runs = json(&folder, &["runs"])["runs"].as_array().map(Vec::len);
     assert_eq!(runs, Some(3), "earlier runs are imported, too");
-    let other = rtf(&folder, &["history", "runs", "--history", "postgres://me:secret@host/db"]);
+    let other = rtf(&folder, &["history", "runs", "--history", "mysql://me:secret@host/db"]);
     assert_eq!(other.code, Some(2));
     assert!(!other.stderr.contains("secret"), "{}", other.stderr);
+}
+
+/// No server has the port 1.
+#[test]
+fn a_server_that_is_down_delays_no_run_and_its_password_is_nowhere() {
+    let folder = folder();
+    let url = "postgres://me:s3cret@127.0.0.1:1/team";
+    folder.file("rtf.toml", &format!("[history]\nurl = \"{url}\"\n"));
+    let started = std::time::Instant::now();
+    let finished = rtf(&folder, &["run", "arm.xml"]);
+    assert!(started.elapsed() < std::time::Duration::from_secs(30));
+    assert_eq!(finished.code, Some(0), "{}", finished.stderr);
+    assert_snapshot!(folder.redact(&finished.stderr), @"");
+    let mut texts = vec![finished.stdout, finished.stderr];
+    let given = rtf(&folder, &["run", "arm.xml", "--history", url]);
+    texts.extend([given.stdout, given.stderr]);
+    let asked = rtf(&folder, &["history", "runs"]);
+    assert_eq!(asked.code, Some(3), "{}", asked.stderr);
+    texts.extend([asked.stdout, asked.stderr]);
+    for args in [&["config", "show", "arm.xml"][..], &["run", "--help"], &["show"]] {
+        let mut command = folder.command(args);
+        let shown = command.env("RTF_HISTORY_URL", url).output().expect("rtf runs");
+        texts.push(String::from_utf8_lossy(&[shown.stdout, shown.stderr].concat()).into_owned());
+    }
+    let journal = folder.read("rtf-results/latest/events.jsonl");
+    assert!(journal.contains("postgres://me:***@127.0.0.1:1/team"), "{journal}");
+    texts.push(journal);
+    assert!(texts.iter().all(|text| !text.contains("s3cret")), "{texts:?}");
+    // Nothing is lost.
+    let imported = rtf(&folder, &["history", "import", "--history", "local.db"]);
+    assert!(imported.stdout.starts_with("2 runs imported"), "{}", imported.stdout);
 }
 
 #[test]

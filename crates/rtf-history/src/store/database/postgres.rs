@@ -122,7 +122,7 @@ impl PostgresDatabase {
                 client.batch_execute(SETTINGS)?;
                 Ok(client)
             });
-            // Nobody waits for a late connection.
+            // A connection that is late is closed.
             let _ = sender.send(client);
         };
         let started = thread::Builder::new().name("history".to_owned()).spawn(connect);
