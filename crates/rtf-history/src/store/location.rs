@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::database::{PostgresUrl, UrlError};
 
@@ -11,7 +12,7 @@ pub enum Location {
     /// A SQLite database.
     File(PathBuf),
     /// A PostgreSQL database.
-    Postgres(PostgresUrl),
+    Postgres(Arc<PostgresUrl>),
 }
 
 impl Location {
@@ -20,7 +21,7 @@ impl Location {
     /// # Errors
     /// It is invalid.
     pub fn postgres(url: &str) -> Result<Self, UrlError> {
-        PostgresUrl::parse(url).map(Self::Postgres)
+        PostgresUrl::parse(url).map(|url| Self::Postgres(url.into()))
     }
 
     /// The file of a SQLite database.

@@ -14,6 +14,7 @@ pub mod sql;
 use std::cell::RefCell;
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -61,7 +62,7 @@ impl Store {
     pub fn open(location: impl Into<Location>) -> Result<Self, StoreError> {
         match location.into() {
             Location::File(path) => Self::open_file(&path),
-            Location::Postgres(url) => Self::connect(url, Self::migrate_postgres),
+            Location::Postgres(url) => Self::connect(&url, Self::migrate_postgres),
         }
     }
 
@@ -80,7 +81,7 @@ impl Store {
                 }
                 opened => opened,
             },
-            Location::Postgres(url) => Self::connect(url.clone(), Self::check_postgres),
+            Location::Postgres(url) => Self::connect(url, Self::check_postgres),
         }
     }
 
@@ -134,14 +135,14 @@ impl Store {
     }
 
     fn connect(
-        url: PostgresUrl,
+        url: &Arc<PostgresUrl>,
         check: impl FnOnce(&mut PostgresDatabase, &Location) -> Result<(), StoreError>,
     ) -> Result<Self, StoreError> {
         let location = Location::Postgres(url.clone());
-        let connected = PostgresDatabase::connect(&url);
+        let connected = PostgresDatabase::connect(url);
         let mut database = connected.map_err(|error| StoreError::new(&location, error))?;
         check(&mut database, &location)?;
-        Ok(Self { database: Database::Postgres(RefCell::new(database)), location })
+        Ok(Self { database: Database::Postgres(Box::new(RefCell::new(database))), location })
     }
 
     /// Leaves the write-ahead log when the store is closed, so that closing waits for no disk.

@@ -111,7 +111,7 @@ fn names_of_every_kind_are_stored_as_they_are() {
     let mut run = run();
     run.tests[0].name = Box::leak(name.to_owned().into_boxed_str());
     let world = World::with(&[run]);
-    let reopened = Store::open_existing(&world.path()).expect("a store");
+    let reopened = Store::open_existing(world.path()).expect("a store");
     assert_eq!(reopened.identities().expect("names")[0].test, name);
     assert_eq!(dump(&reopened), world.dump());
 }

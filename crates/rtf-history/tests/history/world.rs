@@ -180,7 +180,7 @@ pub struct World {
 impl World {
     pub fn new() -> Self {
         let dir = tempfile::tempdir().expect("a directory");
-        let store = Store::open(&dir.path().join("history.db")).expect("a store");
+        let store = Store::open(dir.path().join("history.db")).expect("a store");
         Self { dir, store }
     }
 

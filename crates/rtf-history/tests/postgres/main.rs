@@ -41,7 +41,7 @@ fn runs() -> Vec<Run> {
         let lag = 10.0 + noise + if late { 5.0 } else { 0.0 };
         moves.measured = vec![("lag", Some(lag), "ms"), ("lag", None, "s")];
         let mut retried = Test::new("é \"quoted\"; DROP TABLE run; --\n\u{202e}", Passed);
-        if day % 4 == 0 {
+        if day.is_multiple_of(4) {
             retried.verdicts = vec![Failed, Passed];
         }
         retried.millis = u64::from(day);

@@ -9,8 +9,7 @@ use super::ResultsArgs;
 /// The database of results.
 #[derive(Clone, Debug, Args)]
 pub struct HistoryFileArgs {
-    /// History database: a file, or `postgres://USER@HOST/DATABASE` [default: `history.db` in the
-    /// results directory]
+    /// History database, or its address [default: `history.db` in the results directory]
     #[arg(long, value_name = "FILE", env = "RTF_HISTORY_URL", hide_env_values = true)]
     pub history: Option<String>,
 }

@@ -80,9 +80,7 @@ fn header(view: Option<&ProfileView>, request: &ConfigRequest) -> String {
 }
 
 fn line(setting: &Setting) -> String {
-    let quote = |text: &String| {
-        format!("\"{}\"", history::without_password(text).escape_debug())
-    };
+    let quote = |text: &String| format!("\"{}\"", history::without_password(text).escape_debug());
     let value = match setting.key.as_str() {
         "reports" => {
             format!("[{}]", setting.values.iter().map(quote).collect::<Vec<_>>().join(", "))

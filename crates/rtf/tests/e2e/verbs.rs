@@ -189,8 +189,8 @@ fn help_of_run() {
           --fork <WHEN>                  Fork the hosts of C, C++, Lua and Python tests from a warm
                                          host: `auto` (from the second test on), `always`, or `never`
                                          [env: RTF_FORK=] [default: auto]
-          --history <FILE>               History database [default: `history.db` in the results
-                                         directory] [env: RTF_HISTORY_URL=]
+          --history <FILE>               History database, or its address [default: `history.db` in the
+                                         results directory] [env: RTF_HISTORY_URL]
           --no-history                   Do not import the run into the history
       -h, --help                         Print help (see more with '--help')
       -V, --version                      Print version

@@ -13,6 +13,7 @@ pub use postgres::{PostgresUrl, UrlError};
 pub(crate) use value::{Row, Value};
 
 use std::cell::RefCell;
+use std::error::Error as _;
 
 use ::postgres::error::SqlState;
 
@@ -21,12 +22,29 @@ use ::postgres::error::SqlState;
 pub(crate) enum DatabaseError {
     #[error(transparent)]
     Sqlite(#[from] rusqlite::Error),
-    #[error(transparent)]
-    Postgres(#[from] ::postgres::Error),
+    #[error("{}", with_causes(.0))]
+    Postgres(::postgres::Error),
     #[error("{0}")]
     Connection(&'static str),
     #[error("a number is out of range")]
     Range(#[from] std::num::TryFromIntError),
+}
+
+impl From<::postgres::Error> for DatabaseError {
+    fn from(error: ::postgres::Error) -> Self {
+        Self::Postgres(error)
+    }
+}
+
+/// The error alone is `db error`, or `error connecting to server`.
+fn with_causes(error: &::postgres::Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        text += &format!(": {error}");
+        cause = error.source();
+    }
+    text
 }
 
 /// How an error is reported.
@@ -61,7 +79,7 @@ pub(crate) type Visit<'a> = &'a mut dyn FnMut(&Row<'_>) -> Result<(), DatabaseEr
 #[derive(Debug)]
 pub(super) enum Database {
     Sqlite(rusqlite::Connection),
-    Postgres(RefCell<PostgresDatabase>),
+    Postgres(Box<RefCell<PostgresDatabase>>),
 }
 
 impl Database {
