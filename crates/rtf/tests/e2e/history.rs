@@ -1,19 +1,15 @@
 //! Runs are imported when they end, and `rtf history` answers questions about them.
-
-use std::os::unix::fs::PermissionsExt;
-use std::process::Stdio;
-
 use insta::assert_snapshot;
 use serde_json::Value;
 
-use crate::support::{Folder, Random, kill, wait_until};
+use crate::support::{Folder, wait_until};
 
 const PASSES: &str =
     "TestCase = {}\nfunction TestCase.run() rtf.measure('lag', 12.5, 'ms', nil, 20) end\n";
 const FAILS: &str =
     "TestCase = {}\nfunction TestCase.run() rtf.measure('lag', 25, 'ms', nil, 20) end\n";
 
-fn folder() -> Folder {
+pub fn folder() -> Folder {
     let folder = Folder::new();
     folder.file("Moves.lua", PASSES);
     folder.file("Stops.lua", "TestCase = {}\nfunction TestCase.run() end\n");
@@ -28,7 +24,7 @@ fn folder() -> Folder {
     folder
 }
 
-fn rtf(folder: &Folder, args: &[&str]) -> crate::support::Finished {
+pub fn rtf(folder: &Folder, args: &[&str]) -> crate::support::Finished {
     let mut command = folder.command(args);
     // The locks of this machine are those of other tests, too.
     command.env("RTF_LOCKS", folder.path().join("locks")).env("TZ", "UTC");
@@ -178,37 +174,6 @@ fn no_history_is_made_where_it_is_not_wanted() {
     assert!(!other.stderr.contains("secret"), "{}", other.stderr);
 }
 
-/// No server has the port 1.
-#[test]
-fn a_server_that_is_down_delays_no_run_and_its_password_is_nowhere() {
-    let folder = folder();
-    let url = "postgres://me:s3cret@127.0.0.1:1/team";
-    folder.file("rtf.toml", &format!("[history]\nurl = \"{url}\"\n"));
-    let started = std::time::Instant::now();
-    let finished = rtf(&folder, &["run", "arm.xml"]);
-    assert!(started.elapsed() < std::time::Duration::from_secs(30));
-    assert_eq!(finished.code, Some(0), "{}", finished.stderr);
-    assert_snapshot!(folder.redact(&finished.stderr), @"warning: the run was not imported into the history: cannot use the history `postgres://127.0.0.1:1/team`: error connecting to server: Connection refused (os error 111) (the next run imports it)");
-    let mut texts = vec![finished.stdout, finished.stderr];
-    let given = rtf(&folder, &["run", "arm.xml", "--history", url]);
-    texts.extend([given.stdout, given.stderr]);
-    let asked = rtf(&folder, &["history", "runs"]);
-    assert_eq!(asked.code, Some(3), "{}", asked.stderr);
-    texts.extend([asked.stdout, asked.stderr]);
-    for args in [&["config", "show", "arm.xml"][..], &["run", "--help"], &["show"]] {
-        let mut command = folder.command(args);
-        let shown = command.env("RTF_HISTORY_URL", url).output().expect("rtf runs");
-        texts.push(String::from_utf8_lossy(&[shown.stdout, shown.stderr].concat()).into_owned());
-    }
-    let journal = folder.read("rtf-results/latest/events.jsonl");
-    assert!(journal.contains("postgres://me:***@127.0.0.1:1/team"), "{journal}");
-    texts.push(journal);
-    assert!(texts.iter().all(|text| !text.contains("s3cret")), "{texts:?}");
-    // Nothing is lost.
-    let imported = rtf(&folder, &["history", "import", "--history", "local.db"]);
-    assert!(imported.stdout.starts_with("2 runs imported"), "{}", imported.stdout);
-}
-
 #[test]
 fn a_history_that_cannot_be_written_changes_no_exit_code() {
     let folder = folder();
@@ -303,22 +268,6 @@ fn questions_about_nothing() {
 }
 
 #[test]
-fn a_read_only_directory_can_be_read() {
-    let folder = folder();
-    rtf(&folder, &["run", "arm.xml"]);
-    let results = folder.path().join("rtf-results");
-    for name in ["history.db", "history.db-wal", "history.db-shm"] {
-        let path = results.join(name);
-        if path.exists() {
-            std::fs::set_permissions(path, PermissionsExt::from_mode(0o444)).expect("a file");
-        }
-    }
-    std::fs::set_permissions(&results, PermissionsExt::from_mode(0o555)).expect("a directory");
-    assert_eq!(json(&folder, &["runs"])["runs"].as_array().map(Vec::len), Some(1));
-    std::fs::set_permissions(&results, PermissionsExt::from_mode(0o755)).expect("a directory");
-}
-
-#[test]
 fn the_history_is_made_again_from_the_journals() {
     let folder = folder();
     for _ in 0..3 {
@@ -377,38 +326,6 @@ fn a_run_whose_runner_was_killed_is_imported() {
     let runs = json(&folder, &["runs"]);
     assert_eq!(runs["runs"][0]["end"], "died");
     assert_eq!(runs["runs"][0]["tests"], serde_json::json!({"interrupted": 1}));
-}
-
-#[test]
-fn an_import_that_is_killed_leaves_nothing_half() {
-    let folder = folder();
-    let tests = "<test>Moves.lua</test>".repeat(40);
-    folder.file("many.xml", &format!("<suite name='many'>{tests}</suite>"));
-    for _ in 0..6 {
-        assert_eq!(rtf(&folder, &["run", "many.xml", "--no-history"]).code, Some(0));
-    }
-    let export = |file: &str, table: &str| {
-        let args = ["history", "export", "--format", "json", "--history", file, "--table", table];
-        rtf(&folder, &args).stdout
-    };
-    let import = |file: &str| rtf(&folder, &["history", "import", "--history", file]);
-    assert_eq!(import("undisturbed.db").code, Some(0));
-    let mut random = Random::from_environment();
-    for moment in 0..20 {
-        let file = format!("killed-{moment}.db");
-        // The moments are spread from the start of the program to its end.
-        for _ in 0..3 {
-            let mut command = folder.command(&["history", "import", "--history", &file]);
-            let mut child = command.stdout(Stdio::null()).spawn().expect("rtf starts");
-            std::thread::sleep(std::time::Duration::from_micros(random.below(30_000)));
-            kill(child.id());
-            child.wait().expect("an end");
-        }
-        assert_eq!(import(&file).code, Some(0));
-        for table in ["runs", "results", "points"] {
-            assert_eq!(export(&file, table), export("undisturbed.db", table), "{file}");
-        }
-    }
 }
 
 #[test]

@@ -36,6 +36,7 @@ mod forked_hosts;
 mod framework_programs;
 mod guard;
 mod history;
+mod history_failures;
 mod hooks;
 mod host_modes;
 mod hostile_fixtures;
