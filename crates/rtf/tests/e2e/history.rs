@@ -1,4 +1,5 @@
 //! Runs are imported when they end, and `rtf history` answers questions about them.
+
 use insta::assert_snapshot;
 use serde_json::Value;
 
