@@ -1,13 +1,16 @@
 //! Measures imports and answers over many runs, and checks that what was planted is found.
 //!
 //! ```text
-//! cargo run --release -p rtf-history --example scale [RUNS [TESTS]]
+//! cargo run --release -p rtf-history --example scale [RUNS [TESTS [DIR]]]
 //! ```
+//!
+//! With `DIR`, the database stays there, to be shown by `rtf serve --results DIR`.
 
 #![expect(clippy::print_stdout, reason = "it prints measurements")]
 
 use std::collections::BTreeSet;
 use std::error::Error;
+use std::path::PathBuf;
 use std::time::Instant;
 
 use jiff::{SignedDuration, Timestamp};
@@ -177,11 +180,12 @@ fn check(
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut args = std::env::args().skip(1).map(|arg| arg.parse::<u32>());
+    let kept = std::env::args_os().nth(3).map(PathBuf::from);
+    let mut args = std::env::args().skip(1).take(2).map(|arg| arg.parse::<u32>());
     let runs = args.next().transpose()?.unwrap_or(1000);
     let tests = args.next().transpose()?.unwrap_or(500);
     let dir = tempfile::tempdir()?;
-    let path = dir.path().join("history.db");
+    let path = kept.as_deref().unwrap_or(dir.path()).join("history.db");
     let mut store = Store::open(&path)?;
     let mut random = Random(1);
     let (mut importing, mut slowest) = (0.0, 0.0_f64);

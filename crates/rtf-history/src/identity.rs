@@ -4,9 +4,10 @@ use std::path::{Component, Path, PathBuf};
 
 use rtf_model::RunStarted;
 use serde::Serialize;
+use utoipa::ToSchema;
 
 /// The identity of a test, or of a case of it, in all runs.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, ToSchema)]
 pub struct TestIdentity {
     /// The suite's file, relative to the root of its repository; empty for plug-ins given
     /// on the command line.

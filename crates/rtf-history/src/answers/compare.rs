@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use rtf_model::Verdict;
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::RunCounts;
 use super::columns::{ColumnPoint, ColumnSeries, Depth, TestColumns};
@@ -16,7 +17,8 @@ use crate::{RunSelection, Store, StoreError, TestIdentity, TestSelection};
 pub type VerdictCounts = RunCounts;
 
 /// Two sets of runs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[schema(as = HistoryDifferences)]
 pub struct Comparison {
     /// Number of runs in the first set.
     pub runs_a: usize,
@@ -31,18 +33,22 @@ pub struct Comparison {
 }
 
 /// A test in two sets of runs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct TestComparison {
     /// The identity.
     #[serde(flatten)]
     pub identity: TestIdentity,
     /// Its verdicts in the first set.
+    #[schema(value_type = HashMap<String, u32>)]
     pub verdicts_a: VerdictCounts,
     /// Its verdicts in the second set.
+    #[schema(value_type = HashMap<String, u32>)]
     pub verdicts_b: VerdictCounts,
     /// Its newest verdict in the first set.
+    #[schema(value_type = String)]
     pub last_a: Verdict,
     /// Its newest verdict in the second set.
+    #[schema(value_type = String)]
     pub last_b: Verdict,
     /// Its median duration in the first set, in seconds.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -56,7 +62,7 @@ pub struct TestComparison {
 }
 
 /// A measurement or signal in two sets of runs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct NumberChange {
     /// The name and the unit.
     #[serde(flatten)]

@@ -3,6 +3,7 @@
 use jiff::Timestamp;
 use rtf_model::Verdict;
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::RunInfo;
 use super::columns::{ColumnResult, Depth, TestColumns};
@@ -12,7 +13,7 @@ use crate::statistics::{Attempt, Flips};
 use crate::{RunSelection, Store, StoreError, TestIdentity, TestSelection};
 
 /// A test that both passed and failed on one commit.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct FlakyTest {
     /// The identity.
     #[serde(flatten)]

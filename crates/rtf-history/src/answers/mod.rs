@@ -4,8 +4,10 @@
 mod changes;
 mod columns;
 mod compare;
+mod compare_side;
 mod export;
 mod flaky;
+mod matrix;
 mod run_info;
 mod scope;
 mod slow;
@@ -16,6 +18,7 @@ pub use changes::SeriesChange;
 pub use compare::{Comparison, NumberChange, TestComparison, VerdictCounts};
 pub use export::{PointLine, ResultLine};
 pub use flaky::FlakyTest;
+pub use matrix::{MatrixRow, VerdictMatrix, letter};
 pub use run_info::{RunCounts, RunInfo};
 pub use slow::SlowTest;
 pub use test_history::{TestHistory, TestResult};

@@ -3,18 +3,21 @@
 use jiff::Timestamp;
 use rtf_model::Verdict;
 use serde::{Serialize, Serializer};
+use utoipa::ToSchema;
 
 use crate::entry::RunEnd;
 use crate::{RunSelection, Store, StoreError};
 
 /// A stored run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[schema(as = HistoryRun)]
 pub struct RunInfo {
     /// The identity.
     pub id: String,
     /// The name of its directory.
     pub name: String,
     /// When it started.
+    #[schema(value_type = String, format = DateTime)]
     pub started: Timestamp,
     /// The time from its first to its last event, in seconds.
     pub duration: f64,
@@ -24,6 +27,7 @@ pub struct RunInfo {
     pub green: bool,
     /// Number of tests by verdict.
     #[serde(rename = "tests")]
+    #[schema(value_type = HashMap<String, u32>)]
     pub counts: RunCounts,
     /// The commit of the sources.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -1,13 +1,14 @@
 //! Tests by duration.
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::columns::{Depth, TestColumns};
 use crate::statistics::robust::median;
 use crate::{RunSelection, Store, StoreError, TestIdentity, TestSelection};
 
 /// The durations of a test, in seconds.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct SlowTest {
     /// The identity.
     #[serde(flatten)]

@@ -3,6 +3,7 @@
 use jiff::Timestamp;
 use rtf_model::Verdict;
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::RunCounts;
 use super::scope::{RunScope, ScopedResult};
@@ -10,13 +11,15 @@ use super::trend::TestSeries;
 use crate::{RunSelection, Store, StoreError, TestIdentity, TestSelection};
 
 /// The result of a test in a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[schema(as = HistoryResult)]
 pub struct TestResult {
     /// The identity of the run.
     pub run: String,
     /// The name of the run's directory.
     pub name: String,
     /// When the run started.
+    #[schema(value_type = String, format = DateTime)]
     pub started: Timestamp,
     /// The commit of the sources.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -25,6 +28,7 @@ pub struct TestResult {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub branch: Option<String>,
     /// The final verdict.
+    #[schema(value_type = String)]
     pub verdict: Verdict,
     /// Whether it passed after an earlier attempt had failed.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -69,7 +73,7 @@ impl TestResult {
 }
 
 /// The history of a test.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct TestHistory {
     /// The identity.
     #[serde(flatten)]
@@ -78,6 +82,7 @@ pub struct TestHistory {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub former_names: Vec<String>,
     /// Number of results by verdict.
+    #[schema(value_type = HashMap<String, u32>)]
     pub counts: RunCounts,
     /// Its results, the oldest first.
     pub results: Vec<TestResult>,

@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 
 use jiff::Timestamp;
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::scope::RunScope;
 use crate::entry::{NumberKind, NumberSummary, SeriesName};
 use crate::{RunSelection, Store, StoreError, TestIdentity, TestSelection};
 
 /// A measurement or signal of a test over runs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct TestSeries {
     /// The test or case.
     #[serde(flatten)]
@@ -26,11 +27,12 @@ pub struct TestSeries {
 }
 
 /// What a run contributes to a series.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct SeriesPoint {
     /// The identity of the run.
     pub run: String,
     /// When the run started.
+    #[schema(value_type = String, format = DateTime)]
     pub started: Timestamp,
     /// The commit of the sources.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 
 use rtf_model::{Measurement, SignalSummary};
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use crate::statistics::robust::median;
 
 /// Where the numbers of a series come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum NumberKind {
     /// Measurements.
@@ -35,7 +36,7 @@ impl NumberKind {
 }
 
 /// The name of a series of a test.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, ToSchema)]
 pub struct SeriesName {
     /// Measurement or signal.
     pub kind: NumberKind,

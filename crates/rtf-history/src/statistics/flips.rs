@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use rtf_model::Verdict;
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::wilson::{CONFIDENCE, Rate, rate};
 
@@ -43,7 +44,7 @@ impl Outcome {
 }
 
 /// The results of a test over several attempts. All intervals have a confidence of 95 %.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, ToSchema)]
 pub struct Flips {
     /// Attempts that passed.
     pub passed: u64,

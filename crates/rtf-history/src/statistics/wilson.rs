@@ -8,12 +8,13 @@
 
 use serde::Serialize;
 use statrs::function::erf::erf_inv;
+use utoipa::ToSchema;
 
 /// The usual confidence of an interval.
 pub const CONFIDENCE: f64 = 0.95;
 
 /// A rate and its confidence interval. All fields are between 0 and 1.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Rate {
     /// Successes per trial.
     pub value: f64,

@@ -1,11 +1,10 @@
 //! `rtf history compare`.
 
-use std::collections::HashSet;
 use std::io::{self, Write};
 
 use clap::ArgMatches;
 use rtf_history::answers::{Comparison, NumberChange, TestComparison};
-use rtf_history::{RunSelection, Store, TestAttributes, TestIdentity};
+use rtf_history::{TestAttributes, TestIdentity};
 use rtf_report::{escape, format_count};
 
 use super::{failure, open, print, select, text};
@@ -23,7 +22,8 @@ const SHORTEST: f64 = 0.1;
 pub fn run(mut args: HistoryCompareArgs, matches: &ArgMatches) -> VerbResult {
     let (base, filter) = select::results(&args.select)?;
     let store = open(&mut args.history, matches)?;
-    let (a, b) = (side(&store, &args.a, &base)?, side(&store, &args.b, &base)?);
+    let side = |name: &str| store.comparison_side(name, &base).map_err(failure);
+    let (a, b) = (side(&args.a)?, side(&args.b)?);
     let is_meant = |test: &TestAttributes| filter.matches(test);
     let comparison = store.compare((&a, &b), &is_meant).map_err(failure)?;
     for (name, runs) in [(&args.a, comparison.runs_a), (&args.b, comparison.runs_b)] {
@@ -33,28 +33,6 @@ pub fn run(mut args: HistoryCompareArgs, matches: &ArgMatches) -> VerbResult {
         }
     }
     print(args.history.format, "comparison", &comparison, |out| write(out, &args, &comparison))
-}
-
-/// Resolves one side: a run, or all runs with an attribute.
-fn side(store: &Store, name: &str, base: &RunSelection) -> Result<RunSelection, Failure> {
-    let value = |text: &str| Some(text.to_owned());
-    let base = base.clone();
-    Ok(match name.split_once(':') {
-        Some(("branch", branch)) => RunSelection { branch: value(branch), ..base },
-        Some(("commit", commit)) => RunSelection { commit: value(commit), ..base },
-        Some(("robot", robot)) => RunSelection { robot: value(robot), ..base },
-        Some(("host", host)) => RunSelection { host: value(host), ..base },
-        Some(("profile", profile)) => RunSelection { profile: value(profile), ..base },
-        _ => {
-            let runs = store.runs(&RunSelection::default()).map_err(failure)?;
-            let is_meant = |name: &str, id: &str| name == id;
-            let found = runs.into_iter().find(|run| {
-                name == "latest" || is_meant(name, &run.name) || is_meant(name, &run.id)
-            });
-            let ids: HashSet<String> = found.into_iter().map(|run| run.id).collect();
-            RunSelection { ids: Some(ids), ..base }
-        }
-    })
 }
 
 fn write(out: &mut dyn Write, args: &HistoryCompareArgs, found: &Comparison) -> io::Result<()> {
