@@ -122,6 +122,8 @@ def leading_somewhere(url: str) -> dict[str, str | int]:
         "path.run": "latest",
         "path.number": 1,
         "path.path": attached[0]["attachment"]["path"],
+        # Not every text is a filter.
+        "query.filter": "suite(arm)",
         **numbers,
     }
 

@@ -12,6 +12,7 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
 
 use crate::access::Access;
 use crate::capabilities::Capabilities;
+use crate::history_source::HistorySource;
 use crate::index::Index;
 use crate::problem::Problem;
 use crate::runs::{Run, Runs};
@@ -24,6 +25,10 @@ const STREAMS: usize = 256;
 pub struct App {
     /// The runs.
     pub runs: Arc<Runs>,
+    /// The results of many runs.
+    pub history: Arc<dyn HistorySource>,
+    /// Whether it is also shown as metrics.
+    pub metrics: bool,
     /// Access control.
     pub access: Arc<Access>,
     /// What the server can do in addition to showing runs.

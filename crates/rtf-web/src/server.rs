@@ -21,10 +21,11 @@ use crate::access::{self, Access, AccessLog, Hosts, Rules, Secret, TokenError, W
 use crate::app::App;
 use crate::capabilities::Capabilities;
 use crate::connections::{Limits, Listener, Peer};
+use crate::history_source::HistorySource;
 use crate::journal_notifier::JournalNotifier;
 use crate::runs::Runs;
 use crate::tls::{self, Tls, TlsError};
-use crate::{api, legacy, page};
+use crate::{api, legacy, metrics, page};
 
 /// How many ports are tried when the first one is taken.
 const PORTS: u16 = 50;
@@ -99,6 +100,10 @@ impl ServeError {
 pub struct Service<'a> {
     /// The results directory.
     pub results: &'a Path,
+    /// The results of many runs.
+    pub history: Arc<dyn HistorySource>,
+    /// Whether `/metrics` shows it.
+    pub metrics: bool,
     /// What this server can do in addition to showing them.
     pub role: Capabilities,
     /// Creates the function that returns the command for rerunning a test.
@@ -170,7 +175,7 @@ impl BoundServer {
     /// The thread cannot be started.
     pub fn serve(self, service: Service<'_>) -> Result<WebServer, ServeError> {
         let Self { listener, address, wanted, token, tls, hosts, remote, limits } = self;
-        let Service { results, role, rerun, wrong_token } = service;
+        let Service { results, history, metrics, role, rerun, wrong_token } = service;
         let shown = token.text().to_owned();
         let rules = Rules { remote, tls: tls.is_some() };
         let log = AccessLog::start(wrong_token).map_err(ServeError::Start)?;
@@ -180,6 +185,8 @@ impl BoundServer {
         let lingers = Arc::new(OnceLock::new());
         let app = App {
             runs: Arc::new(Runs::new(results, role.own().map(str::to_owned))),
+            history,
+            metrics,
             access: Arc::new(access),
             role,
             rerun,
@@ -313,6 +320,7 @@ fn router(app: App) -> Router {
         .route("/status", get(legacy::status))
         .route("/update", get(legacy::update))
         .route("/api/docs", get(page::docs))
+        .route("/metrics", get(metrics::metrics))
         .fallback_service(get(page::page))
         .layer(CompressionLayer::new().quality(CompressionLevel::Fastest))
         .layer(guard)

@@ -12,8 +12,9 @@ use rtf_web::{Capabilities, WebServer};
 
 use crate::control::ControlChannels;
 use crate::error::Failure;
+use crate::history;
 use crate::request::{RunRequest, WebRequest};
-use crate::web;
+use crate::web::{self, Served};
 
 /// The outputs of a run, and requests to it.
 pub struct Prepared {
@@ -48,7 +49,12 @@ pub fn prepare(
     let journal = Journal::create(&dir.journal()).map_err(Failure::input)?;
     let control = Arc::new(ControlChannels::new(request.shutdown_timeout));
     let role = Capabilities::Runner(dir.name.clone(), control.clone());
-    let server = bound.map(|bound| web::serve(bound, &request.results, role)).transpose()?;
+    let history = match &request.history {
+        Some(target) => target.path.clone(),
+        None => history::resolve(None, &request.results)?,
+    };
+    let served = Served { results: &request.results, history, metrics: false, role };
+    let server = bound.map(|bound| web::serve(bound, served)).transpose()?;
     let stdout = BackgroundWriter::new(Box::new(std::io::stdout())).map_err(Failure::internal)?;
     // Others refer to what the journal and the logs contain, so these come first.
     let mut reporters: Vec<Box<dyn Reporter>> =

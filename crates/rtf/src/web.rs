@@ -1,6 +1,7 @@
 //! The web server of `rtf run --web` and `rtf serve`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_engine::signal::SignalListener;
@@ -8,6 +9,7 @@ use rtf_report::console::RerunCommand;
 use rtf_web::{BoundServer, Capabilities, ServeError, Service, Settings, WebServer, WrongToken};
 
 use crate::error::Failure;
+use crate::history::ServedHistory;
 use crate::{rerun_command, terminal};
 
 const LABEL: &str = "\u{1b}[1mweb\u{1b}[0m";
@@ -17,11 +19,27 @@ pub fn bind(settings: &Settings) -> Result<BoundServer, Failure> {
     BoundServer::new(settings).map_err(failure)
 }
 
+/// What is served.
+pub struct Served<'a> {
+    /// The results directory.
+    pub results: &'a Path,
+    /// The database of the history, which may not exist.
+    pub history: PathBuf,
+    /// Whether `/metrics` shows it.
+    pub metrics: bool,
+    /// What the server can do.
+    pub role: Capabilities,
+}
+
 /// Starts the server and prints its address.
-pub fn serve(bound: BoundServer, results: &Path, role: Capabilities) -> Result<WebServer, Failure> {
+pub fn serve(bound: BoundServer, served: Served<'_>) -> Result<WebServer, Failure> {
+    let Served { results, history, metrics, role } = served;
+    let history = Arc::new(ServedHistory { path: history });
     let rerun: fn() -> RerunCommand = rerun_command::for_run;
     let wrong_token = Box::new(report_wrong_token);
-    let server = bound.serve(Service { results, role, rerun, wrong_token }).map_err(failure)?;
+    let server = bound
+        .serve(Service { results, history, metrics, role, rerun, wrong_token })
+        .map_err(failure)?;
     terminal::stderr(|err| {
         if let Some(taken) = server.taken() {
             let port = server.address().port();

@@ -267,6 +267,7 @@ fn is_data(path: &str) -> bool {
     in_api && !is_description && !is_viewer
         || below("/status").is_some()
         || below("/update").is_some()
+        || below("/metrics").is_some()
 }
 
 /// Whether this continues a name: `/api` is not a prefix of `/apiary`.
@@ -307,6 +308,7 @@ mod tests {
             "/status",
             "/status/",
             "/update",
+            "/metrics",
         ] {
             assert!(is_data(data), "{data}");
         }

@@ -5,6 +5,7 @@ mod control;
 mod details;
 mod events;
 pub mod files;
+mod history;
 mod logs;
 mod plan;
 mod problems;
@@ -95,6 +96,13 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(files::file))
         .routes(routes!(files::journal))
         .routes(routes!(events::events))
+        .routes(routes!(history::runs))
+        .routes(routes!(history::matrix))
+        .routes(routes!(history::test))
+        .routes(routes!(history::trend))
+        .routes(routes!(history::flaky))
+        .routes(routes!(history::slow))
+        .routes(routes!(history::compare))
         .routes(routes!(control::stop_run))
         .routes(routes!(control::stop_test))
         .routes(routes!(control::skip_suite))

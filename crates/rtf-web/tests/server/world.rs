@@ -4,6 +4,8 @@ use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
+use jiff::Timestamp;
+use rtf_history::{Store, StoreError};
 use rtf_model::{
     Attachment, Event, EventKind, Measurement, Message, MessageKind, Micros, Output, Phase, Record,
     RunStarted, Samples, Source, Stream, SuiteId, SuitePlanned, TestFinished, TestId, TestPlanned,
@@ -14,8 +16,8 @@ use rtf_report::console::RerunCommand;
 use rtf_report::journal::Journal;
 use rtf_report::logs::Logs;
 use rtf_web::{
-    BoundServer, Capabilities, FinishedRun, JournalNotifier, Limits, RerunRejected, RunControl,
-    RunStarter, Service, Settings, WebServer, WrongToken,
+    BoundServer, Capabilities, FinishedRun, HistorySource, JournalNotifier, Limits, RerunRejected,
+    RunControl, RunStarter, Service, Settings, TestCondition, WebServer, WrongToken,
 };
 
 use crate::client::{self, Answer};
@@ -231,10 +233,11 @@ impl Writer {
         }));
     }
 
-    pub fn end(mut self) {
+    pub fn end(mut self) -> Record {
         self.emit(EventKind::SuiteFinished { suite: SuiteId(0) });
         self.emit(EventKind::RunFinished { interrupted: None });
         self.flush();
+        self.record
     }
 }
 
@@ -245,6 +248,27 @@ pub struct World {
     pub asked: Arc<Asked>,
 }
 
+/// A history whose filters are the name of a test.
+struct History(PathBuf);
+
+impl HistorySource for History {
+    fn open(&self) -> Result<Store, StoreError> {
+        Store::open_existing(&self.0)
+    }
+
+    fn parse_filter(&self, text: &str) -> Result<TestCondition, String> {
+        let name = text.to_owned();
+        match name.starts_with('!') {
+            true => Err("no filter".to_owned()),
+            false => Ok(Box::new(move |test| test.identity.test == name)),
+        }
+    }
+
+    fn parse_since(&self, text: &str) -> Result<Timestamp, String> {
+        text.parse().map_err(|error| format!("{error}"))
+    }
+}
+
 fn served<'a>(results: &'a Path, role: Capabilities, asked: &Arc<Asked>) -> Service<'a> {
     let asked = asked.clone();
     let wrong_token = Box::new(move |wrong: WrongToken| {
@@ -252,7 +276,9 @@ fn served<'a>(results: &'a Path, role: Capabilities, asked: &Arc<Asked>) -> Serv
     });
     let rerun: fn() -> RerunCommand =
         || Box::new(|_, test, _| Some(format!("rtf run suite.xml::{test}")));
-    Service { results, role, rerun, wrong_token }
+    let history = Arc::new(History(results.join("history.db")));
+    let metrics = role.own().is_none();
+    Service { results, history, metrics, role, rerun, wrong_token }
 }
 
 pub fn settings() -> Settings {

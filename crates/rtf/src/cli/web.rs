@@ -7,7 +7,7 @@ use std::time::Duration;
 use clap::Args;
 use rtf_plan::suite::parse_duration;
 
-use super::ResultsArgs;
+use super::{HistoryFileArgs, ResultsArgs};
 
 const HEADING: &str = "Web";
 /// The default address.
@@ -54,10 +54,17 @@ pub struct ServeArgs {
     #[command(flatten)]
     pub results: ResultsArgs,
 
+    #[command(flatten)]
+    pub history: HistoryFileArgs,
+
     /// Address to listen on; if the port is in use, the next free port
     #[arg(help_heading = HEADING, long, value_name = "ADDR:PORT", default_value = ADDRESS)]
     #[arg(value_parser = parse_address)]
     pub web: SocketAddr,
+
+    /// Show the history as metrics for Prometheus at `/metrics`
+    #[arg(help_heading = HEADING, long)]
+    pub web_metrics: bool,
 
     #[command(flatten)]
     pub access: WebAccessArgs,

@@ -2,6 +2,7 @@
 //! changes the verdict or the exit code of a run.
 
 pub mod journals;
+mod source;
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -10,6 +11,8 @@ use std::time::{Duration, Instant};
 use rtf_history::{Location, Store, StoreError};
 use rtf_model::Record;
 use rtf_report::run_dir::JOURNAL;
+
+pub use source::ServedHistory;
 
 use crate::error::Failure;
 use crate::terminal;

@@ -22,6 +22,9 @@ use clap::ArgMatches;
 use rtf_history::{Location, Store, StoreError};
 use serde::Serialize;
 
+pub use select::TestFilter;
+pub use time::find_since;
+
 use super::VerbResult;
 use crate::cli::{HistoryArgs, HistoryFileArgs, HistoryFormat, HistoryVerb, ResultsArgs};
 use crate::error::Failure;

@@ -59,6 +59,20 @@ impl TestFilter {
         Err(Failure::printed())
     }
 
+    /// Parses one filter.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn parse_one(text: &str) -> Result<Self, String> {
+        match rtf_plan::select::parse(&SourceText::new("filter", text)) {
+            Ok(filter) if filter.has_cases() => {
+                Err("the history cannot be filtered by `case(…)`".to_owned())
+            }
+            Ok(filter) => Ok(Self(vec![filter])),
+            Err(problem) => Err(problem.message),
+        }
+    }
+
     /// Whether any filter matches the test, or there is none.
     pub fn matches(&self, test: &TestAttributes) -> bool {
         let subject = StoredTest(test);

@@ -5,6 +5,7 @@ mod reruns;
 use std::process::ExitCode;
 use std::sync::Arc;
 
+use clap::ArgMatches;
 use rtf_engine::signal::SignalListener;
 use rtf_web::{Capabilities, ShutdownHandle};
 
@@ -12,17 +13,20 @@ use self::reruns::Reruns;
 use super::VerbResult;
 use crate::cli::ServeArgs;
 use crate::error::Failure;
-use crate::request::web_settings;
-use crate::{exit, terminal, web};
+use crate::request::{config, web_settings};
+use crate::web::Served;
+use crate::{exit, history, terminal, web};
 
 /// Serves runs.
-pub fn run(args: &ServeArgs) -> VerbResult {
+pub fn run(mut args: ServeArgs, matches: &ArgMatches) -> VerbResult {
+    config::fill_history(&mut args.results, &mut args.history, matches)?;
     let results = &args.results.results;
     if !results.is_dir() {
         let error = format!("there is no results directory `{}`", results.display());
         let hint = "choose another directory with `--results DIR`, or run something first";
         return Err(Failure::input(error).hint(hint));
     }
+    let history = history::resolve(args.history.history.as_deref(), results)?;
     let bound = web::bind(&web_settings(args.web, &args.access))?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(Failure::internal)?;
@@ -32,7 +36,8 @@ pub fn run(args: &ServeArgs) -> VerbResult {
         let _context = runtime.enter();
         SignalListener::install().map_err(Failure::internal)?
     };
-    let server = web::serve(bound, results, Capabilities::Viewer(reruns.clone()))?;
+    let role = Capabilities::Viewer(reruns.clone());
+    let server = web::serve(bound, Served { results, history, metrics: args.web_metrics, role })?;
     let ender = server.ender();
     let signals_thread = std::thread::Builder::new()
         .name("signals".into())

@@ -1,0 +1,135 @@
+//! Which runs and tests a question to the history is about.
+
+use std::sync::Arc;
+
+use rtf_history::{RunSelection, Store, StoreError, TestAttributes};
+use serde::{Deserialize, Deserializer};
+use utoipa::IntoParams;
+
+use axum::http::StatusCode;
+
+use crate::app::{App, JsonText, blocking};
+use crate::history_source::{HistorySource, TestCondition};
+use crate::problem::Problem;
+
+/// Which runs and tests.
+#[derive(Clone, Debug, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct HistoryQuery {
+    /// Only tests that match, as `-E` on the command line.
+    #[serde(default, deserialize_with = "text")]
+    filter: Option<String>,
+    /// Only runs of this branch.
+    #[serde(default, deserialize_with = "text")]
+    branch: Option<String>,
+    /// Only runs of commits whose hash begins so.
+    #[serde(default, deserialize_with = "text")]
+    commit: Option<String>,
+    /// Only results of suites that require this resource.
+    #[serde(default, deserialize_with = "text")]
+    robot: Option<String>,
+    /// Only runs with this profile.
+    #[serde(default, deserialize_with = "text")]
+    profile: Option<String>,
+    /// Only runs on this machine.
+    #[serde(default, deserialize_with = "text")]
+    host: Option<String>,
+    /// Only runs since a date or within a time: `2026-11-01`, `30d`.
+    #[serde(default, deserialize_with = "text")]
+    #[param(
+        pattern = "^(20[0-9]{2}-(0[1-9]|1[0-2])-(0[1-9]|1[0-9]|2[0-8])|[1-9][0-9]{0,3}[dh])?$"
+    )]
+    since: Option<String>,
+    /// Only the newest of the remaining runs.
+    #[param(minimum = 1, maximum = 1_000_000)]
+    last: Option<u32>,
+    /// Whether cases are included.
+    cases: Option<bool>,
+}
+
+/// A text; an empty one is none.
+fn text<'de, D: Deserializer<'de>>(input: D) -> Result<Option<String>, D::Error> {
+    Ok(Option::<String>::deserialize(input)?.filter(|text| !text.is_empty()))
+}
+
+/// The resolved query.
+pub struct Selection {
+    pub runs: RunSelection,
+    filter: Option<TestCondition>,
+    cases: bool,
+}
+
+impl Selection {
+    fn of(query: HistoryQuery, source: &dyn HistorySource) -> Result<Self, Problem> {
+        let bad = |name: &str, error: String| Problem::bad_request(format!("`{name}`: {error}"));
+        let since = query.since.map(|text| source.parse_since(&text)).transpose();
+        let filter = query.filter.map(|text| source.parse_filter(&text)).transpose();
+        let last = query.last.map(|last| usize::try_from(last).unwrap_or(usize::MAX));
+        if last == Some(0) {
+            return Err(Problem::bad_request("`last` is 0, expected at least 1"));
+        }
+        let runs = RunSelection {
+            branch: query.branch,
+            commit: query.commit,
+            robot: query.robot,
+            profile: query.profile,
+            host: query.host,
+            since: since.map_err(|error| bad("since", error))?,
+            last,
+            ids: None,
+        };
+        let filter = filter.map_err(|error| bad("filter", error))?;
+        Ok(Self { runs, filter, cases: query.cases.unwrap_or(false) })
+    }
+
+    /// Whether a test matches the filter.
+    pub fn matches(&self, test: &TestAttributes) -> bool {
+        self.filter.as_ref().is_none_or(|filter| filter(test))
+    }
+
+    /// Whether a test matches the filter, and is no case if those are not included.
+    pub fn lists(&self, test: &TestAttributes) -> bool {
+        (self.cases || test.identity.case.is_empty()) && self.matches(test)
+    }
+}
+
+/// Answers a question in a thread that may block.
+///
+/// # Errors
+/// The query is wrong, or the history cannot be read.
+pub async fn answer<T: serde::Serialize>(
+    app: App,
+    query: HistoryQuery,
+    view: impl FnOnce(&Store, &Selection) -> Result<T, HistoryProblem> + Send + 'static,
+) -> Result<JsonText, Problem> {
+    let source: Arc<dyn HistorySource> = app.history.clone();
+    blocking(move || {
+        let selection = Selection::of(query, source.as_ref())?;
+        let view = |store: Store| view(&store, &selection);
+        let value = source.open().map_err(HistoryProblem::from).and_then(view);
+        JsonText::of(&value.map_err(|HistoryProblem(problem)| problem)?)
+    })
+    .await
+}
+
+/// Why the history has no answer.
+#[derive(Debug)]
+pub struct HistoryProblem(pub Problem);
+
+impl From<StoreError> for HistoryProblem {
+    fn from(error: StoreError) -> Self {
+        let status = match error {
+            StoreError::Missing { .. } => StatusCode::NOT_FOUND,
+            _ => StatusCode::SERVICE_UNAVAILABLE,
+        };
+        let mut detail = error.to_string();
+        if let Some(cause) = std::error::Error::source(&error) {
+            detail += &format!(": {cause}");
+        }
+        let problem = Problem::new(status, detail);
+        Self(match error.hint() {
+            Some(hint) => problem.hint(hint),
+            None => problem,
+        })
+    }
+}

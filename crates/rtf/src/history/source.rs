@@ -1,0 +1,32 @@
+//! The history as the web server reads it.
+
+use std::path::PathBuf;
+
+use jiff::Timestamp;
+use rtf_history::{Store, StoreError, TestAttributes};
+use rtf_web::{HistorySource, TestCondition};
+
+use crate::command::history::{TestFilter, find_since};
+
+/// The database of the web server.
+#[derive(Debug)]
+pub struct ServedHistory {
+    /// The database, which may not exist.
+    pub path: PathBuf,
+}
+
+impl HistorySource for ServedHistory {
+    fn open(&self) -> Result<Store, StoreError> {
+        Store::open_existing(&self.path)
+    }
+
+    fn parse_filter(&self, text: &str) -> Result<TestCondition, String> {
+        let filter = TestFilter::parse_one(text)?;
+        Ok(Box::new(move |test: &TestAttributes| filter.matches(test)))
+    }
+
+    fn parse_since(&self, text: &str) -> Result<Timestamp, String> {
+        let expected = "expected a date or a time span, like `2026-11-01` or `30d`";
+        find_since(text).ok_or_else(|| format!("`{text}` is invalid, {expected}"))
+    }
+}
