@@ -50,7 +50,7 @@ pub fn prepare(
     let control = Arc::new(ControlChannels::new(request.shutdown_timeout));
     let role = Capabilities::Runner(dir.name.clone(), control.clone());
     let history = match &request.history {
-        Some(target) => target.path.clone(),
+        Some(target) => target.database.clone(),
         None => history::resolve(None, &request.results)?,
     };
     let served = Served { results: &request.results, history, metrics: false, role };

@@ -1,10 +1,11 @@
 //! The web server of `rtf run --web` and `rtf serve`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_engine::signal::SignalListener;
+use rtf_history::Location;
 use rtf_report::console::RerunCommand;
 use rtf_web::{BoundServer, Capabilities, ServeError, Service, Settings, WebServer, WrongToken};
 
@@ -24,7 +25,7 @@ pub struct Served<'a> {
     /// The results directory.
     pub results: &'a Path,
     /// The database of the history, which may not exist.
-    pub history: PathBuf,
+    pub history: Location,
     /// Whether `/metrics` shows it.
     pub metrics: bool,
     /// What the server can do.
@@ -34,7 +35,7 @@ pub struct Served<'a> {
 /// Starts the server and prints its address.
 pub fn serve(bound: BoundServer, served: Served<'_>) -> Result<WebServer, Failure> {
     let Served { results, history, metrics, role } = served;
-    let history = Arc::new(ServedHistory { path: history });
+    let history = Arc::new(ServedHistory { database: history });
     let rerun: fn() -> RerunCommand = rerun_command::for_run;
     let wrong_token = Box::new(report_wrong_token);
     let server = bound

@@ -177,7 +177,8 @@ function drawName(
     context.fillText(fit(context, oneLine(label), to - from - 4), from, y + LANE / 2 + 0.5);
 }
 
-function fit(context: CanvasRenderingContext2D, text: string, room: number): string {
+/** The text, shortened to this width. */
+export function fit(context: CanvasRenderingContext2D, text: string, room: number): string {
     // Longer labels do not fit on any screen.
     let shown = text.slice(0, 300);
     if (context.measureText(shown).width <= room) return shown;

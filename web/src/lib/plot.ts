@@ -30,6 +30,24 @@ export function padded(low: number | null, high: number | null): [number, number
         : [-Number.MAX_VALUE / 4, Number.MAX_VALUE / 4];
 }
 
+/** Draws a dashed vertical line at each of these x values. */
+export function drawMarks(plot: uPlot, marks: readonly number[], colour: string): void {
+    const { ctx: context, bbox } = plot;
+    context.save();
+    context.strokeStyle = colour;
+    context.lineWidth = 1.5 * devicePixelRatio;
+    context.setLineDash([3 * devicePixelRatio, 3 * devicePixelRatio]);
+    for (const mark of marks) {
+        const x = Math.round(plot.valToPos(mark, 'x', true));
+        if (x < bbox.left || x > bbox.left + bbox.width) continue;
+        context.beginPath();
+        context.moveTo(x, bbox.top);
+        context.lineTo(x, bbox.top + bbox.height);
+        context.stroke();
+    }
+    context.restore();
+}
+
 /** Plots that are reset together, by link. */
 class Linked {
     private readonly resets = new Map<string, Set<() => void>>();

@@ -1,12 +1,20 @@
 // The routes of the page, after the `#` of its address.
 
+import {
+    historyHref,
+    parseQuery,
+    parseView,
+    type HistoryQuery,
+    type HistoryView,
+} from './history/query';
 import { filterQuery, parseFilter, type RunFilter } from './run-filter';
 
 export type Route =
     | { at: 'home' }
     | { at: 'runs'; filter: RunFilter; problems?: string[] }
     | { at: 'run'; run: string; show: Shown }
-    | { at: 'compare'; old: string; new: string };
+    | { at: 'compare'; old: string; new: string }
+    | { at: 'history'; view: HistoryView; query: HistoryQuery };
 
 /** The selected part of a run. */
 export type Shown =
@@ -22,6 +30,9 @@ export function parseRoute(hash: string): Route {
     if (where === 'compare' && first && kind) return { at: 'compare', old: first, new: kind };
     if (where === 'runs' && first) {
         return { at: 'run', run: first, show: shown(kind, second, new URLSearchParams(query)) };
+    }
+    if (where === 'history') {
+        return { at: 'history', view: parseView(first), query: parseQuery(query) };
     }
     if (where !== 'runs') return { at: 'home' };
     const { filter, problems } = parseFilter(query);
@@ -63,6 +74,8 @@ export function hrefOf(route: Route): string {
         }
         case 'compare':
             return `#/compare/${run(route.old)}/${run(route.new)}`;
+        case 'history':
+            return historyHref(route.view, route.query);
         case 'run':
             return `#/runs/${run(route.run)}${tail(route.show)}`;
     }

@@ -1,9 +1,7 @@
 //! The history as the web server reads it.
 
-use std::path::PathBuf;
-
 use jiff::Timestamp;
-use rtf_history::{Store, StoreError, TestAttributes};
+use rtf_history::{Location, Store, StoreError, TestAttributes};
 use rtf_web::{HistorySource, TestCondition};
 
 use crate::command::history::{TestFilter, find_since};
@@ -12,12 +10,12 @@ use crate::command::history::{TestFilter, find_since};
 #[derive(Debug)]
 pub struct ServedHistory {
     /// The database, which may not exist.
-    pub path: PathBuf,
+    pub database: Location,
 }
 
 impl HistorySource for ServedHistory {
     fn open(&self) -> Result<Store, StoreError> {
-        Store::open_existing(&self.path)
+        Store::open_existing(self.database.clone())
     }
 
     fn parse_filter(&self, text: &str) -> Result<TestCondition, String> {
