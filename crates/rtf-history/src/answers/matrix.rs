@@ -8,6 +8,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::RunInfo;
+use super::columns::{Depth, TestColumns};
 use crate::{RunSelection, Store, StoreError, TestIdentity, TestSelection};
 
 /// No result of the test in the run.
@@ -20,7 +21,7 @@ pub struct VerdictMatrix {
     pub runs: Vec<RunInfo>,
     /// A page of the selected tests, without those that have no result in these runs.
     pub tests: Vec<MatrixRow>,
-    /// The exclusive resources on which these results depended.
+    /// The exclusive resources of suites in these runs.
     pub robots: BTreeSet<String>,
     /// Number of selected tests, on all pages.
     pub total: usize,
@@ -49,27 +50,23 @@ impl Store {
         page: Range<usize>,
     ) -> Result<VerdictMatrix, StoreError> {
         let scope = self.run_scope(runs)?;
-        let selected = self.selected_tests(tests)?;
+        let mut selected = self.selected_tests(tests)?;
         let total = selected.len();
-        let (mut rows, mut robots) = (Vec::new(), BTreeSet::new());
-        for test in selected.into_iter().skip(page.start).take(page.len()) {
-            let results = self.results(&test, &scope)?;
-            if results.is_empty() {
-                continue;
-            }
+        selected.truncate(page.end);
+        let selected = selected.split_off(page.start.min(selected.len()));
+        let columns = self.columns(selected, &scope, Depth::Results)?;
+        let tests = columns.tests.into_iter().filter(|test| !test.results.is_empty());
+        let row = |TestColumns { test, results, .. }: TestColumns| {
             let mut letters = vec![NO_RESULT; scope.runs.len()];
             for result in results {
-                letters[result.run] = letter(result.row.verdict, result.row.is_flaky);
-                let names = result.row.robot.split(' ').filter(|name| !name.is_empty());
-                for name in names {
-                    if !robots.contains(name) {
-                        robots.insert(name.to_owned());
-                    }
-                }
+                letters[result.run] = letter(result.verdict, result.is_flaky);
             }
             let verdicts = letters.into_iter().map(char::from).collect();
-            rows.push(MatrixRow { identity: test.attributes.identity, verdicts });
-        }
+            MatrixRow { identity: test.attributes.identity, verdicts }
+        };
+        let rows = tests.map(row).collect();
+        let names = columns.robots.iter().flat_map(|robots| robots.split(' '));
+        let robots = names.filter(|name| !name.is_empty()).map(str::to_owned).collect();
         Ok(VerdictMatrix { runs: scope.runs, tests: rows, robots, total })
     }
 }

@@ -24,7 +24,7 @@ pub struct HistoryMatrix {
     pub runs: Vec<MatrixRun>,
     /// A page of the tests.
     pub tests: Vec<MatrixRow>,
-    /// The exclusive resources of these tests.
+    /// The exclusive resources of suites in these runs.
     pub robots: Vec<String>,
     /// Number of selected tests on all pages.
     pub total: usize,
