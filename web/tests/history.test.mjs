@@ -45,7 +45,7 @@ test('the matrix is read with the keyboard, and opens a test', async () => {
     await guarded.see('mixed/Errs', '.cell');
     await guarded.see('failed', '.cell strong');
     await page.getByLabel('Only tests with problems').check();
-    await guarded.see('3 tests, 3 runs');
+    await guarded.see('4 tests, 3 runs');
     await page.getByLabel('Only tests with problems').uncheck();
     await step('Enter opens the test, and back returns to the matrix', async () => {
         await matrix.focus();
