@@ -105,7 +105,7 @@ function drawNames(
     }
 }
 
-/** The day of each first run of a day, where there is room for it. */
+/** The day of the first visible run, and of each first run of a day, where there is room. */
 function drawDays(
     context: CanvasRenderingContext2D,
     days: readonly string[],
@@ -120,7 +120,7 @@ function drawDays(
     for (let column = first; column < last; column += 1) {
         const x = gutter + column * CELL.width - scroll.left;
         const day = days[column] ?? '';
-        if (x < free || day === days[column - 1]) continue;
+        if (x < free || (column > first && day === days[column - 1])) continue;
         context.fillText(day, x, HEAD / 2);
         free = x + 80;
     }
