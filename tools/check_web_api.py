@@ -46,6 +46,9 @@ end
 
 PATIENT = "function TestCase.run() rtf.sleep(1000) end\n"
 
+FILTER: dict[str, str | int] = {"query.filter": "suite(arm)"}
+"""Not every text is a filter, which a description cannot express."""
+
 SEED = 20261121
 """The same requests each time, so that failures are reproducible."""
 
@@ -71,7 +74,7 @@ def main() -> int:
             known = leading_somewhere(url)
             # Failed tests are really rerun here.
             ask(url, folder, known, [f"--header=Authorization: Bearer {token}"])
-            ask(url, folder, {}, [])
+            ask(url, folder, FILTER, [])
         with served([rtf, "run", "--web=127.0.0.1:0", "patient.lua"], folder) as (url, token):
             # Stopping the live run would end the server; a past run is refused.
             known["path.run"] = runs(url)[1]
@@ -122,8 +125,7 @@ def leading_somewhere(url: str) -> dict[str, str | int]:
         "path.run": "latest",
         "path.number": 1,
         "path.path": attached[0]["attachment"]["path"],
-        # Not every text is a filter.
-        "query.filter": "suite(arm)",
+        **FILTER,
         **numbers,
     }
 

@@ -12,6 +12,9 @@ use crate::app::{App, JsonText, blocking};
 use crate::history_source::{HistorySource, TestCondition};
 use crate::problem::Problem;
 
+/// The largest value of `last`.
+const MOST_RUNS: u32 = 1_000_000;
+
 /// Which runs and tests.
 #[derive(Clone, Debug, Default, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
@@ -64,9 +67,9 @@ impl Selection {
         let bad = |name: &str, error: String| Problem::bad_request(format!("`{name}`: {error}"));
         let since = query.since.map(|text| source.parse_since(&text)).transpose();
         let filter = query.filter.map(|text| source.parse_filter(&text)).transpose();
-        let last = query.last.map(|last| usize::try_from(last).unwrap_or(usize::MAX));
-        if last == Some(0) {
-            return Err(Problem::bad_request("`last` is 0, expected at least 1"));
+        if let Some(last) = query.last.filter(|last| !(1..=MOST_RUNS).contains(last)) {
+            let expected = format!("expected a number from 1 to {MOST_RUNS}");
+            return Err(Problem::bad_request(format!("`last` is {last}, {expected}")));
         }
         let runs = RunSelection {
             branch: query.branch,
@@ -75,7 +78,7 @@ impl Selection {
             profile: query.profile,
             host: query.host,
             since: since.map_err(|error| bad("since", error))?,
-            last,
+            last: query.last.map(|last| last as usize),
             ids: None,
         };
         let filter = filter.map_err(|error| bad("filter", error))?;
