@@ -3,7 +3,6 @@
 use jiff::Timestamp;
 use rtf_model::Verdict;
 use serde::Serialize;
-use utoipa::ToSchema;
 
 use super::RunInfo;
 use super::columns::{ColumnResult, Depth, TestColumns};
@@ -13,7 +12,7 @@ use crate::statistics::{Attempt, Flips};
 use crate::{RunSelection, Store, StoreError, TestIdentity, TestSelection};
 
 /// A test that both passed and failed on one commit.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct FlakyTest {
     /// The identity.
     #[serde(flatten)]
