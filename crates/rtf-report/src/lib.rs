@@ -32,6 +32,7 @@ mod known_failure;
 pub mod logs;
 pub mod markdown;
 pub mod merge;
+pub mod otlp;
 mod outcome;
 pub mod output_file;
 pub mod predecessor;

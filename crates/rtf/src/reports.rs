@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use rtf_model::Record;
 use rtf_report::markdown::{self, MarkdownOptions};
 use rtf_report::run_dir::JOURNAL;
-use rtf_report::{ReportError, ReportFile, Reporter, code_quality, github, junit, tap, text};
+use rtf_report::{ReportError, ReportFile, Reporter, code_quality, github, junit, otlp, tap, text};
 use rtf_web::html_report::{self, ReportSource};
 
 use crate::cli::ReportFormat;
@@ -103,6 +103,7 @@ pub fn write(
                 rerun: rerun_command::for_run(),
             },
         ),
+        ReportFormat::Otlp => otlp::write(out, record),
         ReportFormat::Html => {
             let missing = || io::Error::other("the run has no journal");
             let journal = place.journal.ok_or_else(missing)?;
@@ -123,6 +124,7 @@ pub fn title(format: ReportFormat) -> &'static str {
         ReportFormat::Github => "the annotations",
         ReportFormat::Markdown => "the Markdown summary",
         ReportFormat::Html => "the HTML report",
+        ReportFormat::Otlp => "the trace",
         ReportFormat::Json => "the events",
     }
 }

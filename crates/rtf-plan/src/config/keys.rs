@@ -50,8 +50,8 @@ pub(super) enum NameKind {
 }
 
 /// The report formats.
-pub const REPORTS: [&str; 7] =
-    ["junit", "text", "tap", "code-quality", "github", "markdown", "html"];
+pub const REPORTS: [&str; 8] =
+    ["junit", "text", "tap", "code-quality", "github", "markdown", "html", "otlp"];
 
 /// The keys of a file and of each profile.
 pub(super) const KEYS: &[Key] = &[

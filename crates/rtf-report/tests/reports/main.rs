@@ -14,6 +14,7 @@ mod markdown;
 mod merge;
 mod mutate;
 mod mutations;
+mod otlp;
 mod predecessor;
 mod streams;
 mod support;

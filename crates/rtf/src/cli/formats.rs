@@ -22,12 +22,14 @@ pub enum ReportFormat {
     Markdown,
     /// The page with the run's data, in one file.
     Html,
+    /// A trace of OpenTelemetry.
+    Otlp,
     /// The event stream.
     Json,
 }
 
 /// The formats of `--report`, whose reports are written when the run has ended.
-const REPORTS: [(&str, ReportFormat); 7] = [
+const REPORTS: [(&str, ReportFormat); 8] = [
     ("junit", ReportFormat::Junit),
     ("text", ReportFormat::Text),
     ("tap", ReportFormat::Tap),
@@ -35,6 +37,7 @@ const REPORTS: [(&str, ReportFormat); 7] = [
     ("github", ReportFormat::Github),
     ("markdown", ReportFormat::Markdown),
     ("html", ReportFormat::Html),
+    ("otlp", ReportFormat::Otlp),
 ];
 
 /// The format of standard output.

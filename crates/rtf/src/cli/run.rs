@@ -25,7 +25,7 @@ pub struct RunArgs {
     pub format: StdoutFormat,
 
     /// Also write a report: `junit=PATH`, `text=`, `tap=`, `code-quality=`, `github=`,
-    /// `markdown=` or `html=`
+    /// `markdown=`, `html=` or `otlp=`
     #[arg(long = "report", value_name = "FORMAT=PATH", value_parser = parse_report)]
     pub reports: Vec<(ReportFormat, PathBuf)>,
 

@@ -42,18 +42,18 @@ fn a_report_that_cannot_be_written() {
 #[test]
 fn an_unknown_format() {
     assert_snapshot!(refused(&folder(), &["run", "EncoderTest.lua", "--report", "pdf=report.pdf"]), @"
-    error: invalid value 'pdf=report.pdf' for '--report <FORMAT=PATH>': unknown format `pdf`, expected `junit=PATH`, `text=PATH`, `tap=PATH`, `code-quality=PATH`, `github=PATH`, `markdown=PATH`, `html=PATH`
+    error: invalid value 'pdf=report.pdf' for '--report <FORMAT=PATH>': unknown format `pdf`, expected `junit=PATH`, `text=PATH`, `tap=PATH`, `code-quality=PATH`, `github=PATH`, `markdown=PATH`, `html=PATH`, `otlp=PATH`
 
     For more information, try '--help'.
     ");
     assert_snapshot!(refused(&folder(), &["run", "EncoderTest.lua", "--report", "junit"]), @"
-    error: invalid value 'junit' for '--report <FORMAT=PATH>': expected `junit=PATH`, `text=PATH`, `tap=PATH`, `code-quality=PATH`, `github=PATH`, `markdown=PATH`, `html=PATH`
+    error: invalid value 'junit' for '--report <FORMAT=PATH>': expected `junit=PATH`, `text=PATH`, `tap=PATH`, `code-quality=PATH`, `github=PATH`, `markdown=PATH`, `html=PATH`, `otlp=PATH`
 
     For more information, try '--help'.
     ");
     assert_snapshot!(refused(&folder(), &["report", "latest", "--format", "pdf"]), @"
     error: invalid value 'pdf' for '--format <FORMAT>'
-      [possible values: junit, text, tap, code-quality, github, markdown, html, json]
+      [possible values: junit, text, tap, code-quality, github, markdown, html, otlp, json]
 
     For more information, try '--help'.
     ");

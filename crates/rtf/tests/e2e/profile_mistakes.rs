@@ -51,7 +51,7 @@ fn every_mistake_is_told_at_its_place() {
       = note: the keys are `environment`, `env`, `param`, `timeouts`, `parallel`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `jobs`, `lock-timeout`, `retries`, `flaky-result`, `max-fail`, `history`, `quarantine`, `profile`, `default-profile`
       = help: did you mean `environment`?
 
-    error: `reports` has to be `"FORMAT=PATH"`, where FORMAT is one of `junit`, `text`, `tap`, `code-quality`, `github`, `markdown`, `html`
+    error: `reports` has to be `"FORMAT=PATH"`, where FORMAT is one of `junit`, `text`, `tap`, `code-quality`, `github`, `markdown`, `html`, `otlp`
      --> rtf.toml:3:12
       |
     3 | reports = ["pdf=x"]
