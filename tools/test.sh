@@ -127,6 +127,7 @@ lint_python() {
   "$checkers/mypy" tests/frameworks/go/own.py
   "$checkers/mypy" tests/frameworks/cargo/own.py
   "$checkers/mypy" tests/history/*.py
+  "$checkers/mypy" tests/telemetry/*.py
 }
 
 sdk_python() {
@@ -345,6 +346,14 @@ debugging() {
   python3 tests/debug/check.py "$TARGET/release/rtf" "$BUILD/debug"
 }
 
+# Metrics and traces, read by Prometheus' parser and by the decoder of OpenTelemetry's collector.
+telemetry() {
+  local decoder=$BUILD/telemetry/telemetry
+  mkdir -p "$BUILD/telemetry"
+  (cd tests/telemetry && GOTOOLCHAIN=local quietly go build -o "$decoder" .)
+  "$(tools/venv.sh telemetry)/python" tests/telemetry/check.py "$TARGET/debug/rtf" "$decoder"
+}
+
 # Change points, compared with those of Apache Otava and with planted changes.
 history_change_points() {
   local python
@@ -447,6 +456,7 @@ step 'rust tests' env --default-signal=HUP cargo test --workspace --locked --no-
 step 'web api' web_api
 step 'history change points' history_change_points
 step 'history in PostgreSQL' history_postgres
+step 'telemetry' telemetry
 step 'debugging' debugging
 step 'ci helpers' ci_helpers
 step 'guide' env RTF_PYTHON="$checkers/python" tools/check_docs.py "$TARGET/release/rtf" README.md \
