@@ -30,7 +30,7 @@ pub fn import(world: &World, day: u32, branch: &str, verdict: Verdict, lag: f64)
     run.start(TestId(1));
     run.finish(TestId(1), verdict);
     let record = run.end();
-    let mut store = Store::open(&world.temp.path().join("history.db")).unwrap();
+    let mut store = Store::open(world.temp.path().join("history.db")).unwrap();
     store.import(&record).unwrap();
 }
 
