@@ -46,7 +46,14 @@ impl SuiteFileBase {
     pub fn new(run: &RunStarted) -> Self {
         let revision = run.manifest.revision.as_ref();
         let dir = revision.and_then(|revision| revision.dir.as_deref()).unwrap_or_default();
-        let (working_dir, dir) = (PathBuf::from(&run.working_dir), PathBuf::from(dir));
+        Self::of_dir(Path::new(&run.working_dir), Path::new(dir))
+    }
+
+    /// The base of runs in a working directory, which is `dir` relative to the root of its
+    /// repository.
+    #[must_use]
+    pub fn of_dir(working_dir: &Path, dir: &Path) -> Self {
+        let (working_dir, dir) = (working_dir.to_owned(), dir.to_owned());
         let depth = dir.components().count();
         let root = working_dir.ancestors().nth(depth).unwrap_or(&working_dir).to_owned();
         Self { working_dir, dir, root }

@@ -42,9 +42,16 @@ pub struct Manifest {
     /// The seed of the random order.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shuffle: Option<u64>,
+    /// The order by past results: `failed-first` or `slowest-first`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub order: Option<String>,
     /// The shard: `2/5`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shard: Option<String>,
+    /// A hash of the assignment of tests to shards, if it depends on past durations: equal in
+    /// all shards.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shard_assignment: Option<String>,
     /// Whether a test or a case that skips itself makes the run red.
     #[serde(skip_serializing_if = "is_default")]
     pub no_skips: bool,

@@ -7,7 +7,7 @@ use rtf_engine::verify;
 use rtf_model::protocol::CaseSelector;
 use rtf_model::{Diagnostic, Manifest, Severity};
 use rtf_plan::plan::{self, Plan, PlanDraft, PlanOutcome};
-use rtf_plan::select::{self, Selection, select};
+use rtf_plan::select::{self, Selected, Selection, ShardBy, select};
 use rtf_plan::suite::{SourceMap, SourceText};
 
 use crate::debug::DebugRequest;
@@ -20,6 +20,8 @@ pub struct Planned {
     pub plan: Arc<Plan>,
     /// The number of tests before the selection; 0 if all were selected.
     pub selected_from: u32,
+    /// A hash of the assignment of tests to shards, if it depends on past durations.
+    pub shard_assignment: Option<u64>,
     /// The reporters of a run print them, other verbs print them themselves.
     pub warnings: Vec<Diagnostic>,
     sources: SourceMap,
@@ -42,7 +44,7 @@ pub fn plan_debugged(
     request: &TestsRequest,
     debug: Option<&DebugRequest>,
 ) -> Result<Planned, Failure> {
-    let Draft { plan, total, problems, sources } =
+    let Draft { plan, total, shard_assignment, problems, sources } =
         draft(request, |draft| verify::verify(draft, verify::DEFAULT_LIMIT));
     let Some(mut plan) = plan else { return Err(diagnostics::refuse(&problems, &sources)) };
     set_repetition(&mut plan, &request.manifest);
@@ -51,6 +53,7 @@ pub fn plan_debugged(
     Ok(Planned {
         plan: Arc::new(plan),
         selected_from: u32::try_from(selected_from).unwrap_or(u32::MAX),
+        shard_assignment,
         warnings: problems,
         sources,
     })
@@ -62,6 +65,7 @@ pub struct Draft {
     pub plan: Option<Plan>,
     /// The number of tests before the selection.
     total: usize,
+    shard_assignment: Option<u64>,
     pub problems: Vec<Diagnostic>,
     sources: SourceMap,
 }
@@ -70,11 +74,13 @@ pub struct Draft {
 pub fn draft(request: &TestsRequest, check: impl FnOnce(PlanDraft) -> PlanOutcome) -> Draft {
     let outcome = check(plan::draft(&request.inputs, &request.options));
     let (mut problems, mut sources) = (outcome.diagnostics, outcome.sources);
-    let selection = selection(request, &mut problems, &mut sources);
+    problems.extend(request.warnings.iter().cloned());
+    let mut selection = selection(request, &mut problems, &mut sources);
     let has_error = problems.iter().any(|problem| problem.severity == Severity::Error);
     let Some(all) = outcome.plan.filter(|_| !has_error) else {
-        return Draft { plan: None, total: 0, problems, sources };
+        return Draft { plan: None, total: 0, shard_assignment: None, problems, sources };
     };
+    add_past_results(request, &all, &mut selection);
     let selected = select(all, &selection);
     problems.extend(selected.problems);
     let has_error = problems.iter().any(|problem| problem.severity == Severity::Error);
@@ -84,7 +90,18 @@ pub fn draft(request: &TestsRequest, check: impl FnOnce(PlanDraft) -> PlanOutcom
         let hint = "`rtf list` without these options lists all tests";
         problems.insert(0, Diagnostic::error("no-tests", message).hint(hint));
     }
-    Draft { plan, total: selected.total, problems, sources }
+    let Selected { total, shard_assignment, .. } = selected;
+    Draft { plan, total, shard_assignment, problems, sources }
+}
+
+/// Adds the past results of the tests of a plan, for their order and for shards.
+fn add_past_results(request: &TestsRequest, plan: &Plan, selection: &mut Selection) {
+    selection.order = request.order.as_ref().map(|(order, past)| (*order, past.of_plan(plan)));
+    if let Some((_, Some(past))) = &request.shard
+        && let Some(shard) = &mut selection.shard
+    {
+        shard.by = ShardBy::Duration(past.of_plan(plan));
+    }
 }
 
 /// Parses the filters; adds every mistake to the problems.
@@ -117,7 +134,8 @@ fn selection(
         }
         only
     });
-    Selection { filters, only, shuffle: manifest.shuffle, shard: request.shard.clone() }
+    let shard = request.shard.as_ref().map(|(shard, _)| shard.clone());
+    Selection { filters, only, shuffle: manifest.shuffle, shard, order: None }
 }
 
 fn set_repetition(plan: &mut Plan, manifest: &Manifest) {

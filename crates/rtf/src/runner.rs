@@ -87,6 +87,7 @@ fn run_started(request: &RunRequest, planned: &Planned, dir: &RunDir) -> RunStar
         revision: request.revision.finish(),
         origin: Some(origin::find()),
         selected_from: planned.selected_from,
+        shard_assignment: planned.shard_assignment.map(|hash| format!("{hash:016x}")),
         ..tests.manifest.clone()
     };
     RunStarted {

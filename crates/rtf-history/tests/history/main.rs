@@ -7,4 +7,5 @@ mod bad_input;
 mod columns;
 mod importing;
 mod pruning;
+mod recent;
 mod world;

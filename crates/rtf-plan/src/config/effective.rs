@@ -159,6 +159,7 @@ fn built_in(key: &str) -> Option<String> {
         "shutdown-timeout" => return Some("60s".to_owned()),
         "jobs" => return Some("1".to_owned()),
         "flaky-result" => return Some("pass".to_owned()),
+        "order" => return Some("file".to_owned()),
         _ => return None,
     };
     Some(format!("{}s", limit.as_secs()))

@@ -115,6 +115,11 @@ pub(super) const KEYS: &[Key] = &[
         ValueFormat::Count(1, u32::MAX),
         "Skip the remaining tests after this number of failed tests, as --max-fail",
     ),
+    key(
+        "order",
+        ValueFormat::Words(&["file", "failed-first", "slowest-first"]),
+        "Order of tests by their past results, as --order",
+    ),
     key("history", ValueFormat::Table(HISTORY), "The history: results of many runs"),
 ];
 
@@ -131,6 +136,7 @@ pub(super) const RUN_KEYS: &[&str] = &[
     "retries",
     "flaky-result",
     "max-fail",
+    "order",
     "history.enabled",
     "history.url",
 ];

@@ -252,6 +252,15 @@ impl TestPlan {
         self.cases = Some(Box::new(cases));
     }
 
+    /// Checks whether both tests can run in one host, one after the other.
+    #[must_use]
+    pub fn can_share_host(&self, other: &Self) -> bool {
+        let needs = (self.settings.leaks, &self.env, &self.plugin.host);
+        self.settings.shared
+            && other.settings.shared
+            && needs == (other.settings.leaks, &other.env, &other.plugin.host)
+    }
+
     /// Returns all its cases, if they are known before the run.
     #[must_use]
     pub fn listed_cases(&self) -> Option<&[ListedCase]> {

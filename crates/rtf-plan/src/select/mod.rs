@@ -6,9 +6,11 @@
 //!
 //! - [`filter`]: the syntax tree of the filter language.
 //! - [`mod@parse`]: text → syntax tree, with the position of every error.
+//! - [`order`]: the order of tests by their past results.
 //! - [`shard`]: one of several parts that together contain all tests.
 
 pub mod filter;
+mod order;
 mod parse;
 mod shard;
 
@@ -21,6 +23,7 @@ use rtf_model::protocol::CaseSelector;
 use siphasher::sip::SipHasher13;
 
 pub use filter::{Filter, FilterMatch};
+pub use order::{PastResult, PastResults, TestOrder};
 pub use parse::parse;
 pub use shard::{Shard, ShardBy};
 
@@ -38,6 +41,8 @@ pub struct Selection {
     pub only: Option<HashMap<(String, String), Vec<CaseSelector>>>,
     /// The seed for a random order of suites, and of the tests of each.
     pub shuffle: Option<u64>,
+    /// The order by past results.
+    pub order: Option<(TestOrder, PastResults)>,
     /// One part of the selected tests.
     pub shard: Option<Shard>,
 }
@@ -49,6 +54,8 @@ pub struct Selected {
     pub plan: Plan,
     /// The number of tests before the selection.
     pub total: usize,
+    /// A hash of the assignment of tests to shards, if it depends on past durations.
+    pub shard_assignment: Option<u64>,
     /// Warnings about values in filters that no test has, and an error if a test has two
     /// selections of cases.
     pub problems: Vec<Diagnostic>,
@@ -83,14 +90,15 @@ pub fn select(plan: Plan, selection: &Selection) -> Selected {
         suite.tests = tests;
     }
     problems.extend(conflict.map(|test| conflicting_cases(&test)));
-    if let Some(shard) = &selection.shard {
-        shard.apply(&mut suites);
+    let shard_assignment = selection.shard.as_ref().and_then(|shard| shard.apply(&mut suites));
+    if let Some((order, past)) = &selection.order {
+        order.apply(&mut suites, past);
     }
     if let Some(seed) = selection.shuffle {
         shuffle(&mut suites, seed);
     }
     suites.retain(|suite| !suite.tests.is_empty());
-    Selected { plan: Plan::new(suites), total, problems }
+    Selected { plan: Plan::new(suites), total, shard_assignment, problems }
 }
 
 impl Selection {

@@ -1,14 +1,14 @@
 //! Splits the tests into several parts.
 
-use std::collections::HashMap;
+use std::hash::Hasher;
 use std::str::FromStr;
 use std::time::Duration;
 
+use siphasher::sip::SipHasher13;
+
+use super::order::{Durations, PastResults};
 use super::{hash, retain};
 use crate::plan::SuitePlan;
-
-/// The assumed duration of a test without a known one.
-const UNKNOWN: Duration = Duration::from_secs(1);
 
 /// Part `index` of `count`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -29,9 +29,9 @@ pub enum ShardBy {
     Hash,
     /// By position: parts of equally many consecutive tests.
     Count,
-    /// By the past durations of tests, given by suite and name: parts that take
-    /// about equally long. All parts must be computed from the same durations.
-    Duration(HashMap<(String, String), Duration>),
+    /// By the past durations of tests: parts that take about equally long. All parts must be
+    /// computed from the same durations.
+    Duration(PastResults),
 }
 
 impl FromStr for Shard {
@@ -51,10 +51,15 @@ impl FromStr for Shard {
 }
 
 impl Shard {
-    /// Removes the tests of all other parts.
-    pub(super) fn apply(&self, suites: &mut [SuitePlan]) {
-        let mut parts = self.parts(suites).into_iter();
+    /// Removes the tests of all other parts. Returns a hash of the assignment if it depends on
+    /// more than the tests.
+    pub(super) fn apply(&self, suites: &mut [SuitePlan]) -> Option<u64> {
+        let parts = self.parts(suites);
+        let mut hasher = SipHasher13::new();
+        parts.iter().for_each(|part| hasher.write_u32(*part));
+        let mut parts = parts.into_iter();
         retain(suites, |_, _| parts.next() == Some(self.index - 1));
+        matches!(self.by, ShardBy::Duration(_)).then(|| hasher.finish())
     }
 
     /// Returns the part of each test, from 0, in the order of the plan.
@@ -72,11 +77,9 @@ impl Shard {
                 let part = |index: u64| index * u64::from(self.count) / total.max(1);
                 (0..total).map(|index| u32::try_from(part(index)).unwrap_or_default()).collect()
             }
-            ShardBy::Duration(known) => {
-                let time = |suite: &str, test: &str| {
-                    known.get(&(suite.to_owned(), test.to_owned())).copied().unwrap_or(UNKNOWN)
-                };
-                self.balance(&tests.map(|(s, t)| time(&s.name, &t.name)).collect::<Vec<_>>())
+            ShardBy::Duration(past) => {
+                let durations = Durations::new(suites, past);
+                self.balance(&tests.map(|(s, t)| durations.of(&s.name, t)).collect::<Vec<_>>())
             }
         }
     }

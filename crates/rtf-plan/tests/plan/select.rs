@@ -7,7 +7,9 @@ use std::time::Duration;
 use insta::assert_snapshot;
 use proptest::prelude::*;
 use rtf_plan::plan::Plan;
-use rtf_plan::select::{Selection, Shard, ShardBy, parse, select};
+use rtf_plan::select::{
+    PastResult, PastResults, Selection, Shard, ShardBy, TestOrder, parse, select,
+};
 use rtf_plan::suite::SourceText;
 
 use crate::bench::Bench;
@@ -158,10 +160,14 @@ fn a_seed_determines_the_order_also_of_a_part() {
     assert_snapshot!(shuffled(42, "all()").join(" "), @"hand/Grasp hand/Motor arm/JointLimits arm/JointSpeed arm/a)b");
 }
 
+fn lasts(duration: Duration) -> PastResult {
+    PastResult { duration: Some(duration), failed: false }
+}
+
 fn by() -> impl Strategy<Value = ShardBy> {
     let time = (0_u64..100).prop_map(Duration::from_secs);
     let times = proptest::collection::vec(time, 40).prop_map(|times| {
-        let of = |(place, time)| (("s".to_owned(), format!("t{place}")), time);
+        let of = |(place, time)| (("s".to_owned(), format!("t{place}")), lasts(time));
         times.into_iter().enumerate().map(of).collect::<HashMap<_, _>>()
     });
     prop_oneof![Just(ShardBy::Hash), Just(ShardBy::Count), times.prop_map(ShardBy::Duration)]
@@ -198,8 +204,9 @@ proptest! {
 fn parts_take_about_equally_long() {
     let mut whole = plan();
     let times = [("JointLimits", 50), ("JointSpeed", 30), ("a)b", 20)];
-    let times =
-        times.map(|(name, secs)| (("arm".to_owned(), name.to_owned()), Duration::from_secs(secs)));
+    let times = times.map(|(name, secs)| {
+        (("arm".to_owned(), name.to_owned()), lasts(Duration::from_secs(secs)))
+    });
     whole.suites.truncate(1);
     let part = |index| {
         let by = ShardBy::Duration(times.clone().into());
@@ -227,4 +234,102 @@ fn a_test_is_selected_by_file_and_name() {
         [("unknown-test".to_owned(), "there is no test `y` in `s.xml`".to_owned())]
     );
     assert_eq!(bench.problems(&["t.xml::y"])[0].0, "no-such-file");
+}
+
+/// Returns the tests of a suite `s` after they are ordered by past results: `t1` … in `suites`;
+/// `past`: the test, whether it has failed, and its duration in seconds.
+fn ordered(order: TestOrder, suites: &str, past: &[(&str, bool, u64)]) -> String {
+    let bench = Bench::new();
+    bench.file("cell/A.lua", "");
+    bench.file("cell/B.py", "");
+    let suites: Vec<_> = suites.split("---").collect();
+    let names: Vec<_> = (0..suites.len()).map(|number| format!("{number}.xml")).collect();
+    for (name, suite) in names.iter().zip(suites) {
+        bench.file(&format!("cell/{name}"), suite);
+    }
+    let plan = bench.plan(&names.iter().map(String::as_str).collect::<Vec<_>>());
+    let past: PastResults = past
+        .iter()
+        .map(|(name, failed, secs)| {
+            let (suite, test) = name.split_once('/').unwrap();
+            let duration = Some(Duration::from_secs(*secs)).filter(|time| !time.is_zero());
+            ((suite.to_owned(), test.to_owned()), PastResult { failed: *failed, duration })
+        })
+        .collect();
+    let selection = Selection { order: Some((order, past)), ..Selection::default() };
+    tests(&select(plan, &selection).plan).join(" ")
+}
+
+const THREE: &str = "<suite name='s'><test name='a'>A.lua</test><test name='b'>A.lua</test>
+                     <test name='c'>A.lua</test></suite>";
+
+#[test]
+fn failed_tests_run_first_and_the_others_keep_their_order() {
+    let order = |past: &[_]| ordered(TestOrder::FailedFirst, THREE, past);
+    assert_eq!(order(&[]), "s/a s/b s/c");
+    assert_eq!(order(&[("s/c", true, 1), ("s/b", false, 9)]), "s/c s/a s/b");
+    assert_eq!(order(&[("s/c", true, 1), ("s/b", true, 1)]), "s/b s/c s/a");
+}
+
+#[test]
+fn slow_tests_run_first_and_unknown_ones_are_of_medium_duration() {
+    let order = |past: &[_]| ordered(TestOrder::SlowestFirst, THREE, past);
+    assert_eq!(order(&[]), "s/a s/b s/c");
+    assert_eq!(order(&[("s/a", true, 1), ("s/b", false, 2), ("s/c", false, 9)]), "s/c s/b s/a");
+    assert_eq!(order(&[("s/a", false, 1), ("s/c", false, 2)]), "s/b s/c s/a");
+}
+
+#[test]
+fn nothing_crosses_a_critical_test() {
+    let suite = "<suite name='s'><test name='a'>A.lua</test><test name='b'>A.lua</test>
+                 <test name='c' critical='true'>A.lua</test><test name='d'>A.lua</test>
+                 <test name='e'>A.lua</test></suite>";
+    let past = [("s/c", true, 1), ("s/b", true, 1), ("s/e", true, 1)];
+    assert_eq!(ordered(TestOrder::FailedFirst, suite, &past), "s/b s/a s/c s/e s/d");
+}
+
+#[test]
+fn tests_with_one_host_stay_together() {
+    let suite = "<suite name='s'><test name='a' isolation='shared'>A.lua</test>
+                 <test name='b' isolation='shared'>A.lua</test>
+                 <test name='c' isolation='shared'>B.py</test><test name='d'>A.lua</test></suite>";
+    let past = [("s/a", false, 2), ("s/b", false, 4), ("s/c", false, 7), ("s/d", false, 5)];
+    assert_eq!(ordered(TestOrder::SlowestFirst, suite, &past), "s/c s/b s/a s/d");
+    let past = [("s/b", true, 1)];
+    assert_eq!(ordered(TestOrder::FailedFirst, suite, &past), "s/b s/a s/c s/d");
+}
+
+#[test]
+fn suites_are_ordered_unless_one_of_them_stops_the_run() {
+    let suites = "<suite name='x'><test name='a'>A.lua</test></suite>---
+                  <suite name='y'><test name='a'>A.lua</test></suite>---
+                  <suite name='z'><test name='a'>A.lua</test></suite>";
+    let past = [("z/a", true, 3), ("y/a", false, 2)];
+    assert_eq!(ordered(TestOrder::FailedFirst, suites, &past), "z/a x/a y/a");
+    assert_eq!(ordered(TestOrder::SlowestFirst, suites, &past), "x/a z/a y/a");
+    let stops = suites.replace(
+        "<suite name='y'><test",
+        "<suite name='y' critical-stops='run'><test critical='true'",
+    );
+    assert_eq!(ordered(TestOrder::FailedFirst, &stops, &past), "x/a y/a z/a");
+}
+
+#[test]
+fn shards_know_whether_they_were_computed_from_equal_durations() {
+    let assignment = |by, index| {
+        let shard = Some(Shard { index, count: 2, by });
+        let mut plan = plan();
+        plan.suites.truncate(1);
+        select(plan, &Selection { shard, ..Selection::default() }).shard_assignment
+    };
+    let by = |limits| {
+        let times = [("JointLimits", limits), ("JointSpeed", 30), ("a)b", 20)];
+        let past = times.map(|(name, secs)| {
+            (("arm".to_owned(), name.to_owned()), lasts(Duration::from_secs(secs)))
+        });
+        ShardBy::Duration(past.into())
+    };
+    assert_eq!(assignment(by(50), 1), assignment(by(50), 2));
+    assert_ne!(assignment(by(50), 1), assignment(by(1), 1));
+    assert_eq!(assignment(ShardBy::Hash, 1), None);
 }

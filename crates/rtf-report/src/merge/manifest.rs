@@ -30,7 +30,7 @@ pub(super) fn join(parts: &[MergeInput], tests: usize) -> MergedManifest {
     let no_skips = divisions.iter().any(|division| division.manifest.no_skips);
     // What was asked for in different ways cannot be asked for again as one.
     let manifest = match divisions.as_slice() {
-        [one] => one.manifest.clone(),
+        [one] => Manifest { shard_assignment: None, ..one.manifest.clone() },
         _ => Manifest { flaky_fails, no_skips, ..Manifest::default() },
     };
     let selected_from =

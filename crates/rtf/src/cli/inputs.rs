@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use rtf_plan::select::Shard;
 use rtf_plan::suite::parse_duration;
 
+use super::HistoryFileArgs;
 use super::values::{parse_seed, parse_setting};
 
 /// The inputs, and which of their tests to run how often. Options of `rtf check`.
@@ -39,6 +40,9 @@ pub struct InputArgs {
 
     #[command(flatten)]
     pub results: ResultsArgs,
+
+    #[command(flatten)]
+    pub history: HistoryFileArgs,
 
     #[command(flatten)]
     pub select: SelectArgs,
@@ -89,12 +93,18 @@ pub struct SelectArgs {
     #[arg(num_args = 0..=1, require_equals = true)]
     pub shuffle: Option<Option<u64>>,
 
+    /// Order tests by their results in the history: as in their `file`, `failed-first`, or
+    /// `slowest-first`
+    #[arg(help_heading = SELECTION, long, value_name = "ORDER", conflicts_with = "shuffle")]
+    #[arg(hide_possible_values = true)]
+    pub order: Option<OrderOption>,
+
     /// Run only one shard of the tests: `2/5` is the second of five
     #[arg(help_heading = SELECTION, long, value_name = "N/OF")]
     pub shard: Option<Shard>,
 
-    /// Assign tests to shards by `hash` of their names, by `count`, or by `duration=RUN`,
-    /// the durations in a past run
+    /// Assign tests to shards by `hash` of their names, by `count`, or by past durations:
+    /// `duration=history`, `duration=RUN`, or `duration=FILE.json` from `rtf history slow`
     #[arg(help_heading = SELECTION, long, value_name = "METHOD", requires = "shard")]
     #[arg(default_value = "hash")]
     pub shard_by: String,
@@ -143,6 +153,17 @@ impl RepeatArgs {
     pub fn max_fail(&self) -> Option<u32> {
         if self.until_fail { Some(1) } else { self.max_fail }
     }
+}
+
+/// The order of tests.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum OrderOption {
+    /// As in their files
+    File,
+    /// Tests that failed last, then the others
+    FailedFirst,
+    /// The slowest tests first
+    SlowestFirst,
 }
 
 /// The result of a test that passes only on a retry.

@@ -28,7 +28,9 @@ pub use history::{
     HistoryVerb, ResultSelectArgs, RunSelectArgs,
 };
 pub use import::{ImportOutput, ImportVerb};
-pub use inputs::{FlakyResult, InputArgs, ProfileArgs, RepeatArgs, RerunVerdict, ResultsArgs};
+pub use inputs::{
+    FlakyResult, InputArgs, OrderOption, ProfileArgs, RepeatArgs, RerunVerdict, ResultsArgs,
+};
 pub use past::{MergeArgs, ReportArgs, ShowArgs};
 pub use project::{InitArgs, Language, NewArgs, ProjectKind};
 pub use run::{ListArgs, ListFormat, RunArgs};

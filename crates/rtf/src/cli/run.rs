@@ -10,9 +10,7 @@ use rtf_process::fork_server::ForkMode;
 
 use super::inputs::SELECTION;
 use super::values::{fork_mode_parser, jobs_parser};
-use super::{
-    Annotations, HistoryFileArgs, InputArgs, ReportFormat, StdoutFormat, WebRunArgs, parse_report,
-};
+use super::{Annotations, InputArgs, ReportFormat, StdoutFormat, WebRunArgs, parse_report};
 
 /// Options of `rtf run` and `rtf watch`.
 #[derive(Debug, Args)]
@@ -67,9 +65,6 @@ pub struct RunArgs {
     #[arg(long, value_name = "WHEN", default_value = "auto", env = "RTF_FORK")]
     #[arg(value_parser = fork_mode_parser(), hide_possible_values = true)]
     pub fork: ForkMode,
-
-    #[command(flatten)]
-    pub history: HistoryFileArgs,
 
     /// Do not import the run into the history
     #[arg(long)]

@@ -3,6 +3,7 @@
 
 pub mod journals;
 mod source;
+mod past_tests;
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -17,6 +18,8 @@ pub use source::ServedHistory;
 use crate::error::Failure;
 use crate::terminal;
 use journals::JournalImport;
+
+pub use past_tests::PastTests;
 
 /// The name of the database in the results directory.
 const FILE_NAME: &str = "history.db";

@@ -9,8 +9,8 @@ use rtf_plan::config::{self, ConfigFiles, ConfigRequest, RunConfig, RunValue};
 use rtf_plan::suite::parse_duration;
 
 use crate::cli::{
-    Annotations, FlakyResult, HistoryFileArgs, InputArgs, ProfileArgs, ResultsArgs, RunArgs,
-    parse_fork_mode, parse_report,
+    Annotations, FlakyResult, HistoryFileArgs, InputArgs, OrderOption, ProfileArgs, ResultsArgs,
+    RunArgs, parse_fork_mode, parse_report,
 };
 use crate::diagnostics;
 use crate::error::Failure;
@@ -37,21 +37,27 @@ pub fn fill_run(args: &mut RunArgs, matches: &ArgMatches) -> Result<(), Failure>
     let result = |text: &str| FlakyResult::from_str(text, false).ok().map(Some);
     defaults.fill("flaky-result", &mut repeat.flaky_result, result);
     args.reports.extend(defaults.reports());
-    defaults.fill_history(&mut args.history);
+    defaults.fill_history(&mut args.input.history);
     if let Some(value) = defaults.value("history.enabled", "no_history") {
         args.no_history = text(value) == "false";
     }
     let select = &mut args.input.select;
     let names_test = |input: &PathBuf| input.to_string_lossy().contains("::");
     if select.rerun.is_empty() && !args.input.inputs.iter().any(names_test) {
+        let order = |text: &str| OrderOption::from_str(text, false).ok().map(Some);
+        if select.shuffle.is_none() {
+            defaults.fill("order", &mut select.order, order);
+        }
         defaults.fill("filter", &mut select.filters, |text| Some(vec![text.to_owned()]));
     }
     Ok(())
 }
 
-/// Fills in the results directory of a verb that plans tests.
+/// Fills in the results directory and the database of a verb that plans tests.
 pub fn fill_results(args: &mut InputArgs, matches: &ArgMatches) -> Result<(), Failure> {
-    ConfigDefaults::of_inputs(args, matches)?.accepted()?.fill_results(&mut args.results);
+    let defaults = ConfigDefaults::of_inputs(args, matches)?.accepted()?;
+    defaults.fill_results(&mut args.results);
+    defaults.fill_history(&mut args.history);
     Ok(())
 }
 

@@ -1,18 +1,20 @@
 //! Which tests to run, and how often. With `--rerun`, both come from a past run.
 
-use std::collections::HashMap;
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::sync::Arc;
 
-use rtf_model::{Manifest, Record, Significance, TestRecord, Verdict};
+use clap::ValueEnum;
+use rtf_model::{Diagnostic, Manifest, Record, Significance, TestRecord, Verdict};
 use rtf_plan::config::ConfigRequest;
 use rtf_plan::plan::{InputPath, Options, RunnerEnvironment};
-use rtf_plan::select::{Shard, ShardBy};
+use rtf_plan::select::{Shard, TestOrder};
 
+use super::past_tests::PastQuery;
 use super::{failed_cases, past_run};
-use crate::cli::{FlakyResult, InputArgs, RepeatArgs, RerunVerdict};
+use crate::cli::{FlakyResult, InputArgs, OrderOption, RepeatArgs, RerunVerdict};
 use crate::error::Failure;
+use crate::history::PastTests;
 
 /// The tests of a run.
 pub struct TestsRequest {
@@ -22,8 +24,12 @@ pub struct TestsRequest {
     /// The request as the run's first event records it; it also has the filters, the
     /// order and the repetitions.
     pub manifest: Manifest,
-    /// The part of the selected tests to run.
-    pub shard: Option<Shard>,
+    /// The order by past results.
+    pub order: Option<(TestOrder, Arc<PastTests>)>,
+    /// The part of the selected tests to run, and the past results from which it is computed.
+    pub shard: Option<(Shard, Option<Arc<PastTests>>)>,
+    /// Problems that prevent nothing.
+    pub warnings: Vec<Diagnostic>,
 }
 
 impl TestsRequest {
@@ -31,8 +37,6 @@ impl TestsRequest {
     pub fn resolve(args: &InputArgs) -> Result<Self, Failure> {
         let mut runner = RunnerEnvironment::from_current_process().map_err(Failure::internal)?;
         let results = &args.results.results;
-        let shard = args.select.shard.clone();
-        let shard = shard.map(|shard| assign(shard, &args.select.shard_by, results)).transpose()?;
         let mut manifest = if args.select.rerun.is_empty() {
             manifest(args)
         } else {
@@ -43,11 +47,22 @@ impl TestsRequest {
         manifest.filters.clone_from(&args.select.filters);
         if let Some(seed) = args.select.shuffle {
             manifest.shuffle = Some(seed.unwrap_or_else(random_seed));
+            manifest.order = None;
         }
         set_repetition(&mut manifest, &args.repeat);
-        manifest.shard = shard.as_ref().map(|shard| format!("{}/{}", shard.index, shard.count));
+        if let Some(order) = args.select.order {
+            manifest.order = order.by_history().map(|(_, name)| name.to_owned());
+            manifest.shuffle = None;
+        }
+        let order = manifest.order.as_deref().filter(|_| manifest.shuffle.is_none());
+        let order = order.and_then(|name| OrderOption::from_str(name, false).ok()?.by_history());
+        let past = PastQuery { args, manifest: &manifest, dir: &runner.current_dir };
+        let mut warnings = Vec::new();
+        let order = order.map(|(order, _)| past.order(order, &mut warnings)).transpose()?.flatten();
+        let shard = args.select.shard.clone().map(|shard| past.assign(shard)).transpose()?;
+        manifest.shard = shard.as_ref().map(|(it, _)| format!("{}/{}", it.index, it.count));
         let inputs = manifest.inputs.iter().map(|input| InputPath::Any(input.into())).collect();
-        Ok(Self { inputs, options: options(&manifest, runner), manifest, shard })
+        Ok(Self { inputs, options: options(&manifest, runner), manifest, order, shard, warnings })
     }
 }
 
@@ -131,7 +146,7 @@ fn tests_to_rerun(
 }
 
 /// The names of a test's suite and of the test.
-fn name(record: &Record, test: &TestRecord) -> Option<(String, String)> {
+pub(super) fn name(record: &Record, test: &TestRecord) -> Option<(String, String)> {
     let suite = record.suites.get(test.plan.suite.index())?;
     Some((suite.plan.name.clone(), test.plan.name.clone()))
 }
@@ -153,26 +168,6 @@ impl RerunVerdict {
             Self::Interrupted => "was interrupted or skipped",
         }
     }
-}
-
-/// Adds the method that assigns tests to shards.
-fn assign(shard: Shard, method: &str, results: &Path) -> Result<Shard, Failure> {
-    let by = match method.split_once('=') {
-        None if method == "hash" => ShardBy::Hash,
-        None if method == "count" => ShardBy::Count,
-        Some(("duration", run)) => ShardBy::Duration(durations(&past_run::read(results, run)?)),
-        _ => {
-            let error =
-                format!("`--shard-by {method}`: expected `hash`, `count` or `duration=RUN`");
-            return Err(Failure::input(error));
-        }
-    };
-    Ok(Shard { by, ..shard })
-}
-
-fn durations(record: &Record) -> HashMap<(String, String), Duration> {
-    let tests = record.tests.iter();
-    tests.filter_map(|test| Some((name(record, test)?, test.duration()))).collect()
 }
 
 /// A number that is easy to type.

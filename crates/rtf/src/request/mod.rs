@@ -5,6 +5,7 @@ pub mod config;
 mod failed_cases;
 mod inputs;
 pub mod past_run;
+mod past_tests;
 
 use std::num::NonZeroU16;
 use std::path::PathBuf;
@@ -122,7 +123,7 @@ pub fn history_target(args: &RunArgs) -> Result<Option<HistoryTarget>, Failure> 
         return Ok(None);
     }
     let results = args.input.results.results.clone();
-    let database = history::resolve(args.history.history.as_deref(), &results)?;
+    let database = history::resolve(args.input.history.history.as_deref(), &results)?;
     Ok(Some(HistoryTarget { database, results }))
 }
 

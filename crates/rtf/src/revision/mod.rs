@@ -10,6 +10,11 @@ use rtf_model::Revision;
 
 use git::GitQuery;
 
+/// A directory relative to the root of its repository, if it is in one.
+pub fn dir_in_repository(dir: &Path) -> Option<String> {
+    files::find(dir)?.dir
+}
+
 /// Finds out the revision. Git, if it is installed, runs during the planning.
 #[derive(Debug)]
 pub struct RevisionQuery {

@@ -170,6 +170,8 @@ fn help_of_run() {
                                          as RTF_PARAM_NAME
           --results <DIR>                Results directory, with one directory per run [env:
                                          RTF_RESULTS=] [default: rtf-results]
+          --history <FILE>               History database, or its address [default: `history.db` in the
+                                         results directory] [env: RTF_HISTORY_URL]
           --format <FORMAT>              Format of standard output [default: console] [possible values:
                                          console, json, tap]
           --report <FORMAT=PATH>         Also write a report: `junit=PATH`, `text=`, `tap=`,
@@ -189,8 +191,6 @@ fn help_of_run() {
           --fork <WHEN>                  Fork the hosts of C, C++, Lua and Python tests from a warm
                                          host: `auto` (from the second test on), `always`, or `never`
                                          [env: RTF_FORK=] [default: auto]
-          --history <FILE>               History database, or its address [default: `history.db` in the
-                                         results directory] [env: RTF_HISTORY_URL]
           --no-history                   Do not import the run into the history
       -h, --help                         Print help (see more with '--help')
       -V, --version                      Print version
@@ -201,9 +201,12 @@ fn help_of_run() {
                                default `latest` [possible values: failed, interrupted]
           --shuffle[=<SEED>]   Run tests in random order; to repeat an order, give the seed that its run
                                printed
+          --order <ORDER>      Order tests by their results in the history: as in their `file`,
+                               `failed-first`, or `slowest-first`
           --shard <N/OF>       Run only one shard of the tests: `2/5` is the second of five
-          --shard-by <METHOD>  Assign tests to shards by `hash` of their names, by `count`, or by
-                               `duration=RUN`, the durations in a past run [default: hash]
+          --shard-by <METHOD>  Assign tests to shards by `hash` of their names, by `count`, or by past
+                               durations: `duration=history`, `duration=RUN`, or `duration=FILE.json`
+                               from `rtf history slow` [default: hash]
           --dry-run            List the selected tests without running them
 
     Repetition:

@@ -5,10 +5,10 @@ use rtf_history::TestAttributes;
 use rtf_report::format_count;
 
 use super::{failure, open, print, select, text};
-use crate::cli::HistoryTestsArgs;
+use crate::cli::{HistoryFormat, HistoryTestsArgs};
 use crate::command::VerbResult;
 
-/// How many tests are listed by default.
+/// How many tests are listed by default as text.
 const LIMIT: usize = 20;
 
 /// Lists tests by duration.
@@ -19,7 +19,8 @@ pub fn run(mut args: HistoryTestsArgs, matches: &ArgMatches) -> VerbResult {
         (args.cases || test.identity.case.is_empty()) && filter.matches(test)
     };
     let mut slow = store.slow(&runs, &is_meant).map_err(failure)?;
-    slow.truncate(args.limit.unwrap_or(LIMIT));
+    let all = args.history.format == HistoryFormat::Json;
+    slow.truncate(args.limit.unwrap_or(if all { usize::MAX } else { LIMIT }));
     print(args.history.format, "tests", &slow, |out| {
         if slow.is_empty() {
             return writeln!(out, "no results");

@@ -38,13 +38,6 @@ impl SharedHost<'_> {
     }
 }
 
-fn can_share(one: &TestPlan, two: &TestPlan) -> bool {
-    let needs = (one.settings.leaks, &one.env, &one.plugin.host);
-    one.settings.shared
-        && two.settings.shared
-        && needs == (two.settings.leaks, &two.env, &two.plugin.host)
-}
-
 impl<'p> Scheduler<'p> {
     /// The next attempt that can use the same host, if this one passes. Parallel tests
     /// and timed runs share no hosts.
@@ -61,7 +54,7 @@ impl<'p> Scheduler<'p> {
         }
         let index = plan.id.index() - self.suite.tests.first()?.id.index();
         let next = self.suite.tests.get(index + 1)?;
-        can_share(plan, next).then_some((next, AttemptNumber::FIRST))
+        plan.can_share_host(next).then_some((next, AttemptNumber::FIRST))
     }
 
     pub(super) fn request(
@@ -125,7 +118,7 @@ impl<'p> Scheduler<'p> {
         match self.shared_host.idle.take() {
             None => HostChoice::New,
             Some((host, previous, values))
-                if can_share(previous, plan) && values == cx.values().version() =>
+                if previous.can_share_host(plan) && values == cx.values().version() =>
             {
                 HostChoice::Idle(host)
             }
