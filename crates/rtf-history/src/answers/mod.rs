@@ -7,6 +7,7 @@ mod compare;
 mod compare_side;
 mod export;
 mod flaky;
+pub mod gate;
 mod matrix;
 mod recent;
 mod run_info;

@@ -5,6 +5,7 @@
 mod answers;
 mod bad_input;
 mod columns;
+mod gate;
 mod importing;
 mod pruning;
 mod recent;

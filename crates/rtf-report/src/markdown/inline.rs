@@ -12,7 +12,8 @@ const LINES: usize = 60;
 
 /// Text on one line that is shown literally, also in a table. Code hosts find no names of
 /// users, issues or emoji in it.
-pub(super) fn code(text: &str) -> String {
+#[must_use]
+pub fn code(text: &str) -> String {
     format!("<code>{}</code>", literal(&cut(&escape::line(text))))
 }
 
@@ -22,7 +23,8 @@ pub(super) fn first_line(text: &str) -> String {
 }
 
 /// Text of the runner, part of which may be that of a plug-in.
-pub(super) fn words(text: &str) -> String {
+#[must_use]
+pub fn words(text: &str) -> String {
     literal(&cut(&escape::line(text)))
 }
 

@@ -16,8 +16,9 @@ use rtf_model::Record;
 
 use crate::console::RerunCommand;
 use crate::finding::Roots;
-use crate::{finding, outcome, words};
-use inline::{code, link};
+use crate::{finding, outcome, words as phrases};
+use inline::link;
+pub use inline::{code, words};
 
 /// Maximum number of damaged places that are listed.
 const DAMAGES: usize = 10;
@@ -101,7 +102,7 @@ fn list<T>(
     }
     if items.len() > limit {
         let more = (items.len() - limit) as u64;
-        *page += &format!("- … and {more} more {}\n", words::plural(more, noun));
+        *page += &format!("- … and {more} more {}\n", phrases::plural(more, noun));
     }
     *page += "\n";
 }

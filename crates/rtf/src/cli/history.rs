@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
 
-use super::ResultsArgs;
+use super::{HistoryGateArgs, ResultsArgs};
 
 /// The database of results.
 #[derive(Clone, Debug, Args)]
@@ -31,6 +31,8 @@ pub enum HistoryVerb {
     Changes(HistoryChangesArgs),
     /// Compare two runs, branches, commits, robots, hosts or profiles
     Compare(HistoryCompareArgs),
+    /// Judge whether a run is worse than the runs of the default branch
+    Gate(HistoryGateArgs),
     /// Export results, runs or measurements
     Export(HistoryExportArgs),
     /// Remove old runs

@@ -3,6 +3,7 @@
 mod debug;
 mod doctor;
 mod formats;
+mod gate;
 mod history;
 mod import;
 mod inputs;
@@ -21,6 +22,7 @@ use rtf_plan::suite::parse_duration;
 pub use debug::{DebugArgs, RunVerbArgs};
 pub use doctor::{DoctorArgs, DoctorFormat};
 pub use formats::{Annotations, ReportFormat, StdoutFormat, parse_report};
+pub use gate::{GateFormat, HistoryGateArgs};
 pub use history::{
     ExportFormat, ExportTable, HistoryArgs, HistoryChangesArgs, HistoryCompareArgs,
     HistoryDoctorArgs, HistoryExportArgs, HistoryFileArgs, HistoryFormat, HistoryImportArgs,

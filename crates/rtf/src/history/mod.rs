@@ -2,8 +2,8 @@
 //! changes the verdict or the exit code of a run.
 
 pub mod journals;
-mod source;
 mod past_tests;
+mod source;
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};

@@ -26,6 +26,19 @@ pub fn find(dir: &Path) -> Option<Revision> {
     resolve(&git, reference).map(|commit| Revision { branch, ..of_commit(commit) })
 }
 
+/// The branch that was checked out in the repository from which this one was cloned.
+pub fn default_branch(dir: &Path) -> Option<String> {
+    let git = dir.ancestors().find_map(|root| git_dir(&root.join(".git")))?;
+    let head = first_line(&common_dir(&git).join("refs/remotes/origin/HEAD"))?;
+    head.strip_prefix("ref: refs/remotes/origin/").map(str::to_owned)
+}
+
+/// The Git directory of the repository to which a worktree belongs.
+fn common_dir(git: &Path) -> PathBuf {
+    let common = first_line(&git.join("commondir"));
+    common.map_or_else(|| git.to_owned(), |common| git.join(common))
+}
+
 /// The Git directory: `.git` itself, or the target of the file `.git` in a worktree.
 fn git_dir(path: &Path) -> Option<PathBuf> {
     if path.is_dir() {
@@ -36,8 +49,7 @@ fn git_dir(path: &Path) -> Option<PathBuf> {
 }
 
 fn resolve(git: &Path, reference: &str) -> Option<String> {
-    let common = first_line(&git.join("commondir"));
-    let common = common.map_or_else(|| git.to_owned(), |common| git.join(common));
+    let common = common_dir(git);
     let mut reference = reference.to_owned();
     for _ in 0..MAX_REFERENCES {
         let in_worktree = first_line(&git.join(&reference));
@@ -101,5 +113,9 @@ mod tests {
         write("top/.git/worktrees/tree/HEAD", "ref: refs/heads/arm/new\n");
         write("top/.git/worktrees/tree/commondir", "../..\n");
         assert_eq!(find(&temp.path().join("tree")), found_in("", Some("arm/new")));
+        assert_eq!(default_branch(&deep), None);
+        write("top/.git/refs/remotes/origin/HEAD", "ref: refs/remotes/origin/devel/x\n");
+        assert_eq!(default_branch(&deep).as_deref(), Some("devel/x"));
+        assert_eq!(default_branch(&temp.path().join("tree")).as_deref(), Some("devel/x"));
     }
 }

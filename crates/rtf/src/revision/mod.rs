@@ -15,6 +15,11 @@ pub fn dir_in_repository(dir: &Path) -> Option<String> {
     files::find(dir)?.dir
 }
 
+/// The default branch of a directory's repository, if it was cloned.
+pub fn default_branch(dir: &Path) -> Option<String> {
+    files::default_branch(dir)
+}
+
 /// Finds out the revision. Git, if it is installed, runs during the planning.
 #[derive(Debug)]
 pub struct RevisionQuery {

@@ -37,6 +37,7 @@ mod framework_programs;
 mod guard;
 mod history;
 mod history_failures;
+mod history_gate;
 mod history_order;
 mod hooks;
 mod host_modes;

@@ -5,6 +5,7 @@ mod compare;
 mod doctor;
 mod export;
 mod flaky;
+mod gate;
 mod import;
 mod prune;
 mod runs;
@@ -45,6 +46,7 @@ pub fn run(verb: HistoryVerb, matches: &ArgMatches) -> VerbResult {
         HistoryVerb::Trend(args) => trend::run(args, matches),
         HistoryVerb::Changes(args) => changes::run(args, matches),
         HistoryVerb::Compare(args) => compare::run(args, matches),
+        HistoryVerb::Gate(args) => gate::run(args, matches),
         HistoryVerb::Export(args) => export::run(args, matches),
         HistoryVerb::Prune(args) => prune::run(args, matches),
         HistoryVerb::Import(args) => import::run(args, matches),

@@ -37,7 +37,8 @@ pub fn results(args: &ResultSelectArgs) -> Result<(RunSelection, TestFilter), Fa
 pub struct TestFilter(Vec<Filter>);
 
 impl TestFilter {
-    fn parse(filters: &[String]) -> Result<Self, Failure> {
+    /// Parses filters; prints every mistake.
+    pub(super) fn parse(filters: &[String]) -> Result<Self, Failure> {
         let (mut parsed, mut problems) = (Vec::new(), Vec::new());
         let mut sources = SourceMap::default();
         for text in filters {
