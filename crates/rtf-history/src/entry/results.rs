@@ -105,7 +105,7 @@ fn add_test(test: &TestRecord, identity: TestIdentity, robot: &str, to: &mut Vec
         parameters: parameters.collect(),
         was: test.plan.was.clone(),
         verdict: test.final_verdict(),
-        is_flaky: test.is_flaky() || is_mixed(verdicts()),
+        is_flaky: test.is_flaky() || Mixture::of(verdicts()).is_mixed(),
         attempts: count(test.attempts.len()),
         problems: count(verdicts().filter(|verdict| verdict.is_problem()).count()),
         duration_us: median_us(durations),
@@ -124,9 +124,9 @@ fn add_test(test: &TestRecord, identity: TestIdentity, robot: &str, to: &mut Vec
             identity,
             was: None,
             verdict: case.verdict,
-            is_flaky: is_mixed(case.verdicts.iter().copied()),
+            is_flaky: case.outcomes.is_mixed(),
             attempts: count(case.durations.len()),
-            problems: count(case.verdicts.iter().filter(|it| it.is_problem()).count()),
+            problems: case.problems,
             duration_us: median_us(case.durations.into_iter()),
             reason: case.reason,
             numbers,
@@ -139,18 +139,34 @@ fn add_test(test: &TestRecord, identity: TestIdentity, robot: &str, to: &mut Vec
 struct CaseSummary {
     verdict: Verdict,
     reason: Option<String>,
-    verdicts: Vec<Verdict>,
+    problems: u32,
+    outcomes: Mixture,
     durations: Vec<Duration>,
 }
 
-/// Whether there are both passes and failures, which are no problems of the bench.
-fn is_mixed(verdicts: impl Iterator<Item = Verdict>) -> bool {
-    let (mut any_passed, mut any_failed) = (false, false);
-    for outcome in verdicts.filter_map(Outcome::of) {
-        any_passed |= outcome == Outcome::Passed;
-        any_failed |= outcome == Outcome::Failed;
+/// Whether there are passes and failures. A problem of the bench is neither.
+#[derive(Default)]
+struct Mixture {
+    any_passed: bool,
+    any_failed: bool,
+}
+
+impl Mixture {
+    fn of(verdicts: impl Iterator<Item = Verdict>) -> Self {
+        let mut mixture = Self::default();
+        verdicts.for_each(|verdict| mixture.add(verdict));
+        mixture
     }
-    any_passed && any_failed
+
+    fn add(&mut self, verdict: Verdict) {
+        let outcome = Outcome::of(verdict);
+        self.any_passed |= outcome == Some(Outcome::Passed);
+        self.any_failed |= outcome == Some(Outcome::Failed);
+    }
+
+    fn is_mixed(&self) -> bool {
+        self.any_passed && self.any_failed
+    }
 }
 
 /// The finished cases by path.
@@ -162,13 +178,15 @@ fn cases(test: &TestRecord) -> BTreeMap<String, CaseSummary> {
         let known = cases.entry(case.path.clone()).or_insert_with(|| CaseSummary {
             verdict,
             reason: reason(),
-            verdicts: Vec::new(),
+            problems: 0,
+            outcomes: Mixture::default(),
             durations: Vec::new(),
         });
         if verdict.is_problem() && !known.verdict.is_problem() {
             (known.verdict, known.reason) = (verdict, reason());
         }
-        known.verdicts.push(verdict);
+        known.problems += u32::from(verdict.is_problem());
+        known.outcomes.add(verdict);
         known.durations.extend(case.duration());
     }
     cases

@@ -48,7 +48,7 @@ fn every_mistake_is_told_at_its_place() {
     2 | enviroment = "--robot icub"
       | ^^^^^^^^^^
       |
-      = note: the keys are `environment`, `env`, `param`, `timeouts`, `parallel`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `jobs`, `lock-timeout`, `retries`, `flaky-result`, `max-fail`, `history`, `quarantine`, `profile`, `default-profile`
+      = note: the keys are `environment`, `env`, `param`, `timeouts`, `parallel`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `jobs`, `lock-timeout`, `retries`, `flaky-result`, `max-fail`, `order`, `history`, `quarantine`, `profile`, `default-profile`
       = help: did you mean `environment`?
 
     error: `reports` has to be `"FORMAT=PATH"`, where FORMAT is one of `junit`, `text`, `tap`, `code-quality`, `github`, `markdown`, `html`, `otlp`
@@ -148,7 +148,7 @@ fn what_is_no_toml_is_told() {
     2 | x =
       | ^
       |
-      = note: the keys are `environment`, `env`, `param`, `timeouts`, `parallel`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `jobs`, `lock-timeout`, `retries`, `flaky-result`, `max-fail`, `history`, `quarantine`, `profile`, `default-profile`
+      = note: the keys are `environment`, `env`, `param`, `timeouts`, `parallel`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `jobs`, `lock-timeout`, `retries`, `flaky-result`, `max-fail`, `order`, `history`, `quarantine`, `profile`, `default-profile`
 
     error: not TOML: string values must be quoted, expected literal string
      --> rtf.toml:2:4
@@ -180,7 +180,7 @@ fn what_is_no_toml_is_told() {
     2 | x =
       | ^
       |
-      = note: the keys are `environment`, `env`, `param`, `timeouts`, `parallel`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `jobs`, `lock-timeout`, `retries`, `flaky-result`, `max-fail`, `history`, `quarantine`, `profile`, `default-profile`
+      = note: the keys are `environment`, `env`, `param`, `timeouts`, `parallel`, `results`, `reports`, `filter`, `annotations`, `fork`, `shutdown-timeout`, `jobs`, `lock-timeout`, `retries`, `flaky-result`, `max-fail`, `order`, `history`, `quarantine`, `profile`, `default-profile`
 
     3 errors; nothing was started
     "#);

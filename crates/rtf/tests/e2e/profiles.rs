@@ -228,6 +228,7 @@ fn config_show_tells_where_each_value_comes_from() {
     shutdown-timeout = "[TIME]"                      # built in
     jobs = "1"                                    # built in
     flaky-result = "pass"                         # built in
+    order = "file"                                # built in
     history.enabled = "true"                      # built in
     ----- stderr
     "#);

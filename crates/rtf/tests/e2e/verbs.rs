@@ -311,6 +311,7 @@ fn man_writes_a_page_for_each_verb() {
         "history-doctor",
         "history-export",
         "history-flaky",
+        "history-gate",
         "history-import",
         "history-prune",
         "history-runs",

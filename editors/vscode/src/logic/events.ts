@@ -97,7 +97,8 @@ type Events = {
         case: number;
         verdict: Verdict;
         reason?: string | null;
-        carried_us?: number | null;
+        duration_us?: number | null;
+        carried?: boolean;
     };
     message: { source: Source; test?: number | null; message: Message };
     measured: { test: number; measurement: Measurement };
@@ -137,7 +138,7 @@ export const REQUIRED_FIELDS: { [Type in keyof Events]: (keyof Events[Type] & st
     'test-skipped': ['test', 'reason'],
     'test-repeated': ['test', 'repetitions'],
     'case-started': ['test', 'case', 'name', 'parent', 'location'],
-    'case-finished': ['test', 'case', 'verdict', 'reason', 'carried_us'],
+    'case-finished': ['test', 'case', 'verdict', 'reason', 'duration_us', 'carried'],
     message: ['source', 'test', 'message'],
     measured: ['test', 'measurement'],
     output: ['source', 'text'],

@@ -138,7 +138,7 @@ export class TestFold {
     }
 
     private finishCase(event: EventOf<'case-finished'>): Update[] {
-        const { verdict, reason, at, carried_us: carried } = event;
+        const { verdict, reason, at, duration_us: duration } = event;
         const found = this.cases.get(event.case);
         if (found === undefined) return [];
         const outcome = verdict === 'skipped' && this.skipsFail ? 'failed' : outcomeOf(verdict);
@@ -149,7 +149,7 @@ export class TestFold {
                 target: found.target,
                 outcome,
                 problems: isRed ? withReason(found.problems, reason ?? verdict) : [],
-                durationMs: (carried ?? at - found.startedAt) / 1000,
+                durationMs: (duration ?? at - found.startedAt) / 1000,
             },
         ];
     }
