@@ -118,8 +118,7 @@ pub(super) fn delete_run(database: &Database, id: i64) -> Result<(), DatabaseErr
 fn insert(database: &Database, run: &RunEntry) -> Result<(), DatabaseError> {
     database.execute(sql::DELETE_PRUNED, &[(&run.id).into()])?;
     let run_id = insert_run(database, run)?;
-    let results = rows::results(database, run)?;
-    rows::insert(database, run_id, &results)
+    rows::insert(database, run_id, run)
 }
 
 fn insert_run(database: &Database, run: &RunEntry) -> Result<i64, DatabaseError> {

@@ -1,4 +1,4 @@
-//! The rows of the results of a run, written many at a time.
+//! The rows of the results of a run, written many at a time, and its packed columns.
 
 use std::collections::{HashMap, HashSet};
 
@@ -9,18 +9,45 @@ use super::{read, sql};
 use crate::TestIdentity;
 use crate::entry::{ResultEntry, RunEntry, SeriesName};
 
-/// The results of a run, each with the row of its test.
-pub(super) type Results<'a> = Vec<(i64, &'a ResultEntry)>;
+/// Results, each with the row of its test.
+type Results<'a> = Vec<(i64, &'a ResultEntry)>;
 
-/// Adds or updates the rows of the tests of a run.
-pub(super) fn results<'a>(
+/// How many results are in memory as values of the database.
+const RESULTS_AT_ONCE: usize = 4096;
+
+/// The packed columns of a run.
+#[derive(Default)]
+struct Columns {
+    results: ResultPacker,
+    points: PointPacker,
+}
+
+/// Adds the results of a run.
+pub(super) fn insert(
     database: &Database,
-    run: &'a RunEntry,
-) -> Result<Results<'a>, DatabaseError> {
+    run_id: i64,
+    run: &RunEntry,
+) -> Result<(), DatabaseError> {
     let started_us = run.started_at.as_microsecond();
     let mut seen = HashSet::new();
     let results = run.results.iter().filter(|result| seen.insert(&result.identity));
     let results: Vec<_> = results.collect();
+    let mut columns = Columns::default();
+    for part in results.chunks(RESULTS_AT_ONCE) {
+        let results = with_tests(database, part, started_us)?;
+        insert_results(database, run_id, &results, &mut columns)?;
+    }
+    let (results, points) = (columns.results.finish(), columns.points.finish());
+    let values = [run_id.into(), results.as_slice().into(), points.as_slice().into()];
+    database.execute(sql::INSERT_RUN_COLUMNS, &values)
+}
+
+/// Adds or updates the rows of the tests of results.
+fn with_tests<'a>(
+    database: &Database,
+    results: &[&'a ResultEntry],
+    started_us: i64,
+) -> Result<Results<'a>, DatabaseError> {
     let current = results.iter().map(|result| (result.identity.clone(), *result));
     let ids = upsert(database, current.collect(), started_us)?;
     // Of several tests with one former name, the last one continues its history.
@@ -36,7 +63,7 @@ pub(super) fn results<'a>(
             database.execute(sql::RENAME_TEST, &[(*id).into(), (*former).into()])?;
         }
     }
-    let with_ids = results.into_iter().filter_map(|it| Some((*ids.get(&it.identity)?, it)));
+    let with_ids = results.iter().filter_map(|it| Some((*ids.get(&it.identity)?, *it)));
     Ok(with_ids.collect())
 }
 
@@ -64,20 +91,20 @@ fn upsert(
 }
 
 /// Adds results with their points.
-pub(super) fn insert(
+fn insert_results(
     database: &Database,
     run_id: i64,
     results: &Results<'_>,
+    columns: &mut Columns,
 ) -> Result<(), DatabaseError> {
     let series = series(database, results)?;
-    let (mut packed_results, mut packed_points) = (ResultPacker::default(), PointPacker::default());
     let (mut rows, mut points): (Vec<Value<'_>>, Vec<Value<'_>>) = (Vec::new(), Vec::new());
     for (test, result) in results {
         rows.extend(result_row(*test, run_id, result));
-        packed_results.add(PackedResult::new(*test, result), &result.robot);
+        columns.results.add(PackedResult::new(*test, result), &result.robot);
         for (name, summary) in &result.numbers {
             let Some(series) = series.get(&(*test, name.clone())) else { continue };
-            packed_points.add(*series, summary);
+            columns.points.add(*series, summary);
             points.extend::<[Value<'_>; 11]>([
                 (*test).into(),
                 run_id.into(),
@@ -94,10 +121,7 @@ pub(super) fn insert(
         }
     }
     database.batch(&sql::INSERT_RESULTS, &rows, &mut |_| Ok(()))?;
-    database.batch(&sql::INSERT_POINTS, &points, &mut |_| Ok(()))?;
-    let (results, points) = (packed_results.finish(), packed_points.finish());
-    let values = [run_id.into(), results.as_slice().into(), points.as_slice().into()];
-    database.execute(sql::INSERT_RUN_COLUMNS, &values)
+    database.batch(&sql::INSERT_POINTS, &points, &mut |_| Ok(()))
 }
 
 fn result_row(test: i64, run: i64, result: &ResultEntry) -> [Value<'_>; 10] {
