@@ -1,6 +1,6 @@
 //! The record as a trace of OpenTelemetry.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use rtf_report::otlp;
 use serde_json::Value;
@@ -17,6 +17,19 @@ fn spans(trace: &Value) -> &Vec<Value> {
     trace["resourceSpans"][0]["scopeSpans"][0]["spans"].as_array().unwrap()
 }
 
+/// The value with the fields of objects in alphabetical order: that of `serde_json` depends
+/// on the features that other crates of a build select.
+fn sorted(value: &Value) -> Value {
+    match value {
+        Value::Object(fields) => {
+            let fields: BTreeMap<_, _> = fields.iter().collect();
+            fields.into_iter().map(|(name, value)| (name.clone(), sorted(value))).collect()
+        }
+        Value::Array(values) => values.iter().map(sorted).collect(),
+        other => other.clone(),
+    }
+}
+
 fn nanos(span: &Value, field: &str) -> u64 {
     span[field].as_str().unwrap().parse().unwrap()
 }
@@ -25,7 +38,7 @@ fn nanos(span: &Value, field: &str) -> u64 {
 fn traces() {
     for name in ["cases", "collapse-restart", "measured"] {
         let trace = trace(name);
-        let lines: Vec<_> = spans(&trace).iter().map(Value::to_string).collect();
+        let lines: Vec<_> = spans(&trace).iter().map(|span| sorted(span).to_string()).collect();
         insta::assert_snapshot!(format!("otlp-{name}"), lines.join("\n"));
     }
 }
