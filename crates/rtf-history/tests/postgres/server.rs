@@ -79,7 +79,11 @@ impl Server {
 
     /// The address of a database.
     pub fn address(&self, database: &str, options: &str) -> String {
-        format!("postgres://rtf:{PASSWORD}@127.0.0.1:{}/{database}?{options}", self.port)
+        // A debug build needs more than the default of 1 s for a handshake on a busy machine.
+        let port = self.port;
+        format!(
+            "postgres://rtf:{PASSWORD}@127.0.0.1:{port}/{database}?connect_timeout=60&{options}"
+        )
     }
 
     /// Creates a database, unless it exists.

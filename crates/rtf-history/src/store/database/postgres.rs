@@ -14,7 +14,8 @@ use super::tls::{Encryption, connector};
 use super::{DatabaseError, Row, Value, Visit, dialect};
 use crate::store::sql;
 
-/// How long a connection may take: the end of a run waits for it.
+/// How long a connection may take, unless the address says otherwise with `connect_timeout`: the
+/// end of a run waits for it.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// How long a server may be silent while it has unanswered data.
@@ -72,7 +73,8 @@ impl PostgresUrl {
             return Err(UrlError::Invalid);
         }
         config.ssl_mode(encryption.ssl_mode());
-        config.connect_timeout(CONNECT_TIMEOUT).tcp_user_timeout(SILENCE_TIMEOUT);
+        let limit = config.get_connect_timeout().copied().unwrap_or(CONNECT_TIMEOUT);
+        config.connect_timeout(limit).tcp_user_timeout(SILENCE_TIMEOUT);
         Ok(Self { config, encryption })
     }
 }
@@ -127,8 +129,11 @@ impl PostgresDatabase {
         };
         let started = thread::Builder::new().name("history".to_owned()).spawn(connect);
         started.map_err(|_| DatabaseError::Connection("cannot start a thread"))?;
-        let silent = DatabaseError::Connection("the server did not answer within 1 s");
-        let client = connected.recv_timeout(CONNECT_TIMEOUT).map_err(|_| silent)??;
+        let limit = url.config.get_connect_timeout().copied().unwrap_or(CONNECT_TIMEOUT);
+        let silent = DatabaseError::Connection(
+            "the server did not answer in time (1 s, or `connect_timeout` of the address)",
+        );
+        let client = connected.recv_timeout(limit).map_err(|_| silent)??;
         Ok(Self { client, prepared: HashMap::new() })
     }
 
