@@ -20,6 +20,12 @@ def _keep_output_at_signals() -> None:
     termios.tcsetattr(0, termios.TCSANOW, settings)
 
 
+def _default_signals() -> None:
+    """Otherwise, those of the keyboard are ignored if a script runs this in the background."""
+    for number in (signal.SIGHUP, signal.SIGINT, signal.SIGQUIT):
+        signal.signal(number, signal.SIG_DFL)
+
+
 class Terminal:
     """A session on a pseudo-terminal, whose leader is the program."""
 
@@ -31,6 +37,7 @@ class Terminal:
         self.pid, self._terminal = pty.fork()
         if self.pid == 0:
             _keep_output_at_signals()
+            _default_signals()
             os.chdir(directory)
             os.execvpe(command[0], command, environment)
         while not (settings := termios.tcgetattr(self._terminal))[3] & termios.NOFLSH:
