@@ -103,3 +103,11 @@ fn too_little_is_not_judged() {
     let gate = regression(&[10.0; 5], None, "lag>10%");
     assert_eq!(gate.not_judged[0].reason, NotJudgedReason::NotFinite);
 }
+
+#[test]
+fn a_run_without_an_end_fails() {
+    let runs = [run(1, "aaaa", Passed), Run { is_complete: false, ..run(2, "bbbb", Passed) }];
+    let gate = judge(&runs, &GateLimits { max_new_failures: Some(0), ..GateLimits::default() });
+    assert!(!gate.passed);
+    assert!(gate.new_failures.expect("the gate").passed);
+}

@@ -129,6 +129,27 @@ fn a_short_baseline_is_not_judged() {
 }
 
 #[test]
+fn a_run_that_did_not_finish_fails() {
+    let folder = folder();
+    run(&folder, "main", 10.0, None);
+    run(&folder, "arm", 10.0, None);
+    let journal = folder.path().join("rtf-results/latest/events.jsonl");
+    let text = std::fs::read_to_string(&journal).expect("a journal");
+    let (before, _end) = text.trim_end().rsplit_once('\n').expect("many lines");
+    std::fs::write(&journal, format!("{before}\n")).expect("it is shortened");
+    std::fs::remove_file(folder.path().join("rtf-results/history.db")).expect("a history");
+    folder.rtf(&["history", "import", "rtf-results"]);
+    assert_snapshot!(folder.shown(&gate(&folder, &["--max-new-failures", "0"])), @"
+    exit code 1
+    ----- stdout
+    run [RUN] with 2 tests, compared with 1 run
+    FAILED  the run did not finish: its journal has no end
+    passed  0 new failures, at most 0 allowed
+    ----- stderr
+    ");
+}
+
+#[test]
 fn what_cannot_be_judged() {
     let folder = folder();
     let shown = |args: &[&str]| folder.shown(&gate(&folder, args));

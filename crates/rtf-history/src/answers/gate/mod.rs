@@ -9,6 +9,7 @@ use rtf_model::Verdict;
 use serde::Serialize;
 
 use super::{RunInfo, TestHistory};
+use crate::entry::RunEnd;
 use crate::{RunSelection, Store, StoreError, TestIdentity, TestSelection};
 
 pub use regression::{
@@ -41,7 +42,7 @@ pub struct GateRuns {
 /// Whether a run passes the gates.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GateReport {
-    /// Whether it passes all gates.
+    /// Whether it finished and passes all gates.
     pub passed: bool,
     /// The run.
     pub run: RunInfo,
@@ -155,7 +156,8 @@ impl Store {
         let no_regression: Vec<_> =
             limits.no_regression.iter().map(|limit| compared.regressions(limit)).collect();
         Ok(GateReport {
-            passed: new_failures.as_ref().is_none_or(|gate| gate.passed)
+            passed: runs.run.end == RunEnd::Finished
+                && new_failures.as_ref().is_none_or(|gate| gate.passed)
                 && flaky.as_ref().is_none_or(|gate| gate.passed)
                 && no_regression.iter().all(|gate| gate.passed),
             run: runs.run.clone(),

@@ -4,6 +4,7 @@ use rtf_history::answers::gate::{
     Direction, FailureGate, FlakyGate, GateReport, JudgedSeries, MIN_BASELINE_RUNS, NotJudged,
     NotJudgedReason, RegressionGate,
 };
+use rtf_history::entry::RunEnd;
 use rtf_model::format_rounded;
 use rtf_report::format_count;
 
@@ -30,9 +31,24 @@ pub fn head(report: &GateReport) -> String {
 }
 
 pub fn gates(report: &GateReport) -> Vec<GateWords> {
+    let end = (report.run.end != RunEnd::Finished).then(|| unfinished(report.run.end));
     let failures = report.new_failures.iter().map(failures);
     let flaky = report.flaky.iter().map(|gate| flaky(gate, report.tests));
-    failures.chain(flaky).chain(report.no_regression.iter().map(regressions)).collect()
+    end.into_iter()
+        .chain(failures)
+        .chain(flaky)
+        .chain(report.no_regression.iter().map(regressions))
+        .collect()
+}
+
+fn unfinished(end: RunEnd) -> GateWords {
+    let how = match end {
+        RunEnd::Died => "its runner died",
+        RunEnd::Unfinished => "its journal has no end",
+        RunEnd::Finished | RunEnd::Interrupted => "it was interrupted",
+    };
+    let title = format!("the run did not finish: {how}");
+    GateWords { passed: false, title, lines: Vec::new(), notes: Vec::new() }
 }
 
 fn failures(gate: &FailureGate) -> GateWords {
