@@ -135,7 +135,7 @@ fn add_recent(registry: &mut Registry, HistoryNumbers { runs, flaky, tests }: &H
         let help = "Median duration of the newest runs";
         seconds(registry, "recent_run_duration", help).set(median);
     }
-    let help = "Tests that both passed and failed on one commit in the newest runs";
+    let help = "Tests that both passed and failed on one commit, or in one run, of the newest runs";
     number(registry, "recent_flaky_tests", help).set(*flaky as f64);
     let ratio = if *tests == 0 { 0.0 } else { *flaky as f64 / *tests as f64 };
     let help = "Flaky tests of the newest runs among all tests of the history";

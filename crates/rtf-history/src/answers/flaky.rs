@@ -1,4 +1,4 @@
-//! Tests that both passed and failed on one commit.
+//! Tests that both passed and failed on one commit, or in one run.
 
 use jiff::Timestamp;
 use rtf_model::Verdict;
@@ -11,7 +11,7 @@ use super::test_history::TestResult;
 use crate::statistics::{Attempt, Flips};
 use crate::{RunSelection, Store, StoreError, TestIdentity, TestSelection};
 
-/// A test that both passed and failed on one commit.
+/// A test that both passed and failed on one commit, or in one run.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct FlakyTest {
     /// The identity.

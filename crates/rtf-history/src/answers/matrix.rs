@@ -71,7 +71,7 @@ impl Store {
     }
 }
 
-/// The letter of a result; `is_flaky`: it passed after an earlier attempt had failed.
+/// The letter of a result; `is_flaky`: it both passed and failed in this run.
 #[must_use]
 pub fn letter(verdict: Verdict, is_flaky: bool) -> u8 {
     match verdict {

@@ -30,7 +30,7 @@ pub struct TestResult {
     /// The final verdict.
     #[schema(value_type = String)]
     pub verdict: Verdict,
-    /// Whether it passed after an earlier attempt had failed.
+    /// Whether it both passed and failed in this run: on a retry, or in repetitions.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub flaky: bool,
     /// Number of attempts.

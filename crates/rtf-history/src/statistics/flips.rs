@@ -54,13 +54,13 @@ pub struct Flips {
     pub bench: u64,
     /// Attempts that were skipped or interrupted. They count nowhere else.
     pub without_outcome: u64,
-    /// Consecutive results of one commit, of which one passed and one failed.
+    /// Consecutive results of one commit or run, of which one passed and one failed.
     pub flips: u64,
-    /// Consecutive results of one commit, equal or not.
+    /// Consecutive results of one commit or run, equal or not.
     pub pairs: u64,
     /// `passed` of `passed + failed`. `None` without a result.
     pub pass_rate: Option<Rate>,
-    /// `flips` of `pairs`. `None` if no commit has two results.
+    /// `flips` of `pairs`. `None` if no commit or run has two results.
     pub flip_rate: Option<Rate>,
     /// `bench` of `passed + failed + bench`. `None` without an attempt.
     pub bench_rate: Option<Rate>,
@@ -98,7 +98,7 @@ impl Flips {
         counts
     }
 
-    /// Whether the test passed and failed on the same commit.
+    /// Whether the test passed and failed on the same commit, or in one run.
     #[must_use]
     pub fn is_flaky(&self) -> bool {
         self.flips > 0

@@ -21,7 +21,7 @@ fn case_ends(number: u32, verdict: Verdict) -> EventKind {
     case_ends_after(number, verdict, None)
 }
 
-fn case_ends_after(number: u32, verdict: Verdict, carried_us: Option<u64>) -> EventKind {
+fn case_ends_after(number: u32, verdict: Verdict, carried_after_us: Option<u64>) -> EventKind {
     let reason = verdict.is_problem().then(|| format!("{verdict} for a reason"));
     EventKind::CaseFinished(CaseFinished {
         test: TEST,
@@ -29,8 +29,8 @@ fn case_ends_after(number: u32, verdict: Verdict, carried_us: Option<u64>) -> Ev
         verdict,
         reason,
         decided_by: None,
-        duration_us: carried_us,
-        carried: carried_us.is_some(),
+        duration_us: carried_after_us,
+        carried: carried_after_us.is_some(),
     })
 }
 

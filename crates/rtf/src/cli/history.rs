@@ -21,7 +21,7 @@ pub enum HistoryVerb {
     Runs(HistoryRunsArgs),
     /// Show verdicts, durations, measurements and signals of a test over runs
     Show(HistoryShowArgs),
-    /// List tests that both passed and failed on one commit
+    /// List tests that both passed and failed on one commit, or in one run
     Flaky(HistoryTestsArgs),
     /// List tests by duration, the slowest first
     Slow(HistoryTestsArgs),

@@ -164,7 +164,7 @@ pub async fn trend(
     .await
 }
 
-/// Tests that both passed and failed on one commit, the most flaky first.
+/// Tests that both passed and failed on one commit or in one run, the most flaky first.
 #[utoipa::path(get, path = "/history/flaky", tag = "history", operation_id = "history_flaky",
     params(HistoryQuery, Most), responses((status = 200, body = FlakyTests), Problems))]
 pub async fn flaky(
