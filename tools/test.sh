@@ -127,6 +127,7 @@ lint_python() {
   "$checkers/mypy" tests/frameworks/go/own.py
   "$checkers/mypy" tests/frameworks/cargo/own.py
   "$checkers/mypy" tests/history/*.py
+  "$checkers/mypy" tests/campaign/*.py
   "$checkers/mypy" tests/telemetry/*.py
 }
 
@@ -363,6 +364,11 @@ history_change_points() {
   "$python" tests/history/check.py "$TARGET/debug/examples/change_points"
 }
 
+# The results of SciPy with which the unit tests of campaigns compare.
+campaign_oracle() {
+  "$(PIP_NO_DEPS=1 tools/venv.sh history)/python" tests/campaign/oracle.py --check tests/campaign/scipy.json
+}
+
 # The history in a PostgreSQL server, which the test starts and ends.
 history_postgres() {
   local bin
@@ -455,6 +461,7 @@ robots=$!
 step 'rust tests' env --default-signal=HUP cargo test --workspace --locked --no-fail-fast
 step 'web api' web_api
 step 'history change points' history_change_points
+step 'campaign oracle' campaign_oracle
 step 'history in PostgreSQL' history_postgres
 step 'telemetry' telemetry
 step 'debugging' debugging

@@ -6,7 +6,7 @@ use rtf_model::Verdict;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::wilson::{CONFIDENCE, Rate, rate};
+use rtf_statistics::{CONFIDENCE, Rate, rate};
 
 /// One judged attempt of a test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,11 +6,10 @@
 pub mod change_points;
 pub mod flips;
 pub mod robust;
-pub mod wilson;
 
 pub use change_points::{
     Basis, ChangePoint, ChangePoints, Level, Segment, Size, find_change_points,
 };
 pub use flips::{Attempt, Flips, Outcome};
 pub use robust::{LearnedLimits, TooFewValues, learn_limits};
-pub use wilson::{Rate, rate};
+pub use rtf_statistics::{Rate, rate};
