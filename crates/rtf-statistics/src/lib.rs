@@ -5,7 +5,7 @@
 //!   advance. The exact one is for decisions.
 //! - [`sprt`] and [`confidence_sequence`]: decisions that may be made after each trial.
 //! - [`paired`]: two versions on the same trials.
-//! - [`strata`]: rates by bins of a parameter.
+//! - [`mod@strata`]: rates by bins of a parameter.
 //! - [`random`]: random numbers that are the same on every machine, and the quantile of the
 //!   normal distribution.
 //!
