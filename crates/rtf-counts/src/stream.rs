@@ -62,6 +62,7 @@ fn before() -> Vec<EventKind> {
     ];
     kinds.extend((0..TESTS).map(|test| {
         EventKind::TestPlanned(TestPlanned {
+            learned: Vec::new(),
             test: TestId(test),
             suite: SUITE,
             name: format!("test-{test:05}"),

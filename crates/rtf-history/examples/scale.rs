@@ -92,6 +92,7 @@ fn planned(run: u32, tests: u32) -> Vec<EventKind> {
     };
     let test = |test| {
         EventKind::TestPlanned(TestPlanned {
+            learned: Vec::new(),
             test: TestId(test),
             suite: SuiteId(0),
             name: format!("Test{test:04}"),
@@ -127,6 +128,7 @@ fn record(run: u32, runs: u32, tests: u32, random: &mut Random) -> Record {
             let has_changed = number == 0 && regression(test, runs).is_some_and(|from| run >= from);
             let centre = if has_changed { 11.0 } else { 10.0 };
             let measurement = Measurement {
+                learned: false,
                 name: format!("value {number}"),
                 value: Some(centre + 0.1 * random.normal()),
                 unit: "ms".to_owned(),

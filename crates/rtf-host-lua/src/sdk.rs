@@ -203,6 +203,7 @@ impl mlua::FromLuaMulti for MeasureArgs {
             (LuaString, f64, LuaString, Option<f64>, Option<f64>, Option<LuaString>, Option<u32>);
         let (name, value, unit, low, high, file, line) = Arguments::from_lua_multi(values, lua)?;
         Ok(Self(Measurement {
+            learned: false,
             name: name.to_string_lossy(),
             value: finite(value),
             unit: unit.to_string_lossy(),

@@ -106,6 +106,7 @@ unsafe extern "C" fn measure(context: *mut c_void, measurement: *const rtf_measu
     unsafe {
         let measurement = &*measurement;
         let holds = self::context(context).session.measure(Measurement {
+            learned: false,
             name: text(measurement.name),
             value: finite(measurement.value),
             unit: text(measurement.unit),

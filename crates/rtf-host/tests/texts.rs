@@ -10,6 +10,7 @@ fn violations_are_described_as_in_the_conformance_vectors() {
     for case in vectors["limits"].as_array().unwrap() {
         let text = |field: &str| case[field].as_str().unwrap().to_owned();
         let measurement = Measurement {
+            learned: false,
             name: text("name"),
             value: case["value"].as_f64(),
             unit: text("unit"),

@@ -5,6 +5,7 @@
 
 mod case;
 mod expected;
+mod learned;
 mod planned;
 mod process;
 mod provided;
@@ -14,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 pub use self::case::{CaseFinished, CaseStart, CaseStarted, Parameter};
 pub use self::expected::{ExpectedFailure, Significance};
+pub use self::learned::LearnedLimits;
 pub use self::planned::{
     FixturePlanned, HookPlanned, RunStarted, SuitePlanned, TestPlanned, Trigger,
 };

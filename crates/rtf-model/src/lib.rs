@@ -28,9 +28,9 @@ pub use clock::parse_clock;
 pub use diagnostic::{Diagnostic, Label, Severity};
 pub use event::{
     CaseFinished, CaseStart, CaseStarted, Event, EventKind, ExitStatus, ExpectedFailure,
-    FixturePlanned, FixtureProvided, HookPlanned, LeakedProcess, Output, Parameter, Phase,
-    RunStarted, Significance, Source, StopCause, Stream, SuitePlanned, TestFinished, TestPlanned,
-    Trigger, signal_name, value_text,
+    FixturePlanned, FixtureProvided, HookPlanned, LeakedProcess, LearnedLimits, Output, Parameter,
+    Phase, RunStarted, Significance, Source, StopCause, Stream, SuitePlanned, TestFinished,
+    TestPlanned, Trigger, signal_name, value_text,
 };
 pub use ids::{CaseId, FixtureId, HookId, Micros, SuiteId, TestId};
 pub use journal::{Damage, EventCheck, LineCheck, LineChecker, LineSealer, StreamChecker};

@@ -102,6 +102,9 @@ pub struct Measurement {
     /// The largest accepted value.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub high: Option<f64>,
+    /// Whether the limits are learned from earlier runs. The runner decides this.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub learned: bool,
     /// Where in the plug-in it was taken.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub location: Option<Location>,
@@ -127,6 +130,9 @@ impl Measurement {
         let (name, value) = (&self.name, self.value_with_unit());
         Some(match self.limits() {
             limits if limits.is_empty() => format!("`{name}` is {value}"),
+            limits if self.learned => {
+                format!("`{name}` is {value}, its learned limits are {limits}")
+            }
             limits => format!("`{name}` is {value}, its limits are {limits}"),
         })
     }

@@ -54,6 +54,7 @@ impl Samples {
     #[must_use]
     pub fn single(&self, value: Option<f64>) -> Measurement {
         Measurement {
+            learned: false,
             name: self.name.clone(),
             value,
             unit: self.unit.clone(),

@@ -80,6 +80,7 @@ fn before() -> Vec<EventKind> {
             skips_fail: false,
         }),
         EventKind::TestPlanned(TestPlanned {
+            learned: Vec::new(),
             test: TEST,
             suite: SUITE,
             name: "FloodTest".into(),

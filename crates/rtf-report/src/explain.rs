@@ -152,9 +152,10 @@ pub(crate) fn measurement(measurement: &Measurement) -> String {
     let name = escape::line(&measurement.name);
     let (value, limits) = measurement.for_display();
     let mut text = format!("measured {name} = {}", escape::line(&value));
+    let learned = if measurement.learned { "learned " } else { "" };
     match (limits.is_empty(), measurement.is_within_limits()) {
-        (false, true) => text += &format!(", within {limits}"),
-        (false, false) => text += &format!(", outside {limits}"),
+        (false, true) => text += &format!(", within {learned}{limits}"),
+        (false, false) => text += &format!(", outside {learned}{limits}"),
         (true, _) => {}
     }
     if let Some(location) = &measurement.location {

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use rtf_engine::verify;
+use rtf_history::Location;
 use rtf_model::protocol::CaseSelector;
 use rtf_model::{Diagnostic, Manifest, Severity};
 use rtf_plan::plan::{self, Plan, PlanDraft, PlanOutcome};
@@ -13,6 +14,7 @@ use rtf_plan::suite::{SourceMap, SourceText};
 use crate::debug::DebugRequest;
 use crate::diagnostics::{self, count};
 use crate::error::Failure;
+use crate::history;
 use crate::request::TestsRequest;
 
 /// A plan without errors.
@@ -28,6 +30,13 @@ pub struct Planned {
 }
 
 impl Planned {
+    /// Sets the limits that tests learn from the history.
+    pub fn learn(&mut self, database: &Location, request: &TestsRequest) {
+        let (manifest, dir) = (&request.manifest, &request.options.runner.current_dir);
+        let plan = Arc::make_mut(&mut self.plan);
+        self.warnings.extend(history::learn(plan, database, manifest, dir));
+    }
+
     /// Prints the warnings.
     pub fn print_warnings(&self) -> Result<(), Failure> {
         diagnostics::print(&self.warnings, &self.sources)

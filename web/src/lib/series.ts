@@ -16,6 +16,8 @@ export interface Series {
     /** The last reported limits. */
     low: number | null;
     high: number | null;
+    /** Whether the limits are learned from earlier runs. */
+    learned: boolean;
     points: Point[];
     /** The last value; `null` when it is not a finite number. */
     last: number | null;
@@ -38,16 +40,24 @@ export function series(entries: readonly MeasurementEntry[], zero = 0): Series[]
     const found = new Map<string, Series>();
     const finite = new Map<string, number>();
     for (const { at, measurement } of entries) {
-        const { name, unit = '', low = null, high = null, value = null } = measurement;
+        const {
+            name,
+            unit = '',
+            low = null,
+            high = null,
+            value = null,
+            learned = false,
+        } = measurement;
         const key = `${name}\n${unit}`;
         let one = found.get(key);
         if (one === undefined) {
             const fresh = { points: [], last: null, least: Infinity, most: -Infinity, mean: NaN };
-            one = { key, name, unit, low, high, ...fresh, violations: 0 };
+            one = { key, name, unit, low, high, learned, ...fresh, violations: 0 };
             found.set(key, one);
         }
         one.low = low;
         one.high = high;
+        one.learned = learned;
         one.points.push({ at: at - zero, value });
         one.last = value;
         if (!isWithin(measurement)) one.violations += 1;

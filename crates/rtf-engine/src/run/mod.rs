@@ -259,6 +259,7 @@ fn planned(suite: &SuitePlan, test: &TestPlan, timed: bool) -> TestPlanned {
         tags: test.tags.clone(),
         parameters: test.parameters().to_vec(),
         was: test.was.as_deref().map(str::to_owned),
+        learned: test.learned.clone(),
         expected: test.expected.clone(),
     }
 }

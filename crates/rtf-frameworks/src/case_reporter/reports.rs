@@ -65,7 +65,10 @@ impl CaseReporter<'_> {
                 let (name, unit) = (name.to_owned(), String::new());
                 let (low, high, location, case) = (None, None, None, None);
                 let value = Some(number);
-                self.measure(path, Measurement { name, value, unit, low, high, location, case });
+                self.measure(
+                    path,
+                    Measurement { learned: false, name, value, unit, low, high, location, case },
+                );
             }
             _ => self.message(path, MessageKind::Report, format!("{name}: {value}"), None),
         }

@@ -307,6 +307,7 @@ fn comparison(expected: Option<&str>, actual: Option<&str>) -> Option<Comparison
 
 fn milliseconds(value: f64) -> Measurement {
     Measurement {
+        learned: false,
         name: "duration".to_owned(),
         value: Some(value),
         unit: "ms".to_owned(),

@@ -8,6 +8,7 @@ mod compare_side;
 mod export;
 mod flaky;
 pub mod gate;
+pub mod learned;
 mod matrix;
 mod recent;
 mod run_info;

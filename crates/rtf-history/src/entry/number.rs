@@ -131,7 +131,16 @@ mod tests {
 
     fn measured(name: &str, value: Option<f64>, unit: &str) -> Measurement {
         let (name, unit) = (name.to_owned(), unit.to_owned());
-        Measurement { name, value, unit, low: None, high: Some(2.0), location: None, case: None }
+        Measurement {
+            learned: false,
+            name,
+            value,
+            unit,
+            low: None,
+            high: Some(2.0),
+            location: None,
+            case: None,
+        }
     }
 
     #[test]

@@ -7,6 +7,7 @@ mod bad_input;
 mod columns;
 mod gate;
 mod importing;
+mod learned;
 mod pruning;
 mod recent;
 mod world;

@@ -102,6 +102,7 @@ impl Run {
         ];
         events.extend(self.tests.iter().zip(0..).map(|(test, id)| {
             EventKind::TestPlanned(TestPlanned {
+                learned: Vec::new(),
                 test: TestId(id),
                 suite: SuiteId(0),
                 name: test.name.to_owned(),
@@ -129,6 +130,7 @@ impl Run {
                 events.push((at, EventKind::TestStarted { test: id, repetition: 1, attempt }));
                 for (name, value, unit) in &test.measured {
                     let measurement = Measurement {
+                        learned: false,
                         name: (*name).to_owned(),
                         value: *value,
                         unit: (*unit).to_owned(),

@@ -71,7 +71,16 @@ fn samples_and_measurements_belong_to_their_case() {
             let (low, high, location, case) = (None, None, None, None);
             let (name, unit) = ("t".to_owned(), "s".to_owned());
             let value = Some(1.0);
-            session.measure(Measurement { name, value, unit, low, high, location, case });
+            session.measure(Measurement {
+                learned: false,
+                name,
+                value,
+                unit,
+                low,
+                high,
+                location,
+                case,
+            });
             sample();
             CaseEnd::Done
         });

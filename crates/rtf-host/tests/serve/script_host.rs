@@ -50,6 +50,7 @@ impl Script {
                 let (name, unit) = ("rate".to_owned(), "Hz".to_owned());
                 let (low, high) = (Some(1.0), Some(2.0));
                 self.session.measure(Measurement {
+                    learned: false,
                     name,
                     value,
                     unit,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ExpectedFailure, Parameter};
+use super::{ExpectedFailure, LearnedLimits, Parameter};
 use crate::{FixtureId, HookId, Manifest, SuiteId, TestId};
 
 /// The first event of a run.
@@ -152,7 +152,7 @@ impl std::fmt::Display for Trigger {
 }
 
 /// A test that will be run.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TestPlanned {
     /// The test.
@@ -182,6 +182,9 @@ pub struct TestPlanned {
     /// Its former name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub was: Option<String>,
+    /// Limits of measurements that are learned from earlier runs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub learned: Vec<LearnedLimits>,
     /// Its known failure.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expected: Option<Box<ExpectedFailure>>,

@@ -58,6 +58,7 @@ pub(super) fn hook(index: u32, suite: SuiteId) -> HookRecord {
 
 pub(super) fn test(index: u32, suite: SuiteId) -> TestRecord {
     TestRecord::new(TestPlanned {
+        learned: Vec::new(),
         test: TestId(index),
         suite,
         name: format!("unknown-test-{index}"),

@@ -249,6 +249,7 @@ fn a_measured_value_is_the_same_after_the_journal() {
 #[test]
 fn a_measurement_is_rounded_unless_it_is_outside_its_limits() {
     let measured = |value, high| Measurement {
+        learned: false,
         name: "error".to_owned(),
         value: Some(value),
         unit: "deg".to_owned(),

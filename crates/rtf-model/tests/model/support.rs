@@ -49,6 +49,7 @@ pub fn fixture(id: u32, suite: u32) -> EventKind {
 
 pub fn test(id: u32, suite: u32, repetitions: u32) -> EventKind {
     EventKind::TestPlanned(TestPlanned {
+        learned: Vec::new(),
         test: TestId(id),
         suite: SuiteId(suite),
         name: format!("test-{id}"),

@@ -137,6 +137,8 @@ pub(super) fn plan_direct_plugins(
     for direct in plugins {
         let Some(plugin) = planner.plan_file(direct) else { continue };
         tests.push(TestPlan {
+            learn: Vec::new(),
+            learned: Vec::new(),
             id: TestId(0),
             name: names.unique(base_name(&direct.file.name)),
             line: 0,

@@ -128,6 +128,8 @@ impl<'p, 'a, 'c> TestPlanner<'p, 'a, 'c> {
             limits: self.limits.get(limits),
             settings,
             tags,
+            learn: test.learn,
+            learned: Vec::new(),
             expected: known_failure.map(|it| Box::new(known_failure::expect(&it, today))),
             cases: None,
             cases_in_programs,

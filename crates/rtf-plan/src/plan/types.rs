@@ -5,14 +5,15 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_model::{
-    ExpectedFailure, FixtureId, HookId, Location, Parameter, SuiteId, SuitePrepared, TestId,
-    Trigger,
+    ExpectedFailure, FixtureId, HookId, LearnedLimits, Location, Parameter, SuiteId, SuitePrepared,
+    TestId, Trigger,
 };
 use serde::{Deserialize, Serialize};
 
 use super::{CaseSelection, ProbePlans, ProcessPlan};
 pub use crate::suite::{
-    AfterCollapse, Leaks, RequiredResource, Retries, SuiteSettings, TestSettings,
+    AfterCollapse, Leaks, LearnPlan, LearnedSides, RequiredResource, Retries, SuiteSettings,
+    TestSettings,
 };
 
 /// The plan of a run. All input files are valid; only the outside world can still fail.
@@ -236,6 +237,10 @@ pub struct TestPlan {
     pub tags: Vec<String>,
     /// Its combination of the values of a matrix.
     pub combination: Option<Box<CombinationPlan>>,
+    /// The limits that it learns from earlier runs.
+    pub learn: Vec<LearnPlan>,
+    /// Those that are learned; set before the run starts.
+    pub learned: Vec<LearnedLimits>,
     /// Its known failure.
     pub expected: Option<Box<ExpectedFailure>>,
     /// The cases that it runs; `None` for all.

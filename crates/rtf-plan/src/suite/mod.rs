@@ -16,6 +16,7 @@ pub mod fixture_reference;
 mod fixture_types;
 mod hook;
 mod known_failure;
+mod learn;
 mod matrix;
 mod middleware;
 mod param_string;

@@ -81,8 +81,16 @@ pub(super) const TEST: ElementSchema = ElementSchema {
         "until",
         "was",
     ],
-    elements: &["env", "matrix", "matrix-exclude"],
+    elements: &["env", "matrix", "matrix-exclude", "learn"],
     text: true,
+};
+
+/// `<learn>`.
+pub(super) const LEARN: ElementSchema = ElementSchema {
+    name: "learn",
+    attributes: &["measurement", "min-runs", "sigma", "limits", "since"],
+    elements: &[],
+    text: false,
 };
 
 /// `<fixture>` with a plug-in.

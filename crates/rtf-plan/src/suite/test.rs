@@ -9,7 +9,7 @@ use super::reader::ElementReader;
 use super::schema::{self, check};
 use super::{
     AfterCollapse, DeclaredCases, DeclaredLimits, DeclaredPlugin, DeclaredTest, Leaks, Retries,
-    Span, Spanned, TestIsolation, TestSettings, env, known_failure, matrix, reference,
+    Span, Spanned, TestIsolation, TestSettings, env, known_failure, learn, matrix, reference,
 };
 
 /// The defaults that a suite declares for its tests.
@@ -54,6 +54,7 @@ pub(super) fn read(
     let cases = cases.declared.map(Box::new);
     let tags = values(reader.words(node, "tags"));
     let env = env::read(reader, node);
+    let learn = learn::read(reader, node);
     let known_failure = known_failure::read(reader, node).map(Box::new);
     let matrix = matrix::read(reader, node).map(Box::new);
     let plugin = plugin(reader, node)?;
@@ -69,6 +70,7 @@ pub(super) fn read(
         cases,
         tags,
         env,
+        learn,
         known_failure,
         matrix,
         combination,

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use jiff::Timestamp;
 use jiff::civil::Date;
 use rtf_model::{Trigger, Verdict};
 
@@ -157,12 +158,42 @@ pub struct DeclaredTest {
     pub tags: Vec<String>,
     /// Environment variables in addition to the suite's.
     pub env: Vec<(String, String)>,
+    /// The limits that it learns from earlier runs.
+    pub learn: Vec<LearnPlan>,
     /// Its known failure.
     pub known_failure: Option<Box<DeclaredKnownFailure>>,
     /// The values with which it runs; `None` for a test without a matrix.
     pub matrix: Option<Box<DeclaredMatrix>>,
     /// The combination of the matrix, once the planner has expanded it.
     pub combination: Option<Combination>,
+}
+
+/// A `<learn>`: limits of a measurement that are learned from earlier runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LearnPlan {
+    /// The position of the tag.
+    pub span: Span,
+    /// The name of the measurement.
+    pub measurement: String,
+    /// The fewest runs from which limits are learned.
+    pub min_runs: u32,
+    /// The distance of the limits from the median, in robust standard deviations.
+    pub sigma: f64,
+    /// Which limits there are.
+    pub limits: LearnedSides,
+    /// Runs before this time do not count: the change at it is accepted.
+    pub since: Option<Timestamp>,
+}
+
+/// Which limits are learned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LearnedSides {
+    /// Only the smallest accepted value.
+    Low,
+    /// Only the largest accepted value.
+    High,
+    /// Both.
+    Both,
 }
 
 /// The attributes of a test that depend on whether another framework runs it.

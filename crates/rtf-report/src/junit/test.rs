@@ -208,7 +208,8 @@ pub(super) fn add_measurement(case: &mut TestCase, measurement: &Measurement) {
     let mut value = measurement.value_with_unit();
     let limits = measurement.limits();
     if !limits.is_empty() {
-        value += &format!(" ({limits})");
+        let learned = if measurement.learned { "learned: " } else { "" };
+        value += &format!(" ({learned}{limits})");
     }
     case.add_property((name, text(&value)));
 }

@@ -48,7 +48,10 @@ pub(super) fn show(page: &mut String, record: &Record) {
 }
 
 fn of_measurement(test: &str, attempt: &AttemptRecord, value: &Measurement) -> MeasurementRow {
-    let (shown, limits) = value.for_display();
+    let (shown, mut limits) = value.for_display();
+    if value.learned {
+        limits += " (learned)";
+    }
     let is_outside = !value.is_within_limits();
     let subject = with_case(test, attempt, value.case);
     MeasurementRow { subject, name: value.name.clone(), value: shown, limits, is_outside }

@@ -81,6 +81,7 @@ fn names_that_look_alike_get_files_of_their_own() {
         events("silent").0.into_iter().take(2).map(|event| event.kind).collect();
     for (id, name) in (0..).zip(names) {
         events.push(EventKind::TestPlanned(TestPlanned {
+            learned: Vec::new(),
             test: TestId(id),
             suite: rtf_model::SuiteId(0),
             name: name.to_owned(),

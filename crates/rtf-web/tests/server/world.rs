@@ -150,6 +150,7 @@ impl Writer {
         }));
         for (id, name) in (0..).zip(tests) {
             let mut plan = TestPlanned {
+                learned: Vec::new(),
                 test: TestId(id),
                 suite: SuiteId(0),
                 name: (*name).to_owned(),
@@ -189,8 +190,16 @@ impl Writer {
     pub fn measure(&mut self, value: f64, high: f64) {
         let (name, unit) = ("settling".to_owned(), "s".to_owned());
         let (value, high) = (Some(value), Some(high));
-        let measurement =
-            Measurement { name, value, unit, low: None, high, location: None, case: None };
+        let measurement = Measurement {
+            learned: false,
+            name,
+            value,
+            unit,
+            low: None,
+            high,
+            location: None,
+            case: None,
+        };
         self.emit(EventKind::Measured { test: TEST, fixture: None, measurement });
     }
 

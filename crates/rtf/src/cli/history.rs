@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
 
-use super::{HistoryGateArgs, ResultsArgs};
+use super::{HistoryGateArgs, InputArgs, ResultsArgs};
 
 /// The database of results.
 #[derive(Clone, Debug, Args)]
@@ -33,6 +33,8 @@ pub enum HistoryVerb {
     Compare(HistoryCompareArgs),
     /// Judge whether a run is worse than the runs of the default branch
     Gate(HistoryGateArgs),
+    /// Accept changes of measurements with learned limits, in the suite files
+    Accept(HistoryAcceptArgs),
     /// Export results, runs or measurements
     Export(HistoryExportArgs),
     /// Remove old runs
@@ -120,6 +122,21 @@ pub struct HistoryRunsArgs {
 
     #[command(flatten)]
     pub runs: RunSelectArgs,
+}
+
+/// Options of `rtf history accept`.
+#[derive(Debug, Args)]
+pub struct HistoryAcceptArgs {
+    #[command(flatten)]
+    pub input: InputArgs,
+
+    /// Only changes of this measurement. Repeatable
+    #[arg(long = "measurement", value_name = "NAME")]
+    pub measurements: Vec<String>,
+
+    /// Only list the changes
+    #[arg(long)]
+    pub dry_run: bool,
 }
 
 /// Options of `rtf history show`.

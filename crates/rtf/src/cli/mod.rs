@@ -24,10 +24,10 @@ pub use doctor::{DoctorArgs, DoctorFormat};
 pub use formats::{Annotations, ReportFormat, StdoutFormat, parse_report};
 pub use gate::{GateFormat, HistoryGateArgs};
 pub use history::{
-    ExportFormat, ExportTable, HistoryArgs, HistoryChangesArgs, HistoryCompareArgs,
-    HistoryDoctorArgs, HistoryExportArgs, HistoryFileArgs, HistoryFormat, HistoryImportArgs,
-    HistoryPruneArgs, HistoryRunsArgs, HistoryShowArgs, HistoryTestsArgs, HistoryTrendArgs,
-    HistoryVerb, ResultSelectArgs, RunSelectArgs,
+    ExportFormat, ExportTable, HistoryAcceptArgs, HistoryArgs, HistoryChangesArgs,
+    HistoryCompareArgs, HistoryDoctorArgs, HistoryExportArgs, HistoryFileArgs, HistoryFormat,
+    HistoryImportArgs, HistoryPruneArgs, HistoryRunsArgs, HistoryShowArgs, HistoryTestsArgs,
+    HistoryTrendArgs, HistoryVerb, ResultSelectArgs, RunSelectArgs,
 };
 pub use import::{ImportOutput, ImportVerb};
 pub use inputs::{

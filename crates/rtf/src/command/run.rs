@@ -30,9 +30,13 @@ pub fn run(args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
         let mut request = RunRequest { debug, ..RunRequest::resolve(&args)? };
         // A session with a debugger says nothing about the test.
         request.history = request.history.filter(|_| request.debug.is_none());
-        let planned = plan::plan_debugged(&request.tests, request.debug.as_ref())?;
+        let mut planned = plan::plan_debugged(&request.tests, request.debug.as_ref())?;
         if args.dry_run {
             return list::print(&planned, ListFormat::Text);
+        }
+        if history::is_learning(&planned.plan) {
+            let url = args.input.history.history.as_deref();
+            planned.learn(&history::resolve(url, &request.results)?, &request.tests);
         }
         let reports = reports::open_all(&output.reports, &output.results)?;
         let print = |dir: &_, stdout: &_| outputs::reporters(&output, dir, stdout);

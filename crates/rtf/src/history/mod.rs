@@ -2,6 +2,7 @@
 //! changes the verdict or the exit code of a run.
 
 pub mod journals;
+mod learned;
 mod past_tests;
 mod source;
 
@@ -9,16 +10,17 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use rtf_history::{Location, Store, StoreError};
+use rtf_history::{Location, RunSelection, Store, StoreError};
 use rtf_model::Record;
 use rtf_report::run_dir::JOURNAL;
 
 pub use source::ServedHistory;
 
 use crate::error::Failure;
-use crate::terminal;
+use crate::{revision, terminal};
 use journals::JournalImport;
 
+pub use learned::{OpenChange, is_learning, learn, open_changes};
 pub use past_tests::PastTests;
 
 /// The name of the database in the results directory.
@@ -26,6 +28,19 @@ const FILE_NAME: &str = "history.db";
 
 /// How long the end of a run may be delayed by imports of earlier runs.
 const CATCH_UP_LIMIT: Duration = Duration::from_secs(1);
+
+/// The usual names of default branches.
+const DEFAULT_BRANCHES: [&str; 2] = ["main", "master"];
+
+/// The default branch of a directory's repository, or else that of the history: the first one
+/// of which it has runs.
+pub fn default_branch(store: &Store, dir: &Path) -> Result<Option<String>, StoreError> {
+    let runs = store.runs(&RunSelection::default())?;
+    let here = revision::default_branch(dir);
+    let mut candidates = here.iter().map(String::as_str).chain(DEFAULT_BRANCHES);
+    let has_runs = |branch: &&str| runs.iter().any(|run| run.branch.as_deref() == Some(*branch));
+    Ok(candidates.find(has_runs).map(str::to_owned))
+}
 
 /// Where runs are imported when they end.
 #[derive(Clone, Debug)]

@@ -46,6 +46,7 @@ mod init;
 mod isolation;
 mod killed_runner;
 mod known_failures;
+mod learned_limits;
 mod listed_cases;
 mod locks;
 mod lost_results;

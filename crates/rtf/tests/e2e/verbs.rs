@@ -306,6 +306,7 @@ fn man_writes_a_page_for_each_verb() {
         "config-show",
         "config",
         "doctor",
+        "history-accept",
         "history-changes",
         "history-compare",
         "history-doctor",

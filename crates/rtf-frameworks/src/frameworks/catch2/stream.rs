@@ -278,7 +278,8 @@ impl Reader {
         let name = format!("{}{suffix}", self.benchmark);
         let value = attributes.get("value").parse().ok();
         let (unit, low, high, location, case_id) = ("ns".to_owned(), None, None, None, None);
-        let measurement = Measurement { name, value, unit, low, high, location, case: case_id };
+        let measurement =
+            Measurement { learned: false, name, value, unit, low, high, location, case: case_id };
         cases.measure(Some(case.sections.path()), measurement);
     }
 }

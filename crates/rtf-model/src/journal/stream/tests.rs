@@ -3,6 +3,7 @@ use crate::{Phase, RunStarted, SuitePlanned, TestFinished, TestId, TestPlanned, 
 
 fn test(id: u32) -> TestPlanned {
     TestPlanned {
+        learned: Vec::new(),
         test: TestId(id),
         suite: SuiteId(0),
         name: format!("t{id}"),

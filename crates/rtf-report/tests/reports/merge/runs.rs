@@ -155,6 +155,7 @@ impl Run {
             suite.tests.iter().enumerate().filter(|(_, test)| chosen(test)).collect();
         for (place, (name, test)) in (0..).zip(&tests) {
             self.push(EventKind::TestPlanned(TestPlanned {
+                learned: Vec::new(),
                 test: TestId(next + place),
                 suite: id,
                 name: format!("test-{name}"),
@@ -288,6 +289,7 @@ impl Run {
         }
         if let Some(value) = tried.measured {
             let measurement = Measurement {
+                learned: false,
                 name: "error".into(),
                 value: Some(value),
                 unit: "rad".into(),

@@ -1,5 +1,6 @@
 //! `rtf history`: questions to the results of many runs.
 
+mod accept;
 mod changes;
 mod compare;
 mod doctor;
@@ -47,6 +48,7 @@ pub fn run(verb: HistoryVerb, matches: &ArgMatches) -> VerbResult {
         HistoryVerb::Changes(args) => changes::run(args, matches),
         HistoryVerb::Compare(args) => compare::run(args, matches),
         HistoryVerb::Gate(args) => gate::run(args, matches),
+        HistoryVerb::Accept(args) => accept::run(args, matches),
         HistoryVerb::Export(args) => export::run(args, matches),
         HistoryVerb::Prune(args) => prune::run(args, matches),
         HistoryVerb::Import(args) => import::run(args, matches),

@@ -16,6 +16,8 @@ impl TestRun<'_> {
             Notification::Message(message) => self.report(message, cx),
             Notification::Measured(mut measurement) => {
                 measurement.case = self.cases.open(measurement.case);
+                measurement.learned = false;
+                self.plan.learned.iter().for_each(|limits| limits.apply(&mut measurement));
                 let problem = (measurement.problem(), measurement.case);
                 self.record(problem, EventKind::Measured { test, fixture: None, measurement }, cx);
             }

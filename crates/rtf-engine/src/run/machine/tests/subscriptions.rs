@@ -62,7 +62,8 @@ fn results_that_a_fixture_sends_at_a_tests_end_belong_to_the_test() {
     attach(&mut world);
     let (value, low, high, location) = (Some(3.5), None, None, None);
     let (name, unit) = ("size".to_owned(), "MB".to_owned());
-    let measurement = Measurement { name, value, unit, low, high, location, case: None };
+    let measurement =
+        Measurement { learned: false, name, value, unit, low, high, location, case: None };
     world.input(RECORDER, ProcessEvent::Notified(Notification::Measured(measurement)));
     let samples = r#"{"name":"speed","points":[[0,1]]}"#;
     let samples = serde_json::from_str(samples).unwrap();

@@ -126,6 +126,7 @@ impl<'p> World<'p> {
         }
         for test in &plan.tests {
             self.emit(EventKind::TestPlanned(TestPlanned {
+                learned: Vec::new(),
                 test: test.id,
                 suite: plan.id,
                 name: test.name.clone(),

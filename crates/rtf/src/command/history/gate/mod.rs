@@ -17,10 +17,7 @@ use super::{failure, resolve, write_json};
 use crate::cli::{GateFormat, HistoryGateArgs};
 use crate::command::VerbResult;
 use crate::error::Failure;
-use crate::{exit, revision, terminal};
-
-/// The usual names of default branches.
-const DEFAULT_BRANCHES: [&str; 2] = ["main", "master"];
+use crate::{exit, history, terminal};
 
 /// How many names a hint lists.
 const NAMES: usize = 10;
@@ -79,18 +76,15 @@ fn no_baseline(run: &RunInfo, name: &str) -> Failure {
     )
 }
 
-/// The default branch of the repository, or else that of the history.
+/// The runs of the default branch.
 fn default_branch(store: &Store) -> Result<(String, RunSelection), Failure> {
-    let here = std::env::current_dir().ok().and_then(|dir| revision::default_branch(&dir));
-    let candidates = here.iter().map(String::as_str).chain(DEFAULT_BRANCHES);
-    for branch in candidates {
-        let selection = RunSelection { branch: Some(branch.to_owned()), ..RunSelection::default() };
-        if !store.runs(&selection).map_err(failure)?.is_empty() {
-            return Ok((format!("branch:{branch}"), selection));
-        }
-    }
-    Err(Failure::input("the history has no run of the default branch")
-        .hint("name the runs to compare with: `--baseline branch:NAME`"))
+    let dir = std::env::current_dir().map_err(Failure::internal)?;
+    let branch = history::default_branch(store, &dir).map_err(failure)?.ok_or_else(|| {
+        Failure::input("the history has no run of the default branch")
+            .hint("name the runs to compare with: `--baseline branch:NAME`")
+    })?;
+    let name = format!("branch:{branch}");
+    Ok((name, RunSelection { branch: Some(branch), ..RunSelection::default() }))
 }
 
 /// A misspelt name would pass its gate.

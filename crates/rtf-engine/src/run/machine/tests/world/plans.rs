@@ -83,6 +83,8 @@ fn test(index: usize) -> TestPlan {
         grace: SECOND,
     };
     TestPlan {
+        learn: Vec::new(),
+        learned: Vec::new(),
         id: TestId(u32::try_from(index).unwrap()),
         name: format!("test{index}"),
         line: 0,
