@@ -115,5 +115,6 @@ export function ofSignal(signal: Signal, zero = 0): Series {
     // A test may report its times in any order; a plot needs ascending times.
     points.sort((a, b) => a.at - b.at);
     const [least, most] = [signal.min ?? Infinity, signal.max ?? -Infinity];
-    return { key: name, name, unit, low, high, points, last, least, most, mean, violations };
+    const about = { key: name, name, unit, low, high, learned: false };
+    return { ...about, points, last, least, most, mean, violations };
 }

@@ -33,6 +33,7 @@ function plotOf(
     return {
         series: {
             ...about,
+            learned: false,
             points,
             last: values.at(-1)?.value ?? null,
             least: Math.min(...finite),
