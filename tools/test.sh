@@ -369,6 +369,11 @@ campaign_oracle() {
   "$(PIP_NO_DEPS=1 tools/venv.sh history)/python" tests/campaign/oracle.py --check tests/campaign/scipy.json
 }
 
+# Parquet files of the history, read by Apache Arrow.
+history_export() {
+  "$(tools/venv.sh export)/python" tests/history/export.py "$TARGET/debug/rtf"
+}
+
 # The history in a PostgreSQL server, which the test starts and ends.
 history_postgres() {
   local bin
@@ -462,6 +467,7 @@ step 'rust tests' env --default-signal=HUP cargo test --workspace --locked --no-
 step 'web api' web_api
 step 'history change points' history_change_points
 step 'campaign oracle' campaign_oracle
+step 'history export' history_export
 step 'history in PostgreSQL' history_postgres
 step 'telemetry' telemetry
 step 'debugging' debugging

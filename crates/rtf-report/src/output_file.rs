@@ -26,7 +26,7 @@ pub fn probe(what: &'static str, path: &Path) -> Result<(), ReportError> {
 pub fn write(
     what: &'static str,
     path: &Path,
-    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    fill: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>,
 ) -> Result<(), ReportError> {
     write_io(path, fill).map_err(ReportError::at(what, path))
 }
@@ -42,7 +42,10 @@ fn probe_io(path: &Path) -> io::Result<()> {
     }
 }
 
-fn write_io(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+fn write_io(
+    path: &Path,
+    fill: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>,
+) -> io::Result<()> {
     match target(path)? {
         WriteTarget::Direct => {
             fill_file(OpenOptions::new().write(true).open(path)?, fill).map(drop)
@@ -62,7 +65,10 @@ fn write_io(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) ->
     }
 }
 
-fn fill_file(file: File, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<File> {
+fn fill_file(
+    file: File,
+    fill: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>,
+) -> io::Result<File> {
     let mut writer = BufWriter::new(file);
     fill(&mut writer)?;
     writer.into_inner().map_err(io::IntoInnerError::into_error)
@@ -132,7 +138,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("report.txt");
         write("a report", &path, |out| out.write_all(b"old")).unwrap();
-        let failing = |out: &mut dyn Write| {
+        let failing = |out: &mut (dyn Write + Send)| {
             out.write_all(b"new")?;
             Err(io::ErrorKind::StorageFull.into())
         };

@@ -8,17 +8,19 @@ use crate::error::Failure;
 
 /// Writes text for people to standard output.
 pub fn stdout(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
-    finish(BufWriter::new(anstream::stdout().lock()), write)
+    finish(BufWriter::new(anstream::stdout().lock()), |out| write(out))
 }
 
 /// Writes data to standard output, byte for byte.
-pub fn raw_stdout(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
-    finish(BufWriter::new(io::stdout().lock()), write)
+pub fn raw_stdout(
+    write: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>,
+) -> Result<(), Failure> {
+    finish(BufWriter::new(io::stdout()), |out| write(out))
 }
 
 /// Writes text for people to standard error.
 pub fn stderr(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
-    finish(anstream::stderr().lock(), write)
+    finish(anstream::stderr().lock(), |out| write(out))
 }
 
 /// Prints a line to standard error, for callers that can do nothing about an error.
@@ -26,9 +28,9 @@ pub fn notice(line: impl Display) {
     let _ = writeln!(anstream::stderr(), "{line}");
 }
 
-fn finish(
-    mut out: impl Write,
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+fn finish<W: Write>(
+    mut out: W,
+    write: impl FnOnce(&mut W) -> io::Result<()>,
 ) -> Result<(), Failure> {
     match write(&mut out).and_then(|()| out.flush()) {
         Err(error) if rtf_report::is_disconnect(&error) => Ok(()),

@@ -255,6 +255,8 @@ pub enum ExportFormat {
     Csv,
     /// One JSON document
     Json,
+    /// Apache Parquet, with typed columns
+    Parquet,
 }
 
 /// The rows of an export.

@@ -47,11 +47,11 @@ fn write(
     args: &ReportArgs,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Failure> {
-    let Some(path) = &args.output else { return terminal::raw_stdout(fill) };
+    let Some(path) = &args.output else { return terminal::raw_stdout(|out| fill(out)) };
     let title = reports::title(args.format);
     output_file::probe(title, path)
         .map_err(|error| Failure::input(error).hint("choose another path with `-o PATH`"))?;
-    output_file::write(title, path, fill).map_err(Failure::internal)
+    output_file::write(title, path, |out| fill(out)).map_err(Failure::internal)
 }
 
 /// Copies the readable lines of the journal unchanged, so that damage is found in the
