@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Checks the metrics and traces of rtf with the readers of others.
 
-    check.py RTF DECODER
+    check.py RTF DECODER PROMETHEUS
 
-Prometheus' parser reads `/metrics` of `rtf serve`. DECODER, built from decode.go with the decoder
-of the OpenTelemetry collector, reads the trace of a run. The interpreter has the packages of
-tools/requirements-telemetry.txt.
+Prometheus' parser reads `/metrics` of `rtf serve`, promtool checks it, and a Prometheus server
+scrapes it; both programs are in the directory PROMETHEUS. DECODER, built from decode.go with the
+decoder of the OpenTelemetry collector, reads the trace of a run. The interpreter has the packages
+of tools/requirements-telemetry.txt.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from prometheus_client.openmetrics.parser import text_string_to_metric_families 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tools")]
 
+import prometheus  # noqa: E402
 from check_web_api import served  # noqa: E402
 
 SUITE = """<suite name="arm">
@@ -39,6 +41,9 @@ end
 
 BAD = "function TestCase.run() rtf.measure('lag', 25, 'ms', nil, 20) end\n"
 
+Values = dict[tuple[str, ...], float]
+"""Samples by the name of their metric and the values of their labels."""
+
 SPANS = [
     "rtf > rtf run: Error",
     "rtf run > arm: Error",
@@ -50,7 +55,7 @@ SPANS = [
 
 def main() -> int:
     """Runs a suite, and checks its trace and its metrics."""
-    rtf, decoder = (str(Path(argument).resolve()) for argument in sys.argv[1:3])
+    rtf, decoder, programs = (str(Path(argument).resolve()) for argument in sys.argv[1:4])
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         for file, text in [("suite.xml", SUITE), ("good.lua", GOOD), ("bad.lua", BAD)]:
@@ -61,7 +66,9 @@ def main() -> int:
             sys.exit(f"a run with a failing test ended with {run.returncode}")
         check_trace(decoder, folder / "trace.json")
         with served([rtf, "serve", "--web=127.0.0.1:0", "--web-metrics"], folder) as (url, _):
-            check_metrics(url + "metrics")
+            values = check_metrics(url + "metrics", Path(programs))
+            with prometheus.scraping(Path(programs), url, folder) as server:
+                check_scraped(server, values)
     return 0
 
 
@@ -79,13 +86,14 @@ def check_trace(decoder: str, trace: Path) -> None:
         sys.exit(f"events are missing: {good}")
 
 
-def check_metrics(url: str) -> None:
-    """Exits unless Prometheus' parser finds the values of the run."""
+def check_metrics(url: str, programs: Path) -> Values:
+    """Exits unless Prometheus' parser finds the values of the run; returns them."""
     with urllib.request.urlopen(url) as answer:
         text = answer.read().decode()
     print(text, end="")
+    prometheus.check_text(programs, text)
     values = {
-        (sample.name, *sample.labels.values()): sample.value
+        (sample.name, *sample.labels.values()): float(sample.value)
         for family in parse(text)
         for sample in family.samples
     }
@@ -103,6 +111,24 @@ def check_metrics(url: str) -> None:
         sys.exit(f"unexpected values: {wrong}")
     if values[("rtf_last_run_duration_seconds",)] <= 0:
         sys.exit("the run has no duration")
+    return values
+
+
+def check_scraped(server: str, values: Values) -> None:
+    """Exits unless the server has the values of `/metrics`, of which none changes without a run."""
+    names = {name for name, *_ in values}
+    scraped = {
+        (name, *labels): value
+        for name in names
+        for labels, value in prometheus.query(server, name).items()
+    }
+    if scraped != values:
+        differences = set(scraped.items()) ^ set(values.items())
+        sys.exit(f"a Prometheus server has other values: {differences}")
+    # The expression of docs/how-to/history.md.
+    if not prometheus.query(server, "rtf_last_run_green == 0"):
+        sys.exit("the alert for a red run finds nothing")
+    print(f"prometheus: {len(scraped)} equal values")
 
 
 if __name__ == "__main__":
