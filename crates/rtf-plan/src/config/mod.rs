@@ -22,7 +22,7 @@ mod unknown_profile;
 pub use effective::{Setting, SettingsQuery, effective_settings};
 pub use file::{ConfigFile, ConfigFiles};
 pub use keys::REPORTS;
-pub use param_reference::is_name;
+pub use param_reference::{is_name, variable};
 pub use profile_view::{ConfigRequest, ProfileView};
 pub use quarantine::Quarantine;
 pub use run_config::{RunConfig, RunValue, input_dir};
@@ -30,4 +30,4 @@ pub use schema::json_schema;
 pub use toml_reader::{Entry, Layer};
 
 pub(crate) use overlay::{DirectPluginConfig, direct_plugin_config, overlay_suite};
-pub(crate) use param_reference::{sample, variable};
+pub(crate) use param_reference::sample;

@@ -12,7 +12,7 @@ pub fn is_name(text: &str) -> bool {
 }
 
 /// Returns the environment variable that passes a parameter to the processes of a suite.
-pub(crate) fn variable(name: &str) -> String {
+pub fn variable(name: &str) -> String {
     format!("RTF_PARAM_{}", name.to_ascii_uppercase().replace('-', "_"))
 }
 

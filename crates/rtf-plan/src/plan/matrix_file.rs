@@ -13,7 +13,7 @@ use crate::suite::{SourceText, Span, invalid_value, read_source};
 
 /// Names of parameters, and rows of their values.
 #[derive(Debug)]
-pub(super) struct MatrixTable {
+pub struct MatrixTable {
     /// The names.
     pub names: Vec<String>,
     /// The combinations of their values, each as long as `names`.
@@ -22,7 +22,7 @@ pub(super) struct MatrixTable {
 
 /// The result of reading a file.
 #[derive(Debug, Default)]
-pub(super) struct ReadTable {
+pub struct ReadTable {
     /// The table; `None` if there are problems.
     pub table: Option<MatrixTable>,
     /// The problems; without a label if the file cannot be read.
@@ -32,7 +32,7 @@ pub(super) struct ReadTable {
 }
 
 /// Reads a file. Messages call it `name`, which is relative to `dir`.
-pub(super) fn read_table(dir: &Path, name: &str) -> ReadTable {
+pub fn read_table(dir: &Path, name: &str) -> ReadTable {
     let source = match read_source(&dir.join(name), name) {
         Ok(source) => source,
         Err(unreadable) => {

@@ -26,7 +26,7 @@ mod inputs;
 mod installed;
 mod known_failure;
 mod matrix;
-mod matrix_file;
+pub mod matrix_file;
 mod middleware;
 mod named_tests;
 mod names;

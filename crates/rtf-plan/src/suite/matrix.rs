@@ -99,7 +99,8 @@ fn dimension(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Matri
     Some(MatrixDimension::Values(name?, values?))
 }
 
-fn check_name(reader: &mut ElementReader<'_>, name: &Spanned<String>) -> bool {
+/// Checks the name of a parameter and reports an invalid one.
+pub fn check_name(reader: &mut ElementReader<'_>, name: &Spanned<String>) -> bool {
     let is_valid = is_name(&name.value);
     if !is_valid {
         let hint = "letters, digits, `-` and `_`, a letter first";
@@ -108,10 +109,14 @@ fn check_name(reader: &mut ElementReader<'_>, name: &Spanned<String>) -> bool {
     is_valid
 }
 
-fn values(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Vec<String>> {
+/// Reads the values of a parameter, and reports invalid ones.
+pub fn values(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Vec<String>> {
     let words = reader.words(node, "values");
     if words.is_empty() {
-        let problem = Diagnostic::error("empty-matrix", "a `<matrix>` without values");
+        let problem = Diagnostic::error(
+            "empty-matrix",
+            format!("a `<{}>` without values", node.tag_name().name()),
+        );
         let span = reader.attribute(node, "values")?.span;
         reader.report(problem.label(reader.source.label(span, "")));
         return None;

@@ -11,17 +11,17 @@ use super::{DurationError, SourceText, Span, Spanned, parse_duration};
 use crate::wording::{nearest, quoted};
 
 /// The state shared by the readers of all elements.
-pub(super) struct ElementReader<'a> {
+pub struct ElementReader<'a> {
     /// The text of the file.
     pub source: &'a SourceText,
     /// The problems found so far.
     pub problems: &'a mut Vec<Diagnostic>,
     /// The ports found so far.
-    pub ports: Ports,
+    pub(super) ports: Ports,
     /// The element that is being read.
-    pub user: ReferenceUser,
+    pub(super) user: ReferenceUser,
     /// The references to values of fixtures found so far.
-    pub fixture_references: FixtureReferences,
+    pub(super) fixture_references: FixtureReferences,
 }
 
 impl ElementReader<'_> {

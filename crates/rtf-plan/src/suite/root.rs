@@ -8,7 +8,7 @@ use super::schema::{self, check};
 use super::test::{self, TestDefaults};
 use super::{
     DeclaredIsolation, DeclaredMiddleware, DeclaredSuite, ReferenceUser, SourceText, Spanned,
-    SuiteSettings, TestSettings, clock, env, fixture, hook, reference, requires, xml,
+    SuiteSettings, TestSettings, clock, env, fixture, hook, read_document, reference, requires,
 };
 
 /// Parses the text of a suite file and adds every problem to `problems`.
@@ -17,22 +17,14 @@ use super::{
 /// planner can find further ones; `None` if the text is not a suite at all.
 #[must_use]
 pub fn parse(source: &SourceText, problems: &mut Vec<Diagnostic>) -> Option<DeclaredSuite> {
-    let scan = xml::prepare(source, problems)?;
-    let document = xml::parse(source, &scan.text, problems)?;
-    let root = document.root_element();
-    let mut reader = ElementReader {
-        source,
-        problems,
-        ports: super::port_reference::Ports::default(),
-        user: ReferenceUser::Suite,
-        fixture_references: super::FixtureReferences::default(),
-    };
-    let name = root.tag_name();
-    if name.name() != "suite" || name.namespace().is_some() {
-        reader.report(not_a_suite(source, root));
-        return None;
-    }
-    Some(read_suite(&mut reader, root))
+    read_document(source, problems, |reader, root| {
+        let name = root.tag_name();
+        if name.name() != "suite" || name.namespace().is_some() {
+            reader.report(not_a_suite(source, root));
+            return None;
+        }
+        Some(read_suite(reader, root))
+    })
 }
 
 fn not_a_suite(source: &SourceText, root: Node<'_, '_>) -> Diagnostic {

@@ -10,7 +10,7 @@ use super::reader::ElementReader;
 use crate::wording::{quoted, suggest};
 
 /// The attributes and children that an element may have.
-pub(super) struct ElementSchema {
+pub struct ElementSchema {
     /// The element's name in messages.
     pub name: &'static str,
     /// Its attributes.
@@ -209,11 +209,12 @@ pub(super) const PROVIDE: ElementSchema =
 /// `<stop>`.
 pub(super) const STOP: ElementSchema = leaf("stop", &["signal", "grace", "exit-codes"]);
 /// `<command>`, `<description>`, `<environment>`.
-pub(super) const fn text(name: &'static str) -> ElementSchema {
+pub const fn text(name: &'static str) -> ElementSchema {
     ElementSchema { name, attributes: &[], elements: &[], text: true }
 }
 
-const fn leaf(name: &'static str, attributes: &'static [&'static str]) -> ElementSchema {
+/// An element without children and text.
+pub const fn leaf(name: &'static str, attributes: &'static [&'static str]) -> ElementSchema {
     ElementSchema { name, attributes, elements: &[], text: false }
 }
 
@@ -222,7 +223,7 @@ const fn leaf(name: &'static str, attributes: &'static [&'static str]) -> Elemen
 const SCHEMA_INSTANCE: &str = "http://www.w3.org/2001/XMLSchema-instance";
 
 /// Reports everything in `node` that `schema` does not contain.
-pub(super) fn check(reader: &mut ElementReader<'_>, node: Node<'_, '_>, schema: &ElementSchema) {
+pub fn check(reader: &mut ElementReader<'_>, node: Node<'_, '_>, schema: &ElementSchema) {
     for attribute in node.attributes() {
         if attribute.namespace() == Some(SCHEMA_INSTANCE) {
             continue;

@@ -16,7 +16,7 @@ pub(super) fn prepare<'a>(
         problems.push(dashes_warning(source, *first, scan.dashes.len()));
     }
     if let Some(span) = scan.doctype {
-        let problem = Diagnostic::error("doctype", "a suite file cannot have a DTD")
+        let problem = Diagnostic::error("doctype", "the file cannot have a DTD")
             .label(source.label(span, "refused for safety"))
             .hint("remove the `<!DOCTYPE …>`");
         problems.push(problem);

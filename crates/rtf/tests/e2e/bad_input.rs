@@ -130,7 +130,7 @@ fn another_xml_file() {
 #[test]
 fn a_dtd() {
     assert_snapshot!(refused_suite("<!DOCTYPE suite [<!ENTITY name SYSTEM \"/etc/passwd\">]>\n<suite name=\"&name;\">\n  <test>EncoderTest.lua</test>\n</suite>\n"), @r#"
-    error: a suite file cannot have a DTD
+    error: the file cannot have a DTD
      --> arm.xml:1:1
       |
     1 | <!DOCTYPE suite [<!ENTITY name SYSTEM "/etc/passwd">]>
