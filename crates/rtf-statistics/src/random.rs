@@ -69,21 +69,23 @@ pub fn normal_quantile(probability: f64) -> f64 {
     let q = probability - 0.5;
     if q.abs() <= 0.425 {
         let r = 0.180_625 - q * q;
-        return q * ratio(&CENTRE, r);
+        let [numerator, denominator] = polynomials(&CENTRE, r);
+        // In this order, as published: the last bit depends on it.
+        return q * numerator / denominator;
     }
     let tail = if q < 0.0 { probability } else { 1.0 - probability };
     let r = (-libm::log(tail)).sqrt();
-    let quantile = if r <= 5.0 { ratio(&MIDDLE, r - 1.6) } else { ratio(&FAR, r - 5.0) };
+    let [numerator, denominator] =
+        if r <= 5.0 { polynomials(&MIDDLE, r - 1.6) } else { polynomials(&FAR, r - 5.0) };
+    let quantile = numerator / denominator;
     if q < 0.0 { -quantile } else { quantile }
 }
 
 /// The coefficients of a numerator and a denominator, from the highest power to the constant.
 type Ratio = [[f64; 8]; 2];
 
-fn ratio(coefficients: &Ratio, x: f64) -> f64 {
-    let [numerator, denominator] =
-        coefficients.map(|polynomial| polynomial.iter().fold(0.0, |sum, c| sum * x + c));
-    numerator / denominator
+fn polynomials(coefficients: &Ratio, x: f64) -> [f64; 2] {
+    coefficients.map(|polynomial| polynomial.iter().fold(0.0, |sum, c| sum * x + c))
 }
 
 /// For probabilities within 0.425 of 0.5.
