@@ -365,9 +365,13 @@ history_change_points() {
   "$python" tests/history/check.py "$TARGET/debug/examples/change_points"
 }
 
-# The results of SciPy with which the unit tests of campaigns compare.
+# What the unit tests of campaigns compare with: results of SciPy, and lists of episodes by a second
+# implementation.
 campaign_oracle() {
-  "$(PIP_NO_DEPS=1 tools/venv.sh history)/python" tests/campaign/oracle.py --check tests/campaign/scipy.json
+  local python
+  python=$(PIP_NO_DEPS=1 tools/venv.sh history)/python
+  "$python" tests/campaign/oracle.py --check tests/campaign/scipy.json
+  "$python" tests/campaign/episodes.py --check crates/rtf-campaign/tests/campaign/golden/*.xml
 }
 
 # Parquet files of the history, read by Apache Arrow.

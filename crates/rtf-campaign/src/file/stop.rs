@@ -1,0 +1,110 @@
+//! `<stop>`: when a campaign ends.
+
+use roxmltree::Node;
+use rtf_model::Diagnostic;
+use rtf_plan::suite::schema::check;
+use rtf_plan::suite::{ElementReader, Spanned};
+
+use super::{Campaign, DeclaredParameter, real, schema};
+
+/// A stopping rule.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum StoppingRule {
+    /// After all episodes.
+    #[default]
+    Fixed,
+    /// When the confidence sequence does not contain the claimed rate.
+    ConfidenceSequence,
+    /// When the sequential test accepts a rate.
+    Sprt {
+        /// The rate that must not pass.
+        low: f64,
+        /// The rate that must not fail.
+        high: f64,
+        /// The probability that `low` passes.
+        alpha: f64,
+        /// The probability that `high` fails.
+        beta: f64,
+    },
+}
+
+/// The value of `rule`.
+#[derive(Clone, Copy)]
+enum Rule {
+    Fixed,
+    ConfidenceSequence,
+    Sprt,
+}
+
+const RULES: [(&str, Rule); 3] = [
+    ("fixed", Rule::Fixed),
+    ("confidence-sequence", Rule::ConfidenceSequence),
+    ("sprt", Rule::Sprt),
+];
+
+/// Reads the `<stop>`; `None` if it is invalid, which is reported.
+pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<StoppingRule> {
+    let Some(rule) = reader.choice(node, "rule", &RULES) else {
+        check(reader, node, &schema::SPRT);
+        if !node.has_attribute("rule") {
+            reader.missing(node, "the attribute `rule`");
+        }
+        return None;
+    };
+    let Rule::Sprt = rule else {
+        check(reader, node, &schema::STOP);
+        return Some(match rule {
+            Rule::ConfidenceSequence => StoppingRule::ConfidenceSequence,
+            _ => StoppingRule::Fixed,
+        });
+    };
+    check(reader, node, &schema::SPRT);
+    let [low, high] = ["low", "high"].map(|name| real::between_zero_and(reader, node, name, 1.0));
+    let [alpha, beta] =
+        ["alpha", "beta"].map(|name| real::between_zero_and(reader, node, name, 0.5));
+    let (low, high, alpha, beta) = (low?, high?, alpha?.value, beta?.value);
+    if low.value >= high.value {
+        let text = Spanned::new(high.value.to_string(), high.span);
+        reader.wrong("high", &text, &format!("has to be greater than `low`, {}", low.value), None);
+        return None;
+    }
+    Some(StoppingRule::Sprt { low: low.value, high: high.value, alpha, beta })
+}
+
+/// Reports a stopping rule that does not fit the claim or the parameters.
+pub(super) fn check_rule(reader: &mut ElementReader<'_>, campaign: &Campaign) {
+    let claim = &campaign.claim;
+    match (campaign.stop, &claim.confidence) {
+        (StoppingRule::Sprt { .. }, Some(confidence)) => {
+            let message = "`confidence` has no effect with `rule=\"sprt\"`";
+            let problem = Diagnostic::error("conflicting-attributes", message)
+                .label(reader.source.label(confidence.span, ""))
+                .hint("`alpha` and `beta` are the error rates");
+            reader.report(problem);
+        }
+        (StoppingRule::Fixed | StoppingRule::ConfidenceSequence, None) => {
+            let problem = Diagnostic::error("incomplete", "the claim needs a confidence")
+                .label(reader.source.label(claim.span, ""))
+                .hint("add `confidence=\"0.95\"` to `<claim>`");
+            reader.report(problem);
+        }
+        _ => {}
+    }
+    if let StoppingRule::Sprt { low, high, .. } = campaign.stop
+        && !(low..=high).contains(&claim.rate)
+    {
+        let message = format!("the claimed rate is not between `low`, {low}, and `high`, {high}");
+        let label = reader.source.label(claim.span, "");
+        reader.report(Diagnostic::error("invalid-value", message).label(label));
+    }
+    if campaign.stop != StoppingRule::Fixed {
+        let dependent = |parameter: &&DeclaredParameter| !parameter.is_independent();
+        for parameter in campaign.parameters.iter().filter(dependent) {
+            let message = "a sequential stopping rule needs independent episodes";
+            let problem = Diagnostic::error("dependent-episodes", message)
+                .label(reader.source.label(parameter.span(), "the episodes depend on each other"))
+                .hint("use `choice`, `uniform` or `normal`, or `<stop rule=\"fixed\"/>`");
+            reader.report(problem);
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! Campaigns: a suite that runs many times with varied parameters, and a claim about the rate of
+//! passed runs. `spec/campaign.md` is the specification.
+//!
+//! - [`file`](mod@file): the text of a campaign file → [`Campaign`], with every problem and its position.
+//! - [`episodes`]: [`Campaign`] → [`EpisodeList`], the same on every machine and in every version.
+//! - [`judgement`]: results of episodes → a verdict, and whether the campaign may end.
+//!
+//! This crate starts no process. It reads the CSV files that a campaign names, and writes nothing.
+
+pub mod episodes;
+pub mod file;
+pub mod judgement;
+
+pub use episodes::{Episode, EpisodeList, resolve};
+pub use file::{Campaign, parse};
+pub use judgement::{EpisodeResult, Judge, Judgement, Verdict};
