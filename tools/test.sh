@@ -347,13 +347,15 @@ debugging() {
   python3 tests/debug/check.py "$TARGET/release/rtf" "$BUILD/debug"
 }
 
-# Metrics and traces, read by Prometheus and by the decoder of OpenTelemetry's collector.
+# Metrics and traces, read by Prometheus and by OpenTelemetry's collector and its decoder.
 telemetry() {
-  local prometheus decoder=$BUILD/telemetry/telemetry
+  local prometheus collector decoder=$BUILD/telemetry/telemetry
   prometheus=$(tools/prometheus.sh)
+  collector=$(tests/telemetry/collector/build.sh)
   mkdir -p "$BUILD/telemetry"
   (cd tests/telemetry && GOTOOLCHAIN=local quietly go build -o "$decoder" .)
-  "$(tools/venv.sh telemetry)/python" tests/telemetry/check.py "$TARGET/debug/rtf" "$decoder" "$prometheus"
+  "$(tools/venv.sh telemetry)/python" tests/telemetry/check.py "$TARGET/debug/rtf" "$decoder" \
+    "$prometheus" "$collector"
 }
 
 # Change points, compared with those of Apache Otava and with planted changes.

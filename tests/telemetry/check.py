@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """Checks the metrics and traces of rtf with the readers of others.
 
-    check.py RTF DECODER PROMETHEUS
+    check.py RTF DECODER PROMETHEUS COLLECTOR
 
 Prometheus' parser reads `/metrics` of `rtf serve`, promtool checks it, and a Prometheus server
 scrapes it; both programs are in the directory PROMETHEUS. DECODER, built from decode.go with the
-decoder of the OpenTelemetry collector, reads the trace of a run. The interpreter has the packages
-of tools/requirements-telemetry.txt.
+decoder of the OpenTelemetry collector, reads the trace of a run, and COLLECTOR gets it. The
+interpreter has the packages of tools/requirements-telemetry.txt.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from prometheus_client.openmetrics.parser import text_string_to_metric_families 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tools")]
 
+import collectors  # noqa: E402
 import prometheus  # noqa: E402
 from check_web_api import served  # noqa: E402
 
@@ -55,7 +56,8 @@ SPANS = [
 
 def main() -> int:
     """Runs a suite, and checks its trace and its metrics."""
-    rtf, decoder, programs = (str(Path(argument).resolve()) for argument in sys.argv[1:4])
+    arguments = (str(Path(argument).resolve()) for argument in sys.argv[1:5])
+    rtf, decoder, programs, collector = arguments
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         for file, text in [("suite.xml", SUITE), ("good.lua", GOOD), ("bad.lua", BAD)]:
@@ -69,6 +71,7 @@ def main() -> int:
             values = check_metrics(url + "metrics", Path(programs))
             with prometheus.scraping(Path(programs), url, folder) as server:
                 check_scraped(server, values)
+        collectors.check([rtf, "run", "suite.xml"], folder, collector, SPANS)
     return 0
 
 

@@ -4,6 +4,7 @@
 //! [`exit`].
 
 mod cli;
+mod collector;
 mod command;
 mod control;
 mod debug;

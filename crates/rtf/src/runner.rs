@@ -44,6 +44,9 @@ pub fn run(request: &RunRequest, planned: &Planned, prepared: Prepared, guard: L
     if let Some(history) = &request.history {
         history::import_run(history, &finished.record);
     }
+    for collector in &request.collectors {
+        collector.push(&finished.record);
+    }
     let code = ended.map(|killed_by| exit_code(killed_by, finished));
     let linger = request.web.as_ref().and_then(|web| web.linger);
     if let (Some(server), Some(time)) = (&server, linger)

@@ -1,5 +1,6 @@
 //! Output formats of a run.
 
+use std::fmt;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
@@ -26,6 +27,24 @@ pub enum ReportFormat {
     Otlp,
     /// The event stream.
     Json,
+}
+
+/// Where a report goes.
+#[derive(Clone, PartialEq, Eq)]
+pub enum ReportTarget {
+    /// A file.
+    File(PathBuf),
+    /// The address of a collector, which may contain a password.
+    Collector(String),
+}
+
+impl fmt::Debug for ReportTarget {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File(path) => f.debug_tuple("File").field(path).finish(),
+            Self::Collector(_) => f.debug_tuple("Collector").finish_non_exhaustive(),
+        }
+    }
 }
 
 /// The formats of `--report`, whose reports are written when the run has ended.
@@ -76,11 +95,11 @@ fn report_format(name: &str) -> Option<ReportFormat> {
     REPORTS.iter().find(|(known, _)| *known == name).map(|(_, format)| *format)
 }
 
-/// Parses `junit=PATH`.
+/// Parses `junit=PATH` or `otlp=URL`.
 ///
 /// # Errors
 /// The format is unknown, or the path is missing.
-pub fn parse_report(value: &str) -> Result<(ReportFormat, PathBuf), String> {
+pub fn parse_report(value: &str) -> Result<(ReportFormat, ReportTarget), String> {
     let names = REPORTS.map(|(name, _)| format!("`{name}=PATH`")).join(", ");
     let expected = format!("expected {names}");
     let (name, path) = value.split_once('=').ok_or(expected.as_str())?;
@@ -89,7 +108,11 @@ pub fn parse_report(value: &str) -> Result<(ReportFormat, PathBuf), String> {
     if path.is_empty() {
         return Err(format!("the path is missing, {expected}"));
     }
-    Ok((format, PathBuf::from(path)))
+    let target = match format {
+        ReportFormat::Otlp if path.contains("://") => ReportTarget::Collector(path.to_owned()),
+        _ => ReportTarget::File(PathBuf::from(path)),
+    };
+    Ok((format, target))
 }
 
 #[cfg(test)]

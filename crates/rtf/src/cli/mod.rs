@@ -21,7 +21,7 @@ use rtf_plan::suite::parse_duration;
 
 pub use debug::{DebugArgs, RunVerbArgs};
 pub use doctor::{DoctorArgs, DoctorFormat};
-pub use formats::{Annotations, ReportFormat, StdoutFormat, parse_report};
+pub use formats::{Annotations, ReportFormat, ReportTarget, StdoutFormat, parse_report};
 pub use gate::{GateFormat, HistoryGateArgs};
 pub use history::{
     ExportFormat, ExportTable, HistoryAcceptArgs, HistoryArgs, HistoryChangesArgs,

@@ -10,7 +10,9 @@ use rtf_process::fork_server::ForkMode;
 
 use super::inputs::SELECTION;
 use super::values::{fork_mode_parser, jobs_parser};
-use super::{Annotations, InputArgs, ReportFormat, StdoutFormat, WebRunArgs, parse_report};
+use super::{
+    Annotations, InputArgs, ReportFormat, ReportTarget, StdoutFormat, WebRunArgs, parse_report,
+};
 
 /// Options of `rtf run` and `rtf watch`.
 #[derive(Debug, Args)]
@@ -23,9 +25,9 @@ pub struct RunArgs {
     pub format: StdoutFormat,
 
     /// Also write a report: `junit=PATH`, `text=`, `tap=`, `code-quality=`, `github=`,
-    /// `markdown=`, `html=` or `otlp=`
+    /// `markdown=`, `html=` or `otlp=`; `otlp=http://HOST:4318` sends a trace to a collector
     #[arg(long = "report", value_name = "FORMAT=PATH", value_parser = parse_report)]
-    pub reports: Vec<(ReportFormat, PathBuf)>,
+    pub reports: Vec<(ReportFormat, ReportTarget)>,
 
     /// Also make PATH a symbolic link to the directory of the run
     #[arg(long, value_name = "PATH")]

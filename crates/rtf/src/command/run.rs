@@ -11,7 +11,7 @@ use crate::cli::{ListFormat, RunVerbArgs};
 use crate::debug::DebugRequest;
 use crate::error::Failure;
 use crate::guarded::{self, Supervision};
-use crate::request::{OutputRequest, RunRequest, config, history_target};
+use crate::request::{self, OutputRequest, RunRequest, config, history_target};
 use crate::{history, outputs, plan, preflight, reports, runner};
 
 /// Runs tests.
@@ -47,6 +47,9 @@ pub fn run(args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
         outputs::complete(&output, journal, record);
         if let Ok(Some(history)) = history_target(&args) {
             history::import_run(&history, record);
+        }
+        for collector in request::collectors(&args).into_iter().flatten() {
+            collector.push(record);
         }
     };
     guarded::run(supervision, run, complete)

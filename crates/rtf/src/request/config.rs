@@ -9,8 +9,8 @@ use rtf_plan::config::{self, ConfigFiles, ConfigRequest, RunConfig, RunValue};
 use rtf_plan::suite::parse_duration;
 
 use crate::cli::{
-    Annotations, FlakyResult, HistoryFileArgs, InputArgs, OrderOption, ProfileArgs, ResultsArgs,
-    RunArgs, parse_fork_mode, parse_report,
+    Annotations, FlakyResult, HistoryFileArgs, InputArgs, OrderOption, ProfileArgs, ReportFormat,
+    ReportTarget, ResultsArgs, RunArgs, parse_fork_mode, parse_report,
 };
 use crate::diagnostics;
 use crate::error::Failure;
@@ -168,13 +168,17 @@ impl<'a> ConfigDefaults<'a> {
     }
 
     /// The reports, which are written in addition to those of the command line.
-    fn reports(&self) -> impl Iterator<Item = (crate::cli::ReportFormat, PathBuf)> {
+    fn reports(&self) -> impl Iterator<Item = (ReportFormat, ReportTarget)> {
         let values = self.config.get("reports").into_iter();
         let texts =
             values.flat_map(|value| value.entry.values.iter().map(move |text| (value, text)));
         texts.filter_map(|(value, text)| {
-            let (format, path) = parse_report(&text.value).ok()?;
-            Some((format, self.path(value, &path)))
+            let (format, target) = parse_report(&text.value).ok()?;
+            let target = match target {
+                ReportTarget::File(path) => ReportTarget::File(self.path(value, &path)),
+                ReportTarget::Collector(_) => target,
+            };
+            Some((format, target))
         })
     }
 

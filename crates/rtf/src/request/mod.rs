@@ -15,7 +15,8 @@ use rtf_engine::locks::{self, LockOptions};
 use rtf_process::fork_server::ForkMode;
 use rtf_web::{Limits, Settings};
 
-use crate::cli::{Annotations, ReportFormat, RunArgs, StdoutFormat, WebAccessArgs};
+use crate::cli::{Annotations, ReportFormat, ReportTarget, RunArgs, StdoutFormat, WebAccessArgs};
+use crate::collector::Collector;
 use crate::debug::DebugRequest;
 use crate::error::Failure;
 use crate::history::{self, HistoryTarget};
@@ -44,6 +45,8 @@ pub struct RunRequest {
     pub debug: Option<DebugRequest>,
     /// Where the run is imported when it has ended.
     pub history: Option<HistoryTarget>,
+    /// Which collectors get the trace of the run when it has ended.
+    pub collectors: Vec<Collector>,
     /// The revision of the sources, which Git finds out during the planning.
     pub revision: RevisionQuery,
 }
@@ -76,7 +79,7 @@ impl OutputRequest {
             format: args.format,
             verbose: args.verbose,
             annotations: detect_host(args.annotations),
-            reports: args.reports.clone(),
+            reports: args.reports.iter().filter_map(report_file).collect(),
             results: args.input.results.results.clone(),
             progress: true,
         }
@@ -112,9 +115,26 @@ impl RunRequest {
             shutdown_timeout: args.shutdown_timeout,
             debug: None,
             history: history_target(args)?,
+            collectors: collectors(args)?,
             revision,
         })
     }
+}
+
+fn report_file((format, target): &(ReportFormat, ReportTarget)) -> Option<(ReportFormat, PathBuf)> {
+    match target {
+        ReportTarget::File(path) => Some((*format, path.clone())),
+        ReportTarget::Collector(_) => None,
+    }
+}
+
+/// Which collectors get the trace of a run when it has ended.
+pub fn collectors(args: &RunArgs) -> Result<Vec<Collector>, Failure> {
+    let addresses = args.reports.iter().filter_map(|(_, target)| match target {
+        ReportTarget::File(_) => None,
+        ReportTarget::Collector(address) => Some(address),
+    });
+    addresses.map(|address| Collector::resolve(address)).collect()
 }
 
 /// Where a run is imported when it has ended.

@@ -149,6 +149,7 @@ fn request(args: &Args, results: &Path) -> Result<RunRequest, Failure> {
         shutdown_timeout: SHUTDOWN_TIMEOUT,
         debug: None,
         history: None,
+        collectors: Vec::new(),
         revision,
     })
 }

@@ -40,6 +40,20 @@ fn a_report_that_cannot_be_written() {
 }
 
 #[test]
+fn an_address_of_a_collector_that_is_no_address() {
+    let folder = folder();
+    let run = |target| refused(&folder, &["run", "EncoderTest.lua", "--report", target]);
+    assert_snapshot!(run("otlp=http://me:secret@localhost/?key=secret"), @"
+    error: the address of the collector has a query or a fragment
+    hint: write `otlp=http://HOST:4318`; keys belong in `OTEL_EXPORTER_OTLP_HEADERS`
+    ");
+    assert_snapshot!(run("otlp=grpc://me:secret@localhost:4317"), @"
+    error: the address of the collector is neither `http://` nor `https://`
+    hint: write `otlp=http://HOST:4318`; keys belong in `OTEL_EXPORTER_OTLP_HEADERS`
+    ");
+}
+
+#[test]
 fn an_unknown_format() {
     assert_snapshot!(refused(&folder(), &["run", "EncoderTest.lua", "--report", "pdf=report.pdf"]), @"
     error: invalid value 'pdf=report.pdf' for '--report <FORMAT=PATH>': unknown format `pdf`, expected `junit=PATH`, `text=PATH`, `tap=PATH`, `code-quality=PATH`, `github=PATH`, `markdown=PATH`, `html=PATH`, `otlp=PATH`

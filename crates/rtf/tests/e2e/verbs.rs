@@ -175,7 +175,8 @@ fn help_of_run() {
           --format <FORMAT>              Format of standard output [default: console] [possible values:
                                          console, json, tap]
           --report <FORMAT=PATH>         Also write a report: `junit=PATH`, `text=`, `tap=`,
-                                         `code-quality=`, `github=`, `markdown=`, `html=` or `otlp=`
+                                         `code-quality=`, `github=`, `markdown=`, `html=` or `otlp=`;
+                                         `otlp=http://HOST:4318` sends a trace to a collector
           --symlink <PATH>               Also make PATH a symbolic link to the directory of the run
           --annotations <HOST>           Print annotations for a code host, on standard error or in the
                                          job log [default: auto] [possible values: auto, github, gitlab,
