@@ -4,7 +4,8 @@
 //! cargo run --release -p rtf-history --example scale [RUNS [TESTS [DIR]]]
 //! ```
 //!
-//! With `DIR`, the database stays there, to be shown by `rtf serve --results DIR`.
+//! With `DIR`, the database stays there, to be shown by `rtf serve --results DIR`. With the address of
+//! an empty PostgreSQL database in `RTF_HISTORY_URL`, its answers must be those of SQLite.
 
 #![expect(clippy::print_stdout, reason = "it prints measurements")]
 
@@ -14,6 +15,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use jiff::{SignedDuration, Timestamp};
+use rtf_history::store::Location;
 use rtf_history::{RunSelection, Store, TestAttributes};
 use rtf_model::{
     Event, EventKind, Manifest, Measurement, Micros, Origin, Phase, Record, Revision, RunStarted,
@@ -181,14 +183,8 @@ fn check(
     if missed.is_empty() && wrong.is_empty() { Ok(()) } else { Err(what.into()) }
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let kept = std::env::args_os().nth(3).map(PathBuf::from);
-    let mut args = std::env::args().skip(1).take(2).map(|arg| arg.parse::<u32>());
-    let runs = args.next().transpose()?.unwrap_or(1000);
-    let tests = args.next().transpose()?.unwrap_or(500);
-    let dir = tempfile::tempdir()?;
-    let path = kept.as_deref().unwrap_or(dir.path()).join("history.db");
-    let mut store = Store::open(&path)?;
+/// Imports all runs.
+fn import(name: &str, store: &mut Store, (runs, tests): (u32, u32)) -> Result<(), Box<dyn Error>> {
     let mut random = Random(1);
     let (mut importing, mut slowest) = (0.0, 0.0_f64);
     for run in 0..runs {
@@ -199,26 +195,62 @@ fn main() -> Result<(), Box<dyn Error>> {
         importing += seconds;
         slowest = slowest.max(seconds);
     }
-    println!("{runs} runs, {tests} tests, {MEASUREMENTS} measurements");
+    println!("{name}: {runs} runs, {tests} tests, {MEASUREMENTS} measurements");
     println!("import: {:.1} runs/s, slowest {:.0} ms", f64::from(runs) / importing, slowest * 1e3);
-    println!("size: {} MiB", path.metadata()?.len() >> 20);
+    Ok(())
+}
+
+/// Measures all questions, and checks that what was planted is found; the answers as JSON.
+fn ask(store: &Store, (runs, tests): (u32, u32)) -> Result<Vec<String>, Box<dyn Error>> {
     let all = RunSelection::default();
     let any = |_: &TestAttributes| true;
-    timed("runs", || Ok(store.runs(&all)?))?;
     let one = |test: &TestAttributes| test.identity.test == "Test0013";
-    timed("show", || Ok(store.test_histories(&all, &one)?))?;
-    let flaky = timed("flaky", || Ok(store.flaky(&all, &any)?))?;
-    timed("slow", || Ok(store.slow(&all, &any)?))?;
-    timed("trend of one test", || Ok(store.trend("value 0", None, &all, &one)?))?;
     let latest = RunSelection { last: Some(1), ..all.clone() };
-    timed("compare latest with all", || Ok(store.compare((&latest, &all), &any)?))?;
+    let listed = timed("runs", || Ok(store.runs(&all)?))?;
+    let shown = timed("show", || Ok(store.test_histories(&all, &one)?))?;
+    let flaky = timed("flaky", || Ok(store.flaky(&all, &any)?))?;
+    let slow = timed("slow", || Ok(store.slow(&all, &any)?))?;
+    let trend = timed("trend of one test", || Ok(store.trend("value 0", None, &all, &one)?))?;
+    let compare = || Ok(store.compare((&latest, &all), &any)?);
+    let compared = timed("compare latest with all", compare)?;
     let changes = timed("changes", || Ok(store.changes(&all, &any)?))?;
     let name = |test: u32| format!("Test{test:04}");
     let planted = (0..tests).filter(|test| is_flaky(*test)).map(name).collect();
-    check("flaky", &flaky.into_iter().map(|it| it.identity.test).collect(), &planted)?;
+    check("flaky", &flaky.iter().map(|it| it.identity.test.clone()).collect(), &planted)?;
     let large = changes.iter().filter(|it| {
         it.series.is_some() && it.change.size.is_none_or(|size| size.fraction.abs() >= 0.05)
     });
     let planted = (0..tests).filter(|test| regression(*test, runs).is_some()).map(name).collect();
-    check("changes", &large.map(|it| it.identity.test.clone()).collect(), &planted)
+    check("changes", &large.map(|it| it.identity.test.clone()).collect(), &planted)?;
+    Ok(vec![
+        serde_json::to_string(&listed)?,
+        serde_json::to_string(&shown)?,
+        serde_json::to_string(&flaky)?,
+        serde_json::to_string(&slow)?,
+        serde_json::to_string(&trend)?,
+        serde_json::to_string(&compared)?,
+        serde_json::to_string(&changes)?,
+    ])
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let kept = std::env::args_os().nth(3).map(PathBuf::from);
+    let mut args = std::env::args().skip(1).take(2).map(|arg| arg.parse::<u32>());
+    let runs = args.next().transpose()?.unwrap_or(1000);
+    let tests = args.next().transpose()?.unwrap_or(500);
+    let dir = tempfile::tempdir()?;
+    let path = kept.as_deref().unwrap_or(dir.path()).join("history.db");
+    let mut sqlite = Store::open(&path)?;
+    import("SQLite", &mut sqlite, (runs, tests))?;
+    println!("size: {} MiB", path.metadata()?.len() >> 20);
+    let answers = ask(&sqlite, (runs, tests))?;
+    if let Ok(address) = std::env::var("RTF_HISTORY_URL") {
+        let mut postgres = Store::open(Location::postgres(&address)?)?;
+        import("PostgreSQL", &mut postgres, (runs, tests))?;
+        if ask(&postgres, (runs, tests))? != answers {
+            return Err("PostgreSQL has other answers than SQLite".into());
+        }
+        println!("PostgreSQL: equal answers");
+    }
+    Ok(())
 }
