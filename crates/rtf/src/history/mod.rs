@@ -76,13 +76,19 @@ pub fn resolve(url: Option<&str>, results: &Path) -> Result<Location, Failure> {
     }
 }
 
-/// Replaces the password in an argument that is, or ends with, an address.
+/// Replaces the password in an argument that is, or ends with, an address. A user name alone may
+/// be a key of a web service, and is replaced, too.
 pub fn without_password(argument: &str) -> String {
     let masked = || {
         let (scheme, rest) = argument.split_once("://")?;
         let (user, host) = rest.rsplit_once('@')?;
-        let (user, _) = user.split_once(':')?;
-        Some(format!("{scheme}://{user}:***@{host}"))
+        let is_web = scheme.ends_with("http") || scheme.ends_with("https");
+        let secret = match user.split_once(':') {
+            Some((user, _)) => format!("{user}:***"),
+            None if is_web => "***".to_owned(),
+            None => return None,
+        };
+        Some(format!("{scheme}://{secret}@{host}"))
     };
     masked().unwrap_or_else(|| argument.to_owned())
 }
@@ -145,6 +151,7 @@ mod tests {
         mask("postgres://me:p@s:s@db/x", "postgres://me:***@db/x");
         mask("--history=postgres://me:pass@db/x", "--history=postgres://me:***@db/x");
         mask("postgres://me@db/x", "postgres://me@db/x");
+        mask("otlp=https://key@host:4318", "otlp=https://***@host:4318");
         mask("https://example.org/a:b", "https://example.org/a:b");
         mask("arm.xml", "arm.xml");
     }
