@@ -45,7 +45,7 @@ pub fn learn(
             let name = format!("{}/{}", suite.name, test.name);
             for learn in &test.learn {
                 let learned = found.next().unwrap_or_default();
-                warnings.extend(warning(&name, learn, &learned));
+                warnings.extend(warning(&suite.file, &name, learn, &learned));
                 test.learned.push(limits(learn, learned));
             }
         }
@@ -158,7 +158,7 @@ fn limits(learn: &LearnPlan, learned: Learned) -> LearnedLimits {
     }
 }
 
-fn warning(test: &str, learn: &LearnPlan, learned: &Learned) -> Option<Diagnostic> {
+fn warning(file: &str, test: &str, learn: &LearnPlan, learned: &Learned) -> Option<Diagnostic> {
     let measurement = &learn.measurement;
     if learned.limits.is_none() {
         let runs = format_count(learned.runs as u64, "green run");
@@ -176,6 +176,6 @@ fn warning(test: &str, learn: &LearnPlan, learned: &Learned) -> Option<Diagnosti
         changed.run,
         format_count(learned.runs as u64, "run")
     );
-    let hint = "if the change is intended: `rtf history accept`";
+    let hint = format!("if the change is intended: `rtf history accept {file}`");
     Some(Diagnostic::warning("change-not-accepted", message).hint(hint))
 }

@@ -113,6 +113,7 @@ fn a_history_that_cannot_be_read_judges_nothing() {
 #[test]
 fn limits_are_frozen_at_a_change_until_it_is_accepted() {
     let folder = folder("<learn measurement='lag' min-runs='3'/>");
+    folder.file("arm.xml", &format!("\u{feff}{}", folder.read("arm.xml")));
     for value in [10.0, 10.1, 9.9, 10.0, 10.1] {
         assert_eq!(run(&folder, &[value]).code, Some(0));
     }
@@ -125,7 +126,7 @@ fn limits_are_frozen_at_a_change_until_it_is_accepted() {
     exit code 1
     ----- stdout
         warning  `lag` of `arm/M` has changed in the run [RUN]: its limits are learned from the 5 runs before it
-                 hint: if the change is intended: `rtf history accept`
+                 hint: if the change is intended: `rtf history accept arm.xml`
     ");
 
     let accept = |args: &[&str]| {

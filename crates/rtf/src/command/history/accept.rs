@@ -21,6 +21,8 @@ use crate::{plan, terminal};
 
 const TAG: &str = "<learn";
 
+const BYTE_ORDER_MARK: char = '\u{feff}';
+
 /// Accepts changes.
 pub fn run(mut args: HistoryAcceptArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_results(&mut args.input, matches)?;
@@ -72,7 +74,10 @@ fn accept(changes: &[OpenChange]) -> Result<(), Failure> {
         }
     }
     for (file, elements) in files {
-        let mut text = fs::read_to_string(file).map_err(Failure::internal)?;
+        let read = fs::read_to_string(file).map_err(Failure::internal)?;
+        // Positions are counted without the mark.
+        let mark = if read.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len_utf8() } else { 0 };
+        let mut text = read[mark..].to_owned();
         // From the end, so that the other positions stay valid.
         for change in elements.values().rev() {
             let since = change.change.started.to_string();
@@ -80,8 +85,11 @@ fn accept(changes: &[OpenChange]) -> Result<(), Failure> {
                 Failure::internal(format!("`{file}` was changed while it was read"))
             })?;
         }
-        output_file::write("the suite", Path::new(file), |out| out.write_all(text.as_bytes()))
-            .map_err(Failure::internal)?;
+        output_file::write("the suite", Path::new(file), |out| {
+            out.write_all(&read.as_bytes()[..mark])?;
+            out.write_all(text.as_bytes())
+        })
+        .map_err(Failure::internal)?;
     }
     Ok(())
 }
