@@ -1,7 +1,7 @@
 //! All parameters of a campaign, and their values for a candidate.
 
 use rtf_model::Diagnostic;
-use rtf_plan::config::variable;
+use rtf_plan::config::{describe_same_variable, variable};
 use rtf_plan::plan::matrix_file::{MatrixTable, read_table};
 use rtf_plan::suite::{Span, Spanned};
 
@@ -141,13 +141,7 @@ fn check_names(names: &[(String, Span)], resolution: &mut Resolution<'_>) {
     for (index, (name, span)) in names.iter().enumerate() {
         let is_same = |(other, _): &&(String, Span)| variable(other) == variable(name);
         let Some((other, first)) = names[..index].iter().find(is_same) else { continue };
-        let message = if other == name {
-            format!("the parameter `{name}` occurs twice")
-        } else {
-            let variable = variable(name);
-            format!("the parameters `{other}` and `{name}` would both be in `{variable}`")
-        };
-        let problem = Diagnostic::error("duplicate-name", message)
+        let problem = Diagnostic::error("duplicate-name", describe_same_variable(other, name))
             .label(resolution.source.label(*span, ""))
             .label(resolution.source.label(*first, "the first one"));
         resolution.report(problem);

@@ -22,7 +22,7 @@ mod unknown_profile;
 pub use effective::{Setting, SettingsQuery, effective_settings};
 pub use file::{ConfigFile, ConfigFiles};
 pub use keys::REPORTS;
-pub use param_reference::{is_name, variable};
+pub use param_reference::{describe_same_variable, is_name, variable};
 pub use profile_view::{ConfigRequest, ProfileView};
 pub use quarantine::Quarantine;
 pub use run_config::{RunConfig, RunValue, input_dir};

@@ -16,6 +16,15 @@ pub fn variable(name: &str) -> String {
     format!("RTF_PARAM_{}", name.to_ascii_uppercase().replace('-', "_"))
 }
 
+/// Describes two parameters that have the same environment variable.
+pub fn describe_same_variable(first: &str, second: &str) -> String {
+    if first == second {
+        return format!("the parameter `{first}` occurs twice");
+    }
+    let variable = variable(second);
+    format!("the parameters `{first}` and `{second}` would both be in `{variable}`")
+}
+
 /// Replaces each parameter by an example value, to check the syntax of the rest.
 pub(crate) fn sample(text: &str) -> String {
     expand(text, |_| Some("1".to_owned()), &mut |_| {})

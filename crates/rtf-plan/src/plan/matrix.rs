@@ -7,7 +7,7 @@ use std::rc::Rc;
 use rtf_model::{Diagnostic, Parameter};
 
 use super::matrix_file::{MatrixTable, read_table};
-use crate::config::variable;
+use crate::config::{describe_same_variable, variable};
 use crate::suite::{
     Combination, DeclaredMatrix, DeclaredTest, MatrixDimension, MatrixExclude, SourceMap,
     SourceText, Span,
@@ -138,12 +138,7 @@ impl<'a> MatrixExpander<'a> {
                 let Some((other, first)) = known.insert(variable(name), (name, *span)) else {
                     continue;
                 };
-                let message = if other == name {
-                    format!("the parameter `{name}` occurs twice in a matrix")
-                } else {
-                    let variable = variable(name);
-                    format!("the parameters `{other}` and `{name}` would both be in `{variable}`")
-                };
+                let message = describe_same_variable(other, name);
                 let problem = Diagnostic::error("duplicate-name", message)
                     .label(self.source.label(*span, ""))
                     .label(self.source.label(first, "the first one"));

@@ -118,7 +118,7 @@ fn problems_of_a_matrix_have_a_position() {
       3:34 0
     invalid-value: a value of a matrix cannot contain a placeholder: `${param:x}`
       3:30 ${param:x}
-    duplicate-name: the parameter `joint` occurs twice in a matrix
+    duplicate-name: the parameter `joint` occurs twice
       3:48 joint
       3:15 joint the first one
     duplicate-name: the parameters `a-b` and `a_b` would both be in `RTF_PARAM_A_B`
