@@ -11,6 +11,6 @@ pub mod episodes;
 pub mod file;
 pub mod judgement;
 
-pub use episodes::{Episode, EpisodeList, resolve};
+pub use episodes::{EpisodeList, resolve};
 pub use file::{Campaign, parse};
 pub use judgement::{EpisodeResult, Judge, Judgement, Verdict};

@@ -1,17 +1,22 @@
-//! The values that the fixtures of a suite have provided: how they reach tests, hooks and
-//! other fixtures, and how secrets are kept out of events.
+//! The values that the fixtures of a suite have provided, and the parameters of an episode: how
+//! they reach tests, hooks and fixtures, and how secrets are kept out of events.
 
 use std::borrow::Cow;
 use std::sync::Arc;
 
 use rtf_model::protocol::{FixtureValue, Plugin};
-use rtf_model::{EventKind, FixtureProvided, value_text};
+use rtf_model::{Episode, EventKind, FixtureProvided, value_text};
 use rtf_plan::plan::{FixtureBody, HookBody, HookPlan, HostPlan, SuitePlan};
-use rtf_plan::suite::fixture_reference;
+use rtf_plan::suite::{episode_reference, fixture_reference};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::plan_texts::Substitution;
+
+/// The number of the episode, for the processes of a suite.
+const EPISODE_VARIABLE: &str = "RTF_EPISODE";
+/// The seed of the episode.
+const SEED_VARIABLE: &str = "RTF_EPISODE_SEED";
 
 /// The values that fixtures have provided; those of a restarted fixture replace the old ones.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -23,6 +28,8 @@ pub struct FixtureValues {
     version: u64,
     /// Whether texts of the plan refer to values.
     expands: bool,
+    /// The running episode of a campaign.
+    episode: Option<Episode>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -56,6 +63,12 @@ impl FixtureValues {
         self.version += 1;
     }
 
+    /// Stores the parameters of an episode.
+    pub fn begin_episode(&mut self, episode: Episode) {
+        self.episode = Some(episode);
+        self.version += 1;
+    }
+
     /// A number that differs after each change.
     pub fn version(&self) -> u64 {
         self.version
@@ -86,6 +99,10 @@ impl FixtureValues {
         }
         let variables = self.values.iter();
         env.extend(variables.map(|value| (value.variable.clone(), value.text.clone())));
+        if let Some(episode) = &self.episode {
+            env.push((EPISODE_VARIABLE.to_owned(), episode.id.to_string()));
+            env.push((SEED_VARIABLE.to_owned(), episode.seed.to_string()));
+        }
     }
 
     /// Adds the values to a request, and replaces references in it.
@@ -93,6 +110,9 @@ impl FixtureValues {
         if self.expands {
             self.text(&mut request.param);
             self.texts(&mut request.args);
+        }
+        if let Some(episode) = &self.episode {
+            request.parameters.extend(episode.parameters.iter().cloned());
         }
         request.fixture_values = self.values.iter().map(ProvidedValue::of_protocol).collect();
     }
@@ -220,11 +240,16 @@ impl ProvidedValue {
 
 impl Substitution for FixtureValues {
     fn is_in(&self, text: &str) -> bool {
-        fixture_reference::mentions(text)
+        fixture_reference::mentions(text) || episode_reference::mentions(text)
     }
 
     fn expand(&self, text: &str) -> String {
-        fixture_reference::expand(text, |name| Some(Cow::Borrowed(self.get(name)?.text.as_str())))
+        let value = |name: &str| Some(Cow::Borrowed(self.get(name)?.text.as_str()));
+        let text = fixture_reference::expand(text, value);
+        match &self.episode {
+            Some(episode) => episode_reference::expand(&text, &episode.parameters),
+            None => text,
+        }
     }
 }
 

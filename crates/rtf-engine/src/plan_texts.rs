@@ -37,6 +37,9 @@ pub trait Substitution {
         self.env(Arc::make_mut(&mut plan.env).as_mut_slice());
         for fixture in &mut plan.fixtures {
             self.env(&mut fixture.env);
+            if let Some(reset) = &mut fixture.reset {
+                self.texts(&mut reset.command);
+            }
             self.fixture(&mut fixture.body);
         }
         for hook in &mut plan.hooks {

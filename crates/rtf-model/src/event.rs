@@ -4,6 +4,7 @@
 //! describes it.
 
 mod case;
+mod episode;
 mod expected;
 mod learned;
 mod planned;
@@ -14,6 +15,7 @@ mod test;
 use serde::{Deserialize, Serialize};
 
 pub use self::case::{CaseFinished, CaseStart, CaseStarted, Parameter};
+pub use self::episode::{Episode, EpisodeStarted};
 pub use self::expected::{ExpectedFailure, Significance};
 pub use self::learned::LearnedLimits;
 pub use self::planned::{
@@ -122,6 +124,23 @@ pub enum EventKind {
         fixture: FixtureId,
         /// The first cause.
         reason: String,
+    },
+    /// The reset of a fixture between two episodes has ended.
+    FixtureReset {
+        /// The fixture.
+        fixture: FixtureId,
+        /// Why it failed: the fixture is restarted.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        problem: Option<String>,
+    },
+    /// An episode of a campaign starts.
+    EpisodeStarted(EpisodeStarted),
+    /// An episode has finished. One that was interrupted never does.
+    EpisodeFinished {
+        /// The suite.
+        suite: SuiteId,
+        /// The number of the episode.
+        episode: u64,
     },
     /// A test's process is being started. `test-finished` is the matching end.
     TestStarted {

@@ -27,10 +27,10 @@ mod verdict;
 pub use clock::parse_clock;
 pub use diagnostic::{Diagnostic, Label, Severity};
 pub use event::{
-    CaseFinished, CaseStart, CaseStarted, Event, EventKind, ExitStatus, ExpectedFailure,
-    FixturePlanned, FixtureProvided, HookPlanned, LeakedProcess, LearnedLimits, Output, Parameter,
-    Phase, RunStarted, Significance, Source, StopCause, Stream, SuitePlanned, TestFinished,
-    TestPlanned, Trigger, signal_name, value_text,
+    CaseFinished, CaseStart, CaseStarted, Episode, EpisodeStarted, Event, EventKind, ExitStatus,
+    ExpectedFailure, FixturePlanned, FixtureProvided, HookPlanned, LeakedProcess, LearnedLimits,
+    Output, Parameter, Phase, RunStarted, Significance, Source, StopCause, Stream, SuitePlanned,
+    TestFinished, TestPlanned, Trigger, signal_name, value_text,
 };
 pub use ids::{CaseId, FixtureId, HookId, Micros, SuiteId, TestId};
 pub use journal::{Damage, EventCheck, LineCheck, LineChecker, LineSealer, StreamChecker};
@@ -38,9 +38,9 @@ pub use manifest::{Manifest, Origin, Revision};
 pub use order::{OrderChecker, OrderError};
 pub use private_resources::{SuiteNetwork, SuitePort, SuitePrepared, SuiteVariable};
 pub use record::{
-    AttemptCases, AttemptCounts, AttemptRecord, CaseRecord, FixtureLife, FixtureRecord,
-    FixtureState, HookRecord, HookRunRecord, HostRecord, PlannedCases, Record, RunState,
-    SignalSummary, SuiteRecord, TestRecord, TestTotals,
+    AttemptCases, AttemptCounts, AttemptRecord, CaseRecord, EpisodeOutcome, EpisodeRecord,
+    FixtureLife, FixtureRecord, FixtureState, HookRecord, HookRunRecord, HostRecord, PlannedCases,
+    Record, RunState, SignalSummary, SuiteRecord, TestRecord, TestTotals,
 };
 pub use report::{
     Attachment, Comparison, Location, Measurement, Message, MessageKind, format_number,

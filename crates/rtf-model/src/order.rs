@@ -3,10 +3,11 @@
 mod attempts;
 mod cases;
 mod concurrency;
+mod episodes;
 mod progress;
 mod shared_hosts;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::{Event, EventKind, FixtureId, HookId, Phase, Source, SuiteId, TestId};
 use concurrency::Concurrency;
@@ -43,6 +44,8 @@ pub struct OrderChecker {
     tests: Vec<TestProgress>,
     concurrency: Concurrency,
     tests_served: TestsServed,
+    /// The running episode of each suite.
+    episodes: BTreeMap<SuiteId, u64>,
 }
 
 type Rule = Result<(), String>;
@@ -110,7 +113,12 @@ impl OrderChecker {
             | EventKind::FixtureCollapsed { .. }
             | EventKind::FixtureStopping { .. }
             | EventKind::FixtureStopped { .. }
+            | EventKind::FixtureReset { .. }
             | EventKind::FixtureBroken { .. } => self.check_fixture(kind),
+            EventKind::EpisodeStarted(started) => {
+                self.start_episode(started.suite, started.episode.id)
+            }
+            EventKind::EpisodeFinished { suite, episode } => self.finish_episode(*suite, *episode),
             EventKind::TestStarted { test, repetition, attempt } => {
                 self.start_test(*test, (*repetition, *attempt))
             }
@@ -189,6 +197,7 @@ impl OrderChecker {
             EventKind::FixtureStopped { fixture, .. } => {
                 self.advance(*fixture, &[Stopping], Stopped)
             }
+            EventKind::FixtureReset { fixture, .. } => self.advance(*fixture, &[Ready], Ready),
             EventKind::FixtureBroken { fixture, .. } => self.break_fixture(*fixture),
             _ => Ok(()),
         }

@@ -12,11 +12,11 @@ mod space;
 use std::path::Path;
 use std::sync::Arc;
 
-use rtf_model::{Diagnostic, Parameter};
+use rtf_model::{Diagnostic, Episode, Parameter};
 use rtf_plan::suite::{SourceMap, SourceText};
 use rtf_statistics::RandomStream;
 
-pub use list::{Episode, EpisodeList};
+pub use list::EpisodeList;
 use space::{MAX_COMBINATIONS, Space};
 
 use crate::Campaign;

@@ -53,7 +53,7 @@ fn campaign(attributes: &str, children: &str) -> Campaign {
 
 /// The numbers of a parameter.
 fn numbers(list: &EpisodeList, name: &str) -> Vec<f64> {
-    let value = |episode: &rtf_campaign::Episode| {
+    let value = |episode: &rtf_model::Episode| {
         let parameter = episode.parameters.iter().find(|parameter| parameter.name == name);
         parameter.expect("the parameter").value.parse().expect("a number")
     };

@@ -104,7 +104,8 @@ pub async fn execute(
         events.emit(EventKind::Warning { diagnostic });
     }
     for suite in &plan.suites {
-        emit_planned(suite, options.soak_time.is_some(), &events);
+        let is_timed = options.soak_time.is_some() || !suite.episodes.is_empty();
+        emit_planned(suite, is_timed, &events);
     }
     let (stopped, controls) = (stops.clone(), options.controls);
     let fails = FailLimit::new(options.max_fail);

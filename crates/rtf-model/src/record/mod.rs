@@ -5,6 +5,7 @@
 
 mod case;
 mod counts;
+mod episode;
 mod fixture;
 mod green;
 mod hook;
@@ -18,6 +19,7 @@ mod test;
 
 pub use case::{AttemptCases, CaseRecord, PlannedCases};
 pub use counts::AttemptCounts;
+pub use episode::{EpisodeOutcome, EpisodeRecord};
 pub use fixture::{FixtureLife, FixtureRecord, FixtureState};
 pub use hook::{HookRecord, HookRunRecord};
 pub use host::HostRecord;
@@ -134,6 +136,8 @@ impl Record {
             EventKind::SuitePrepared(prepared) => {
                 self.suite(prepared.suite, |s| s.prepared = Some(prepared.clone()));
             }
+            EventKind::EpisodeStarted(started) => self.start_episode(at, started),
+            EventKind::EpisodeFinished { suite, .. } => self.finish_episode(at, *suite),
             EventKind::SuiteFinished { suite } => self.suite(*suite, |s| s.finished = Some(at)),
             EventKind::FixturePlanned(plan) => {
                 let missing = |index| missing_plans::fixture(index, plan.suite);

@@ -10,7 +10,8 @@ pub(crate) fn source_of(kind: &EventKind) -> Option<Source> {
         | EventKind::FixtureCollapsed { fixture, .. }
         | EventKind::FixtureStopping { fixture }
         | EventKind::FixtureStopped { fixture, .. }
-        | EventKind::FixtureBroken { fixture, .. } => Some(Source::Fixture(*fixture)),
+        | EventKind::FixtureBroken { fixture, .. }
+        | EventKind::FixtureReset { fixture, .. } => Some(Source::Fixture(*fixture)),
         EventKind::FixtureProvided(provided) => Some(Source::Fixture(provided.fixture)),
         EventKind::HookStarted { hook, .. } | EventKind::HookFinished { hook, .. } => {
             Some(Source::Hook(*hook))

@@ -1,5 +1,6 @@
 //! The state of one suite.
 
+use super::episode::EpisodeRecord;
 use super::host::{self, HostRecord};
 use crate::{FixtureId, Growth, HookId, Micros, SuitePlanned, SuitePrepared, TestId};
 
@@ -16,6 +17,8 @@ pub struct SuiteRecord {
     pub tests: Vec<TestId>,
     /// The shared hosts, the oldest first; recorded when tests are repeated.
     pub hosts: Vec<HostRecord>,
+    /// Its episodes in a campaign, the oldest first.
+    pub episodes: Vec<EpisodeRecord>,
     /// Its private network, ports and variables, if it has any.
     pub prepared: Option<SuitePrepared>,
     /// When it started.
@@ -32,6 +35,7 @@ impl SuiteRecord {
             hooks: Vec::new(),
             tests: Vec::new(),
             hosts: Vec::new(),
+            episodes: Vec::new(),
             prepared: None,
             started: None,
             finished: None,

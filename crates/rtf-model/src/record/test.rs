@@ -69,6 +69,15 @@ impl TestRecord {
         Self { is_open_ended: plan.timed, plan, attempts: Vec::new(), skipped: None }
     }
 
+    /// The record of a test that has only the attempts from the one with index `first` on: its
+    /// result in one episode.
+    pub(super) fn since(&self, first: usize) -> Self {
+        let attempts = self.attempts.get(first..).unwrap_or_default().to_vec();
+        let mut plan = self.plan.clone();
+        plan.repetitions = attempts.last().map_or(0, |last| last.repetition);
+        Self { plan, attempts, skipped: None, is_open_ended: false }
+    }
+
     /// `lean`: see [`super::Record::lean`].
     pub(super) fn apply(
         &mut self,

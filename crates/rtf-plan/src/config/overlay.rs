@@ -210,6 +210,9 @@ impl ParamSubstitution<'_> {
         for fixture in &mut suite.fixtures {
             self.env(&mut fixture.env, fixture.span);
             self.provides(&mut fixture.provides);
+            if let Some(reset) = &mut fixture.reset {
+                self.words(&mut reset.command.value, reset.command.span);
+            }
             match &mut fixture.body {
                 FixtureKind::Plugin(plugin) => self.plugin(plugin),
                 FixtureKind::Process(process) => {

@@ -60,6 +60,7 @@ fn fixture(
         body: FixtureBody::Plugin(plugin),
         env: Vec::new(),
         limits: defaults::FIXTURE,
+        reset: None,
         restarts: RESTARTS,
         restart_delay: RESTART_DELAY,
         check_every: Some(CHECK_EVERY),

@@ -14,7 +14,7 @@ use super::search_scope::SearchScope;
 use super::use_site::PluginRole;
 use super::{
     FixtureBody, FixtureLimits, FixturePlan, Probe, ProbeKind, ProbePlans, ProcessPlan,
-    ProvidePlan, RemotePlan, ValueProbe, defaults, dependencies, middleware, program,
+    ProvidePlan, RemotePlan, ResetPlan, ValueProbe, defaults, dependencies, middleware, program,
 };
 use crate::suite::{
     self, DeclaredFixture, DeclaredProbeKind, DeclaredProbes, DeclaredProcess, DeclaredProvide,
@@ -31,6 +31,8 @@ const PROBE_TIMEOUT: Duration = Duration::from_secs(1);
 const VALUE_TIMEOUT: Duration = Duration::from_secs(10);
 /// The variable with the user's `ssh` command line.
 const SSH_VARIABLE: &str = "RTF_SSH";
+/// The limit of `<reset>`.
+const RESET_TIMEOUT: Duration = Duration::from_secs(10);
 const STOP_SIGNAL: i32 = 15;
 const STOP_GRACE: Duration = Duration::from_secs(5);
 
@@ -85,6 +87,15 @@ fn plan(
         teardown: fixture.teardown.unwrap_or(defaults::FIXTURE.teardown),
     };
     let check_every = fixture.check_every;
+    let reset = fixture.reset.map(|reset| {
+        let scope = planner.scope();
+        let mut planner = ProcessPlanner::new(source, scope.with(&fixture.env), planner.context);
+        ResetPlan {
+            command: planner.command(reset.command),
+            timeout: reset.timeout.unwrap_or(RESET_TIMEOUT),
+            restart_every: reset.restart_every,
+        }
+    });
     let body = match fixture.body {
         FixtureKind::Plugin(plugin) => {
             let role = PluginRole::Fixture;
@@ -114,6 +125,7 @@ fn plan(
         body,
         env: fixture.env,
         limits,
+        reset,
         restarts: fixture.restarts.unwrap_or(RESTARTS),
         restart_delay: fixture.restart_delay.unwrap_or(RESTART_DELAY),
         check_every,

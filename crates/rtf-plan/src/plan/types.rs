@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_model::{
-    ExpectedFailure, FixtureId, HookId, LearnedLimits, Location, Parameter, SuiteId, SuitePrepared,
-    TestId, Trigger,
+    Episode, ExpectedFailure, FixtureId, HookId, LearnedLimits, Location, Parameter, SuiteId,
+    SuitePrepared, TestId, Trigger,
 };
 use serde::{Deserialize, Serialize};
 
@@ -72,7 +72,10 @@ pub struct SuitePlan {
     pub preparation: Preparation,
     /// The settings that need no name to be resolved.
     pub settings: SuiteSettings,
-    /// Whether its texts contain references to values of fixtures, or escaped ones.
+    /// The episodes of a campaign that it runs; empty for one run without a campaign.
+    pub episodes: Arc<[Episode]>,
+    /// Whether its texts contain references to values of fixtures or to parameters of episodes, or
+    /// escaped ones.
     pub refers_to_values: bool,
     /// The simulated clock; `None` for the wall clock.
     pub clock: Option<ClockPlan>,
@@ -152,6 +155,8 @@ pub struct FixturePlan {
     pub env: Vec<(String, String)>,
     /// The limits of its phases.
     pub limits: FixtureLimits,
+    /// How it is reset between two episodes of a campaign; without, it is restarted.
+    pub reset: Option<ResetPlan>,
     /// The maximum number of restarts after a collapse.
     pub restarts: u32,
     /// The delay before the first restart; it doubles with each further restart,
@@ -167,6 +172,17 @@ impl FixturePlan {
     pub fn is_secret(&self, value: &str) -> bool {
         self.provides.iter().any(|known| known.secret && known.name == value)
     }
+}
+
+/// How a fixture is reset between two episodes of a campaign.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ResetPlan {
+    /// The program and its arguments; it succeeds with exit code 0.
+    pub command: Vec<String>,
+    /// The limit.
+    pub timeout: Duration,
+    /// After how many episodes the fixture is restarted; `None`: never.
+    pub restart_every: Option<u32>,
 }
 
 /// A declared value of a fixture.

@@ -9,7 +9,7 @@ use rtf_model::Diagnostic;
 use super::provide::{self, Provider};
 use super::reader::ElementReader;
 use super::schema::{self, check};
-use super::{DeclaredFixture, FixtureKind, Span, env, process, test};
+use super::{DeclaredFixture, FixtureKind, Span, env, process, reset, test};
 
 /// Reads a `<fixture>`; `None` if it names neither a plug-in nor a process.
 pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredFixture> {
@@ -43,6 +43,7 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option
         (false, _) => Provider::Plugin,
     };
     let provides = provide::read(reader, node, provider);
+    let reset = reset::read(reader, node);
     let body = match (is_process, is_attached) {
         (true, true) => FixtureKind::Attached(process::attached(reader, node)),
         (true, false) => FixtureKind::Process(Box::new(process::read(reader, node))),
@@ -55,6 +56,7 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option
         depends,
         body,
         provides,
+        reset,
         env,
         setup,
         check,

@@ -17,6 +17,8 @@ pub struct DeclaredFixture {
     pub body: FixtureKind,
     /// The values that it provides.
     pub provides: Vec<DeclaredProvide>,
+    /// How it is reset between two episodes of a campaign.
+    pub reset: Option<DeclaredReset>,
     /// Environment variables in addition to the suite's.
     pub env: Vec<(String, String)>,
     /// The limit for its set-up.
@@ -33,6 +35,17 @@ pub struct DeclaredFixture {
     pub restart_delay: Option<Duration>,
     /// The interval of checks while tests run.
     pub check_every: Option<Duration>,
+}
+
+/// A `<reset>`.
+#[derive(Clone, Debug)]
+pub struct DeclaredReset {
+    /// The program and its arguments.
+    pub command: Spanned<Vec<String>>,
+    /// The limit.
+    pub timeout: Option<Duration>,
+    /// After how many episodes the fixture is restarted instead.
+    pub restart_every: Option<u32>,
 }
 
 /// The kinds of a `<fixture>`.

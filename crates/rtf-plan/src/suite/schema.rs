@@ -111,7 +111,7 @@ pub(super) const FIXTURE: ElementSchema = ElementSchema {
         "attach",
         "host",
     ],
-    elements: &["env", "provide"],
+    elements: &["env", "provide", "reset"],
     text: true,
 };
 
@@ -130,7 +130,7 @@ pub(super) const PROCESS: ElementSchema = ElementSchema {
         "attach",
         "host",
     ],
-    elements: &["command", "ready", "alive", "stop", "env", "provide"],
+    elements: &["command", "ready", "alive", "stop", "reset", "env", "provide"],
     text: false,
 };
 
@@ -147,7 +147,7 @@ pub(super) const ATTACHED: ElementSchema = ElementSchema {
         "check-every",
         "attach",
     ],
-    elements: &["ready", "alive", "env", "provide"],
+    elements: &["ready", "alive", "reset", "env", "provide"],
     text: false,
 };
 
@@ -208,6 +208,8 @@ pub(super) const PROVIDE: ElementSchema =
     leaf("provide", &["name", "log", "file", "command", "secret"]);
 /// `<stop>`.
 pub(super) const STOP: ElementSchema = leaf("stop", &["signal", "grace", "exit-codes"]);
+/// `<reset>`.
+pub(super) const RESET: ElementSchema = leaf("reset", &["command", "timeout", "restart-every"]);
 /// `<command>`, `<description>`, `<environment>`.
 pub const fn text(name: &'static str) -> ElementSchema {
     ElementSchema { name, attributes: &[], elements: &[], text: true }

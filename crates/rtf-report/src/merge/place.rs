@@ -34,13 +34,16 @@ impl Ids<'_> {
             EventKind::SuiteWaiting { suite, .. }
             | EventKind::SuiteStarted { suite }
             | EventKind::SuiteFinished { suite } => Some(self.suite(suite)),
+            EventKind::EpisodeFinished { suite, .. } => Some(self.suite(suite)),
+            EventKind::EpisodeStarted(started) => Some(self.suite(&mut started.suite)),
             EventKind::SuitePrepared(prepared) => Some(self.suite(&mut prepared.suite)),
             EventKind::FixtureStarting { fixture, .. }
             | EventKind::FixtureReady { fixture }
             | EventKind::FixtureCollapsed { fixture, .. }
             | EventKind::FixtureStopping { fixture }
             | EventKind::FixtureStopped { fixture, .. }
-            | EventKind::FixtureBroken { fixture, .. } => Some(self.fixture(fixture)),
+            | EventKind::FixtureBroken { fixture, .. }
+            | EventKind::FixtureReset { fixture, .. } => Some(self.fixture(fixture)),
             EventKind::FixtureProvided(provided) => Some(self.fixture(&mut provided.fixture)),
             EventKind::Message { source, test, .. } => {
                 let place = self.source(source);

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use rtf_model::protocol::Request;
-use rtf_model::{EventKind, FixtureProvided, LeakedProcess, Message, MessageKind, Source};
+use rtf_model::{Episode, EventKind, FixtureProvided, LeakedProcess, Message, MessageKind, Source};
 use rtf_plan::plan::FixturePlan;
 use serde_json::Value;
 
@@ -52,6 +52,12 @@ impl<'a> Context<'a> {
     /// The values that fixtures have provided.
     pub fn values(&self) -> &FixtureValues {
         self.values
+    }
+
+    /// Stores the parameters of an episode, also with the guard.
+    pub fn begin_episode(&mut self, episode: Episode) {
+        self.values.begin_episode(episode);
+        self.push(Effect::KeepValues(self.values.clone()));
     }
 
     /// Stores a value of a fixture, also with the guard.

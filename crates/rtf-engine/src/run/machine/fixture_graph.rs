@@ -33,6 +33,11 @@ impl<'p> FixtureGraph<'p> {
         self.runs.iter().position(|fixture| fixture.host() == Some(host))
     }
 
+    /// The fixture whose `<reset>` command is this process.
+    pub fn that_resets(&mut self, host: HostId) -> Option<&mut FixtureRun<'p>> {
+        self.runs.iter_mut().find(|fixture| fixture.reset_host() == Some(host))
+    }
+
     fn any(&self, stages: &[FixturePhase]) -> bool {
         self.runs.iter().any(|fixture| stages.contains(&fixture.stage()))
     }
@@ -41,16 +46,9 @@ impl<'p> FixtureGraph<'p> {
         self.runs.iter().all(|fixture| fixture.stage() == stage)
     }
 
-    pub fn any_failed(&self) -> bool {
-        self.any(&[FixturePhase::Failed])
-    }
-
-    pub fn any_stopping(&self) -> bool {
-        self.any(&[FixturePhase::Stopping, FixturePhase::Exiting])
-    }
-
+    /// Whether all are ready for tests.
     pub fn all_ready(&self) -> bool {
-        self.all(FixturePhase::Ready)
+        self.runs.iter().all(FixtureRun::is_ready)
     }
 
     pub fn all_stopped(&self) -> bool {
@@ -61,24 +59,52 @@ impl<'p> FixtureGraph<'p> {
         self.runs.iter().any(|fixture| fixture.starts() > 0)
     }
 
-    /// Starts every stopped fixture whose dependencies are ready; false if there is none.
+    /// Starts every stopped fixture whose dependencies are ready, and resets those that an
+    /// episode has used; false if there is none.
     pub fn start_next(&mut self, cx: &mut Context<'_>) -> bool {
-        let ready: Vec<bool> =
-            self.runs.iter().map(|fixture| fixture.stage() == FixturePhase::Ready).collect();
+        let ready: Vec<bool> = self.runs.iter().map(FixtureRun::is_ready).collect();
         let mut started = false;
-        for fixture in self.runs.iter_mut().filter(|run| run.stage() == FixturePhase::Stopped) {
+        for fixture in &mut self.runs {
+            let is_stopped = fixture.stage() == FixturePhase::Stopped;
+            if !is_stopped && !fixture.is_used() {
+                continue;
+            }
             if fixture.plan().depends.iter().all(|needed| ready[*needed]) {
-                fixture.start(cx);
+                if is_stopped {
+                    fixture.start(cx)
+                } else {
+                    fixture.reset(cx)
+                }
                 started = true;
             }
         }
         started
     }
 
-    /// Tears down failed fixtures and their dependents, as far as they may stop now.
-    pub fn stop_failed(&mut self, cx: &mut Context<'_>) {
-        let failed = |fixture: &FixtureRun<'_>| fixture.stage() == FixturePhase::Failed;
-        let mut affected: Vec<bool> = self.runs.iter().map(failed).collect();
+    /// An episode has ended: each ready fixture has to be reset or restarted before the next one,
+    /// which may restart it as often as the first one.
+    pub fn end_episode(&mut self) {
+        self.runs.iter_mut().for_each(FixtureRun::end_episode);
+        self.restarts.fill(0);
+    }
+
+    /// Tears down fixtures that failed or are not reset for the next episode, and their
+    /// dependents, as far as they may stop now. Whether none is left.
+    pub fn stop_due(&mut self, cx: &mut Context<'_>) -> bool {
+        let is_due = |run: &FixtureRun<'_>| run.stage() == FixturePhase::Failed || run.is_spent();
+        if self.runs.iter().any(is_due) {
+            self.stop_with_dependents(is_due, cx);
+        }
+        let is_left = self.any(&[FixturePhase::Stopping, FixturePhase::Exiting]);
+        !is_left && !self.runs.iter().any(is_due)
+    }
+
+    fn stop_with_dependents(
+        &mut self,
+        is_due: impl Fn(&FixtureRun<'_>) -> bool,
+        cx: &mut Context<'_>,
+    ) {
+        let mut affected: Vec<bool> = self.runs.iter().map(is_due).collect();
         // A chain of dependencies is no longer than the list.
         for _ in 0..self.runs.len() {
             for index in 0..self.runs.len() {

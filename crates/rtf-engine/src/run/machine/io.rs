@@ -73,6 +73,8 @@ pub enum FixtureTimer {
     Notification,
     /// The interval of `check`.
     CheckDue,
+    /// The limit of `<reset>`.
+    Reset,
     /// The delay of a restart.
     RestartDue,
     /// The limit for the end of its dying process.

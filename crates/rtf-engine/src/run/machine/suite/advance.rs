@@ -6,8 +6,9 @@
 //!    delay it, even if fixtures are still being notified.
 //! 3. If the suite ends early (stop request, broken fixture, critical failure, limit) or
 //!    has no test left: `end` hooks, tear-down in reverse, the rest is skipped.
-//! 4. Failed fixtures and their dependents are torn down.
-//! 5. Stopped fixtures are set up.
+//! 4. Failed fixtures and their dependents are torn down; between episodes, also those that are
+//!    not reset.
+//! 5. Stopped fixtures are set up, others reset for the next episode.
 //! 6. Plug-in fixtures execute `check`, subscribed fixtures are notified of the next
 //!    tests, and the tests start.
 
@@ -38,14 +39,14 @@ impl SuiteMachine<'_> {
         }
         if self.end_reason.is_none() {
             self.scheduler.begin_round(cx.now());
+            if self.scheduler.is_done() && self.episodes.any_left() && !self.next_episode(cx) {
+                return;
+            }
         }
         if self.end_reason.is_some() || self.scheduler.is_done() {
             return self.finish(cx);
         }
-        if self.fixtures.any_failed() {
-            self.fixtures.stop_failed(cx);
-        }
-        if self.fixtures.any_failed() || self.fixtures.any_stopping() {
+        if !self.fixtures.stop_due(cx) {
             return;
         }
         if self.fixtures.start_next(cx) {
@@ -115,6 +116,7 @@ impl SuiteMachine<'_> {
         if !self.fixtures.all_stopped() || !self.scheduler.stop_shared_host(cx) {
             return;
         }
+        self.finish_episode(cx);
         self.report_unfinished_tests(cx);
         self.is_finished = true;
         cx.clear(Deadline::Suite);

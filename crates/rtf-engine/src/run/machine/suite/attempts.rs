@@ -86,6 +86,9 @@ impl<'p> SuiteMachine<'p> {
             }
             None => return,
         };
+        if self.episodes.is_running() {
+            return self.scheduler.end_round();
+        }
         if self.plan.settings.critical_stops_run {
             self.fails.stop(format!("suite `{}` ends the run: {reason}", self.plan.name));
         }

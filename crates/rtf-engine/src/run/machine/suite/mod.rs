@@ -6,6 +6,7 @@ mod advance;
 mod attempts;
 #[cfg(debug_assertions)]
 mod deadline_invariant;
+mod episodes;
 mod fixture_examinations;
 mod scheduler;
 mod shared_host;
@@ -24,6 +25,7 @@ use super::hook_queue::HookQueue;
 use super::io::{Deadline, Effect, HostId, Input, ProcessEvent};
 use crate::fixture_values::FixtureValues;
 use crate::run::FailLimit;
+use episodes::Episodes;
 use fixture_examinations::Examinations;
 use rtf_plan::plan::{Preparation, SuitePlan};
 use scheduler::Scheduler;
@@ -36,6 +38,7 @@ pub struct SuiteMachine<'p> {
     hooks: HookQueue<'p>,
     scheduler: Scheduler<'p>,
     examinations: Examinations,
+    episodes: Episodes<'p>,
     /// Whether `check` was requested for the next tests.
     is_checked: bool,
     /// Why the remaining tests are skipped.
@@ -68,6 +71,7 @@ impl<'p> SuiteMachine<'p> {
             hooks: HookQueue::new(plan),
             scheduler: Scheduler::new(plan),
             examinations: Examinations::default(),
+            episodes: Episodes::new(plan),
             is_checked: false,
             shutdown: None,
             is_interrupted: false,
@@ -121,6 +125,14 @@ impl<'p> SuiteMachine<'p> {
             Preparation::NotNeeded | Preparation::Refused(_) => {}
             Preparation::Done(prepared) => cx.emit(EventKind::SuitePrepared(prepared.clone())),
         }
+        if self.end_reason.is_none() {
+            self.begin_episode(cx);
+        }
+        self.set_timeout(cx);
+    }
+
+    /// Sets the limit of the suite, or of the episode.
+    fn set_timeout(&self, cx: &mut Context<'_>) {
         if let Some(timeout) = self.plan.settings.timeout {
             cx.set(Deadline::Suite, timeout);
         }
@@ -167,6 +179,8 @@ impl<'p> SuiteMachine<'p> {
             let failure = self.fixtures.get(index).handle(input, cx);
             self.on_fixture_failure(index, failure, cx);
             self.confirm_passed();
+        } else if let Some(fixture) = self.fixtures.that_resets(host) {
+            fixture.handle_reset(input, cx);
         } else if self.hooks.owns(host) {
             self.hooks.handle(input, cx);
         } else if let ProcessEvent::Exited(status, _) = input {

@@ -36,7 +36,7 @@ pub(super) struct Scheduler<'p> {
 
 impl<'p> Scheduler<'p> {
     pub fn new(suite: &'p SuitePlan) -> Self {
-        let (soak, shared_host) = (Soak::default(), SharedHost::new(suite));
+        let (soak, shared_host) = (Soak::new(suite), SharedHost::new(suite));
         Self { suite, active: Vec::new(), next: 0, soak, shared_host }
     }
 
@@ -57,9 +57,19 @@ impl<'p> Scheduler<'p> {
     pub fn begin_round(&mut self, now: Duration) {
         let any_left = self.suite.tests.iter().any(|plan| self.soak.includes(plan.id));
         if self.is_done() && any_left && self.soak.begin_round(now) {
-            self.next = 0;
-            self.skip_excluded();
+            self.restart();
         }
+    }
+
+    /// Begins with the first test again.
+    pub fn restart(&mut self) {
+        self.next = 0;
+        self.skip_excluded();
+    }
+
+    /// Lets no further test begin in this round.
+    pub fn end_round(&mut self) {
+        self.next = self.suite.tests.len();
     }
 
     fn skip_excluded(&mut self) {
@@ -215,7 +225,7 @@ impl<'p> Scheduler<'p> {
             let plan = &self.suite.tests[self.next];
             self.active.push(ActiveTest {
                 plan,
-                number: self.soak.first_attempt(plan),
+                number: self.soak.begin(plan),
                 run: None,
                 is_delayed: false,
                 is_notified: false,
@@ -266,8 +276,9 @@ impl<'p> Scheduler<'p> {
         let left =
             |active: &ActiveTest<'p>| soak.last_repetition(active.plan) - active.number.repetition;
         let begun = self.active.iter().map(|active| (active.plan, left(active)));
-        // In a soak, the first test may follow the last one.
-        let next_round = if soak.is_timed() { &*self.suite.tests } else { &[] };
+        // In a soak, the first test may follow the last one. Another episode has other values.
+        let is_soak = soak.is_timed() && self.suite.episodes.is_empty();
+        let next_round = if is_soak { &*self.suite.tests } else { &[] };
         let others = self.suite.tests[self.next..].iter().chain(next_round);
         let others = others.filter(|plan| soak.includes(plan.id));
         let all = begun.chain(others.map(|plan| (plan, plan.settings.repetitions)));

@@ -1,5 +1,6 @@
 //! Repeats a suite until a time has passed (`--for`), in rounds on the same fixtures. A
-//! round that has started is completed, so that all tests are repeated equally often.
+//! round that has started is completed, so that all tests are repeated equally often. The rounds
+//! of a campaign are its [`episodes`](super::episodes).
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
@@ -10,23 +11,27 @@ use super::SuiteMachine;
 use super::active_test::AttemptNumber;
 use crate::run::machine::context::Context;
 use crate::run::machine::io::Deadline;
-use rtf_plan::plan::TestPlan;
+use rtf_plan::plan::{SuitePlan, TestPlan};
 
 /// A suite that is not repeated has one round.
 #[derive(Debug, Default)]
 pub(super) struct Soak {
     /// No round starts after this time of the run.
     until: Option<Duration>,
-    completed_rounds: u32,
+    /// Whether each round is an episode of a campaign.
+    has_episodes: bool,
     /// The repetition of each test that started last.
     last_started: BTreeMap<TestId, u32>,
+    /// The last repetition of each test in this round, if it has begun.
+    last_of_round: BTreeMap<TestId, u32>,
     /// Tests that are in no further round.
     excluded: BTreeSet<TestId>,
 }
 
 impl Soak {
+    /// Whether the number of rounds is not known before they end.
     pub fn is_timed(&self) -> bool {
-        self.until.is_some()
+        self.until.is_some() || self.has_episodes
     }
 
     /// Whether a test is in this round.
@@ -34,15 +39,16 @@ impl Soak {
         !self.excluded.contains(&test)
     }
 
-    /// The first attempt of a test in this round.
-    pub fn first_attempt(&self, plan: &TestPlan) -> AttemptNumber {
-        let previous = plan.settings.repetitions.saturating_mul(self.completed_rounds);
+    /// Begins a test in this round, and returns its first attempt.
+    pub fn begin(&mut self, plan: &TestPlan) -> AttemptNumber {
+        let previous = self.last_started.get(&plan.id).copied().unwrap_or_default();
+        self.last_of_round.insert(plan.id, previous.saturating_add(plan.settings.repetitions));
         AttemptNumber { repetition: previous.saturating_add(1), ..AttemptNumber::FIRST }
     }
 
-    /// The last repetition of a test in this round.
+    /// The last repetition in this round of a test that has begun.
     pub fn last_repetition(&self, plan: &TestPlan) -> u32 {
-        plan.settings.repetitions.saturating_mul(self.completed_rounds.saturating_add(1))
+        self.last_of_round.get(&plan.id).copied().unwrap_or(plan.settings.repetitions)
     }
 
     pub fn record_start(&mut self, test: TestId, number: AttemptNumber) {
@@ -55,9 +61,14 @@ impl Soak {
 
     /// Starts another round; false if the time has passed.
     pub fn begin_round(&mut self, now: Duration) -> bool {
-        let begins = self.until.is_some_and(|until| now < until);
-        self.completed_rounds = self.completed_rounds.saturating_add(begins.into());
-        begins
+        self.until.is_some_and(|until| now < until)
+    }
+}
+
+impl Soak {
+    /// The rounds of a suite: episodes, if it has any.
+    pub fn new(suite: &SuitePlan) -> Self {
+        Self { has_episodes: !suite.episodes.is_empty(), ..Self::default() }
     }
 }
 

@@ -24,6 +24,7 @@ impl SuiteMachine<'_> {
             self.hooks.trigger(Trigger::Interrupt, &reason, self.scheduler.only_running_test());
         }
         self.scheduler.stop_all(StopCause::Interrupt, &reason, cx);
+        self.episodes.abandon();
         match stop.level {
             StopLevel::TearDown if self.is_started && self.shutdown.is_none() => {
                 cx.set(Deadline::Shutdown, stop.limit);
@@ -53,6 +54,7 @@ impl SuiteMachine<'_> {
     /// Stops the running tests, and skips the rest of the suite.
     pub(super) fn skip_rest(&mut self, by: &str, cx: &mut Context<'_>) {
         let reason = format!("skipped by {by}");
+        self.episodes.abandon();
         if self.is_started {
             self.hooks.trigger(Trigger::Interrupt, &reason, self.scheduler.only_running_test());
         }
@@ -86,6 +88,7 @@ impl SuiteMachine<'_> {
             .note("the rest of the suite is skipped, since the process may still use the robot")
             .hint("it waits in the kernel: `ps -eo pid,stat,wchan:32,args` shows where");
         cx.emit(EventKind::Warning { diagnostic });
+        self.episodes.abandon();
         self.stop_and_end(StopCause::Interrupt, reason, cx);
     }
 

@@ -9,6 +9,7 @@ mod chaos;
 mod clock;
 mod collapse;
 mod dependencies;
+mod episodes;
 mod hooks;
 mod limits;
 mod parallel;

@@ -23,6 +23,7 @@ pub fn suite(fixtures: usize, tests: usize) -> SuitePlan {
         fixtures: (0..fixtures).map(fixture).collect(),
         hooks: Vec::new(),
         tests: (0..tests).map(test).collect(),
+        episodes: Arc::default(),
         refers_to_values: false,
     }
 }
@@ -54,6 +55,7 @@ fn fixture(index: usize) -> FixturePlan {
             notify: 2 * SECOND,
             teardown: 3 * SECOND,
         },
+        reset: None,
         restarts: 1,
         restart_delay: Duration::ZERO,
         check_every: None,

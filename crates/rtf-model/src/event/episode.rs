@@ -1,0 +1,64 @@
+//! Episodes of a campaign.
+
+use serde::de::{MapAccess, Visitor};
+use serde::ser::SerializeMap;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::Parameter;
+use crate::SuiteId;
+
+/// A run of a suite with its parameters.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Episode {
+    /// The number, from 1.
+    pub id: u64,
+    /// For the suite's random numbers: from 0 to 2³¹ − 1.
+    pub seed: u32,
+    /// The parameters, in the order of the campaign file.
+    #[serde(serialize_with = "write_parameters", deserialize_with = "read_parameters")]
+    #[cfg_attr(feature = "schema", schemars(with = "std::collections::BTreeMap<String, String>"))]
+    pub parameters: Vec<Parameter>,
+}
+
+/// An episode starts: what happens in the suite until `episode-finished` belongs to it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct EpisodeStarted {
+    /// The suite.
+    pub suite: SuiteId,
+    /// The episode.
+    pub episode: Episode,
+}
+
+fn write_parameters<S: Serializer>(
+    parameters: &[Parameter],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(Some(parameters.len()))?;
+    for parameter in parameters {
+        map.serialize_entry(&parameter.name, &parameter.value)?;
+    }
+    map.end()
+}
+
+fn read_parameters<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Parameter>, D::Error> {
+    struct InOrder;
+    impl<'de> Visitor<'de> for InOrder {
+        type Value = Vec<Parameter>;
+
+        fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+            f.write_str("an object with the values of parameters")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+            let mut parameters = Vec::new();
+            while let Some((name, value)) = map.next_entry()? {
+                parameters.push(Parameter { name, value });
+            }
+            Ok(parameters)
+        }
+    }
+    deserializer.deserialize_map(InOrder)
+}

@@ -1,0 +1,28 @@
+//! Episodes: one at a time in a suite, and no test runs across the end of one.
+
+use super::{OrderChecker, Rule, ensure};
+use crate::SuiteId;
+
+impl OrderChecker {
+    pub(super) fn start_episode(&mut self, suite: SuiteId, episode: u64) -> Rule {
+        self.suite_open(suite)?;
+        self.no_test_runs(suite)?;
+        match self.episodes.insert(suite, episode) {
+            None => Ok(()),
+            Some(open) => Err(format!("episode {open} has not finished")),
+        }
+    }
+
+    pub(super) fn finish_episode(&mut self, suite: SuiteId, episode: u64) -> Rule {
+        self.suite_open(suite)?;
+        self.no_test_runs(suite)?;
+        ensure(self.episodes.remove(&suite) == Some(episode), || {
+            format!("episode {episode} is not running")
+        })
+    }
+
+    fn no_test_runs(&self, suite: SuiteId) -> Rule {
+        let running = self.tests.iter().position(|test| test.suite == suite && test.open);
+        running.map_or(Ok(()), |test| Err(format!("test {test} still runs")))
+    }
+}

@@ -1,0 +1,151 @@
+//! The episodes of a campaign, and their results.
+
+use super::{Record, TestRecord};
+use crate::{Episode, EpisodeStarted, Micros, SuiteId, Verdict};
+
+/// The result of one execution of an episode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EpisodeOutcome {
+    /// The suite was green.
+    Passed,
+    /// A test failed, crashed or timed out, or passed although a failure is expected.
+    Failed,
+    /// A test or a hook is an error, or a fixture could not be torn down.
+    Error,
+    /// A fixture collapsed or is broken.
+    Collapsed,
+}
+
+impl EpisodeOutcome {
+    /// Whether the result says something about the bench only.
+    #[must_use]
+    pub fn is_of_bench(self) -> bool {
+        matches!(self, Self::Error | Self::Collapsed)
+    }
+}
+
+/// One execution of an episode.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EpisodeRecord {
+    /// The episode.
+    pub episode: Episode,
+    /// When it started.
+    pub started: Micros,
+    /// When it finished, its result, and the first reason why it did not pass. `None` while it
+    /// runs, and if it was interrupted.
+    pub finished: Option<(Micros, EpisodeOutcome, Option<String>)>,
+    /// What there was when it started.
+    before: Before,
+}
+
+/// How many attempts and problems there were before an episode.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Before {
+    /// The attempts of each test of the suite.
+    attempts: Vec<usize>,
+    /// The collapses and the other problems of each fixture.
+    fixtures: Vec<(usize, usize)>,
+    /// The problems of each hook.
+    hooks: Vec<usize>,
+}
+
+impl Record {
+    pub(super) fn start_episode(&mut self, at: Micros, started: &EpisodeStarted) {
+        let Some(before) = self.before_episode(started.suite) else { return };
+        let episode = started.episode.clone();
+        let record = EpisodeRecord { episode, started: at, finished: None, before };
+        self.suite(started.suite, |suite| suite.episodes.push(record));
+    }
+
+    fn before_episode(&self, suite: SuiteId) -> Option<Before> {
+        let suite = self.suites.get(suite.index())?;
+        let tests = suite.tests.iter().filter_map(|id| self.tests.get(id.index()));
+        let fixtures = suite.fixtures.iter().filter_map(|id| self.fixtures.get(id.index()));
+        let hooks = suite.hooks.iter().filter_map(|id| self.hooks.get(id.index()));
+        Some(Before {
+            attempts: tests.map(|test| test.attempts.len()).collect(),
+            fixtures: fixtures.map(|it| (it.collapses.len(), it.problems.len())).collect(),
+            hooks: hooks.map(|hook| hook.problems().count()).collect(),
+        })
+    }
+
+    pub(super) fn finish_episode(&mut self, at: Micros, suite: SuiteId) {
+        let Some(record) = self.suites.get(suite.index()) else { return };
+        let Some(episode) = record.episodes.last() else { return };
+        let (outcome, reason) = self.episode_outcome(suite, &episode.before);
+        self.suite(suite, |suite| {
+            if let Some(episode) = suite.episodes.last_mut() {
+                episode.finished = Some((at, outcome, reason));
+            }
+        });
+    }
+
+    /// The worst that happened since `before`: a collapse, an error, a failure.
+    fn episode_outcome(&self, suite: SuiteId, before: &Before) -> (EpisodeOutcome, Option<String>) {
+        let mut problems = self.fixture_problems_since(suite, before);
+        let Some(suite) = self.suites.get(suite.index()) else {
+            return (EpisodeOutcome::Error, None);
+        };
+        let hooks = suite.hooks.iter().filter_map(|id| self.hooks.get(id.index()));
+        for (hook, known) in hooks.zip(&before.hooks) {
+            problems.extend(hook.problems().skip(*known).map(|text| (EpisodeOutcome::Error, text)));
+        }
+        let tests = suite.tests.iter().filter_map(|id| self.tests.get(id.index()));
+        for (test, known) in tests.zip(&before.attempts) {
+            problems.extend(self.problem_since(test, *known));
+        }
+        let severity = |outcome: EpisodeOutcome| outcome as u8;
+        let worst = problems.into_iter().rev().max_by_key(|(outcome, _)| severity(*outcome));
+        worst.map_or((EpisodeOutcome::Passed, None), |(outcome, reason)| (outcome, Some(reason)))
+    }
+
+    fn fixture_problems_since(
+        &self,
+        suite: SuiteId,
+        before: &Before,
+    ) -> Vec<(EpisodeOutcome, String)> {
+        let Some(suite) = self.suites.get(suite.index()) else { return Vec::new() };
+        let fixtures = suite.fixtures.iter().filter_map(|id| self.fixtures.get(id.index()));
+        let mut problems = Vec::new();
+        for (fixture, (collapses, others)) in fixtures.zip(&before.fixtures) {
+            let name = &fixture.plan.name;
+            if let Some(reason) = &fixture.broken {
+                let text = format!("fixture `{name}` is broken: {reason}");
+                problems.push((EpisodeOutcome::Collapsed, text));
+            }
+            let tolerated = suite.plan.tolerates_collapse;
+            for (_, reason) in fixture.collapses.iter().skip(*collapses).filter(|_| !tolerated) {
+                let text = format!("fixture `{name}` collapsed: {reason}");
+                problems.push((EpisodeOutcome::Collapsed, text));
+            }
+            for (_, problem) in fixture.problems.iter().skip(*others) {
+                problems.push((EpisodeOutcome::Error, format!("fixture `{name}`: {problem}")));
+            }
+        }
+        problems
+    }
+
+    /// Why the attempts of a test from the one with index `first` on are not green. A test that
+    /// did not run follows a critical one, which has the reason.
+    fn problem_since(&self, test: &TestRecord, first: usize) -> Option<(EpisodeOutcome, String)> {
+        let part = test.since(first);
+        if part.attempts.is_empty() || self.has_green_result(&part) {
+            return None;
+        }
+        let verdict = part.final_verdict();
+        let outcome = match verdict {
+            Verdict::Error | Verdict::Interrupted => EpisodeOutcome::Error,
+            Verdict::Collapsed => EpisodeOutcome::Collapsed,
+            _ => EpisodeOutcome::Failed,
+        };
+        let name = &test.plan.name;
+        Some((
+            outcome,
+            match part.reason() {
+                Some(reason) => format!("{name}: {reason}"),
+                None => format!("{name} is {verdict}"),
+            },
+        ))
+    }
+}

@@ -1,0 +1,56 @@
+//! `${episode:name}`: a reference to a parameter of a campaign.
+//!
+//! A suite is planned once for all episodes, with this reference as the value of
+//! `${param:name}`. `rtf-engine` replaces it whenever a process starts.
+
+use rtf_model::Parameter;
+
+use crate::placeholder::{Segment, segments};
+
+const OPEN: &str = "${episode:";
+
+/// Returns the reference to a parameter.
+#[must_use]
+pub fn to(name: &str) -> String {
+    format!("{OPEN}{name}}}")
+}
+
+/// Checks whether a text contains a reference.
+#[must_use]
+pub fn mentions(text: &str) -> bool {
+    text.contains(OPEN)
+}
+
+/// Replaces the references to these parameters; others are kept.
+#[must_use]
+pub fn expand(text: &str, parameters: &[Parameter]) -> String {
+    let mut expanded = String::with_capacity(text.len());
+    for segment in segments(text, OPEN) {
+        match segment {
+            Segment::Text(text) => expanded += text,
+            Segment::Placeholder(name, start) => {
+                match parameters.iter().find(|parameter| parameter.name == name) {
+                    Some(parameter) => expanded += &parameter.value,
+                    None => expanded += &text[start..start + OPEN.len() + name.len() + 1],
+                }
+            }
+            Segment::Unclosed(start) => expanded += &text[start..],
+        }
+    }
+    expanded
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_are_replaced_and_the_rest_is_kept() {
+        let value = "0.5".to_owned();
+        let parameters = [Parameter { name: "payload".to_owned(), value }];
+        let text = format!("--mass {} {}", to("payload"), to("other"));
+        assert_eq!(expand(&text, &parameters), "--mass 0.5 ${episode:other}");
+        assert_eq!(expand("${episode:payload", &parameters), "${episode:payload");
+        assert!(mentions(&text) && !mentions("${param:payload}"));
+    }
+}
