@@ -3,6 +3,7 @@
 //!
 //! - [`file`](mod@file): the text of a campaign file → [`Campaign`], with every problem and its position.
 //! - [`episodes`]: [`Campaign`] → [`EpisodeList`], the same on every machine and in every version.
+//! - [`ledger`]: which episodes have results, and which are still to be run.
 //! - [`judgement`]: results of episodes → a verdict, and whether the campaign may end.
 //!
 //! This crate starts no process. It reads the CSV files that a campaign names, and writes nothing.
@@ -10,7 +11,9 @@
 pub mod episodes;
 pub mod file;
 pub mod judgement;
+pub mod ledger;
 
 pub use episodes::{EpisodeList, resolve};
 pub use file::{Campaign, parse};
+pub use ledger::Ledger;
 pub use judgement::{EpisodeResult, Judge, Judgement, Verdict};

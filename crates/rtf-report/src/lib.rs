@@ -18,6 +18,7 @@ mod cause;
 pub mod code_quality;
 pub mod console;
 mod disconnect;
+pub mod episode_results;
 pub mod escape;
 pub mod event_stream;
 mod explain;

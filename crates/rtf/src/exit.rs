@@ -18,6 +18,8 @@ pub const BROKEN: u8 = 3;
 pub const HOOK_FAILED: u8 = 4;
 /// The runner died; the guard stopped everything.
 pub const RUNNER_DIED: u8 = 5;
+/// `rtf campaign`: more episodes are necessary to decide about the claim.
+pub const UNDECIDED: u8 = 6;
 /// `rtf show --single-test`: the test skipped itself. Automake and CTest know this code.
 const SKIPPED: u8 = 77;
 

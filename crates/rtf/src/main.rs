@@ -3,6 +3,7 @@
 //! [`command`] describes how a verb gets from its arguments, [`cli`], to its exit code,
 //! [`exit`].
 
+mod campaign;
 mod cli;
 mod collector;
 mod command;
@@ -63,6 +64,7 @@ fn main() -> ExitCode {
 fn run(verb: Verb, matches: &ArgMatches) -> VerbResult {
     match verb {
         Verb::Run(args) => command::run::run(args, matches),
+        Verb::Campaign { verb } => command::campaign::run(verb, matches),
         Verb::Watch(args) => command::watch::run(args, matches),
         Verb::Check(args) => command::check::run(args, matches),
         Verb::List(args) => command::list::run(args, matches),

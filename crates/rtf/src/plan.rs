@@ -57,6 +57,10 @@ pub fn plan_debugged(
         draft(request, |draft| verify::verify(draft, verify::DEFAULT_LIMIT));
     let Some(mut plan) = plan else { return Err(diagnostics::refuse(&problems, &sources)) };
     set_repetition(&mut plan, &request.manifest);
+    if let ([suite], false) = (plan.suites.as_mut_slice(), request.episodes.is_empty()) {
+        suite.episodes = request.episodes.iter().cloned().collect();
+        suite.refers_to_values = true;
+    }
     debug.map(|debug| debug.prepare(&mut plan)).transpose()?;
     let selected_from = if plan.tests as usize == total { 0 } else { total };
     Ok(Planned {

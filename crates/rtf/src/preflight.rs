@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use rtf_report::background_writer::BackgroundWriter;
+use rtf_report::episode_results::EpisodeResults;
 use rtf_report::journal::Journal;
 use rtf_report::logs::Logs;
 use rtf_report::run_dir::{self, RunDir};
@@ -59,6 +60,9 @@ pub fn prepare(
     // Others refer to what the journal and the logs contain, so these come first.
     let mut reporters: Vec<Box<dyn Reporter>> =
         vec![Box::new(journal), Box::new(Logs::new(&dir.path))];
+    if !request.tests.episodes.is_empty() {
+        reporters.push(Box::new(EpisodeResults::create(&dir.path).map_err(Failure::input)?));
+    }
     reporters.extend(server.as_ref().map(|server| Box::new(server.live()) as Box<dyn Reporter>));
     reporters.extend(reports.into_iter().map(|report| Box::new(report) as Box<dyn Reporter>));
     reporters.extend(console(&dir, &stdout));

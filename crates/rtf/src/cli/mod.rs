@@ -1,5 +1,6 @@
 //! The command line: verbs and options, as the user gives them.
 
+mod campaign;
 mod debug;
 mod doctor;
 mod formats;
@@ -19,6 +20,7 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use rtf_plan::suite::parse_duration;
 
+pub use campaign::{CampaignRunArgs, CampaignVerb};
 pub use debug::{DebugArgs, RunVerbArgs};
 pub use doctor::{DoctorArgs, DoctorFormat};
 pub use formats::{Annotations, ReportFormat, ReportTarget, StdoutFormat, parse_report};
@@ -61,6 +63,7 @@ Exit codes:
   3    rtf itself failed, for example because it could not write a report
   4    a hook failed: the robot may not be in a safe state
   5    the runner died (SIGKILL, out of memory, a bug); its guard stopped everything
+  6    a campaign needs more episodes to decide about its claim
   128+N  signal N ended the run (130 for Ctrl-C)";
 
 /// When to use colours.
@@ -80,6 +83,12 @@ pub enum Color {
 pub enum Verb {
     /// Run suites and plug-ins
     Run(RunVerbArgs),
+    /// Run a suite many times with varied parameters, and judge a claim about its pass rate
+    Campaign {
+        /// The verb
+        #[command(subcommand)]
+        verb: CampaignVerb,
+    },
     /// Rerun the tests whenever a suite, a plug-in or an `rtf.toml` changes
     Watch(RunArgs),
     /// Report the problems of suites and plug-ins without running them

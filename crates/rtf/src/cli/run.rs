@@ -58,6 +58,16 @@ pub struct RunArgs {
     #[arg(long, value_name = "DURATION", value_parser = parse_duration)]
     pub lock_timeout: Option<Duration>,
 
+    /// Run only episode ID of a campaign: FILE is the campaign, or the directory of its results
+    #[arg(help_heading = SELECTION, long, value_name = "ID", conflicts_with = "rerun")]
+    #[arg(value_parser = clap::value_parser!(u64).range(1..))]
+    pub episode: Option<u64>,
+
+    /// Run the suite FILE once for each episode of the list LIST, see `rtf campaign episodes`
+    #[arg(help_heading = SELECTION, long, value_name = "LIST")]
+    #[arg(conflicts_with_all = ["episode", "rerun"])]
+    pub episodes: Option<PathBuf>,
+
     /// List the selected tests without running them
     #[arg(help_heading = SELECTION, long)]
     pub dry_run: bool,

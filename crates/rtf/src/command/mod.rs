@@ -16,6 +16,7 @@
 //! [`crate::testrunner`] goes the same way for the command line of
 //! robot-testing-framework 2.x, with another request.
 
+pub mod campaign;
 pub mod check;
 pub mod completions;
 pub mod config;

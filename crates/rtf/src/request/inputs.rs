@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::ValueEnum;
-use rtf_model::{Diagnostic, Manifest, Record, Significance, TestRecord, Verdict};
+use rtf_model::{Diagnostic, Episode, Manifest, Parameter, Record, Significance, TestRecord, Verdict};
 use rtf_plan::config::ConfigRequest;
 use rtf_plan::plan::{InputPath, Options, RunnerEnvironment};
 use rtf_plan::select::{Shard, TestOrder};
+use rtf_plan::suite::episode_reference;
 
 use super::past_tests::PastQuery;
 use super::{failed_cases, past_run};
@@ -28,6 +29,8 @@ pub struct TestsRequest {
     pub order: Option<(TestOrder, Arc<PastTests>)>,
     /// The part of the selected tests to run, and the past results from which it is computed.
     pub shard: Option<(Shard, Option<Arc<PastTests>>)>,
+    /// The episodes of a campaign to run; empty without a campaign.
+    pub episodes: Vec<Episode>,
     /// Problems that prevent nothing.
     pub warnings: Vec<Diagnostic>,
 }
@@ -62,7 +65,25 @@ impl TestsRequest {
         let shard = args.select.shard.clone().map(|shard| past.assign(shard)).transpose()?;
         manifest.shard = shard.as_ref().map(|(it, _)| format!("{}/{}", it.index, it.count));
         let inputs = manifest.inputs.iter().map(|input| InputPath::Any(input.into())).collect();
-        Ok(Self { inputs, options: options(&manifest, runner), manifest, order, shard, warnings })
+        let options = options(&manifest, runner);
+        Ok(Self { inputs, options, manifest, order, shard, episodes: Vec::new(), warnings })
+    }
+
+    /// Runs a suite once for each episode. Its parameters are references, which are replaced when
+    /// a process starts.
+    pub fn set_episodes(&mut self, suite: PathBuf, episodes: Vec<Episode>) {
+        let parameters = episodes.first().map_or(&[][..], |first| &first.parameters);
+        for Parameter { name, value } in parameters {
+            let reference = episode_reference::to(name);
+            self.options.config_request.params.push((name.clone(), reference));
+            // `--rerun` repeats a single episode as an ordinary run.
+            if episodes.len() == 1 {
+                self.manifest.set.push(format!("{name}={value}"));
+            }
+        }
+        self.manifest.inputs = vec![suite.to_string_lossy().into_owned()];
+        self.inputs = vec![InputPath::Suite(suite)];
+        self.episodes = episodes;
     }
 }
 

@@ -18,6 +18,7 @@ use rtf_web::{Limits, Settings};
 use crate::cli::{Annotations, ReportFormat, ReportTarget, RunArgs, StdoutFormat, WebAccessArgs};
 use crate::collector::Collector;
 use crate::debug::DebugRequest;
+use crate::campaign;
 use crate::error::Failure;
 use crate::history::{self, HistoryTarget};
 use crate::revision::RevisionQuery;
@@ -97,6 +98,7 @@ impl RunRequest {
         if tests.manifest.filters.is_empty() && !args.dry_run {
             tests.options.case_listing = CaseListing::IfNeeded;
         }
+        set_episodes(&mut tests, args)?;
         let revision = RevisionQuery::start(&tests.options.runner.current_dir);
         Ok(Self {
             tests,
@@ -119,6 +121,28 @@ impl RunRequest {
             revision,
         })
     }
+}
+
+/// The episodes of a campaign that `args` select.
+fn set_episodes(tests: &mut TestsRequest, args: &RunArgs) -> Result<(), Failure> {
+    if args.episode.is_none() && args.episodes.is_none() {
+        return Ok(());
+    }
+    let option = if args.episode.is_some() { "--episode" } else { "--episodes" };
+    let [input] = args.input.inputs.as_slice() else {
+        return Err(Failure::input(format!("`{option}` takes exactly one FILE")));
+    };
+    if let Some(id) = args.episode {
+        let (suite, episode) = campaign::find_episode(input, id)?;
+        tests.set_episodes(suite, vec![episode]);
+    } else if let Some(list) = &args.episodes {
+        let episodes = campaign::read_list(list)?.episodes;
+        if episodes.is_empty() {
+            return Err(Failure::input(format!("`{}` has no episode", list.display())));
+        }
+        tests.set_episodes(input.clone(), episodes);
+    }
+    Ok(())
 }
 
 fn report_file((format, target): &(ReportFormat, ReportTarget)) -> Option<(ReportFormat, PathBuf)> {

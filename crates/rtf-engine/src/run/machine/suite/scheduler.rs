@@ -238,13 +238,15 @@ impl<'p> Scheduler<'p> {
         is_free
     }
 
-    /// Starts the next due attempt whose notification was `delivered` to all subscribers;
+    /// Starts the next due attempt if its notification was `delivered` to all subscribers;
     /// false if there is none.
     pub fn start_next(&mut self, delivered: impl Fn(TestId) -> bool, cx: &mut Context<'_>) -> bool {
-        let may_start = |active: &ActiveTest<'_>| {
-            active.is_due() && active.is_notified && delivered(active.plan.id)
+        let is_notified = |active: &ActiveTest<'_>| active.is_due() && active.is_notified;
+        let next = self.active.iter().position(is_notified);
+        // A fixture may reply to notifications in another order. Tests keep theirs.
+        let Some(index) = next.filter(|index| delivered(self.active[*index].plan.id)) else {
+            return false;
         };
-        let Some(index) = self.active.iter().position(may_start) else { return false };
         let (plan, number) = (self.active[index].plan, self.active[index].number);
         self.soak.record_start(plan.id, number);
         let carried = self.active[index].carried.take();

@@ -2,11 +2,12 @@
 
 use rtf_model::protocol::{Notification, Reply, Request};
 use rtf_model::{
-    Attachment, FixtureId, HookId, Measurement, Message, MessageKind, Source, Trigger, Verdict,
+    Attachment, EventKind, FixtureId, HookId, Measurement, Message, MessageKind, Source, Trigger,
+    Verdict,
 };
 
 use super::world::{TEST, World, hook, suite};
-use crate::run::machine::{Deadline, FixtureTimer, ProcessEvent, StopLevel};
+use crate::run::machine::{Deadline, FixtureTimer, Input, ProcessEvent, StopLevel};
 
 const RECORDER: Source = Source::Fixture(FixtureId(0));
 
@@ -316,4 +317,29 @@ fn requests(world: &World<'_>, kind: impl Fn(&Request) -> bool) -> Vec<u64> {
 fn answer(world: &mut World<'_>, request: u64) {
     let passed = serde_json::json!({ "outcome": "passed" });
     world.input(RECORDER, ProcessEvent::Replied(request, Reply::Result(passed)));
+}
+
+#[test]
+fn tests_start_in_order_even_if_a_fixture_replies_in_another_one() {
+    let mut plan = suite(1, 2);
+    plan.settings.parallel = 2;
+    let mut world = World::started(&plan);
+    world.set_up_subscribed(0);
+    world.answer(RECORDER, "passed");
+    let host = world.host_of(RECORDER);
+    let is_notice = |request: &Request| matches!(request, Request::TestStarted(_));
+    let sent = world.sent.iter().filter(|(_, _, request)| is_notice(request));
+    let notices: Vec<u64> = sent.filter_map(|(_, id, _)| *id).collect();
+    let reply = |world: &mut World<'_>, id| {
+        let reply = Reply::Result(serde_json::json!({ "outcome": "passed" }));
+        world.feed(Input::Host(host, ProcessEvent::Replied(id, reply)));
+    };
+    reply(&mut world, notices[1]);
+    assert!(!world.transcript().contains("test-started"), "{}", world.transcript());
+    reply(&mut world, notices[0]);
+    let started = |kind: &EventKind| match kind {
+        EventKind::TestStarted { test, .. } => Some(test.0),
+        _ => None,
+    };
+    assert_eq!(world.events.iter().filter_map(started).collect::<Vec<_>>(), [0, 1]);
 }

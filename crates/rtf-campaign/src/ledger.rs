@@ -1,0 +1,195 @@
+//! Which episodes have which result, and which are still to be run.
+
+use std::collections::{BTreeSet, VecDeque};
+
+use rtf_model::EpisodeOutcome;
+
+use crate::EpisodeResult;
+
+/// After so many executions in succession whose results are the bench's, the bench does not work:
+/// the campaign ends.
+pub const MAX_BENCH_RESULTS: u32 = 10;
+
+/// The executions of one episode.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Executions {
+    /// The results that were the bench's.
+    pub bench: u32,
+    /// The result, once it is final.
+    pub result: Option<EpisodeResult>,
+    /// The last result and its reason.
+    pub last: Option<(EpisodeOutcome, Option<String>)>,
+}
+
+/// The state of a campaign. Episodes are numbered from 1, as in the list of episodes.
+#[derive(Clone, Debug)]
+pub struct Ledger {
+    episodes: Vec<Executions>,
+    /// Episodes without a final result that no worker has.
+    open: VecDeque<u64>,
+    repeats: u32,
+    /// How many episodes from the first one on have final results.
+    complete: usize,
+    bench_in_succession: u32,
+}
+
+impl Ledger {
+    /// A campaign with a number of episodes, none of which has run. An episode whose result is
+    /// the bench's is repeated up to `repeats` times.
+    #[must_use]
+    pub fn new(episodes: usize, repeats: u32) -> Self {
+        Self {
+            episodes: vec![Executions::default(); episodes],
+            open: (1..=episodes as u64).collect(),
+            repeats,
+            complete: 0,
+            bench_in_succession: 0,
+        }
+    }
+
+    /// Records a result of an episode. Results after the final one do not count.
+    pub fn record(&mut self, episode: u64, outcome: EpisodeOutcome, reason: Option<String>) {
+        let Some(executions) = index(episode).and_then(|index| self.episodes.get_mut(index)) else {
+            return;
+        };
+        self.open.retain(|open| *open != episode);
+        if executions.result.is_some() {
+            return;
+        }
+        executions.last = Some((outcome, reason));
+        executions.result = match outcome {
+            EpisodeOutcome::Passed => Some(EpisodeResult::Passed),
+            EpisodeOutcome::Failed => Some(EpisodeResult::Failed),
+            EpisodeOutcome::Error | EpisodeOutcome::Collapsed => {
+                executions.bench += 1;
+                (executions.bench > self.repeats).then_some(EpisodeResult::None)
+            }
+        };
+        match outcome.is_of_bench() {
+            true => self.bench_in_succession += 1,
+            false => self.bench_in_succession = 0,
+        }
+        if executions.result.is_none() {
+            self.open.push_back(episode);
+        }
+        while self.episodes.get(self.complete).is_some_and(|next| next.result.is_some()) {
+            self.complete += 1;
+        }
+    }
+
+    /// A worker has ended without results of these episodes.
+    pub fn give_back(&mut self, episodes: impl IntoIterator<Item = u64>) {
+        let known: BTreeSet<u64> = self.open.iter().copied().collect();
+        let is_open = |episode: &u64| {
+            let executions = index(*episode).and_then(|index| self.episodes.get(index));
+            executions.is_some_and(|it| it.result.is_none()) && !known.contains(episode)
+        };
+        let open: BTreeSet<u64> = episodes.into_iter().filter(is_open).collect();
+        // The judgement follows the order of the episodes.
+        open.into_iter().rev().for_each(|episode| self.open.push_front(episode));
+    }
+
+    /// Takes the open episodes for a number of workers: in turn, so that the first episodes have
+    /// results first. Workers without an episode are left out.
+    pub fn take(&mut self, workers: usize) -> Vec<Vec<u64>> {
+        let mut parts = vec![Vec::new(); workers.min(self.open.len())];
+        for (turn, episode) in self.open.drain(..).enumerate() {
+            let workers = parts.len();
+            parts[turn % workers].push(episode);
+        }
+        parts
+    }
+
+    /// Whether episodes are open.
+    #[must_use]
+    pub fn any_open(&self) -> bool {
+        !self.open.is_empty()
+    }
+
+    /// The final results of the first episodes, up to the first one without.
+    #[must_use]
+    pub fn results(&self) -> Vec<EpisodeResult> {
+        self.episodes[..self.complete].iter().filter_map(|it| it.result).collect()
+    }
+
+    /// How many episodes have a final result, in any order.
+    #[must_use]
+    pub fn count(&self, result: EpisodeResult) -> usize {
+        self.episodes.iter().filter(|it| it.result == Some(result)).count()
+    }
+
+    /// How many of the first episodes have final results.
+    #[must_use]
+    pub fn complete(&self) -> usize {
+        self.complete
+    }
+
+    /// The executions of all episodes.
+    #[must_use]
+    pub fn episodes(&self) -> &[Executions] {
+        &self.episodes
+    }
+
+    /// Whether the bench does not work.
+    #[must_use]
+    pub fn is_bench_broken(&self) -> bool {
+        self.bench_in_succession >= MAX_BENCH_RESULTS
+    }
+}
+
+fn index(episode: u64) -> Option<usize> {
+    usize::try_from(episode).ok()?.checked_sub(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use EpisodeOutcome::{Collapsed, Error, Failed, Passed};
+
+    #[test]
+    fn episodes_are_assigned_in_turn_and_given_back_in_order() {
+        let mut ledger = Ledger::new(5, 2);
+        assert_eq!(ledger.take(2), [vec![1, 3, 5], vec![2, 4]]);
+        assert!(!ledger.any_open() && ledger.take(2).is_empty());
+        ledger.record(1, Passed, None);
+        ledger.give_back([5, 3, 1]);
+        assert_eq!(ledger.take(4), [vec![3], vec![5]]);
+    }
+
+    #[test]
+    fn results_of_the_bench_are_repeated_and_never_dropped() {
+        let mut ledger = Ledger::new(2, 1);
+        ledger.take(1);
+        ledger.record(1, Collapsed, Some("lost".to_owned()));
+        assert_eq!((ledger.take(1), ledger.results()), (vec![vec![1]], vec![]));
+        ledger.record(1, Error, None);
+        assert_eq!((ledger.any_open(), ledger.results()), (false, vec![EpisodeResult::None]));
+        ledger.record(1, Passed, None);
+        assert_eq!(ledger.results(), [EpisodeResult::None], "the final result stays");
+        ledger.record(2, Failed, None);
+        assert_eq!(ledger.results(), [EpisodeResult::None, EpisodeResult::Failed]);
+    }
+
+    #[test]
+    fn results_are_those_of_the_first_episodes() {
+        let mut ledger = Ledger::new(3, 0);
+        ledger.record(2, Passed, None);
+        ledger.record(3, Failed, None);
+        assert_eq!((ledger.complete(), ledger.count(EpisodeResult::Passed)), (0, 1));
+        ledger.record(1, Passed, None);
+        let expected = [EpisodeResult::Passed, EpisodeResult::Passed, EpisodeResult::Failed];
+        assert_eq!(ledger.results(), expected);
+    }
+
+    #[test]
+    fn a_bench_that_does_not_work_is_noticed() {
+        let mut ledger = Ledger::new(20, 0);
+        for episode in 1..MAX_BENCH_RESULTS.into() {
+            ledger.record(episode, Error, None);
+        }
+        assert!(!ledger.is_bench_broken());
+        ledger.record(19, Passed, None);
+        ledger.record(20, Error, None);
+        assert!(!ledger.is_bench_broken(), "an episode in between had a result");
+    }
+}

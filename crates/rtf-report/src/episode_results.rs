@@ -1,0 +1,90 @@
+//! Writes the results of the episodes of a campaign to `episodes.jsonl` in the directory of the
+//! run, as they arrive: whoever follows the campaign needs not read the journal.
+
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use rtf_model::{EpisodeOutcome, EpisodeRecord, Event, EventKind, Record, SuiteId};
+use serde::{Deserialize, Serialize};
+
+use crate::{ReportError, Reporter};
+
+/// The name of the file.
+pub const EPISODE_RESULTS: &str = "episodes.jsonl";
+const WHAT: &str = "the results of the episodes";
+
+/// A line of the file: an episode starts, or has finished.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct EpisodeLine {
+    /// The number of the episode.
+    pub episode: u64,
+    /// Its result; `None`: it starts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outcome: Option<EpisodeOutcome>,
+    /// The first reason why it did not pass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// From its start to its end, in microseconds.
+    #[serde(default)]
+    pub duration_us: u64,
+}
+
+/// Writes the results of a run's episodes.
+#[derive(Debug)]
+pub struct EpisodeResults {
+    path: PathBuf,
+    file: File,
+}
+
+impl EpisodeResults {
+    /// Creates the file in the directory of a run.
+    ///
+    /// # Errors
+    /// The file cannot be created.
+    pub fn create(dir: &Path) -> Result<Self, ReportError> {
+        let path = dir.join(EPISODE_RESULTS);
+        match File::create(&path) {
+            Ok(file) => Ok(Self { path, file }),
+            Err(source) => Err(ReportError { what: WHAT, path, source }),
+        }
+    }
+
+    fn write(&mut self, line: &EpisodeLine) -> Result<(), ReportError> {
+        // Numbers and texts always serialise.
+        let mut text = serde_json::to_string(line).unwrap_or_default();
+        text.push('\n');
+        let error = |source| ReportError { what: WHAT, path: self.path.clone(), source };
+        self.file.write_all(text.as_bytes()).map_err(error)
+    }
+}
+
+impl Reporter for EpisodeResults {
+    fn event(&mut self, event: &Event, record: &Record) -> Result<(), ReportError> {
+        match &event.kind {
+            EventKind::EpisodeStarted(started) => {
+                let episode = started.episode.id;
+                self.write(&EpisodeLine { episode, outcome: None, reason: None, duration_us: 0 })
+            }
+            EventKind::EpisodeFinished { suite, .. } => {
+                last(record, *suite).map_or(Ok(()), |line| self.write(&line))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn finish(&mut self, _: &Record) -> Result<(), ReportError> {
+        Ok(())
+    }
+}
+
+fn last(record: &Record, suite: SuiteId) -> Option<EpisodeLine> {
+    let episode: &EpisodeRecord = record.suites.get(suite.index())?.episodes.last()?;
+    let (finished, outcome, reason) = episode.finished.clone()?;
+    Some(EpisodeLine {
+        episode: episode.episode.id,
+        outcome: Some(outcome),
+        reason,
+        duration_us: finished.0.saturating_sub(episode.started.0),
+    })
+}

@@ -1,0 +1,101 @@
+//! Campaigns: files and directories of results, for the verbs that read them.
+
+pub mod directory;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use rtf_campaign::episodes::Resolution;
+use rtf_campaign::{Campaign, EpisodeList, parse, resolve};
+use rtf_model::{Diagnostic, Episode, Severity};
+use rtf_plan::suite::{SourceMap, read_source};
+
+use crate::diagnostics;
+use crate::error::Failure;
+use directory::CampaignDir;
+
+/// A campaign file without errors, and its episodes.
+pub struct LoadedCampaign {
+    /// The name.
+    pub name: String,
+    /// The suite file.
+    pub suite: PathBuf,
+    pub campaign: Campaign,
+    pub episodes: EpisodeList,
+    pub warnings: Vec<Diagnostic>,
+    pub sources: SourceMap,
+}
+
+impl LoadedCampaign {
+    /// Prints the warnings.
+    pub fn print_warnings(&self) -> Result<(), Failure> {
+        diagnostics::print(&self.warnings, &self.sources)
+    }
+}
+
+/// Reads a campaign file; prints all its problems if one of them is an error.
+pub fn load(file: &Path) -> Result<LoadedCampaign, Failure> {
+    let mut sources = SourceMap::default();
+    let source = read_source(file, &file.to_string_lossy()).map_err(|unreadable| {
+        let mut sources = SourceMap::default();
+        unreadable.source.into_iter().for_each(|source| sources.add(Arc::new(source)));
+        diagnostics::refuse(&[unreadable.problem], &sources)
+    })?;
+    let source = Arc::new(source);
+    sources.add(source.clone());
+    let mut problems = Vec::new();
+    let dir = file.parent().unwrap_or(Path::new(""));
+    let campaign = parse(&source, &mut problems);
+    let resolved = campaign.and_then(|campaign| {
+        let (problems, sources) = (&mut problems, &mut sources);
+        let mut resolution = Resolution { dir, source: &source, problems, sources };
+        let episodes = resolve(&campaign, &mut resolution)?;
+        Some((campaign, episodes))
+    });
+    let has_error = problems.iter().any(|problem| problem.severity == Severity::Error);
+    let Some((campaign, episodes)) = resolved.filter(|_| !has_error) else {
+        return Err(diagnostics::refuse(&problems, &sources));
+    };
+    let stem = || file.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    let name = campaign.name.as_ref().map(|name| name.value.clone()).or_else(stem);
+    Ok(LoadedCampaign {
+        name: name.unwrap_or_default(),
+        suite: dir.join(&campaign.suite.value),
+        campaign,
+        episodes,
+        warnings: problems,
+        sources,
+    })
+}
+
+/// Finds one episode: of a campaign file, or of the directory of a campaign's results. Returns the
+/// suite, too.
+pub fn find_episode(input: &Path, id: u64) -> Result<(PathBuf, Episode), Failure> {
+    let (suite, episodes) = if input.is_dir() {
+        let dir = CampaignDir::open(input)?;
+        (dir.description.suite.clone(), dir.episodes()?)
+    } else {
+        let loaded = load(input)?;
+        loaded.print_warnings()?;
+        (loaded.suite, loaded.episodes)
+    };
+    let count = episodes.episodes.len();
+    match episodes.episodes.into_iter().find(|episode| episode.id == id) {
+        Some(episode) => Ok((suite, episode)),
+        None => {
+            let error = format!("`{}` has no episode {id}", input.display());
+            Err(Failure::input(error).hint(format!("its episodes are 1 to {count}")))
+        }
+    }
+}
+
+/// Reads a list of episodes.
+pub fn read_list(file: &Path) -> Result<EpisodeList, Failure> {
+    let name = file.display();
+    let text = std::fs::read_to_string(file)
+        .map_err(|error| Failure::input(format!("cannot read `{name}`: {error}")))?;
+    EpisodeList::from_json_lines(&text).map_err(|(line, error)| {
+        let error = format!("{name}:{line}: this is not an episode: {error}");
+        Failure::input(error).hint("`rtf campaign episodes FILE` prints a list")
+    })
+}

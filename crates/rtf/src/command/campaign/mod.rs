@@ -1,0 +1,32 @@
+//! `rtf campaign`.
+
+mod progress;
+mod run;
+mod summary;
+mod worker;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use clap::ArgMatches;
+
+use super::VerbResult;
+use crate::cli::CampaignVerb;
+use crate::{campaign, terminal};
+
+/// Runs a campaign, or prints its episodes.
+pub fn run(verb: CampaignVerb, matches: &ArgMatches) -> VerbResult {
+    let verb_matches = matches.subcommand().map_or(matches, |(_, matches)| matches);
+    match verb {
+        CampaignVerb::Run(args) => run::run(*args, verb_matches),
+        CampaignVerb::Episodes { file } => print_episodes(&file),
+    }
+}
+
+fn print_episodes(file: &Path) -> VerbResult {
+    let loaded = campaign::load(file)?;
+    loaded.print_warnings()?;
+    let list = loaded.episodes.to_json_lines();
+    terminal::stdout(|out| out.write_all(list.as_bytes()))?;
+    Ok(ExitCode::SUCCESS)
+}
