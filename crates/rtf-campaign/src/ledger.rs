@@ -92,10 +92,12 @@ impl Ledger {
     /// Takes the open episodes for a number of workers: in turn, so that the first episodes have
     /// results first. Workers without an episode are left out.
     pub fn take(&mut self, workers: usize) -> Vec<Vec<u64>> {
-        let mut parts = vec![Vec::new(); workers.min(self.open.len())];
-        for (turn, episode) in self.open.drain(..).enumerate() {
-            let workers = parts.len();
-            parts[turn % workers].push(episode);
+        let count = workers.min(self.open.len());
+        let mut parts = vec![Vec::new(); count];
+        if count > 0 {
+            for (turn, episode) in self.open.drain(..).enumerate() {
+                parts[turn % count].push(episode);
+            }
         }
         parts
     }
@@ -151,6 +153,7 @@ mod tests {
         let mut ledger = Ledger::new(5, 2);
         assert_eq!(ledger.take(2), [vec![1, 3, 5], vec![2, 4]]);
         assert!(!ledger.any_open() && ledger.take(2).is_empty());
+        assert!(Ledger::new(5, 2).take(0).is_empty());
         ledger.record(1, Passed, None);
         ledger.give_back([5, 3, 1]);
         assert_eq!(ledger.take(4), [vec![3], vec![5]]);

@@ -15,5 +15,5 @@ pub mod ledger;
 
 pub use episodes::{EpisodeList, resolve};
 pub use file::{Campaign, parse};
-pub use ledger::Ledger;
 pub use judgement::{EpisodeResult, Judge, Judgement, Verdict};
+pub use ledger::Ledger;

@@ -36,7 +36,10 @@ pub fn fill_run(args: &mut RunArgs, matches: &ArgMatches) -> Result<(), Failure>
     defaults.fill("max-fail", &mut repeat.max_fail, |text| text.parse().ok().map(Some));
     let result = |text: &str| FlakyResult::from_str(text, false).ok().map(Some);
     defaults.fill("flaky-result", &mut repeat.flaky_result, result);
-    args.reports.extend(defaults.reports());
+    // Each worker of a campaign would write the same files.
+    if args.episodes.is_none() {
+        args.reports.extend(defaults.reports());
+    }
     defaults.fill_history(&mut args.input.history);
     if let Some(value) = defaults.value("history.enabled", "no_history") {
         args.no_history = text(value) == "false";

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::ValueEnum;
-use rtf_model::{Diagnostic, Episode, Manifest, Parameter, Record, Significance, TestRecord, Verdict};
+use rtf_model::{
+    Diagnostic, Episode, Manifest, Parameter, Record, Significance, TestRecord, Verdict,
+};
 use rtf_plan::config::ConfigRequest;
 use rtf_plan::plan::{InputPath, Options, RunnerEnvironment};
 use rtf_plan::select::{Shard, TestOrder};
@@ -13,7 +15,7 @@ use rtf_plan::suite::episode_reference;
 
 use super::past_tests::PastQuery;
 use super::{failed_cases, past_run};
-use crate::cli::{FlakyResult, InputArgs, OrderOption, RepeatArgs, RerunVerdict};
+use crate::cli::{FlakyResult, InputArgs, OrderOption, ProfileArgs, RepeatArgs, RerunVerdict};
 use crate::error::Failure;
 use crate::history::PastTests;
 
@@ -87,6 +89,28 @@ impl TestsRequest {
     }
 }
 
+impl TestsRequest {
+    /// All tests of a suite.
+    pub fn of_suite(suite: &Path, profile: &ProfileArgs) -> Result<Self, Failure> {
+        let runner = RunnerEnvironment::from_current_process().map_err(Failure::internal)?;
+        let manifest = Manifest {
+            inputs: vec![suite.to_string_lossy().into_owned()],
+            profile: profile.profile.clone(),
+            set: settings(profile),
+            ..Manifest::default()
+        };
+        Ok(Self {
+            inputs: vec![InputPath::Suite(suite.to_owned())],
+            options: options(&manifest, runner),
+            manifest,
+            order: None,
+            shard: None,
+            episodes: Vec::new(),
+            warnings: Vec::new(),
+        })
+    }
+}
+
 fn manifest(args: &InputArgs) -> Manifest {
     Manifest {
         inputs: args.inputs.iter().map(|path| path.to_string_lossy().into_owned()).collect(),
@@ -95,13 +119,13 @@ fn manifest(args: &InputArgs) -> Manifest {
         environment: args.environment.clone(),
         repetition: args.repetition,
         profile: args.profile.profile.clone(),
-        set: settings(args),
+        set: settings(&args.profile),
         ..Manifest::default()
     }
 }
 
-fn settings(args: &InputArgs) -> Vec<String> {
-    args.profile.set.iter().map(|(name, value)| format!("{name}={value}")).collect()
+fn settings(args: &ProfileArgs) -> Vec<String> {
+    args.set.iter().map(|(name, value)| format!("{name}={value}")).collect()
 }
 
 /// The manifest of a past run, restricted to the tests to rerun, and its working
@@ -134,7 +158,7 @@ fn rerun_manifest(args: &InputArgs, results: &Path) -> Result<(Manifest, PathBuf
     if let Some(profile) = &args.profile.profile {
         manifest.profile = Some(profile.clone());
     }
-    manifest.set.extend(settings(args));
+    manifest.set.extend(settings(&args.profile));
     Ok((manifest, PathBuf::from(&started.working_dir)))
 }
 

@@ -15,10 +15,10 @@ use rtf_engine::locks::{self, LockOptions};
 use rtf_process::fork_server::ForkMode;
 use rtf_web::{Limits, Settings};
 
+use crate::campaign;
 use crate::cli::{Annotations, ReportFormat, ReportTarget, RunArgs, StdoutFormat, WebAccessArgs};
 use crate::collector::Collector;
 use crate::debug::DebugRequest;
-use crate::campaign;
 use crate::error::Failure;
 use crate::history::{self, HistoryTarget};
 use crate::revision::RevisionQuery;

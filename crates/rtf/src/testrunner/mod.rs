@@ -132,6 +132,7 @@ fn request(args: &Args, results: &Path) -> Result<RunRequest, Failure> {
             manifest: Manifest::default(),
             order: None,
             shard: None,
+            episodes: Vec::new(),
             warnings: Vec::new(),
         },
         results: results.to_owned(),

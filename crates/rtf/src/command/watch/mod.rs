@@ -22,6 +22,7 @@ use rtf_report::escape;
 use tokio::process::{Child, ChildStdin};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
+pub use self::child::exit_code;
 use self::debounce::{Debounce, FileChange};
 use self::state::{WatchAction, WatchState};
 use self::watched::Watched;

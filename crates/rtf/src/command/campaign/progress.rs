@@ -1,0 +1,113 @@
+//! What `rtf campaign run` prints while the episodes run.
+
+use std::io::{self, IsTerminal as _};
+use std::time::{Duration, Instant};
+
+use rtf_campaign::{EpisodeResult, Ledger};
+use rtf_model::{Episode, EpisodeOutcome};
+use rtf_report::episode_results::EpisodeLine;
+use rtf_report::escape;
+
+use crate::error::Failure;
+use crate::terminal;
+
+/// How many episodes that did not pass are printed.
+const PRINTED: usize = 20;
+
+/// The progress on standard output.
+#[derive(Debug)]
+pub struct Progress {
+    is_terminal: bool,
+    every: Duration,
+    printed_at: Instant,
+    printed: usize,
+}
+
+impl Progress {
+    /// Nothing is printed yet.
+    pub fn new() -> Self {
+        let is_terminal = io::stdout().is_terminal();
+        let every = if is_terminal { Duration::from_millis(200) } else { Duration::from_secs(10) };
+        Self { is_terminal, every, printed_at: Instant::now(), printed: 0 }
+    }
+
+    /// Prints an episode that did not pass.
+    pub fn result(&mut self, line: &EpisodeLine, episode: &Episode) -> Result<(), Failure> {
+        let Some(outcome) = line.outcome.filter(|outcome| *outcome != EpisodeOutcome::Passed)
+        else {
+            return Ok(());
+        };
+        self.printed += 1;
+        if self.printed > PRINTED {
+            return Ok(());
+        }
+        let parameters = parameters(episode);
+        let reason = line.reason.as_deref().and_then(|reason| reason.lines().next());
+        let reason = reason.map(escape::line).unwrap_or_default();
+        let (clear, color) = (self.clear(), color(outcome));
+        terminal::stdout(|out| {
+            writeln!(
+                out,
+                "{clear}  {color}{:<9}\u{1b}[0m episode {}  {parameters}",
+                word(outcome),
+                episode.id
+            )?;
+            if !reason.is_empty() {
+                writeln!(out, "            {reason}")?;
+            }
+            if self.printed == PRINTED {
+                writeln!(out, "  (further ones are only in the results)")?;
+            }
+            Ok(())
+        })
+    }
+
+    /// Prints the numbers, if it is time.
+    pub fn numbers(&mut self, ledger: &Ledger) -> Result<(), Failure> {
+        if self.printed_at.elapsed() < self.every {
+            return Ok(());
+        }
+        self.printed_at = Instant::now();
+        let count = |result| ledger.count(result);
+        let (passed, failed) = (count(EpisodeResult::Passed), count(EpisodeResult::Failed));
+        let none = count(EpisodeResult::None);
+        let (clear, end) = (self.clear(), if self.is_terminal { "" } else { "\n" });
+        let (done, all) = (passed + failed + none, ledger.episodes().len());
+        terminal::stdout(|out| {
+            write!(out, "{clear}  {done} of {all} episodes: {passed} passed, {failed} failed")?;
+            if none > 0 {
+                write!(out, ", {none} without a result")?;
+            }
+            write!(out, "{end}")
+        })
+    }
+
+    /// Removes the line of numbers.
+    pub fn end(&self) -> Result<(), Failure> {
+        let clear = self.clear();
+        terminal::stdout(|out| write!(out, "{clear}"))
+    }
+
+    fn clear(&self) -> &'static str {
+        if self.is_terminal { "\r\u{1b}[K" } else { "" }
+    }
+}
+
+/// `payload=0.5 surface=wood`.
+pub fn parameters(episode: &Episode) -> String {
+    let text = |parameter: &rtf_model::Parameter| format!("{}={}", parameter.name, parameter.value);
+    escape::line(&episode.parameters.iter().map(text).collect::<Vec<_>>().join(" ")).into_owned()
+}
+
+fn word(outcome: EpisodeOutcome) -> &'static str {
+    match outcome {
+        EpisodeOutcome::Passed => "passed",
+        EpisodeOutcome::Failed => "failed",
+        EpisodeOutcome::Error => "error",
+        EpisodeOutcome::Collapsed => "collapsed",
+    }
+}
+
+fn color(outcome: EpisodeOutcome) -> &'static str {
+    if outcome.is_of_bench() { "\u{1b}[33m" } else { "\u{1b}[31m" }
+}

@@ -1,0 +1,117 @@
+//! What `rtf campaign run` prints at the end, and the exit code.
+
+use std::path::Path;
+
+use rtf_campaign::file::StoppingRule;
+use rtf_campaign::{Campaign, EpisodeResult, Judgement, Ledger, Verdict};
+use rtf_report::episode_results::EpisodeLine;
+
+use crate::diagnostics::count;
+use crate::error::Failure;
+use crate::{exit, terminal};
+
+/// Why a campaign ended before its claim was decided and all episodes had run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum EarlyEnd {
+    /// A signal.
+    Signal(i32),
+    /// A hook failed.
+    HookFailed,
+    /// Only results that are the bench's.
+    BenchBroken,
+}
+
+/// Prints the results.
+pub fn print(
+    campaign: &Campaign,
+    (ledger, judgement): (&Ledger, &Judgement),
+    early_end: Option<&EarlyEnd>,
+    dir: &Path,
+) -> Result<(), Failure> {
+    let numbers = [
+        ("passed", ledger.count(EpisodeResult::Passed)),
+        ("failed", ledger.count(EpisodeResult::Failed)),
+        ("without a result", ledger.count(EpisodeResult::None)),
+    ];
+    let bench: u32 = ledger.episodes().iter().map(|episode| episode.bench).sum();
+    let done: usize = numbers.iter().map(|(_, number)| number).sum();
+    let (verdict, color) = match judgement.verdict {
+        Verdict::Passed => ("passed", "\u{1b}[32m"),
+        Verdict::Failed => ("failed", "\u{1b}[31m"),
+        Verdict::Undecided => ("undecided", "\u{1b}[33m"),
+    };
+    terminal::stdout(|out| {
+        writeln!(out)?;
+        let total = ledger.episodes().len();
+        writeln!(out, "{done} of {}", count(total, "episode"))?;
+        for (name, number) in numbers.iter().filter(|(_, number)| *number > 0) {
+            writeln!(out, "  {name:<18}{number}")?;
+        }
+        if bench > 0 {
+            writeln!(out, "  {bench} executions were errors or collapses of the bench")?;
+        }
+        if let Some(rate) = &judgement.rate {
+            let (value, low, high) = (rate.value, rate.low, rate.high);
+            let (interval, confidence) = interval(campaign);
+            writeln!(
+                out,
+                "  rate {value:.4}, between {low:.4} and {high:.4} ({interval}, {confidence})"
+            )?;
+        }
+        match early_end {
+            Some(EarlyEnd::HookFailed) => {
+                writeln!(out, "  a hook failed: the robot may not be in a safe state")?;
+            }
+            Some(EarlyEnd::BenchBroken) => writeln!(
+                out,
+                "  ended early: {} in succession were errors or collapses of the bench",
+                count(rtf_campaign::ledger::MAX_BENCH_RESULTS as usize, "execution"),
+            )?,
+            Some(EarlyEnd::Signal(_)) => {
+                writeln!(out, "  continue: rtf campaign run --resume {}", dir.display())?;
+            }
+            None if judgement.episodes < total && judgement.verdict != Verdict::Undecided => {
+                writeln!(out, "  decided after {}", count(judgement.episodes, "episode"))?;
+            }
+            None => {}
+        }
+        writeln!(out, "results: {}", dir.display())?;
+        let claimed = campaign.claim.rate;
+        writeln!(out, "claim rate >= {claimed}: {color}{verdict}\u{1b}[0m")
+    })
+}
+
+fn interval(campaign: &Campaign) -> (&'static str, String) {
+    let percent = |confidence: f64| format!("{} % confidence", rounded(confidence * 100.0));
+    let declared = campaign.claim.confidence.as_ref().map_or(0.0, |confidence| confidence.value);
+    match campaign.stop {
+        StoppingRule::Fixed => ("Clopper and Pearson", percent(declared)),
+        StoppingRule::ConfidenceSequence => ("confidence sequence", percent(declared)),
+        StoppingRule::Sprt { alpha, .. } => ("confidence sequence", percent(1.0 - alpha)),
+    }
+}
+
+/// A number without the digits that binary fractions add.
+fn rounded(number: f64) -> f64 {
+    (number * 1e9).round() / 1e9
+}
+
+/// The exit code of a campaign.
+pub fn exit_code(judgement: &Judgement, early_end: Option<&EarlyEnd>) -> u8 {
+    match (early_end, judgement.verdict) {
+        (Some(EarlyEnd::HookFailed), _) => exit::HOOK_FAILED,
+        (Some(EarlyEnd::Signal(number)), _) => exit::of_signal(*number),
+        (_, Verdict::Passed) => exit::PASSED,
+        (_, Verdict::Failed) => exit::FAILED,
+        (_, Verdict::Undecided) => exit::UNDECIDED,
+    }
+}
+
+/// The last result of each episode that has run, in the order of the list.
+pub fn result_lines(ledger: &Ledger) -> Vec<EpisodeLine> {
+    let line = |(episode, executions): (u64, &rtf_campaign::ledger::Executions)| {
+        let (outcome, reason) = executions.last.clone()?;
+        Some(EpisodeLine { episode, outcome: Some(outcome), reason, duration_us: 0 })
+    };
+    (1..).zip(ledger.episodes()).filter_map(line).collect()
+}
