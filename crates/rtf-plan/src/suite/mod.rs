@@ -55,5 +55,7 @@ pub use reader::ElementReader;
 pub use root::parse;
 pub use shared_settings::{SharedSettings, shared_settings};
 pub use source::{SourceMap, SourceText, Span, Spanned};
-pub use source_file::{MAX_SUITE_BYTES, UnreadableFile, is_suite_file, read_source};
+pub use source_file::{
+    MAX_SUITE_BYTES, UnreadableFile, is_campaign_file, is_suite_file, read_source,
+};
 pub use types::*;

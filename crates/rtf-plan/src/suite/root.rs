@@ -38,7 +38,13 @@ fn not_a_suite(source: &SourceText, root: Node<'_, '_>) -> Diagnostic {
         }
     };
     let label = source.label(ElementReader::tag(root), "`<suite>` is expected here");
-    Diagnostic::error("not-a-suite", message).label(label)
+    let problem = Diagnostic::error("not-a-suite", message).label(label);
+    match name.name() {
+        "campaign" => problem.hint(
+            "`rtf campaign run` runs all episodes of a campaign, `rtf run --episode ID` one of them",
+        ),
+        _ => problem,
+    }
 }
 
 fn read_suite(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> DeclaredSuite {

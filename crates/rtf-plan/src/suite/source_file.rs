@@ -11,15 +11,25 @@ use super::{SourceText, Span, prepass};
 /// The maximum size of a suite file: about 600 000 tests.
 pub const MAX_SUITE_BYTES: u64 = 64 * 1024 * 1024;
 
-/// The size of the prefix in which [`is_suite_file`] searches the first element.
+/// The size of the prefix in which [`begins_with`] searches the first element.
 const PREFIX_BYTES: u64 = 64 * 1024;
 
 /// Checks whether a file's first element is `<suite>`, even if the file is malformed.
 #[must_use]
 pub fn is_suite_file(path: &Path) -> bool {
+    begins_with(path, "suite")
+}
+
+/// Checks whether a file's first element is `<campaign>`, even if the file is malformed.
+#[must_use]
+pub fn is_campaign_file(path: &Path) -> bool {
+    begins_with(path, "campaign")
+}
+
+fn begins_with(path: &Path, element: &str) -> bool {
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(PREFIX_BYTES).read_to_end(&mut bytes));
-    read.is_ok() && prepass::root_name(&String::from_utf8_lossy(&bytes)) == Some("suite")
+    read.is_ok() && prepass::root_name(&String::from_utf8_lossy(&bytes)) == Some(element)
 }
 
 /// The reason why a file cannot be read.

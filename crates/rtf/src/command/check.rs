@@ -1,20 +1,40 @@
 //! `rtf check`: reports every problem of suites and plug-ins.
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::ArgMatches;
 
 use rtf_plan::plan::TestPlan;
+use rtf_plan::suite::is_campaign_file;
 
 use super::VerbResult;
 use crate::cli::InputArgs;
 use crate::diagnostics::count;
 use crate::request::{TestsRequest, config};
-use crate::{plan, terminal};
+use crate::{campaign, plan, terminal};
+
+/// Checks a campaign and its suite.
+fn check_campaign(file: &Path, args: &InputArgs) -> VerbResult {
+    let loaded = campaign::load(file)?;
+    loaded.print_warnings()?;
+    let mut request = TestsRequest::of_suite(&loaded.suite, &args.profile)?;
+    let episodes = loaded.episodes.episodes;
+    let count = count(episodes.len(), "episode");
+    request.set_episodes(loaded.suite, episodes);
+    plan::plan(&request)?.print_warnings()?;
+    terminal::stdout(|out| writeln!(out, "1 campaign, {count}: no errors"))?;
+    Ok(ExitCode::SUCCESS)
+}
 
 /// Checks suites and plug-ins.
 pub fn run(mut args: InputArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_results(&mut args, matches)?;
+    if let [file] = args.inputs.as_slice()
+        && is_campaign_file(file)
+    {
+        return check_campaign(file, &args);
+    }
     let request = TestsRequest::resolve(&args)?;
     let planned = plan::plan(&request)?;
     planned.print_warnings()?;

@@ -16,6 +16,7 @@ mod bad_outputs;
 mod bad_plugins;
 mod bad_suites;
 mod blocked_console;
+mod campaign;
 mod case_selection;
 mod cases;
 mod chaos;

@@ -1,0 +1,258 @@
+//! Campaigns: workers run episodes, and their results decide about the claim.
+
+use insta::assert_snapshot;
+use regex::Regex;
+use rtf_report::episode_results::EpisodeLine;
+
+use crate::support::{Finished, Folder, nothing_left, wait_until};
+
+/// Fails if the payload is 2 or more.
+const GRASP: &str = "TestCase = {}\nfunction TestCase.run()\n  \
+    local payload = tonumber(os.getenv('RTF_PARAM_PAYLOAD'))\n  \
+    rtf.check(payload < 2, 'too heavy')\nend\n";
+const SUITE: &str = "<suite name='grasp'><test param='${param:payload}'>Grasp.lua</test></suite>";
+/// Four of five values pass.
+const PAYLOAD: &str = "<parameter name='payload' distribution='uniform' low='0' high='2.5'/>";
+
+fn folder(suite: &str, campaign: &str) -> Folder {
+    let folder = Folder::new();
+    folder.file("Grasp.lua", GRASP).file("grasp.xml", suite);
+    folder.file("campaign.xml", &format!("<campaign suite='grasp.xml' {campaign}</campaign>"));
+    folder
+}
+
+fn fixed(episodes: u32, rate: &str) -> String {
+    let claim = format!("<claim require='rate &gt;= {rate}' confidence='0.95'/>");
+    format!("episodes='{episodes}'>{PAYLOAD}{claim}")
+}
+
+fn run(folder: &Folder, more: &[&str]) -> Finished {
+    folder.rtf(&[&["campaign", "run", "campaign.xml"], more].concat())
+}
+
+/// The final results, in the order of the episodes.
+fn results(folder: &Folder) -> Vec<EpisodeLine> {
+    let text = folder.read("rtf-results/campaigns/latest/results.jsonl");
+    text.lines().map(|line| serde_json::from_str(line).expect("a result")).collect()
+}
+
+/// The output without the times of the name of the directory.
+fn shown(folder: &Folder, finished: &Finished) -> String {
+    let name = Regex::new(r"campaigns/[0-9TZ-]+-[0-9a-f]+").expect("a pattern");
+    name.replace_all(&folder.shown(finished), "campaigns/[NAME]").into_owned()
+}
+
+#[test]
+fn a_claim_holds_or_not_or_needs_more_episodes() {
+    for (rate, code, verdict) in
+        [("0.5", 0, "passed"), ("0.95", 1, "failed"), ("0.8", 6, "undecided")]
+    {
+        let folder = folder(SUITE, &fixed(60, rate));
+        let finished = run(&folder, &["--workers", "2"]);
+        assert_eq!(finished.code, Some(code), "{}{}", finished.stdout, finished.stderr);
+        let expected = format!("claim rate >= {rate}: {verdict}\n");
+        assert!(finished.stdout.ends_with(&expected), "{}", finished.stdout);
+        assert!(nothing_left(&folder));
+    }
+}
+
+#[test]
+fn what_is_printed() {
+    let campaign = "seed='4' episodes='4'><parameter name='payload' distribution='choice' values='1 3'/>\
+        <claim require='rate >= 0.9' confidence='0.9'/>";
+    let folder = folder(SUITE, campaign);
+    assert_snapshot!(shown(&folder, &run(&folder, &[])), @"
+    exit code 6
+    ----- stdout
+    campaign campaign: 4 episodes, 1 worker, claim rate >= 0.9
+      failed    episode 1  payload=3
+                Grasp: too heavy
+      failed    episode 2  payload=3
+                Grasp: too heavy
+
+    4 of 4 episodes
+      passed            2
+      failed            2
+      rate 0.5000, between 0.0976 and 0.9024 (Clopper and Pearson, 90 % confidence)
+    results: rtf-results/campaigns/[RUN]
+    claim rate >= 0.9: undecided
+    ----- stderr
+    ");
+}
+
+#[test]
+fn the_results_do_not_depend_on_the_number_of_workers() {
+    let folder = folder(SUITE, &fixed(24, "0.5"));
+    let mut all = Vec::new();
+    for workers in ["1", "2", "4"] {
+        assert_eq!(run(&folder, &["-w", workers]).code, Some(0));
+        all.push(results(&folder));
+    }
+    assert_eq!(all[0].len(), 24);
+    assert!(all[0] == all[1] && all[0] == all[2], "{all:?}");
+}
+
+#[test]
+fn a_sequential_rule_ends_the_campaign_early() {
+    let campaign = format!(
+        "episodes='5000'>{PAYLOAD}<claim require='rate >= 0.5'/>\
+         <stop rule='sprt' low='0.3' high='0.7' alpha='0.01' beta='0.01'/>"
+    );
+    let folder = folder(SUITE, &campaign);
+    let finished = run(&folder, &["--workers", "2"]);
+    assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
+    assert!(finished.stdout.contains("  decided after "), "{}", finished.stdout);
+    assert!(results(&folder).len() < 1000);
+}
+
+const SIMULATOR: &str = "<suite name='grasp'>\
+    <fixture name='sim' type='process'>\
+      <command>sh -c 'echo \"start $RTF_PARAM_PAYLOAD\" >> log; echo up; exec sleep 1000'</command>\
+      <ready log='up'/>RESET\
+    </fixture>\
+    <test>Grasp.lua</test></suite>";
+const GRID: &str = ">\
+    <parameter name='payload' distribution='grid' values='0 1 2'/>\
+    <claim require='rate >= 0.1' confidence='0.6'/>";
+
+#[test]
+fn a_fixture_is_restarted_or_reset_for_each_episode() {
+    let restarted = folder(&SIMULATOR.replace("RESET", ""), GRID);
+    run(&restarted, &[]);
+    assert_eq!(restarted.read("log"), "start 0\nstart 1\nstart 2\n");
+    let reset = "<reset command=\"sh -c 'echo reset $RTF_PARAM_PAYLOAD $RTF_EPISODE >> log'\"/>";
+    let reset = folder(&SIMULATOR.replace("RESET", reset), GRID);
+    run(&reset, &[]);
+    assert_eq!(reset.read("log"), "start 0\nreset 1 2\nreset 2 3\n");
+    assert_eq!(results(&restarted), results(&reset));
+    assert!(nothing_left(&reset));
+}
+
+#[test]
+fn a_collapse_is_repeated_and_counted_apart() {
+    // The simulator dies in its first life.
+    let suite = "<suite name='grasp'><fixture name='sim' type='process' restarts='0'>\
+        <command>sh -c 'if mkdir first; then sleep 0.3; exit 9; fi; exec sleep 1000'</command>\
+        </fixture><test>Slow.lua</test></suite>";
+    let folder = folder(suite, GRID);
+    folder.file("Slow.lua", "TestCase = {}\nfunction TestCase.run() rtf.sleep(0.6) end\n");
+    let finished = run(&folder, &[]);
+    let outcomes: Vec<_> = results(&folder).iter().map(|line| line.outcome).collect();
+    let passed = Some(rtf_model::EpisodeOutcome::Passed);
+    assert_eq!(outcomes, [passed; 3], "{}", finished.stdout);
+    let counted = "1 executions were errors or collapses of the bench";
+    assert!(finished.stdout.contains(counted), "{}", finished.stdout);
+}
+
+#[test]
+fn a_bench_that_does_not_work_ends_the_campaign() {
+    let folder = folder(SUITE, &fixed(100, "0.5"));
+    folder.file("Grasp.lua", "TestCase = {}\nfunction TestCase.run() rtf.error('no arm') end\n");
+    let finished = run(&folder, &[]);
+    assert_eq!(finished.code, Some(6), "{}", finished.stdout);
+    assert!(finished.stdout.contains("  ended early: 10 executions"), "{}", finished.stdout);
+    assert!(nothing_left(&folder));
+}
+
+/// Each episode takes 50 ms.
+fn slow() -> Folder {
+    let folder = folder(SUITE, &fixed(60, "0.5"));
+    let test = GRASP.replace("  rtf.check", "  rtf.sleep(0.05)\n  rtf.check");
+    folder.file("Grasp.lua", &test);
+    folder
+}
+
+fn lines_of_first_worker(folder: &Folder) -> usize {
+    let file = folder.path().join("rtf-results/campaigns/latest/workers/1/latest/episodes.jsonl");
+    std::fs::read_to_string(file).map_or(0, |text| text.lines().count())
+}
+
+fn resume(folder: &Folder) {
+    let undisturbed = slow();
+    run(&undisturbed, &["--workers", "2"]);
+    let finished = folder.rtf(&[
+        "campaign",
+        "run",
+        "--workers",
+        "2",
+        "--resume",
+        "rtf-results/campaigns/latest",
+    ]);
+    assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
+    assert_eq!(results(folder), results(&undisturbed), "each episode has its result, once");
+    assert!(nothing_left(folder));
+}
+
+#[test]
+fn a_campaign_is_interrupted_and_resumed() {
+    let folder = slow();
+    let running = folder.start(&["campaign", "run", "campaign.xml", "--workers", "2"]);
+    wait_until("some episodes", || (lines_of_first_worker(&folder) > 10).then_some(()));
+    running.signal("INT");
+    let finished = running.finish();
+    assert_eq!(finished.code, Some(130), "{}", finished.stdout);
+    assert!(finished.stdout.contains("rtf campaign run --resume "), "{}", finished.stdout);
+    assert!(nothing_left(&folder));
+    resume(&folder);
+}
+
+#[test]
+fn a_campaign_that_is_killed_leaves_nothing_and_is_resumed() {
+    let folder = slow();
+    let running = folder.start(&["campaign", "run", "campaign.xml", "--workers", "2"]);
+    wait_until("some episodes", || (lines_of_first_worker(&folder) > 10).then_some(()));
+    running.signal("KILL");
+    running.finish();
+    wait_until("the end of the workers", || nothing_left(&folder).then_some(()));
+    resume(&folder);
+}
+
+#[test]
+fn an_episode_is_repeated_from_the_file_or_the_results() {
+    let folder = folder(SUITE, &fixed(12, "0.5"));
+    run(&folder, &[]);
+    let wanted = results(&folder);
+    let failed = wanted.iter().find(|line| line.reason.is_some()).expect("a failure");
+    let id = failed.episode.to_string();
+    for input in ["campaign.xml", "rtf-results/campaigns/latest"] {
+        let finished = folder.rtf(&["run", "--episode", &id, input]);
+        assert_eq!(finished.code, Some(1), "{}", finished.stderr);
+        assert!(finished.stdout.contains("too heavy"), "{}", finished.stdout);
+        // The same as an ordinary run.
+        assert_eq!(folder.rtf(&["run", "--rerun=failed"]).code, Some(1));
+    }
+    let unknown = folder.rtf(&["run", "--episode", "13", "campaign.xml"]);
+    assert_eq!(unknown.code, Some(2));
+    assert_snapshot!(unknown.stderr, @"
+    error: `campaign.xml` has no episode 13
+    hint: its episodes are 1 to 12
+    ");
+}
+
+#[test]
+fn mistakes_are_reported_before_anything_starts() {
+    let unknown = folder("<suite><test>Gone.lua</test></suite>", &fixed(5, "0.5"));
+    for args in [["check", "campaign.xml"].as_slice(), &["campaign", "run", "campaign.xml"]] {
+        let finished = unknown.rtf(args);
+        assert_eq!(finished.code, Some(2), "{}", finished.stdout);
+        assert!(finished.stderr.contains("`Gone.lua`"), "{}", finished.stderr);
+    }
+    assert!(!unknown.path().join("rtf-results").exists());
+    let valid = folder(SUITE, &fixed(5, "0.5"));
+    assert_snapshot!(valid.rtf(&["check", "campaign.xml"]).stdout, @"1 campaign, 5 episodes: no errors");
+    assert_snapshot!(valid.rtf(&["run", "campaign.xml"]).stderr, @"
+    error: `campaign.xml` is not a suite: its first element is `<campaign>`
+     --> campaign.xml:1:1
+      |
+    1 | <campaign suite='grasp.xml' episodes='5'><parameter name='payload' distribution='uniform' low='0' high='2.5'/><claim require='rate &g...
+      | ^^^^^^^^^ `<suite>` is expected here
+      |
+      = help: `rtf campaign run` runs all episodes of a campaign, `rtf run --episode ID` one of them
+
+    1 error; nothing was started
+    ");
+    assert_snapshot!(valid.rtf(&["campaign", "run", "--resume", "."]).stderr, @"
+    error: `.` is not a campaign's directory: No such file or directory (os error 2)
+    hint: `rtf campaign run` prints the directory of its results
+    ");
+}
