@@ -201,7 +201,7 @@ fn hooks_belong_to_suites_and_have_unique_names() {
       3:47 RTF_HOOK_TEST
     unknown-element: unknown element `<hook>`
       4:15 <hook not known in `<fixture>`
-      note: `<fixture>` can have the elements `env`, `provide`
+      note: `<fixture>` can have the elements `env`, `provide`, `reset`
       hint: `<hook>` is written directly in `<suite>`
     unknown-element: unknown element `<hook>`
       5:24 <hook not known in `<test>`

@@ -281,14 +281,14 @@ fn settings_that_an_attached_fixture_cannot_have_are_reported() {
       1:8 <fixture
     unknown-element: unknown element `<command>`
       2:48 <command not known in `<fixture attach="true">`
-      note: `<fixture attach="true">` can have the elements `ready`, `alive`, `env`, `provide`
+      note: `<fixture attach="true">` can have the elements `ready`, `alive`, `reset`, `env`, `provide`
     no-output: `rtf` cannot read the output of an attached process
       3:13 up
     no-output: `rtf` cannot read the output of an attached process
       3:34 down
     unknown-element: unknown element `<stop>`
       3:41 <stop not known in `<fixture attach="true">`
-      note: `<fixture attach="true">` can have the elements `ready`, `alive`, `env`, `provide`
+      note: `<fixture attach="true">` can have the elements `ready`, `alive`, `reset`, `env`, `provide`
     wrong-type: only `type="process"` can be attached
       4:10 attach
       hint: a plug-in that only watches needs no `attach`: it has a `check`, and no `setup`

@@ -1,8 +1,8 @@
 //! Console output during the run.
 
 use rtf_model::{
-    Event, EventKind, FixtureId, LeakedProcess, Manifest, Message, MessageKind, Micros, Record,
-    Source, StopCause, SuiteId, SuitePrepared, TestId, Verdict,
+    Episode, Event, EventKind, FixtureId, LeakedProcess, Manifest, Message, MessageKind, Micros,
+    Parameter, Record, Source, StopCause, SuiteId, SuitePrepared, TestId, Verdict,
 };
 
 use super::page::ConsoleLines;
@@ -53,6 +53,17 @@ pub(super) fn show(
         }
         EventKind::FixtureBroken { fixture, reason } => {
             live.broken(page, *fixture, reason);
+        }
+        EventKind::FixtureReset { fixture, problem: Some(problem) } => {
+            page.remark((LOUD, "not reset"), &live.fixture(*fixture));
+            page.detail(Tone::Bad, &escape::line(problem));
+        }
+        EventKind::EpisodeStarted(started) if !quiet => {
+            let Episode { id, seed, parameters } = &started.episode;
+            let value = |it: &Parameter| format!("{}={}", it.name, it.value);
+            let values: Vec<_> = parameters.iter().map(value).collect();
+            let text = format!("{id}, seed {seed}: {}", values.join(" "));
+            page.remark((BOLD, "episode"), &escape::line(&text));
         }
         EventKind::Message { source: Source::Fixture(fixture), message, .. } => {
             live.fixture_message(page, *fixture, message);

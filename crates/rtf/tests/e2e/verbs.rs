@@ -93,6 +93,7 @@ fn help_lists_the_exit_codes() {
 
     Commands:
       run          Run suites and plug-ins
+      campaign     Run a suite many times with varied parameters, and judge a claim about its pass rate
       watch        Rerun the tests whenever a suite, a plug-in or an `rtf.toml` changes
       check        Report the problems of suites and plug-ins without running them
       list         List the tests that `rtf run` would run
@@ -137,6 +138,7 @@ fn help_lists_the_exit_codes() {
       3    rtf itself failed, for example because it could not write a report
       4    a hook failed: the robot may not be in a safe state
       5    the runner died (SIGKILL, out of memory, a bug); its guard stopped everything
+      6    a campaign needs more episodes to decide about its claim
       128+N  signal N ended the run (130 for Ctrl-C)
     ----- stderr
     ");
@@ -208,6 +210,10 @@ fn help_of_run() {
           --shard-by <METHOD>  Assign tests to shards by `hash` of their names, by `count`, or by past
                                durations: `duration=history`, `duration=RUN`, or `duration=FILE.json`
                                from `rtf history slow` [default: hash]
+          --episode <ID>       Run only episode ID of a campaign: FILE is the campaign, or the directory
+                               of its results
+          --episodes <LIST>    Run the suite FILE once for each episode of the list LIST, see `rtf
+                               campaign episodes`
           --dry-run            List the selected tests without running them
 
     Repetition:
@@ -301,6 +307,9 @@ fn man_writes_a_page_for_each_verb() {
     let verbs = [
         "ada-dir",
         "ament-dir",
+        "campaign-episodes",
+        "campaign-run",
+        "campaign",
         "check",
         "cmake-dir",
         "completions",
