@@ -6,6 +6,7 @@
 //! messages, the console omits detail and shows how much.
 
 mod case_summary;
+mod details;
 mod failed_tests;
 mod fixture_values;
 mod hooks;
@@ -26,6 +27,7 @@ use rtf_model::{Event, Micros, Record};
 
 pub(crate) use progress::{Bar, BarState};
 
+pub use details::drop_details;
 pub use options::{ConsoleOptions, RerunCommand, Verbosity, rerun_suite};
 
 use crate::background_writer::BackgroundWriter;

@@ -7,13 +7,15 @@ mod lines;
 mod page;
 mod presence;
 mod reader;
+mod section;
 mod writer;
 
 pub use event_line::{EventHeader, parse_event};
 pub use lines::{JournalLines, NewerVersion};
 pub use reader::{
-    JournalError, Stored, find_damage, read, read_from, read_lines, read_with, replay,
+    JournalError, Stored, find_damage, read, read_events, read_from, read_lines, read_with, replay,
 };
+pub use section::{LinePosition, Section};
 pub use writer::Journal;
 
 use std::fs::{File, TryLockError};

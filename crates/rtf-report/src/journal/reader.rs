@@ -50,6 +50,12 @@ pub enum JournalError {
         /// Its version.
         found: u32,
     },
+    /// It is not what it was when it was read before.
+    #[error("the journal `{}` has changed since it was read", path.display())]
+    Changed {
+        /// Which.
+        path: PathBuf,
+    },
     /// A report made from it could not be written.
     #[error(transparent)]
     Report(#[from] ReportError),
@@ -79,7 +85,7 @@ pub fn read_from(path: &Path, journal: impl BufRead) -> Result<Stored, JournalEr
 /// As for [`read`]; and the reporter's own.
 pub fn replay(path: &Path, reporter: &mut dyn Reporter) -> Result<Stored, JournalError> {
     let damages = find_damage(path)?;
-    let stored = Reading::new(path, |_, event, record| reporter.event(event, record))
+    let stored = Reading::new(path, |_, event, record| reporter.event(&event, record))
         .with_damages(damages)
         .all()?;
     reporter.finish(&stored.record)?;
@@ -95,7 +101,23 @@ pub fn read_with(
     path: &Path,
     mut visit: impl FnMut(&Event, &Record) -> Result<(), ReportError>,
 ) -> Result<Stored, JournalError> {
-    Reading::new(path, |_, event, record| visit(event, record)).all()
+    Reading::new(path, |_, event, record| visit(&event, record)).all()
+}
+
+/// Reads a journal into a [lean](Record::lean) record and calls `visit` with each line that is
+/// an event, without its end, and with the event. Holds one line at a time.
+///
+/// # Errors
+/// As for [`read`].
+pub fn read_events(
+    path: &Path,
+    mut visit: impl FnMut(&[u8], Event),
+) -> Result<Stored, JournalError> {
+    let visit = |line: &[u8], event, _: &Record| {
+        visit(line, event);
+        Ok(())
+    };
+    Reading::new(path, visit).with_record(Record::lean()).all()
 }
 
 /// Reads a journal and calls `visit` with each line that is an event, as it is
@@ -134,18 +156,18 @@ fn is_intact(path: &Path) -> io::Result<bool> {
     Ok(true)
 }
 
-fn open(path: &Path) -> io::Result<BufReader<File>> {
+pub(super) fn open(path: &Path) -> io::Result<BufReader<File>> {
     Ok(BufReader::with_capacity(64 * 1024, File::open(path)?))
 }
 
-enum RawLine<'a> {
+pub(super) enum RawLine<'a> {
     /// A line without its end.
     Whole(&'a [u8]),
     /// What stands after the last end of a line.
     Torn(&'a [u8]),
 }
 
-fn next_line<'a>(
+pub(super) fn next_line<'a>(
     file: &mut impl BufRead,
     text: &'a mut Vec<u8>,
 ) -> io::Result<Option<RawLine<'a>>> {
@@ -155,7 +177,7 @@ fn next_line<'a>(
     Ok((read > 0).then(line))
 }
 
-fn unreadable(path: &Path, source: io::Error) -> JournalError {
+pub(super) fn unreadable(path: &Path, source: io::Error) -> JournalError {
     JournalError::Read { path: path.to_owned(), source }
 }
 
@@ -168,10 +190,15 @@ struct Reading<'a, V> {
     is_damage_known: bool,
 }
 
-impl<'a, V: FnMut(&[u8], &Event, &Record) -> Result<(), ReportError>> Reading<'a, V> {
+impl<'a, V: FnMut(&[u8], Event, &Record) -> Result<(), ReportError>> Reading<'a, V> {
     fn new(path: &'a Path, visit: V) -> Self {
         let stored = Stored { record: Record::default(), torn: false };
         Self { path, visit, stored, lines: JournalLines::default(), is_damage_known: false }
+    }
+
+    fn with_record(mut self, record: Record) -> Self {
+        self.stored.record = record;
+        self
     }
 
     fn with_damages(mut self, damages: Vec<Damage>) -> Self {
@@ -220,6 +247,6 @@ impl<'a, V: FnMut(&[u8], &Event, &Record) -> Result<(), ReportError>> Reading<'a
             record.damages.truncate(known);
         }
         let Some(event) = event else { return Ok(()) };
-        (self.visit)(line, &event, record).map_err(JournalError::from)
+        (self.visit)(line, event, record).map_err(JournalError::from)
     }
 }

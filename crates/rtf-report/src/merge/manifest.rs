@@ -3,17 +3,21 @@
 use jiff::Timestamp;
 use rtf_model::{Manifest, RunStarted};
 
-use super::{MergeInput, MergeProblem, count, started};
+use super::{MergeProblem, count};
 
-/// What the runs were asked for together.
-#[derive(Debug)]
-pub(super) struct MergedManifest {
-    pub manifest: Manifest,
-    /// Parts of divisions that are not among the runs.
-    pub missing: Vec<MergeProblem>,
+/// The beginnings of the runs, as far as the merged run needs them.
+#[derive(Debug, Default)]
+pub(super) struct JoinedManifests {
+    divisions: Vec<Division>,
+    ids: Vec<String>,
+    /// The time of day that is the earliest; of those that are none, the first.
+    pub started_at: String,
+    /// That of the first run.
+    pub working_dir: String,
 }
 
 /// Runs that were asked for the same but for their part.
+#[derive(Debug)]
 struct Division {
     /// Without a part.
     manifest: Manifest,
@@ -22,26 +26,20 @@ struct Division {
     tests: u32,
 }
 
-/// Joins what the runs were asked for; `tests` is how many they have together.
-pub(super) fn join(parts: &[MergeInput], tests: usize) -> MergedManifest {
-    let divisions = divisions(parts);
-    let missing = divisions.iter().filter_map(Division::missing).collect();
-    let flaky_fails = divisions.iter().any(|division| division.manifest.flaky_fails);
-    let no_skips = divisions.iter().any(|division| division.manifest.no_skips);
-    // What was asked for in different ways cannot be asked for again as one.
-    let manifest = match divisions.as_slice() {
-        [one] => Manifest { shard_assignment: None, ..one.manifest.clone() },
-        _ => Manifest { flaky_fails, no_skips, ..Manifest::default() },
-    };
-    let selected_from =
-        if manifest.selected_from > count(tests) { manifest.selected_from } else { 0 };
-    let ids = parts.iter().filter_map(started).map(RunStarted::id).collect();
-    MergedManifest { manifest: Manifest { selected_from, parts: ids, ..manifest }, missing }
-}
+impl JoinedManifests {
+    /// Adds the next run.
+    pub fn add(&mut self, run: &RunStarted) {
+        if self.ids.is_empty() {
+            self.started_at = run.started_at.clone();
+            self.working_dir = run.working_dir.clone();
+        } else if instant(&run.started_at) < instant(&self.started_at) {
+            self.started_at = run.started_at.clone();
+        }
+        self.ids.push(run.id());
+        self.add_to_division(run);
+    }
 
-fn divisions(parts: &[MergeInput]) -> Vec<Division> {
-    let mut divisions: Vec<Division> = Vec::new();
-    for run in parts.iter().filter_map(started) {
+    fn add_to_division(&mut self, run: &RunStarted) {
         let shard = run.manifest.shard.as_deref().and_then(|shard| shard.split_once('/'));
         let shard = shard.and_then(|(part, of)| Some((part.parse().ok()?, of.parse().ok()?)));
         let (part, of) = shard.unzip();
@@ -59,18 +57,41 @@ fn divisions(parts: &[MergeInput]) -> Vec<Division> {
             _ => asked,
         };
         let same = |division: &&mut Division| division.manifest == manifest && division.of == of;
-        match divisions.iter_mut().find(same) {
+        match self.divisions.iter_mut().find(same) {
             Some(division) => {
                 division.parts.extend(part);
                 division.tests += run.tests;
             }
             None => {
                 let (parts, tests) = (part.into_iter().collect(), run.tests);
-                divisions.push(Division { manifest, of, parts, tests });
+                self.divisions.push(Division { manifest, of, parts, tests });
             }
         }
     }
-    divisions
+
+    /// Parts of divisions that are not among the runs.
+    pub fn missing(&self) -> impl Iterator<Item = MergeProblem> {
+        self.divisions.iter().filter_map(Division::missing)
+    }
+
+    /// The manifest of the merged run, which has this number of tests.
+    pub fn manifest(&self, tests: usize) -> Manifest {
+        let any = |is_set: fn(&Manifest) -> bool| {
+            self.divisions.iter().any(|division| is_set(&division.manifest))
+        };
+        // What was asked for in different ways cannot be asked for again as one.
+        let manifest = match self.divisions.as_slice() {
+            [one] => Manifest { shard_assignment: None, ..one.manifest.clone() },
+            _ => Manifest {
+                flaky_fails: any(|manifest| manifest.flaky_fails),
+                no_skips: any(|manifest| manifest.no_skips),
+                ..Manifest::default()
+            },
+        };
+        let selected_from =
+            if manifest.selected_from > count(tests) { manifest.selected_from } else { 0 };
+        Manifest { selected_from, parts: self.ids.clone(), ..manifest }
+    }
 }
 
 impl Division {
@@ -85,9 +106,7 @@ impl Division {
     }
 }
 
-/// The time of day that is the earliest; of those that are none, the first.
-pub(super) fn earliest<'a>(times: impl Iterator<Item = &'a str>) -> String {
-    let instant =
-        |time: &&str| time.parse::<Timestamp>().map_or((true, Timestamp::MAX), |at| (false, at));
-    times.min_by_key(instant).unwrap_or_default().to_owned()
+/// Orders times of day; what is none comes last.
+fn instant(time: &str) -> (bool, Timestamp) {
+    time.parse().map_or((true, Timestamp::MAX), |at| (false, at))
 }

@@ -52,25 +52,6 @@ impl Renumbered {
 }
 
 impl MergedPlan {
-    /// Joins plans; returns a problem for each test that more than one run has.
-    pub fn join(parts: &[MergeInput]) -> (Self, Vec<MergeProblem>) {
-        let mut joining = Joining::default();
-        for (number, part) in parts.iter().enumerate() {
-            joining.plan.maps.push(Map::default());
-            for event in &part.events {
-                match &event.kind {
-                    EventKind::SuitePlanned(plan) => joining.suite(plan),
-                    EventKind::FixturePlanned(plan) => joining.fixture(plan),
-                    EventKind::HookPlanned(plan) => joining.hook(plan),
-                    EventKind::TestPlanned(plan) => joining.test(plan, number, parts),
-                    EventKind::SuiteStarted { .. } => break,
-                    _ => {}
-                }
-            }
-        }
-        (joining.plan.numbered(), joining.problems)
-    }
-
     fn numbered(mut self) -> Self {
         let fixtures = Renumbered::sort(&mut self.fixtures, |fixture| fixture.suite);
         let hooks = Renumbered::sort(&mut self.hooks, |hook| hook.suite);
@@ -86,24 +67,31 @@ impl MergedPlan {
         self
     }
 
-    /// The events that tell it.
+    /// Its events, suite by suite.
     pub fn events(&self) -> impl Iterator<Item = EventKind> {
         self.suites.iter().flat_map(|suite| {
             let id = suite.suite;
-            let fixtures = self.fixtures.iter().filter(move |fixture| fixture.suite == id);
-            let hooks = self.hooks.iter().filter(move |hook| hook.suite == id);
-            let tests = self.tests.iter().filter(move |test| test.suite == id);
+            let fixtures = of_suite(&self.fixtures, id, |fixture| fixture.suite);
+            let hooks = of_suite(&self.hooks, id, |hook| hook.suite);
+            let tests = of_suite(&self.tests, id, |test| test.suite);
             std::iter::once(EventKind::SuitePlanned(suite.clone()))
-                .chain(fixtures.cloned().map(EventKind::FixturePlanned))
-                .chain(hooks.cloned().map(EventKind::HookPlanned))
-                .chain(tests.cloned().map(EventKind::TestPlanned))
+                .chain(fixtures.iter().cloned().map(EventKind::FixturePlanned))
+                .chain(hooks.iter().cloned().map(EventKind::HookPlanned))
+                .chain(tests.iter().cloned().map(EventKind::TestPlanned))
         })
     }
 }
 
-/// A plan that grows; its ids are not the last ones.
-#[derive(Default)]
-struct Joining {
+/// The entries of a suite in a list that is sorted by suite.
+fn of_suite<T>(list: &[T], id: SuiteId, suite: impl Fn(&T) -> SuiteId) -> &[T] {
+    let begin = list.partition_point(|entry| suite(entry) < id);
+    let rest = &list[begin..];
+    &rest[..rest.partition_point(|entry| suite(entry) == id)]
+}
+
+/// Plans that are joined, one run after the other; the ids are not the last ones.
+#[derive(Debug, Default)]
+pub(super) struct JoinedPlans {
     plan: MergedPlan,
     /// The suites by their names and files.
     suites: HashMap<(String, String), SuiteId>,
@@ -111,10 +99,48 @@ struct Joining {
     hooks: HashMap<(SuiteId, String), HookId>,
     /// With the run that has it.
     tests: HashMap<(SuiteId, String), usize>,
-    problems: Vec<MergeProblem>,
+    /// Tests that two runs have: with their suites, and the places of the runs.
+    duplicates: Vec<(String, [usize; 2])>,
 }
 
-impl Joining {
+impl JoinedPlans {
+    /// The next run begins; answers its place.
+    pub fn begin_part(&mut self) -> usize {
+        self.plan.maps.push(Map::default());
+        self.plan.maps.len() - 1
+    }
+
+    /// Adds a plan of the run that began last; other events change nothing.
+    pub fn add(&mut self, kind: &EventKind) {
+        match kind {
+            EventKind::SuitePlanned(plan) => self.suite(plan),
+            EventKind::FixturePlanned(plan) => self.fixture(plan),
+            EventKind::HookPlanned(plan) => self.hook(plan),
+            EventKind::TestPlanned(plan) => self.test(plan),
+            _ => {}
+        }
+    }
+
+    /// The plan so far. Only the ids of suites are final.
+    pub fn plan(&self) -> &MergedPlan {
+        &self.plan
+    }
+
+    /// A problem for each test that more than one of these runs has.
+    pub fn duplicates(&self, runs: &[MergeInput]) -> Vec<MergeProblem> {
+        let problem = |(test, [first, second]): &(String, [usize; 2])| MergeProblem::Twice {
+            test: test.clone(),
+            first: runs[*first].name.clone(),
+            second: runs[*second].name.clone(),
+        };
+        self.duplicates.iter().map(problem).collect()
+    }
+
+    /// The plan of all runs.
+    pub fn finish(self) -> MergedPlan {
+        self.plan.numbered()
+    }
+
     fn map(&mut self) -> &mut Map {
         let last = self.plan.maps.len() - 1;
         &mut self.plan.maps[last]
@@ -176,16 +202,12 @@ impl Joining {
         self.map().hooks.push(id);
     }
 
-    fn test(&mut self, plan: &TestPlanned, part: usize, parts: &[MergeInput]) {
-        let suite = self.last_suite();
+    fn test(&mut self, plan: &TestPlanned) {
+        let (suite, part) = (self.last_suite(), self.plan.maps.len() - 1);
         let first = *self.tests.entry((suite, plan.name.clone())).or_insert(part);
         if first != part {
-            let suite = &self.plan.suites[suite.index()].name;
-            self.problems.push(MergeProblem::Twice {
-                test: format!("{suite}/{}", plan.name),
-                first: parts[first].name.clone(),
-                second: parts[part].name.clone(),
-            });
+            let test = format!("{}/{}", self.plan.suites[suite.index()].name, plan.name);
+            self.duplicates.push((test, [first, part]));
         }
         let id = TestId(count(self.plan.tests.len()));
         self.plan.tests.push(TestPlanned { suite, ..plan.clone() });

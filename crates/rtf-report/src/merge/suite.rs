@@ -2,31 +2,32 @@
 
 use std::collections::BTreeMap;
 
-use rtf_model::{EventKind, FixtureId, HookId, Micros, SuiteId};
+use rtf_model::{EventKind, FixtureId, HookId, SuiteId, SuitePrepared};
 
 use super::Merging;
+use super::piece::{Parts, Piece};
+use crate::journal::JournalError;
 
 /// The reason of fixtures and hooks that the death of a runner left open.
 const DIED: &str = "the runner died";
 
-/// The events of a suite, with their new ids.
-#[derive(Debug)]
-pub(super) struct MergedSuite {
-    id: SuiteId,
-    /// One for each run that has this suite.
-    pieces: Vec<Piece>,
-}
-
-/// What one run says of a suite, with the times of the run.
+/// A suite of the merged run.
 #[derive(Debug, Default)]
-pub(super) struct Piece {
-    events: Vec<(Micros, EventKind)>,
+pub(super) struct MergedSuite {
+    /// Its waits for locks, with their new ids.
+    pub waiting: Vec<EventKind>,
+    /// The private resources of the first part, with their new ids.
+    pub prepared: Option<SuitePrepared>,
+    /// One for each run that has this suite.
+    pub pieces: Vec<Piece>,
 }
 
 /// The states of fixtures and hooks, and events that are delayed until no
 /// part follows that starts them again.
 #[derive(Debug, Default)]
-struct Lives {
+pub(super) struct Lives {
+    /// Whether several runs have the suite.
+    pub is_joined: bool,
     fixtures: BTreeMap<FixtureId, Life>,
     open_hooks: Vec<HookId>,
     /// Why fixtures broke, in each part in which they did.
@@ -49,7 +50,7 @@ enum Stage {
 
 impl Lives {
     /// Follows an event; a fixture's starts count up over the parts.
-    fn follow(&mut self, kind: &mut EventKind) {
+    pub fn follow(&mut self, kind: &mut EventKind) {
         match kind {
             EventKind::FixtureStarting { fixture, attempt } => {
                 let life = self.fixtures.entry(*fixture).or_default();
@@ -69,8 +70,16 @@ impl Lives {
         }
     }
 
+    /// A fixture broke in a part. The next one may start it again.
+    pub fn broke(&mut self, fixture: FixtureId, reason: String) {
+        let reasons = self.broken.entry(fixture).or_default();
+        if !reasons.contains(&reason) {
+            reasons.push(reason);
+        }
+    }
+
     /// The ends of what a runner that died left open.
-    fn ends(&self) -> Vec<EventKind> {
+    pub fn ends(&self) -> Vec<EventKind> {
         let problem = || Some(DIED.to_owned());
         let hooks = self.open_hooks.iter();
         let mut ends: Vec<_> =
@@ -89,85 +98,30 @@ impl Lives {
 }
 
 impl MergedSuite {
-    /// A suite of which nothing is known yet.
-    pub fn new(id: SuiteId) -> Self {
-        Self { id, pieces: Vec::new() }
-    }
-
-    /// Another run has this suite.
-    pub fn begin_piece(&mut self) {
-        self.pieces.push(Piece::default());
-    }
-
-    /// The next event of the last run that has this suite.
-    pub fn add(&mut self, at: Micros, kind: EventKind) {
-        if let Some(piece) = self.pieces.last_mut() {
-            piece.events.push((at, kind));
-        }
-    }
-
     /// Writes the suite, which starts and finishes once.
-    pub fn write(self, out: &mut Merging) {
-        let pieces = &self.pieces;
-        let events = || pieces.iter().flat_map(|piece| piece.events.iter().map(|(_, kind)| kind));
-        let waiting = |kind: &&EventKind| matches!(kind, EventKind::SuiteWaiting { .. });
-        events().filter(waiting).for_each(|kind| out.push(kind.clone()));
-        if !events().any(|kind| matches!(kind, EventKind::SuiteStarted { .. })) {
-            return;
+    pub fn write(
+        self,
+        suite: SuiteId,
+        parts: &Parts<'_>,
+        out: &mut Merging<'_>,
+    ) -> Result<(), JournalError> {
+        self.waiting.into_iter().try_for_each(|kind| out.push(kind))?;
+        if self.pieces.iter().all(|piece| piece.started.is_none()) {
+            return Ok(());
         }
-        out.push(EventKind::SuiteStarted { suite: self.id });
-        // The private resources of the first part are kept.
-        let prepared = events().find(|kind| matches!(kind, EventKind::SuitePrepared(_)));
-        prepared.into_iter().for_each(|kind| out.push(kind.clone()));
-        let is_whole = pieces.iter().all(Piece::is_whole);
-        let is_joined = pieces.len() > 1;
-        let mut lives = Lives::default();
-        for piece in self.pieces {
-            piece.write(out, &mut lives, is_joined);
+        out.push(EventKind::SuiteStarted { suite })?;
+        let prepared = self.prepared.map(EventKind::SuitePrepared);
+        prepared.into_iter().try_for_each(|kind| out.push(kind))?;
+        let mut lives = Lives { is_joined: self.pieces.len() > 1, ..Lives::default() };
+        for piece in &self.pieces {
+            piece.write((parts, suite), &mut lives, out)?;
         }
         for (fixture, reasons) in lives.broken {
-            out.push(EventKind::FixtureBroken { fixture, reason: reasons.join("; later: ") });
+            out.push(EventKind::FixtureBroken { fixture, reason: reasons.join("; later: ") })?;
         }
-        if is_whole {
-            out.push(EventKind::SuiteFinished { suite: self.id });
-        }
-    }
-}
-
-impl Piece {
-    fn is_whole(&self) -> bool {
-        self.events.iter().any(|(_, kind)| matches!(kind, EventKind::SuiteFinished { .. }))
-    }
-
-    /// When the suite started, in the times of the run.
-    fn started(&self) -> Option<Micros> {
-        let start = |kind: &EventKind| matches!(kind, EventKind::SuiteStarted { .. });
-        self.events.iter().find(|(_, kind)| start(kind)).map(|(at, _)| *at)
-    }
-
-    fn write(self, out: &mut Merging, lives: &mut Lives, is_joined: bool) {
-        let Some(began) = self.started() else { return };
-        for mut end in lives.ends() {
-            lives.follow(&mut end);
-            out.push(end);
-        }
-        let begins = out.now;
-        for (at, mut kind) in self.events {
-            lives.follow(&mut kind);
-            out.now = Micros(begins.0 + at.0.saturating_sub(began.0));
-            match kind {
-                EventKind::SuiteWaiting { .. }
-                | EventKind::SuiteStarted { .. }
-                | EventKind::SuitePrepared(_)
-                | EventKind::SuiteFinished { .. } => {}
-                EventKind::FixtureBroken { fixture, reason } if is_joined => {
-                    let reasons = lives.broken.entry(fixture).or_default();
-                    if !reasons.contains(&reason) {
-                        reasons.push(reason);
-                    }
-                }
-                kind => out.push(kind),
-            }
+        match self.pieces.iter().all(|piece| piece.is_whole) {
+            true => out.push(EventKind::SuiteFinished { suite }),
+            false => Ok(()),
         }
     }
 }

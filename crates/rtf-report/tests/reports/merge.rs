@@ -3,10 +3,12 @@
 mod runs;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use proptest::prelude::*;
 use rtf_model::{
-    Event, EventKind, FixtureRecord, Micros, OrderChecker, Record, SuiteRecord, TestId, Verdict,
+    Event, EventKind, FixtureRecord, LineSealer, Micros, OrderChecker, Record, SuiteRecord, TestId,
+    Verdict,
 };
 use rtf_report::merge::{Header, MergeInput, MergeProblem, attachment_path, merge};
 
@@ -17,11 +19,30 @@ fn header() -> Header {
     Header { run, rtf, command: vec!["rtf".into(), "merge".into()] }
 }
 
+/// Writes each part to a journal, as a runner does.
+fn journal((number, events): (usize, Vec<Event>), dir: &Path) -> MergeInput {
+    let (mut sealer, mut text) = (LineSealer::default(), Vec::new());
+    for event in events {
+        let start = text.len();
+        serde_json::to_writer(&mut text, &event).unwrap();
+        sealer.seal(&mut text, start);
+    }
+    let journal = dir.join(format!("{number}.jsonl"));
+    std::fs::write(&journal, text).unwrap();
+    MergeInput { name: format!("run-{number}"), journal }
+}
+
 fn merged(parts: impl IntoIterator<Item = Vec<Event>>) -> Result<Record, Vec<MergeProblem>> {
-    let part = |(number, events)| MergeInput { name: format!("run-{number}"), events };
-    let events = merge((1..).zip(parts).map(part).collect(), false)?.events(header());
-    let mut order = OrderChecker::default();
-    events.iter().for_each(|event| order.check(event).unwrap());
+    let dir = tempfile::tempdir().unwrap();
+    let parts = (1..).zip(parts).map(|part| journal(part, dir.path())).collect();
+    let (mut events, mut order) = (Vec::new(), OrderChecker::default());
+    merge(parts, false)?
+        .write(header(), &mut |event, _| {
+            order.check(event).unwrap();
+            events.push(event.clone());
+            Ok(())
+        })
+        .unwrap();
     order.finish().unwrap();
     Ok(record(&events))
 }
@@ -140,6 +161,45 @@ fn a_part_that_is_missing_is_told_unless_it_has_no_test() {
     let problems = merged([part(2)]).unwrap_err();
     let told: Vec<_> = problems.iter().map(ToString::to_string).collect();
     assert_eq!(told, ["not all of 3 parts are there: 1/3, 2/3 are missing"]);
+}
+
+/// Also the second journal that cannot be used is read and reported.
+#[test]
+fn all_journals_that_cannot_be_used_are_told() {
+    let part = |part| Run::of(&[single(0), single(1)], Some(part)).unwrap();
+    let mut jumbled = part(0);
+    jumbled.retain(|event| !matches!(event.kind, EventKind::TestStarted { .. }));
+    (0..).zip(&mut jumbled).for_each(|(seq, event)| event.seq = seq);
+    let mut damaged = part(1);
+    damaged.remove(1);
+    let problems = merged([jumbled, damaged]).unwrap_err();
+    let told: Vec<_> = problems.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        told,
+        [
+            "the journal of `run-1` is not in order",
+            "the journal of `run-2` is damaged: line 2: found event 2 where event 1 is expected",
+        ]
+    );
+}
+
+#[test]
+fn a_journal_that_changes_during_the_merge_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = Run::of(&[single(0)], None).unwrap();
+    let part = journal((1, run.clone()), dir.path());
+    let path = part.journal.clone();
+    let merged = merge(vec![part], false).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, text.replace("suite-started", "suite-restart")).unwrap();
+    let mut events = 0;
+    let error = merged.write(header(), &mut |_, _| {
+        events += 1;
+        Ok(())
+    });
+    let error = error.unwrap_err().to_string();
+    assert!(error.ends_with("1.jsonl` has changed since it was read"), "{error}");
+    assert!(events < run.len());
 }
 
 #[test]

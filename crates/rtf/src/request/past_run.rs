@@ -43,6 +43,10 @@ pub fn unreadable(error: JournalError) -> Failure {
 pub fn refuse_damaged(run: &str, record: &Record) -> Result<(), Failure> {
     let Some(damage) = record.damages.first() else { return Ok(()) };
     let error = format!("the journal of `{run}` is damaged: {damage}");
-    let hint = format!("`rtf show {}` shows the readable part", shell_words::quote(run));
-    Err(Failure::input(error).hint(hint))
+    Err(Failure::input(error).hint(damage_hint(run)))
+}
+
+/// What to do about a damaged journal.
+pub fn damage_hint(run: &str) -> String {
+    format!("`rtf show {}` shows the readable part", shell_words::quote(run))
 }

@@ -99,7 +99,8 @@ impl Run {
         };
         let now = u64::from(part.unwrap_or(0)) * 1000;
         let mut run = Self { events: Vec::new(), now, tests_served: 0 };
-        run.push(run_started(tests as u32, manifest));
+        let with_tests = suites.iter().filter(|suite| suite.tests.iter().any(chosen)).count();
+        run.push(run_started((with_tests as u32, tests as u32), manifest));
         let mut planned = Vec::new();
         for (number, suite) in suites.iter().enumerate() {
             if suite.tests.iter().any(chosen) {
@@ -321,7 +322,7 @@ struct Planned<'a> {
     tests: Vec<&'a Test>,
 }
 
-fn run_started(tests: u32, manifest: Manifest) -> EventKind {
+fn run_started((suites, tests): (u32, u32), manifest: Manifest) -> EventKind {
     EventKind::RunStarted(RunStarted {
         version: 1,
         run: "run".into(),
@@ -329,7 +330,7 @@ fn run_started(tests: u32, manifest: Manifest) -> EventKind {
         started_at: "2026-11-21T06:30:12+00:00".into(),
         command: vec!["rtf".into()],
         working_dir: "/robot".into(),
-        suites: 1,
+        suites,
         tests,
         manifest: Box::new(manifest),
     })
