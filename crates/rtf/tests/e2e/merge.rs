@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use insta::assert_snapshot;
 use rtf_model::{EventKind, FixtureState, Manifest, Phase, Record, TestId, Verdict};
 
-use crate::support::{Folder, Journal, nothing_left};
+use crate::support::{Finished, Folder, Journal, nothing_left};
 
 const PASSES: &str = "function TestCase.run()\n  rtf.measure('error', 0.5, 'rad')\n  \
                       print('printed by it')\nend\n";
@@ -184,12 +184,14 @@ fn what_cannot_be_merged_is_told_and_makes_nothing() {
         |(number, line): (usize, &str)| format!("{}\n", if number == 1 { "?" } else { line });
     let damaged: String = lines.into_iter().map(damage).collect();
     folder.file("damaged.jsonl", &damaged);
-    assert_snapshot!(run(&["damaged.jsonl", "--partial"]), @"
+    folder.file("other.jsonl", "no journal\n");
+    assert_snapshot!(run(&["damaged.jsonl", "other.jsonl", "--partial"]), @"
     exit code 2
     ----- stdout
     ----- stderr
     error: the journal of `damaged.jsonl` is damaged: line 2: this is not an event: expected value at line 1 column 1
     hint: `rtf show damaged.jsonl` shows the readable part
+    error: `other.jsonl` is not a journal: line 1: this is not an event: expected ident at line 1 column 2
     ");
 }
 
@@ -228,4 +230,45 @@ fn a_part_that_was_killed_makes_the_run_incomplete() {
     let died = record.runner_death().expect("a runner that died");
     assert_eq!(died, format!("signal 9 (SIGKILL) in {second}"));
     assert!(nothing_left(&folder));
+}
+
+/// A run of one test that reported `messages` short messages.
+fn talkative_run(name: &str, messages: usize) -> String {
+    let report = r#""type":"message","source":{"test":0},"message":{"kind":"report","text":"x"}"#;
+    let head = [
+        r#""type":"run-started","version":1,"run":"r","rtf":"0.1.0","started_at":"2026-11-21T07:30:12Z","command":[],"working_dir":"/","suites":1,"tests":1"#,
+        r#""type":"suite-planned","suite":0,"name":"s","file":"s.xml""#,
+        &format!(
+            r#""type":"test-planned","test":0,"suite":0,"name":"{name}","plugin_type":"lua","plugin":"T.lua","repetitions":1"#
+        ),
+        r#""type":"suite-started","suite":0"#,
+        r#""type":"test-started","test":0,"repetition":1,"attempt":1"#,
+    ];
+    let tail = [
+        r#""type":"test-finished","test":0,"verdict":"passed","phase":"exit","exit":{"code":0}"#,
+        r#""type":"suite-finished","suite":0"#,
+        r#""type":"run-finished""#,
+    ];
+    let events = head.into_iter().chain(std::iter::repeat_n(report, messages)).chain(tail);
+    let line = |(seq, event): (usize, &str)| format!("{{\"seq\":{seq},\"at\":{seq},{event}}}\n");
+    events.enumerate().map(line).collect()
+}
+
+/// Events of 200 000 messages take more than 80 MB; the program itself takes less than 25 MB.
+#[test]
+fn memory_does_not_depend_on_the_size_of_journals() {
+    let folder = Folder::new();
+    for part in ["a", "b"] {
+        folder.file(&format!("{part}.jsonl"), &talkative_run(part, 100_000));
+    }
+    let rtf = folder.command(&["merge", "a.jsonl", "b.jsonl"]);
+    let mut command = std::process::Command::new("sh");
+    command.args(["-c", "ulimit -d 60000 && ulimit -c 0 && exec \"$0\" \"$@\""]);
+    command.arg(rtf.get_program()).args(rtf.get_args()).current_dir(folder.path());
+    let finished = Finished::of(command.output().expect("a shell"));
+    assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
+    let journal = folder.journal();
+    assert_eq!(journal.record.tests.len(), 2);
+    let counts = journal.record.tests.iter().map(|test| test.attempts[0].counts.messages);
+    assert_eq!(counts.sum::<u64>(), 200_000);
 }
