@@ -160,7 +160,7 @@ impl<'a> PartReading<'a> {
         let merged = self.merged_suite(suite);
         match kind {
             // It may be far from the other events of its suite.
-            EventKind::SuiteWaiting { .. } => return merged.waiting.push(kind),
+            EventKind::SuiteWaiting { .. } => merged.waiting.push(kind),
             EventKind::SuitePrepared(prepared) => {
                 merged.prepared.get_or_insert(prepared);
             }

@@ -59,6 +59,9 @@ pub struct Header {
     pub command: Vec<String>,
 }
 
+/// Takes in an event of the merged run, and the file that it attaches.
+pub type Visit<'a> = &'a mut dyn FnMut(&Event, Option<&AttachedFile>) -> Result<(), ReportError>;
+
 /// Runs of which one can be made.
 #[derive(Debug)]
 pub struct Mergeable {
@@ -86,16 +89,11 @@ pub fn merge(runs: Vec<MergeInput>, partial: bool) -> Result<Mergeable, Vec<Merg
 }
 
 impl Mergeable {
-    /// Writes the merged run: calls `visit` with each event, and with the file that the event
-    /// attaches.
+    /// Passes all events of the merged run to `visit`, as they are read.
     ///
     /// # Errors
     /// A journal cannot be read again; and the first error of `visit`.
-    pub fn write(
-        self,
-        header: Header,
-        visit: &mut dyn FnMut(&Event, Option<&AttachedFile>) -> Result<(), ReportError>,
-    ) -> Result<(), JournalError> {
+    pub fn write(self, header: Header, visit: Visit<'_>) -> Result<(), JournalError> {
         let Self { runs, pass } = self;
         let FirstPass { plans, manifests, suites, warnings, ends } = pass;
         let plan = plans.finish();
@@ -128,7 +126,7 @@ fn count(len: usize) -> u32 {
 
 /// The stream that is being made.
 struct Merging<'a> {
-    visit: &'a mut dyn FnMut(&Event, Option<&AttachedFile>) -> Result<(), ReportError>,
+    visit: Visit<'a>,
     /// The number of the next event.
     seq: u64,
     now: Micros,

@@ -33,8 +33,8 @@ impl Ids<'_> {
             | EventKind::RunnerDied { .. } => None,
             EventKind::SuiteWaiting { suite, .. }
             | EventKind::SuiteStarted { suite }
+            | EventKind::EpisodeFinished { suite, .. }
             | EventKind::SuiteFinished { suite } => Some(self.suite(suite)),
-            EventKind::EpisodeFinished { suite, .. } => Some(self.suite(suite)),
             EventKind::EpisodeStarted(started) => Some(self.suite(&mut started.suite)),
             EventKind::SuitePrepared(prepared) => Some(self.suite(&mut prepared.suite)),
             EventKind::FixtureStarting { fixture, .. }
