@@ -46,11 +46,8 @@ impl Ids<'_> {
             | EventKind::FixtureReset { fixture, .. } => Some(self.fixture(fixture)),
             EventKind::FixtureProvided(provided) => Some(self.fixture(&mut provided.fixture)),
             EventKind::Message { source, test, .. } => {
-                let place = self.source(source);
-                if let Some(test) = test {
-                    self.test(test);
-                }
-                Some(place)
+                self.about(test);
+                Some(self.source(source))
             }
             EventKind::StackDumped { source, .. }
             | EventKind::ResourcesMeasured { source, .. }
@@ -77,9 +74,7 @@ impl Ids<'_> {
                 Some(self.test(test))
             }
             EventKind::HookStarted { hook, test, .. } => {
-                // The order of events says nothing of this one.
-                *test = test
-                    .and_then(|test| self.plan.maps[self.part].tests.get(test.index()).copied());
+                self.about(test);
                 Some(self.hook(hook))
             }
             EventKind::HookFinished { hook, .. } => Some(self.hook(hook)),
@@ -96,6 +91,12 @@ impl Ids<'_> {
     fn fixture(&self, id: &mut FixtureId) -> SuiteId {
         *id = self.plan.maps[self.part].fixtures[id.index()];
         self.plan.fixtures[id.index()].suite
+    }
+
+    /// The test that a report or a hook is about. The order of events says nothing of a hook's.
+    fn about(&self, test: &mut Option<TestId>) {
+        let tests = &self.plan.maps[self.part].tests;
+        *test = test.and_then(|test| tests.get(test.index()).copied());
     }
 
     /// The fixture that reports about a test.
