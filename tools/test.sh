@@ -254,6 +254,11 @@ example_08() {
   PATH="$simulation:$PATH" python3 tools/check_example_08.py "$TARGET/release/rtf" examples/08-cases
 }
 
+example_10() {
+  PATH="$simulation:$PATH" python3 tools/check_example_10.py "$TARGET/release/rtf" \
+    examples/10-campaign
+}
+
 # The tests of a package on PyPI, compared with pytest's own report.
 public_pytest() {
   local interpreter
@@ -438,6 +443,7 @@ robots_and_frameworks() {
   step_with 'example 06' ros2 example_06
   step 'example 07' example_07
   step 'example 08' example_08
+  step 'example 10' example_10
   step_with 'clock ros2' ros2 clock_ros2
   step_with 'fixture ros2launch' ros2 fixture_ros2launch
   step_with 'fixture orocos' orocos fixture_orocos

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use rtf_campaign::episodes::Resolution;
-use rtf_campaign::{Campaign, EpisodeList, parse, resolve};
+use rtf_campaign::{Campaign, EpisodeList, Ledger, parse, resolve};
 use rtf_model::{Diagnostic, Episode, Severity};
 use rtf_plan::suite::{SourceMap, read_source};
 
@@ -87,6 +87,24 @@ pub fn find_episode(input: &Path, id: u64) -> Result<(PathBuf, Episode), Failure
             Err(Failure::input(error).hint(format!("its episodes are 1 to {count}")))
         }
     }
+}
+
+/// Opens the directory of an earlier campaign, and reads its results.
+pub fn read_results(path: &Path) -> Result<(LoadedCampaign, CampaignDir, Ledger), Failure> {
+    let dir = CampaignDir::open(path)?;
+    let loaded = load(&dir.description.file)?;
+    if loaded.episodes != dir.episodes()? {
+        let file = dir.description.file.display();
+        let error = format!("`{file}` has other episodes than when the campaign was started");
+        return Err(Failure::input(error).hint("undo its changes, or start a new campaign"));
+    }
+    let mut ledger = Ledger::new(loaded.episodes.episodes.len(), loaded.campaign.repeats);
+    for line in dir.recorded() {
+        if let Some(outcome) = line.outcome {
+            ledger.record(line.episode, outcome, line.reason);
+        }
+    }
+    Ok((loaded, dir, ledger))
 }
 
 /// Reads a list of episodes.

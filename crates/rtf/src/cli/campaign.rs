@@ -4,7 +4,7 @@ use std::num::NonZeroU16;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 use rtf_plan::suite::parse_duration;
 
 use super::values::jobs_parser;
@@ -15,6 +15,8 @@ use super::{ProfileArgs, ResultsArgs};
 pub enum CampaignVerb {
     /// Run the episodes of a campaign
     Run(Box<CampaignRunArgs>),
+    /// Show the results of a campaign, also while it runs: the claim, and where it fails
+    Show(CampaignShowArgs),
     /// Print the list of episodes, as JSON lines
     Episodes {
         /// The campaign (.xml)
@@ -48,4 +50,32 @@ pub struct CampaignRunArgs {
 
     #[command(flatten)]
     pub results: ResultsArgs,
+}
+
+/// Options of `rtf campaign show`.
+#[derive(Debug, Args)]
+pub struct CampaignShowArgs {
+    /// The directory of the results [default: of the newest campaign]
+    #[arg(value_name = "DIR")]
+    pub dir: Option<PathBuf>,
+
+    /// Also print the rates by two parameters: `payload,friction`
+    #[arg(long, value_name = "X,Y", value_delimiter = ',', num_args = 1)]
+    pub map: Vec<String>,
+
+    /// Output format
+    #[arg(long, value_name = "FORMAT", default_value = "text")]
+    pub format: CampaignFormat,
+
+    #[command(flatten)]
+    pub results: ResultsArgs,
+}
+
+/// The format of the results of a campaign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum CampaignFormat {
+    /// Tables
+    Text,
+    /// One JSON document
+    Json,
 }

@@ -256,3 +256,46 @@ fn mistakes_are_reported_before_anything_starts() {
     hint: `rtf campaign run` prints the directory of its results
     ");
 }
+
+#[test]
+fn the_results_show_where_a_campaign_fails() {
+    let campaign = "><parameter name='payload' distribution='grid' values='1 3'/>\
+        <parameter name='surface' distribution='grid' values='wood steel'/>\
+        <claim require='rate >= 0.9' confidence='0.9'/>";
+    let folder = folder(SUITE, campaign);
+    run(&folder, &[]);
+    let finished = folder.rtf(&["campaign", "show", "--map", "payload,surface"]);
+    assert_snapshot!(shown(&folder, &finished), @"
+    exit code 0
+    ----- stdout
+
+    4 of 4 episodes
+      passed            2
+      failed            2
+      rate 0.5000, between 0.0976 and 0.9024 (Clopper and Pearson, 90 % confidence)
+    results: rtf-results/campaigns/latest
+    claim rate >= 0.9: undecided
+
+    payload  (X² 4.0, p = 0.329)
+      1  100.0 %   34.2 to 100.0      2 of 2     ████████████████████
+      3    0.0 %    0.0 to  65.8      0 of 2
+
+    surface  (X² 0.0, p = 1.000)
+      steel   50.0 %    9.5 to  90.5      1 of 2     ██████████
+      wood    50.0 %    9.5 to  90.5      1 of 2     ██████████
+
+    surface by payload: percent passed
+      wood   100.0    0.0
+      steel  100.0    0.0
+                 1      3
+    ----- stderr
+    ");
+    let json = folder.rtf(&["campaign", "show", "--format", "json"]);
+    let document: serde_json::Value = serde_json::from_str(&json.stdout).expect("JSON");
+    assert_eq!(document["parameters"][0]["name"], "payload");
+    let unknown = folder.rtf(&["campaign", "show", "--map", "payload,colour"]);
+    assert_snapshot!(unknown.stderr, @"
+    error: the campaign has no parameters `payload` and `colour`
+    hint: its parameters are `payload`, `surface`
+    ");
+}

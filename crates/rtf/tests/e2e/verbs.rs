@@ -309,6 +309,7 @@ fn man_writes_a_page_for_each_verb() {
         "ament-dir",
         "campaign-episodes",
         "campaign-run",
+        "campaign-show",
         "campaign",
         "check",
         "cmake-dir",

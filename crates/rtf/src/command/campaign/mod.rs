@@ -2,6 +2,7 @@
 
 mod progress;
 mod run;
+mod show;
 mod summary;
 mod worker;
 
@@ -19,6 +20,7 @@ pub fn run(verb: CampaignVerb, matches: &ArgMatches) -> VerbResult {
     let verb_matches = matches.subcommand().map_or(matches, |(_, matches)| matches);
     match verb {
         CampaignVerb::Run(args) => run::run(*args, verb_matches),
+        CampaignVerb::Show(args) => show::run(&args, verb_matches),
         CampaignVerb::Episodes { file } => print_episodes(&file),
     }
 }

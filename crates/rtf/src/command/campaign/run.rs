@@ -35,7 +35,7 @@ const MAX_FAILED_STARTS: u32 = 3;
 pub fn run(mut args: CampaignRunArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_past_results(&mut args.results, matches)?;
     let (loaded, dir, ledger) = match &args.resume {
-        Some(path) => resume(path)?,
+        Some(path) => campaign::read_results(path)?,
         None => begin(&args)?,
     };
     let episodes = loaded.episodes.episodes;
@@ -98,24 +98,6 @@ fn begin(args: &CampaignRunArgs) -> Result<(LoadedCampaign, CampaignDir, Ledger)
     };
     let dir = CampaignDir::create(&args.results.results, description, &loaded.episodes)?;
     let ledger = Ledger::new(loaded.episodes.episodes.len(), loaded.campaign.repeats);
-    Ok((loaded, dir, ledger))
-}
-
-/// Opens the directory of an earlier campaign, and reads its results.
-fn resume(path: &Path) -> Result<(LoadedCampaign, CampaignDir, Ledger), Failure> {
-    let dir = CampaignDir::open(path)?;
-    let loaded = campaign::load(&dir.description.file)?;
-    if loaded.episodes != dir.episodes()? {
-        let file = dir.description.file.display();
-        let error = format!("`{file}` has other episodes than when the campaign was started");
-        return Err(Failure::input(error).hint("undo its changes, or start a new campaign"));
-    }
-    let mut ledger = Ledger::new(loaded.episodes.episodes.len(), loaded.campaign.repeats);
-    for line in dir.recorded() {
-        if let Some(outcome) = line.outcome {
-            ledger.record(line.episode, outcome, line.reason);
-        }
-    }
     Ok((loaded, dir, ledger))
 }
 

@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+"""Runs example 10 as a user does: a claim that holds, one that fails, and the map that shows why.
+
+check_example_10.py RTF DIRECTORY
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from run import expect, expect_in
+
+EPISODES = 500
+
+
+class Campaigns:
+    """The example's campaigns, with results in a directory."""
+
+    def __init__(self, rtf: str, example: Path, results: Path) -> None:
+        self.rtf, self.example, self.results = rtf, example, results
+
+    def call(self, *args: str, code: int) -> str:
+        """What a command prints."""
+        done = subprocess.run(
+            [self.rtf, *args, "--results", str(self.results)],
+            cwd=self.example,
+            stdout=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+        print(done.stdout)
+        expect(" ".join(args), done.returncode, code)
+        return done.stdout
+
+    def show(self) -> dict[str, Any]:
+        """The results of the newest campaign."""
+        text = self.call("campaign", "show", "--format", "json", "--map", "payload,friction", code=0)
+        document: dict[str, Any] = json.loads(text)
+        return document
+
+
+def main() -> int:
+    """Runs all; exits at the first difference."""
+    rtf, example = str(Path(sys.argv[1]).resolve()), Path(sys.argv[2]).resolve()
+    with tempfile.TemporaryDirectory() as directory:
+        campaigns = Campaigns(rtf, example, Path(directory))
+        campaigns.call("run", "carry.xml", code=0)
+        holds(campaigns)
+        fails(campaigns)
+    return 0
+
+
+def holds(campaigns: Campaigns) -> None:
+    """The payload of the data sheet."""
+    campaigns.call("campaign", "run", "campaign.xml", "--workers", "2", code=0)
+    found = campaigns.show()
+    expect("passed", found["passed"], EPISODES)
+
+
+def fails(campaigns: Campaigns) -> None:
+    """Twice that payload: the map shows why the claim fails, and a failed episode fails again."""
+    output = campaigns.call("campaign", "run", "heavy.xml", "--workers", "2", code=1)
+    expect_in("claim rate >= 0.95: failed", output)
+    found = campaigns.show()
+    expect("all have results", found["passed"] + found["failed"], EPISODES)
+    first = found["parameters"][0]
+    expect("the reason", first["name"], "payload")
+    expect("the heaviest payloads", first["cells"][-1]["passed"], 0)
+    expect("the lightest payloads", first["cells"][0]["passed"], first["cells"][0]["episodes"])
+    expect("columns of the map", len(found["map"]["columns"]), 6)
+    newest = campaigns.results / "campaigns" / "latest" / "results.jsonl"
+    lines = [json.loads(line) for line in newest.read_text().splitlines()]
+    failed = next(line["episode"] for line in lines if line["outcome"] == "failed")
+    campaigns.call("run", "--episode", str(failed), "heavy.xml", code=1)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
