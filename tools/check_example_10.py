@@ -39,7 +39,8 @@ class Campaigns:
 
     def show(self) -> dict[str, Any]:
         """The results of the newest campaign."""
-        text = self.call("campaign", "show", "--format", "json", "--map", "payload,friction", code=0)
+        options = ["--format", "json", "--map", "payload,friction"]
+        text = self.call("campaign", "show", *options, code=0)
         document: dict[str, Any] = json.loads(text)
         return document
 

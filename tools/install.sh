@@ -97,6 +97,7 @@ put 644 sdk/python/robottestingframework.py share/rtf/python/robottestingframewo
 put_tree sdk/ruby/lib share/rtf/ruby/lib '*.rb'
 put_tree fixtures share/rtf/fixtures '*.py' '*.json'
 put 644 spec/suite.xsd share/rtf/spec/suite.xsd
+put 644 spec/campaign.xsd share/rtf/spec/campaign.xsd
 put_tree schemas share/rtf/schemas '*.json'
 put_tree "$stage/man" share/man/man1 '*.1'
 put 644 "$stage/rtf.bash" share/bash-completion/completions/rtf

@@ -172,10 +172,13 @@ lint_language() {
 
 suites_are_valid() {
   # XML files in subdirectories of examples belong to the middleware.
-  files ':(glob)examples/*/*.xml' 'crates/rtf/templates/*.xml' 'tests/install/*.xml' 'tests/wheel/*.xml' 'tests/fixtures/*/suite.xml' 'tests/frameworks/*/suite.xml' \
+  local suites campaigns
+  suites=$(files ':(glob)examples/*/*.xml' 'crates/rtf/templates/*.xml' 'tests/install/*.xml' 'tests/wheel/*.xml' 'tests/fixtures/*/suite.xml' 'tests/frameworks/*/suite.xml' \
     'tests/ctest/project/arm.xml' 'tests/colcon/workspace/src/*/test/*.xml' \
-    'tests/fixtures/yarp/suites/*.xml' 'tests/fixtures/ros1/*.xml' 'tests/fixtures/clock/*.xml' |
-    xargs -d '\n' xmllint --noout --schema spec/suite.xsd
+    'tests/fixtures/yarp/suites/*.xml' 'tests/fixtures/ros1/*.xml' 'tests/fixtures/clock/*.xml')
+  campaigns=$(xargs -d '\n' grep -l '^<campaign' <<<"$suites")
+  grep -vxF "$campaigns" <<<"$suites" | xargs -d '\n' xmllint --noout --schema spec/suite.xsd
+  xargs -d '\n' xmllint --noout --schema spec/campaign.xsd <<<"$campaigns"
 }
 
 # Unit tests of the fixture managers.

@@ -9,6 +9,4 @@ from arm_client import Arm
 from conditions import Conditions
 
 conditions = Conditions.of(dict(os.environ))
-Arm().ask(
-    f"reset {conditions.payload} {conditions.friction} {conditions.noise} {conditions.seed}"
-)
+Arm().ask(f"reset {conditions.payload} {conditions.friction} {conditions.noise} {conditions.seed}")

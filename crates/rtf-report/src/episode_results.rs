@@ -1,5 +1,5 @@
 //! Writes the results of the episodes of a campaign to `episodes.jsonl` in the directory of the
-//! run, as they arrive: whoever follows the campaign needs not read the journal.
+//! run, as they arrive, so that a program that follows the campaign needs not read the journal.
 
 use std::fs::File;
 use std::io::Write;

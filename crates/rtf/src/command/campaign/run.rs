@@ -117,7 +117,7 @@ struct Coordinator<'a> {
     shutdown_timeout: Duration,
     failed_starts: u32,
     early_end: Option<EarlyEnd>,
-    /// Whether the workers were told to stop.
+    /// Whether the workers were signalled to stop.
     is_stopped: bool,
     progress: Progress,
 }
@@ -230,7 +230,7 @@ impl Coordinator<'_> {
         }
     }
 
-    /// Tells all workers to stop.
+    /// Signals all workers to stop.
     fn stop(&mut self, signal: i32) {
         self.is_stopped = true;
         self.workers.iter().for_each(|worker| worker.signal(signal));
