@@ -115,9 +115,7 @@ impl OrderChecker {
             | EventKind::FixtureStopped { .. }
             | EventKind::FixtureReset { .. }
             | EventKind::FixtureBroken { .. } => self.check_fixture(kind),
-            EventKind::EpisodeStarted(started) => {
-                self.start_episode(started.suite, started.episode.id)
-            }
+            EventKind::EpisodeStarted(started) => self.start_episode(started),
             EventKind::EpisodeFinished { suite, episode } => self.finish_episode(*suite, *episode),
             EventKind::TestStarted { test, repetition, attempt } => {
                 self.start_test(*test, (*repetition, *attempt))

@@ -1,10 +1,11 @@
 //! Episodes: one at a time in a suite, and no test runs across the end of one.
 
 use super::{OrderChecker, Rule, ensure};
-use crate::SuiteId;
+use crate::{EpisodeStarted, SuiteId};
 
 impl OrderChecker {
-    pub(super) fn start_episode(&mut self, suite: SuiteId, episode: u64) -> Rule {
+    pub(super) fn start_episode(&mut self, started: &EpisodeStarted) -> Rule {
+        let (suite, episode) = (started.suite, started.episode.id);
         self.suite_open(suite)?;
         self.no_test_runs(suite)?;
         match self.episodes.insert(suite, episode) {

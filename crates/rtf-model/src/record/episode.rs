@@ -1,7 +1,7 @@
 //! The episodes of a campaign, and their results.
 
 use super::{Record, TestRecord};
-use crate::{Episode, EpisodeStarted, Micros, SuiteId, Verdict};
+use crate::{Episode, EpisodeStarted, EventKind, Micros, SuiteId, Verdict};
 
 /// The result of one execution of an episode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -51,7 +51,17 @@ struct Before {
 }
 
 impl Record {
-    pub(super) fn start_episode(&mut self, at: Micros, started: &EpisodeStarted) {
+    /// Applies an event of an episode; false for other events.
+    pub(super) fn apply_to_episode(&mut self, at: Micros, kind: &EventKind) -> bool {
+        match kind {
+            EventKind::EpisodeStarted(started) => self.start_episode(at, started),
+            EventKind::EpisodeFinished { suite, .. } => self.finish_episode(at, *suite),
+            _ => return false,
+        }
+        true
+    }
+
+    fn start_episode(&mut self, at: Micros, started: &EpisodeStarted) {
         let Some(before) = self.before_episode(started.suite) else { return };
         let episode = started.episode.clone();
         let record = EpisodeRecord { episode, started: at, finished: None, before };
@@ -70,7 +80,7 @@ impl Record {
         })
     }
 
-    pub(super) fn finish_episode(&mut self, at: Micros, suite: SuiteId) {
+    fn finish_episode(&mut self, at: Micros, suite: SuiteId) {
         let Some(record) = self.suites.get(suite.index()) else { return };
         let Some(episode) = record.episodes.last() else { return };
         let (outcome, reason) = self.episode_outcome(suite, &episode.before);

@@ -136,8 +136,6 @@ impl Record {
             EventKind::SuitePrepared(prepared) => {
                 self.suite(prepared.suite, |s| s.prepared = Some(prepared.clone()));
             }
-            EventKind::EpisodeStarted(started) => self.start_episode(at, started),
-            EventKind::EpisodeFinished { suite, .. } => self.finish_episode(at, *suite),
             EventKind::SuiteFinished { suite } => self.suite(*suite, |s| s.finished = Some(at)),
             EventKind::FixturePlanned(plan) => {
                 let missing = |index| missing_plans::fixture(index, plan.suite);
@@ -177,6 +175,7 @@ impl Record {
                     });
                 }
             }
+            kind if self.apply_to_episode(at, kind) => {}
             kind => self.apply_to_source(at, kind),
         }
     }

@@ -55,16 +55,9 @@ pub(super) fn show(
             live.broken(page, *fixture, reason);
         }
         EventKind::FixtureReset { fixture, problem: Some(problem) } => {
-            page.remark((LOUD, "not reset"), &live.fixture(*fixture));
-            page.detail(Tone::Bad, &escape::line(problem));
+            live.not_reset(page, *fixture, problem);
         }
-        EventKind::EpisodeStarted(started) if !quiet => {
-            let Episode { id, seed, parameters } = &started.episode;
-            let value = |it: &Parameter| format!("{}={}", it.name, it.value);
-            let values: Vec<_> = parameters.iter().map(value).collect();
-            let text = format!("{id}, seed {seed}: {}", values.join(" "));
-            page.remark((BOLD, "episode"), &escape::line(&text));
-        }
+        EventKind::EpisodeStarted(started) if !quiet => episode(page, &started.episode),
         EventKind::Message { source: Source::Fixture(fixture), message, .. } => {
             live.fixture_message(page, *fixture, message);
         }
@@ -119,6 +112,14 @@ fn chosen(page: &mut ConsoleLines, manifest: &Manifest) {
     if !parts.is_empty() {
         page.remark((DIM, "selected"), &parts.join(", "));
     }
+}
+
+fn episode(page: &mut ConsoleLines, episode: &Episode) {
+    let Episode { id, seed, parameters } = episode;
+    let value = |it: &Parameter| format!("{}={}", it.name, it.value);
+    let values: Vec<_> = parameters.iter().map(value).collect();
+    let text = format!("{id}, seed {seed}: {}", values.join(" "));
+    page.remark((BOLD, "episode"), &escape::line(&text));
 }
 
 struct Live<'a> {
@@ -221,6 +222,11 @@ impl Live<'_> {
             text += &format!("  {}", style::paint(DIM, &values));
         }
         page.entry((style::GOOD, "ready"), &time, &text);
+    }
+
+    fn not_reset(&self, page: &mut ConsoleLines, id: FixtureId, problem: &str) {
+        page.remark((LOUD, "not reset"), &self.fixture(id));
+        page.detail(Tone::Bad, &escape::line(problem));
     }
 
     fn trouble(&self, page: &mut ConsoleLines, word: &str, id: FixtureId, what: (&str, &[String])) {
