@@ -1,7 +1,7 @@
 # shellcheck shell=bash
-# Sessions in a temporary chroot with only Debian's base system, make, git and
-# ca-certificates. They use the machine's apt-get, npm, pip and cargo settings. To be sourced
-# after env.sh and packages.sh; needs root.
+# Sessions in a temporary root directory with only Debian's base system, make, git and
+# ca-certificates. They use the machine's settings of apt-get, npm, pip, cargo, Go and Maven. To
+# be sourced after env.sh and packages.sh; needs root.
 #
 # The base system and downloaded packages are kept in the user's cache, for each release and
 # set of sources. Sessions for arm64 run under qemu's user emulation, see tools/binfmt.sh.
@@ -54,7 +54,7 @@ need_base() {
   mv "$base/root.tar.new" "$base/root.tar"
 }
 
-# Later sessions of this script download packages into the chroot.
+# Later sessions of this script download packages into their own directory.
 release_base() {
   flock --unlock 8
   base=
@@ -68,26 +68,38 @@ unpack_base() {
   echo force-unsafe-io >"$debian/etc/dpkg/dpkg.cfg.d/temporary" # no fsync
   sed -i '/DEP-11/d' "$debian/etc/apt/apt.conf.d/99mmdebstrap"  # lists for graphical programs
   cp -L /etc/resolv.conf /etc/hosts "$debian/etc/"
-  cp -L /etc/ssl/certs/ca-certificates.crt "$debian/etc/ssl/certs/"
-  for file in /etc/pip.conf "$HOME/.config/pip/pip.conf" "$HOME/.npmrc" "$HOME/.cargo/config.toml"; do
+  add_certificates "$debian"
+  for file in /etc/pip.conf "$HOME"/{.config/pip/pip.conf,.npmrc,.cargo/config.toml,.config/go/env,.m2/settings.xml}; do
     [ ! -e "$file" ] || install -D -m 600 "$file" "$debian${file/#"$HOME"/\/root}"
   done
 }
 
-# Runs a bash script, which is in the chroot, in a directory there, with the machine's network
-# or with only a loopback interface: chroot, network|loopback, directory, script.
+# Most programs read one file with all certificates. Packages such as Java's create their own from
+# the links that update-ca-certificates sets.
+add_certificates() {
+  local debian=$1 file
+  cp -L /etc/ssl/certs/ca-certificates.crt "$debian/etc/ssl/certs/"
+  while IFS= read -r file; do
+    install -D -m 644 "$file" "$debian$file"
+    ln -s "$file" "$debian/etc/ssl/certs/$(basename "$file" .crt).pem"
+  done < <(find -L /usr/local/share/ca-certificates -type f -name '*.crt')
+}
+
+# Runs a bash script of the unpacked base in a directory there, with the machine's network or with
+# only a loopback interface: base, network|loopback, directory, script.
 run_in_base() {
   local environment=(PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8) name
   local namespaces=(--mount --propagation private --pid --fork --kill-child) settings=''
   # This session's variables that package managers read.
   while IFS= read -r name; do
     environment+=("$name=${!name}")
-  done < <(compgen -e | grep -E -i '^(.*_proxy|pip_.*|npm_config_.*|cargo_http_.*|cargo_registr.*|ssl_cert_.*|node_extra_ca_certs)$' || true)
+  done < <(compgen -e | grep -E -i '^(.*_proxy|pip_.*|npm_config_.*|cargo_http_.*|cargo_registr.*|go(proxy|sumdb|private|noproxy|nosumdb|flags|toolchain)|maven_(opts|args)|ssl_cert_.*|node_extra_ca_certs)$' || true)
   if [ "$2" = loopback ]; then
     namespaces+=(--net)
     settings='ip link set lo up;'
   fi
-  # The mounts and all processes disappear with the namespaces, also if this script is killed.
+  # The mounts and all processes disappear with the namespaces, also if this script is killed. In a
+  # chroot, the kernel refuses user namespaces, so the root of the namespace is changed.
   # shellcheck disable=SC2016 # the shell in the namespace expands that
   debian=$1 base=$base directory=$3 script=$4 "${emulation[@]}" unshare "${namespaces[@]}" bash -euc "$settings"'
     mount --bind "$debian" "$debian"
@@ -99,6 +111,11 @@ run_in_base() {
       mkdir -p "$debian/var/cache/apt/archives"
       mount --bind "$base/archives" "$debian/var/cache/apt/archives"
     fi
-    exec chroot "$debian" env -i "$@" sh -c "cd $directory && exec bash $script"
+    cd "$debian"
+    pivot_root . mnt
+    hash -r
+    umount --lazy /mnt
+    cd "$directory"
+    exec /usr/bin/env -i "$@" bash "$script"
   ' - "${environment[@]}" </dev/null
 }
