@@ -5,6 +5,7 @@
 
 mod stream;
 mod text;
+mod version;
 
 use std::process::Command;
 use std::time::Duration;
@@ -37,6 +38,7 @@ impl Framework for Go {
             let name = test.file.display();
             return Err(ListError::new(format!("`{name}` is no directory of a Go package")));
         }
+        version::check(&test.file)?;
         let mut command = go_test(test);
         command.arg("-list=.").args(&test.args);
         let listed = listing::run(command, LIST_LIMIT)?;
