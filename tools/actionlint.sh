@@ -5,16 +5,15 @@
 #   tools/actionlint.sh WORKFLOW…
 
 . "$(dirname "$0")/env.sh"
-. "$ROOT/tools/packages.sh"
 
 version=1.7.12
 dir=$CACHE/actionlint-$version
-have go || need_packages golang-go
 mkdir -p "$CACHE"
 exec 9>"$dir.lock"
 flock 9
 if [ ! -x "$dir/actionlint" ]; then
   say "installing actionlint $version into $dir"
+  PATH=$(tools/go.sh):$PATH
   GOBIN=$dir quietly go install "github.com/rhysd/actionlint/cmd/actionlint@v$version" ||
     die "go could not install actionlint"
 fi

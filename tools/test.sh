@@ -361,6 +361,7 @@ telemetry() {
   prometheus=$(tools/prometheus.sh)
   collector=$(tests/telemetry/collector/build.sh)
   mkdir -p "$BUILD/telemetry"
+  PATH=$(tools/go.sh):$PATH
   (cd tests/telemetry && GOTOOLCHAIN=local quietly go build -o "$decoder" .)
   "$(tools/venv.sh telemetry)/python" tests/telemetry/check.py "$TARGET/debug/rtf" "$decoder" \
     "$prometheus" "$collector"

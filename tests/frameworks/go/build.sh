@@ -1,6 +1,7 @@
 # shellcheck shell=bash
 # shellcheck disable=SC2154 # tests/frameworks/build.sh sets the directories
-# The Go of the system; any version that reads go.mod of the corpus. `go test` compiles it.
+# Go, which may be in the user's cache. `go test` compiles the corpus.
 : "${source:?}"
-have go || need_packages golang-go
+PATH=$(tools/go.sh):$PATH
+setting PATH "$PATH"
 (cd "$source/arm" && quietly go test -list . .)

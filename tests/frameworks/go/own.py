@@ -11,18 +11,8 @@ from collections import Counter
 
 WORDS = {"pass": "passed", "fail": "failed", "skip": "skipped"}
 
-# Go 1.19 of Debian 12 has no `-skip`.
-listed = subprocess.run(
-    ["go", "test", "-list", "."],
-    cwd=sys.argv[1],
-    stdout=subprocess.PIPE,
-    text=True,
-    check=True,
-)
-tests = [line for line in listed.stdout.splitlines() if " " not in line and "\t" not in line]
-safe = "|".join(test for test in tests if "Fatal" not in test)
 done = subprocess.run(
-    ["go", "test", "-json", "-count=1", f"-run=^({safe})$"],
+    ["go", "test", "-json", "-count=1", "-skip=Fatal"],
     cwd=sys.argv[1],
     stdout=subprocess.PIPE,
     text=True,

@@ -5,13 +5,12 @@
 #   tests/frameworks/public/go.sh RTF
 
 . "$(dirname "$0")/../../../tools/env.sh"
-. tools/packages.sh
 
 rtf=${1:?program: rtf}
 module=github.com/spf13/pflag
 version=v1.0.10
 
-have go || need_packages golang-go
+PATH=$(tools/go.sh):$PATH
 out=$BUILD/frameworks/public-go
 rm -rf "$out"
 mkdir -p "$out"

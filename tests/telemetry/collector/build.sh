@@ -4,6 +4,7 @@
 
 . "$(dirname "$0")/../../../tools/env.sh"
 
+PATH=$(tools/go.sh):$PATH
 cd tests/telemetry/collector
 key=$({ go version && cat go.mod go.sum main.go; } | sha256sum | cut -c1-12)
 collector=$CACHE/otel-collector-$key
