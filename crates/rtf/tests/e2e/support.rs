@@ -153,11 +153,12 @@ impl Folder {
         let canonical = self.path().canonicalize().expect("a path");
         let bins = Path::new(env!("CARGO_BIN_EXE_rtf")).parent().expect("a folder");
         let prefix = bins.parent().expect("a folder");
-        text.replace(&canonical.display().to_string(), "[FOLDER]")
+        let text = text
+            .replace(&canonical.display().to_string(), "[FOLDER]")
             .replace(&self.path().display().to_string(), "[FOLDER]")
             .replace(&bins.display().to_string(), "[BIN]")
-            .replace(&prefix.display().to_string(), "[PREFIX]")
-            .replace(&root().canonicalize().expect("a path").display().to_string(), "[ROOT]")
+            .replace(&prefix.display().to_string(), "[PREFIX]");
+        replace_path(&text, &root().canonicalize().expect("a path"), "[ROOT]")
     }
 
     /// The text without what changes from run to run.
@@ -171,6 +172,31 @@ impl Folder {
         }
         text
     }
+}
+
+/// Replaces a directory and the start of the paths in it. A short path, such as `/rtf`, can also
+/// be a part of others, which stay.
+fn replace_path(text: &str, path: &Path, with: &str) -> String {
+    let is_name = |char: char| char.is_alphanumeric() || "_-.".contains(char);
+    let path = path.display().to_string();
+    let mut replaced = String::new();
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once(&path) {
+        replaced += before;
+        let inside = replaced.ends_with(|char| is_name(char) || "/]".contains(char));
+        let other_name = after.trim_start_matches('.').starts_with(is_name);
+        replaced += if inside || other_name { &path } else { with };
+        rest = after;
+    }
+    replaced + rest
+}
+
+#[test]
+fn a_path_is_replaced_where_it_begins() {
+    let replaced = |text| replace_path(text, Path::new("/rtf"), "[ROOT]");
+    assert_eq!(replaced("`/rtf`: /rtf/rtf /rtf\n/rtf."), "`[ROOT]`: [ROOT]/rtf [ROOT]\n[ROOT].");
+    let others = "[BIN]/rtf-host a/rtf.toml lib/rtf/plugins usr/bin/rtf /rtf-2 /rtf.toml";
+    assert_eq!(replaced(others), others);
 }
 
 /// A runner that runs.
