@@ -4,12 +4,14 @@
 //! - [`file`](mod@file): the text of a campaign file → [`Campaign`], with every problem and its position.
 //! - [`episodes`]: [`Campaign`] → [`EpisodeList`], the same on every machine and in every version.
 //! - [`analysis`]: where a campaign fails.
+//! - [`comparison`]: two versions on the same episodes.
 //! - [`ledger`]: which episodes have results, and which are still to be run.
 //! - [`judgement`]: results of episodes → a verdict, and whether the campaign may end.
 //!
 //! This crate starts no process. It reads the CSV files that a campaign names, and writes nothing.
 
 pub mod analysis;
+pub mod comparison;
 pub mod episodes;
 pub mod file;
 pub mod judgement;

@@ -15,7 +15,7 @@ pub const EPISODE_RESULTS: &str = "episodes.jsonl";
 const WHAT: &str = "the results of the episodes";
 
 /// A line of the file: an episode starts, or has finished.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EpisodeLine {
     /// The number of the episode.
     pub episode: u64,
@@ -28,6 +28,28 @@ pub struct EpisodeLine {
     /// From its start to its end, in microseconds.
     #[serde(default)]
     pub duration_us: u64,
+    /// What its tests measured, up to [`EpisodeLine::MEASUREMENTS_KEPT`].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub measurements: Vec<EpisodeMeasurement>,
+}
+
+/// A number that a test measured in an episode, outside of cases.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EpisodeMeasurement {
+    /// The test.
+    pub test: String,
+    /// The name.
+    pub name: String,
+    /// The unit.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub unit: String,
+    /// The value; `None` if it is not finite.
+    pub value: Option<f64>,
+}
+
+impl EpisodeLine {
+    /// The most measurements of an episode; the journal has all of them.
+    pub const MEASUREMENTS_KEPT: usize = 100;
 }
 
 /// Writes the results of a run's episodes.
@@ -64,7 +86,7 @@ impl Reporter for EpisodeResults {
         match &event.kind {
             EventKind::EpisodeStarted(started) => {
                 let episode = started.episode.id;
-                self.write(&EpisodeLine { episode, outcome: None, reason: None, duration_us: 0 })
+                self.write(&EpisodeLine { episode, ..EpisodeLine::default() })
             }
             EventKind::EpisodeFinished { suite, .. } => {
                 last(record, *suite).map_or(Ok(()), |line| self.write(&line))
@@ -86,5 +108,17 @@ fn last(record: &Record, suite: SuiteId) -> Option<EpisodeLine> {
         outcome: Some(outcome),
         reason,
         duration_us: finished.0.saturating_sub(episode.started.0),
+        measurements: measurements(record, suite),
     })
+}
+
+fn measurements(record: &Record, suite: SuiteId) -> Vec<EpisodeMeasurement> {
+    let all = record.episode_measurements(suite).into_iter();
+    let kept = all.take(EpisodeLine::MEASUREMENTS_KEPT).map(|(test, it)| EpisodeMeasurement {
+        test: test.plan.name.clone(),
+        name: it.name.clone(),
+        unit: it.unit.clone(),
+        value: it.value,
+    });
+    kept.collect()
 }

@@ -1,7 +1,7 @@
 //! The episodes of a campaign, and their results.
 
 use super::{Record, TestRecord};
-use crate::{Episode, EpisodeStarted, EventKind, Micros, SuiteId, Verdict};
+use crate::{Episode, EpisodeStarted, EventKind, Measurement, Micros, SuiteId, Verdict};
 
 /// The result of one execution of an episode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -108,6 +108,28 @@ impl Record {
         let severity = |outcome: EpisodeOutcome| outcome as u8;
         let worst = problems.into_iter().rev().max_by_key(|(outcome, _)| severity(*outcome));
         worst.map_or((EpisodeOutcome::Passed, None), |(outcome, reason)| (outcome, Some(reason)))
+    }
+
+    /// The measurements of the newest episode of a suite, each with its test: those of the last
+    /// attempt of each repetition, outside of cases.
+    #[must_use]
+    pub fn episode_measurements(&self, suite: SuiteId) -> Vec<(&TestRecord, &Measurement)> {
+        let Some(suite) = self.suites.get(suite.index()) else { return Vec::new() };
+        let Some(episode) = suite.episodes.last() else { return Vec::new() };
+        let tests = suite.tests.iter().filter_map(|id| self.tests.get(id.index()));
+        let mut found = Vec::new();
+        for (test, first) in tests.zip(&episode.before.attempts) {
+            let attempts = test.attempts.get(*first..).unwrap_or_default();
+            for (attempt, next) in
+                attempts.iter().zip(attempts.iter().skip(1).map(Some).chain([None]))
+            {
+                if next.is_none_or(|next| next.repetition != attempt.repetition) {
+                    let own = attempt.measurements.iter().filter(|it| it.case.is_none());
+                    found.extend(own.map(|measurement| (test, measurement)));
+                }
+            }
+        }
+        found
     }
 
     fn fixture_problems_since(

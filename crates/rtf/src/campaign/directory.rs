@@ -38,6 +38,8 @@ pub struct Description {
     pub suite: PathBuf,
     /// The directory in which the campaign was started.
     pub working_dir: PathBuf,
+    /// How often an episode is repeated whose result is the bench's.
+    pub repeats: u32,
     /// Further options of `rtf run`: the profile and parameters.
     pub options: Vec<String>,
 }

@@ -17,6 +17,8 @@ pub enum CampaignVerb {
     Run(Box<CampaignRunArgs>),
     /// Show the results of a campaign, also while it runs: the claim, and where it fails
     Show(CampaignShowArgs),
+    /// Compare two versions on the same episodes
+    Compare(CampaignCompareArgs),
     /// Print the list of episodes, as JSON lines
     Episodes {
         /// The campaign (.xml)
@@ -78,4 +80,31 @@ pub enum CampaignFormat {
     Text,
     /// One JSON document
     Json,
+}
+
+/// Options of `rtf campaign compare`.
+#[derive(Debug, Args)]
+pub struct CampaignCompareArgs {
+    /// The directory of the results of the first version
+    #[arg(value_name = "FIRST")]
+    pub first: PathBuf,
+
+    /// The directory of the results of the second version
+    #[arg(value_name = "SECOND")]
+    pub second: PathBuf,
+
+    /// The probability of the exit code 1 if both versions are equal
+    #[arg(long, value_name = "P", default_value = "0.05", value_parser = parse_probability)]
+    pub alpha: f64,
+
+    /// Output format
+    #[arg(long, value_name = "FORMAT", default_value = "text")]
+    pub format: CampaignFormat,
+}
+
+fn parse_probability(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(number) if number > 0.0 && number < 1.0 => Ok(number),
+        _ => Err("a number between 0 and 1 is expected".to_owned()),
+    }
 }

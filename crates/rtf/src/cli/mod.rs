@@ -20,7 +20,9 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use rtf_plan::suite::parse_duration;
 
-pub use campaign::{CampaignFormat, CampaignRunArgs, CampaignShowArgs, CampaignVerb};
+pub use campaign::{
+    CampaignCompareArgs, CampaignFormat, CampaignRunArgs, CampaignShowArgs, CampaignVerb,
+};
 pub use debug::{DebugArgs, RunVerbArgs};
 pub use doctor::{DoctorArgs, DoctorFormat};
 pub use formats::{Annotations, ReportFormat, ReportTarget, StdoutFormat, parse_report};

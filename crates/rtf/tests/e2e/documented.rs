@@ -87,7 +87,9 @@ fn every_option() {
         folder.rtf(&words).stdout
     };
     let mut verbs = found(r"(?m)^  ([a-z-]+)  ", &help(""));
-    verbs.extend(["config show", "campaign run", "campaign show"].map(str::to_owned));
+    verbs.extend(
+        ["config show", "campaign run", "campaign show", "campaign compare"].map(str::to_owned),
+    );
     let questions = found(r"(?m)^  ([a-z-]+)  ", &help("history"));
     verbs.extend(questions.iter().map(|question| format!("history {question}")));
     verbs.remove("history help");

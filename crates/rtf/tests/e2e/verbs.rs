@@ -295,9 +295,10 @@ fn bash_reads_its_completions() {
 }
 
 /// The verbs with a page of the manual, in its order.
-const VERBS: [&str; 39] = [
+const VERBS: [&str; 40] = [
     "ada-dir",
     "ament-dir",
+    "campaign-compare",
     "campaign-episodes",
     "campaign-run",
     "campaign-show",

@@ -1,5 +1,6 @@
 //! `rtf campaign`.
 
+mod compare;
 mod progress;
 mod run;
 mod show;
@@ -20,6 +21,7 @@ pub fn run(verb: CampaignVerb, matches: &ArgMatches) -> VerbResult {
     let verb_matches = matches.subcommand().map_or(matches, |(_, matches)| matches);
     match verb {
         CampaignVerb::Run(args) => run::run(*args, verb_matches),
+        CampaignVerb::Compare(args) => compare::run(&args),
         CampaignVerb::Show(args) => show::run(&args, verb_matches),
         CampaignVerb::Episodes { file } => print_episodes(&file),
     }

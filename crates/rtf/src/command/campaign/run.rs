@@ -70,7 +70,7 @@ pub fn run(mut args: CampaignRunArgs, matches: &ArgMatches) -> VerbResult {
     ended?;
     let Coordinator { ledger, judge, early_end, .. } = coordinator;
     let judgement = judge.judge(&ledger.results());
-    dir.write_results(&summary::result_lines(&ledger))?;
+    dir.write_results(&summary::result_lines(&ledger, dir.recorded()))?;
     summary::print(&loaded.campaign, (&ledger, &judgement), early_end.as_ref(), &dir.path)?;
     Ok(ExitCode::from(summary::exit_code(&judgement, early_end.as_ref())))
 }
@@ -94,6 +94,7 @@ fn begin(args: &CampaignRunArgs) -> Result<(LoadedCampaign, CampaignDir, Ledger)
         file: working_dir.join(file),
         suite: working_dir.join(&loaded.suite),
         working_dir,
+        repeats: loaded.campaign.repeats,
         options,
     };
     let dir = CampaignDir::create(&args.results.results, description, &loaded.episodes)?;

@@ -1,5 +1,6 @@
 //! What `rtf campaign run` prints at the end, and the exit code.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use rtf_campaign::file::StoppingRule;
@@ -107,11 +108,23 @@ pub fn exit_code(judgement: &Judgement, early_end: Option<&EarlyEnd>) -> u8 {
     }
 }
 
-/// The last result of each episode that has run, in the order of the list.
-pub fn result_lines(ledger: &Ledger) -> Vec<EpisodeLine> {
-    let line = |(episode, executions): (u64, &rtf_campaign::ledger::Executions)| {
-        let (outcome, reason) = executions.last.clone()?;
-        Some(EpisodeLine { episode, outcome: Some(outcome), reason, duration_us: 0 })
-    };
-    (1..).zip(ledger.episodes()).filter_map(line).collect()
+/// The result of each episode that has run, in the order of the list: `recorded` has the lines
+/// of all workers.
+pub fn result_lines(ledger: &Ledger, recorded: Vec<EpisodeLine>) -> Vec<EpisodeLine> {
+    let mut lines: BTreeMap<u64, EpisodeLine> = BTreeMap::new();
+    for (episode, executions) in (1..).zip(ledger.episodes()) {
+        if let Some((outcome, reason)) = executions.last.clone() {
+            let outcome = Some(outcome);
+            lines.insert(episode, EpisodeLine { episode, outcome, reason, ..Default::default() });
+        }
+    }
+    for line in recorded {
+        if let Some(known) = lines.get_mut(&line.episode)
+            && known.duration_us == 0
+            && (&known.outcome, &known.reason) == (&line.outcome, &line.reason)
+        {
+            *known = line;
+        }
+    }
+    lines.into_values().collect()
 }
