@@ -9,14 +9,15 @@
 //! results.jsonl          the results, when the campaign has ended
 //! ```
 
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use rtf_campaign::EpisodeList;
 use rtf_model::Episode;
 use rtf_report::episode_results::{EPISODE_RESULTS, EpisodeLine};
-use rtf_report::run_dir;
+use rtf_report::journal;
+use rtf_report::run_dir::{self, JOURNAL};
 use serde::{Deserialize, Serialize};
 
 use super::read_list;
@@ -79,6 +80,37 @@ impl CampaignDir {
         Ok(Self { path: path.to_owned(), description })
     }
 
+    /// Locks the directory until the file is closed: a campaign is run by one process only.
+    pub fn lock(&self) -> Result<File, Failure> {
+        let path = self.path.join(DESCRIPTION);
+        let file = File::open(&path).map_err(|error| unwritable(&path, &error))?;
+        match file.try_lock() {
+            Ok(()) => Ok(file),
+            Err(TryLockError::WouldBlock) => {
+                let error = format!("the campaign in `{}` is still running", self.path.display());
+                Err(Failure::input(error).hint("wait until it has ended"))
+            }
+            Err(TryLockError::Error(error)) => Err(unwritable(&path, &error)),
+        }
+    }
+
+    /// Whether a worker still runs, whose campaign was killed.
+    pub fn any_worker_runs(&self) -> bool {
+        let is_written = |run: &PathBuf| {
+            File::open(run.join(JOURNAL)).is_ok_and(|journal| journal::is_written(&journal))
+        };
+        self.workers().iter().any(|worker| self.runs(*worker).iter().any(is_written))
+    }
+
+    /// The directories of the runs of a worker.
+    fn runs(&self, worker: u32) -> Vec<PathBuf> {
+        let entries = fs::read_dir(self.worker(worker)).into_iter().flatten().flatten();
+        let is_dir = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_dir());
+        let mut runs: Vec<_> = entries.filter(is_dir).map(|entry| entry.path()).collect();
+        runs.sort();
+        runs
+    }
+
     /// The list of episodes.
     pub fn episodes(&self) -> Result<EpisodeList, Failure> {
         read_list(&self.path.join(EPISODES))
@@ -121,13 +153,8 @@ impl CampaignDir {
     pub fn recorded(&self) -> Vec<EpisodeLine> {
         let mut lines = Vec::new();
         for worker in self.workers() {
-            let runs = fs::read_dir(self.worker(worker)).into_iter().flatten().flatten();
-            let mut files: Vec<PathBuf> = runs
-                .filter(|run| run.file_type().is_ok_and(|kind| kind.is_dir()))
-                .map(|run| run.path().join(EPISODE_RESULTS))
-                .collect();
-            files.sort();
-            for text in files.iter().filter_map(|file| fs::read_to_string(file).ok()) {
+            let files = self.runs(worker).into_iter().map(|run| run.join(EPISODE_RESULTS));
+            for text in files.filter_map(|file| fs::read_to_string(file).ok()) {
                 lines.extend(text.lines().filter_map(|line| serde_json::from_str(line).ok()));
             }
         }

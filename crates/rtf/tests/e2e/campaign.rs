@@ -4,7 +4,7 @@ use insta::assert_snapshot;
 use regex::Regex;
 use rtf_report::episode_results::EpisodeLine;
 
-use crate::support::{Finished, Folder, nothing_left, wait_until};
+use crate::support::{Finished, Folder, kill, nothing_left, wait_until};
 
 /// Fails if the payload is 2 or more.
 const GRASP: &str = "TestCase = {}\nfunction TestCase.run()\n  \
@@ -193,6 +193,9 @@ fn a_campaign_is_interrupted_and_resumed() {
     let folder = slow();
     let running = folder.start(&["campaign", "run", "campaign.xml", "--workers", "2"]);
     wait_until("some episodes", || (lines_of_first_worker(&folder) > 10).then_some(()));
+    let twice = folder.rtf(&["campaign", "run", "--resume", "rtf-results/campaigns/latest"]);
+    assert_eq!(twice.code, Some(2), "{}", twice.stdout);
+    assert!(twice.stderr.contains("is still running"), "{}", twice.stderr);
     running.signal("INT");
     let finished = running.finish();
     assert_eq!(finished.code, Some(130), "{}", finished.stdout);
@@ -208,7 +211,6 @@ fn a_campaign_that_is_killed_leaves_nothing_and_is_resumed() {
     wait_until("some episodes", || (lines_of_first_worker(&folder) > 10).then_some(()));
     running.signal("KILL");
     running.finish();
-    wait_until("the end of the workers", || nothing_left(&folder).then_some(()));
     resume(&folder);
 }
 
@@ -370,4 +372,24 @@ fn workers_have_separate_networks() {
     let finished = run(&folder, &["--workers", "3"]);
     assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
     assert!(!finished.stdout.contains("bench"), "{}", finished.stdout);
+}
+
+fn first_child(pid: u32) -> Option<u32> {
+    let children = std::fs::read_to_string(format!("/proc/{pid}/task/{pid}/children")).ok()?;
+    children.split_whitespace().next()?.parse().ok()
+}
+
+#[test]
+fn the_episode_of_a_worker_that_dies_is_repeated() {
+    let folder = slow();
+    let running = folder.start(&["campaign", "run", "campaign.xml"]);
+    wait_until("some episodes", || (lines_of_first_worker(&folder) > 10).then_some(()));
+    let guard = first_child(running.child.id()).expect("the guard of the worker");
+    assert!(kill(first_child(guard).expect("the runner")));
+    let finished = running.finish();
+    assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
+    let died = "worker 1 ended with exit code 5";
+    assert!(finished.stdout.contains(died), "{}", finished.stdout);
+    assert_eq!(results(&folder).len(), 60);
+    assert!(nothing_left(&folder));
 }

@@ -3,13 +3,14 @@
 
 use std::path::Path;
 use std::process::ExitCode;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use clap::ArgMatches;
 use rtf_campaign::file::StoppingRule;
 use rtf_campaign::{Campaign, Judge, Judgement, Ledger};
 use rtf_engine::signal::SignalListener;
 use rtf_model::{Episode, EpisodeOutcome};
+use rtf_report::episode_results::EpisodeLine;
 use rtf_report::escape;
 
 use super::progress::Progress;
@@ -35,9 +36,13 @@ const MAX_FAILED_STARTS: u32 = 3;
 pub fn run(mut args: CampaignRunArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_past_results(&mut args.results, matches)?;
     let (loaded, dir, ledger) = match &args.resume {
-        Some(path) => campaign::read_results(path)?,
+        Some(path) => {
+            wait_for_workers(&CampaignDir::open(path)?, args.shutdown_timeout)?;
+            campaign::read_results(path)?
+        }
         None => begin(&args)?,
     };
+    let _lock = dir.lock()?;
     let episodes = loaded.episodes.episodes;
     let judge = Judge::new(&loaded.campaign, episodes.len());
     let judge = judge.ok_or_else(|| Failure::internal("the claim cannot be judged"))?;
@@ -73,6 +78,20 @@ pub fn run(mut args: CampaignRunArgs, matches: &ArgMatches) -> VerbResult {
     dir.write_results(&summary::result_lines(&ledger, dir.recorded()))?;
     summary::print(&loaded.campaign, (&ledger, &judgement), early_end.as_ref(), &dir.path)?;
     Ok(ExitCode::from(summary::exit_code(&judgement, early_end.as_ref())))
+}
+
+/// Waits until the workers of a campaign that was killed have torn down.
+fn wait_for_workers(dir: &CampaignDir, limit: Duration) -> Result<(), Failure> {
+    drop(dir.lock()?);
+    let begin = Instant::now();
+    while dir.any_worker_runs() {
+        if begin.elapsed() >= limit {
+            let error = format!("workers of `{}` are still running", dir.path.display());
+            return Err(Failure::input(error).hint("they end by themselves; try again later"));
+        }
+        std::thread::sleep(POLL);
+    }
+    Ok(())
 }
 
 /// Checks a new campaign, and creates its directory.
@@ -166,13 +185,7 @@ impl Coordinator<'_> {
             // Before the results are read, so that none is missed.
             let ended = worker.exit_code();
             for line in worker.new_results() {
-                let position = usize::try_from(line.episode).unwrap_or_default();
-                if let Some(episode) = self.episodes.get(position.saturating_sub(1)) {
-                    self.progress.result(&line, episode)?;
-                }
-                if let Some(outcome) = line.outcome {
-                    self.ledger.record(line.episode, outcome, line.reason);
-                }
+                self.record(line)?;
             }
             match ended {
                 Some(code) => {
@@ -185,6 +198,17 @@ impl Coordinator<'_> {
         Ok(())
     }
 
+    fn record(&mut self, line: EpisodeLine) -> Result<(), Failure> {
+        let index = usize::try_from(line.episode).ok().and_then(|id| id.checked_sub(1));
+        if let Some(episode) = index.and_then(|index| self.episodes.get(index)) {
+            self.progress.result(&line, episode)?;
+        }
+        if let Some(outcome) = line.outcome {
+            self.ledger.record(line.episode, outcome, line.reason);
+        }
+        Ok(())
+    }
+
     fn on_worker_ended(&mut self, worker: Worker, code: u8) -> Result<(), Failure> {
         if code == exit::HOOK_FAILED {
             self.early_end.get_or_insert(EarlyEnd::HookFailed);
@@ -192,7 +216,8 @@ impl Coordinator<'_> {
         }
         if let Some(episode) = worker.running.filter(|_| !self.is_stopped) {
             let reason = format!("worker {} ended with exit code {code}", worker.number);
-            self.ledger.record(episode, EpisodeOutcome::Error, Some(reason));
+            let (outcome, reason) = (Some(EpisodeOutcome::Error), Some(reason));
+            self.record(EpisodeLine { episode, outcome, reason, ..EpisodeLine::default() })?;
         }
         self.ledger.give_back(worker.left.iter().copied());
         self.failed_starts = match worker.has_results || self.is_stopped {

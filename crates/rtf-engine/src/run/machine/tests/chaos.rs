@@ -6,13 +6,13 @@ use std::time::Duration;
 use proptest::prelude::*;
 use rtf_model::protocol::{Notification, Reply};
 use rtf_model::{
-    CaseId, CaseStart, EventKind, ExitStatus, Message, MessageKind, Phase, Source, TestId, Trigger,
-    Verdict,
+    CaseId, CaseStart, Episode, EventKind, ExitStatus, Message, MessageKind, Phase, Source, TestId,
+    Trigger, Verdict,
 };
 
 use super::world::{SECOND, World, hook, suite};
 use crate::run::machine::{Input, ProcessEvent, StopLevel};
-use rtf_plan::plan::{AfterCollapse, Retries, SuitePlan};
+use rtf_plan::plan::{AfterCollapse, ResetPlan, Retries, SuitePlan};
 use rtf_process::codec::INITIALIZE;
 
 /// Lets an idle shared host begin a test or exit; false if another host acts.
@@ -154,6 +154,14 @@ fn end_all(world: &mut World<'_>) {
     }
 }
 
+fn episode(id: u64) -> Episode {
+    Episode { id, seed: 1, parameters: Vec::new() }
+}
+
+fn reset() -> ResetPlan {
+    ResetPlan { command: vec!["reset".to_owned()], timeout: SECOND, restart_every: Some(2) }
+}
+
 proptest! {
     // For more cases: PROPTEST_CASES=20000.
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
@@ -167,6 +175,7 @@ proptest! {
         parallel in 1..4u32,
         alone in 0..8usize,
         shared in any::<bool>(),
+        episodes in 0..4u64,
     ) {
         let mut plan = suite(fixtures, tests);
         plan.settings.parallel = if shared { 1 } else { parallel };
@@ -190,7 +199,11 @@ proptest! {
         let delay = if independent { SECOND } else { Duration::ZERO };
         plan.tests[tests / 2].settings.retries = Retries { count: restarts, delay };
         plan.hooks = vec![hook(0, &Trigger::ALL), hook(1, &[Trigger::End])];
-        let mut world = World::new(&plan);
+        plan.episodes = (1..=episodes).map(episode).collect();
+        if let Some(fixture) = plan.fixtures.first_mut().filter(|_| independent) {
+            fixture.reset = Some(reset());
+        }
+        let mut world = if episodes == 0 { World::new(&plan) } else { World::timed(&plan) };
         world.start();
         for (choice, which) in steps {
             if world.done {
@@ -203,7 +216,9 @@ proptest! {
         let totals = world.record.totals();
         prop_assert_eq!(totals.done() as usize, tests);
         check_overlaps(&world);
-        check_exclusive(&world, &plan);
+        if episodes == 0 {
+            check_exclusive(&world, &plan);
+        }
         prop_assert!(world.record.hooks.iter().all(|h| h.runs.iter().all(|r| r.finished.is_some())));
     }
 }
