@@ -1,6 +1,6 @@
 //! Which episodes have which result, and which are still to be run.
 
-use std::collections::{BTreeSet, VecDeque};
+use std::collections::BTreeSet;
 
 use rtf_model::EpisodeOutcome;
 
@@ -25,8 +25,9 @@ pub struct Executions {
 #[derive(Clone, Debug)]
 pub struct Ledger {
     episodes: Vec<Executions>,
-    /// Episodes without a final result that no worker has.
-    open: VecDeque<u64>,
+    /// Episodes without a final result that no worker has, each after its number of results that
+    /// were the bench's: repetitions come last.
+    open: BTreeSet<(u32, u64)>,
     repeats: u32,
     /// How many episodes from the first one on have final results.
     complete: usize,
@@ -40,7 +41,7 @@ impl Ledger {
     pub fn new(episodes: usize, repeats: u32) -> Self {
         Self {
             episodes: vec![Executions::default(); episodes],
-            open: (1..=episodes as u64).collect(),
+            open: (1..=episodes as u64).map(|episode| (0, episode)).collect(),
             repeats,
             complete: 0,
             bench_in_succession: 0,
@@ -52,7 +53,7 @@ impl Ledger {
         let Some(executions) = index(episode).and_then(|index| self.episodes.get_mut(index)) else {
             return;
         };
-        self.open.retain(|open| *open != episode);
+        self.open.remove(&(executions.bench, episode));
         if executions.result.is_some() {
             return;
         }
@@ -70,7 +71,7 @@ impl Ledger {
             false => self.bench_in_succession = 0,
         }
         if executions.result.is_none() {
-            self.open.push_back(episode);
+            self.open.insert((executions.bench, episode));
         }
         while self.episodes.get(self.complete).is_some_and(|next| next.result.is_some()) {
             self.complete += 1;
@@ -79,14 +80,12 @@ impl Ledger {
 
     /// A worker has ended without results of these episodes.
     pub fn give_back(&mut self, episodes: impl IntoIterator<Item = u64>) {
-        let known: BTreeSet<u64> = self.open.iter().copied().collect();
-        let is_open = |episode: &u64| {
-            let executions = index(*episode).and_then(|index| self.episodes.get(index));
-            executions.is_some_and(|it| it.result.is_none()) && !known.contains(episode)
-        };
-        let open: BTreeSet<u64> = episodes.into_iter().filter(is_open).collect();
-        // The judgement follows the order of the episodes.
-        open.into_iter().rev().for_each(|episode| self.open.push_front(episode));
+        for episode in episodes {
+            let executions = index(episode).and_then(|index| self.episodes.get(index));
+            if let Some(executions) = executions.filter(|it| it.result.is_none()) {
+                self.open.insert((executions.bench, episode));
+            }
+        }
     }
 
     /// Takes the open episodes for a number of workers: in turn, so that the first episodes have
@@ -95,7 +94,7 @@ impl Ledger {
         let count = workers.min(self.open.len());
         let mut parts = vec![Vec::new(); count];
         if count > 0 {
-            for (turn, episode) in self.open.drain(..).enumerate() {
+            for (turn, (_, episode)) in std::mem::take(&mut self.open).into_iter().enumerate() {
                 parts[turn % count].push(episode);
             }
         }
