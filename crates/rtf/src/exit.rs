@@ -28,6 +28,18 @@ pub fn of_run(record: &Record) -> ExitCode {
     of_result(record, record.is_green())
 }
 
+/// The exit code of an array of tasks with their merged run: whether a signal stopped them, and
+/// whether a task has no result.
+pub fn of_array(record: Option<&Record>, stopped_by: Option<i32>, is_lost: bool) -> ExitCode {
+    match (record, stopped_by) {
+        (Some(record), _) if record.hook_failed() => ExitCode::from(HOOK_FAILED),
+        (_, Some(signal)) => ExitCode::from(of_signal(signal)),
+        (_, None) if is_lost => ExitCode::from(RUNNER_DIED),
+        (Some(record), None) => of_run(record),
+        (None, None) => ExitCode::from(BROKEN),
+    }
+}
+
 /// The exit code of a run apart from its tests.
 pub fn without_tests(record: &Record) -> ExitCode {
     of_result(record, record.is_green_without_tests())

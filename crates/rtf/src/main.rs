@@ -11,6 +11,7 @@ mod control;
 mod debug;
 mod diagnostics;
 mod error;
+mod executor;
 mod exit;
 mod guarded;
 mod history;
@@ -30,7 +31,7 @@ mod web;
 
 use std::process::ExitCode;
 
-use clap::{ArgMatches, CommandFactory, FromArgMatches};
+use clap::{ArgMatches, FromArgMatches};
 use cli::{Cli, Color, ConfigVerb, Verb};
 use command::VerbResult;
 use rtf_engine::guard;
@@ -50,7 +51,7 @@ fn main() -> ExitCode {
     if testrunner::is_called() {
         return testrunner::main();
     }
-    let matches = cli::unset_when_empty(Cli::command()).get_matches();
+    let matches = cli::parser().get_matches();
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     match cli.color {
         Color::Auto => {}

@@ -1,6 +1,6 @@
 //! Request → plan, with every problem reported.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
 use rtf_engine::verify;
@@ -8,13 +8,13 @@ use rtf_history::Location;
 use rtf_model::protocol::CaseSelector;
 use rtf_model::{Diagnostic, Manifest, Severity};
 use rtf_plan::plan::{self, Plan, PlanDraft, PlanOutcome};
-use rtf_plan::select::{self, Selected, Selection, ShardBy, select};
+use rtf_plan::select::{self, Selected, Selection, Shard, ShardBy, select};
 use rtf_plan::suite::{SourceMap, SourceText};
 
 use crate::debug::DebugRequest;
 use crate::diagnostics::{self, count};
 use crate::error::Failure;
-use crate::history;
+use crate::history::{self, PastTests};
 use crate::request::TestsRequest;
 
 /// A plan without errors.
@@ -70,6 +70,18 @@ pub fn plan_debugged(
         warnings: problems,
         sources,
     })
+}
+
+/// The numbers of the shards that contain tests, ascending.
+pub fn occupied_shards(
+    plan: &Plan,
+    (mut shard, past): (Shard, Option<Arc<PastTests>>),
+) -> Vec<u32> {
+    if let Some(past) = past {
+        shard.by = ShardBy::Duration(past.of_plan(plan));
+    }
+    let parts: BTreeSet<u32> = shard.parts(&plan.suites).into_iter().map(|part| part + 1).collect();
+    parts.into_iter().collect()
 }
 
 /// A plan with its problems.

@@ -36,8 +36,7 @@ pub(crate) use link::HEARTBEAT_INTERVAL;
 pub use link::Link;
 pub(crate) use message::HookStart;
 pub use recovery::{RecoveredHook, Recovery};
-pub(crate) use stop_requests::StopRequests;
-pub use stop_requests::WINDOW;
+pub use stop_requests::{StopRequests, WINDOW};
 pub use supervisor::{Guard, GuardOutcome};
 pub use unix::survive_file_size_limit;
 

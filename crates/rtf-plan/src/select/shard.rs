@@ -63,7 +63,8 @@ impl Shard {
     }
 
     /// Returns the part of each test, from 0, in the order of the plan.
-    fn parts(&self, suites: &[SuitePlan]) -> Vec<u32> {
+    #[must_use]
+    pub fn parts(&self, suites: &[SuitePlan]) -> Vec<u32> {
         let tests = suites.iter().flat_map(|suite| suite.tests.iter().map(move |t| (suite, t)));
         match &self.by {
             ShardBy::Hash => tests

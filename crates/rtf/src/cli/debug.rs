@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::RunArgs;
+use super::{ExecutorArgs, RunArgs};
 
 const DEBUGGING: &str = "Debugging";
 
@@ -14,6 +14,9 @@ pub struct RunVerbArgs {
 
     #[command(flatten)]
     pub debug: DebugArgs,
+
+    #[command(flatten)]
+    pub executor: ExecutorArgs,
 }
 
 /// How the selected test is debugged.

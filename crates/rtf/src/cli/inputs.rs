@@ -100,12 +100,12 @@ pub struct SelectArgs {
     pub order: Option<OrderOption>,
 
     /// Run only one shard of the tests: `2/5` is the second of five
-    #[arg(help_heading = SELECTION, long, value_name = "N/OF")]
+    #[arg(help_heading = SELECTION, long, value_name = "N/OF", group = "sharding")]
     pub shard: Option<Shard>,
 
     /// Assign tests to shards by `hash` of their names, by `count`, or by past durations:
     /// `duration=history`, `duration=RUN`, or `duration=FILE.json` from `rtf history slow`
-    #[arg(help_heading = SELECTION, long, value_name = "METHOD", requires = "shard")]
+    #[arg(help_heading = SELECTION, long, value_name = "METHOD", requires = "sharding")]
     #[arg(default_value = "hash")]
     pub shard_by: String,
 }

@@ -3,6 +3,7 @@
 mod campaign;
 mod debug;
 mod doctor;
+mod executor;
 mod formats;
 mod gate;
 mod history;
@@ -17,7 +18,7 @@ mod web;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Command, CommandFactory, Parser, Subcommand, ValueEnum};
 use rtf_plan::suite::parse_duration;
 
 pub use campaign::{
@@ -25,6 +26,7 @@ pub use campaign::{
 };
 pub use debug::{DebugArgs, RunVerbArgs};
 pub use doctor::{DoctorArgs, DoctorFormat};
+pub use executor::{ExecutorArgs, ExecutorOption};
 pub use formats::{Annotations, ReportFormat, ReportTarget, StdoutFormat, parse_report};
 pub use gate::{GateFormat, HistoryGateArgs};
 pub use history::{
@@ -40,7 +42,8 @@ pub use inputs::{
 pub use past::{MergeArgs, ReportArgs, ShowArgs};
 pub use project::{InitArgs, Language, NewArgs, ProjectKind};
 pub use run::{ListArgs, ListFormat, RunArgs};
-pub use values::{parse_fork_mode, unset_when_empty};
+pub use values::parse_fork_mode;
+use values::unset_when_empty;
 pub use web::{ServeArgs, WebAccessArgs, WebRunArgs};
 
 /// Run tests on robots: plug-ins in any language, on fixtures that rtf monitors
@@ -55,6 +58,11 @@ pub struct Cli {
 
     #[command(subcommand)]
     pub verb: Verb,
+}
+
+/// The parser of the command line.
+pub fn parser() -> Command {
+    unset_when_empty(Cli::command())
 }
 
 const AFTER_HELP: &str = "\

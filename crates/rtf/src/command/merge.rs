@@ -27,9 +27,14 @@ use crate::{exit, history, terminal};
 /// Merges runs and prints the merged run.
 pub fn run(mut args: MergeArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_past_results(&mut args.results, matches)?;
-    let results = &args.results.results;
-    let runs = find_journals(results, &args.runs)?;
-    let merged = merge::merge(runs, args.partial).map_err(refuse)?;
+    let (_, record) = merge(&args.results.results, &args.runs, args.partial)?;
+    Ok(exit::of_run(&record))
+}
+
+/// Merges runs into a new run in `results`, and prints it. With `partial`, shards may be missing.
+pub fn merge(results: &Path, runs: &[String], partial: bool) -> Result<(RunDir, Record), Failure> {
+    let runs = find_journals(results, runs)?;
+    let merged = merge::merge(runs, partial).map_err(refuse)?;
     let dir = run_dir::create(results).map_err(|error| {
         Failure::input(error).hint("choose another directory with `--results DIR`")
     })?;
@@ -41,7 +46,7 @@ pub fn run(mut args: MergeArgs, matches: &ArgMatches) -> VerbResult {
             .collect(),
     };
     let record = write(merged, header, &dir).map_err(Failure::internal)?;
-    Ok(exit::of_run(&record))
+    Ok((dir, record))
 }
 
 /// The journals of the runs. `results/*` also names the history, which is left out, and the

@@ -7,17 +7,26 @@ use clap::ArgMatches;
 use rtf_model::Record;
 
 use super::{VerbResult, list};
-use crate::cli::{ListFormat, RunVerbArgs};
+use crate::cli::{ExecutorOption, ListFormat, RunVerbArgs};
 use crate::debug::DebugRequest;
 use crate::error::Failure;
 use crate::guarded::{self, Supervision};
 use crate::request::{self, OutputRequest, RunRequest, config, history_target};
-use crate::{history, outputs, plan, preflight, reports, runner};
+use crate::{executor, history, outputs, plan, preflight, reports, runner};
 
 /// Runs tests.
 pub fn run(args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
-    let RunVerbArgs { run: mut args, debug } = args;
-    config::fill_run(&mut args, matches)?;
+    if args.executor.resume {
+        return executor::resume(&args);
+    }
+    let mut args = args;
+    config::fill_run(&mut args.run, matches)?;
+    match &args.executor.array_task {
+        Some(task) => task.apply(&mut args.run, &args.executor)?,
+        None if args.executor.executor == ExecutorOption::Slurm => return executor::run(&args),
+        None => executor::refuse_local(&args.executor)?,
+    }
+    let RunVerbArgs { run: args, debug, .. } = args;
     let debug = DebugRequest::resolve(&debug, &args)?;
     let output = OutputRequest { progress: debug.is_none(), ..OutputRequest::resolve(&args) };
     let lifeline = args.end_with_stdin.then(|| std::io::stdin().as_fd().try_clone_to_owned());

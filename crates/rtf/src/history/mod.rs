@@ -58,10 +58,15 @@ pub fn is_database(path: &Path) -> bool {
     matches!(rest, Some("" | "-wal" | "-shm")) && path.is_file()
 }
 
+/// The database in a results directory.
+pub fn default_database(results: &Path) -> PathBuf {
+    results.join(FILE_NAME)
+}
+
 /// Resolves the database: a path, a `file:` URL or an address of PostgreSQL; by default a file
 /// in the results directory.
 pub fn resolve(url: Option<&str>, results: &Path) -> Result<Location, Failure> {
-    let Some(url) = url else { return Ok(results.join(FILE_NAME).into()) };
+    let Some(url) = url else { return Ok(default_database(results).into()) };
     match url.split_once("://") {
         _ if url.is_empty() => Err(Failure::input("the path of the history is empty")),
         Some(("file", path)) => Ok(PathBuf::from(path).into()),

@@ -40,6 +40,11 @@ pub struct TestsRequest {
 impl TestsRequest {
     /// Resolves the arguments, and reads the past runs that they name.
     pub fn resolve(args: &InputArgs) -> Result<Self, Failure> {
+        Self::resolve_shard(args, args.select.shard.clone())
+    }
+
+    /// As [`Self::resolve`], for a shard that is not in the arguments.
+    pub fn resolve_shard(args: &InputArgs, shard: Option<Shard>) -> Result<Self, Failure> {
         let mut runner = RunnerEnvironment::from_current_process().map_err(Failure::internal)?;
         let results = &args.results.results;
         let mut manifest = if args.select.rerun.is_empty() {
@@ -64,7 +69,7 @@ impl TestsRequest {
         let past = PastQuery { args, manifest: &manifest, dir: &runner.current_dir };
         let mut warnings = Vec::new();
         let order = order.map(|(order, _)| past.order(order, &mut warnings)).transpose()?.flatten();
-        let shard = args.select.shard.clone().map(|shard| past.assign(shard)).transpose()?;
+        let shard = shard.map(|shard| past.assign(shard)).transpose()?;
         manifest.shard = shard.as_ref().map(|(it, _)| format!("{}/{}", it.index, it.count));
         let inputs = manifest.inputs.iter().map(|input| InputPath::Any(input.into())).collect();
         let options = options(&manifest, runner);

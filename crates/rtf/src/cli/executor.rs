@@ -1,0 +1,51 @@
+//! Options of `rtf run` that choose where the tests run.
+
+use clap::{Args, ValueEnum};
+
+use crate::executor::ArrayTask;
+
+const EXECUTOR: &str = "Executor";
+
+/// The largest number of tasks: Slurm's default `MaxArraySize` permits no larger array.
+const MAX_SHARDS: i64 = 1000;
+
+/// Where the tests run.
+#[derive(Clone, Debug, Default, Args)]
+pub struct ExecutorArgs {
+    /// Where to run the tests: on this machine (`local`), or as a job array of `slurm`
+    #[arg(help_heading = EXECUTOR, long, value_name = "EXECUTOR", default_value = "local")]
+    #[arg(hide_possible_values = true)]
+    pub executor: ExecutorOption,
+
+    /// Split the tests into N shards, which the executor runs as tasks
+    #[arg(help_heading = EXECUTOR, long, value_name = "N", group = "sharding")]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=MAX_SHARDS))]
+    pub shards: Option<u32>,
+
+    /// Pass an argument to `sbatch`: `--partition=sim`, `--time=1:00:00`
+    #[arg(help_heading = EXECUTOR, long = "executor-arg", value_name = "ARG")]
+    #[arg(allow_hyphen_values = true)]
+    pub args: Vec<String>,
+
+    /// Request a licence of Slurm for each resource that the suites require
+    #[arg(help_heading = EXECUTOR, long = "executor-licenses")]
+    pub licenses: bool,
+
+    /// Follow and merge the submission whose directory is FILE, with its original options
+    #[arg(help_heading = EXECUTOR, long, conflicts_with_all = ["rerun", "shards", "args"])]
+    pub resume: bool,
+
+    /// Run a task of a submission
+    #[arg(long, hide = true, value_name = "TASK")]
+    pub array_task: Option<ArrayTask>,
+}
+
+/// The executors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum ExecutorOption {
+    /// This machine
+    #[default]
+    Local,
+    /// A Slurm cluster
+    Slurm,
+}

@@ -1,0 +1,82 @@
+//! `rtf run` as a task of a submission.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use rtf_plan::select::{Shard, ShardBy};
+
+use super::submission::CANCELLED;
+use crate::cli::{Annotations, ExecutorArgs, RunArgs};
+use crate::error::Failure;
+use crate::history;
+
+/// A task of a submission: `3:0:/shared/submission`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ArrayTask {
+    /// Its number, from 1.
+    number: u32,
+    /// How often it was run before.
+    attempt: u32,
+    /// The directory of the submission.
+    dir: PathBuf,
+}
+
+impl FromStr for ArrayTask {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mut parts = text.splitn(3, ':');
+        let number = parts.next().and_then(|number| number.parse().ok());
+        let attempt = parts.next().and_then(|number| number.parse().ok());
+        match (number, attempt, parts.next()) {
+            (Some(number), Some(attempt), Some(dir)) => {
+                Ok(Self { number, attempt, dir: dir.into() })
+            }
+            _ => Err("expected `NUMBER:ATTEMPT:DIRECTORY`".to_owned()),
+        }
+    }
+}
+
+impl ArrayTask {
+    /// Replaces the options that concern the results: the submitting process merges them.
+    pub fn apply(&self, args: &mut RunArgs, executor: &ExecutorArgs) -> Result<(), Failure> {
+        if self.dir.join(CANCELLED).exists() {
+            return Err(Failure::input("the submission was cancelled"));
+        }
+        let Some(count) = executor.shards.filter(|count| (1..=*count).contains(&self.number))
+        else {
+            return Err(Failure::input(format!("there is no task {}", self.number)));
+        };
+        let results = &mut args.input.results.results;
+        let history = &mut args.input.history.history;
+        if history.is_none() {
+            let database = history::default_database(results);
+            *history = Some(database.to_string_lossy().into_owned());
+        }
+        *results = attempt_dir(&self.dir, self.number, self.attempt);
+        args.input.select.shard = Some(Shard { index: self.number, count, by: ShardBy::Hash });
+        args.reports.clear();
+        args.symlink = None;
+        args.annotations = Annotations::None;
+        args.no_history = true;
+        Ok(())
+    }
+}
+
+/// The results directory of an attempt.
+fn attempt_dir(dir: &std::path::Path, number: u32, attempt: u32) -> PathBuf {
+    dir.join(format!("parts/{number}/{attempt}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_directory_may_contain_colons() {
+        let task: ArrayTask = "3:1:/a:b".parse().expect("a task");
+        assert_eq!(task, ArrayTask { number: 3, attempt: 1, dir: "/a:b".into() });
+        assert!("3:1".parse::<ArrayTask>().is_err());
+        assert!("x:1:/a".parse::<ArrayTask>().is_err());
+    }
+}

@@ -1,0 +1,106 @@
+//! Merges the runs of the tasks, and decides the exit code.
+
+use std::fs::File;
+use std::path::PathBuf;
+
+use rtf_model::RunState;
+use rtf_report::journal;
+use rtf_report::run_dir::{self, JOURNAL, RunDir};
+
+use super::submission::Submission;
+use crate::cli::RunArgs;
+use crate::command::{VerbResult, merge};
+use crate::error::Failure;
+use crate::request::{self, OutputRequest, history_target};
+use crate::{exit, history, outputs, terminal};
+
+/// The last attempt of a task.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum TaskResult {
+    /// Its journal has an end.
+    Finished,
+    /// Its journal has no end, but can be merged.
+    Incomplete,
+    /// Its journal is damaged.
+    Damaged,
+    /// There is no journal.
+    Missing,
+}
+
+/// Merges the runs of the tasks. `stopped_by` is the signal that ended the submission.
+pub fn collect(submission: &Submission, args: &RunArgs, stopped_by: Option<i32>) -> VerbResult {
+    let mut runs = Vec::new();
+    let mut is_lost = false;
+    for task in &submission.stored.tasks {
+        let run = submission.last_run(*task);
+        let result = run.as_ref().map_or(TaskResult::Missing, |run| examine(run));
+        if let Some(run) = run
+            && matches!(result, TaskResult::Finished | TaskResult::Incomplete)
+        {
+            runs.push(run.to_string_lossy().into_owned());
+        }
+        is_lost |= result != TaskResult::Finished;
+        report(submission, *task, result, stopped_by)?;
+    }
+    if runs.is_empty() {
+        return Ok(exit::of_array(None, stopped_by, is_lost));
+    }
+    let (dir, record) = merge::merge(&args.input.results.results, &runs, true)?;
+    if !is_lost && record.tests.len() != submission.stored.tests as usize {
+        let (found, all) = (record.tests.len(), submission.stored.tests);
+        let error = format!("the tasks ran {found} of {all} tests: the suites have changed");
+        Failure::internal(error).print();
+        is_lost = true;
+    }
+    finish(args, &dir, &record)?;
+    Ok(exit::of_array(Some(&record), stopped_by, is_lost))
+}
+
+fn examine(run: &std::path::Path) -> TaskResult {
+    let path = run.join(JOURNAL);
+    if File::open(&path).is_err() {
+        return TaskResult::Missing;
+    }
+    match journal::read(&path) {
+        Ok(stored) if stored.record.is_damaged() => TaskResult::Damaged,
+        Ok(stored) if stored.record.run.is_none() => TaskResult::Missing,
+        Ok(stored) if stored.record.state == RunState::Running => TaskResult::Incomplete,
+        Ok(_) => TaskResult::Finished,
+        Err(_) => TaskResult::Damaged,
+    }
+}
+
+fn report(
+    submission: &Submission,
+    task: u32,
+    result: TaskResult,
+    stopped_by: Option<i32>,
+) -> Result<(), Failure> {
+    let problem = match result {
+        TaskResult::Finished => return Ok(()),
+        TaskResult::Missing if stopped_by.is_some() => return Ok(()),
+        TaskResult::Incomplete => "its run has no end",
+        TaskResult::Damaged => "its journal is damaged",
+        TaskResult::Missing => "it has no journal",
+    };
+    let output: PathBuf = submission.output(task);
+    terminal::stderr(|err| {
+        writeln!(err, "error: task {task} died: {problem}")?;
+        writeln!(err, "hint: its output is in `{}`", output.display())
+    })
+}
+
+/// Writes and sends what `rtf run` does at the end.
+fn finish(args: &RunArgs, dir: &RunDir, record: &rtf_model::Record) -> Result<(), Failure> {
+    if let Some(link) = &args.symlink {
+        run_dir::link(dir, link).map_err(Failure::input)?;
+    }
+    outputs::complete(&OutputRequest::resolve(args), &dir.journal(), record);
+    if let Some(history) = history_target(args)? {
+        history::import_run(&history, record);
+    }
+    for collector in request::collectors(args)? {
+        collector.push(record);
+    }
+    Ok(())
+}

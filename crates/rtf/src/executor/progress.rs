@@ -1,0 +1,121 @@
+//! The progress of a job: its tasks, and the tests in their journals as they grow.
+
+use std::collections::{BTreeSet, HashMap};
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use rtf_model::EventKind;
+use rtf_report::journal;
+use rtf_report::run_dir::JOURNAL;
+
+use super::slurm::{JobId, TaskState};
+use super::submission::Submission;
+use crate::diagnostics::count;
+use crate::terminal;
+
+/// Reasons for waiting that end without the user, as Slurm names them.
+const USUAL_REASONS: [&str; 6] =
+    ["None", "Resources", "Priority", "BeginTime", "Licenses", "JobArrayTaskLimit"];
+
+/// Prints the progress when it has changed.
+pub struct Progress<'a> {
+    job: &'a JobId,
+    submission: &'a Submission,
+    journals: HashMap<PathBuf, GrowingJournal>,
+    last: String,
+    /// The tasks that wait for an unusual reason, and were reported.
+    stuck: BTreeSet<(u32, String)>,
+}
+
+impl<'a> Progress<'a> {
+    pub fn new(job: &'a JobId, submission: &'a Submission) -> Self {
+        Self {
+            job,
+            submission,
+            journals: HashMap::new(),
+            last: String::new(),
+            stuck: BTreeSet::new(),
+        }
+    }
+
+    /// Prints how to resume.
+    pub fn print_start(&self) {
+        let dir = self.submission.dir.to_string_lossy();
+        let dir = shell_words::quote(&dir);
+        let job = self.job;
+        terminal::notice(format!("slurm: job {job}: `rtf run --resume {dir}` resumes"));
+    }
+
+    /// Prints a line if something has changed.
+    pub fn print(&mut self, tasks: &[TaskState]) {
+        for task in tasks.iter().filter(|task| task.is_waiting) {
+            let TaskState { number, reason, .. } = task;
+            let is_usual = USUAL_REASONS.contains(&reason.as_str());
+            if !is_usual && self.stuck.insert((*number, reason.clone())) {
+                let job = self.job;
+                terminal::notice(format!("slurm: job {job}: task {number} waits: {reason}"));
+            }
+        }
+        let finished = self.finished_tests();
+        let line = line(self.submission, tasks, finished);
+        if line != self.last {
+            terminal::notice(format!("slurm: job {}: {line}", self.job));
+            self.last = line;
+        }
+    }
+
+    fn finished_tests(&mut self) -> u32 {
+        let tasks = self.submission.stored.tasks.iter();
+        let runs = tasks.filter_map(|task| self.submission.last_run(*task));
+        let journals = &mut self.journals;
+        let counts = runs.map(|run| {
+            let path = run.join(JOURNAL);
+            let journal = journals.entry(path.clone()).or_default();
+            // The next attempt to read it may succeed.
+            let _ = journal.read_new(&path);
+            journal.finished
+        });
+        counts.sum()
+    }
+}
+
+fn line(submission: &Submission, tasks: &[TaskState], finished: u32) -> String {
+    let all = submission.stored.tasks.len();
+    let waiting = tasks.iter().filter(|task| task.is_waiting).count();
+    let running = tasks.len() - waiting;
+    let ended = all.saturating_sub(tasks.len());
+    let tests = submission.stored.tests;
+    format!(
+        "{ended} of {} ended, {running} running, {waiting} waiting; {finished} of {} finished",
+        count(all, "task"),
+        count(tests as usize, "test"),
+    )
+}
+
+/// A journal of which the beginning has been read.
+#[derive(Default)]
+struct GrowingJournal {
+    /// The end of the last complete line that was read.
+    offset: u64,
+    finished: u32,
+}
+
+impl GrowingJournal {
+    /// Counts the finished tests in complete new lines.
+    fn read_new(&mut self, path: &Path) -> io::Result<()> {
+        let mut file = File::open(path)?;
+        file.seek(SeekFrom::Start(self.offset))?;
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes)?;
+        let Some(end) = bytes.iter().rposition(|byte| *byte == b'\n') else { return Ok(()) };
+        for line in bytes[..end].split(|byte| *byte == b'\n') {
+            let event = journal::parse_event(line).ok();
+            if event.is_some_and(|event| matches!(event.kind, EventKind::TestFinished { .. })) {
+                self.finished += 1;
+            }
+        }
+        self.offset += end as u64 + 1;
+        Ok(())
+    }
+}
