@@ -129,6 +129,7 @@ lint_python() {
   "$checkers/mypy" tests/history/*.py
   "$checkers/mypy" tests/campaign/*.py
   "$checkers/mypy" tests/telemetry/*.py
+  "$checkers/mypy" tests/slurm/*.py
 }
 
 sdk_python() {
@@ -400,6 +401,11 @@ history_postgres() {
   RTF_POSTGRES_BIN=$bin cargo test --quiet --locked -p rtf-history --test postgres -- --ignored
 }
 
+# `rtf run --executor slurm` with a real cluster, which needs root.
+executor_slurm() {
+  tools/slurm.sh python3 tests/slurm/check.py "$TARGET/debug/rtf"
+}
+
 # Runs an npm script of the page.
 in_web() {
   tools/web.sh modules
@@ -487,6 +493,7 @@ step 'campaign oracle' campaign_oracle
 step 'history export' history_export
 step 'history in PostgreSQL' history_postgres
 step 'telemetry' telemetry
+step 'executor slurm' executor_slurm
 step 'debugging' debugging
 step 'ci helpers' ci_helpers
 step 'guide' env RTF_PYTHON="$checkers/python" tools/check_docs.py "$TARGET/release/rtf" README.md \

@@ -49,12 +49,14 @@ class Project:
         names = [f"T{number}" for number in range(TESTS)]
         kinds = ["fails" if number % 5 == 0 else "passes" for number in range(TESTS)]
         self.suite("arm", dict(zip(names, kinds, strict=True)))
-        self.suite("slow", dict.fromkeys(["A", "B", "C", "D"], "waits"))
+        self.suite("slow", dict.fromkeys("ABCD", "waits"))
+        # The licence of the cluster.
+        self.suite("robot", dict.fromkeys("ABCD", "waits"), 'requires="robot"')
 
-    def suite(self, name: str, tests: dict[str, str]) -> None:
-        """Writes a suite with tests by name, which requires the licence of the cluster."""
+    def suite(self, name: str, tests: dict[str, str], attributes: str = "") -> None:
+        """Writes a suite with tests by name."""
         lines = "".join(f'<test name="{test}">{kind}.lua</test>' for test, kind in tests.items())
-        (self.dir / f"{name}.xml").write_text(f'<suite name="{name}" requires="robot">{lines}</suite>')
+        (self.dir / f"{name}.xml").write_text(f'<suite name="{name}" {attributes}>{lines}</suite>')
 
     def command(self, *args: str) -> list[str]:
         """The command of a run."""
@@ -79,7 +81,7 @@ class Project:
 
     def submission(self) -> Path:
         """The directory of the only submission."""
-        (found,) = (self.dir / "rtf-results/submissions").iterdir()
+        (found,) = (self.dir / "rtf-results/.submissions").iterdir()
         return found
 
 
@@ -119,7 +121,7 @@ def merged_reports(project: Project) -> None:
 
 def licences(project: Project) -> None:
     """Tasks that need the only licence never run at the same time."""
-    process = project.start("slow.xml", "--executor-licenses")
+    process = project.start("robot.xml", "--executor-licenses")
     until("a test has started", lambda: bool(project.started()))
     until("the others wait", lambda: list(jobs().values()).count("Licenses") == 3)
     equal(len(project.started()), 1)
@@ -128,29 +130,32 @@ def licences(project: Project) -> None:
 
 
 def failed_node(project: Project) -> None:
-    """The tasks of a node that fails are run again on the other one."""
+    """The tasks of a node that fails are run again."""
     process = project.start("slow.xml")
     until("all tests have started", lambda: len(project.started()) == 4)
+    # The node returns when its `slurmd` registers again.
     scontrol("update", "NodeName=n2", "State=DOWN", "Reason=test")
     until("two tasks wait", lambda: list(jobs().values()).count("BeginTime") == 2)
     project.go()
     # By default, they would start after two minutes.
-    for task in list(jobs()):
+    for task in [task for task, reason in jobs().items() if reason == "BeginTime"]:
         scontrol("update", f"JobId={task}", "StartTime=now")
     finish(process, 0)
-    equal(stored(project), dict.fromkeys(["slow/A", "slow/B", "slow/C", "slow/D"], "passed"))
+    equal(stored(project), dict.fromkeys("ABCD", "passed"))
     attempts = project.submission().glob("parts/*/*")
     equal(sorted(attempt.name for attempt in attempts), ["0", "0", "0", "0", "1", "1"])
-    scontrol("update", "NodeName=n2", "State=RESUME")
 
 
 def lost_task(project: Project) -> None:
-    """A task that Slurm killed is reported, and the run is not green."""
+    """A task whose runner and guard were killed is reported, and the run is not green."""
     process = project.start("slow.xml")
     until("all tests have started", lambda: len(project.started()) == 4)
-    task = sorted(jobs())[0]
-    subprocess.run(["scancel", "--signal=KILL", "--full", task], check=True)
-    until("the task has ended", lambda: task not in jobs())
+    killed = commands(lambda command: f"--array-task=1:0:{project.submission()}" in command)
+    equal(len(killed), 2)
+    for number in (signal.SIGSTOP, signal.SIGKILL):
+        for process_id in killed:
+            os.kill(process_id, number)
+    until("the task has ended", lambda: len(jobs()) == 3)
     project.go()
     output = finish(process, 5)
     expect(re.search(r"error: task 1 died: its run has no end", output) is not None, output)
@@ -164,7 +169,7 @@ def cancelled(project: Project) -> None:
     finish(process, 130)
     equal(jobs(), {})
     equal(set(stored(project).values()), {"interrupted"})
-    equal(processes(project.dir), [])
+    equal(commands(lambda command: str(project.dir) in command), {})
 
 
 def resumed(project: Project) -> None:
@@ -194,13 +199,11 @@ def finish(process: subprocess.Popen[str], code: int) -> str:
 def stored(project: Project) -> Verdicts:
     """The verdicts of the newest run, by the names of the tests."""
     journal = project.dir / "rtf-results/latest/events.jsonl"
-    names: dict[int, str] = {}
-    found: Verdicts = {}
-    for line in journal.read_text().splitlines():
-        event = json.loads(line)
-        if event["type"] == "suite-planned":
-            print(event)
-    raise NotImplementedError((names, found))
+    events = [json.loads(line) for line in journal.read_text().splitlines()]
+    names = {event["test"]: event["name"] for event in events if event["type"] == "test-planned"}
+    finished = [event for event in events if event["type"] == "test-finished"]
+    equal(len(finished), len(names))
+    return {names[event["test"]]: event["verdict"] for event in finished}
 
 
 def jobs() -> dict[str, str]:
@@ -214,17 +217,17 @@ def nodes() -> set[str]:
     return set(output("sinfo", "--noheader", "--Node", "--format=%t").split())
 
 
-def processes(directory: Path) -> list[str]:
-    """The processes with a working directory in this one."""
-    found = []
+def commands(is_wanted: Callable[[str], bool]) -> dict[int, str]:
+    """The processes with such a command, by id."""
+    found = {}
     for process in Path("/proc").iterdir():
         if process.name.isdigit():
             try:
-                current = (process / "cwd").readlink()
+                command = (process / "cmdline").read_bytes().replace(b"\0", b" ").decode()
             except OSError:
                 continue
-            if current.is_relative_to(directory):
-                found.append((process / "cmdline").read_text())
+            if is_wanted(command):
+                found[int(process.name)] = command
     return found
 
 

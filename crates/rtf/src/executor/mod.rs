@@ -67,7 +67,7 @@ fn plan_all(args: &RunArgs, shards: u32) -> Result<(Vec<u32>, Plan), Failure> {
 /// Follows and merges the submission in a directory, with its original options.
 pub fn resume(args: &RunVerbArgs) -> VerbResult {
     let [dir] = args.run.input.inputs.as_slice() else {
-        let hint = "`rtf run --resume rtf-results/submissions/NAME`";
+        let hint = "`rtf run --resume rtf-results/.submissions/NAME`";
         return Err(Failure::input("`--resume` needs one directory").hint(hint));
     };
     let submission = Submission::open(dir)?;
@@ -86,7 +86,10 @@ fn supervise(submission: &Submission, args: &RunVerbArgs) -> VerbResult {
     let lock = submission.lock()?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let stopped_by = runtime.map_err(Failure::internal)?.block_on(async {
-        let job = find_or_submit(submission, &lock).await.map_err(slurm_failure)?;
+        let job = find_or_submit(submission, &lock).await.map_err(|error| {
+            submission.discard();
+            slurm_failure(error)
+        })?;
         follow::follow(&job, submission, args.run.shutdown_timeout).await
     })?;
     collect::collect(submission, &args.run, stopped_by)

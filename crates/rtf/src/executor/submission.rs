@@ -11,6 +11,9 @@ use uuid::Uuid;
 
 use crate::error::Failure;
 
+/// The directory of all submissions in a results directory: hidden, so that `rtf-results/*` names
+/// runs only.
+const DIR: &str = ".submissions";
 /// The file with [`Stored`].
 const STORED: &str = "submission.json";
 /// The file that exists when the user has cancelled the submission.
@@ -58,7 +61,7 @@ impl Submission {
         options: Vec<String>,
     ) -> Result<Self, Failure> {
         let name = format!("rtf-{}", &Uuid::now_v7().simple().to_string());
-        let dir = std::path::absolute(results.join("submissions").join(&name));
+        let dir = std::path::absolute(results.join(DIR).join(&name));
         let dir = dir.map_err(Failure::internal)?;
         let program = std::env::current_exe().map_err(Failure::internal)?;
         let working_dir = std::env::current_dir().map_err(Failure::internal)?;
@@ -102,6 +105,13 @@ impl Submission {
                 Err(Failure::input("another process follows this submission"))
             }
             Err(TryLockError::Error(error)) => Err(cannot("lock", &path, &error)),
+        }
+    }
+
+    /// Removes the directory, unless another process created it: nothing was submitted.
+    pub fn discard(&self) {
+        if !self.is_resumed {
+            let _ = fs::remove_dir_all(&self.dir);
         }
     }
 
