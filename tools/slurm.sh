@@ -192,7 +192,7 @@ trap 'exit 130' INT
 trap 'exit 143' TERM
 mkdir -p "$cluster"/{state,munge,spool}
 for node in "${nodes[@]}"; do mkdir -p "$cluster/spool/$node"; done
-# MUNGE requires that everybody can reach its socket.
+# MUNGE requires that all users can reach its socket.
 chmod 711 "$cluster"
 chmod 700 "$cluster/munge"
 head -c 1024 /dev/urandom >"$cluster/munge/key"

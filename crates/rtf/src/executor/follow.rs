@@ -66,7 +66,7 @@ struct Stop<'a> {
     requests: StopRequests,
     signal: Option<i32>,
     first_at: Option<Instant>,
-    /// The tasks that have been told to stop by the last request.
+    /// The tasks that got SIGTERM after the last request.
     terminated: BTreeSet<u32>,
     is_cancelled: bool,
 }

@@ -4,7 +4,7 @@
 //! - [`slurm`]: a job array whose tasks each execute a command. Knows no tests.
 //! - [`submission`]: the directory of a submission.
 //! - [`follow`]: waits for the tasks, and stops them on signals.
-//! - [`progress`]: what the user sees meanwhile.
+//! - [`progress`]: prints the state of the tasks.
 //! - [`collect`]: the runs of the tasks, merged.
 //! - [`array_task`]: `rtf run` as one of the tasks.
 
