@@ -52,7 +52,7 @@ pub fn collect(submission: &Submission, args: &RunArgs, stopped_by: Option<i32>)
         Failure::internal(error).print();
         is_lost = true;
     }
-    finish(args, &dir, &record)?;
+    finish(args, &dir)?;
     Ok(exit::of_array(Some(&record), stopped_by, is_lost))
 }
 
@@ -91,10 +91,13 @@ fn report(
 }
 
 /// Writes and sends what `rtf run` does at the end.
-fn finish(args: &RunArgs, dir: &RunDir, record: &rtf_model::Record) -> Result<(), Failure> {
+fn finish(args: &RunArgs, dir: &RunDir) -> Result<(), Failure> {
     if let Some(link) = &args.symlink {
         run_dir::link(dir, link).map_err(Failure::input)?;
     }
+    // The record of `merge` has no details.
+    let stored = journal::read(&dir.journal()).map_err(Failure::internal)?;
+    let record = &stored.record;
     outputs::complete(&OutputRequest::resolve(args), &dir.journal(), record);
     if let Some(history) = history_target(args)? {
         history::import_run(&history, record);

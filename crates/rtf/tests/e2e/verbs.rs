@@ -247,6 +247,15 @@ fn help_of_run() {
                                 --args`
           --debug-wait          Print the process of the test, which begins when a debugger is attached,
                                 and suspend its limits
+
+    Executor:
+          --executor <EXECUTOR>  Where to run the tests: on this machine (`local`), or as a job array of
+                                 `slurm` [default: local]
+          --shards <N>           Split the tests into N shards, which the executor runs as tasks
+          --executor-arg <ARG>   Pass an argument to `sbatch`: `--partition=sim`, `--time=1:00:00`
+          --executor-licenses    Request a licence of Slurm for each resource that the suites require
+          --resume               Follow and merge the submission whose directory is FILE, with its
+                                 original options
     ----- stderr
     ");
 }
