@@ -152,8 +152,10 @@ def lost_task(project: Project) -> None:
     until("all tests have started", lambda: len(project.started()) == 4)
     killed = commands(lambda command: f"--array-task=1:0:{project.submission()}" in command)
     equal(len(killed), 2)
+    # The runner first: the end of its stopped guard would continue it.
+    runner_first = sorted(killed, key=lambda process_id: parent(process_id) not in killed)
     for number in (signal.SIGSTOP, signal.SIGKILL):
-        for process_id in killed:
+        for process_id in runner_first:
             os.kill(process_id, number)
     until("the task has ended", lambda: len(jobs()) == 3)
     project.go()
@@ -229,6 +231,12 @@ def commands(is_wanted: Callable[[str], bool]) -> dict[int, str]:
             if is_wanted(command):
                 found[int(process.name)] = command
     return found
+
+
+def parent(process_id: int) -> int:
+    """The parent of a process."""
+    status = Path(f"/proc/{process_id}/status").read_text()
+    return int(status.split("PPid:")[1].split()[0])
 
 
 def scontrol(*args: str) -> None:
