@@ -164,6 +164,7 @@ fn attach(
         path: full.to_string_lossy().into_owned(),
         media_type: media_type.map(LuaString::to_string_lossy).unwrap_or_default(),
         case: None,
+        omitted: false,
     });
     attached.err().map(|error| format!("`{}` cannot be attached: {error}", full.display()))
 }

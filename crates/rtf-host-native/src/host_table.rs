@@ -149,9 +149,13 @@ unsafe extern "C" fn attach(context: *mut c_void, attachment: *const rtf_attachm
         }
         let media_type = text(attachment.media_type);
         let session = &self::context(context).session;
-        if let Err(error) =
-            session.attach(Attachment { name, path: path.clone(), media_type, case: None })
-        {
+        if let Err(error) = session.attach(Attachment {
+            name,
+            path: path.clone(),
+            media_type,
+            case: None,
+            omitted: false,
+        }) {
             report_error(session, format!("`{path}` cannot be attached: {error}"));
         }
     }

@@ -206,4 +206,7 @@ pub struct Attachment {
     /// The case in which it was reported.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub case: Option<CaseId>,
+    /// In a merged run: the file was not kept (`rtf merge --keep`).
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub omitted: bool,
 }

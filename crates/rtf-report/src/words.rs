@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::time::Duration;
 
-use rtf_model::{AttemptRecord, Record, TestRecord};
+use rtf_model::{Attachment, AttemptRecord, Record, TestRecord};
 
 use crate::escape;
 
@@ -19,6 +19,15 @@ pub(crate) fn plural(number: u64, noun: &str) -> Cow<'_, str> {
         1 => Cow::Borrowed(noun),
         _ if noun.ends_with("ss") => Cow::Owned(format!("{noun}es")),
         _ => Cow::Owned(format!("{noun}s")),
+    }
+}
+
+/// The path of an attachment, or that its file does not exist.
+pub(crate) fn attachment_place(attachment: &Attachment) -> Cow<'_, str> {
+    if attachment.omitted {
+        "not kept by `rtf merge`".into()
+    } else {
+        escape::line(&attachment.path)
     }
 }
 

@@ -77,7 +77,13 @@ impl Script {
                 let (name, path) = rest.split_once('@').unwrap();
                 let (name, path) = (name.to_owned(), path.to_owned());
                 self.session
-                    .attach(Attachment { name, path, media_type: String::new(), case: None })
+                    .attach(Attachment {
+                        name,
+                        path,
+                        media_type: String::new(),
+                        case: None,
+                        omitted: false,
+                    })
                     .unwrap();
             }
             "provide" => self.provide(rest),

@@ -26,7 +26,8 @@ impl ProcessTask {
             _ => attachment.name.chars().map(replace_unsafe).collect(),
         };
         let reported_path = attachment.path.clone();
-        let attachment = Attachment { path: format!("{relative}/{name}"), ..attachment };
+        let attachment =
+            Attachment { path: format!("{relative}/{name}"), omitted: false, ..attachment };
         let started = if is_copied {
             file_copy::open(&source).map(|_| None)
         } else {

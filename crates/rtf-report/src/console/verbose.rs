@@ -90,7 +90,7 @@ impl Verbose {
                 let text = format!(
                     "attached {}: {}",
                     escape::line(&attachment.name),
-                    escape::line(&attachment.path)
+                    words::attachment_place(attachment)
                 );
                 let name = name_in_case(record, teller(*test, *fixture), attachment.case);
                 lines_of(page, &name, &[(Tone::Plain, text)]);

@@ -235,8 +235,11 @@ fn system_out(test: &TestRecord, folder: Option<&Path>) -> String {
     out
 }
 
-/// Adds a file as both Jenkins and GitLab find it.
+/// Adds a file, unless it was not kept, as both Jenkins and GitLab find it.
 pub(super) fn attach(out: &mut String, folder: &Path, attachment: &Attachment) {
+    if attachment.omitted {
+        return;
+    }
     if !out.is_empty() && !out.ends_with('\n') {
         out.push('\n');
     }

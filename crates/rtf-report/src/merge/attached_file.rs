@@ -18,10 +18,13 @@ pub struct AttachedFile {
 }
 
 impl AttachedFile {
-    /// The file that an event of a run attaches, if it is in the run's attachments.
+    /// The file that an event of a run attaches, if it is in the run's attachments and kept.
     /// `part` is the run's place, from 0.
     pub(super) fn of(part: usize, run: &MergeInput, kind: &EventKind) -> Option<Self> {
         let EventKind::Attached { attachment, .. } = kind else { return None };
+        if attachment.omitted {
+            return None;
+        }
         let dir = run.journal.parent().unwrap_or(Path::new(".")).to_owned();
         let target = attachment_path(part, &attachment.path)?;
         Some(Self { dir, source: attachment.path.clone(), target })

@@ -9,6 +9,7 @@ use rtf_model::{
     SuiteId,
 };
 
+use super::kept_attachments::{AttachingAttempt, Keep, KeptAttempts, OpenAttempts};
 use super::manifest::JoinedManifests;
 use super::piece::Piece;
 use super::place::Ids;
@@ -25,6 +26,7 @@ pub(super) struct FirstPass {
     pub suites: Vec<MergedSuite>,
     /// Those that belong to no suite.
     pub warnings: Vec<Diagnostic>,
+    pub kept: KeptAttempts,
     pub ends: RunEnds,
 }
 
@@ -47,6 +49,11 @@ impl RunEnds {
 }
 
 impl FirstPass {
+    /// No run was read yet.
+    pub fn of(keep: Keep) -> Self {
+        Self { kept: KeptAttempts::of(keep), ..Self::default() }
+    }
+
     /// Reads the next run.
     ///
     /// # Errors
@@ -90,6 +97,9 @@ struct PartReading<'a> {
     /// The suite of the last event that belongs to one.
     suite: Option<SuiteId>,
     pieces: BTreeMap<SuiteId, Piece>,
+    attempts: OpenAttempts,
+    /// The last episodes of suites.
+    episodes: BTreeMap<SuiteId, u64>,
 }
 
 impl<'a> PartReading<'a> {
@@ -106,6 +116,8 @@ impl<'a> PartReading<'a> {
             has_ended: false,
             suite: None,
             pieces: BTreeMap::new(),
+            attempts: OpenAttempts::of(part),
+            episodes: BTreeMap::new(),
         }
     }
 
@@ -123,6 +135,8 @@ impl<'a> PartReading<'a> {
 
     fn event(&mut self, start: LinePosition, Event { at, mut kind, .. }: Event) {
         self.pass.plans.add(&kind);
+        let attempt = self.attempts.follow(&kind);
+        attempt.into_iter().for_each(|attempt| self.choose(&attempt));
         let ids = Ids { plan: self.pass.plans.plan(), part: self.part };
         self.suite = ids.translate(&mut kind).or(self.suite);
         match (kind, self.suite) {
@@ -171,10 +185,23 @@ impl<'a> PartReading<'a> {
                 match kind {
                     EventKind::SuiteStarted { .. } => piece.started = Some(at),
                     EventKind::SuiteFinished { .. } => piece.is_whole = true,
+                    EventKind::EpisodeStarted(started) => {
+                        self.episodes.insert(suite, started.episode.id);
+                    }
                     _ => {}
                 }
             }
         }
+    }
+
+    /// Keeps the attachments of an attempt, or not.
+    fn choose(&mut self, attempt: &AttachingAttempt) {
+        let plan = self.pass.plans.plan();
+        let test = &plan.tests[plan.maps[self.part].tests[attempt.id.test.index()].index()];
+        let suite = &plan.suites[test.suite.index()].name;
+        let episode = self.episodes.get(&test.suite);
+        let number = episode.copied().unwrap_or(attempt.id.repetition.into());
+        self.pass.kept.add(attempt, (suite, &test.name, number));
     }
 
     fn merged_suite(&mut self, suite: SuiteId) -> &mut MergedSuite {
@@ -187,6 +214,9 @@ impl<'a> PartReading<'a> {
     fn finish(mut self) {
         if !self.has_ended {
             self.pass.ends.died.push(format!("killed with its guard in {}", self.name));
+        }
+        for attempt in std::mem::take(&mut self.attempts).unfinished() {
+            self.choose(&attempt);
         }
         let ids = Ids { plan: self.pass.plans.plan(), part: self.part };
         for suite in ids.suites().collect::<Vec<_>>() {

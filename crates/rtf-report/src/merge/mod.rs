@@ -13,6 +13,7 @@
 //! - [`first_pass`]: checks each journal, and finds out where each suite is in it.
 //! - [`plan`]: which suites, fixtures, hooks and tests there are, and their ids.
 //! - [`manifest`]: what was asked for, and whether a part is missing.
+//! - [`kept_attachments`]: which attachments are kept.
 //! - [`suite`] and [`piece`]: what happened in a suite, one part after the other, from the
 //!   journals.
 //!
@@ -20,6 +21,7 @@
 
 mod attached_file;
 mod first_pass;
+mod kept_attachments;
 mod manifest;
 mod piece;
 mod place;
@@ -32,6 +34,7 @@ use std::path::PathBuf;
 use rtf_model::{EVENTS_VERSION, Event, EventKind, Micros, RunStarted, SuiteId};
 
 pub use attached_file::{AttachedFile, attachment_path};
+pub use kept_attachments::{Keep, UnknownKeep};
 pub use problem::MergeProblem;
 
 use crate::ReportError;
@@ -69,20 +72,28 @@ pub struct Mergeable {
     pass: FirstPass,
 }
 
-/// Reads the runs and finds out whether one run can be made of them. With `partial`, parts of a
-/// division may be missing.
+/// How runs are merged.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MergeOptions {
+    /// Whether parts of a division may be missing.
+    pub partial: bool,
+    /// Which attachments are kept.
+    pub keep: Keep,
+}
+
+/// Reads the runs and finds out whether one run can be made of them.
 ///
 /// # Errors
 /// Every reason why not. Whether tests or parts are missing or there twice is known only if all
 /// runs can be read.
-pub fn merge(runs: Vec<MergeInput>, partial: bool) -> Result<Mergeable, Vec<MergeProblem>> {
-    let mut pass = FirstPass::default();
+pub fn merge(runs: Vec<MergeInput>, options: MergeOptions) -> Result<Mergeable, Vec<MergeProblem>> {
+    let mut pass = FirstPass::of(options.keep);
     let unusable: Vec<_> = runs.iter().filter_map(|run| pass.read(run).err()).collect();
     if !unusable.is_empty() {
         return Err(unusable);
     }
     let mut problems = pass.plans.duplicates(&runs);
-    if !partial {
+    if !options.partial {
         problems.extend(pass.manifests.missing());
     }
     if problems.is_empty() { Ok(Mergeable { runs, pass }) } else { Err(problems) }
@@ -95,7 +106,7 @@ impl Mergeable {
     /// A journal cannot be read again; and the first error of `visit`.
     pub fn write(self, header: Header, visit: Visit<'_>) -> Result<(), JournalError> {
         let Self { runs, pass } = self;
-        let FirstPass { plans, manifests, suites, warnings, ends } = pass;
+        let FirstPass { plans, manifests, suites, warnings, kept, ends } = pass;
         let plan = plans.finish();
         let mut out = Merging { visit, seq: 0, now: Micros::default() };
         out.push(EventKind::RunStarted(RunStarted {
@@ -112,7 +123,7 @@ impl Mergeable {
         plan.events().try_for_each(|kind| out.push(kind))?;
         let warnings = warnings.into_iter().map(|diagnostic| EventKind::Warning { diagnostic });
         warnings.into_iter().try_for_each(|kind| out.push(kind))?;
-        let parts = Parts { runs: &runs, plan: &plan };
+        let parts = Parts { runs: &runs, plan: &plan, kept: &kept };
         for (id, suite) in (0..).map(SuiteId).zip(suites) {
             suite.write(id, &parts, &mut out)?;
         }

@@ -2,7 +2,9 @@
 
 use rtf_model::{Event, EventKind, Micros, SuiteId};
 
+use super::kept_attachments::{KeptAttempts, OpenAttempts};
 use super::place::Ids;
+use super::plan::MergedPlan;
 use super::suite::Lives;
 use super::{AttachedFile, MergeInput, Merging};
 use crate::journal::{JournalError, LinePosition, Section};
@@ -48,8 +50,10 @@ impl Piece {
         }
         let (run, ids) = (&parts.runs[self.part], Ids { plan: parts.plan, part: self.part });
         let begins = out.now;
-        let mut belongs_to = Some(suite);
+        let (mut belongs_to, mut attempts) = (Some(suite), OpenAttempts::of(self.part));
         section.read(&run.journal, |Event { at, mut kind, .. }| {
+            attempts.follow(&kind);
+            parts.kept.mark(&attempts, &mut kind);
             let file = AttachedFile::of(self.part, run, &kind);
             belongs_to = ids.translate(&mut kind).or(belongs_to);
             if belongs_to != Some(suite) {
@@ -76,5 +80,6 @@ impl Piece {
 #[derive(Debug)]
 pub(super) struct Parts<'a> {
     pub runs: &'a [MergeInput],
-    pub plan: &'a super::plan::MergedPlan,
+    pub plan: &'a MergedPlan,
+    pub kept: &'a KeptAttempts,
 }

@@ -72,8 +72,8 @@ fn details(attempt: &AttemptRecord) -> HashMap<CaseId, Vec<String>> {
     }
     for attachment in &attempt.attachments {
         let Some(case) = attachment.case else { continue };
-        let (name, path) = (escape::line(&attachment.name), escape::line(&attachment.path));
-        details.entry(case).or_default().push(format!("attached: {name}: {path}"));
+        let (name, place) = (escape::line(&attachment.name), words::attachment_place(attachment));
+        details.entry(case).or_default().push(format!("attached: {name}: {place}"));
     }
     details
 }

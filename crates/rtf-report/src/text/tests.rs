@@ -115,8 +115,8 @@ fn details(lines: &mut TextLines, attempt: &AttemptRecord) {
         if cases::is_in_case(attempt, attachment.case) {
             continue;
         }
-        let name = escape::line(&attachment.name);
-        lines.fact(6, "attached", &format!("{name}: {}", attachment.path));
+        let (name, place) = (escape::line(&attachment.name), words::attachment_place(attachment));
+        lines.fact(6, "attached", &format!("{name}: {place}"));
     }
     if !attempt.output.is_empty() {
         lines.at(6, "it printed:");

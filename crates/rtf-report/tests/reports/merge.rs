@@ -10,7 +10,9 @@ use rtf_model::{
     Event, EventKind, FixtureRecord, LineSealer, Micros, OrderChecker, Record, SuiteRecord, TestId,
     Verdict,
 };
-use rtf_report::merge::{Header, MergeInput, MergeProblem, attachment_path, merge};
+use rtf_report::merge::{
+    Header, Keep, MergeInput, MergeOptions, MergeProblem, attachment_path, merge,
+};
 
 use runs::{PARTS, Run, Suite, Test, Try, suites};
 
@@ -33,18 +35,28 @@ fn journal((number, events): (usize, Vec<Event>), dir: &Path) -> MergeInput {
 }
 
 fn merged(parts: impl IntoIterator<Item = Vec<Event>>) -> Result<Record, Vec<MergeProblem>> {
+    merged_keeping(Keep::All, parts).map(|(record, _)| record)
+}
+
+/// The merged run, and the paths of the files that are copied.
+fn merged_keeping(
+    keep: Keep,
+    parts: impl IntoIterator<Item = Vec<Event>>,
+) -> Result<(Record, BTreeSet<String>), Vec<MergeProblem>> {
     let dir = tempfile::tempdir().unwrap();
     let parts = (1..).zip(parts).map(|part| journal(part, dir.path())).collect();
     let (mut events, mut order) = (Vec::new(), OrderChecker::default());
-    merge(parts, false)?
-        .write(header(), &mut |event, _| {
+    let mut copied = BTreeSet::new();
+    merge(parts, MergeOptions { keep, ..MergeOptions::default() })?
+        .write(header(), &mut |event, file| {
             order.check(event).unwrap();
             events.push(event.clone());
+            copied.extend(file.map(|file| file.target.clone()));
             Ok(())
         })
         .unwrap();
     order.finish().unwrap();
-    Ok(record(&events))
+    Ok((record(&events), copied))
 }
 
 fn record(events: &[Event]) -> Record {
@@ -163,6 +175,36 @@ fn a_part_that_is_missing_is_told_unless_it_has_no_test() {
     assert_eq!(told, ["not all of 3 parts are there: 1/3, 2/3 are missing"]);
 }
 
+#[test]
+fn attachments_of_failures_and_of_a_sample_are_kept() {
+    let mut suites = [single(0), single(1), single(2)];
+    let try_of = |verdict| Try { verdict, takes: 100, messages: 0, measured: Some(1.0) };
+    // One attempt fails and is repeated; of five, two fail.
+    suites[1].tests[0].repetitions = vec![vec![try_of(Verdict::Crashed), try_of(Verdict::Passed)]];
+    suites[2].tests[0].repetitions = vec![vec![try_of(Verdict::Failed)]];
+    let parts = || (0..PARTS).filter_map(|part| Run::of(&suites, Some(part)));
+    let kept = |words: &str| {
+        let (record, copied) = merged_keeping(words.parse().unwrap(), parts()).unwrap();
+        let attempts = record.tests.iter().flat_map(|test| &test.attempts);
+        let kept: Vec<_> = attempts
+            .flat_map(|attempt| attempt.attachments.iter().map(|file| (attempt.verdict(), file)))
+            .filter(|(_, file)| !file.omitted)
+            .collect();
+        let paths: BTreeSet<_> = kept.iter().map(|(_, file)| file.path.clone()).collect();
+        assert_eq!(paths, copied, "{words}");
+        let mut verdicts: Vec<_> =
+            kept.iter().map(|(verdict, _)| verdict.unwrap().as_str()).collect();
+        verdicts.sort_unstable();
+        verdicts
+    };
+    assert_eq!(kept("all"), ["crashed", "failed", "passed", "passed"]);
+    assert_eq!(kept("failed"), ["crashed", "failed"]);
+    assert_eq!(kept("failed sample:1"), ["crashed", "failed", "passed"]);
+    assert_eq!(kept("failed sample:9"), kept("all"));
+    assert_eq!(kept("sample:2"), ["passed", "passed"]);
+    assert!(kept("sample:0").is_empty());
+}
+
 /// Also the second journal that cannot be used is read and reported.
 #[test]
 fn all_journals_that_cannot_be_used_are_told() {
@@ -189,7 +231,7 @@ fn a_journal_that_changes_during_the_merge_is_told() {
     let run = Run::of(&[single(0)], None).unwrap();
     let part = journal((1, run.clone()), dir.path());
     let path = part.journal.clone();
-    let merged = merge(vec![part], false).unwrap();
+    let merged = merge(vec![part], MergeOptions::default()).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     std::fs::write(&path, text.replace("suite-started", "suite-restart")).unwrap();
     let mut events = 0;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use rtf_report::merge::Keep;
 
 use super::formats::format_parser;
 use super::{ReportFormat, ResultsArgs};
@@ -69,4 +70,9 @@ pub struct MergeArgs {
     /// Merge even if shards are missing
     #[arg(long)]
     pub partial: bool,
+
+    /// Copy only these attachments: `all`, or `failed`, `sample:NUMBER` or both: those of attempts
+    /// that did not pass, and of that many that passed
+    #[arg(long, value_name = "ATTACHMENTS", default_value = "all")]
+    pub keep: Keep,
 }

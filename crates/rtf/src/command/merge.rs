@@ -13,7 +13,9 @@ use rtf_model::Record;
 use rtf_report::console::{Console, ConsoleOptions, drop_details};
 use rtf_report::journal::{Journal, JournalError};
 use rtf_report::logs::Logs;
-use rtf_report::merge::{self, AttachedFile, Header, MergeInput, MergeProblem, Mergeable};
+use rtf_report::merge::{
+    self, AttachedFile, Header, MergeInput, MergeOptions, MergeProblem, Mergeable,
+};
 use rtf_report::run_dir::{self, RunDir};
 use rtf_report::{ReportError, Reporter};
 
@@ -27,14 +29,19 @@ use crate::{exit, history, terminal};
 /// Merges runs and prints the merged run.
 pub fn run(mut args: MergeArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_past_results(&mut args.results, matches)?;
-    let (_, record) = merge(&args.results.results, &args.runs, args.partial)?;
+    let options = MergeOptions { partial: args.partial, keep: args.keep };
+    let (_, record) = merge(&args.results.results, &args.runs, options)?;
     Ok(exit::of_run(&record))
 }
 
-/// Merges runs into a new run in `results`, and prints it. With `partial`, shards may be missing.
-pub fn merge(results: &Path, runs: &[String], partial: bool) -> Result<(RunDir, Record), Failure> {
+/// Merges runs into a new run in `results`, and prints it.
+pub fn merge(
+    results: &Path,
+    runs: &[String],
+    options: MergeOptions,
+) -> Result<(RunDir, Record), Failure> {
     let runs = find_journals(results, runs)?;
-    let merged = merge::merge(runs, partial).map_err(refuse)?;
+    let merged = merge::merge(runs, options).map_err(refuse)?;
     let dir = run_dir::create(results).map_err(|error| {
         Failure::input(error).hint("choose another directory with `--results DIR`")
     })?;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use rtf_model::RunState;
 use rtf_report::journal;
+use rtf_report::merge::MergeOptions;
 use rtf_report::run_dir::{self, JOURNAL, RunDir};
 
 use super::submission::Submission;
@@ -45,7 +46,8 @@ pub fn collect(submission: &Submission, args: &RunArgs, stopped_by: Option<i32>)
     if runs.is_empty() {
         return Ok(exit::of_array(None, stopped_by, is_lost));
     }
-    let (dir, record) = merge::merge(&args.input.results.results, &runs, true)?;
+    let options = MergeOptions { partial: true, ..MergeOptions::default() };
+    let (dir, record) = merge::merge(&args.input.results.results, &runs, options)?;
     if !is_lost && record.tests.len() != submission.stored.tests as usize {
         let (found, all) = (record.tests.len(), submission.stored.tests);
         let error = format!("the tasks ran {found} of {all} tests: the suites have changed");

@@ -145,6 +145,37 @@ fn what_tests_attached_is_copied_and_nothing_else() {
     assert!(!folder.path().join(&merged).join(second).exists());
 }
 
+/// The events of the other files stay, and say so.
+#[test]
+fn attachments_that_are_not_kept_are_reported_as_such() {
+    let folder = Folder::new();
+    let fails = "\n        raise RuntimeError('it is wrong')\n";
+    folder.file("one.py", ATTACHES).file("two.py", &format!("{}{fails}", ATTACHES.trim_end()));
+    let mut runs = Vec::new();
+    for file in ["one.py", "two.py"] {
+        folder.rtf(&["run", file]);
+        runs.push(newest(&folder, "rtf-results"));
+    }
+    let finished = folder.rtf(&["merge", &runs[0], &runs[1], "--keep", "failed"]);
+    assert_eq!((finished.code, finished.stderr.as_str()), (Some(1), ""), "{}", finished.stdout);
+    let merged = newest(&folder, "rtf-results");
+    let tests = folder.journal().record.tests;
+    let files: Vec<_> = tests.iter().map(|test| &test.attempts[0].attachments[0]).collect();
+    assert_eq!(files.iter().map(|file| file.omitted).collect::<Vec<_>>(), [true, false]);
+    assert!(!folder.path().join(&merged).join(&files[0].path).exists());
+    assert_eq!(folder.read(&format!("{merged}/{}", files[1].path)), "1,2\n");
+    let text = folder.rtf(&["report", "--format", "text"]).stdout;
+    assert!(text.contains("plot.csv: not kept by `rtf merge`"), "{text}");
+    let junit = folder.rtf(&["report", "--format", "junit"]).stdout;
+    assert_eq!(junit.matches("[[ATTACHMENT|").count(), 1, "{junit}");
+    // What was omitted is not missed when the merged run is merged.
+    let again = folder.rtf(&["merge", &merged, "--results", "again"]);
+    assert_eq!((again.code, again.stderr.as_str()), (Some(1), ""), "{}", again.stdout);
+    let wrong = folder.rtf(&["merge", &runs[0], "--keep", "passed"]);
+    assert_eq!(wrong.code, Some(2));
+    assert!(wrong.stderr.contains("expected `all`, `failed`, `sample:NUMBER`"), "{}", wrong.stderr);
+}
+
 #[test]
 fn what_cannot_be_merged_is_told_and_makes_nothing() {
     let folder = folder();
