@@ -1,7 +1,7 @@
 //! Reads each journal once: what the runs have together, and where each suite is in which
 //! journal. Holds one line of one journal at a time.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 
 use rtf_model::{
@@ -52,6 +52,28 @@ impl FirstPass {
     /// No run was read yet.
     pub fn of(keep: Keep) -> Self {
         Self { kept: KeptAttempts::of(keep), ..Self::default() }
+    }
+
+    /// A problem for each test that more than one of these runs has. Runs with other episodes
+    /// may have the same tests, but they must not be the same run.
+    pub fn duplicates(&self, runs: &[MergeInput]) -> Vec<MergeProblem> {
+        let has_episodes =
+            |suite: SuiteId| self.suites.get(suite.index()).is_some_and(|suite| suite.has_episodes);
+        let (joined, others): (Vec<_>, Vec<_>) =
+            self.plans.duplicates().iter().partition(|it| it.timed && has_episodes(it.suite));
+        let repeated: BTreeSet<_> =
+            joined.iter().filter_map(|it| self.manifests.same_run(it.runs[1])).collect();
+        let name = |run: usize| runs[run].name.clone();
+        let twice = others.into_iter().map(|it| MergeProblem::Twice {
+            test: it.test.clone(),
+            first: name(it.runs[0]),
+            second: name(it.runs[1]),
+        });
+        let same = repeated.into_iter().map(|[first, second]| MergeProblem::SameRun {
+            first: name(first),
+            second: name(second),
+        });
+        twice.chain(same).collect()
     }
 
     /// Reads the next run.
@@ -187,6 +209,7 @@ impl<'a> PartReading<'a> {
                     EventKind::SuiteFinished { .. } => piece.is_whole = true,
                     EventKind::EpisodeStarted(started) => {
                         self.episodes.insert(suite, started.episode.id);
+                        self.merged_suite(suite).has_episodes = true;
                     }
                     _ => {}
                 }

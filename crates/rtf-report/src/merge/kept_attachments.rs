@@ -122,7 +122,7 @@ pub(super) struct KeptAttempts {
 }
 
 impl KeptAttempts {
-    /// Nothing is known of any attempt yet.
+    /// Without any attempt.
     pub fn of(keep: Keep) -> Self {
         Self { keep, ..Self::default() }
     }

@@ -39,6 +39,13 @@ impl JoinedManifests {
         self.add_to_division(run);
     }
 
+    /// The places of an earlier run and of this one, if they are the same run.
+    pub fn same_run(&self, place: usize) -> Option<[usize; 2]> {
+        let id = self.ids.get(place)?;
+        let first = self.ids.iter().position(|other| other == id)?;
+        (first < place).then_some([first, place])
+    }
+
     fn add_to_division(&mut self, run: &RunStarted) {
         let shard = run.manifest.shard.as_deref().and_then(|shard| shard.split_once('/'));
         let shard = shard.and_then(|(part, of)| Some((part.parse().ok()?, of.parse().ok()?)));

@@ -1,5 +1,6 @@
 //! Makes one stream of events of several runs: of the parts of one run, or of
-//! any runs that have no test in common.
+//! any runs that have no test in common. The workers of a campaign have the same tests, and
+//! different episodes.
 //!
 //! The runs may have gone on at the same time, on different machines. Their
 //! fixtures did, too, and one stream cannot say so of one fixture. So the
@@ -16,10 +17,12 @@
 //! - [`kept_attachments`]: which attachments are kept.
 //! - [`suite`] and [`piece`]: what happened in a suite, one part after the other, from the
 //!   journals.
+//! - [`episode_tests`]: the repetitions of tests that several parts have.
 //!
 //! `spec/events.md` says what the merged stream has of which run.
 
 mod attached_file;
+mod episode_tests;
 mod first_pass;
 mod kept_attachments;
 mod manifest;
@@ -92,7 +95,7 @@ pub fn merge(runs: Vec<MergeInput>, options: MergeOptions) -> Result<Mergeable, 
     if !unusable.is_empty() {
         return Err(unusable);
     }
-    let mut problems = pass.plans.duplicates(&runs);
+    let mut problems = pass.duplicates(&runs);
     if !options.partial {
         problems.extend(pass.manifests.missing());
     }

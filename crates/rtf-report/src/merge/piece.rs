@@ -44,7 +44,7 @@ impl Piece {
         let Some((began, section)) = self.started.zip(self.section.as_ref()) else {
             return Ok(());
         };
-        for mut end in lives.ends() {
+        for mut end in lives.end_part() {
             lives.follow(&mut end);
             out.push(end)?;
         }
@@ -61,6 +61,9 @@ impl Piece {
             }
             lives.follow(&mut kind);
             out.now = Micros(begins.0 + at.0.saturating_sub(began.0));
+            if lives.episode_tests.as_mut().is_some_and(|tests| !tests.follow(&mut kind)) {
+                return Ok(());
+            }
             match kind {
                 EventKind::SuiteWaiting { .. }
                 | EventKind::SuiteStarted { .. }

@@ -8,7 +8,7 @@ use rtf_model::{
     TestPlanned,
 };
 
-use super::{MergeInput, MergeProblem, count};
+use super::count;
 
 /// The plan, by the new ids.
 #[derive(Debug, Default)]
@@ -89,6 +89,18 @@ fn of_suite<T>(list: &[T], id: SuiteId, suite: impl Fn(&T) -> SuiteId) -> &[T] {
     &rest[..rest.partition_point(|entry| suite(entry) == id)]
 }
 
+/// A test that two runs have.
+#[derive(Debug)]
+pub(super) struct Duplicate {
+    pub suite: SuiteId,
+    /// With its suite.
+    pub test: String,
+    /// Whether the number of its repetitions is not planned in either of them.
+    pub timed: bool,
+    /// The places of the runs.
+    pub runs: [usize; 2],
+}
+
 /// Plans that are joined, one run after the other; the ids are not the last ones.
 #[derive(Debug, Default)]
 pub(super) struct JoinedPlans {
@@ -97,10 +109,9 @@ pub(super) struct JoinedPlans {
     suites: HashMap<(String, String), SuiteId>,
     fixtures: HashMap<(SuiteId, String), FixtureId>,
     hooks: HashMap<(SuiteId, String), HookId>,
-    /// With the run that has it.
-    tests: HashMap<(SuiteId, String), usize>,
-    /// Tests that two runs have: with their suites, and the places of the runs.
-    duplicates: Vec<(String, [usize; 2])>,
+    /// With the run that has it first.
+    tests: HashMap<(SuiteId, String), (usize, TestId)>,
+    duplicates: Vec<Duplicate>,
 }
 
 impl JoinedPlans {
@@ -126,14 +137,9 @@ impl JoinedPlans {
         &self.plan
     }
 
-    /// A problem for each test that more than one of these runs has.
-    pub fn duplicates(&self, runs: &[MergeInput]) -> Vec<MergeProblem> {
-        let problem = |(test, [first, second]): &(String, [usize; 2])| MergeProblem::Twice {
-            test: test.clone(),
-            first: runs[*first].name.clone(),
-            second: runs[*second].name.clone(),
-        };
-        self.duplicates.iter().map(problem).collect()
+    /// The tests that more than one run has.
+    pub fn duplicates(&self) -> &[Duplicate] {
+        &self.duplicates
     }
 
     /// The plan of all runs.
@@ -202,15 +208,22 @@ impl JoinedPlans {
         self.map().hooks.push(id);
     }
 
+    /// Two runs may have the same test in other episodes: then it has one id.
     fn test(&mut self, plan: &TestPlanned) {
         let (suite, part) = (self.last_suite(), self.plan.maps.len() - 1);
-        let first = *self.tests.entry((suite, plan.name.clone())).or_insert(part);
+        let next = TestId(count(self.plan.tests.len()));
+        let (first, id) = *self.tests.entry((suite, plan.name.clone())).or_insert((part, next));
+        let mut is_joined = false;
         if first != part {
             let test = format!("{}/{}", self.plan.suites[suite.index()].name, plan.name);
-            self.duplicates.push((test, [first, part]));
+            let timed = plan.timed && self.plan.tests[id.index()].timed;
+            is_joined = timed;
+            self.duplicates.push(Duplicate { suite, test, timed, runs: [first, part] });
         }
-        let id = TestId(count(self.plan.tests.len()));
-        self.plan.tests.push(TestPlanned { suite, ..plan.clone() });
+        let id = if is_joined { id } else { next };
+        if id == next {
+            self.plan.tests.push(TestPlanned { suite, ..plan.clone() });
+        }
         self.map().tests.push(id);
     }
 }

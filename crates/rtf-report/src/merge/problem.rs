@@ -49,6 +49,14 @@ pub enum MergeProblem {
         /// The other one.
         second: String,
     },
+    /// A run of episodes is there twice.
+    #[error("`{first}` and `{second}` are the same run")]
+    SameRun {
+        /// The first one.
+        first: String,
+        /// The other one.
+        second: String,
+    },
     /// Some parts of a division are not among the runs.
     #[error("not all of {of} parts are there: {} missing", list(parts, *of))]
     Missing {

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use rtf_model::{EventKind, FixtureId, HookId, SuiteId, SuitePrepared};
 
 use super::Merging;
+use super::episode_tests::EpisodeTests;
 use super::piece::{Parts, Piece};
 use crate::journal::JournalError;
 
 /// The reason of fixtures and hooks that the death of a runner left open.
-const DIED: &str = "the runner died";
+pub(super) const DIED: &str = "the runner died";
 
 /// A suite of the merged run.
 #[derive(Debug, Default)]
@@ -18,6 +19,8 @@ pub(super) struct MergedSuite {
     pub waiting: Vec<EventKind>,
     /// The private resources of the first part, with their new ids.
     pub prepared: Option<SuitePrepared>,
+    /// Whether any run has episodes of it.
+    pub has_episodes: bool,
     /// One for each run that has this suite.
     pub pieces: Vec<Piece>,
 }
@@ -28,6 +31,8 @@ pub(super) struct MergedSuite {
 pub(super) struct Lives {
     /// Whether several runs have the suite.
     pub is_joined: bool,
+    /// The tests, if several runs have episodes of the suite.
+    pub episode_tests: Option<EpisodeTests>,
     fixtures: BTreeMap<FixtureId, Life>,
     open_hooks: Vec<HookId>,
     /// Why fixtures broke, in each part in which they did.
@@ -78,12 +83,13 @@ impl Lives {
         }
     }
 
-    /// The ends of what a runner that died left open.
-    pub fn ends(&self) -> Vec<EventKind> {
+    /// The ends of what a runner that died left open. The next part follows.
+    pub fn end_part(&mut self) -> Vec<EventKind> {
         let problem = || Some(DIED.to_owned());
+        let tests = self.episode_tests.as_mut().map(EpisodeTests::end_part);
+        let mut ends = tests.unwrap_or_default();
         let hooks = self.open_hooks.iter();
-        let mut ends: Vec<_> =
-            hooks.map(|hook| EventKind::HookFinished { hook: *hook, problem: problem() }).collect();
+        ends.extend(hooks.map(|hook| EventKind::HookFinished { hook: *hook, problem: problem() }));
         for (&fixture, life) in &self.fixtures {
             if life.stage == Stage::Up {
                 ends.push(EventKind::FixtureStopping { fixture });
@@ -112,16 +118,20 @@ impl MergedSuite {
         out.push(EventKind::SuiteStarted { suite })?;
         let prepared = self.prepared.map(EventKind::SuitePrepared);
         prepared.into_iter().try_for_each(|kind| out.push(kind))?;
-        let mut lives = Lives { is_joined: self.pieces.len() > 1, ..Lives::default() };
+        let is_joined = self.pieces.len() > 1;
+        let episode_tests = (is_joined && self.has_episodes).then(EpisodeTests::default);
+        let mut lives = Lives { is_joined, episode_tests, ..Lives::default() };
         for piece in &self.pieces {
             piece.write((parts, suite), &mut lives, out)?;
         }
         for (fixture, reasons) in lives.broken {
             out.push(EventKind::FixtureBroken { fixture, reason: reasons.join("; later: ") })?;
         }
-        match self.pieces.iter().all(|piece| piece.is_whole) {
-            true => out.push(EventKind::SuiteFinished { suite }),
-            false => Ok(()),
+        if !self.pieces.iter().all(|piece| piece.is_whole) {
+            return Ok(());
         }
+        let tests = lives.episode_tests.into_iter().flat_map(EpisodeTests::ends);
+        tests.into_iter().try_for_each(|kind| out.push(kind))?;
+        out.push(EventKind::SuiteFinished { suite })
     }
 }

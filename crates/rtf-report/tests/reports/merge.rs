@@ -1,5 +1,6 @@
 //! Parts of a run, merged, are the run.
 
+mod episodes;
 mod runs;
 
 use std::collections::{BTreeMap, BTreeSet};

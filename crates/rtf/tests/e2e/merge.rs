@@ -263,6 +263,32 @@ fn a_part_that_was_killed_makes_the_run_incomplete() {
     assert!(nothing_left(&folder));
 }
 
+#[test]
+fn workers_of_a_campaign_are_one_run() {
+    let folder = Folder::new();
+    folder.file("P.lua", "TestCase = {}\nfunction TestCase.run() end\n");
+    folder.file("s.xml", "<suite name='s'><test name='A' param='${param:n}'>P.lua</test></suite>");
+    let campaign = "<campaign suite='s.xml' episodes='5'>\
+        <parameter name='n' distribution='choice' values='1 2 3'/>\
+        <claim require='rate &gt;= 0.1' confidence='0.8'/></campaign>";
+    folder.file("c.xml", campaign);
+    let finished = folder.rtf(&["campaign", "run", "c.xml", "--workers", "2"]);
+    assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
+    let runs: Vec<_> = ["1", "2"]
+        .map(|worker| newest(&folder, &format!("rtf-results/campaigns/latest/workers/{worker}")))
+        .into();
+    let merged = folder.rtf(&["merge", &runs[0], &runs[1], "--results", "merged"]);
+    assert_eq!(merged.code, Some(0), "{}{}", merged.stdout, merged.stderr);
+    let record = folder.journal_in("merged").record;
+    let mut ids: Vec<_> = record.suites[0].episodes.iter().map(|it| it.episode.id).collect();
+    ids.sort_unstable();
+    assert_eq!(ids, [1, 2, 3, 4, 5]);
+    assert_eq!((record.tests.len(), record.tests[0].attempts.len()), (1, 5));
+    let twice = folder.rtf(&["merge", &runs[0], &runs[0]]);
+    assert_eq!(twice.code, Some(2));
+    assert!(twice.stderr.ends_with(" are the same run\n"), "{}", twice.stderr);
+}
+
 /// A run of one test that reported `messages` short messages.
 fn talkative_run(name: &str, messages: usize) -> String {
     let report = r#""type":"message","source":{"test":0},"message":{"kind":"report","text":"x"}"#;
