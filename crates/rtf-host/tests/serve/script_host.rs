@@ -39,6 +39,13 @@ impl Script {
         self.session.provide(name.to_owned(), value);
     }
 
+    fn attach(&self, text: &str) {
+        let (name, path) = text.split_once('@').unwrap();
+        let (name, path) = (name.to_owned(), path.to_owned());
+        let (media_type, case, omitted) = (String::new(), None, false);
+        self.session.attach(Attachment { name, path, media_type, case, omitted }).unwrap();
+    }
+
     fn act(&self, word: &str) -> Option<StepEnd> {
         let (verb, rest) = word.split_once(':').unwrap_or((word, ""));
         match verb {
@@ -73,19 +80,7 @@ impl Script {
                     return Some(StepEnd::Stopped);
                 }
             }
-            "attach" => {
-                let (name, path) = rest.split_once('@').unwrap();
-                let (name, path) = (name.to_owned(), path.to_owned());
-                self.session
-                    .attach(Attachment {
-                        name,
-                        path,
-                        media_type: String::new(),
-                        case: None,
-                        omitted: false,
-                    })
-                    .unwrap();
-            }
+            "attach" => self.attach(rest),
             "provide" => self.provide(rest),
             "fork" => {
                 // SAFETY: the child only sends and ends, in this thread.
