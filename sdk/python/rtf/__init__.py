@@ -14,10 +14,37 @@ A plug-in is a file with one class that derives from :class:`TestCase` or from
 is in :mod:`rtf.host`.
 """
 
-from rtf._fixture import FixtureManager, Test
-from rtf._stop import Error
-from rtf._test import TestCase
+# As `typing.TYPE_CHECKING`, without the time that its import takes.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from rtf._fixture import FixtureManager, Test
+    from rtf._stop import Error
+    from rtf._test import TestCase
 
 __all__ = ["Error", "FixtureManager", "Test", "TestCase", "__version__"]
 
 __version__ = "0.1.0"
+
+_MODULES = {
+    "Error": "rtf._stop",
+    "FixtureManager": "rtf._fixture",
+    "Test": "rtf._fixture",
+    "TestCase": "rtf._test",
+}
+
+
+def __getattr__(name: str) -> object:
+    """Import what is used: tests of other frameworks need no base class of plug-ins."""
+    module = _MODULES.get(name)
+    if module is None:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module  # noqa: PLC0415 - only when it is used
+
+    value: object = getattr(import_module(module), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """List the base classes, too, which may not be imported yet."""
+    return sorted({*globals(), *_MODULES})

@@ -36,6 +36,18 @@ export function readFrom(source: Source): void {
 /** Whether this page is a report: it has one run, and no server. */
 export const isReport = () => embedded !== null;
 
+declare global {
+    /** Requests that `public/early.js` has started, by their addresses. */
+    var rtfEarly: Map<string, Promise<Response>> | undefined;
+}
+
+/** Takes the response of a request that was started while the page was loaded, once. */
+function takeEarly(address: string): Promise<Response> | undefined {
+    const response = globalThis.rtfEarly?.get(address);
+    globalThis.rtfEarly?.delete(address);
+    return response;
+}
+
 interface Options {
     method?: 'GET' | 'POST' | 'DELETE';
     body?: unknown;
@@ -48,7 +60,10 @@ async function request(path: string, options: Options = {}): Promise<Response> {
     const content = body === undefined ? null : JSON.stringify(body);
     let response: Response;
     try {
-        response = await fetch(BASE + path, { method, headers: json, body: content, signal });
+        const early = method === 'GET' ? takeEarly(BASE + path) : undefined;
+        response = await (early ??
+            fetch(BASE + path, { method, headers: json, body: content, signal }));
+        signal?.throwIfAborted();
     } catch (problem) {
         if (signal?.aborted) throw problem;
         throw new ApiError(0, 'the server does not answer');

@@ -172,6 +172,11 @@ class Reporter(FailureDetails):
         if context is not None:
             self._report_subtest(case, report, context)
             return
+        is_plain = report.outcome == "passed" and not hasattr(report, "wasxfail")
+        if is_plain and report.when != "teardown":
+            # Most reports. What else they contain is in the last one of the item, too.
+            case.seconds += report.duration
+            return
         self._judge(case, report)
         if report.when == "teardown":
             self._report_leftovers(case, report)
