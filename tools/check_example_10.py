@@ -1,12 +1,17 @@
 #!/usr/bin/env python3
-"""Runs example 10 as a user does: a claim that holds, one that fails, and the map that shows why.
+"""Runs example 10 as a user does: a claim that holds, one that fails, the map that shows why, the
+smallest change that fails, and the programs that search.
 
-check_example_10.py RTF DIRECTORY
+check_example_10.py RTF DIRECTORY PYTHON
+
+PYTHON has Optuna and Hypothesis.
 """
 
 from __future__ import annotations
 
 import json
+import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -53,6 +58,7 @@ def main() -> int:
         campaigns.call("run", "carry.xml", code=0)
         holds(campaigns)
         fails(campaigns)
+        searches(campaigns, sys.argv[3])
     return 0
 
 
@@ -78,6 +84,39 @@ def fails(campaigns: Campaigns) -> None:
     lines = [json.loads(line) for line in newest.read_text().splitlines()]
     failed = next(line["episode"] for line in lines if line["outcome"] == "failed")
     campaigns.call("run", "--episode", str(failed), "heavy.xml", code=1)
+    text = campaigns.call("campaign", "shrink", str(failed), "--format", "json", code=0)
+    changes = {change["name"]: change for change in json.loads(text)["changes"]}
+    expect("the smallest change", list(changes), ["payload"])
+    payload = float(changes["payload"]["value"])
+    expect("the payload is at the edge of the map", 0.75 < payload < 0.9, True)
+
+
+def searches(campaigns: Campaigns, python: str) -> None:
+    """The worst world of the data sheet, and the simplest one in which the arm fails."""
+    worst = search(campaigns, python, "worst_world.py", code=0)
+    found = re.search(r"largest error .* is ([0-9.]+) rad", worst)
+    expect("the worst error", found is not None and 0.03 < float(found[1]) < 0.05, True)
+    simplest = search(campaigns, python, "any_payload.py", code=1)
+    found = re.search(r"payload=Decimal\('0\.8[0-9]?'\)", simplest)
+    expect("Hypothesis finds the payload", found is not None, True)
+
+
+def search(campaigns: Campaigns, python: str, script: str, *, code: int) -> str:
+    """What a program that searches prints."""
+    path = f"{Path(campaigns.rtf).parent}:{os.environ['PATH']}"
+    environment = {**os.environ, "PATH": path, "RTF_RESULTS": str(campaigns.results)}
+    done = subprocess.run(
+        [python, script],
+        cwd=campaigns.example,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )
+    print(done.stdout)
+    expect(script, done.returncode, code)
+    return done.stdout
 
 
 if __name__ == "__main__":

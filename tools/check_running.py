@@ -60,6 +60,12 @@ ROBOTS = """\
   <test type="lua"> EncoderTest </test>
 </suite>
 """
+GRASP = """\
+<campaign name="grasp" suite="arm.xml" episodes="8">
+  <parameter name="payload" distribution="uniform" low="0" high="1"/>
+  <claim require="rate >= 0.5" confidence="0.9"/>
+</campaign>
+"""
 GRIP = """\
 import rtf
 
@@ -108,6 +114,7 @@ def run_before(directory: Path, rtf: Path) -> None:
     (directory / ".gitignore").write_text("rtf-results\nnightly-results\nlocks\n")
     for robot in ("red", "blue"):
         (directory / f"{robot}.xml").write_text(ROBOTS.format(robot=robot))
+    (directory / "campaign.xml").write_text(GRASP)
     git = ["git", "-c", "user.name=x", "-c", "user.email=x@localhost"]
     call(directory, rtf, ["git", "init", "--quiet", "--initial-branch", "main"])
     call(directory, rtf, ["git", "add", "--all"])
@@ -117,6 +124,7 @@ def run_before(directory: Path, rtf: Path) -> None:
     call(directory, rtf, ["git", "checkout", "--quiet", "-b", "arm"])
     call(directory, rtf, ["rtf", "run", "arm.xml"])
     call(directory, rtf, ["git", "checkout", "--quiet", "main"])
+    call(directory, rtf, ["rtf", "campaign", "run", "campaign.xml"])
     call(directory, rtf, ["rtf", "run", "red.xml", "blue.xml"])
     call(directory, rtf, ["rtf", "run", "hand.xml", "--results", "nightly-results"])
 

@@ -259,8 +259,10 @@ example_08() {
 }
 
 example_10() {
+  local search
+  search=$(tools/venv.sh search)
   PATH="$simulation:$PATH" python3 tools/check_example_10.py "$TARGET/release/rtf" \
-    examples/10-campaign
+    examples/10-campaign "$search/python"
 }
 
 # The tests of a package on PyPI, compared with pytest's own report.
@@ -377,13 +379,15 @@ history_change_points() {
   "$python" tests/history/check.py "$TARGET/debug/examples/change_points"
 }
 
-# What the unit tests of campaigns compare with: results of SciPy, and lists of episodes by a second
-# implementation.
+# What the unit tests of campaigns compare with: results of SciPy and savvi, and lists of episodes by
+# a second implementation.
 campaign_oracle() {
   local python
   python=$(PIP_NO_DEPS=1 tools/venv.sh history)/python
   "$python" tests/campaign/oracle.py --check tests/campaign/scipy.json
   "$python" tests/campaign/episodes.py --check crates/rtf-campaign/tests/campaign/golden/*.xml
+  python=$(tools/venv.sh sequential)/python
+  "$python" tests/campaign/sequential.py tests/campaign/scipy.json
 }
 
 # Parquet files of the history, read by Apache Arrow.

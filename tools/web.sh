@@ -33,7 +33,7 @@ if [ "$(cat "$modules/complete" 2>/dev/null)" != "$wanted" ]; then
 fi
 [ "$goal" = page ] || exit 0
 
-mapfile -d '' sources < <(find web/src web/scripts web/*.html web/*.ts web/*.js \
+mapfile -d '' sources < <(find web/src web/public web/scripts web/*.html web/*.ts web/*.js \
   web/*.json schemas -type f ! -path 'web/src/generated/*' -print0 | sort -z)
 wanted=$(key_of "${sources[@]}")
 if [ "$(cat "$BUILD/web.built" 2>/dev/null)" != "$wanted" ] || [ ! -e web/dist/report.html ]; then

@@ -18,6 +18,7 @@ from lines import (
     page,
     python,
     reports,
+    slurm,
     startup,
     watched,
 )
@@ -33,6 +34,7 @@ MODULES = (
     collapse,
     page,
     watched,
+    slurm,
 )
 
 

@@ -2,7 +2,8 @@
 """Checks `rtf run --executor slurm` with a real cluster of two nodes: tools/slurm.sh check.py RTF.
 
 A sharded suite has the verdicts of a local run, a task of a node that fails is run again, a
-cancelled submission leaves nothing, and a submission whose process was killed is resumed.
+cancelled submission leaves nothing, and a submission whose process was killed is resumed. The
+same for campaigns, in campaigns.py. A further argument selects the checks whose names contain it.
 """
 
 from __future__ import annotations
@@ -16,10 +17,23 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
-LIMIT = 120.0
-"""Seconds in which each expected event must occur."""
+import campaigns
+from campaigns import Campaigns
+from cluster import (
+    commands,
+    equal,
+    expect,
+    finish,
+    jobs,
+    nodes,
+    parent,
+    scontrol,
+    start_waiting_tasks,
+    until,
+)
 
 TESTS = 12
 
@@ -88,14 +102,29 @@ class Project:
 def main() -> int:
     """Runs all checks."""
     rtf = str(Path(sys.argv[1]).resolve())
-    checks = [verdicts, merged_reports, licences, failed_node, lost_task, cancelled, resumed]
-    for check in checks:
+    word = sys.argv[2] if len(sys.argv) > 2 else ""
+    runs = [verdicts, merged_reports, licences, failed_node, lost_task, cancelled, resumed]
+    checks = [(check.__name__, partial(run, check)) for check in runs]
+    checks += [(check.__name__, partial(run_campaigns, check)) for check in campaigns.CHECKS]
+    for name, check in checks:
+        if word not in name:
+            continue
+        started = time.monotonic()
         with tempfile.TemporaryDirectory() as directory:
-            started = time.monotonic()
-            check(Project(rtf, Path(directory).resolve()))
-        print(f"ok  {check.__name__}  {time.monotonic() - started:.1f} s")
+            check(rtf, Path(directory).resolve())
+        print(f"ok  {name}  {time.monotonic() - started:.1f} s", flush=True)
         until("the cluster is idle", lambda: not jobs() and nodes() == {"idle"})
     return 0
+
+
+def run(check: Callable[[Project], None], rtf: str, directory: Path) -> None:
+    """Runs a check in a new directory."""
+    check(Project(rtf, directory))
+
+
+def run_campaigns(check: Callable[[Campaigns], None], rtf: str, directory: Path) -> None:
+    """Runs a check of campaigns in a new directory."""
+    check(Campaigns(rtf, directory))
 
 
 def verdicts(project: Project) -> None:
@@ -104,10 +133,10 @@ def verdicts(project: Project) -> None:
         project.command("arm.xml"), check=False, cwd=project.dir, capture_output=True
     )
     expected = stored(project)
-    run = finish(project.start("arm.xml"), local.returncode)
+    errors = finish(project.start("arm.xml"), local.returncode)
     equal(stored(project), expected)
     equal(len(expected), TESTS)
-    expect("4 of 4 tasks ended, 0 running, 0 waiting; 12 of 12 tests finished" in run, run)
+    expect("4 of 4 tasks ended, 0 running, 0 waiting; 12 of 12 tests finished" in errors, errors)
 
 
 def merged_reports(project: Project) -> None:
@@ -137,9 +166,7 @@ def failed_node(project: Project) -> None:
     scontrol("update", "NodeName=n2", "State=DOWN", "Reason=test")
     until("two tasks wait", lambda: list(jobs().values()).count("BeginTime") == 2)
     project.go()
-    # By default, they would start after two minutes.
-    for task in [task for task, reason in jobs().items() if reason == "BeginTime"]:
-        scontrol("update", f"JobId={task}", "StartTime=now")
+    start_waiting_tasks()
     finish(process, 0)
     equal(stored(project), dict.fromkeys("ABCD", "passed"))
     attempts = project.submission().glob("parts/*/*")
@@ -191,13 +218,6 @@ def resumed(project: Project) -> None:
     equal((project.dir / "junit.xml").read_text().count("<testcase"), 4)
 
 
-def finish(process: subprocess.Popen[str], code: int) -> str:
-    """Waits for a run; returns its standard error."""
-    stdout, stderr = process.communicate(timeout=LIMIT)
-    expect(process.returncode == code, f"exit code {process.returncode}\n{stdout}\n{stderr}")
-    return stderr
-
-
 def stored(project: Project) -> Verdicts:
     """The verdicts of the newest run, by the names of the tests."""
     journal = project.dir / "rtf-results/latest/events.jsonl"
@@ -206,67 +226,6 @@ def stored(project: Project) -> Verdicts:
     finished = [event for event in events if event["type"] == "test-finished"]
     equal(len(finished), len(names))
     return {names[event["test"]]: event["verdict"] for event in finished}
-
-
-def jobs() -> dict[str, str]:
-    """The tasks that have not ended, with the reason why they wait."""
-    lines = output("squeue", "--noheader", "--array", "--format=%i %r").splitlines()
-    return dict(line.split(maxsplit=1) for line in lines)
-
-
-def nodes() -> set[str]:
-    """The states of the nodes."""
-    return set(output("sinfo", "--noheader", "--Node", "--format=%t").split())
-
-
-def commands(is_wanted: Callable[[str], bool]) -> dict[int, str]:
-    """The processes with such a command, by id."""
-    found = {}
-    for process in Path("/proc").iterdir():
-        if process.name.isdigit():
-            try:
-                command = (process / "cmdline").read_bytes().replace(b"\0", b" ").decode()
-            except OSError:
-                continue
-            if is_wanted(command):
-                found[int(process.name)] = command
-    return found
-
-
-def parent(process_id: int) -> int:
-    """The parent of a process."""
-    status = Path(f"/proc/{process_id}/status").read_text()
-    return int(status.split("PPid:")[1].split()[0])
-
-
-def scontrol(*args: str) -> None:
-    """Changes the cluster."""
-    subprocess.run(["scontrol", *args], check=True)
-
-
-def output(*command: str) -> str:
-    """The output of a command."""
-    return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
-
-
-def until(what: str, is_true: Callable[[], bool]) -> None:
-    """Waits for something."""
-    deadline = time.monotonic() + LIMIT
-    while not is_true():
-        if time.monotonic() > deadline:
-            sys.exit(f"after {LIMIT} s: not {what}: {output('squeue')}")
-        time.sleep(0.05)
-
-
-def equal(actual: object, expected: object) -> None:
-    """Exits unless the values are equal."""
-    expect(actual == expected, f"{actual} is not {expected}")
-
-
-def expect(is_true: bool, message: str) -> None:
-    """Exits with a message unless it is true."""
-    if not is_true:
-        raise AssertionError(message)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
 // The page as a report in one file: with the run's data, and without a server.
 
 import { mount } from 'svelte';
+import type { CampaignReport } from './generated/api';
+import CampaignApp from './components/CampaignApp.svelte';
 import App from './components/App.svelte';
 import { readFrom } from './lib/api';
 import { Answers } from './lib/report/answers';
@@ -13,7 +15,14 @@ if (target !== null) void start(target);
 
 async function start(target: HTMLElement): Promise<void> {
     try {
-        const answers = await Answers.open(new EmbeddedData(document));
+        const data = new EmbeddedData(document);
+        const { campaign } = await data.read<{ campaign?: CampaignReport }>('overview');
+        if (campaign !== undefined) {
+            target.replaceChildren();
+            mount(CampaignApp, { target, props: { campaign } });
+            return;
+        }
+        const answers = await Answers.open(data);
         readFrom((path) => answers.get(path));
         target.replaceChildren();
         mount(App, { target });

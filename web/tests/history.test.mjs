@@ -28,6 +28,20 @@ after(async () => {
 
 const open = (hash, options) => Guarded.open(browser, `${serve.origin}/${hash}`, options);
 
+test('the first requests are sent once, while the script is loaded', async () => {
+    const guarded = await open('#/history');
+    await guarded.see('7 tests, 3 runs');
+    const paths = guarded.requests.map((request) => {
+        const { pathname, search } = new URL(request.url());
+        return pathname + search;
+    });
+    const early = ['/api/v1', '/api/v1/history/matrix?after=0&limit=60'];
+    for (const one of early) assert.equal(paths.filter((each) => each === one).length, 1, one);
+    const script = paths.findIndex((each) => each.endsWith('early.js'));
+    assert.ok(script >= 0 && paths.indexOf(early[1]) > script);
+    await guarded.close();
+});
+
 test('the matrix is read with the keyboard, and opens a test', async () => {
     const guarded = await open('#/history');
     const { page } = guarded;

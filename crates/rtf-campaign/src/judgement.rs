@@ -31,7 +31,7 @@ pub enum Verdict {
 }
 
 /// The judgement of the results so far.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
     /// The verdict. With a fixed number of episodes, `undecided` until all have results.
     pub verdict: Verdict,
@@ -71,7 +71,18 @@ impl Judge {
     #[must_use]
     pub fn new(campaign: &Campaign, planned: usize) -> Option<Self> {
         let confidence = campaign.claim.confidence.as_ref().map(|confidence| confidence.value);
-        let rule = match campaign.stop {
+        Self::of(campaign.claim.rate, confidence, campaign.stop, planned)
+    }
+
+    /// A judge of a claimed rate with a confidence and a stopping rule.
+    #[must_use]
+    pub fn of(
+        claimed: f64,
+        confidence: Option<f64>,
+        stop: StoppingRule,
+        planned: usize,
+    ) -> Option<Self> {
+        let rule = match stop {
             StoppingRule::Fixed => Rule::Fixed { confidence: confidence? },
             StoppingRule::ConfidenceSequence => {
                 Rule::Sequence(ConfidenceSequence::new(confidence?)?)
@@ -81,7 +92,7 @@ impl Judge {
                 Rule::Sprt(Sprt::new(low, high, alpha, beta)?, sequence)
             }
         };
-        Some(Self { claimed: campaign.claim.rate, planned, rule })
+        Some(Self { claimed, planned, rule })
     }
 
     /// Judges the results of the first episodes, in the order of their ids. The judgement of

@@ -78,6 +78,15 @@ impl Ledger {
         }
     }
 
+    /// A worker has these episodes already.
+    pub fn assign(&mut self, episodes: impl IntoIterator<Item = u64>) {
+        for episode in episodes {
+            if let Some(executions) = index(episode).and_then(|index| self.episodes.get(index)) {
+                self.open.remove(&(executions.bench, episode));
+            }
+        }
+    }
+
     /// A worker has ended without results of these episodes.
     pub fn give_back(&mut self, episodes: impl IntoIterator<Item = u64>) {
         for episode in episodes {
@@ -156,6 +165,9 @@ mod tests {
         ledger.record(1, Passed, None);
         ledger.give_back([5, 3, 1]);
         assert_eq!(ledger.take(4), [vec![3], vec![5]]);
+        ledger.give_back([5, 3]);
+        ledger.assign([3, 4]);
+        assert_eq!(ledger.take(2), [vec![5]]);
     }
 
     #[test]

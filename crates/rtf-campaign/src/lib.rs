@@ -5,6 +5,8 @@
 //! - [`episodes`]: [`Campaign`] → [`EpisodeList`], the same on every machine and in every version.
 //! - [`analysis`]: where a campaign fails.
 //! - [`comparison`]: two versions on the same episodes.
+//! - [`ranges`]: the values that parameters can have.
+//! - [`shrink`](mod@shrink): the smallest change from nominal parameters that fails.
 //! - [`ledger`]: which episodes have results, and which are still to be run.
 //! - [`judgement`]: results of episodes → a verdict, and whether the campaign may end.
 //!
@@ -16,8 +18,12 @@ pub mod episodes;
 pub mod file;
 pub mod judgement;
 pub mod ledger;
+pub mod ranges;
+pub mod shrink;
 
 pub use episodes::{EpisodeList, resolve};
 pub use file::{Campaign, parse};
 pub use judgement::{EpisodeResult, Judge, Judgement, Verdict};
 pub use ledger::Ledger;
+pub use ranges::ParameterRange;
+pub use shrink::{Change, Shrunk, ShrunkChange, shrink};

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use rtf_model::{SuiteId, TestId};
+use rtf_model::{Episode, SuiteId, TestId};
 use tokio::sync::watch;
 
 /// How quickly a suite must end.
@@ -45,6 +45,10 @@ pub enum Control {
         /// The user who requested it.
         by: String,
     },
+    /// Run a further episode: of the only suite, whose plan awaits them.
+    Episode(Episode),
+    /// No further episode follows.
+    EndOfEpisodes,
 }
 
 /// All requests of a run, the oldest first.

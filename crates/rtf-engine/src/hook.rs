@@ -1,11 +1,11 @@
-//! The parts of a hook's run that the state machine and the guard share: its request, its
+//! The parts of a hook's run that resets of fixtures, the state machine and the guard share: its request, its
 //! environment variables and its judgement.
 
 use std::time::Duration;
 
 use rtf_model::protocol::{Answer, Notification, Plugin, Reply};
 use rtf_model::{ExitStatus, MessageKind, Outcome, Trigger};
-use rtf_plan::plan::{HookPlan, PluginPlan, SuitePlan};
+use rtf_plan::plan::{PluginPlan, SuitePlan};
 use serde_json::Value;
 
 use crate::plugin_request;
@@ -21,8 +21,8 @@ pub const HOOK_NOT_RUN: &str = "it did not run: the end of the run was requested
 pub const PROVIDED: &str = "values can be provided in the set-up of a fixture only";
 
 /// Returns the parameters of `run-test` for a hook's plug-in.
-pub fn request(suite: &SuitePlan, hook: &HookPlan, plugin: &PluginPlan) -> Plugin {
-    Plugin { is_last: true, ..plugin_request::plugin(suite, &hook.name, plugin, 1) }
+pub fn request(suite: &SuitePlan, name: &str, plugin: &PluginPlan) -> Plugin {
+    Plugin { is_last: true, ..plugin_request::plugin(suite, name, plugin, 1) }
 }
 
 /// Returns the variables that describe what triggered a hook.
@@ -39,7 +39,7 @@ pub fn trigger_variables(
     .map(|(name, value)| (name.to_owned(), value.to_owned()))
 }
 
-/// Judges one run of a hook. The first problem decides.
+/// Judges one run of a hook or a reset. The first problem decides.
 #[derive(Debug)]
 pub struct HookJudgement {
     is_plugin: bool,

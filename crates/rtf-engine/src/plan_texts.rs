@@ -38,7 +38,7 @@ pub trait Substitution {
         for fixture in &mut plan.fixtures {
             self.env(&mut fixture.env);
             if let Some(reset) = &mut fixture.reset {
-                self.texts(&mut reset.command);
+                self.hook(&mut reset.body);
             }
             self.fixture(&mut fixture.body);
         }
@@ -61,7 +61,7 @@ pub trait Substitution {
         }
     }
 
-    /// Substitutes in a hook.
+    /// Substitutes in a hook or a reset.
     fn hook(&self, body: &mut HookBody) {
         match body {
             HookBody::Plugin(plugin) => self.plugin(plugin),

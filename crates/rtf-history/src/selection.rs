@@ -6,6 +6,7 @@ use jiff::Timestamp;
 
 use crate::TestIdentity;
 use crate::answers::RunInfo;
+use crate::entry::CampaignInfo;
 
 /// Which runs a question is about. The default is all runs.
 #[derive(Clone, Debug, Default)]
@@ -32,16 +33,34 @@ impl RunSelection {
     /// Applies everything except `last` and `robot` to a run.
     #[must_use]
     pub fn matches(&self, run: &RunInfo) -> bool {
-        let equals = |wanted: &Option<String>, found: &Option<String>| {
-            wanted.is_none() || wanted.as_deref() == Some(found.as_deref().unwrap_or_default())
-        };
-        let commit = run.commit.as_deref().unwrap_or_default();
-        equals(&self.branch, &run.branch)
-            && equals(&self.profile, &run.profile)
-            && equals(&self.host, &run.host)
-            && self.commit.as_deref().is_none_or(|start| commit.starts_with(start))
-            && self.since.is_none_or(|since| run.started >= since)
+        let RunInfo { branch, profile, host, commit, .. } = run;
+        self.matches_source([branch, profile, host, commit].map(Option::as_deref), run.started)
             && self.ids.as_ref().is_none_or(|ids| ids.contains(&run.id))
+    }
+
+    /// Applies everything except `last`, `robot` and `ids`, which are those of runs, to a
+    /// campaign.
+    #[must_use]
+    pub fn matches_campaign(&self, campaign: &CampaignInfo) -> bool {
+        let CampaignInfo { branch, profile, host, commit, .. } = campaign;
+        let source = [branch.as_deref(), profile.as_deref(), Some(host), commit.as_deref()];
+        self.matches_source(source, campaign.started)
+    }
+
+    fn matches_source(
+        &self,
+        [branch, profile, host, commit]: [Option<&str>; 4],
+        started: Timestamp,
+    ) -> bool {
+        let equals = |wanted: &Option<String>, found: Option<&str>| {
+            wanted.is_none() || wanted.as_deref() == Some(found.unwrap_or_default())
+        };
+        let commit = commit.unwrap_or_default();
+        equals(&self.branch, branch)
+            && equals(&self.profile, profile)
+            && equals(&self.host, host)
+            && self.commit.as_deref().is_none_or(|start| commit.starts_with(start))
+            && self.since.is_none_or(|since| started >= since)
     }
 
     /// Whether a result on these robots (names separated by spaces) is meant.

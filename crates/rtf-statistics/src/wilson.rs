@@ -6,7 +6,7 @@
 //! T. T. Cai, A. DasGupta, "Interval estimation for a binomial proportion", Statistical Science 16
 //! (2001), 101–133.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use statrs::function::erf::erf_inv;
 use utoipa::ToSchema;
 
@@ -14,7 +14,7 @@ use utoipa::ToSchema;
 pub const CONFIDENCE: f64 = 0.95;
 
 /// A rate and its confidence interval. All fields are between 0 and 1.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Rate {
     /// Successes per trial.
     pub value: f64,

@@ -11,6 +11,7 @@ use serde::Serialize;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
 
 use crate::access::Access;
+use crate::campaign_report::CampaignSource;
 use crate::capabilities::Capabilities;
 use crate::history_source::HistorySource;
 use crate::index::Index;
@@ -27,6 +28,8 @@ pub struct App {
     pub runs: Arc<Runs>,
     /// The results of many runs.
     pub history: Arc<dyn HistorySource>,
+    /// The campaigns.
+    pub campaigns: Arc<dyn CampaignSource>,
     /// Whether it is also shown as metrics.
     pub metrics: bool,
     /// Access control.

@@ -11,6 +11,7 @@
 mod access;
 mod api;
 mod app;
+mod campaign_report;
 mod capabilities;
 mod connections;
 mod feed;
@@ -30,6 +31,10 @@ mod tls;
 
 pub use access::{TokenError, WrongToken};
 pub use api::{description, model};
+pub use campaign_report::{
+    CampaignCell, CampaignMap, CampaignMapRow, CampaignParameter, CampaignProgress, CampaignReport,
+    CampaignSource, EpisodeProblem,
+};
 pub use capabilities::{Capabilities, FinishedRun, RerunRejected, RunControl, RunStarter};
 pub use connections::Limits;
 pub use history_source::{HistorySource, TestCondition};

@@ -19,6 +19,7 @@ use tower_http::compression::{CompressionLayer, CompressionLevel};
 
 use crate::access::{self, Access, AccessLog, Hosts, Rules, Secret, TokenError, WrongToken};
 use crate::app::App;
+use crate::campaign_report::CampaignSource;
 use crate::capabilities::Capabilities;
 use crate::connections::{Limits, Listener, Peer};
 use crate::history_source::HistorySource;
@@ -102,6 +103,8 @@ pub struct Service<'a> {
     pub results: &'a Path,
     /// The results of many runs.
     pub history: Arc<dyn HistorySource>,
+    /// The campaigns of the results directory.
+    pub campaigns: Arc<dyn CampaignSource>,
     /// Whether `/metrics` shows it.
     pub metrics: bool,
     /// What this server can do in addition to showing them.
@@ -175,7 +178,7 @@ impl BoundServer {
     /// The thread cannot be started.
     pub fn serve(self, service: Service<'_>) -> Result<WebServer, ServeError> {
         let Self { listener, address, wanted, token, tls, hosts, remote, limits } = self;
-        let Service { results, history, metrics, role, rerun, wrong_token } = service;
+        let Service { results, history, campaigns, metrics, role, rerun, wrong_token } = service;
         let shown = token.text().to_owned();
         let rules = Rules { remote, tls: tls.is_some() };
         let log = AccessLog::start(wrong_token).map_err(ServeError::Start)?;
@@ -186,6 +189,7 @@ impl BoundServer {
         let app = App {
             runs: Arc::new(Runs::new(results, role.own().map(str::to_owned))),
             history,
+            campaigns,
             metrics,
             access: Arc::new(access),
             role,

@@ -23,6 +23,18 @@ impl ControlChannels {
         Self { stops, controls, shutdown_timeout }
     }
 
+    /// Ends the run, unless it is already ending: an earlier signal requests the same or more.
+    pub fn stop(&self, reason: String) {
+        self.stops.send_if_modified(|stop| {
+            let is_first = stop.is_none();
+            if is_first {
+                let (level, limit) = (StopLevel::TearDown, self.shutdown_timeout);
+                *stop = Some(Stop { level, reason, limit });
+            }
+            is_first
+        });
+    }
+
     /// Whether a signal has ended the run.
     pub fn is_interrupted(&self) -> bool {
         self.stops.borrow().as_ref().is_some_and(|stop| stop.reason != BROWSER)
@@ -31,15 +43,7 @@ impl ControlChannels {
 
 impl rtf_web::RunControl for ControlChannels {
     fn stop_run(&self) {
-        self.stops.send_if_modified(|stop| {
-            // An earlier signal requests the same or more.
-            let is_first = stop.is_none();
-            if is_first {
-                let (level, limit) = (StopLevel::TearDown, self.shutdown_timeout);
-                *stop = Some(Stop { level, reason: BROWSER.to_owned(), limit });
-            }
-            is_first
-        });
+        self.stop(BROWSER.to_owned());
     }
 
     fn stop_test(&self, test: TestId) {

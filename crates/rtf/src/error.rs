@@ -42,6 +42,15 @@ impl Failure {
         self
     }
 
+    /// The error and its hint on one line.
+    pub fn text(&self) -> String {
+        let error = self.error.as_ref().map(ToString::to_string).unwrap_or_default();
+        match &self.hint {
+            Some(hint) => format!("{error} ({hint})"),
+            None => error,
+        }
+    }
+
     /// Prints the error to standard error and returns the exit code.
     pub fn print(&self) -> ExitCode {
         // Standard error may be closed.

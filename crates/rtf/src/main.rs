@@ -84,6 +84,7 @@ fn run(verb: Verb, matches: &ArgMatches) -> VerbResult {
         Verb::AmentDir => command::sdk_dir::ament(),
         Verb::AdaDir => command::sdk_dir::ada(),
         Verb::Completions { shell } => command::completions::run(shell),
+        Verb::CampaignTask(args) => command::campaign::run_task(&args),
         Verb::Man { dir } => command::man::run(&dir),
     }
 }

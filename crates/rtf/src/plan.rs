@@ -59,6 +59,7 @@ pub fn plan_debugged(
     set_repetition(&mut plan, &request.manifest);
     if let ([suite], false) = (plan.suites.as_mut_slice(), request.episodes.is_empty()) {
         suite.episodes = request.episodes.iter().cloned().collect();
+        suite.awaits_episodes = request.episode_stream.is_some();
         suite.refers_to_values = true;
     }
     debug.map(|debug| debug.prepare(&mut plan)).transpose()?;

@@ -9,6 +9,7 @@ use rtf_history::Location;
 use rtf_report::console::RerunCommand;
 use rtf_web::{BoundServer, Capabilities, ServeError, Service, Settings, WebServer, WrongToken};
 
+use crate::campaign::report::ServedCampaigns;
 use crate::error::Failure;
 use crate::history::ServedHistory;
 use crate::{rerun_command, terminal};
@@ -36,10 +37,11 @@ pub struct Served<'a> {
 pub fn serve(bound: BoundServer, served: Served<'_>) -> Result<WebServer, Failure> {
     let Served { results, history, metrics, role } = served;
     let history = Arc::new(ServedHistory { database: history });
+    let campaigns = Arc::new(ServedCampaigns { results: results.to_owned() });
     let rerun: fn() -> RerunCommand = rerun_command::for_run;
     let wrong_token = Box::new(report_wrong_token);
     let server = bound
-        .serve(Service { results, history, metrics, role, rerun, wrong_token })
+        .serve(Service { results, history, campaigns, metrics, role, rerun, wrong_token })
         .map_err(failure)?;
     terminal::stderr(|err| {
         if let Some(taken) = server.taken() {

@@ -14,6 +14,7 @@ export type Route =
     | { at: 'runs'; filter: RunFilter; problems?: string[] }
     | { at: 'run'; run: string; show: Shown }
     | { at: 'compare'; old: string; new: string }
+    | { at: 'campaign'; name: string }
     | { at: 'history'; view: HistoryView; query: HistoryQuery };
 
 /** The selected part of a run. */
@@ -31,6 +32,7 @@ export function parseRoute(hash: string): Route {
     if (where === 'runs' && first) {
         return { at: 'run', run: first, show: shown(kind, second, new URLSearchParams(query)) };
     }
+    if (where === 'campaigns' && first) return { at: 'campaign', name: first };
     if (where === 'history') {
         return { at: 'history', view: parseView(first), query: parseQuery(query) };
     }
@@ -74,6 +76,8 @@ export function hrefOf(route: Route): string {
         }
         case 'compare':
             return `#/compare/${run(route.old)}/${run(route.new)}`;
+        case 'campaign':
+            return `#/campaigns/${run(route.name)}`;
         case 'history':
             return historyHref(route.view, route.query);
         case 'run':

@@ -1,9 +1,17 @@
 import { describe, expect, test } from 'vitest';
-import type { HistoryChange, HistoryMatrix, TestSeries } from '../generated/api';
+import type {
+    CampaignChange,
+    CampaignSeries,
+    HistoryChange,
+    HistoryMatrix,
+    RatePoint,
+    TestSeries,
+} from '../generated/api';
 import { differs } from '../lib/history/differences';
 import { HEAD, visible, CELL } from '../lib/history/draw-matrix';
 import { describe as inWords, extended, withProblems } from '../lib/history/matrix';
 import { formatQuery, historyHref, parseQuery, selectionOf } from '../lib/history/query';
+import { HEIGHT, changesOf, drawRates, rateChangeText, rateText } from '../lib/history/rates';
 import { changeText, seriesPlot } from '../lib/history/trends';
 import { hrefOf, parseRoute } from '../lib/route';
 
@@ -126,4 +134,67 @@ test('tests differ by share of passes, duration or numbers', () => {
     const lag = { kind: 'measurement' as const, name: 'lag', a: 1, outside_a: 0, outside_b: 0 };
     expect(differs({ ...same, numbers: [{ ...lag, b: 1.05 }] })).toBe(false);
     expect(differs({ ...same, numbers: [{ ...lag, b: 1.2 }] })).toBe(true);
+});
+
+describe('rates of campaigns', () => {
+    const rate = (value: number, by: number) => ({ value, low: value - by, high: value + by });
+    const point = (campaign: string, share: number): RatePoint => ({
+        campaign,
+        directory: campaign,
+        started: '2026-11-01T00:00:00Z',
+        passed: share * 100,
+        failed: 100 - share * 100,
+        without_result: 0,
+        rate: rate(share, 0.02),
+        claim: 0.9,
+        verdict: share < 0.9 ? 'failed' : 'passed',
+    });
+    const none = { ...point('c', 0), rate: undefined } as unknown as RatePoint;
+    const points = [point('a', 0.97), point('b', 0.95), none, point('d', 0.71)];
+    const segment = (value: number) => ({
+        campaigns: 1,
+        passed: 1,
+        failed: 1,
+        rate: rate(value, 0),
+    });
+    const change = (campaign: string): CampaignChange => ({
+        name: 'grasp',
+        file: 'grasp.xml',
+        campaign,
+        directory: campaign,
+        started: '2026-11-01T00:00:00Z',
+        before: segment(0.96),
+        after: segment(0.71),
+        p_value: 1e-9,
+    });
+
+    test('are inside of the plot, with their claims', () => {
+        const { marks, ticks, changes, bottom } = drawRates(points, [change('d')], 400);
+        expect(marks.map(({ point }) => point.campaign)).toEqual(['a', 'b', 'd']);
+        for (const { x, y, low, high, claim } of marks) {
+            expect(x).toBeGreaterThan(48);
+            expect(x).toBeLessThan(400);
+            expect(high).toBeGreaterThanOrEqual(0);
+            expect(high).toBeLessThan(y);
+            expect(y).toBeLessThan(low);
+            expect(low).toBeLessThanOrEqual(bottom);
+            expect(claim).toBe(marks[0]?.claim);
+        }
+        expect(ticks[0]).toEqual({ y: bottom, text: '65 %' });
+        expect(ticks.at(-1)?.text).toBe('100 %');
+        expect(changes).toHaveLength(1);
+        expect(changes[0]).toBeGreaterThan(marks[1]!.x);
+        expect(changes[0]).toBeLessThan(marks[2]!.x);
+        expect(drawRates([], [], 0).marks).toEqual([]);
+        expect(bottom).toBeLessThan(HEIGHT);
+    });
+
+    test('in words', () => {
+        expect(rateText(points[0]!.rate)).toBe('97.0 % (95.0 % to 99.0 %)');
+        expect(rateText(undefined)).toBe('no result');
+        expect(rateChangeText(change('d'))).toBe('96.0 % → 71.0 % (-25 %), p < 0.0001');
+        const series = { name: 'grasp', file: 'grasp.xml', space: '', points } as CampaignSeries;
+        const changes = [change('d'), change('b'), change('of another series')];
+        expect(changesOf(series, changes).map(({ campaign }) => campaign)).toEqual(['b', 'd']);
+    });
 });

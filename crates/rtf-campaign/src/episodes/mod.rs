@@ -5,9 +5,9 @@
 
 mod directions;
 mod list;
-mod sampler;
+pub(crate) mod sampler;
 mod sobol;
-mod space;
+pub(crate) mod space;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -65,7 +65,7 @@ pub fn resolve(campaign: &Campaign, resolution: &mut Resolution<'_>) -> Option<E
             .label(resolution.source.label(campaign.span, ""));
         resolution.report(problem.hint("use `choice` for a random selection"));
     }
-    let mut seeds = RandomStream::new(campaign.seed, "seed", "");
+    let mut seeds = SeedStream::new(campaign.seed);
     let mut list = EpisodeList::default();
     for candidate in 0..most {
         if list.episodes.len() as u64 == wanted {
@@ -78,7 +78,7 @@ pub fn resolve(campaign: &Campaign, resolution: &mut Resolution<'_>) -> Option<E
         let names = space.names().iter().cloned();
         let parameters =
             names.zip(values).map(|(name, (value, _))| Parameter { name, value }).collect();
-        let seed = (seeds.bits(candidate) >> 33) as u32;
+        let seed = seeds.seed(candidate);
         list.episodes.push(Episode { id: list.episodes.len() as u64 + 1, seed, parameters });
     }
     let is_enough = match campaign.episodes {
@@ -90,6 +90,23 @@ pub fn resolve(campaign: &Campaign, resolution: &mut Resolution<'_>) -> Option<E
         return None;
     }
     Some(list)
+}
+
+/// The seeds of candidates.
+#[derive(Debug)]
+pub struct SeedStream(RandomStream);
+
+impl SeedStream {
+    /// Those of a campaign with this seed.
+    #[must_use]
+    pub fn new(campaign: u64) -> Self {
+        Self(RandomStream::new(campaign, "seed", ""))
+    }
+
+    /// The seed of a candidate, numbered from 0: below 2³¹.
+    pub fn seed(&mut self, candidate: u64) -> u32 {
+        (self.0.bits(candidate) >> 33) as u32
+    }
 }
 
 fn report_constraints(

@@ -78,7 +78,7 @@ impl<'a> Sampler<'a> {
 
 /// The shortest text of a finite number; of two equally near ones, the one with an even last digit.
 /// The standard library does not define which one it prints.
-fn text_of(number: f64) -> String {
+pub(crate) fn text_of(number: f64) -> String {
     // Without the sign of a negative zero. Finite numbers always serialise.
     let text = serde_json::to_string(&(number + 0.0)).unwrap_or_default();
     let text = text.strip_suffix(".0").unwrap_or(&text);
@@ -86,7 +86,7 @@ fn text_of(number: f64) -> String {
 }
 
 /// The number that a word is, for constraints.
-pub(super) fn number_of(word: &str) -> Option<f64> {
+pub(crate) fn number_of(word: &str) -> Option<f64> {
     word.parse().ok().filter(|number: &f64| number.is_finite())
 }
 

@@ -38,7 +38,7 @@ impl<'a> Space<'a> {
         let mut names: Vec<(String, Span)> = Vec::new();
         for parameter in &campaign.parameters {
             let dimension = match parameter {
-                DeclaredParameter::Grid { name, values } => {
+                DeclaredParameter::Grid { name, values, .. } => {
                     let rows = values.iter().map(|value| vec![value.clone()]).collect();
                     Dimension::Table(MatrixTable { names: vec![name.value.clone()], rows })
                 }
@@ -46,7 +46,7 @@ impl<'a> Space<'a> {
                     Some(table) => Dimension::Table(table),
                     None => continue,
                 },
-                DeclaredParameter::Sampled { name, design, distribution } => {
+                DeclaredParameter::Sampled { name, design, distribution, .. } => {
                     let of = (name.value.as_str(), *design, distribution);
                     let campaign = (campaign.seed, campaign.episodes.unwrap_or(1));
                     let Some(sampler) = Sampler::new(of, campaign, &mut sobol_dimensions) else {
@@ -125,7 +125,11 @@ fn combinations(dimensions: &[Dimension<'_>]) -> u64 {
     })
 }
 
-fn table(file: &Spanned<String>, resolution: &mut Resolution<'_>) -> Option<MatrixTable> {
+/// Reads a CSV file of parameters.
+pub(crate) fn table(
+    file: &Spanned<String>,
+    resolution: &mut Resolution<'_>,
+) -> Option<MatrixTable> {
     let found = read_table(resolution.dir, &file.value);
     let label = resolution.source.label(file.span, "");
     for problem in found.problems {

@@ -10,6 +10,8 @@ mod root;
 mod schema;
 mod stop;
 
+use std::time::Duration;
+
 use rtf_plan::suite::{Span, Spanned};
 
 pub use claim::Claim;
@@ -35,6 +37,8 @@ pub struct Campaign {
     pub seed: u64,
     /// How often an episode is repeated whose result is the bench's.
     pub repeats: u32,
+    /// How long it may run.
+    pub budget: Option<Duration>,
     /// The parameters, in order.
     pub parameters: Vec<DeclaredParameter>,
     /// The conditions that all episodes meet.

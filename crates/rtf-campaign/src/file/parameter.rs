@@ -16,6 +16,8 @@ pub enum DeclaredParameter {
         name: Spanned<String>,
         /// The values.
         values: Vec<String>,
+        /// The nominal value; `None` for the first one.
+        nominal: Option<String>,
     },
     /// The rows of a CSV file, whose header names the parameters.
     File(Spanned<String>),
@@ -27,6 +29,8 @@ pub enum DeclaredParameter {
         design: Design,
         /// The distribution of each value.
         distribution: Distribution,
+        /// The nominal value; `None` for the middle of the distribution, or its first word.
+        nominal: Option<String>,
     },
 }
 
@@ -120,12 +124,31 @@ pub(super) fn read(
     }
     let name = name(reader, node);
     if kind == Kind::Grid {
-        let values = words(reader, node);
-        return Some(DeclaredParameter::Grid { name: name?, values: values? });
+        let (values, nominal) = (words(reader, node), nominal(reader, node, true));
+        return Some(DeclaredParameter::Grid { name: name?, values: values?, nominal: nominal? });
     }
     let distribution = distribution(reader, node, kind);
     let design = if let Kind::Design(design) = kind { design } else { Design::Independent };
-    Some(DeclaredParameter::Sampled { name: name?, design, distribution: distribution? })
+    let is_word = matches!(distribution, Some(Distribution::Choice(_)));
+    let nominal = nominal(reader, node, is_word);
+    let (name, distribution, nominal) = (name?, distribution?, nominal?);
+    Some(DeclaredParameter::Sampled { name, design, distribution, nominal })
+}
+
+/// The attribute `nominal`; `None` if it is invalid, which is reported.
+#[expect(clippy::option_option, reason = "the attribute is optional")]
+fn nominal(
+    reader: &mut ElementReader<'_>,
+    node: Node<'_, '_>,
+    is_word: bool,
+) -> Option<Option<String>> {
+    if !node.has_attribute("nominal") {
+        return Some(None);
+    }
+    if !is_word {
+        real::required(reader, node, "nominal")?;
+    }
+    reader.word(node, "nominal").map(|word| Some(word.value))
 }
 
 fn known(kind: Kind) -> &'static rtf_plan::suite::schema::ElementSchema {

@@ -67,6 +67,7 @@ fn read(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> Option<Campaign> 
         episodes: reader.number(root, "episodes", 1),
         seed: reader.number(root, "seed", 0).unwrap_or(0).into(),
         repeats: reader.number(root, "repeats", 0).unwrap_or(REPEATS),
+        budget: reader.duration(root, "budget"),
         suite: suite?,
         description: children.description,
         parameters: children.parameters,

@@ -6,7 +6,7 @@ use rtf_plan::suite::schema::{ElementSchema, leaf};
 /// `<campaign>`.
 pub(super) const CAMPAIGN: ElementSchema = ElementSchema {
     name: "campaign",
-    attributes: &["name", "suite", "episodes", "seed", "repeats"],
+    attributes: &["name", "suite", "episodes", "seed", "repeats", "budget"],
     elements: &["description", "parameter", "constraint", "claim", "stop"],
     text: false,
 };
@@ -14,22 +14,27 @@ pub(super) const CAMPAIGN: ElementSchema = ElementSchema {
 /// `<parameter>` without a known distribution.
 pub(super) const PARAMETER: ElementSchema = leaf(
     "parameter",
-    &["name", "distribution", "values", "file", "low", "high", "mean", "deviation"],
+    &["name", "distribution", "values", "file", "low", "high", "mean", "deviation", "nominal"],
 );
 /// `<parameter>` with `grid` or `choice`.
-pub(super) const WORDS: ElementSchema = leaf("parameter", &["name", "distribution", "values"]);
+pub(super) const WORDS: ElementSchema =
+    leaf("parameter", &["name", "distribution", "values", "nominal"]);
 /// `<parameter distribution="file">`.
 pub(super) const FILE: ElementSchema =
     leaf("parameter distribution=\"file\"", &["distribution", "file"]);
 /// `<parameter distribution="uniform">`.
 pub(super) const UNIFORM: ElementSchema =
-    leaf("parameter distribution=\"uniform\"", &["name", "distribution", "low", "high"]);
+    leaf("parameter distribution=\"uniform\"", &["name", "distribution", "low", "high", "nominal"]);
 /// `<parameter distribution="normal">`.
-pub(super) const NORMAL: ElementSchema =
-    leaf("parameter distribution=\"normal\"", &["name", "distribution", "mean", "deviation"]);
+pub(super) const NORMAL: ElementSchema = leaf(
+    "parameter distribution=\"normal\"",
+    &["name", "distribution", "mean", "deviation", "nominal"],
+);
 /// `<parameter>` with a design: `latin-hypercube` or `sobol`.
-pub(super) const DESIGN: ElementSchema =
-    leaf("parameter", &["name", "distribution", "values", "low", "high", "mean", "deviation"]);
+pub(super) const DESIGN: ElementSchema = leaf(
+    "parameter",
+    &["name", "distribution", "values", "low", "high", "mean", "deviation", "nominal"],
+);
 
 /// `<constraint>`.
 pub(super) const CONSTRAINT: ElementSchema = leaf("constraint", &["require"]);

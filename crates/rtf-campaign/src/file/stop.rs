@@ -4,11 +4,13 @@ use roxmltree::Node;
 use rtf_model::Diagnostic;
 use rtf_plan::suite::schema::check;
 use rtf_plan::suite::{ElementReader, Spanned};
+use serde::{Deserialize, Serialize};
 
 use super::{Campaign, DeclaredParameter, real, schema};
 
 /// A stopping rule.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "rule", rename_all = "kebab-case")]
 pub enum StoppingRule {
     /// After all episodes.
     #[default]

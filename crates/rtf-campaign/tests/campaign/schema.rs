@@ -31,7 +31,7 @@ fn parser(text: &str) -> bool {
 fn both_accept_all_elements_and_attributes() {
     let text = r#"<campaign xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"
         xsi:noNamespaceSchemaLocation="campaign.xsd"
-        name="grasp" suite="grasp.xml" episodes="10" seed="7" repeats="0">
+        name="grasp" suite="grasp.xml" episodes="10" seed="7" repeats="0" budget="2h">
       <description>All of it</description>
       <parameter name="a" distribution="grid" values="1 2"/>
       <parameter distribution="file" file="poses.csv"/>

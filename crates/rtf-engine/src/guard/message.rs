@@ -167,7 +167,7 @@ impl HookSpec {
             HookBody::Command(command) => (command.clone(), None),
             HookBody::Plugin(plugin) => {
                 env.extend_from_slice(&plugin.host.env);
-                (plugin.host.command.clone(), Some(request(suite, plan, plugin)))
+                (plugin.host.command.clone(), Some(request(suite, &plan.name, plugin)))
             }
         };
         Self {

@@ -13,17 +13,14 @@ pub struct ControlQueue {
 }
 
 impl ControlQueue {
-    /// Creates the queue of a suite that starts, and returns an earlier request to skip the
-    /// suite. Earlier requests to stop its tests are ignored.
-    pub fn new(mut controls: Controls, suite: &SuitePlan) -> (Self, Option<Input>) {
+    /// Creates the queue of a suite that starts, and returns earlier requests. Those to stop its
+    /// tests are ignored.
+    pub fn new(mut controls: Controls, suite: &SuitePlan) -> (Self, Vec<Input>) {
         let earlier = controls.borrow_and_update().clone();
-        let skip = earlier.iter().find_map(|control| match control {
-            Control::SkipSuite { suite: id, by } if *id == suite.id => {
-                Some(Input::Skip(by.clone()))
-            }
-            _ => None,
-        });
-        (Self { controls, handled: earlier.len() }, skip)
+        let handled = earlier.len();
+        let inputs = earlier.into_iter().filter_map(|control| input(control, suite));
+        let inputs = inputs.filter(|input| !matches!(input, Input::StopTest(..))).collect();
+        (Self { controls, handled }, inputs)
     }
 
     /// Waits for the next request that concerns this suite. Never returns once all senders
@@ -31,16 +28,8 @@ impl ControlQueue {
     pub async fn next(&mut self, suite: &SuitePlan) -> Input {
         loop {
             while let Some(control) = self.pop() {
-                match control {
-                    Control::SkipSuite { suite: id, by } if id == suite.id => {
-                        return Input::Skip(by);
-                    }
-                    Control::StopTest { test, by }
-                        if suite.tests.iter().any(|plan| plan.id == test) =>
-                    {
-                        return Input::StopTest(test, by);
-                    }
-                    _ => {}
+                if let Some(input) = input(control, suite) {
+                    return input;
                 }
             }
             if self.controls.changed().await.is_err() {
@@ -53,5 +42,18 @@ impl ControlQueue {
         let control = self.controls.borrow_and_update().get(self.handled).cloned();
         self.handled += usize::from(control.is_some());
         control
+    }
+}
+
+/// The input of a request that concerns this suite.
+fn input(control: Control, suite: &SuitePlan) -> Option<Input> {
+    match control {
+        Control::SkipSuite { suite: id, by } => (id == suite.id).then_some(Input::Skip(by)),
+        Control::StopTest { test, by } => {
+            let is_of_suite = suite.tests.iter().any(|plan| plan.id == test);
+            is_of_suite.then_some(Input::StopTest(test, by))
+        }
+        Control::Episode(episode) => Some(Input::Episode(Some(episode))),
+        Control::EndOfEpisodes => Some(Input::Episode(None)),
     }
 }

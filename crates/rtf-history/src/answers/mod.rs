@@ -1,6 +1,7 @@
 //! Questions to the store, and their answers. The answers serialise to the JSON of
 //! `rtf history`.
 
+mod campaigns;
 mod changes;
 mod columns;
 mod compare;
@@ -17,6 +18,7 @@ mod slow;
 mod test_history;
 mod trend;
 
+pub use campaigns::{CampaignChange, CampaignSeries, EpisodeLine, RatePoint, RateSegment};
 pub use changes::SeriesChange;
 pub use compare::{Comparison, NumberChange, TestComparison, VerdictCounts};
 pub use export::{PointLine, ResultLine};

@@ -1,11 +1,13 @@
-//! The record of a run → the rows to store.
+//! The record of a run, or of a campaign, → the rows to store.
 
+mod campaign;
 mod number;
 mod results;
 
 use jiff::Timestamp;
 use rtf_model::{Record, RunStarted, RunState, Verdict};
 
+pub use campaign::{CampaignEnd, CampaignEntry, CampaignInfo, EpisodeEntry, interval};
 pub use number::{NumberKind, NumberSummary, SeriesName};
 pub use results::ResultEntry;
 

@@ -5,11 +5,13 @@
 
 pub mod change_points;
 pub mod flips;
+pub mod rate_changes;
 pub mod robust;
 
 pub use change_points::{
     Basis, ChangePoint, ChangePoints, Level, Segment, Size, find_change_points,
 };
 pub use flips::{Attempt, Flips, Outcome};
+pub use rate_changes::{Counts, RateChange, find_rate_changes};
 pub use robust::{LearnedLimits, TooFewValues, learn_limits};
 pub use rtf_statistics::{Rate, rate};

@@ -65,6 +65,12 @@ pub enum StoreError {
         /// The identity.
         id: String,
     },
+    /// Another campaign with the same identity is stored.
+    #[error("two campaigns have the id `{id}`")]
+    SameCampaign {
+        /// The identity.
+        id: String,
+    },
 }
 
 impl StoreError {
@@ -92,6 +98,7 @@ impl StoreError {
             }
             Self::Locked { .. } => Some("try again when the other process has finished"),
             Self::Conflict { .. } => Some("the journal was changed or copied from another run"),
+            Self::SameCampaign { .. } => Some("`campaign.json` was copied from another campaign"),
             Self::Io { .. } | Self::Entry(_) => None,
         }
     }

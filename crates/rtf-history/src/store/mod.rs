@@ -1,5 +1,6 @@
 //! The database: opening, importing and pruning runs, reading rows.
 
+mod campaigns;
 mod columns;
 mod database;
 mod error;

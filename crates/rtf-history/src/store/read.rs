@@ -55,6 +55,12 @@ pub struct StoreCounts {
     pub points: u64,
     /// Runs that are not stored because they were pruned, or merged from others.
     pub pruned: u64,
+    /// Campaigns.
+    pub campaigns: u64,
+    /// Episodes of campaigns.
+    pub episodes: u64,
+    /// Campaigns that were pruned.
+    pub pruned_campaigns: u64,
 }
 
 impl Store {
@@ -173,9 +179,12 @@ impl Store {
                 series: row.get(3)?,
                 points: row.get(4)?,
                 pruned: row.get(5)?,
+                ..StoreCounts::default()
             })
         };
-        Ok(self.rows(sql::COUNTS, &[], read)?.pop().unwrap_or_default())
+        let counts = self.rows(sql::COUNTS, &[], read)?.pop().unwrap_or_default();
+        let [campaigns, episodes, pruned_campaigns] = self.campaign_counts()?;
+        Ok(StoreCounts { campaigns, episodes, pruned_campaigns, ..counts })
     }
 
     /// Checks the structure of the database; returns what is wrong with it.
@@ -195,11 +204,11 @@ impl Store {
     }
 }
 
-fn time(micros: i64) -> Timestamp {
+pub(super) fn time(micros: i64) -> Timestamp {
     Timestamp::from_microsecond(micros).unwrap_or_default()
 }
 
-fn list<T: serde::de::DeserializeOwned>(
+pub(super) fn list<T: serde::de::DeserializeOwned>(
     row: &Row<'_>,
     index: usize,
 ) -> Result<Vec<T>, DatabaseError> {

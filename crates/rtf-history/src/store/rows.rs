@@ -67,27 +67,73 @@ fn with_tests<'a>(
     Ok(with_ids.collect())
 }
 
+/// The stored row of a test.
+struct StoredTest {
+    id: i64,
+    /// Type of the plug-in, tags and parameters.
+    attributes: [String; 3],
+    /// The start of the run from which the attributes are. A later run may have the same ones.
+    seen_us: i64,
+}
+
 /// Adds tests, or updates their attributes if no newer run is known; returns their rows.
 fn upsert(
     database: &Database,
     tests: Vec<(TestIdentity, &ResultEntry)>,
     seen_us: i64,
 ) -> Result<HashMap<TestIdentity, i64>, DatabaseError> {
-    let texts = tests.iter().map(|(_, result)| (json(&result.tags), json(&result.parameters)));
-    let texts: Vec<_> = texts.collect();
-    let mut values: Vec<Value<'_>> = Vec::with_capacity(tests.len() * sql::UPSERT_TESTS.columns);
-    for ((identity, result), (tags, parameters)) in tests.iter().zip(&texts) {
+    // Most tests have the same attributes in each run: to read is faster than to write.
+    let stored = find(database, &tests)?;
+    let mut ids = HashMap::new();
+    let mut values: Vec<Value<'_>> = Vec::new();
+    let attributes = |result: &ResultEntry| {
+        [result.plugin_type.clone(), json(&result.tags), json(&result.parameters)]
+    };
+    let attributes: Vec<_> = tests.iter().map(|(_, result)| attributes(result)).collect();
+    for ((identity, _), attributes) in tests.iter().zip(&attributes) {
+        if let Some(stored) = stored.get(identity)
+            && (stored.attributes == *attributes || is_newer(database, stored, seen_us)?)
+        {
+            ids.insert(identity.clone(), stored.id);
+            continue;
+        }
         let TestIdentity { suite_file, suite, test, case } = identity;
-        let names = [suite_file, suite, test, case, &result.plugin_type, tags, parameters];
-        values.extend(names.map(Value::from));
+        values.extend([suite_file, suite, test, case].map(Value::from));
+        values.extend(attributes.iter().map(Value::from));
         values.push(seen_us.into());
     }
-    let mut ids = HashMap::new();
     database.batch(&sql::UPSERT_TESTS, &values, &mut |row| {
         ids.insert(read::identity(row)?, row.get(0)?);
         Ok(())
     })?;
     Ok(ids)
+}
+
+/// The tests that are stored.
+fn find(
+    database: &Database,
+    tests: &[(TestIdentity, &ResultEntry)],
+) -> Result<HashMap<TestIdentity, StoredTest>, DatabaseError> {
+    let mut values: Vec<Value<'_>> = Vec::with_capacity(tests.len() * sql::FIND_TESTS.columns);
+    for (TestIdentity { suite_file, suite, test, case }, _) in tests {
+        values.extend([suite_file, suite, test, case].map(Value::from));
+    }
+    let mut stored = HashMap::with_capacity(tests.len());
+    database.batch(&sql::FIND_TESTS, &values, &mut |row| {
+        let attributes = [row.get(5)?, row.get(6)?, row.get(7)?];
+        let test = StoredTest { id: row.get(0)?, attributes, seen_us: row.get(8)? };
+        stored.insert(read::identity(row)?, test);
+        Ok(())
+    })?;
+    Ok(stored)
+}
+
+/// Whether the attributes of a test are from a run after this time.
+fn is_newer(database: &Database, stored: &StoredTest, seen_us: i64) -> Result<bool, DatabaseError> {
+    let id = [stored.id.into()];
+    let newest = database.rows(sql::NEWEST_START, &id, |row| row.get::<Option<i64>>(0))?;
+    let newest = newest.into_iter().flatten().max().unwrap_or(i64::MIN);
+    Ok(stored.seen_us.max(newest) > seen_us)
 }
 
 /// Adds results with their points.

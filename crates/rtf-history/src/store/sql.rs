@@ -10,7 +10,7 @@ use super::database::Batch;
 pub const APPLICATION_ID: i64 = 0x5254_4648;
 
 /// The migrations, in order. A released one is never changed.
-pub const MIGRATIONS: &[&str] = &[VERSION_1];
+pub const MIGRATIONS: &[&str] = &[VERSION_1, VERSION_2];
 
 const VERSION_1: &str = "
 CREATE TABLE run (
@@ -113,6 +113,110 @@ CREATE TABLE pruned (
 );
 ";
 
+const VERSION_2: &str = "
+CREATE TABLE campaign (
+  id INTEGER PRIMARY KEY,
+  uid TEXT NOT NULL UNIQUE,
+  directory TEXT NOT NULL,
+  name TEXT NOT NULL,
+  file TEXT NOT NULL,
+  suite_file TEXT NOT NULL,
+  started_us BIGINT NOT NULL,
+  ended_us BIGINT NOT NULL,
+  ended TEXT NOT NULL,
+  commit_hash TEXT,
+  branch TEXT,
+  dirty SMALLINT,
+  author_time TEXT,
+  ci_job TEXT,
+  host TEXT NOT NULL,
+  profile TEXT,
+  settings TEXT NOT NULL,
+  rtf TEXT NOT NULL,
+  seed BIGINT NOT NULL,
+  space TEXT NOT NULL,
+  claim DOUBLE PRECISION NOT NULL,
+  rule TEXT NOT NULL,
+  confidence DOUBLE PRECISION NOT NULL,
+  verdict TEXT NOT NULL,
+  planned BIGINT NOT NULL,
+  episodes BIGINT NOT NULL,
+  passed BIGINT NOT NULL,
+  failed BIGINT NOT NULL,
+  without_result BIGINT NOT NULL,
+  rate DOUBLE PRECISION,
+  low DOUBLE PRECISION,
+  high DOUBLE PRECISION,
+  parameters TEXT NOT NULL
+);
+
+CREATE TABLE episode (
+  campaign_id BIGINT NOT NULL REFERENCES campaign (id),
+  episode BIGINT NOT NULL,
+  seed BIGINT NOT NULL,
+  outcome TEXT NOT NULL,
+  reason TEXT,
+  duration_us BIGINT NOT NULL,
+  parameters TEXT NOT NULL,
+  PRIMARY KEY (campaign_id, episode)
+) WITHOUT ROWID;
+
+CREATE TABLE pruned_campaign (
+  uid TEXT PRIMARY KEY,
+  directory TEXT NOT NULL
+);
+";
+
+/// The stored state of a campaign with an identity.
+pub const FIND_CAMPAIGN: &str =
+    "SELECT id, episodes, ended_us, started_us FROM campaign WHERE uid = $1";
+/// Whether the campaign was pruned.
+pub const FIND_PRUNED_CAMPAIGN: &str = "SELECT 1 FROM pruned_campaign WHERE uid = $1";
+/// The directories of stored and pruned campaigns.
+pub const CAMPAIGN_DIRECTORIES: &str =
+    "SELECT directory FROM campaign UNION SELECT directory FROM pruned_campaign";
+/// Adds a campaign.
+pub const INSERT_CAMPAIGN: &str = "
+INSERT INTO campaign (uid, directory, name, file, suite_file, started_us, ended_us, ended,
+  commit_hash, branch, dirty, author_time, ci_job, host, profile, settings, rtf, seed, space, claim,
+  rule, confidence, verdict, planned, episodes, passed, failed, without_result, rate, low, high,
+  parameters)
+VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20,
+  $21, $22, $23, $24, $25, $26, $27, $28, $29, $30, $31, $32)
+RETURNING id";
+/// Adds episodes.
+pub(super) const INSERT_EPISODES: Batch = Batch {
+    head: "
+INSERT INTO episode (campaign_id, episode, seed, outcome, reason, duration_us, parameters)
+VALUES",
+    columns: 7,
+    tail: "",
+};
+/// The parts of a campaign, in the order in which they are deleted.
+pub const DELETE_CAMPAIGN: [&str; 2] =
+    ["DELETE FROM episode WHERE campaign_id = $1", "DELETE FROM campaign WHERE id = $1"];
+/// Remembers a campaign that was pruned.
+pub const INSERT_PRUNED_CAMPAIGN: &str = "
+INSERT INTO pruned_campaign (uid, directory) VALUES ($1, $2) ON CONFLICT (uid) DO NOTHING";
+/// Forgets that a campaign was pruned.
+pub const DELETE_PRUNED_CAMPAIGN: &str = "DELETE FROM pruned_campaign WHERE uid = $1";
+/// All campaigns, the oldest first.
+pub const CAMPAIGNS: &str = "
+SELECT id, uid, directory, name, file, suite_file, started_us, ended_us, ended, commit_hash, branch,
+  dirty, author_time, ci_job, host, profile, settings, rtf, seed, space, claim, rule, confidence,
+  verdict, planned, episodes, passed, failed, without_result, rate, low, high
+FROM campaign ORDER BY started_us, uid";
+/// The names of the parameters of a campaign.
+pub const CAMPAIGN_PARAMETERS: &str = "SELECT parameters FROM campaign WHERE id = $1";
+/// The episodes of a campaign.
+pub const EPISODES: &str = "
+SELECT episode, seed, outcome, reason, duration_us, parameters
+FROM episode WHERE campaign_id = $1 ORDER BY episode";
+/// Number of campaigns, of their episodes, and of pruned ones.
+pub const CAMPAIGN_COUNTS: &str = "
+SELECT (SELECT COUNT(*) FROM campaign), (SELECT COUNT(*) FROM episode),
+  (SELECT COUNT(*) FROM pruned_campaign)";
+
 /// The stored state of a run with an identity.
 pub const FIND_RUN: &str = "SELECT id, events, started FROM run WHERE uid = $1";
 /// Whether the run was pruned.
@@ -150,6 +254,19 @@ pub const INSERT_PRUNED: &str =
 /// Forgets that a run was pruned.
 pub const DELETE_PRUNED: &str = "DELETE FROM pruned WHERE uid = $1";
 
+/// Tests with their attributes.
+pub(super) const FIND_TESTS: Batch = Batch {
+    head: "
+WITH wanted (a, b, c, d) AS (VALUES",
+    columns: 4,
+    tail: ")
+SELECT id, suite_file, suite, name, case_path, plugin_type, tags, parameters, seen_us
+FROM wanted CROSS JOIN test
+WHERE suite_file = a AND suite = b AND name = c AND case_path = d",
+};
+/// The start of the newest run with a test.
+pub const NEWEST_START: &str = "
+SELECT MAX(started_us) FROM result JOIN run ON run.id = run_id WHERE test_id = $1";
 /// Adds tests, or updates the attributes of those of which this run is the newest one.
 pub(super) const UPSERT_TESTS: Batch = Batch {
     head: "

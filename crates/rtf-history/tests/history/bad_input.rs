@@ -58,7 +58,7 @@ fn a_newer_version_is_refused_and_unchanged() {
     connection.pragma_update(None, "user_version", 99).expect("a version");
     drop(connection);
     for error in open_both(&world.path()) {
-        assert!(matches!(error, StoreError::Newer { found: 99, known: 1, .. }), "{error}");
+        assert!(matches!(error, StoreError::Newer { found: 99, known: 2, .. }), "{error}");
     }
     let connection = Connection::open(world.path()).expect("a database");
     let version = connection.query_row("PRAGMA user_version", [], |row| row.get::<_, i64>(0));

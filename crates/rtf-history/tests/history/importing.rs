@@ -1,6 +1,9 @@
 //! Imports: repeated, replaced, in any order, concurrent.
 
-use rtf_history::{ImportOutcome, Store, StoreError};
+use std::cell::RefCell;
+
+use rtf_history::{ImportOutcome, Store, StoreError, TestAttributes};
+use rtf_model::EventKind;
 use rtf_model::Verdict::{Failed, Passed};
 
 use crate::world::{Run, Test, World, all_runs, all_tests, dump, record};
@@ -35,6 +38,41 @@ fn the_order_of_imports_does_not_matter() {
     let forward = World::with(&runs).dump();
     runs.reverse();
     assert_eq!(World::with(&runs).dump(), forward);
+}
+
+/// The newest run with a test has its tags, also if others with the same tags came later.
+#[test]
+fn the_tags_of_a_test_are_those_of_its_newest_run() {
+    let tagged = |day: u32, tag: &str| {
+        let mut events = Run::new(day, "aaaa", vec![Test::new("Moves", Passed)]).events();
+        for event in &mut events {
+            if let EventKind::TestPlanned(planned) = &mut event.kind {
+                planned.tags = vec![tag.to_owned()];
+            }
+        }
+        record(&events)
+    };
+    let tags = |world: &World| {
+        let found = RefCell::new(Vec::new());
+        let remember = |test: &TestAttributes| {
+            found.borrow_mut().clone_from(&test.tags);
+            true
+        };
+        let results = world.store.for_each_result::<StoreError>(&all_runs(), &remember, |_| Ok(()));
+        results.expect("results");
+        found.into_inner().join(" ")
+    };
+    let mut world = World::new();
+    for (day, tag, expected) in [
+        (1, "old", "old"),
+        (5, "old", "old"),
+        (3, "other", "old"),
+        (7, "new", "new"),
+        (6, "old", "new"),
+    ] {
+        world.store.import(&tagged(day, tag)).expect("an import");
+        assert_eq!(tags(&world), expected, "day {day}");
+    }
 }
 
 #[test]

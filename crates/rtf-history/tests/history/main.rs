@@ -4,6 +4,7 @@
 
 mod answers;
 mod bad_input;
+mod campaigns;
 mod columns;
 mod gate;
 mod importing;

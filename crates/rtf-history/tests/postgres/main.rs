@@ -2,6 +2,8 @@
 
 #![expect(clippy::expect_used, reason = "a helper that cannot continue fails its test")]
 
+#[path = "../history/campaigns.rs"]
+mod campaigns;
 mod server;
 #[path = "../history/world.rs"]
 mod world;
@@ -82,6 +84,7 @@ fn answers(store: &Store) -> Vec<String> {
     let mut names = store.run_names().expect("names");
     names.sort();
     all.push(names.join(" "));
+    all.extend(campaigns::dump(store));
     all
 }
 
@@ -100,12 +103,19 @@ fn answers_are_those_of_sqlite(server: &Server) {
             assert_eq!(store.import(&run.record()).expect("an import"), ImportOutcome::Imported);
         }
         assert_eq!(store.import(&runs[5].record()).expect("an import"), ImportOutcome::Known);
+        for campaign in campaigns::campaigns().iter().rev() {
+            let outcome = store.import_campaign(campaign).expect("an import");
+            assert_eq!(outcome, ImportOutcome::Imported);
+            let outcome = store.import_campaign(campaign).expect("an import");
+            assert_eq!(outcome, ImportOutcome::Known);
+        }
         let conflict = Run { branch: "other", ..runs[5].clone() }.record();
         let error = store.import(&conflict).expect_err("a conflict");
         assert!(matches!(error, StoreError::Conflict { .. }), "{error}");
     }
     assert_eq!(answers(&postgres), answers(&sqlite));
     assert!(!postgres.changes(&all_runs(), &all_tests).expect("changes").is_empty());
+    assert_eq!(postgres.campaign_changes(&all_runs()).expect("changes").len(), 1);
     assert!(!postgres.flaky(&all_runs(), &all_tests).expect("flaky tests").is_empty());
     let removed = [&mut sqlite, &mut postgres].map(|store| {
         let removed = store.prune(Keep::Newest(10)).expect("a removal");
@@ -114,6 +124,9 @@ fn answers_are_those_of_sqlite(server: &Server) {
         removed
     });
     assert_eq!(removed[0], removed[1]);
+    let removed = [&mut sqlite, &mut postgres]
+        .map(|store| store.prune_campaigns(Keep::Newest(2)).expect("a removal"));
+    assert_eq!((removed[0].len(), &removed[0]), (6, &removed[1]));
     assert_eq!(answers(&postgres), answers(&sqlite));
     assert_eq!(postgres.check().expect("a check"), Vec::<String>::new());
     drop(sqlite);

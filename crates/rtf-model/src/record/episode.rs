@@ -102,8 +102,15 @@ impl Record {
             problems.extend(hook.problems().skip(*known).map(|text| (EpisodeOutcome::Error, text)));
         }
         let tests = suite.tests.iter().filter_map(|id| self.tests.get(id.index()));
-        for (test, known) in tests.zip(&before.attempts) {
-            problems.extend(self.problem_since(test, *known));
+        let parts = tests.zip(&before.attempts).map(|(test, first)| test.since(*first));
+        let (ran, missing): (Vec<_>, Vec<_>) = parts.partition(TestRecord::is_complete_round);
+        let failed = |part: &TestRecord| self.problem_of(part);
+        let count = problems.len();
+        problems.extend(ran.iter().chain(&missing).filter_map(failed));
+        // Nothing explains that tests are missing: no critical test before them failed.
+        if problems.len() == count {
+            let text = |part: &TestRecord| format!("{} did not run completely", part.plan.name);
+            problems.extend(missing.iter().map(|part| (EpisodeOutcome::Error, text(part))));
         }
         let severity = |outcome: EpisodeOutcome| outcome as u8;
         let worst = problems.into_iter().rev().max_by_key(|(outcome, _)| severity(*outcome));
@@ -158,11 +165,9 @@ impl Record {
         problems
     }
 
-    /// Why the attempts of a test from the one with index `first` on are not green. A test that
-    /// did not run follows a critical one, which has the reason.
-    fn problem_since(&self, test: &TestRecord, first: usize) -> Option<(EpisodeOutcome, String)> {
-        let part = test.since(first);
-        if part.attempts.is_empty() || self.has_green_result(&part) {
+    /// Why the attempts of a test in an episode are not green.
+    fn problem_of(&self, part: &TestRecord) -> Option<(EpisodeOutcome, String)> {
+        if part.attempts.is_empty() || self.has_green_result(part) {
             return None;
         }
         let verdict = part.final_verdict();
@@ -171,13 +176,11 @@ impl Record {
             Verdict::Collapsed => EpisodeOutcome::Collapsed,
             _ => EpisodeOutcome::Failed,
         };
-        let name = &test.plan.name;
-        Some((
-            outcome,
-            match part.reason() {
-                Some(reason) => format!("{name}: {reason}"),
-                None => format!("{name} is {verdict}"),
-            },
-        ))
+        let name = &part.plan.name;
+        let text = match part.reason() {
+            Some(reason) => format!("{name}: {reason}"),
+            None => format!("{name} is {verdict}"),
+        };
+        Some((outcome, text))
     }
 }

@@ -74,8 +74,14 @@ impl TestRecord {
     pub(super) fn since(&self, first: usize) -> Self {
         let attempts = self.attempts.get(first..).unwrap_or_default().to_vec();
         let mut plan = self.plan.clone();
-        plan.repetitions = attempts.last().map_or(0, |last| last.repetition);
+        // The repetitions of earlier episodes count, too.
+        plan.repetitions += attempts.first().map_or(0, |first| first.repetition.saturating_sub(1));
         Self { plan, attempts, skipped: None, is_open_ended: false }
+    }
+
+    /// Whether the last repetition of an episode was run.
+    pub(super) fn is_complete_round(&self) -> bool {
+        self.attempts.last().is_some_and(|last| last.repetition >= self.plan.repetitions)
     }
 
     /// `lean`: see [`super::Record::lean`].

@@ -211,7 +211,7 @@ impl ParamSubstitution<'_> {
             self.env(&mut fixture.env, fixture.span);
             self.provides(&mut fixture.provides);
             if let Some(reset) = &mut fixture.reset {
-                self.words(&mut reset.command.value, reset.command.span);
+                self.action(&mut reset.body);
             }
             match &mut fixture.body {
                 FixtureKind::Plugin(plugin) => self.plugin(plugin),
@@ -227,18 +227,22 @@ impl ParamSubstitution<'_> {
             }
         }
         for hook in &mut suite.hooks {
-            match &mut hook.body {
-                HookKind::Plugin(plugin) => {
-                    self.plugin(plugin);
-                    self.env(&mut hook.env, plugin.name.span);
-                }
-                HookKind::Command(command) => {
-                    self.words(&mut command.value, command.span);
-                    self.env(&mut hook.env, command.span);
-                }
-            }
+            self.action(&mut hook.body);
+            let span = match &hook.body {
+                HookKind::Plugin(plugin) => plugin.name.span,
+                HookKind::Command(command) => command.span,
+            };
+            self.env(&mut hook.env, span);
         }
         self.problems
+    }
+
+    /// The body of a hook or a reset.
+    fn action(&mut self, body: &mut HookKind) {
+        match body {
+            HookKind::Plugin(plugin) => self.plugin(plugin),
+            HookKind::Command(command) => self.words(&mut command.value, command.span),
+        }
     }
 
     fn provides(&mut self, provides: &mut [DeclaredProvide]) {

@@ -14,7 +14,8 @@ use super::search_scope::SearchScope;
 use super::use_site::PluginRole;
 use super::{
     FixtureBody, FixtureLimits, FixturePlan, Probe, ProbeKind, ProbePlans, ProcessPlan,
-    ProvidePlan, RemotePlan, ResetPlan, ValueProbe, defaults, dependencies, middleware, program,
+    ProvidePlan, RemotePlan, ResetPlan, ValueProbe, defaults, dependencies, hook, middleware,
+    program,
 };
 use crate::suite::{
     self, DeclaredFixture, DeclaredProbeKind, DeclaredProbes, DeclaredProcess, DeclaredProvide,
@@ -87,15 +88,14 @@ fn plan(
         teardown: fixture.teardown.unwrap_or(defaults::FIXTURE.teardown),
     };
     let check_every = fixture.check_every;
-    let reset = fixture.reset.map(|reset| {
-        let scope = planner.scope();
-        let mut planner = ProcessPlanner::new(source, scope.with(&fixture.env), planner.context);
-        ResetPlan {
-            command: planner.command(reset.command),
+    let reset = match fixture.reset {
+        Some(reset) => Some(ResetPlan {
+            body: hook::plan_body(planner, source, reset.body, &fixture.env)?,
             timeout: reset.timeout.unwrap_or(RESET_TIMEOUT),
             restart_every: reset.restart_every,
-        }
-    });
+        }),
+        None => None,
+    };
     let body = match fixture.body {
         FixtureKind::Plugin(plugin) => {
             let role = PluginRole::Fixture;

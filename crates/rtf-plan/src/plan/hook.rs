@@ -44,17 +44,27 @@ fn plan(
     hook: DeclaredHook,
     name: String,
 ) -> Option<HookPlan> {
-    let body = match hook.body {
+    let body = plan_body(planner, source, hook.body, &hook.env)?;
+    let timeout = hook.timeout.unwrap_or(defaults::HOOK);
+    Some(HookPlan { id: HookId(0), name, on: hook.on, body, env: hook.env, timeout })
+}
+
+/// Plans the body of a hook or a reset, with these variables in addition to the suite's.
+pub(super) fn plan_body(
+    planner: &mut PluginPlanner<'_, '_>,
+    source: &Arc<SourceText>,
+    body: HookKind,
+    env: &[(String, String)],
+) -> Option<HookBody> {
+    Some(match body {
         HookKind::Plugin(plugin) => {
-            HookBody::Plugin(planner.plan(plugin, source, &hook.env, PluginRole::Hook)?)
+            HookBody::Plugin(planner.plan(plugin, source, env, PluginRole::Hook)?)
         }
         HookKind::Command(command) => {
             let suite_scope = planner.scope();
-            let scope = suite_scope.with(&hook.env);
+            let scope = suite_scope.with(env);
             let problems = &mut planner.context.problems;
             HookBody::Command(program::command(command, &scope, source, problems))
         }
-    };
-    let timeout = hook.timeout.unwrap_or(defaults::HOOK);
-    Some(HookPlan { id: HookId(0), name, on: hook.on, body, env: hook.env, timeout })
+    })
 }

@@ -74,6 +74,8 @@ pub struct SuitePlan {
     pub settings: SuiteSettings,
     /// The episodes of a campaign that it runs; empty for one run without a campaign.
     pub episodes: Arc<[Episode]>,
+    /// Whether further episodes may arrive while it runs.
+    pub awaits_episodes: bool,
     /// Whether its texts contain references to values of fixtures or to parameters of episodes, or
     /// escaped ones.
     pub refers_to_values: bool,
@@ -175,10 +177,10 @@ impl FixturePlan {
 }
 
 /// How a fixture is reset between two episodes of a campaign.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct ResetPlan {
-    /// The program and its arguments; it succeeds with exit code 0.
-    pub command: Vec<String>,
+    /// The plug-in or command.
+    pub body: HookBody,
     /// The limit.
     pub timeout: Duration,
     /// After how many episodes the fixture is restarted; `None`: never.
@@ -372,7 +374,7 @@ pub struct HookPlan {
     pub timeout: Duration,
 }
 
-/// The kinds of hooks.
+/// The kinds of hooks and resets.
 #[derive(Clone, Debug)]
 pub enum HookBody {
     /// A test plug-in in a host; it succeeds by passing.

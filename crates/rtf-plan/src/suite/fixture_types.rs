@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{DeclaredPlugin, Span, Spanned};
+use super::{DeclaredPlugin, HookKind, Span, Spanned};
 
 /// A `<fixture>`.
 #[derive(Clone, Debug)]
@@ -40,8 +40,8 @@ pub struct DeclaredFixture {
 /// A `<reset>`.
 #[derive(Clone, Debug)]
 pub struct DeclaredReset {
-    /// The program and its arguments.
-    pub command: Spanned<Vec<String>>,
+    /// The plug-in or program.
+    pub body: HookKind,
     /// The limit.
     pub timeout: Option<Duration>,
     /// After how many episodes the fixture is restarted instead.

@@ -63,7 +63,8 @@ fn body(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<HookKind> 
     }
     match (program, text) {
         (Some(program), text) => {
-            report_plugin_parts(reader, node, text);
+            let hint = "write two hooks; both are run";
+            report_plugin_parts(reader, node, text, ("`<command>`", hint));
             Some(HookKind::Command(program))
         }
         (None, Some(_)) => test::plugin(reader, node).map(HookKind::Plugin),
@@ -74,21 +75,29 @@ fn body(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<HookKind> 
     }
 }
 
-/// Reports the text and the attributes that a hook with a `<command>` cannot have.
-fn report_plugin_parts(reader: &mut ElementReader<'_>, node: Node<'_, '_>, text: Option<Span>) {
+/// Reports the text and the attributes that an element with `command` cannot have. The hint is that
+/// for the text.
+pub(super) fn report_plugin_parts(
+    reader: &mut ElementReader<'_>,
+    node: Node<'_, '_>,
+    text: Option<Span>,
+    (command, hint): (&str, &str),
+) {
     if let Some(text) = text {
-        let problem = Diagnostic::error("wrong-type", "the hook has a plug-in and a `<command>`")
+        let name = node.tag_name().name();
+        let message = format!("the {name} has a plug-in and a {command}");
+        let problem = Diagnostic::error("wrong-type", message)
             .label(reader.source.label(text, "the plug-in"))
-            .hint("write two hooks; both are run");
+            .hint(hint);
         reader.report(problem);
     }
     let hints = [
-        ("type", "a program has no type; remove the attribute"),
-        ("param", "write the arguments after the program, in `<command>`"),
+        ("type", "a program has no type; remove the attribute".to_owned()),
+        ("param", format!("write the arguments after the program, in {command}")),
     ];
     for (name, hint) in hints {
         let Some(attribute) = node.attribute_node(name) else { continue };
-        let message = format!("`{name}` has no effect with `<command>`");
+        let message = format!("`{name}` has no effect with {command}");
         let label = reader.source.label(Span::new(attribute.range_qname()), "");
         reader.report(Diagnostic::error("without-effect", message).label(label).hint(hint));
     }

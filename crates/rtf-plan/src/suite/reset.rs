@@ -4,7 +4,7 @@ use roxmltree::Node;
 
 use super::reader::ElementReader;
 use super::schema::{self, check};
-use super::{DeclaredReset, Span, Spanned, command};
+use super::{DeclaredReset, HookKind, Span, Spanned, command, hook, test};
 
 /// Reads the `<reset>` of a fixture.
 pub(super) fn read(reader: &mut ElementReader<'_>, fixture: Node<'_, '_>) -> Option<DeclaredReset> {
@@ -15,15 +15,25 @@ pub(super) fn read(reader: &mut ElementReader<'_>, fixture: Node<'_, '_>) -> Opt
         check(reader, node, &schema::RESET);
         let timeout = reader.duration(node, "timeout");
         let restart_every = reader.number(node, "restart-every", 1);
-        let Some(line) = reader.word(node, "command") else {
-            if !node.has_attribute("command") {
-                reader.missing(node, "the attribute `command`");
-            }
-            continue;
-        };
-        let Some(words) = command::words(reader, "command", &line) else { continue };
-        let command = Spanned::new(words, line.span);
-        reset = Some(DeclaredReset { command, timeout, restart_every });
+        let Some(body) = body(reader, node) else { continue };
+        reset = Some(DeclaredReset { body, timeout, restart_every });
     }
     reset
+}
+
+fn body(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<HookKind> {
+    let text = node.children().filter(Node::is_text).find_map(|text| reader.trimmed(text));
+    match (node.has_attribute("command"), text) {
+        (true, text) => {
+            hook::report_plugin_parts(reader, node, text, ("`command`", "remove one of them"));
+            let line = reader.word(node, "command")?;
+            let words = command::words(reader, "command", &line)?;
+            Some(HookKind::Command(Spanned::new(words, line.span)))
+        }
+        (false, Some(_)) => test::plugin(reader, node).map(HookKind::Plugin),
+        (false, None) => {
+            reader.missing(node, "the attribute `command`, or the name of a plug-in as its text");
+            None
+        }
+    }
 }

@@ -209,7 +209,12 @@ pub(super) const PROVIDE: ElementSchema =
 /// `<stop>`.
 pub(super) const STOP: ElementSchema = leaf("stop", &["signal", "grace", "exit-codes"]);
 /// `<reset>`.
-pub(super) const RESET: ElementSchema = leaf("reset", &["command", "timeout", "restart-every"]);
+pub(super) const RESET: ElementSchema = ElementSchema {
+    name: "reset",
+    attributes: &["command", "type", "param", "timeout", "restart-every"],
+    elements: &[],
+    text: true,
+};
 /// `<command>`, `<description>`, `<environment>`.
 pub const fn text(name: &'static str) -> ElementSchema {
     ElementSchema { name, attributes: &[], elements: &[], text: true }

@@ -221,3 +221,33 @@ fn leaks_are_reported_or_fail() {
       hint: did you mean `report`?
     ");
 }
+
+#[test]
+fn a_reset_has_a_plugin_or_a_command() {
+    let bench = bench();
+    let reset = |reset: &str| {
+        format!(
+            "<suite name='s'>\n<fixture type='process'><command>sleep 9</command>{reset}</fixture>\n<test>A.lua</test></suite>"
+        )
+    };
+    assert_snapshot!(bench.shown(&reset("<reset/>")), @"
+    incomplete: `<reset>` needs the attribute `command`, or the name of a plug-in as its text
+      2:51 <reset
+    ");
+    assert_snapshot!(bench.shown(&reset("<reset command='true' type='lua'>Park.lua</reset>")), @"
+    without-effect: `type` has no effect with `command`
+      2:73 type
+      hint: a program has no type; remove the attribute
+    wrong-type: the reset has a plug-in and a `command`
+      2:84 Park.lua the plug-in
+      hint: remove one of them
+    ");
+    assert_snapshot!(bench.shown(&reset("<reset>Missing.lua</reset>")), @"
+    no-such-plugin: there is no plug-in `Missing.lua` of type `lua`
+      2:58 Missing.lua
+      note: looked for `Missing.lua` in
+      [ROOT]/cell
+      [ROOT]/lib/rtf/plugins
+      hint: `RTF_PLUGIN_PATH` adds directories to the search
+    ");
+}

@@ -49,6 +49,10 @@ use streams::{Buffers, read, receive, wait};
 use throttle::Throttle;
 use write_queue::WriteQueue;
 
+/// How long the end of a test's process by a signal of others waits for a stop of the run: who
+/// ends a job, such as the scheduler of a cluster, signals all its processes at the same time.
+const STOP_DELAY: Duration = Duration::from_millis(200);
+
 /// The limit for reading the outputs of an ended process: an unknown descendant may hold
 /// them open.
 const DRAIN_LIMIT: Duration = Duration::from_millis(500);
@@ -83,6 +87,11 @@ pub async fn run_process(
             drop(events.send((job.host, ProcessEvent::SpawnFailed(reason))).await);
         }
     }
+}
+
+/// Whether a process was ended by SIGHUP, SIGINT or SIGTERM, or reports that it was.
+fn is_stop(status: ExitStatus) -> bool {
+    matches!(status, ExitStatus::Signal(1 | 2 | 15) | ExitStatus::Code(129 | 130 | 143))
 }
 
 async fn copied(copy: &mut Option<FileCopy>) -> std::io::Result<()> {
@@ -212,6 +221,9 @@ impl ProcessTask {
         self.rename_leak_owner(&mut left);
         let _ = std::fs::remove_file(&self.job.launch.stack_file);
         self.job.owner.process_ended(self.process.pid);
+        if self.role() == Some(ProcessRole::Test) && !self.throttle.is_stopping && is_stop(status) {
+            tokio::time::sleep(STOP_DELAY).await;
+        }
         let end = self.final_event(status, left);
         self.report(end).await;
     }

@@ -1,5 +1,6 @@
 //! Version 1 of the API: its routes, and its description made from them.
 
+mod campaigns;
 mod cases;
 mod control;
 mod details;
@@ -96,10 +97,12 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(files::file))
         .routes(routes!(files::journal))
         .routes(routes!(events::events))
+        .routes(routes!(campaigns::campaign))
         .routes(routes!(history::runs))
         .routes(routes!(history::matrix))
         .routes(routes!(history::test))
         .routes(routes!(history::trend))
+        .routes(routes!(history::campaigns))
         .routes(routes!(history::flaky))
         .routes(routes!(history::slow))
         .routes(routes!(history::compare))

@@ -19,6 +19,7 @@ use rtf_report::console::RerunCommand;
 use serde::Serialize;
 
 use crate::api::{Snapshot, TestDetail};
+use crate::campaign_report::CampaignReport;
 use crate::index::Index;
 use attachments::AttachmentFiles;
 use chunks::Chunks;
@@ -62,6 +63,24 @@ pub fn is_available() -> bool {
 /// written, or this build has no page.
 pub fn write(out: &mut dyn Write, source: &ReportSource<'_>) -> io::Result<()> {
     fill(&Template::built()?, out, source)
+}
+
+/// Writes the report of a campaign.
+///
+/// # Errors
+/// The report cannot be written, or this build has no page.
+pub fn write_campaign(out: &mut dyn Write, campaign: &CampaignReport) -> io::Result<()> {
+    let template = Template::built()?;
+    out.write_all(template.head.as_bytes())?;
+    chunks::write_block(out, "overview", &CampaignOverview { format: FORMAT, campaign })?;
+    out.write_all(template.tail.as_bytes())
+}
+
+/// Everything that is needed to draw a campaign.
+#[derive(Serialize)]
+struct CampaignOverview<'a> {
+    format: u32,
+    campaign: &'a CampaignReport,
 }
 
 fn fill(template: &Template, out: &mut dyn Write, source: &ReportSource<'_>) -> io::Result<()> {

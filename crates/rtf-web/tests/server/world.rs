@@ -16,8 +16,9 @@ use rtf_report::console::RerunCommand;
 use rtf_report::journal::Journal;
 use rtf_report::logs::Logs;
 use rtf_web::{
-    BoundServer, Capabilities, FinishedRun, HistorySource, JournalNotifier, Limits, RerunRejected,
-    RunControl, RunStarter, Service, Settings, TestCondition, WebServer, WrongToken,
+    BoundServer, CampaignReport, CampaignSource, Capabilities, FinishedRun, HistorySource,
+    JournalNotifier, Limits, RerunRejected, RunControl, RunStarter, Service, Settings,
+    TestCondition, WebServer, WrongToken,
 };
 
 use crate::client::{self, Answer};
@@ -257,6 +258,15 @@ pub struct World {
     pub asked: Arc<Asked>,
 }
 
+/// A results directory without campaigns.
+struct NoCampaigns;
+
+impl CampaignSource for NoCampaigns {
+    fn report(&self, _: &str) -> Result<Option<CampaignReport>, String> {
+        Ok(None)
+    }
+}
+
 /// A history whose filters are the name of a test.
 struct History(PathBuf);
 
@@ -287,7 +297,8 @@ fn served<'a>(results: &'a Path, role: Capabilities, asked: &Arc<Asked>) -> Serv
         || Box::new(|_, test, _| Some(format!("rtf run suite.xml::{test}")));
     let history = Arc::new(History(results.join("history.db")));
     let metrics = role.own().is_none();
-    Service { results, history, metrics, role, rerun, wrong_token }
+    let campaigns = Arc::new(NoCampaigns);
+    Service { results, history, campaigns, metrics, role, rerun, wrong_token }
 }
 
 pub fn settings() -> Settings {

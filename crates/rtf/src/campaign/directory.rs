@@ -6,9 +6,12 @@
 //! workers/N/list.jsonl   the episodes of the Nth worker
 //! workers/N/output.txt   what it printed
 //! workers/N/RUN/         its run, with a journal and the results of the episodes
+//! arrays/K/              the Kth job array of an executor
 //! results.jsonl          the results, when the campaign has ended
+//! judgement.json         how it ended
 //! ```
 
+use std::collections::BTreeSet;
 use std::fs::{self, File, TryLockError};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -20,11 +23,14 @@ use rtf_report::journal;
 use rtf_report::run_dir::{self, JOURNAL};
 use serde::{Deserialize, Serialize};
 
+use super::judged::{JUDGEMENT, Judged};
 use super::read_list;
+use super::start::CampaignStart;
 use crate::error::Failure;
 
-const DESCRIPTION: &str = "campaign.json";
+pub const DESCRIPTION: &str = "campaign.json";
 const EPISODES: &str = "episodes.jsonl";
+const RESULTS: &str = "results.jsonl";
 const WORKERS: &str = "workers";
 const LIST: &str = "list.jsonl";
 
@@ -43,6 +49,24 @@ pub struct Description {
     pub repeats: u32,
     /// Further options of `rtf run`: the profile and parameters.
     pub options: Vec<String>,
+    /// Whether its episodes were asked for one after the other, by a search: then there is no claim.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_search: bool,
+    /// The job arrays that run the workers, unless they run on this machine.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slurm: Option<SlurmArrays>,
+    /// Which campaign it is, and where and when it was started.
+    #[serde(flatten)]
+    pub start: Option<CampaignStart>,
+}
+
+/// How a campaign runs in job arrays of Slurm.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SlurmArrays {
+    /// The largest number of tasks of an array.
+    pub shards: u32,
+    /// The arguments of `sbatch`.
+    pub options: Vec<String>,
 }
 
 /// The directory of a campaign.
@@ -53,22 +77,35 @@ pub struct CampaignDir {
 }
 
 impl CampaignDir {
-    /// Creates the directory of a new campaign in the results directory.
+    /// Creates the directory of a new campaign in the directory `parent`. Without `episodes`, these
+    /// are not known yet.
     pub fn create(
-        results: &Path,
+        parent: &Path,
         description: Description,
-        episodes: &EpisodeList,
+        episodes: Option<&EpisodeList>,
     ) -> Result<Self, Failure> {
-        let dir = run_dir::create(&results.join("campaigns")).map_err(|error| {
+        let dir = run_dir::create(parent).map_err(|error| {
             Failure::input(error).hint("choose another directory with `--results DIR`")
         })?;
         let json = serde_json::to_string_pretty(&description).map_err(Failure::internal)?;
         write(&dir.path.join(DESCRIPTION), &(json + "\n"))?;
-        write(&dir.path.join(EPISODES), &episodes.to_json_lines())?;
+        let list = episodes.map(EpisodeList::to_json_lines).unwrap_or_default();
+        write(&dir.path.join(EPISODES), &list)?;
         Ok(Self { path: dir.path, description })
     }
 
-    /// Opens the directory of an earlier campaign.
+    /// Opens the directory of an earlier campaign, whose claim can be judged.
+    pub fn open_judged(path: &Path) -> Result<Self, Failure> {
+        let dir = Self::open(path)?;
+        if dir.description.is_search {
+            let error =
+                format!("`{}` is the directory of a search, without a claim", path.display());
+            return Err(Failure::input(error).hint("`rtf run --episode N DIR` repeats an episode"));
+        }
+        Ok(dir)
+    }
+
+    /// Opens the directory of an earlier campaign or search.
     pub fn open(path: &Path) -> Result<Self, Failure> {
         let file = path.join(DESCRIPTION);
         let text = fs::read_to_string(&file).map_err(|error| {
@@ -102,13 +139,9 @@ impl CampaignDir {
         self.workers().iter().any(|worker| self.runs(*worker).iter().any(is_written))
     }
 
-    /// The directories of the runs of a worker.
+    /// The directories of the runs of a worker, the oldest first.
     fn runs(&self, worker: u32) -> Vec<PathBuf> {
-        let entries = fs::read_dir(self.worker(worker)).into_iter().flatten().flatten();
-        let is_dir = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_dir());
-        let mut runs: Vec<_> = entries.filter(is_dir).map(|entry| entry.path()).collect();
-        runs.sort();
-        runs
+        runs(&self.worker(worker))
     }
 
     /// The list of episodes.
@@ -125,16 +158,26 @@ impl CampaignDir {
         workers
     }
 
+    /// The number of the next worker.
+    pub fn next_worker(&self) -> u32 {
+        self.workers().last().map_or(1, |last| last + 1)
+    }
+
     /// The directory of a worker.
     pub fn worker(&self, number: u32) -> PathBuf {
         self.path.join(WORKERS).join(number.to_string())
+    }
+
+    /// The file with the episodes of a worker.
+    pub fn worker_list(&self, number: u32) -> PathBuf {
+        self.worker(number).join(LIST)
     }
 
     /// Creates the directory of a worker with its list of episodes, and returns the list's file.
     pub fn create_worker(&self, number: u32, episodes: &[Episode]) -> Result<PathBuf, Failure> {
         let dir = self.worker(number);
         fs::create_dir_all(&dir).map_err(|error| unwritable(&dir, &error))?;
-        let list = dir.join(LIST);
+        let list = self.worker_list(number);
         write(&list, &EpisodeList { episodes: episodes.to_vec() }.to_json_lines())?;
         Ok(list)
     }
@@ -146,23 +189,78 @@ impl CampaignDir {
             text += &serde_json::to_string(line).map_err(Failure::internal)?;
             text.push('\n');
         }
-        write(&self.path.join("results.jsonl"), &text)
+        write(&self.path.join(RESULTS), &text)
     }
 
-    /// The lines of all workers so far, the first worker first.
+    /// The list of episodes, to add further ones.
+    pub fn append_to_episodes(&self) -> Result<File, Failure> {
+        append(&self.path.join(EPISODES))
+    }
+
+    /// The final results, to add further ones.
+    pub fn append_to_results(&self) -> Result<File, Failure> {
+        append(&self.path.join(RESULTS))
+    }
+
+    /// The final results.
+    pub fn results(&self) -> Result<Vec<EpisodeLine>, Failure> {
+        let path = self.path.join(RESULTS);
+        let text = fs::read_to_string(&path).map_err(|error| {
+            Failure::input(format!("cannot read `{}`: {error}", path.display()))
+        })?;
+        Ok(text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect())
+    }
+
+    /// Writes how the campaign ended, or, when it continues, removes that.
+    pub fn write_judgement(&self, judged: Option<&Judged>) -> Result<(), Failure> {
+        let path = self.path.join(JUDGEMENT);
+        let Some(judged) = judged else {
+            return match fs::remove_file(&path) {
+                Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                    Err(unwritable(&path, &error))
+                }
+                _ => Ok(()),
+            };
+        };
+        let json = serde_json::to_string_pretty(judged).map_err(Failure::internal)?;
+        write(&path, &(json + "\n"))
+    }
+
+    /// The results of all workers so far, the first worker first.
     pub fn recorded(&self) -> Vec<EpisodeLine> {
+        self.workers().into_iter().flat_map(|worker| self.recorded_by(worker)).collect()
+    }
+
+    /// The results of a worker so far, the first one of each episode.
+    pub fn recorded_by(&self, worker: u32) -> Vec<EpisodeLine> {
+        let mut known = BTreeSet::new();
         let mut lines = Vec::new();
-        for worker in self.workers() {
-            let files = self.runs(worker).into_iter().map(|run| run.join(EPISODE_RESULTS));
-            for text in files.filter_map(|file| fs::read_to_string(file).ok()) {
-                lines.extend(text.lines().filter_map(|line| serde_json::from_str(line).ok()));
-            }
+        let files = self.runs(worker).into_iter().map(|run| run.join(EPISODE_RESULTS));
+        for text in files.filter_map(|file| fs::read_to_string(file).ok()) {
+            let parsed = text.lines().filter_map(|line| serde_json::from_str(line).ok());
+            let is_new = |line: &EpisodeLine| line.outcome.is_some() && known.insert(line.episode);
+            lines.extend(parsed.filter(is_new));
         }
         lines
     }
 }
 
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
+/// The directories of the runs of a worker, whose directory is `worker`, the oldest first.
+pub fn runs(worker: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(worker).into_iter().flatten().flatten();
+    let is_dir = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_dir());
+    let mut runs: Vec<_> = entries.filter(is_dir).map(|entry| entry.path()).collect();
+    runs.sort();
+    runs
+}
+
+fn append(path: &Path) -> Result<File, Failure> {
+    let file = File::options().create(true).append(true).open(path);
+    file.map_err(|error| unwritable(path, &error))
+}
+
+/// Writes a file of a campaign to the disk.
+pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
     let written = File::create(path).and_then(|mut file| {
         file.write_all(text.as_bytes())?;
         file.sync_all()
@@ -170,6 +268,30 @@ fn write(path: &Path, text: &str) -> Result<(), Failure> {
     written.map_err(|error| unwritable(path, &error))
 }
 
-fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
+/// A file of a campaign cannot be written.
+pub fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
     Failure::internal(format!("cannot write `{}`: {error}", path.display()))
+}
+
+#[cfg(test)]
+pub mod tests {
+    use super::*;
+
+    /// A campaign without episodes, in a temporary directory.
+    pub fn campaign_dir() -> (tempfile::TempDir, CampaignDir) {
+        let parent = tempfile::tempdir().expect("a directory");
+        let description = Description {
+            name: "grasp".to_owned(),
+            file: "campaign.xml".into(),
+            suite: "grasp.xml".into(),
+            working_dir: "/".into(),
+            repeats: 2,
+            options: Vec::new(),
+            is_search: false,
+            slurm: None,
+            start: None,
+        };
+        let dir = CampaignDir::create(parent.path(), description, None).expect("a campaign");
+        (parent, dir)
+    }
 }

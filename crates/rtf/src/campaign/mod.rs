@@ -1,18 +1,25 @@
 //! Campaigns: files and directories of results, for the verbs that read them.
 
+pub mod arrays;
 pub mod directory;
+pub mod judged;
+pub mod report;
+pub mod start;
+mod stream;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use rtf_campaign::episodes::Resolution;
-use rtf_campaign::{Campaign, EpisodeList, Ledger, parse, resolve};
+use rtf_campaign::ranges::ranges;
+use rtf_campaign::{Campaign, EpisodeList, Ledger, ParameterRange, parse, resolve};
 use rtf_model::{Diagnostic, Episode, Severity};
 use rtf_plan::suite::{SourceMap, read_source};
 
 use crate::diagnostics;
 use crate::error::Failure;
 use directory::CampaignDir;
+pub use stream::EpisodeStream;
 
 /// A campaign file without errors, and its episodes.
 pub struct LoadedCampaign {
@@ -22,6 +29,8 @@ pub struct LoadedCampaign {
     pub suite: PathBuf,
     pub campaign: Campaign,
     pub episodes: EpisodeList,
+    /// The values that the parameters can have.
+    pub ranges: Vec<ParameterRange>,
     pub warnings: Vec<Diagnostic>,
     pub sources: SourceMap,
 }
@@ -50,10 +59,11 @@ pub fn load(file: &Path) -> Result<LoadedCampaign, Failure> {
         let (problems, sources) = (&mut problems, &mut sources);
         let mut resolution = Resolution { dir, source: &source, problems, sources };
         let episodes = resolve(&campaign, &mut resolution)?;
-        Some((campaign, episodes))
+        let ranges = ranges(&campaign, &mut resolution)?;
+        Some((campaign, episodes, ranges))
     });
     let has_error = problems.iter().any(|problem| problem.severity == Severity::Error);
-    let Some((campaign, episodes)) = resolved.filter(|_| !has_error) else {
+    let Some((campaign, episodes, ranges)) = resolved.filter(|_| !has_error) else {
         return Err(diagnostics::refuse(&problems, &sources));
     };
     let stem = || file.file_stem().map(|stem| stem.to_string_lossy().into_owned());
@@ -63,6 +73,7 @@ pub fn load(file: &Path) -> Result<LoadedCampaign, Failure> {
         suite: dir.join(&campaign.suite.value),
         campaign,
         episodes,
+        ranges,
         warnings: problems,
         sources,
     })
@@ -91,20 +102,37 @@ pub fn find_episode(input: &Path, id: u64) -> Result<(PathBuf, Episode), Failure
 
 /// Opens the directory of an earlier campaign, and reads its results.
 pub fn read_results(path: &Path) -> Result<(LoadedCampaign, CampaignDir, Ledger), Failure> {
-    let dir = CampaignDir::open(path)?;
+    let dir = CampaignDir::open_judged(path)?;
+    let loaded = reload(&dir)?;
+    let ledger = read_ledger(&loaded, &dir, |_| true);
+    Ok((loaded, dir, ledger))
+}
+
+/// Reads the campaign file of an earlier campaign, whose episodes must be the same.
+pub fn reload(dir: &CampaignDir) -> Result<LoadedCampaign, Failure> {
     let loaded = load(&dir.description.file)?;
     if loaded.episodes != dir.episodes()? {
         let file = dir.description.file.display();
         let error = format!("`{file}` has other episodes than when the campaign was started");
         return Err(Failure::input(error).hint("undo its changes, or start a new campaign"));
     }
+    Ok(loaded)
+}
+
+/// Reads the results of some workers of an earlier campaign.
+pub fn read_ledger(
+    loaded: &LoadedCampaign,
+    dir: &CampaignDir,
+    is_read: impl Fn(u32) -> bool,
+) -> Ledger {
     let mut ledger = Ledger::new(loaded.episodes.episodes.len(), loaded.campaign.repeats);
-    for line in dir.recorded() {
+    let workers = dir.workers().into_iter().filter(|worker| is_read(*worker));
+    for line in workers.flat_map(|worker| dir.recorded_by(worker)) {
         if let Some(outcome) = line.outcome {
             ledger.record(line.episode, outcome, line.reason);
         }
     }
-    Ok((loaded, dir, ledger))
+    ledger
 }
 
 /// Reads a list of episodes.

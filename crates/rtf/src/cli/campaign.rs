@@ -8,7 +8,7 @@ use clap::{Args, Subcommand, ValueEnum};
 use rtf_plan::suite::parse_duration;
 
 use super::values::jobs_parser;
-use super::{ProfileArgs, ResultsArgs};
+use super::{ClusterArgs, HistoryFileArgs, ProfileArgs, ResultsArgs};
 
 /// The verb of `rtf campaign`.
 #[derive(Debug, Subcommand)]
@@ -17,6 +17,10 @@ pub enum CampaignVerb {
     Run(Box<CampaignRunArgs>),
     /// Show the results of a campaign, also while it runs: the claim, and where it fails
     Show(CampaignShowArgs),
+    /// Find the smallest change from the nominal parameters with which an episode fails
+    Shrink(CampaignShrinkArgs),
+    /// Run episodes that another program asks for on standard input, such as an optimiser
+    Search(CampaignSearchArgs),
     /// Compare two versions on the same episodes
     Compare(CampaignCompareArgs),
     /// Print the list of episodes, as JSON lines
@@ -34,18 +38,29 @@ pub struct CampaignRunArgs {
     #[arg(required_unless_present = "resume", value_name = "FILE")]
     pub file: Option<PathBuf>,
 
-    /// Run episodes on N workers in parallel, each with separate fixtures
-    #[arg(short, long, value_name = "N", default_value = "1", value_parser = jobs_parser())]
-    pub workers: NonZeroU16,
+    /// Run episodes on N workers in parallel, each with separate fixtures [default: 1]
+    #[arg(short, long, value_name = "N", value_parser = jobs_parser())]
+    pub workers: Option<NonZeroU16>,
+
+    #[command(flatten)]
+    pub cluster: ClusterArgs,
 
     /// Continue an earlier campaign, whose results are in the directory DIR
     #[arg(long, value_name = "DIR", conflicts_with_all = ["file", "profile", "set"])]
+    #[arg(conflicts_with_all = ["executor", "shards", "args", "licenses"])]
     pub resume: Option<PathBuf>,
 
     /// Time limit for all tear-downs and hooks after a signal; then rtf kills all
     /// leftover processes
     #[arg(long, value_name = "DURATION", default_value = "60s", value_parser = parse_duration)]
     pub shutdown_timeout: Duration,
+
+    /// Do not import the campaign into the history
+    #[arg(long)]
+    pub no_history: bool,
+
+    #[command(flatten)]
+    pub history: HistoryFileArgs,
 
     #[command(flatten)]
     pub profile: ProfileArgs,
@@ -67,10 +82,25 @@ pub struct CampaignShowArgs {
 
     /// Output format
     #[arg(long, value_name = "FORMAT", default_value = "text")]
-    pub format: CampaignFormat,
+    pub format: CampaignShowFormat,
+
+    /// The file of the `html` report [default: standard output]
+    #[arg(short, long, value_name = "PATH")]
+    pub output: Option<PathBuf>,
 
     #[command(flatten)]
     pub results: ResultsArgs,
+}
+
+/// The format of `rtf campaign show`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum CampaignShowFormat {
+    /// Tables
+    Text,
+    /// One JSON document
+    Json,
+    /// A page with plots in one file
+    Html,
 }
 
 /// The format of the results of a campaign.
@@ -80,6 +110,56 @@ pub enum CampaignFormat {
     Text,
     /// One JSON document
     Json,
+}
+
+/// Options of `rtf campaign shrink`.
+#[derive(Debug, Args)]
+pub struct CampaignShrinkArgs {
+    /// The number of an episode that failed
+    #[arg(value_name = "EPISODE", value_parser = clap::value_parser!(u64).range(1..))]
+    pub episode: u64,
+
+    /// The campaign (.xml), or the directory of its results [default: of the newest campaign]
+    #[arg(value_name = "INPUT")]
+    pub input: Option<PathBuf>,
+
+    /// Output format
+    #[arg(long, value_name = "FORMAT", default_value = "text")]
+    pub format: CampaignFormat,
+
+    /// Time limit for all tear-downs and hooks after a signal; then rtf kills all
+    /// leftover processes
+    #[arg(long, value_name = "DURATION", default_value = "60s", value_parser = parse_duration)]
+    pub shutdown_timeout: Duration,
+
+    #[command(flatten)]
+    pub profile: ProfileArgs,
+
+    #[command(flatten)]
+    pub results: ResultsArgs,
+}
+
+/// Options of `rtf campaign search`.
+#[derive(Debug, Args)]
+pub struct CampaignSearchArgs {
+    /// The campaign (.xml)
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+
+    /// Run up to N episodes in parallel, on workers with separate fixtures
+    #[arg(short, long, value_name = "N", default_value = "1", value_parser = jobs_parser())]
+    pub workers: NonZeroU16,
+
+    /// Time limit for all tear-downs and hooks after a signal; then rtf kills all
+    /// leftover processes
+    #[arg(long, value_name = "DURATION", default_value = "60s", value_parser = parse_duration)]
+    pub shutdown_timeout: Duration,
+
+    #[command(flatten)]
+    pub profile: ProfileArgs,
+
+    #[command(flatten)]
+    pub results: ResultsArgs,
 }
 
 /// Options of `rtf campaign compare`.

@@ -1,6 +1,9 @@
-//! Options of `rtf run` that choose where the tests run.
+//! Options that choose where tests and episodes run.
+
+use std::time::Duration;
 
 use clap::{Args, ValueEnum};
+use rtf_plan::suite::parse_duration;
 
 use crate::executor::ArrayTask;
 
@@ -9,15 +12,30 @@ const EXECUTOR: &str = "Executor";
 /// The largest number of tasks: Slurm's default `MaxArraySize` permits no larger array.
 const MAX_SHARDS: i64 = 1000;
 
-/// Where the tests run.
+/// Where the tests of `rtf run` run.
 #[derive(Clone, Debug, Default, Args)]
 pub struct ExecutorArgs {
-    /// Where to run the tests: on this machine (`local`), or as a job array of `slurm`
+    #[command(flatten)]
+    pub cluster: ClusterArgs,
+
+    /// Follow and merge the submission whose directory is FILE, with its original options
+    #[arg(help_heading = EXECUTOR, long, conflicts_with_all = ["rerun", "shards", "args"])]
+    pub resume: bool,
+
+    /// Run a task of a submission
+    #[arg(long, hide = true, value_name = "TASK")]
+    pub array_task: Option<ArrayTask>,
+}
+
+/// The executor, and its tasks.
+#[derive(Clone, Debug, Default, Args)]
+pub struct ClusterArgs {
+    /// Where to run: on this machine (`local`), or as a job array of `slurm`
     #[arg(help_heading = EXECUTOR, long, value_name = "EXECUTOR", default_value = "local")]
     #[arg(hide_possible_values = true)]
     pub executor: ExecutorOption,
 
-    /// Split the tests into N shards, which the executor runs as tasks
+    /// Split the tests or episodes into N shards, which the executor runs as tasks
     #[arg(help_heading = EXECUTOR, long, value_name = "N", group = "sharding")]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=MAX_SHARDS))]
     pub shards: Option<u32>,
@@ -30,14 +48,18 @@ pub struct ExecutorArgs {
     /// Request a licence of Slurm for each resource that the suites require
     #[arg(help_heading = EXECUTOR, long = "executor-licenses")]
     pub licenses: bool,
+}
 
-    /// Follow and merge the submission whose directory is FILE, with its original options
-    #[arg(help_heading = EXECUTOR, long, conflicts_with_all = ["rerun", "shards", "args"])]
-    pub resume: bool,
+/// Options of a task with episodes of a campaign, which the executor starts.
+#[derive(Clone, Debug, Args)]
+pub struct CampaignTaskArgs {
+    /// The task
+    #[arg(long, value_name = "TASK")]
+    pub array_task: ArrayTask,
 
-    /// Run a task of a submission
-    #[arg(long, hide = true, value_name = "TASK")]
-    pub array_task: Option<ArrayTask>,
+    /// Time limit for all tear-downs and hooks after a signal
+    #[arg(long, value_name = "DURATION", default_value = "60s", value_parser = parse_duration)]
+    pub shutdown_timeout: Duration,
 }
 
 /// The executors.

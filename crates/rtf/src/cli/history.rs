@@ -27,7 +27,11 @@ pub enum HistoryVerb {
     Slow(HistoryTestsArgs),
     /// Show a measurement or signal over runs
     Trend(HistoryTrendArgs),
-    /// List changes of measurements, signals and durations
+    /// List campaigns, the newest first
+    Campaigns(HistoryCampaignsArgs),
+    /// Show the pass rates of campaigns over commits
+    Rates(HistoryCampaignsArgs),
+    /// List changes of measurements, signals, durations and rates of campaigns
     Changes(HistoryChangesArgs),
     /// Compare two runs, branches, commits, robots, hosts or profiles
     Compare(HistoryCompareArgs),
@@ -35,11 +39,11 @@ pub enum HistoryVerb {
     Gate(HistoryGateArgs),
     /// Accept changes of measurements with learned limits, in the suite files
     Accept(HistoryAcceptArgs),
-    /// Export results, runs or measurements
+    /// Export results, runs, measurements, campaigns or episodes
     Export(HistoryExportArgs),
-    /// Remove old runs
+    /// Remove old runs and campaigns
     Prune(HistoryPruneArgs),
-    /// Import runs from their journals
+    /// Import runs and campaigns from their files
     Import(HistoryImportArgs),
     /// Check the database
     Doctor(HistoryDoctorArgs),
@@ -124,6 +128,20 @@ pub struct HistoryRunsArgs {
     pub runs: RunSelectArgs,
 }
 
+/// Options of `rtf history campaigns` and `rates`.
+#[derive(Debug, Args)]
+pub struct HistoryCampaignsArgs {
+    /// Only campaigns with this name
+    #[arg(value_name = "CAMPAIGN")]
+    pub name: Option<String>,
+
+    #[command(flatten)]
+    pub history: HistoryArgs,
+
+    #[command(flatten)]
+    pub runs: RunSelectArgs,
+}
+
 /// Options of `rtf history accept`.
 #[derive(Debug, Args)]
 pub struct HistoryAcceptArgs {
@@ -199,7 +217,7 @@ pub struct HistoryChangesArgs {
     pub cases: bool,
 
     /// List only changes of at least this size, in percent of the limits' span or of the
-    /// mean before
+    /// mean before; of rates, the difference in percent
     #[arg(long, value_name = "PERCENT", default_value = "5")]
     pub min_size: f64,
 }
@@ -268,17 +286,21 @@ pub enum ExportTable {
     Runs,
     /// A row per measurement or signal and run
     Points,
+    /// A row per campaign
+    Campaigns,
+    /// A row per episode that has run, and campaign
+    Episodes,
 }
 
 /// Options of `rtf history prune`.
 #[derive(Debug, Args)]
 pub struct HistoryPruneArgs {
-    /// Keep the newest N runs, or the runs since a date or within a time: `500`, `90d`,
+    /// Keep the newest N runs and campaigns, or those since a date or within a time: `500`, `90d`,
     /// `2026-11-01`
     #[arg(long, value_name = "N|TIME")]
     pub keep: String,
 
-    /// List the runs without removing them
+    /// List them without removing them
     #[arg(long)]
     pub dry_run: bool,
 
@@ -289,7 +311,7 @@ pub struct HistoryPruneArgs {
 /// Options of `rtf history import`.
 #[derive(Debug, Args)]
 pub struct HistoryImportArgs {
-    /// Results directories, run directories or journals [default: the results directory]
+    /// Results directories, directories of runs or campaigns, or journals [default: the results directory]
     #[arg(value_name = "DIR")]
     pub dirs: Vec<PathBuf>,
 

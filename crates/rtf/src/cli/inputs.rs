@@ -63,6 +63,15 @@ pub struct ProfileArgs {
     pub set: Vec<(String, String)>,
 }
 
+impl ProfileArgs {
+    /// The arguments for another process.
+    pub fn to_options(&self) -> Vec<String> {
+        let profile = self.profile.iter().map(|profile| format!("--profile={profile}"));
+        let set = self.set.iter().map(|(name, value)| format!("--set={name}={value}"));
+        profile.chain(set).collect()
+    }
+}
+
 /// Where runs are stored.
 #[derive(Debug, Args)]
 pub struct ResultsArgs {

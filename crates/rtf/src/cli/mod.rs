@@ -22,18 +22,19 @@ use clap::{Args, Command, CommandFactory, Parser, Subcommand, ValueEnum};
 use rtf_plan::suite::parse_duration;
 
 pub use campaign::{
-    CampaignCompareArgs, CampaignFormat, CampaignRunArgs, CampaignShowArgs, CampaignVerb,
+    CampaignCompareArgs, CampaignFormat, CampaignRunArgs, CampaignSearchArgs, CampaignShowArgs,
+    CampaignShowFormat, CampaignShrinkArgs, CampaignVerb,
 };
 pub use debug::{DebugArgs, RunVerbArgs};
 pub use doctor::{DoctorArgs, DoctorFormat};
-pub use executor::{ExecutorArgs, ExecutorOption};
+pub use executor::{CampaignTaskArgs, ClusterArgs, ExecutorArgs, ExecutorOption};
 pub use formats::{Annotations, ReportFormat, ReportTarget, StdoutFormat, parse_report};
 pub use gate::{GateFormat, HistoryGateArgs};
 pub use history::{
-    ExportFormat, ExportTable, HistoryAcceptArgs, HistoryArgs, HistoryChangesArgs,
-    HistoryCompareArgs, HistoryDoctorArgs, HistoryExportArgs, HistoryFileArgs, HistoryFormat,
-    HistoryImportArgs, HistoryPruneArgs, HistoryRunsArgs, HistoryShowArgs, HistoryTestsArgs,
-    HistoryTrendArgs, HistoryVerb, ResultSelectArgs, RunSelectArgs,
+    ExportFormat, ExportTable, HistoryAcceptArgs, HistoryArgs, HistoryCampaignsArgs,
+    HistoryChangesArgs, HistoryCompareArgs, HistoryDoctorArgs, HistoryExportArgs, HistoryFileArgs,
+    HistoryFormat, HistoryImportArgs, HistoryPruneArgs, HistoryRunsArgs, HistoryShowArgs,
+    HistoryTestsArgs, HistoryTrendArgs, HistoryVerb, ResultSelectArgs, RunSelectArgs,
 };
 pub use import::{ImportOutput, ImportVerb};
 pub use inputs::{
@@ -150,6 +151,9 @@ pub enum Verb {
         /// The shell
         shell: clap_complete::Shell,
     },
+    /// Run a task of `rtf campaign run --executor`
+    #[command(hide = true)]
+    CampaignTask(CampaignTaskArgs),
     /// Write the manual pages to a directory
     #[command(hide = true)]
     Man {

@@ -63,7 +63,8 @@ pub struct RunArgs {
     #[arg(value_parser = clap::value_parser!(u64).range(1..))]
     pub episode: Option<u64>,
 
-    /// Run the suite FILE once for each episode of the list LIST, see `rtf campaign episodes`
+    /// Run the suite FILE once for each episode of the list LIST, see `rtf campaign episodes`;
+    /// `-` reads it from standard input while the episodes run
     #[arg(help_heading = SELECTION, long, value_name = "LIST")]
     #[arg(conflicts_with_all = ["episode", "rerun"])]
     pub episodes: Option<PathBuf>,

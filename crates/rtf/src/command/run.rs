@@ -22,9 +22,11 @@ pub fn run(args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
     let mut args = args;
     config::fill_run(&mut args.run, matches)?;
     match &args.executor.array_task {
-        Some(task) => task.apply(&mut args.run, &args.executor)?,
-        None if args.executor.executor == ExecutorOption::Slurm => return executor::run(&args),
-        None => executor::refuse_local(&args.executor)?,
+        Some(task) => task.apply(&mut args.run, &args.executor.cluster)?,
+        None if args.executor.cluster.executor == ExecutorOption::Slurm => {
+            return executor::run(&args);
+        }
+        None => executor::refuse_local(&args.executor.cluster)?,
     }
     let RunVerbArgs { run: args, debug, .. } = args;
     let debug = DebugRequest::resolve(&debug, &args)?;
@@ -50,6 +52,9 @@ pub fn run(args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
         let reports = reports::open_all(&output.reports, &output.results)?;
         let print = |dir: &_, stdout: &_| outputs::reporters(&output, dir, stdout);
         let prepared = preflight::prepare(&request, reports, print)?;
+        if let Some(stream) = request.tests.episode_stream.take() {
+            stream.start(prepared.control.clone()).map_err(Failure::internal)?;
+        }
         runner::run(&request, &planned, prepared, guard)
     };
     let complete = |journal: &Path, record: &Record| {

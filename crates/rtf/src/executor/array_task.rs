@@ -1,12 +1,12 @@
 //! `rtf run` as a task of a submission.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use rtf_plan::select::{Shard, ShardBy};
 
-use super::submission::CANCELLED;
-use crate::cli::{Annotations, ExecutorArgs, RunArgs};
+use super::stop::CANCELLED;
+use crate::cli::{Annotations, ClusterArgs, RunArgs};
 use crate::error::Failure;
 use crate::history;
 
@@ -14,11 +14,11 @@ use crate::history;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ArrayTask {
     /// Its number, from 1.
-    number: u32,
+    pub number: u32,
     /// How often it was run before.
     attempt: u32,
-    /// The directory of the submission.
-    dir: PathBuf,
+    /// The directory of the submission, or of the array of a campaign.
+    pub dir: PathBuf,
 }
 
 impl FromStr for ArrayTask {
@@ -39,8 +39,8 @@ impl FromStr for ArrayTask {
 
 impl ArrayTask {
     /// Replaces the options that concern the results: the submitting process merges them.
-    pub fn apply(&self, args: &mut RunArgs, executor: &ExecutorArgs) -> Result<(), Failure> {
-        if self.dir.join(CANCELLED).exists() {
+    pub fn apply(&self, args: &mut RunArgs, executor: &ClusterArgs) -> Result<(), Failure> {
+        if self.is_cancelled() {
             return Err(Failure::input("the submission was cancelled"));
         }
         let Some(count) = executor.shards.filter(|count| (1..=*count).contains(&self.number))
@@ -53,7 +53,7 @@ impl ArrayTask {
             let database = history::default_database(results);
             *history = Some(database.to_string_lossy().into_owned());
         }
-        *results = attempt_dir(&self.dir, self.number, self.attempt);
+        *results = self.attempt_dir();
         args.input.select.shard = Some(Shard { index: self.number, count, by: ShardBy::Hash });
         args.reports.clear();
         args.symlink = None;
@@ -61,11 +61,24 @@ impl ArrayTask {
         args.no_history = true;
         Ok(())
     }
+
+    /// Whether the user has cancelled the tasks.
+    pub fn is_cancelled(&self) -> bool {
+        self.dir.join(CANCELLED).exists()
+    }
+
+    /// The directory of this attempt.
+    pub fn attempt_dir(&self) -> PathBuf {
+        self.dir.join(format!("parts/{}/{}", self.number, self.attempt))
+    }
 }
 
-/// The results directory of an attempt.
-fn attempt_dir(dir: &std::path::Path, number: u32, attempt: u32) -> PathBuf {
-    dir.join(format!("parts/{number}/{attempt}"))
+/// The directory of the last attempt of a task.
+pub fn last_attempt(dir: &Path, task: u32) -> Option<PathBuf> {
+    let attempts = std::fs::read_dir(dir.join(format!("parts/{task}"))).ok()?;
+    let number = |entry: std::fs::DirEntry| entry.file_name().to_str()?.parse::<u32>().ok();
+    let last = attempts.flatten().filter_map(number).max()?;
+    Some(dir.join(format!("parts/{task}/{last}")))
 }
 
 #[cfg(test)]

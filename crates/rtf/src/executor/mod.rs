@@ -1,26 +1,29 @@
 //! `rtf run --executor slurm`: submits shards as tasks of a job array, follows them, collects
-//! their runs and merges them; `spec/executors.md`.
+//! their runs and merges them; `spec/executors.md`. Campaigns use the same job arrays.
 //!
 //! - [`slurm`]: a job array whose tasks each execute a command. Knows no tests.
 //! - [`submission`]: the directory of a submission.
-//! - [`follow`]: waits for the tasks, and stops them on signals.
-//! - [`progress`]: prints the state of the tasks.
+//! - [`follow`]: waits for the tasks.
+//! - [`stop`]: stops the tasks of a job.
+//! - [`task_progress`]: prints the state of the tasks, [`progress`] also that of their tests.
 //! - [`collect`]: the runs of the tasks, merged.
 //! - [`array_task`]: `rtf run` as one of the tasks.
 
 mod array_task;
 mod collect;
-mod follow;
+pub mod follow;
 mod progress;
-mod slurm;
+pub mod slurm;
+pub mod stop;
 mod submission;
+pub mod task_progress;
 
 use std::fs::File;
 use std::path::Path;
 
 use clap::FromArgMatches;
 
-use crate::cli::{self, ExecutorArgs, RunArgs, RunVerbArgs, StdoutFormat};
+use crate::cli::{self, ClusterArgs, RunArgs, RunVerbArgs, StdoutFormat};
 use crate::command::VerbResult;
 use crate::error::Failure;
 use crate::plan;
@@ -29,16 +32,17 @@ use crate::request::{OutputRequest, TestsRequest, config};
 use rtf_plan::plan::Plan;
 use rtf_plan::select::{Shard, ShardBy};
 
-pub use array_task::ArrayTask;
+pub use array_task::{ArrayTask, last_attempt};
 use slurm::{JobArray, JobId, SlurmError};
 use submission::Submission;
+
+/// The file with the exit code of an attempt.
+pub const EXIT_CODE: &str = "exit-code";
 
 /// Submits the tests of `rtf run`, follows and merges them.
 pub fn run(args: &RunVerbArgs) -> VerbResult {
     refuse_options(args)?;
-    let shards = args.executor.shards.ok_or_else(|| {
-        Failure::input("`--executor slurm` needs the number of shards").hint("add `--shards N`")
-    })?;
+    let shards = shards(&args.executor.cluster)?;
     // Reports are written at the end, but unusable paths are reported now.
     let output = OutputRequest::resolve(&args.run);
     drop(reports::open_all(&output.reports, &output.results)?);
@@ -48,9 +52,16 @@ pub fn run(args: &RunVerbArgs) -> VerbResult {
         shards,
         &plan,
         tasks,
-        slurm_options(&args.executor, &plan),
+        slurm_options(&args.executor.cluster, &plan),
     )?;
     supervise(&submission, args)
+}
+
+/// The number of tasks.
+pub fn shards(args: &ClusterArgs) -> Result<u32, Failure> {
+    args.shards.ok_or_else(|| {
+        Failure::input("`--executor slurm` needs the number of shards").hint("add `--shards N`")
+    })
 }
 
 /// Plans all tests; returns the numbers of the shards that contain any.
@@ -97,15 +108,7 @@ fn supervise(submission: &Submission, args: &RunVerbArgs) -> VerbResult {
 
 /// The job of the submission: stored, known to Slurm by its name, or submitted now.
 async fn find_or_submit(submission: &Submission, lock: &File) -> Result<JobId, SlurmError> {
-    if let Some(job) = slurm::stored_job(&submission.dir)? {
-        return Ok(job);
-    }
     let stored = &submission.stored;
-    if submission.is_resumed
-        && let Some(job) = slurm::find_job(&stored.name).await?
-    {
-        return Ok(job);
-    }
     let command: Vec<_> =
         [stored.program.clone(), "run".to_owned()].into_iter().chain(stored.args.clone()).collect();
     let array = JobArray {
@@ -116,16 +119,20 @@ async fn find_or_submit(submission: &Submission, lock: &File) -> Result<JobId, S
         options: &stored.options,
         command: &command,
     };
-    array.submit(lock).await
+    match submission.is_resumed {
+        true => array.find_or_submit(lock).await,
+        false => array.submit(lock).await,
+    }
 }
 
-fn slurm_failure(error: SlurmError) -> Failure {
+/// A command of Slurm failed.
+pub fn slurm_failure(error: SlurmError) -> Failure {
     let hint = error.hint();
     Failure::input(error).maybe_hint(hint)
 }
 
 /// The arguments of `sbatch`.
-fn slurm_options(args: &ExecutorArgs, plan: &Plan) -> Vec<String> {
+pub fn slurm_options(args: &ClusterArgs, plan: &Plan) -> Vec<String> {
     let mut options = args.args.clone();
     if args.licenses {
         let suites = plan.suites.iter();
@@ -147,7 +154,7 @@ fn license(resource: &str) -> String {
 }
 
 /// Refuses options that have no effect on this machine.
-pub fn refuse_local(args: &ExecutorArgs) -> Result<(), Failure> {
+pub fn refuse_local(args: &ClusterArgs) -> Result<(), Failure> {
     let given = [
         ("--shards", args.shards.is_some()),
         ("--executor-arg", !args.args.is_empty()),

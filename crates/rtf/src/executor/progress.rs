@@ -1,6 +1,6 @@
 //! The progress of a job: its tasks, and the tests in their journals as they grow.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -11,32 +11,22 @@ use rtf_report::run_dir::JOURNAL;
 
 use super::slurm::{JobId, TaskState};
 use super::submission::Submission;
+use super::task_progress::TaskProgress;
 use crate::diagnostics::count;
 use crate::terminal;
-
-/// Reasons for waiting that end without the user, as Slurm names them.
-const USUAL_REASONS: [&str; 6] =
-    ["None", "Resources", "Priority", "BeginTime", "Licenses", "JobArrayTaskLimit"];
 
 /// Prints the progress when it has changed.
 pub struct Progress<'a> {
     job: &'a JobId,
     submission: &'a Submission,
     journals: HashMap<PathBuf, GrowingJournal>,
-    last: String,
-    /// The tasks that wait for an unusual reason, and were reported.
-    stuck: BTreeSet<(u32, String)>,
+    tasks: TaskProgress,
 }
 
 impl<'a> Progress<'a> {
     pub fn new(job: &'a JobId, submission: &'a Submission) -> Self {
-        Self {
-            job,
-            submission,
-            journals: HashMap::new(),
-            last: String::new(),
-            stuck: BTreeSet::new(),
-        }
+        let tasks = TaskProgress::new(job, submission.stored.tasks.len());
+        Self { job, submission, journals: HashMap::new(), tasks }
     }
 
     /// Prints how to resume.
@@ -49,20 +39,8 @@ impl<'a> Progress<'a> {
 
     /// Prints a line if something has changed.
     pub fn print(&mut self, tasks: &[TaskState]) {
-        for task in tasks.iter().filter(|task| task.is_waiting) {
-            let TaskState { number, reason, .. } = task;
-            let is_usual = USUAL_REASONS.contains(&reason.as_str());
-            if !is_usual && self.stuck.insert((*number, reason.clone())) {
-                let job = self.job;
-                terminal::notice(format!("slurm: job {job}: task {number} waits: {reason}"));
-            }
-        }
-        let finished = self.finished_tests();
-        let line = line(self.submission, tasks, finished);
-        if line != self.last {
-            terminal::notice(format!("slurm: job {}: {line}", self.job));
-            self.last = line;
-        }
+        let (finished, all) = (self.finished_tests(), self.submission.stored.tests as usize);
+        self.tasks.print(tasks, &format!("; {finished} of {} finished", count(all, "test")));
     }
 
     fn finished_tests(&mut self) -> u32 {
@@ -78,19 +56,6 @@ impl<'a> Progress<'a> {
         });
         counts.sum()
     }
-}
-
-fn line(submission: &Submission, tasks: &[TaskState], finished: u32) -> String {
-    let all = submission.stored.tasks.len();
-    let waiting = tasks.iter().filter(|task| task.is_waiting).count();
-    let running = tasks.len() - waiting;
-    let ended = all.saturating_sub(tasks.len());
-    let tests = submission.stored.tests;
-    format!(
-        "{ended} of {} ended, {running} running, {waiting} waiting; {finished} of {} finished",
-        count(all, "task"),
-        count(tests as usize, "test"),
-    )
 }
 
 /// A journal of which the beginning has been read.

@@ -103,6 +103,18 @@ pub struct TaskState {
 }
 
 impl JobArray<'_> {
+    /// The job that another process may have submitted: stored, or known to Slurm by its name.
+    /// Otherwise the tasks are submitted now.
+    pub async fn find_or_submit(&self, lock: &File) -> Result<JobId, SlurmError> {
+        if let Some(job) = stored_job(self.dir)? {
+            return Ok(job);
+        }
+        match find_job(self.name).await? {
+            Some(job) => Ok(job),
+            None => self.submit(lock).await,
+        }
+    }
+
     /// Submits the tasks. `lock` is locked until `sbatch` has ended, even if this process is
     /// killed.
     pub async fn submit(&self, lock: &File) -> Result<JobId, SlurmError> {
@@ -137,7 +149,7 @@ impl JobArray<'_> {
 }
 
 /// The job of a submission, from its file.
-pub fn stored_job(dir: &Path) -> Result<Option<JobId>, SlurmError> {
+fn stored_job(dir: &Path) -> Result<Option<JobId>, SlurmError> {
     let path = dir.join(JOB);
     match std::fs::read_to_string(&path) {
         Ok(text) => Ok(parse_job(&text)),
@@ -147,7 +159,7 @@ pub fn stored_job(dir: &Path) -> Result<Option<JobId>, SlurmError> {
 }
 
 /// The job with a name, if Slurm has not forgotten it.
-pub async fn find_job(name: &str) -> Result<Option<JobId>, SlurmError> {
+async fn find_job(name: &str) -> Result<Option<JobId>, SlurmError> {
     let mut squeue = command("squeue");
     squeue.args(["--noheader", "--states=all", "--format=%F"]).arg(format!("--name={name}"));
     Ok(parse_job(&run("squeue", squeue).await?))
@@ -235,7 +247,7 @@ fn write<T>(path: &Path, write: impl FnOnce(&Path) -> io::Result<T>) -> Result<T
 }
 
 /// Formats ascending numbers as `1-3,7`.
-pub fn ranges(numbers: &[u32]) -> String {
+fn ranges(numbers: &[u32]) -> String {
     let mut ranges: Vec<(u32, u32)> = Vec::new();
     for number in numbers {
         match ranges.last_mut() {

@@ -9,6 +9,7 @@ use rtf_plan::plan::Plan;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
+use super::last_attempt;
 use crate::error::Failure;
 
 /// The directory of all submissions in a results directory: hidden, so that `rtf-results/*` names
@@ -16,8 +17,6 @@ use crate::error::Failure;
 const DIR: &str = ".submissions";
 /// The file with [`Stored`].
 const STORED: &str = "submission.json";
-/// The file that exists when the user has cancelled the submission.
-pub const CANCELLED: &str = "cancelled";
 
 /// A submission.
 #[derive(Debug)]
@@ -115,11 +114,6 @@ impl Submission {
         }
     }
 
-    /// Marks the submission as cancelled.
-    pub fn cancel(&self) -> io::Result<()> {
-        File::create(self.dir.join(CANCELLED)).map(drop)
-    }
-
     /// The file with the output of a task.
     pub fn output(&self, task: u32) -> PathBuf {
         self.dir.join(format!("output/{task}.txt"))
@@ -127,10 +121,7 @@ impl Submission {
 
     /// The directory of the run of the last attempt of a task.
     pub fn last_run(&self, task: u32) -> Option<PathBuf> {
-        let attempts = fs::read_dir(self.dir.join(format!("parts/{task}"))).ok()?;
-        let number = |entry: fs::DirEntry| entry.file_name().to_str()?.parse::<u32>().ok();
-        let last = attempts.flatten().filter_map(number).max()?;
-        self.dir.join(format!("parts/{task}/{last}/latest")).canonicalize().ok()
+        last_attempt(&self.dir, task)?.join("latest").canonicalize().ok()
     }
 }
 

@@ -1,6 +1,7 @@
 //! The history of a run: which database, and the import when the run has ended. Nothing here
 //! changes the verdict or the exit code of a run.
 
+pub mod campaigns;
 pub mod journals;
 mod learned;
 mod past_tests;
@@ -16,6 +17,7 @@ use rtf_report::run_dir::JOURNAL;
 
 pub use source::ServedHistory;
 
+use crate::cli::{HistoryFileArgs, ResultsArgs};
 use crate::error::Failure;
 use crate::{revision, terminal};
 use journals::JournalImport;
@@ -49,6 +51,20 @@ pub struct HistoryTarget {
     pub database: Location,
     /// The results directory, in which earlier runs may be missing in the database.
     pub results: PathBuf,
+}
+
+/// Where runs and campaigns are imported; `None`: they are not.
+pub fn target(
+    no_history: bool,
+    history: &HistoryFileArgs,
+    results: &ResultsArgs,
+) -> Result<Option<HistoryTarget>, Failure> {
+    if no_history {
+        return Ok(None);
+    }
+    let results = results.results.clone();
+    let database = resolve(history.history.as_deref(), &results)?;
+    Ok(Some(HistoryTarget { database, results }))
 }
 
 /// Whether this is the database in a results directory, or its write-ahead log or index.
@@ -112,18 +128,18 @@ pub fn import_run(target: &HistoryTarget, record: &Record) {
         catch_up(&mut store, &target.results)
     });
     if let Err(error) = imported {
-        terminal::notice(format!("warning: {}", warning(&error)));
+        terminal::notice(format!("warning: {}", warning("run", &error)));
     }
 }
 
-fn warning(error: &StoreError) -> String {
-    let mut text = format!("the run was not imported into the history: {error}");
+fn warning(what: &str, error: &StoreError) -> String {
+    let mut text = format!("the {what} was not imported into the history: {error}");
     if let Some(cause) = std::error::Error::source(error) {
         text += &format!(": {cause}");
     }
     match error.hint() {
         Some(hint) => format!("{text} ({hint})"),
-        None => format!("{text} (the next run imports it)"),
+        None => format!("{text} (the next {what} imports it)"),
     }
 }
 

@@ -9,8 +9,8 @@ use rtf_plan::config::{self, ConfigFiles, ConfigRequest, RunConfig, RunValue};
 use rtf_plan::suite::parse_duration;
 
 use crate::cli::{
-    Annotations, FlakyResult, HistoryFileArgs, InputArgs, OrderOption, ProfileArgs, ReportFormat,
-    ReportTarget, ResultsArgs, RunArgs, parse_fork_mode, parse_report,
+    Annotations, CampaignRunArgs, FlakyResult, HistoryFileArgs, InputArgs, OrderOption,
+    ProfileArgs, ReportFormat, ReportTarget, ResultsArgs, RunArgs, parse_fork_mode, parse_report,
 };
 use crate::diagnostics;
 use crate::error::Failure;
@@ -61,6 +61,17 @@ pub fn fill_results(args: &mut InputArgs, matches: &ArgMatches) -> Result<(), Fa
     let defaults = ConfigDefaults::of_inputs(args, matches)?.accepted()?;
     defaults.fill_results(&mut args.results);
     defaults.fill_history(&mut args.history);
+    Ok(())
+}
+
+/// Fills in the results directory and the history of a campaign.
+pub fn fill_campaign(args: &mut CampaignRunArgs, matches: &ArgMatches) -> Result<(), Failure> {
+    let defaults = past_defaults(matches)?;
+    defaults.fill_results(&mut args.results);
+    defaults.fill_history(&mut args.history);
+    if let Some(value) = defaults.value("history.enabled", "no_history") {
+        args.no_history = text(value) == "false";
+    }
     Ok(())
 }
 

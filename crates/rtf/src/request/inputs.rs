@@ -15,6 +15,7 @@ use rtf_plan::suite::episode_reference;
 
 use super::past_tests::PastQuery;
 use super::{failed_cases, past_run};
+use crate::campaign::EpisodeStream;
 use crate::cli::{FlakyResult, InputArgs, OrderOption, ProfileArgs, RepeatArgs, RerunVerdict};
 use crate::error::Failure;
 use crate::history::PastTests;
@@ -33,6 +34,8 @@ pub struct TestsRequest {
     pub shard: Option<(Shard, Option<Arc<PastTests>>)>,
     /// The episodes of a campaign to run; empty without a campaign.
     pub episodes: Vec<Episode>,
+    /// Further episodes, which arrive while the suite runs.
+    pub episode_stream: Option<EpisodeStream>,
     /// Problems that prevent nothing.
     pub warnings: Vec<Diagnostic>,
 }
@@ -73,7 +76,16 @@ impl TestsRequest {
         manifest.shard = shard.as_ref().map(|(it, _)| format!("{}/{}", it.index, it.count));
         let inputs = manifest.inputs.iter().map(|input| InputPath::Any(input.into())).collect();
         let options = options(&manifest, runner);
-        Ok(Self { inputs, options, manifest, order, shard, episodes: Vec::new(), warnings })
+        Ok(Self {
+            inputs,
+            options,
+            manifest,
+            order,
+            shard,
+            episodes: Vec::new(),
+            episode_stream: None,
+            warnings,
+        })
     }
 
     /// Runs a suite once for each episode. Its parameters are references, which are replaced when
@@ -84,7 +96,7 @@ impl TestsRequest {
             let reference = episode_reference::to(name);
             self.options.config_request.params.push((name.clone(), reference));
             // `--rerun` repeats a single episode as an ordinary run.
-            if episodes.len() == 1 {
+            if episodes.len() == 1 && self.episode_stream.is_none() {
                 self.manifest.set.push(format!("{name}={value}"));
             }
         }
@@ -111,6 +123,7 @@ impl TestsRequest {
             order: None,
             shard: None,
             episodes: Vec::new(),
+            episode_stream: None,
             warnings: Vec::new(),
         })
     }

@@ -8,14 +8,14 @@ pub mod past_run;
 mod past_tests;
 
 use std::num::NonZeroU16;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use rtf_engine::locks::{self, LockOptions};
 use rtf_process::fork_server::ForkMode;
 use rtf_web::{Limits, Settings};
 
-use crate::campaign;
+use crate::campaign::{self, EpisodeStream};
 use crate::cli::{Annotations, ReportFormat, ReportTarget, RunArgs, StdoutFormat, WebAccessArgs};
 use crate::collector::Collector;
 use crate::debug::DebugRequest;
@@ -135,6 +135,10 @@ fn set_episodes(tests: &mut TestsRequest, args: &RunArgs) -> Result<(), Failure>
     if let Some(id) = args.episode {
         let (suite, episode) = campaign::find_episode(input, id)?;
         tests.set_episodes(suite, vec![episode]);
+    } else if args.episodes.as_deref() == Some(Path::new("-")) {
+        let (first, stream) = EpisodeStream::open()?;
+        tests.episode_stream = Some(stream);
+        tests.set_episodes(input.clone(), vec![first]);
     } else if let Some(list) = &args.episodes {
         let episodes = campaign::read_list(list)?.episodes;
         if episodes.is_empty() {
@@ -163,12 +167,7 @@ pub fn collectors(args: &RunArgs) -> Result<Vec<Collector>, Failure> {
 
 /// Where a run is imported when it has ended.
 pub fn history_target(args: &RunArgs) -> Result<Option<HistoryTarget>, Failure> {
-    if args.no_history {
-        return Ok(None);
-    }
-    let results = args.input.results.results.clone();
-    let database = history::resolve(args.input.history.history.as_deref(), &results)?;
-    Ok(Some(HistoryTarget { database, results }))
+    history::target(args.no_history, &args.input.history, &args.input.results)
 }
 
 /// Resolves [`Annotations::Auto`].

@@ -133,6 +133,7 @@ fn request(args: &Args, results: &Path) -> Result<RunRequest, Failure> {
             order: None,
             shard: None,
             episodes: Vec::new(),
+            episode_stream: None,
             warnings: Vec::new(),
         },
         results: results.to_owned(),

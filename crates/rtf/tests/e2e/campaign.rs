@@ -131,6 +131,18 @@ fn a_fixture_is_restarted_or_reset_for_each_episode() {
     assert_eq!(reset.read("log"), "start 0\nreset 1 2\nreset 2 3\n");
     assert_eq!(results(&restarted), results(&reset));
     assert!(nothing_left(&reset));
+    let plugin =
+        folder(&SIMULATOR.replace("RESET", "<reset param='start'>Reset.lua</reset>"), GRID);
+    plugin.file(
+        "Reset.lua",
+        "TestCase = {}\nfunction TestCase.setup(arguments)\n  \
+         local log = io.open('log', 'a')\n  \
+         log:write('reset ', arguments, ' ', os.getenv('RTF_PARAM_PAYLOAD'), '\\n')\n  \
+         log:close()\nend\nfunction TestCase.run() end\n",
+    );
+    run(&plugin, &[]);
+    assert_eq!(plugin.read("log"), "start 0\nreset start 1\nreset start 2\n");
+    assert_eq!(results(&restarted), results(&plugin));
 }
 
 #[test]
@@ -145,7 +157,7 @@ fn a_collapse_is_repeated_and_counted_apart() {
     let outcomes: Vec<_> = results(&folder).iter().map(|line| line.outcome).collect();
     let passed = Some(rtf_model::EpisodeOutcome::Passed);
     assert_eq!(outcomes, [passed; 3], "{}", finished.stdout);
-    let counted = "1 executions were errors or collapses of the bench";
+    let counted = "errors and collapses of the bench: 1";
     assert!(finished.stdout.contains(counted), "{}", finished.stdout);
 }
 
@@ -262,6 +274,18 @@ fn mistakes_are_reported_before_anything_starts() {
     error: `.` is not a campaign's directory: No such file or directory (os error 2)
     hint: `rtf campaign run` prints the directory of its results
     ");
+    let slurm = ["--executor", "slurm", "--shards", "2"];
+    for (options, error) in [
+        (&["--shards", "2"][..], "`--shards` has no effect without `--executor slurm`"),
+        (&slurm[..2], "`--executor slurm` needs the number of shards"),
+        (&[&slurm[..], &["-w2"]].concat(), "`--workers` has no effect with `--executor slurm`"),
+        (&[&slurm[..], &["--resume", "."]].concat(), "cannot be used with"),
+    ] {
+        let finished = run(&valid, options);
+        assert_eq!(finished.code, Some(2), "{options:?}");
+        assert!(finished.stderr.contains(error), "{}", finished.stderr);
+    }
+    assert!(!valid.path().join("rtf-results").exists());
 }
 
 #[test]
@@ -354,6 +378,26 @@ fn two_versions_are_compared_on_the_same_episodes() {
     assert!(refused.stderr.contains("have different episodes"), "{}", refused.stderr);
 }
 
+/// The results so far are judged, and the rest can be run later.
+#[test]
+fn a_budget_ends_a_campaign() {
+    let folder = slow();
+    let campaign = fixed(400, "0.5");
+    let text = format!("<campaign budget='3s' suite='grasp.xml' {campaign}</campaign>");
+    folder.file("campaign.xml", &text);
+    let finished = run(&folder, &[]);
+    assert_eq!(finished.code, Some(6), "{}{}", finished.stdout, finished.stderr);
+    let expected =
+        "  ended early: the budget of 3s has passed\n  continue: rtf campaign run --resume";
+    assert!(finished.stdout.contains(expected), "{}", finished.stdout);
+    let before = results(&folder).len();
+    assert!(before > 0);
+    let resumed = folder.rtf(&["campaign", "run", "--resume", "rtf-results/campaigns/latest"]);
+    assert_eq!(resumed.code, Some(6), "{}", resumed.stderr);
+    assert!(results(&folder).len() > before);
+    assert!(nothing_left(&folder));
+}
+
 #[test]
 fn workers_have_separate_networks() {
     let suite = "<suite name='grasp' isolate='network'>\
@@ -374,7 +418,8 @@ fn workers_have_separate_networks() {
     assert!(!finished.stdout.contains("bench"), "{}", finished.stdout);
 }
 
-fn first_child(pid: u32) -> Option<u32> {
+/// The first child of a process.
+pub fn first_child(pid: u32) -> Option<u32> {
     let children = std::fs::read_to_string(format!("/proc/{pid}/task/{pid}/children")).ok()?;
     children.split_whitespace().next()?.parse().ok()
 }

@@ -211,8 +211,8 @@ fn a_question_without_a_history() {
     exit code 2
     ----- stdout
     ----- stderr
-    error: there are no runs in `rtf-results`
-    hint: name a results directory, a run's directory, or a journal
+    error: there are no runs and no campaigns in `rtf-results`
+    hint: name a results directory, a directory of a run or campaign, or a journal
     ");
 }
 

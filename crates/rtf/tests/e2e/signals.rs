@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use rtf_model::{EventKind, Phase, TestId, Verdict};
 
-use crate::support::{Folder, Running, next_request, nothing_left};
+use crate::support::{Folder, Running, next_request, nothing_left, send, wait_until};
 
 const FIXTURE: &str = "import rtf\nclass F(rtf.FixtureManager):\n    def setup(self, args):\n        return True\n    def tearDown(self):\n        open('torn-down', 'w').close()\n";
 const PATIENT: &str =
@@ -36,6 +36,24 @@ fn the_first_signal_stops_the_test_and_tears_down() {
         assert!(folder.path().join("junit.xml").exists());
         assert!(nothing_left(&folder));
     }
+}
+
+/// Schedulers end a job with a signal to all its processes, of which the test's may be the first:
+/// nothing is wrong with the test.
+#[test]
+fn a_signal_to_the_process_of_the_test_and_to_the_runner_is_an_interruption() {
+    let folder = Folder::new();
+    let reports = "import os, rtf\nclass T(rtf.TestCase):\n    def run(self):\n        \
+        open('new', 'w').write(str(os.getpid()))\n        os.rename('new', 'pid')\n        \
+        self.sleep(1000)\n";
+    let running = run(&folder, reports);
+    let pid =
+        wait_until("the test runs", || std::fs::read_to_string(folder.path().join("pid")).ok());
+    send(pid.parse().expect("a process"), "TERM");
+    running.signal("TERM");
+    assert_eq!(running.finish().code, Some(143));
+    assert_eq!(folder.journal().record.verdict(TestId(0)), Some(Verdict::Interrupted));
+    assert!(nothing_left(&folder));
 }
 
 /// Programs that start rtf hold its standard input: what is written there does not

@@ -213,7 +213,8 @@ fn help_of_run() {
           --episode <ID>       Run only episode ID of a campaign: FILE is the campaign, or the directory
                                of its results
           --episodes <LIST>    Run the suite FILE once for each episode of the list LIST, see `rtf
-                               campaign episodes`
+                               campaign episodes`; `-` reads it from standard input while the episodes
+                               run
           --dry-run            List the selected tests without running them
 
     Repetition:
@@ -249,9 +250,10 @@ fn help_of_run() {
                                 and suspend its limits
 
     Executor:
-          --executor <EXECUTOR>  Where to run the tests: on this machine (`local`), or as a job array of
-                                 `slurm` [default: local]
-          --shards <N>           Split the tests into N shards, which the executor runs as tasks
+          --executor <EXECUTOR>  Where to run: on this machine (`local`), or as a job array of `slurm`
+                                 [default: local]
+          --shards <N>           Split the tests or episodes into N shards, which the executor runs as
+                                 tasks
           --executor-arg <ARG>   Pass an argument to `sbatch`: `--partition=sim`, `--time=1:00:00`
           --executor-licenses    Request a licence of Slurm for each resource that the suites require
           --resume               Follow and merge the submission whose directory is FILE, with its
@@ -304,13 +306,15 @@ fn bash_reads_its_completions() {
 }
 
 /// The verbs with a page of the manual, in its order.
-const VERBS: [&str; 40] = [
+const VERBS: [&str; 44] = [
     "ada-dir",
     "ament-dir",
     "campaign-compare",
     "campaign-episodes",
     "campaign-run",
+    "campaign-search",
     "campaign-show",
+    "campaign-shrink",
     "campaign",
     "check",
     "cmake-dir",
@@ -319,6 +323,7 @@ const VERBS: [&str; 40] = [
     "config",
     "doctor",
     "history-accept",
+    "history-campaigns",
     "history-changes",
     "history-compare",
     "history-doctor",
@@ -327,6 +332,7 @@ const VERBS: [&str; 40] = [
     "history-gate",
     "history-import",
     "history-prune",
+    "history-rates",
     "history-runs",
     "history-show",
     "history-slow",

@@ -1,7 +1,7 @@
 // The part of the page's address that selects a view of the history, runs and tests.
 
 /** The parts of the History page. */
-export const VIEWS = ['matrix', 'flaky', 'slow', 'compare', 'test', 'trend'] as const;
+export const VIEWS = ['matrix', 'flaky', 'slow', 'compare', 'test', 'trend', 'campaigns'] as const;
 export type HistoryView = (typeof VIEWS)[number];
 
 /** Which runs and tests: as in the API (spec/web.md). */

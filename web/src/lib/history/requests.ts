@@ -2,6 +2,7 @@
 
 import type {
     FlakyTests,
+    HistoryCampaigns,
     HistoryComparison,
     HistoryMatrix,
     SeriesTrend,
@@ -38,6 +39,9 @@ export const flaky = (selection: Selection, signal: AbortSignal) =>
 
 export const slow = (selection: Selection, signal: AbortSignal) =>
     ask<SlowTests>('slow', { ...selection, limit: 1000 }, signal);
+
+export const campaigns = (selection: Selection, signal: AbortSignal) =>
+    ask<HistoryCampaigns>('campaigns', { ...selection }, signal);
 
 export const compare = (a: string, b: string, selection: Selection, signal: AbortSignal) =>
     ask<HistoryComparison>('compare', { ...selection, a, b }, signal);

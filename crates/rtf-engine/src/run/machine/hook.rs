@@ -40,7 +40,7 @@ impl<'p> RunningHook<'p> {
         let start = process_start(suite, plan, triggered, cx.values());
         cx.push(Effect::Spawn { host, source, start });
         if let HookBody::Plugin(body) = &plan.body {
-            let mut request = request(suite, plan, body);
+            let mut request = request(suite, &plan.name, body);
             cx.values().extend_request(&mut request);
             let request = Request::RunTest(request);
             cx.send(host, Some(RUN_REQUEST), request);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_model::protocol::{OWNER_VARIABLE, Plugin, Request, StackSupport};
-use rtf_model::{EventKind, Source, TestId};
+use rtf_model::{Episode, EventKind, Source, TestId};
 
 use rtf_plan::plan::{HostPlan, ProbePlans, ProcessPlan, SuitePlan};
 
@@ -32,6 +32,8 @@ pub enum Input {
     StopTest(TestId, String),
     /// A user skips the rest of the suite; the user's name.
     Skip(String),
+    /// A further episode of a stream; `None` at its end.
+    Episode(Option<Episode>),
 }
 
 /// A timer of the machine. Setting it again moves it.

@@ -116,8 +116,8 @@ impl SuiteTask<'_> {
         SuiteRequests { mut stops, controls, .. }: SuiteRequests,
     ) {
         let stop = stops.borrow_and_update().clone();
-        let (mut controls, skip) = ControlQueue::new(controls, self.plan);
-        for input in stop.map(Input::Stop).into_iter().chain(skip) {
+        let (mut controls, earlier) = ControlQueue::new(controls, self.plan);
+        for input in stop.map(Input::Stop).into_iter().chain(earlier) {
             self.feed(input);
         }
         self.feed(Input::Start);

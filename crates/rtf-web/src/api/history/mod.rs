@@ -10,8 +10,8 @@ use utoipa::IntoParams;
 
 use self::selection::{HistoryProblem, HistoryQuery, Selection, answer};
 use self::types::{
-    FlakyTests, HistoryChange, HistoryComparison, HistoryMatrix, HistoryRuns, SeriesTrend,
-    SlowTests, TestHistories,
+    FlakyTests, HistoryCampaigns, HistoryChange, HistoryComparison, HistoryMatrix, HistoryRuns,
+    SeriesTrend, SlowTests, TestHistories,
 };
 use super::details::JsonResult;
 use super::problems::Problems;
@@ -160,6 +160,22 @@ pub async fn trend(
         let mut changes = changes(store, selection, &measures)?;
         changes.retain(|it| it.series.as_ref().is_some_and(|it| it.name == named.series));
         Ok(SeriesTrend { series, changes })
+    })
+    .await
+}
+
+/// The rates of campaigns over commits, and since when they are different. The filter, the robot
+/// and cases have no effect.
+#[utoipa::path(get, path = "/history/campaigns", tag = "history", operation_id = "history_campaigns",
+    params(HistoryQuery), responses((status = 200, body = HistoryCampaigns), Problems))]
+pub async fn campaigns(
+    State(app): State<App>,
+    QueryParams(query): QueryParams<HistoryQuery>,
+) -> JsonResult {
+    answer(app, query, |store, selection| {
+        let rates = store.campaign_rates(&selection.runs, None)?;
+        let changes = store.campaign_changes(&selection.runs)?;
+        Ok(HistoryCampaigns { rates, changes })
     })
     .await
 }

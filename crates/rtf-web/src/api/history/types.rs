@@ -3,8 +3,8 @@
 use jiff::Timestamp;
 use rtf_history::TestIdentity;
 use rtf_history::answers::{
-    Comparison, FlakyTest, MatrixRow, RunInfo, SeriesChange, SlowTest, TestHistory, TestSeries,
-    VerdictMatrix,
+    CampaignChange, CampaignSeries, Comparison, FlakyTest, MatrixRow, RunInfo, SeriesChange,
+    SlowTest, TestHistory, TestSeries, VerdictMatrix,
 };
 use rtf_history::entry::SeriesName;
 use serde::Serialize;
@@ -128,6 +128,15 @@ impl From<SeriesChange> for HistoryChange {
         let fraction = change.size.map(|size| size.fraction);
         Self { identity, series, robot, profile, run, before, after, fraction }
     }
+}
+
+/// Rates of campaigns.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct HistoryCampaigns {
+    /// The campaigns, by series.
+    pub rates: Vec<CampaignSeries>,
+    /// Since when the rates are different, the newest change first.
+    pub changes: Vec<CampaignChange>,
 }
 
 /// Flaky tests.

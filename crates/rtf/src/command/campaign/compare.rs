@@ -18,8 +18,8 @@ use crate::{exit, terminal};
 
 /// Compares the results of two directories.
 pub fn run(args: &CampaignCompareArgs) -> VerbResult {
-    let first = CampaignDir::open(&args.first)?;
-    let second = CampaignDir::open(&args.second)?;
+    let first = CampaignDir::open_judged(&args.first)?;
+    let second = CampaignDir::open_judged(&args.second)?;
     let episodes = first.episodes()?;
     if episodes != second.episodes()? {
         let (first, second) = (args.first.display(), args.second.display());

@@ -1,10 +1,17 @@
 //! `rtf campaign`.
 
+mod assignment;
 mod compare;
+mod coordinator;
+mod pool;
 mod progress;
 mod run;
+mod search;
 mod show;
+mod shrink;
+mod stream_pool;
 mod summary;
+mod task;
 mod worker;
 
 use std::path::Path;
@@ -16,12 +23,16 @@ use super::VerbResult;
 use crate::cli::CampaignVerb;
 use crate::{campaign, terminal};
 
+pub use task::run as run_task;
+
 /// Runs a campaign, or prints its episodes.
 pub fn run(verb: CampaignVerb, matches: &ArgMatches) -> VerbResult {
     let verb_matches = matches.subcommand().map_or(matches, |(_, matches)| matches);
     match verb {
         CampaignVerb::Run(args) => run::run(*args, verb_matches),
         CampaignVerb::Compare(args) => compare::run(&args),
+        CampaignVerb::Search(args) => search::run(args, verb_matches),
+        CampaignVerb::Shrink(args) => shrink::run(args, verb_matches),
         CampaignVerb::Show(args) => show::run(&args, verb_matches),
         CampaignVerb::Episodes { file } => print_episodes(&file),
     }

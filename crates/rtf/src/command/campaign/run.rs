@@ -1,88 +1,131 @@
-//! `rtf campaign run`: starts workers with lists of episodes, follows their results, and judges
-//! the claim.
+//! `rtf campaign run`: a campaign is checked, run by a [`Coordinator`] with a pool of workers, and
+//! its claim is judged.
 
+use std::collections::BTreeSet;
+use std::fs::File;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use clap::ArgMatches;
-use rtf_campaign::file::StoppingRule;
-use rtf_campaign::{Campaign, Judge, Judgement, Ledger};
+use jiff::Timestamp;
+use rtf_campaign::Ledger;
 use rtf_engine::signal::SignalListener;
-use rtf_model::{Episode, EpisodeOutcome};
-use rtf_report::episode_results::EpisodeLine;
+use rtf_history::entry;
+use rtf_plan::plan::Plan;
 use rtf_report::escape;
 
-use super::progress::Progress;
+use super::coordinator::{CampaignEnd, Coordinator};
+use super::pool::{LocalPool, SlurmPool};
 use super::summary::{self, EarlyEnd};
-use super::worker::{self, Worker};
-use crate::campaign::directory::{CampaignDir, Description};
+use crate::campaign::directory::{CampaignDir, Description, SlurmArrays};
+use crate::campaign::judged::Judged;
+use crate::campaign::start::CampaignStart;
 use crate::campaign::{self, LoadedCampaign};
-use crate::cli::CampaignRunArgs;
+use crate::cli::{CampaignRunArgs, ExecutorOption, ProfileArgs};
 use crate::command::VerbResult;
 use crate::diagnostics::count;
 use crate::error::Failure;
+use crate::history::{self, campaigns};
 use crate::request::{TestsRequest, config};
-use crate::{exit, plan, terminal};
+use crate::{executor, plan, terminal};
 
-/// SIGTERM.
-const TERM: i32 = 15;
-/// How often the results of the workers are read.
+/// How often the end of the workers of a killed campaign is checked.
 const POLL: Duration = Duration::from_millis(20);
-/// How many workers in succession may end without a result.
-const MAX_FAILED_STARTS: u32 = 3;
+
+/// A campaign that is to be run.
+struct Started {
+    loaded: LoadedCampaign,
+    dir: CampaignDir,
+    /// Locked while this process runs the campaign.
+    lock: File,
+    is_resumed: bool,
+}
 
 /// Runs a campaign, or continues one.
 pub fn run(mut args: CampaignRunArgs, matches: &ArgMatches) -> VerbResult {
-    config::fill_past_results(&mut args.results, matches)?;
-    let (loaded, dir, ledger) = match &args.resume {
-        Some(path) => {
-            wait_for_workers(&CampaignDir::open(path)?, args.shutdown_timeout)?;
-            campaign::read_results(path)?
-        }
+    config::fill_campaign(&mut args, matches)?;
+    let target = history::target(args.no_history, &args.history, &args.results)?;
+    let started = match &args.resume {
+        Some(path) => reopen(path, &args)?,
         None => begin(&args)?,
     };
-    let _lock = dir.lock()?;
-    let episodes = loaded.episodes.episodes;
-    let judge = Judge::new(&loaded.campaign, episodes.len());
-    let judge = judge.ok_or_else(|| Failure::internal("the claim cannot be judged"))?;
+    let Started { loaded, dir, .. } = &started;
+    dir.write_judgement(None)?;
     let claimed = loaded.campaign.claim.rate;
-    let (name, workers) = (escape::line(&loaded.name), usize::from(args.workers.get()));
+    let workers = match &dir.description.slurm {
+        Some(arrays) => format!("up to {}", count(arrays.shards as usize, "task")),
+        None => count(local_workers(&args), "worker"),
+    };
+    let episodes = count(loaded.episodes.episodes.len(), "episode");
+    let name = escape::line(&loaded.name);
     terminal::stdout(|out| {
-        let (episodes, workers) = (count(episodes.len(), "episode"), count(workers, "worker"));
         writeln!(out, "campaign {name}: {episodes}, {workers}, claim rate >= {claimed}")
     })?;
-    let mut coordinator = Coordinator {
-        campaign: &loaded.campaign,
-        dir: &dir,
-        episodes: &episodes,
-        next_worker: dir.workers().last().map_or(1, |last| last + 1),
-        judgement: judge.judge(&ledger.results()),
-        judged: ledger.complete(),
-        ledger,
-        judge,
-        most: workers,
-        workers: Vec::new(),
-        shutdown_timeout: args.shutdown_timeout,
-        failed_starts: 0,
-        early_end: None,
-        is_stopped: false,
-        progress: Progress::new(),
-    };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-    let ended = runtime.map_err(Failure::internal)?.block_on(coordinator.run());
-    coordinator.progress.end()?;
-    ended?;
-    let Coordinator { ledger, judge, early_end, .. } = coordinator;
-    let judgement = judge.judge(&ledger.results());
+    let end = runtime.map_err(Failure::internal)?.block_on(coordinate(&started, &args))?;
+    let CampaignEnd { ledger, judgement, early_end } = end;
     dir.write_results(&summary::result_lines(&ledger, dir.recorded()))?;
+    let end = history_end(early_end.as_ref());
+    dir.write_judgement(Some(&Judged { ended_at: Timestamp::now(), end, judgement }))?;
     summary::print(&loaded.campaign, (&ledger, &judgement), early_end.as_ref(), &dir.path)?;
+    if let Some(target) = target {
+        campaigns::import_ended(&target, dir);
+    }
     Ok(ExitCode::from(summary::exit_code(&judgement, early_end.as_ref())))
+}
+
+/// How a campaign ended, for the history.
+fn history_end(early_end: Option<&EarlyEnd>) -> entry::CampaignEnd {
+    match early_end {
+        None => entry::CampaignEnd::Finished,
+        Some(EarlyEnd::HookFailed) => entry::CampaignEnd::HookFailed,
+        Some(EarlyEnd::BenchBroken) => entry::CampaignEnd::BenchBroken,
+        Some(EarlyEnd::Budget) => entry::CampaignEnd::OverBudget,
+        Some(EarlyEnd::Signal(_)) => entry::CampaignEnd::Interrupted,
+    }
+}
+
+fn local_workers(args: &CampaignRunArgs) -> usize {
+    args.workers.map_or(1, |workers| usize::from(workers.get()))
+}
+
+/// Runs the episodes that have no result in a pool of workers.
+async fn coordinate(started: &Started, args: &CampaignRunArgs) -> Result<CampaignEnd, Failure> {
+    let Started { loaded, dir, lock, is_resumed } = started;
+    let signals = SignalListener::install().map_err(Failure::internal)?;
+    let read = |is_read: &dyn Fn(u32) -> bool| match is_resumed {
+        true => campaign::read_ledger(loaded, dir, is_read),
+        false => Ledger::new(loaded.episodes.episodes.len(), loaded.campaign.repeats),
+    };
+    let (campaign, episodes) = (&loaded.campaign, &loaded.episodes.episodes);
+    let Some(settings) = &dir.description.slurm else {
+        let pool = LocalPool::new(dir, local_workers(args), args.shutdown_timeout);
+        return Coordinator::new(campaign, episodes, read(&|_| true), pool)?.run(signals).await;
+    };
+    let pool = SlurmPool::open(dir, lock, settings, args.shutdown_timeout).await?;
+    let followed: BTreeSet<u32> = pool.assignments().map(|it| it.worker).collect();
+    let mut ledger = read(&|worker| !followed.contains(&worker));
+    pool.assignments().for_each(|it| ledger.assign(it.left.iter().copied()));
+    Coordinator::new(campaign, episodes, ledger, pool)?.run(signals).await
+}
+
+/// Opens the directory of an earlier campaign.
+fn reopen(path: &Path, args: &CampaignRunArgs) -> Result<Started, Failure> {
+    let dir = CampaignDir::open_judged(path)?;
+    if dir.description.slurm.is_some() {
+        refuse_workers(args)?;
+    }
+    let lock = dir.lock()?;
+    if dir.description.slurm.is_none() {
+        wait_for_workers(&dir, args.shutdown_timeout)?;
+    }
+    Ok(Started { loaded: campaign::reload(&dir)?, dir, lock, is_resumed: true })
 }
 
 /// Waits until the workers of a campaign that was killed have torn down.
 fn wait_for_workers(dir: &CampaignDir, limit: Duration) -> Result<(), Failure> {
-    drop(dir.lock()?);
     let begin = Instant::now();
     while dir.any_worker_runs() {
         if begin.elapsed() >= limit {
@@ -95,170 +138,76 @@ fn wait_for_workers(dir: &CampaignDir, limit: Duration) -> Result<(), Failure> {
 }
 
 /// Checks a new campaign, and creates its directory.
-fn begin(args: &CampaignRunArgs) -> Result<(LoadedCampaign, CampaignDir, Ledger), Failure> {
+fn begin(args: &CampaignRunArgs) -> Result<Started, Failure> {
     let file = args.file.as_deref().unwrap_or(Path::new(""));
     let loaded = campaign::load(file)?;
     loaded.print_warnings()?;
-    let mut request = TestsRequest::of_suite(&loaded.suite, &args.profile)?;
+    let (mut description, plan) = describe(&loaded, file, &args.profile)?;
+    description.slurm = slurm_arrays(args, &plan)?;
+    description.start = Some(CampaignStart::find(&loaded, file, &description.working_dir));
+    let parent = args.results.results.join("campaigns");
+    let dir = CampaignDir::create(&parent, description, Some(&loaded.episodes))?;
+    let lock = dir.lock()?;
+    Ok(Started { loaded, dir, lock, is_resumed: false })
+}
+
+/// Checks the suite of a campaign, and describes a search, whose workers run on this machine.
+pub fn describe_search(
+    loaded: &LoadedCampaign,
+    file: &Path,
+    profile: &ProfileArgs,
+) -> Result<Description, Failure> {
+    let (description, _) = describe(loaded, file, profile)?;
+    Ok(Description { is_search: true, ..description })
+}
+
+/// Checks the suite of a campaign, and describes what its workers run. Returns the plan, too.
+fn describe(
+    loaded: &LoadedCampaign,
+    file: &Path,
+    profile: &ProfileArgs,
+) -> Result<(Description, Arc<Plan>), Failure> {
+    let mut request = TestsRequest::of_suite(&loaded.suite, profile)?;
     request.set_episodes(loaded.suite.clone(), loaded.episodes.episodes.clone());
-    plan::plan(&request)?.print_warnings()?;
+    let planned = plan::plan(&request)?;
+    planned.print_warnings()?;
     let working_dir = request.options.runner.current_dir;
-    let mut options = Vec::new();
-    if let Some(profile) = &args.profile.profile {
-        options.push(format!("--profile={profile}"));
-    }
-    options.extend(args.profile.set.iter().map(|(name, value)| format!("--set={name}={value}")));
     let description = Description {
         name: loaded.name.clone(),
         file: working_dir.join(file),
         suite: working_dir.join(&loaded.suite),
         working_dir,
         repeats: loaded.campaign.repeats,
-        options,
+        options: profile.to_options(),
+        is_search: false,
+        slurm: None,
+        start: None,
     };
-    let dir = CampaignDir::create(&args.results.results, description, &loaded.episodes)?;
-    let ledger = Ledger::new(loaded.episodes.episodes.len(), loaded.campaign.repeats);
-    Ok((loaded, dir, ledger))
+    Ok((description, planned.plan))
 }
 
-struct Coordinator<'a> {
-    campaign: &'a Campaign,
-    dir: &'a CampaignDir,
-    episodes: &'a [Episode],
-    ledger: Ledger,
-    judge: Judge,
-    judgement: Judgement,
-    /// How many of the first results are judged.
-    judged: usize,
-    /// The largest number of workers.
-    most: usize,
-    workers: Vec<Worker>,
-    next_worker: u32,
-    shutdown_timeout: Duration,
-    failed_starts: u32,
-    early_end: Option<EarlyEnd>,
-    /// Whether the workers were signalled to stop.
-    is_stopped: bool,
-    progress: Progress,
+/// The job arrays, if the episodes are to run in a cluster.
+fn slurm_arrays(args: &CampaignRunArgs, plan: &Plan) -> Result<Option<SlurmArrays>, Failure> {
+    match args.cluster.executor {
+        ExecutorOption::Local => {
+            executor::refuse_local(&args.cluster)?;
+            Ok(None)
+        }
+        ExecutorOption::Slurm => {
+            refuse_workers(args)?;
+            let shards = executor::shards(&args.cluster)?;
+            let options = executor::slurm_options(&args.cluster, plan);
+            Ok(Some(SlurmArrays { shards, options }))
+        }
+    }
 }
 
-impl Coordinator<'_> {
-    async fn run(&mut self) -> Result<(), Failure> {
-        let mut signals = SignalListener::install().map_err(Failure::internal)?;
-        loop {
-            self.start_workers()?;
-            if self.workers.is_empty() {
-                return Ok(());
-            }
-            tokio::select! {
-                (number, _) = signals.next() => {
-                    self.early_end.get_or_insert(EarlyEnd::Signal(number));
-                    self.stop(number);
-                }
-                () = tokio::time::sleep(POLL) => {}
-            }
-            self.collect()?;
-            self.judge();
-            self.progress.numbers(&self.ledger)?;
+fn refuse_workers(args: &CampaignRunArgs) -> Result<(), Failure> {
+    match args.workers {
+        Some(_) => {
+            let error = "`--workers` has no effect with `--executor slurm`";
+            Err(Failure::input(error).hint("`--shards N` is the number of tasks"))
         }
-    }
-
-    fn start_workers(&mut self) -> Result<(), Failure> {
-        if self.is_stopped || self.judgement.is_final {
-            return Ok(());
-        }
-        for ids in self.ledger.take(self.most - self.workers.len()) {
-            let index = |id: &u64| usize::try_from(*id).ok()?.checked_sub(1);
-            let episode = |id: &u64| self.episodes.get(index(id)?).cloned();
-            let episodes: Vec<Episode> = ids.iter().filter_map(episode).collect();
-            let number = self.next_worker;
-            self.next_worker += 1;
-            self.workers.push(Worker::start(self.dir, number, &episodes, self.shutdown_timeout)?);
-        }
-        Ok(())
-    }
-
-    /// Reads the results of all workers, and removes those that have ended.
-    fn collect(&mut self) -> Result<(), Failure> {
-        let mut index = 0;
-        while let Some(worker) = self.workers.get_mut(index) {
-            // Before the results are read, so that none is missed.
-            let ended = worker.exit_code();
-            for line in worker.new_results() {
-                self.record(line)?;
-            }
-            match ended {
-                Some(code) => {
-                    let worker = self.workers.remove(index);
-                    self.on_worker_ended(worker, code)?;
-                }
-                None => index += 1,
-            }
-        }
-        Ok(())
-    }
-
-    fn record(&mut self, line: EpisodeLine) -> Result<(), Failure> {
-        let index = usize::try_from(line.episode).ok().and_then(|id| id.checked_sub(1));
-        if let Some(episode) = index.and_then(|index| self.episodes.get(index)) {
-            self.progress.result(&line, episode)?;
-        }
-        if let Some(outcome) = line.outcome {
-            self.ledger.record(line.episode, outcome, line.reason);
-        }
-        Ok(())
-    }
-
-    fn on_worker_ended(&mut self, worker: Worker, code: u8) -> Result<(), Failure> {
-        if code == exit::HOOK_FAILED {
-            self.early_end.get_or_insert(EarlyEnd::HookFailed);
-            self.stop(TERM);
-        }
-        if let Some(episode) = worker.running.filter(|_| !self.is_stopped) {
-            let reason = format!("worker {} ended with exit code {code}", worker.number);
-            let (outcome, reason) = (Some(EpisodeOutcome::Error), Some(reason));
-            self.record(EpisodeLine { episode, outcome, reason, ..EpisodeLine::default() })?;
-        }
-        self.ledger.give_back(worker.left.iter().copied());
-        self.failed_starts = match worker.has_results || self.is_stopped {
-            true => 0,
-            false => self.failed_starts + 1,
-        };
-        if code == exit::BAD_INPUT || self.failed_starts >= MAX_FAILED_STARTS {
-            self.stop(TERM);
-            let dir = self.dir.worker(worker.number);
-            let output = escape::line(&worker::last_output(&dir)).replace("\\n", "\n");
-            let error = format!("worker {} ended with exit code {code}:\n{output}", worker.number);
-            let hint = format!("its output is `{}`", dir.join(worker::OUTPUT).display());
-            return Err(Failure::internal(error).hint(hint));
-        }
-        Ok(())
-    }
-
-    /// Judges new results. A fixed number of episodes is judged when all have results.
-    fn judge(&mut self) {
-        let complete = self.ledger.complete();
-        let is_due = match self.campaign.stop {
-            StoppingRule::Fixed => complete == self.episodes.len(),
-            // A hundredth more episodes than before, because each judgement reads all results.
-            _ => complete - self.judged > self.judged / 100,
-        };
-        if complete > self.judged && (is_due || complete == self.episodes.len()) {
-            self.judged = complete;
-            self.judgement = self.judge.judge(&self.ledger.results());
-            if self.judgement.is_final && complete < self.episodes.len() {
-                self.stop(TERM);
-            }
-        }
-        if self.ledger.is_bench_broken() && self.early_end.is_none() {
-            self.early_end = Some(EarlyEnd::BenchBroken);
-            self.stop(TERM);
-        }
-    }
-
-    /// Signals all workers to stop.
-    fn stop(&mut self, signal: i32) {
-        self.is_stopped = true;
-        self.workers.iter().for_each(|worker| worker.signal(signal));
+        None => Ok(()),
     }
 }

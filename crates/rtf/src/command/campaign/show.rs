@@ -1,20 +1,23 @@
 //! `rtf campaign show`: the claim, and where a campaign fails.
 
 use std::io::{self, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::ArgMatches;
 use rtf_campaign::analysis::{self, ByParameter, Cell, FailureMap, Sample};
 use rtf_campaign::{EpisodeResult, Judge};
-use rtf_report::escape;
+use rtf_report::{escape, output_file};
+use rtf_web::html_report;
 use serde_json::json;
 
 use super::summary;
-use crate::cli::{CampaignFormat, CampaignShowArgs};
+use crate::campaign::directory::CampaignDir;
+use crate::cli::{CampaignShowArgs, CampaignShowFormat, ReportFormat};
 use crate::command::VerbResult;
 use crate::error::Failure;
 use crate::request::config;
-use crate::{campaign, terminal};
+use crate::{campaign, reports, terminal};
 
 /// Prints the results of a campaign.
 pub fn run(args: &CampaignShowArgs, matches: &ArgMatches) -> VerbResult {
@@ -22,6 +25,12 @@ pub fn run(args: &CampaignShowArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_past_results(&mut results, matches)?;
     let newest = || results.results.join("campaigns").join("latest");
     let path = args.dir.clone().unwrap_or_else(newest);
+    if args.format == CampaignShowFormat::Html {
+        return write_page(&CampaignDir::open(&path)?, args.output.as_deref());
+    }
+    if args.output.is_some() {
+        return Err(Failure::input("`--output` is for `--format html`"));
+    }
     let (loaded, dir, ledger) = campaign::read_results(&path)?;
     let episodes = &loaded.episodes.episodes;
     let judge = Judge::new(&loaded.campaign, episodes.len());
@@ -30,7 +39,7 @@ pub fn run(args: &CampaignShowArgs, matches: &ArgMatches) -> VerbResult {
     let samples = analysis::samples(episodes, &ledger);
     let parameters = analysis::by_parameters(&samples, loaded.campaign.seed);
     let map = map(args, &samples, &parameters)?;
-    if args.format == CampaignFormat::Json {
+    if args.format == CampaignShowFormat::Json {
         let count = |result| ledger.count(result);
         let document = json!({
             "name": loaded.name,
@@ -52,6 +61,24 @@ pub fn run(args: &CampaignShowArgs, matches: &ArgMatches) -> VerbResult {
         parameters.iter().try_for_each(|parameter| print_parameter(out, parameter))?;
         map.iter().try_for_each(|map| print_map(out, map, &args.map))
     })?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes the page with plots.
+fn write_page(dir: &CampaignDir, output: Option<&Path>) -> VerbResult {
+    let report = campaign::report::report(dir)?;
+    reports::check_build(ReportFormat::Html)?;
+    match output {
+        None => terminal::raw_stdout(|out| html_report::write_campaign(out, &report))?,
+        Some(path) => {
+            let title = "the page";
+            output_file::probe(title, path).map_err(|error| {
+                Failure::input(error).hint("choose another path with `--output PATH`")
+            })?;
+            output_file::write(title, path, |out| html_report::write_campaign(out, &report))
+                .map_err(Failure::internal)?;
+        }
+    }
     Ok(ExitCode::SUCCESS)
 }
 

@@ -20,6 +20,8 @@ pub enum EarlyEnd {
     HookFailed,
     /// Only results that are the bench's.
     BenchBroken,
+    /// The campaign's budget has passed.
+    Budget,
 }
 
 /// Prints the results.
@@ -49,7 +51,7 @@ pub fn print(
             writeln!(out, "  {name:<18}{number}")?;
         }
         if bench > 0 {
-            writeln!(out, "  {bench} executions were errors or collapses of the bench")?;
+            writeln!(out, "  errors and collapses of the bench: {bench}")?;
         }
         if let Some(rate) = &judgement.rate {
             let (value, low, high) = (rate.value, rate.low, rate.high);
@@ -68,6 +70,11 @@ pub fn print(
                 "  ended early: {} in succession were errors or collapses of the bench",
                 count(rtf_campaign::ledger::MAX_BENCH_RESULTS as usize, "execution"),
             )?,
+            Some(EarlyEnd::Budget) => {
+                let budget = campaign.budget.unwrap_or_default();
+                writeln!(out, "  ended early: the budget of {budget:?} has passed")?;
+                writeln!(out, "  continue: rtf campaign run --resume {}", dir.display())?;
+            }
             Some(EarlyEnd::Signal(_)) => {
                 writeln!(out, "  continue: rtf campaign run --resume {}", dir.display())?;
             }

@@ -13,7 +13,7 @@ use super::{failure, open, print};
 use crate::cli::HistoryDoctorArgs;
 use crate::command::VerbResult;
 use crate::exit;
-use crate::history::journals;
+use crate::history::{campaigns, journals};
 
 /// The state of the database.
 #[derive(Debug, Serialize)]
@@ -27,7 +27,7 @@ struct HistoryChecks {
     counts: StoreCounts,
     /// What is wrong with it.
     problems: Vec<String>,
-    /// Journals in the results directory that are not imported.
+    /// Journals, and directories of campaigns, in the results directory that are not imported.
     missing: Vec<String>,
 }
 
@@ -35,7 +35,9 @@ struct HistoryChecks {
 pub fn run(mut args: HistoryDoctorArgs, matches: &ArgMatches) -> VerbResult {
     let store = open(&mut args.history, matches)?;
     let known: HashSet<_> = store.run_names().map_err(failure)?.into_iter().collect();
-    let missing = journals::missing(&args.history.results.results, &known);
+    let results = &args.history.results.results;
+    let mut missing = journals::missing(results, &known);
+    missing.extend(campaigns::missing(results, &store.campaign_directories().map_err(failure)?));
     let checks = HistoryChecks {
         path: store.location().to_string(),
         bytes: bytes(&store),
@@ -57,8 +59,15 @@ pub fn run(mut args: HistoryDoctorArgs, matches: &ArgMatches) -> VerbResult {
             counts.series,
             count(counts.points, "point"),
         )?;
+        if counts.campaigns > 0 {
+            let episodes = count(counts.episodes, "episode");
+            writeln!(out, "  {}, {episodes}", count(counts.campaigns, "campaign"))?;
+        }
         if counts.pruned > 0 {
             writeln!(out, "  {} pruned or merged from others", count(counts.pruned, "run"))?;
+        }
+        if counts.pruned_campaigns > 0 {
+            writeln!(out, "  {} pruned", count(counts.pruned_campaigns, "campaign"))?;
         }
         for problem in &checks.problems {
             writeln!(out, "  \u{1b}[31mproblem\u{1b}[0m  {}", escape::line(problem))?;

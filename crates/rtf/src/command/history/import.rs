@@ -13,6 +13,7 @@ use crate::cli::HistoryImportArgs;
 use crate::command::VerbResult;
 use crate::error::Failure;
 use crate::exit;
+use crate::history::campaigns::{self, CampaignImport};
 use crate::history::journals::{self, JournalImport};
 
 /// What was imported.
@@ -22,29 +23,38 @@ struct ImportSummary {
     replaced: u64,
     known: u64,
     merged: u64,
+    /// Campaigns that were imported or replaced.
+    campaigns: u64,
     active: Vec<String>,
     failed: Vec<FailedJournal>,
 }
 
-/// A journal that was not imported.
+/// A journal, or a directory of a campaign, that was not imported.
 #[derive(Debug, Serialize)]
 struct FailedJournal {
     journal: String,
     reason: String,
 }
 
-/// Imports journals.
+/// Imports runs and campaigns.
 pub fn run(mut args: HistoryImportArgs, matches: &ArgMatches) -> VerbResult {
     let path = resolve(&mut args.history.results, &mut args.history.file, matches)?;
-    let journals = find_journals(&args)?;
+    let (journals, directories) = find_sources(&args)?;
     let mut store = Store::open(&path).map_err(failure)?;
     let mut summary = ImportSummary::default();
     for journal in journals {
         let imported = journals::import(&journal, |record| store.restore(record));
         summary.add(&journal, imported)?;
     }
+    for dir in directories {
+        let imported = campaigns::import(&dir, |entry| store.restore_campaign(entry));
+        summary.add_campaign(&dir, imported)?;
+    }
     print(args.history.format, "imported", &summary, |out| {
         write!(out, "{} imported", format_count(summary.imported, "run"))?;
+        if summary.campaigns > 0 {
+            write!(out, ", {} imported", format_count(summary.campaigns, "campaign"))?;
+        }
         if summary.replaced > 0 {
             write!(out, ", {} replaced", summary.replaced)?;
         }
@@ -62,22 +72,24 @@ pub fn run(mut args: HistoryImportArgs, matches: &ArgMatches) -> VerbResult {
     Ok(ExitCode::from(if summary.failed.is_empty() { exit::PASSED } else { exit::FAILED }))
 }
 
-fn find_journals(args: &HistoryImportArgs) -> Result<Vec<PathBuf>, Failure> {
+/// The journals, and the directories of campaigns.
+fn find_sources(args: &HistoryImportArgs) -> Result<(Vec<PathBuf>, Vec<PathBuf>), Failure> {
     let dirs = match args.dirs.as_slice() {
         [] => std::slice::from_ref(&args.history.results.results),
         dirs => dirs,
     };
-    let mut journals = Vec::new();
+    let (mut journals, mut directories) = (Vec::new(), Vec::new());
     for dir in dirs {
-        let found = journals::below(dir);
-        if found.is_empty() {
-            let error = format!("there are no runs in `{}`", dir.display());
+        let (found, campaigns) = (journals::below(dir), campaigns::below(dir));
+        if found.is_empty() && campaigns.is_empty() {
+            let error = format!("there are no runs and no campaigns in `{}`", dir.display());
             return Err(Failure::input(error)
-                .hint("name a results directory, a run's directory, or a journal"));
+                .hint("name a results directory, a directory of a run or campaign, or a journal"));
         }
         journals.extend(found);
+        directories.extend(campaigns);
     }
-    Ok(journals)
+    Ok((journals, directories))
 }
 
 impl ImportSummary {
@@ -114,10 +126,34 @@ impl ImportSummary {
             JournalImport::Unreadable(error) => (error.to_string(), None),
             JournalImport::Empty => ("it has no first event".to_owned(), None),
         };
-        let (reason, hint) = failed;
+        self.fail(name, failed);
+        Ok(())
+    }
+
+    /// Counts the import of a campaign; as [`ImportSummary::add`].
+    fn add_campaign(&mut self, dir: &Path, imported: CampaignImport) -> Result<(), Failure> {
+        let name = dir.display().to_string();
+        match imported {
+            CampaignImport::Done(ImportOutcome::Imported | ImportOutcome::Replaced) => {
+                self.campaigns += 1;
+            }
+            CampaignImport::Done(_) => self.known += 1,
+            CampaignImport::Active => self.active.push(name),
+            CampaignImport::Store(
+                error @ (StoreError::Io { .. }
+                | StoreError::Locked { .. }
+                | StoreError::Corrupt { .. }),
+            ) => return Err(failure(error)),
+            CampaignImport::Store(error) => self.fail(name, (error.to_string(), error.hint())),
+            CampaignImport::Unreadable(reason) => self.fail(name, (reason, None)),
+        }
+        Ok(())
+    }
+
+    /// Reports what was not imported.
+    fn fail(&mut self, name: String, (reason, hint): (String, Option<&'static str>)) {
         let error = format!("`{name}` was not imported: {reason}");
         Failure::input(error).maybe_hint(hint).print();
         self.failed.push(FailedJournal { journal: name, reason });
-        Ok(())
     }
 }

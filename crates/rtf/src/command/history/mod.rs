@@ -1,6 +1,7 @@
 //! `rtf history`: questions to the results of many runs.
 
 mod accept;
+mod campaigns;
 mod changes;
 mod compare;
 mod doctor;
@@ -45,6 +46,8 @@ pub fn run(verb: HistoryVerb, matches: &ArgMatches) -> VerbResult {
         HistoryVerb::Flaky(args) => flaky::run(args, matches),
         HistoryVerb::Slow(args) => slow::run(args, matches),
         HistoryVerb::Trend(args) => trend::run(args, matches),
+        HistoryVerb::Campaigns(args) => campaigns::list(args, matches),
+        HistoryVerb::Rates(args) => campaigns::rates(args, matches),
         HistoryVerb::Changes(args) => changes::run(args, matches),
         HistoryVerb::Compare(args) => compare::run(args, matches),
         HistoryVerb::Gate(args) => gate::run(args, matches),
@@ -92,6 +95,26 @@ fn print<T: Serialize>(
     match format {
         HistoryFormat::Text => terminal::stdout(write)?,
         HistoryFormat::Json => terminal::raw_stdout(|out| write_json(out, name, answer))?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Prints an answer of two parts: two fields of the JSON document.
+fn print_both<A: Serialize, B: Serialize>(
+    format: HistoryFormat,
+    (name, answer): (&str, &A),
+    (other_name, other): (&str, &B),
+    write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> VerbResult {
+    match format {
+        HistoryFormat::Text => terminal::stdout(write)?,
+        HistoryFormat::Json => terminal::raw_stdout(|out| {
+            write!(out, "{{\"version\":{VERSION},\"{name}\":")?;
+            serde_json::to_writer(&mut *out, answer)?;
+            write!(out, ",\"{other_name}\":")?;
+            serde_json::to_writer(&mut *out, other)?;
+            writeln!(out, "}}")
+        })?,
     }
     Ok(ExitCode::SUCCESS)
 }

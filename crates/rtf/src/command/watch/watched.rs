@@ -121,8 +121,10 @@ impl Watched {
             }
             self.add_config(&suite.folder);
             suite.tests.iter().for_each(|test| self.add(&test.plugin.file));
-            for hook in &suite.hooks {
-                match &hook.body {
+            let resets = suite.fixtures.iter().filter_map(|fixture| fixture.reset.as_ref());
+            let hooks = suite.hooks.iter().map(|hook| &hook.body);
+            for body in hooks.chain(resets.map(|reset| &reset.body)) {
+                match body {
                     HookBody::Plugin(plugin) => self.add(&plugin.file),
                     HookBody::Command(command) => self.add_command(command, &suite.folder),
                 }

@@ -1,16 +1,23 @@
 //! The episodes of a campaign: rounds of the suite with different parameters. Between two
 //! episodes, each fixture is reset or restarted.
 
+use std::collections::VecDeque;
+
 use rtf_model::{Episode, EpisodeStarted, EventKind};
 
 use super::SuiteMachine;
 use crate::run::machine::context::Context;
+use crate::run::machine::io::Deadline;
 use rtf_plan::plan::SuitePlan;
 
 /// Without episodes, a suite runs once.
 #[derive(Debug)]
 pub(super) struct Episodes<'p> {
     left: std::slice::Iter<'p, Episode>,
+    /// Those that have arrived since the suite started.
+    arrived: VecDeque<Episode>,
+    /// Whether further ones may arrive.
+    is_open: bool,
     running: Option<u64>,
     /// Whether the fixtures are used up by the running episode.
     is_ending: bool,
@@ -18,12 +25,36 @@ pub(super) struct Episodes<'p> {
 
 impl<'p> Episodes<'p> {
     pub fn new(plan: &'p SuitePlan) -> Self {
-        Self { left: plan.episodes.iter(), running: None, is_ending: false }
+        Self {
+            left: plan.episodes.iter(),
+            arrived: VecDeque::new(),
+            is_open: plan.awaits_episodes,
+            running: None,
+            is_ending: false,
+        }
     }
 
-    /// Whether an episode follows.
+    /// Whether an episode follows, or may follow.
     pub fn any_left(&self) -> bool {
-        !self.left.as_slice().is_empty()
+        self.any_known() || self.is_open
+    }
+
+    fn any_known(&self) -> bool {
+        !self.left.as_slice().is_empty() || !self.arrived.is_empty()
+    }
+
+    /// Adds an episode; `None` if no further one follows.
+    pub fn add(&mut self, episode: Option<Episode>) {
+        match episode {
+            Some(episode) => self.arrived.push_back(episode),
+            None => self.is_open = false,
+        }
+    }
+
+    /// Whether all episodes so far have finished, and further ones may arrive.
+    #[cfg(debug_assertions)]
+    pub fn is_waiting(&self) -> bool {
+        self.is_ending && self.running.is_none() && !self.any_known() && self.is_open
     }
 
     pub fn is_running(&self) -> bool {
@@ -39,16 +70,18 @@ impl<'p> Episodes<'p> {
 impl SuiteMachine<'_> {
     /// Begins the next episode, if there is one.
     pub(super) fn begin_episode(&mut self, cx: &mut Context<'_>) {
-        let Some(episode) = self.episodes.left.next() else { return };
+        let episodes = &mut self.episodes;
+        let next = episodes.left.next().cloned().or_else(|| episodes.arrived.pop_front());
+        let Some(episode) = next else { return };
         (self.episodes.running, self.episodes.is_ending) = (Some(episode.id), false);
         cx.begin_episode(episode.clone());
-        let (suite, episode) = (self.plan.id, episode.clone());
+        let suite = self.plan.id;
         cx.emit(EventKind::EpisodeStarted(EpisodeStarted { suite, episode }));
     }
 
     /// All tests of an episode have ended, and another one follows: once the fixtures that are
     /// not reset are torn down, which belongs to the old episode, begins the new one. False while
-    /// they are being torn down.
+    /// they are being torn down, and while the next episode has not arrived: then no limit runs.
     pub(super) fn next_episode(&mut self, cx: &mut Context<'_>) -> bool {
         if !std::mem::replace(&mut self.episodes.is_ending, true) {
             self.fixtures.end_episode();
@@ -58,6 +91,10 @@ impl SuiteMachine<'_> {
             return false;
         }
         self.finish_episode(cx);
+        if !self.episodes.any_known() {
+            cx.clear(Deadline::Suite);
+            return false;
+        }
         self.scheduler.restart();
         self.begin_episode(cx);
         self.set_timeout(cx);

@@ -106,13 +106,16 @@ impl<'p> SuiteMachine<'p> {
             Input::Stop(stop) => self.on_stop_request(stop, &mut cx),
             Input::StopTest(test, by) => self.stop_test(test, &by, &mut cx),
             Input::Skip(by) => self.skip_rest(&by, &mut cx),
+            Input::Episode(episode) => self.episodes.add(episode),
         }
         self.end_if_abandoned(&mut cx);
         self.judge_tests(&mut cx);
         self.advance(&mut cx);
         (self.last_host, self.values) = (last_host, values);
         #[cfg(debug_assertions)]
-        self.invariant.check(&effects[begin..], self.is_started && !self.is_finished);
+        let continues = self.is_started && !self.is_finished && !self.episodes.is_waiting();
+        #[cfg(debug_assertions)]
+        self.invariant.check(&effects[begin..], continues);
     }
 
     fn start(&mut self, cx: &mut Context<'_>) {

@@ -12,7 +12,7 @@ use rtf_model::{
 
 use super::world::{SECOND, World, hook, suite};
 use crate::run::machine::{Input, ProcessEvent, StopLevel};
-use rtf_plan::plan::{AfterCollapse, ResetPlan, Retries, SuitePlan};
+use rtf_plan::plan::{AfterCollapse, HookBody, ResetPlan, Retries, SuitePlan};
 use rtf_process::codec::INITIALIZE;
 
 /// Lets an idle shared host begin a test or exit; false if another host acts.
@@ -159,7 +159,8 @@ fn episode(id: u64) -> Episode {
 }
 
 fn reset() -> ResetPlan {
-    ResetPlan { command: vec!["reset".to_owned()], timeout: SECOND, restart_every: Some(2) }
+    let body = HookBody::Command(vec!["reset".to_owned()]);
+    ResetPlan { body, timeout: SECOND, restart_every: Some(2) }
 }
 
 proptest! {
@@ -176,6 +177,7 @@ proptest! {
         alone in 0..8usize,
         shared in any::<bool>(),
         episodes in 0..4u64,
+        awaits in any::<bool>(),
     ) {
         let mut plan = suite(fixtures, tests);
         plan.settings.parallel = if shared { 1 } else { parallel };
@@ -200,6 +202,7 @@ proptest! {
         plan.tests[tests / 2].settings.retries = Retries { count: restarts, delay };
         plan.hooks = vec![hook(0, &Trigger::ALL), hook(1, &[Trigger::End])];
         plan.episodes = (1..=episodes).map(episode).collect();
+        plan.awaits_episodes = awaits && episodes > 0;
         if let Some(fixture) = plan.fixtures.first_mut().filter(|_| independent) {
             fixture.reset = Some(reset());
         }
@@ -209,7 +212,14 @@ proptest! {
             if world.done {
                 break;
             }
+            if choice % 32 == 31 && plan.awaits_episodes {
+                let next = episode(world.events.len() as u64 + 10);
+                world.feed(Input::Episode(Some(next)));
+            }
             act(&mut world, choice, which, shared);
+        }
+        if !world.done {
+            world.feed(Input::Episode(None));
         }
         end_all(&mut world);
         world.finish();

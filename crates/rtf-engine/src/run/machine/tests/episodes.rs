@@ -4,9 +4,12 @@ use std::sync::Arc;
 
 use rtf_model::{Episode, EpisodeOutcome, EventKind, ExitStatus, Parameter, Phase, Source, TestId};
 
+use rtf_model::protocol::Reply;
+
 use super::world::{FIXTURE, SECOND, TEST, World, suite};
-use crate::run::machine::{HostId, Input, ProcessEvent, StopLevel};
-use rtf_plan::plan::{ResetPlan, SuitePlan};
+use crate::hook::RUN_REQUEST;
+use crate::run::machine::{Deadline, HostId, Input, ProcessEvent, StopLevel};
+use rtf_plan::plan::{HookBody, ResetPlan, SuitePlan};
 
 const SECOND_TEST: Source = Source::Test(TestId(1));
 
@@ -25,7 +28,8 @@ fn plan(episodes: u64) -> SuitePlan {
 fn warm(episodes: u64, restart_every: Option<u32>) -> SuitePlan {
     let mut plan = plan(episodes);
     let command = vec!["reset".to_owned(), "${episode:mass}".to_owned()];
-    plan.fixtures[0].reset = Some(ResetPlan { command, timeout: 4 * SECOND, restart_every });
+    let body = HookBody::Command(command);
+    plan.fixtures[0].reset = Some(ResetPlan { body, timeout: 4 * SECOND, restart_every });
     plan
 }
 
@@ -57,6 +61,13 @@ fn end_reset(world: &mut World<'_>, code: i32) {
     world.hosts.remove(&host);
     let exited = ProcessEvent::Exited(ExitStatus::Code(code), Vec::new());
     world.feed(Input::Host(host, exited));
+}
+
+/// The fixture is reset, and all tests of the next episode pass.
+fn pass_after_reset(world: &mut World<'_>) {
+    end_reset(world, 0);
+    world.answer(FIXTURE, "passed");
+    pass(world);
 }
 
 fn outcomes(world: &World<'_>) -> Vec<(u64, Option<EpisodeOutcome>)> {
@@ -97,12 +108,45 @@ fn a_fixture_with_reset_stays_up() {
     ");
     world.answer(FIXTURE, "passed");
     pass(&mut world);
-    end_reset(&mut world, 0);
-    world.answer(FIXTURE, "passed");
-    pass(&mut world);
+    pass_after_reset(&mut world);
     world.tear_down(0);
     world.finish();
     assert_eq!((world.record.fixtures[0].starts, outcomes(&world).len()), (1, 3));
+}
+
+/// As a hook: it has to pass.
+#[test]
+fn a_plug_in_resets_a_fixture() {
+    let mut plan = warm(3, None);
+    let plugin = plan.tests[0].plugin.clone();
+    plan.fixtures[0].reset.as_mut().unwrap().body = HookBody::Plugin(plugin);
+    let mut world = started(&plan);
+    world.ready(1);
+    pass(&mut world);
+    let answer = |world: &mut World<'_>, outcome: &str| {
+        let answer = serde_json::json!({ "outcome": outcome, "reason": "the arm is stuck" });
+        let replied = ProcessEvent::Replied(RUN_REQUEST, Reply::Result(answer));
+        world.feed(Input::Host(reset_host(world), replied));
+        end_reset(world, 0);
+    };
+    let requested = world.sent.last().map(|(host, id, _)| (*host, *id));
+    assert_eq!(requested, Some((reset_host(&world), Some(RUN_REQUEST))));
+    answer(&mut world, "passed");
+    world.answer(FIXTURE, "passed");
+    pass(&mut world);
+    answer(&mut world, "failed");
+    world.tear_down(0);
+    world.ready(1);
+    pass(&mut world);
+    world.tear_down(0);
+    world.finish();
+    let problem = |kind: &EventKind| match kind {
+        EventKind::FixtureReset { problem, .. } => Some(problem.clone()),
+        _ => None,
+    };
+    let problems: Vec<_> = world.events.iter().filter_map(problem).collect();
+    assert_eq!(problems, [None, Some("the arm is stuck".to_owned())]);
+    assert_eq!(world.record.fixtures[0].starts, 2);
 }
 
 #[test]
@@ -127,7 +171,7 @@ fn a_reset_that_fails_or_hangs_restarts_the_fixture() {
         _ => None,
     };
     let problems: Vec<_> = world.events.iter().filter_map(problem).collect();
-    let expected = ["its command ended with exit code 1", "its command did not end within 4s"];
+    let expected = ["it ended with exit code 1", "it did not end within 4s"];
     assert_eq!(
         (problems, world.record.fixtures[0].starts),
         (expected.map(str::to_owned).into(), 3)
@@ -141,15 +185,11 @@ fn a_fixture_is_restarted_after_a_number_of_episodes() {
     let mut world = started(&plan);
     world.ready(1);
     pass(&mut world);
-    end_reset(&mut world, 0);
-    world.answer(FIXTURE, "passed");
-    pass(&mut world);
+    pass_after_reset(&mut world);
     world.tear_down(0);
     world.ready(1);
     pass(&mut world);
-    end_reset(&mut world, 0);
-    world.answer(FIXTURE, "passed");
-    pass(&mut world);
+    pass_after_reset(&mut world);
     world.tear_down(0);
     world.finish();
     assert_eq!(world.record.fixtures[0].starts, 2);
@@ -163,9 +203,7 @@ fn a_failure_concerns_its_episode_only() {
     fail(&mut world, TEST);
     world.next_deadline();
     world.pass(1);
-    end_reset(&mut world, 0);
-    world.answer(FIXTURE, "passed");
-    pass(&mut world);
+    pass_after_reset(&mut world);
     world.tear_down(0);
     world.finish();
     let expected = [(1, Some(EpisodeOutcome::Failed)), (2, Some(EpisodeOutcome::Passed))];
@@ -182,9 +220,7 @@ fn after_a_critical_failure_the_next_episode_runs() {
     world.ready(1);
     fail(&mut world, TEST);
     world.next_deadline();
-    end_reset(&mut world, 0);
-    world.answer(FIXTURE, "passed");
-    pass(&mut world);
+    pass_after_reset(&mut world);
     world.tear_down(0);
     world.finish();
     let expected = [(1, Some(EpisodeOutcome::Failed)), (2, Some(EpisodeOutcome::Passed))];
@@ -250,4 +286,98 @@ fn tests_get_the_parameters_of_their_episode() {
     let request = serde_json::to_string(&world.sent.last().unwrap().2).unwrap();
     assert!(request.contains("--mass 1.5"), "{request}");
     assert!(request.contains(r#"{"name":"mass","value":"1.5"}"#), "{request}");
+}
+
+/// The limit passes before a test has started, so that no test has a problem.
+#[test]
+fn an_episode_whose_tests_did_not_run_has_not_passed() {
+    let mut plan = warm(2, None);
+    plan.settings.timeout = Some(9 * SECOND);
+    plan.fixtures[0].limits.setup = 20 * SECOND;
+    let mut world = started(&plan);
+    world.next_deadline();
+    world.tear_down(0);
+    world.finish();
+    assert_eq!(outcomes(&world), [(1, Some(EpisodeOutcome::Error))]);
+}
+
+#[test]
+fn repetitions_of_earlier_episodes_do_not_count() {
+    let mut plan = warm(2, None);
+    plan.tests[1].settings.repetitions = 2;
+    let mut world = started(&plan);
+    world.ready(1);
+    pass(&mut world);
+    world.pass(1);
+    pass_after_reset(&mut world);
+    world.pass(1);
+    world.tear_down(0);
+    world.finish();
+    let passed = Some(EpisodeOutcome::Passed);
+    assert_eq!(outcomes(&world), [(1, passed), (2, passed)]);
+}
+
+/// A suite with one episode, whose others arrive while it runs.
+fn stream() -> SuitePlan {
+    let mut plan = warm(1, None);
+    plan.settings.timeout = Some(90 * SECOND);
+    plan.awaits_episodes = true;
+    plan
+}
+
+fn arrive(world: &mut World<'_>, id: u64) {
+    let episode = plan(id).episodes.last().cloned();
+    world.feed(Input::Episode(episode));
+}
+
+#[test]
+fn an_episode_has_its_result_before_the_next_one_arrives() {
+    let plan = stream();
+    let mut world = started(&plan);
+    world.ready(1);
+    pass(&mut world);
+    assert_eq!(outcomes(&world), [(1, Some(EpisodeOutcome::Passed))]);
+    assert_eq!(world.hosts.len(), 1, "only the fixture runs: it is not reset yet");
+    assert!(!world.deadlines.contains_key(&Deadline::Suite));
+    arrive(&mut world, 2);
+    arrive(&mut world, 3);
+    pass_after_reset(&mut world);
+    pass_after_reset(&mut world);
+    world.feed(Input::Episode(None));
+    world.tear_down(0);
+    world.finish();
+    assert_eq!((world.record.fixtures[0].starts, outcomes(&world).len()), (1, 3));
+}
+
+#[test]
+fn a_stream_can_end_during_an_episode() {
+    let plan = stream();
+    let mut world = started(&plan);
+    world.ready(1);
+    arrive(&mut world, 2);
+    world.feed(Input::Episode(None));
+    pass(&mut world);
+    pass_after_reset(&mut world);
+    world.tear_down(0);
+    world.finish();
+    assert_eq!(outcomes(&world).len(), 2);
+}
+
+#[test]
+fn a_collapse_between_episodes_belongs_to_none() {
+    let plan = stream();
+    let mut world = started(&plan);
+    world.ready(1);
+    pass(&mut world);
+    world.collapse(FIXTURE, "gone");
+    world.tear_down(0);
+    arrive(&mut world, 2);
+    world.ready(1);
+    pass(&mut world);
+    world.feed(Input::Episode(None));
+    world.tear_down(0);
+    world.finish();
+    let passed = Some(EpisodeOutcome::Passed);
+    assert_eq!(outcomes(&world), [(1, passed), (2, passed)]);
+    assert_eq!(world.record.fixtures[0].starts, 2);
 }

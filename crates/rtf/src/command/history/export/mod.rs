@@ -1,5 +1,6 @@
 //! `rtf history export`: rows as CSV, JSON or Parquet.
 
+mod campaign_rows;
 mod csv;
 mod json;
 mod parquet;
@@ -9,7 +10,8 @@ use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
 use clap::ArgMatches;
-use rtf_history::answers::{PointLine, ResultLine, RunInfo};
+use rtf_history::answers::{EpisodeLine, PointLine, ResultLine, RunInfo};
+use rtf_history::entry::CampaignInfo;
 use rtf_history::{Store, StoreError, TestAttributes};
 use rtf_report::output_file;
 
@@ -92,6 +94,8 @@ impl<'a> Question<'a> {
             ExportTable::Runs => self.write_rows::<RunInfo>(out),
             ExportTable::Results => self.write_rows::<ResultLine>(out),
             ExportTable::Points => self.write_rows::<PointLine>(out),
+            ExportTable::Campaigns => self.write_rows::<CampaignInfo>(out),
+            ExportTable::Episodes => self.write_rows::<EpisodeLine>(out),
         }
     }
 
@@ -130,6 +134,24 @@ impl ReadRows for RunInfo {
         visit: impl FnMut(&Self) -> Result<(), ExportError>,
     ) -> Result<(), ExportError> {
         question.store.runs(&question.runs)?.iter().try_for_each(visit)
+    }
+}
+
+impl ReadRows for CampaignInfo {
+    fn for_each(
+        question: &Question<'_>,
+        visit: impl FnMut(&Self) -> Result<(), ExportError>,
+    ) -> Result<(), ExportError> {
+        question.store.campaigns(&question.runs, None)?.iter().try_for_each(visit)
+    }
+}
+
+impl ReadRows for EpisodeLine {
+    fn for_each(
+        question: &Question<'_>,
+        mut visit: impl FnMut(&Self) -> Result<(), ExportError>,
+    ) -> Result<(), ExportError> {
+        question.store.for_each_episode(&question.runs, |line| visit(&line))
     }
 }
 

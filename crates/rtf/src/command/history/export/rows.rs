@@ -55,15 +55,15 @@ pub trait RowWriter {
     fn finish(self) -> io::Result<()>;
 }
 
-fn text(text: &str) -> Cell<'_> {
+pub fn text(text: &str) -> Cell<'_> {
     Cell::Text(Some(text.into()))
 }
 
-fn maybe_text(text: Option<&String>) -> Cell<'_> {
+pub fn maybe_text(text: Option<&String>) -> Cell<'_> {
     Cell::Text(text.map(|text| text.as_str().into()))
 }
 
-fn integer(number: impl Into<u64>) -> Cell<'static> {
+pub fn integer(number: impl Into<u64>) -> Cell<'static> {
     Cell::Integer(Some(number.into()))
 }
 

@@ -24,6 +24,7 @@ pub fn suite(fixtures: usize, tests: usize) -> SuitePlan {
         hooks: Vec::new(),
         tests: (0..tests).map(test).collect(),
         episodes: Arc::default(),
+        awaits_episodes: false,
         refers_to_values: false,
     }
 }

@@ -1,0 +1,63 @@
+//! Where the workers of a campaign run: as processes of this machine ([`local`]), or as tasks of
+//! job arrays ([`slurm`]).
+
+mod local;
+mod slurm;
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use rtf_model::Episode;
+use rtf_report::episode_results::EpisodeLine;
+
+use super::assignment::Assignment;
+use crate::error::Failure;
+
+pub use local::LocalPool;
+pub use slurm::SlurmPool;
+
+/// The workers of a campaign.
+pub trait Pool {
+    /// How often [`Pool::collect`] should be called.
+    const POLL: Duration;
+
+    /// Whether [`Pool::start`] and [`Pool::collect`] print lines.
+    const PRINTS: bool;
+
+    /// How many workers may be started now.
+    fn free(&self) -> usize;
+
+    /// Whether no worker runs.
+    fn is_empty(&self) -> bool;
+
+    /// Starts a worker for each list of episodes.
+    async fn start(&mut self, lists: Vec<Vec<Episode>>) -> Result<(), Failure>;
+
+    /// What has happened since the last call. All results of a worker come before its end.
+    async fn collect(&mut self) -> Result<Vec<WorkerEvent>, Failure>;
+
+    /// Stops all workers, as the signal does for `rtf run`.
+    async fn stop(&mut self, signal: i32);
+}
+
+/// An event of a worker.
+#[derive(Debug)]
+pub enum WorkerEvent {
+    /// The result of an episode.
+    Result(EpisodeLine),
+    /// The worker has ended.
+    Ended(EndedWorker),
+}
+
+/// A worker that has ended.
+#[derive(Debug)]
+pub struct EndedWorker {
+    /// Its number, and its episodes without a result.
+    pub assignment: Assignment,
+    /// Its exit code, as shells report it, if that is known.
+    pub code: Option<u8>,
+    /// Whether it was stopped before this process followed it.
+    pub is_cancelled: bool,
+    /// The files with what it printed.
+    pub outputs: Vec<PathBuf>,
+}

@@ -1,0 +1,214 @@
+//! Workers as tasks of job arrays of Slurm, one array at a time. Episodes that are repeated, and
+//! those that tasks have left, wait for the next array.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, File};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use rtf_model::Episode;
+
+use super::super::assignment::Assignment;
+use super::super::worker;
+use super::{EndedWorker, Pool, WorkerEvent};
+use crate::campaign::arrays::CampaignArray;
+use crate::campaign::directory::{CampaignDir, SlurmArrays};
+use crate::campaign::read_list;
+use crate::error::Failure;
+use crate::executor::follow::{POLL_INTERVAL, warn_once};
+use crate::executor::slurm::{self, JobArray, JobId};
+use crate::executor::stop::{CANCELLED, Stop};
+use crate::executor::task_progress::TaskProgress;
+use crate::executor::{EXIT_CODE, last_attempt, slurm_failure};
+use crate::terminal;
+
+/// SIGTERM.
+const TERM: i32 = 15;
+
+/// The tasks on a cluster.
+pub struct SlurmPool<'a> {
+    dir: &'a CampaignDir,
+    /// The locked file of the campaign.
+    lock: &'a File,
+    settings: &'a SlurmArrays,
+    shutdown_timeout: Duration,
+    next_worker: u32,
+    array: Option<ActiveArray>,
+}
+
+/// An array with tasks that have not ended.
+struct ActiveArray {
+    array: CampaignArray,
+    job: JobId,
+    /// The tasks that have not ended, by number.
+    tasks: BTreeMap<u32, Assignment>,
+    stop: Stop,
+    progress: TaskProgress,
+    polled_at: Option<Instant>,
+    is_warned: bool,
+    /// Whether the tasks were stopped before this process followed them.
+    was_cancelled: bool,
+}
+
+impl<'a> SlurmPool<'a> {
+    /// Follows the array that a killed process has left, if there is one.
+    pub async fn open(
+        dir: &'a CampaignDir,
+        lock: &'a File,
+        settings: &'a SlurmArrays,
+        shutdown_timeout: Duration,
+    ) -> Result<Self, Failure> {
+        let next_worker = dir.next_worker();
+        let mut pool = Self { dir, lock, settings, shutdown_timeout, next_worker, array: None };
+        if let Some(array) = CampaignArray::find_active(dir)? {
+            let mut tasks = BTreeMap::new();
+            for task in array.tasks() {
+                let worker = array.worker(task);
+                let list = read_list(&dir.worker_list(worker))?;
+                let ids = list.episodes.iter().map(|episode| episode.id);
+                tasks.insert(task, Assignment::new(dir, worker, ids));
+            }
+            pool.follow(array, tasks).await?;
+        }
+        Ok(pool)
+    }
+
+    /// The episodes that its tasks have, and the workers whose results are still to be read.
+    pub fn assignments(&self) -> impl Iterator<Item = &Assignment> {
+        self.array.iter().flat_map(|array| array.tasks.values())
+    }
+
+    /// Submits an array, unless another process has done so, and follows it.
+    async fn follow(
+        &mut self,
+        array: CampaignArray,
+        tasks: BTreeMap<u32, Assignment>,
+    ) -> Result<(), Failure> {
+        let program = std::env::current_exe().map_err(Failure::internal)?;
+        let limit = self.shutdown_timeout.as_millis();
+        let numbers: Vec<u32> = array.tasks().collect();
+        let job_array = JobArray {
+            dir: &array.dir,
+            name: &array.stored.name,
+            tasks: &numbers,
+            working_dir: &self.dir.description.working_dir,
+            options: &self.settings.options,
+            command: &[
+                program.to_string_lossy().into_owned(),
+                "campaign-task".to_owned(),
+                format!("--shutdown-timeout={limit}ms"),
+            ],
+        };
+        let job = job_array.find_or_submit(self.lock).await.map_err(slurm_failure)?;
+        let mut stop = Stop::new(&job, &array.dir, self.shutdown_timeout);
+        let was_cancelled = array.dir.join(CANCELLED).exists();
+        if was_cancelled {
+            stop.request(TERM).await;
+        }
+        let path = self.dir.path.to_string_lossy();
+        let path = shell_words::quote(&path);
+        terminal::notice(format!("slurm: job {job}: `rtf campaign run --resume {path}` resumes"));
+        let progress = TaskProgress::new(&job, numbers.len());
+        let (polled_at, is_warned) = (None, false);
+        let active =
+            ActiveArray { array, job, tasks, stop, progress, polled_at, is_warned, was_cancelled };
+        self.array = Some(active);
+        Ok(())
+    }
+}
+
+impl Pool for SlurmPool<'_> {
+    const POLL: Duration = Duration::from_secs(1);
+    const PRINTS: bool = true;
+
+    fn free(&self) -> usize {
+        if self.array.is_some() { 0 } else { self.settings.shards as usize }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.array.is_none()
+    }
+
+    async fn start(&mut self, lists: Vec<Vec<Episode>>) -> Result<(), Failure> {
+        if lists.is_empty() {
+            return Ok(());
+        }
+        let first = self.next_worker;
+        let mut tasks = BTreeMap::new();
+        for (task, episodes) in (1..).zip(&lists) {
+            self.dir.create_worker(self.next_worker, episodes)?;
+            let ids = episodes.iter().map(|episode| episode.id);
+            tasks.insert(task, Assignment::new(self.dir, self.next_worker, ids));
+            self.next_worker += 1;
+        }
+        let array = CampaignArray::create(self.dir, first, self.next_worker - first)?;
+        self.follow(array, tasks).await
+    }
+
+    async fn collect(&mut self) -> Result<Vec<WorkerEvent>, Failure> {
+        let Some(active) = &mut self.array else { return Ok(Vec::new()) };
+        // Before the results are read, so that none is missed.
+        let left = active.poll().await;
+        let mut events = Vec::new();
+        for assignment in active.tasks.values_mut() {
+            let results = assignment.new_results();
+            events.extend(results.into_iter().map(WorkerEvent::Result));
+        }
+        if let Some(left) = left {
+            let tasks = std::mem::take(&mut active.tasks).into_iter();
+            let (still, ended) = tasks.partition(|(task, _)| left.contains(task));
+            active.tasks = still;
+            let ended: BTreeMap<u32, Assignment> = ended;
+            for (task, assignment) in ended {
+                let output = active.array.dir.join(format!("output/{task}.txt"));
+                events.push(WorkerEvent::Ended(EndedWorker {
+                    code: exit_code(&active.array.dir, task),
+                    is_cancelled: active.was_cancelled,
+                    outputs: vec![output, worker::output(self.dir, assignment.worker)],
+                    assignment,
+                }));
+            }
+        }
+        if active.tasks.is_empty() {
+            active.array.end()?;
+            self.array = None;
+        }
+        Ok(events)
+    }
+
+    async fn stop(&mut self, signal: i32) {
+        if let Some(active) = &mut self.array {
+            active.stop.request(signal).await;
+            active.polled_at = None;
+        }
+    }
+}
+
+impl ActiveArray {
+    /// Asks Slurm for the tasks that have not ended, if it is time, and stops those that should
+    /// stop.
+    async fn poll(&mut self) -> Option<BTreeSet<u32>> {
+        if self.polled_at.is_some_and(|at| at.elapsed() < POLL_INTERVAL) {
+            return None;
+        }
+        self.polled_at = Some(Instant::now());
+        match slurm::active_tasks(&self.job).await {
+            Ok(tasks) => {
+                self.is_warned = false;
+                self.stop.stop_tasks(&tasks).await;
+                self.progress.print(&tasks, "");
+                Some(tasks.iter().map(|task| task.number).collect::<BTreeSet<u32>>())
+            }
+            Err(error) => {
+                warn_once(&mut self.is_warned, &error);
+                None
+            }
+        }
+    }
+}
+
+/// The exit code of the last attempt of a task, unless it was killed.
+fn exit_code(dir: &Path, task: u32) -> Option<u8> {
+    let text = fs::read_to_string(last_attempt(dir, task)?.join(EXIT_CODE)).ok()?;
+    text.trim().parse().ok()
+}

@@ -1,0 +1,92 @@
+"""The cluster and its processes, for check.py and campaigns.py."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+LIMIT = 120.0
+"""Seconds in which each expected event must occur."""
+
+
+def finish(process: subprocess.Popen[str], code: int) -> str:
+    """Waits for a run; returns its standard error."""
+    return finish_with_output(process, code)[1]
+
+
+def finish_with_output(process: subprocess.Popen[str], code: int) -> tuple[str, str]:
+    """Waits for a run; returns its standard output and standard error."""
+    stdout, stderr = process.communicate(timeout=LIMIT)
+    expect(process.returncode == code, f"exit code {process.returncode}\n{stdout}\n{stderr}")
+    return stdout, stderr
+
+
+def jobs() -> dict[str, str]:
+    """The tasks that have not ended, with the reason why they wait."""
+    lines = output("squeue", "--noheader", "--array", "--format=%i %r").splitlines()
+    return dict(line.split(maxsplit=1) for line in lines)
+
+
+def nodes() -> set[str]:
+    """The states of the nodes."""
+    return set(output("sinfo", "--noheader", "--Node", "--format=%t").split())
+
+
+def commands(is_wanted: Callable[[str], bool]) -> dict[int, str]:
+    """The processes with such a command, by id."""
+    found = {}
+    for process in Path("/proc").iterdir():
+        if process.name.isdigit():
+            try:
+                command = (process / "cmdline").read_bytes().replace(b"\0", b" ").decode()
+            except OSError:
+                continue
+            if is_wanted(command):
+                found[int(process.name)] = command
+    return found
+
+
+def parent(process_id: int) -> int:
+    """The parent of a process."""
+    status = Path(f"/proc/{process_id}/status").read_text()
+    return int(status.split("PPid:")[1].split()[0])
+
+
+def scontrol(*args: str) -> None:
+    """Changes the cluster."""
+    subprocess.run(["scontrol", *args], check=True)
+
+
+def start_waiting_tasks() -> None:
+    """Starts the tasks of a failed node soon: by default, they would start after two minutes."""
+    for task in [task for task, reason in jobs().items() if reason == "BeginTime"]:
+        # Slurm refuses to start a task in the second in which it was ended: "credential revoked".
+        scontrol("update", f"JobId={task}", "StartTime=now+2")
+
+
+def output(*command: str) -> str:
+    """The output of a command."""
+    return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
+
+
+def until(what: str, is_true: Callable[[], bool]) -> None:
+    """Waits for something."""
+    deadline = time.monotonic() + LIMIT
+    while not is_true():
+        if time.monotonic() > deadline:
+            sys.exit(f"after {LIMIT} s: not {what}: {output('squeue')}")
+        time.sleep(0.05)
+
+
+def equal(actual: object, expected: object) -> None:
+    """Exits unless the values are equal."""
+    expect(actual == expected, f"{actual} is not {expected}")
+
+
+def expect(is_true: bool, message: str) -> None:
+    """Exits with a message unless it is true."""
+    if not is_true:
+        raise AssertionError(message)

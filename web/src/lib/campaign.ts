@@ -1,0 +1,78 @@
+// The results of one campaign as plots.
+
+import type { CampaignCell, CampaignMap, CampaignReport } from '../generated/api';
+
+/** The height of the plot of the progress. */
+export const HEIGHT = 200;
+const [LEFT, RIGHT, TOP, BOTTOM] = [48, 14, 8, 24];
+
+export interface ProgressDrawing {
+    /** The points of the rate, and of the area of its interval. */
+    line: string;
+    band: string;
+    ticks: { y: number; text: string }[];
+    claim: number;
+    left: number;
+    right: number;
+    bottom: number;
+}
+
+/** A rate in percent, with one decimal. */
+export function percent(rate: number): string {
+    return `${(rate * 100).toFixed(1)} %`;
+}
+
+/** `95.0 % (91.0 % to 98.0 %)`. */
+export function intervalText(rate: { value: number; low: number; high: number }): string {
+    return `${percent(rate.value)} (${percent(rate.low)} to ${percent(rate.high)})`;
+}
+
+/** Places the progress of a rate in a plot of this width. */
+export function drawProgress(campaign: CampaignReport, width: number): ProgressDrawing {
+    const { progress, claim } = campaign;
+    const [right, bottom] = [Math.max(LEFT + 1, width - RIGHT), HEIGHT - BOTTOM];
+    const most = progress.at(-1)?.episodes ?? 1;
+    const y = (rate: number) => bottom - rate * (bottom - TOP);
+    const place = (episodes: number, rate: number) =>
+        `${(LEFT + (episodes / most) * (right - LEFT)).toFixed(1)},${y(rate).toFixed(1)}`;
+    const line = progress.map(({ episodes, rate }) => place(episodes, rate.value));
+    const upper = progress.map(({ episodes, rate }) => place(episodes, rate.high));
+    const lower = progress.map(({ episodes, rate }) => place(episodes, rate.low)).reverse();
+    const ticks = [0, 0.25, 0.5, 0.75, 1].map((rate) => ({ y: y(rate), text: `${rate * 100} %` }));
+    return {
+        line: line.join(' '),
+        band: [...upper, ...lower].join(' '),
+        ticks,
+        claim: y(claim),
+        left: LEFT,
+        right,
+        bottom,
+    };
+}
+
+export interface HeatMap {
+    columns: string[];
+    rows: { values: string; cells: CampaignCell[] }[];
+}
+
+/** The map of two parameters, in which either may be that of the columns. */
+export function mapOf(maps: readonly CampaignMap[], x: string, y: string): HeatMap | null {
+    const straight = maps.find((map) => map.x === x && map.y === y);
+    if (straight !== undefined) {
+        const columns = straight.rows[0]?.cells.map(({ values }) => values) ?? [];
+        return { columns, rows: straight.rows };
+    }
+    const turned = maps.find((map) => map.x === y && map.y === x);
+    if (turned === undefined) return null;
+    const names = turned.rows[0]?.cells.map(({ values }) => values) ?? [];
+    const rows = names.map((values, index) => ({
+        values,
+        cells: turned.rows.flatMap((row) => row.cells[index] ?? []),
+    }));
+    return { columns: turned.rows.map(({ values }) => values), rows };
+}
+
+/** The names of the parameters that have maps. */
+export function mapped(maps: readonly CampaignMap[]): string[] {
+    return [...new Set(maps.flatMap(({ x, y }) => [x, y]))];
+}

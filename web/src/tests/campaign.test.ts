@@ -1,0 +1,66 @@
+import { expect, test } from 'vitest';
+import type { CampaignMap, CampaignReport } from '../generated/api';
+import { HEIGHT, drawProgress, intervalText, mapOf, mapped } from '../lib/campaign';
+
+const rate = (value: number) => ({ value, low: value - 0.1, high: Math.min(1, value + 0.1) });
+const cell = (values: string, passed: number) => ({
+    values,
+    episodes: 10,
+    passed,
+    rate: rate(passed / 10),
+});
+const maps: CampaignMap[] = [
+    {
+        x: 'payload',
+        y: 'surface',
+        rows: [
+            { values: 'steel', cells: [cell('0 to 1', 1), cell('1 to 2', 2)] },
+            { values: 'wood', cells: [cell('0 to 1', 3), cell('1 to 2', 4)] },
+        ],
+    },
+];
+
+test('a map is turned if the other parameter is that of the columns', () => {
+    expect(mapped(maps)).toEqual(['payload', 'surface']);
+    const numbers = (x: string, y: string) => {
+        const map = mapOf(maps, x, y);
+        return map && [map.columns, map.rows.map((row) => row.cells.map(({ passed }) => passed))];
+    };
+    expect(numbers('payload', 'surface')).toEqual([
+        ['0 to 1', '1 to 2'],
+        [
+            [1, 2],
+            [3, 4],
+        ],
+    ]);
+    expect(numbers('surface', 'payload')).toEqual([
+        ['steel', 'wood'],
+        [
+            [1, 3],
+            [2, 4],
+        ],
+    ]);
+    expect(numbers('payload', 'payload')).toBeNull();
+    expect(numbers('payload', 'other')).toBeNull();
+});
+
+test('the progress is inside of the plot', () => {
+    const progress = [10, 20, 40].map((episodes) => ({ episodes, rate: rate(episodes / 40) }));
+    const campaign = { progress, claim: 0.9 } as CampaignReport;
+    const drawing = drawProgress(campaign, 300);
+    const points = `${drawing.line} ${drawing.band}`
+        .split(' ')
+        .map((it) => it.split(',').map(Number));
+    expect(points).toHaveLength(9);
+    for (const [x = NaN, y = NaN] of points) {
+        expect(x).toBeGreaterThan(drawing.left);
+        expect(x).toBeLessThanOrEqual(drawing.right);
+        expect(y).toBeGreaterThanOrEqual(0);
+        expect(y).toBeLessThanOrEqual(HEIGHT);
+    }
+    expect(drawing.claim).toBeGreaterThan(0);
+    expect(drawProgress({ progress: [], claim: 0.9 } as unknown as CampaignReport, 0).line).toBe(
+        '',
+    );
+    expect(intervalText(rate(0.5))).toBe('50.0 % (40.0 % to 60.0 %)');
+});
