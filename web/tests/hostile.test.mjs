@@ -40,7 +40,9 @@ const SCRIPT = '<script>alert(1)</script>';
 async function assertOwnScripts(page) {
     const sources = await page
         .locator('script')
-        .evaluateAll((scripts) => scripts.map((script) => script.getAttribute('src') ?? script.text));
+        .evaluateAll((scripts) =>
+            scripts.map((script) => script.getAttribute('src') ?? script.text),
+        );
     assert.equal(sources.length, 2, sources.join(' '));
     assert.equal(sources[0], './early.js');
     assert.match(sources[1], /^\.\/assets\/[\w.-]+\.js$/);
