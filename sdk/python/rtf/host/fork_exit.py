@@ -37,6 +37,8 @@ class ForkExit:
         """End the process, or return the exit code if the interpreter must end it."""
         if code == 0 and self._is_plain and self._finalize():
             os._exit(0)
+        # The interpreter finalizes objects in its usual order only if it may collect all of them.
+        gc.unfreeze()
         return code
 
     def _finalize(self) -> bool:
