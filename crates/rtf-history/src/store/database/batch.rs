@@ -35,7 +35,8 @@ impl Batch {
         })
     }
 
-    fn sql(&self, rows: usize) -> String {
+    /// The statement for a number of rows.
+    pub fn sql(&self, rows: usize) -> String {
         let mut sql = self.head.to_owned();
         for row in 0..rows {
             sql += if row == 0 { " (" } else { ", (" };

@@ -92,12 +92,7 @@ impl Database {
     ) -> Result<(), DatabaseError> {
         match self {
             Self::Sqlite(connection) => {
-                let mut statement = connection.prepare_cached(sql)?;
-                let mut rows = statement.query(rusqlite::params_from_iter(values))?;
-                while let Some(row) = rows.next()? {
-                    visit(&Row::Sqlite(row))?;
-                }
-                Ok(())
+                visit_rows(&mut *connection.prepare_cached(sql)?, values, visit)
             }
             Self::Postgres(database) => database.borrow_mut().for_each(sql, values, visit),
         }
@@ -123,15 +118,27 @@ impl Database {
         Ok(rows)
     }
 
-    /// Executes a statement for each row of values, many at a time, and visits the rows of the
-    /// answers, which are in any order.
+    /// Executes a statement for each row of values, and visits the rows of the answers, which
+    /// are in any order. PostgreSQL gets many rows at a time. SQLite gets one: to prepare a
+    /// statement takes it longer than to execute it, and much longer if it has many parameters.
     pub fn batch(
         &self,
         batch: &Batch,
         values: &[Value<'_>],
         visit: Visit<'_>,
     ) -> Result<(), DatabaseError> {
-        batch.statements(values).try_for_each(|(sql, values)| self.for_each(&sql, values, visit))
+        match self {
+            Self::Sqlite(_) if values.is_empty() => Ok(()),
+            Self::Sqlite(connection) => {
+                let mut statement = connection.prepare_cached(&batch.sql(1))?;
+                let mut rows = values.chunks_exact(batch.columns);
+                rows.try_for_each(|row| visit_rows(&mut statement, row, visit))
+            }
+            Self::Postgres(_) => {
+                let mut statements = batch.statements(values);
+                statements.try_for_each(|(sql, values)| self.for_each(&sql, values, visit))
+            }
+        }
     }
 
     /// Begins a transaction for writing: other writers wait for its end.
@@ -150,6 +157,19 @@ impl Database {
             Self::Postgres(database) => database.borrow_mut().execute_batch(sql),
         }
     }
+}
+
+/// Executes a statement of SQLite, and visits the rows of its answer.
+fn visit_rows(
+    statement: &mut rusqlite::Statement<'_>,
+    values: &[Value<'_>],
+    visit: Visit<'_>,
+) -> Result<(), DatabaseError> {
+    let mut rows = statement.query(rusqlite::params_from_iter(values))?;
+    while let Some(row) = rows.next()? {
+        visit(&Row::Sqlite(row))?;
+    }
+    Ok(())
 }
 
 /// A transaction that is undone unless it is committed.
