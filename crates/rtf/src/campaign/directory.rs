@@ -27,6 +27,7 @@ use super::judged::{JUDGEMENT, Judged};
 use super::read_list;
 use super::start::CampaignStart;
 use crate::error::Failure;
+use crate::executor::cluster::Cluster;
 
 pub const DESCRIPTION: &str = "campaign.json";
 const EPISODES: &str = "episodes.jsonl";
@@ -52,21 +53,21 @@ pub struct Description {
     /// Whether its episodes were asked for one after the other, by a search: then there is no claim.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_search: bool,
-    /// The job arrays that run the workers, unless they run on this machine.
+    /// The jobs that run the workers, unless they run on this machine.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub slurm: Option<SlurmArrays>,
+    pub jobs: Option<CampaignJobs>,
     /// Which campaign it is, and where and when it was started.
     #[serde(flatten)]
     pub start: Option<CampaignStart>,
 }
 
-/// How a campaign runs in job arrays of Slurm.
+/// How a campaign runs in jobs of a cluster.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct SlurmArrays {
-    /// The largest number of tasks of an array.
+pub struct CampaignJobs {
+    /// The largest number of tasks of a job.
     pub shards: u32,
-    /// The arguments of `sbatch`.
-    pub options: Vec<String>,
+    /// Where they are submitted, and how.
+    pub cluster: Cluster,
 }
 
 /// The directory of a campaign.
@@ -288,7 +289,7 @@ pub mod tests {
             repeats: 2,
             options: Vec::new(),
             is_search: false,
-            slurm: None,
+            jobs: None,
             start: None,
         };
         let dir = CampaignDir::create(parent.path(), description, None).expect("a campaign");

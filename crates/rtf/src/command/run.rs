@@ -21,12 +21,13 @@ pub fn run(args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
     }
     let mut args = args;
     config::fill_run(&mut args.run, matches)?;
+    executor::refuse_unused(&args.executor.cluster)?;
     match &args.executor.array_task {
         Some(task) => task.apply(&mut args.run, &args.executor.cluster)?,
-        None if args.executor.cluster.executor == ExecutorOption::Slurm => {
+        None if args.executor.cluster.executor != ExecutorOption::Local => {
             return executor::run(&args);
         }
-        None => executor::refuse_local(&args.executor.cluster)?,
+        None => {}
     }
     let RunVerbArgs { run: args, debug, .. } = args;
     let debug = DebugRequest::resolve(&debug, &args)?;

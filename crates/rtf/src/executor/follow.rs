@@ -4,19 +4,19 @@ use std::time::Duration;
 
 use rtf_engine::signal::SignalListener;
 
+use super::cluster::{ClusterError, Job};
 use super::progress::Progress;
-use super::slurm::{self, JobId, SlurmError};
 use super::stop::Stop;
 use super::submission::Submission;
 use crate::error::Failure;
 use crate::terminal;
 
-/// How often Slurm is asked for the tasks.
+/// How often the scheduler is asked for the tasks.
 pub const POLL_INTERVAL: Duration = Duration::from_secs(2);
 
 /// Follows a job; returns the first signal that stopped it.
 pub async fn follow(
-    job: &JobId,
+    job: &Job,
     submission: &Submission,
     shutdown_timeout: Duration,
 ) -> Result<Option<i32>, Failure> {
@@ -32,24 +32,24 @@ pub async fn follow(
             (number, _) = signals.next() => stop.request(number).await,
             _ = interval.tick() => {}
         }
-        let tasks = match slurm::active_tasks(job).await {
-            Ok(tasks) => tasks,
+        let state = match job.state().await {
+            Ok(state) => state,
             Err(error) => {
                 warn_once(&mut is_warned, &error);
                 continue;
             }
         };
         is_warned = false;
-        stop.stop_tasks(&tasks).await;
-        progress.print(&tasks);
-        if tasks.is_empty() {
+        stop.stop_tasks(&state.tasks).await;
+        progress.print(&state);
+        if state.tasks.is_empty() {
             return Ok(stop.signal());
         }
     }
 }
 
-/// Warns that a command of Slurm failed, which is tried again.
-pub fn warn_once(is_warned: &mut bool, error: &SlurmError) {
+/// Warns that a command of the scheduler failed, which is tried again.
+pub fn warn_once(is_warned: &mut bool, error: &ClusterError) {
     if !std::mem::replace(is_warned, true) {
         terminal::notice(format!("warning: {error}; trying again"));
     }

@@ -1,7 +1,8 @@
-//! `rtf run --executor slurm`: submits shards as tasks of a job array, follows them, collects
-//! their runs and merges them; `spec/executors.md`. Campaigns use the same job arrays.
+//! `rtf run --executor slurm|kubernetes`: submits shards as tasks of a job, follows them, collects
+//! their runs and merges them; `spec/executors.md`. Campaigns use the same jobs.
 //!
-//! - [`slurm`]: a job array whose tasks each execute a command. Knows no tests.
+//! - [`options`]: what the command line says about the executor.
+//! - [`cluster`]: a job whose tasks each execute a command. Knows no tests.
 //! - [`submission`]: the directory of a submission.
 //! - [`follow`]: waits for the tasks.
 //! - [`stop`]: stops the tasks of a job.
@@ -10,30 +11,34 @@
 //! - [`array_task`]: `rtf run` as one of the tasks.
 
 mod array_task;
+pub mod cluster;
 mod collect;
 pub mod follow;
+mod options;
 mod progress;
-pub mod slurm;
 pub mod stop;
 mod submission;
 pub mod task_progress;
 
 use std::fs::File;
 use std::path::Path;
+use std::process::ExitCode;
 
 use clap::FromArgMatches;
 
-use crate::cli::{self, ClusterArgs, RunArgs, RunVerbArgs, StdoutFormat};
+use crate::cli::{self, RunArgs, RunVerbArgs, StdoutFormat};
 use crate::command::VerbResult;
 use crate::error::Failure;
 use crate::plan;
 use crate::reports;
 use crate::request::{OutputRequest, TestsRequest, config};
+use crate::terminal;
 use rtf_plan::plan::Plan;
 use rtf_plan::select::{Shard, ShardBy};
 
 pub use array_task::{ArrayTask, last_attempt};
-use slurm::{JobArray, JobId, SlurmError};
+use cluster::{Cluster, ClusterError, Job, JobArray};
+pub use options::{cluster, refuse_unused, shards};
 use submission::Submission;
 
 /// The file with the exit code of an attempt.
@@ -47,21 +52,39 @@ pub fn run(args: &RunVerbArgs) -> VerbResult {
     let output = OutputRequest::resolve(&args.run);
     drop(reports::open_all(&output.reports, &output.results)?);
     let (tasks, plan) = plan_all(&args.run, shards)?;
-    let submission = Submission::create(
-        &args.run.input.results.results,
-        shards,
-        &plan,
-        tasks,
-        slurm_options(&args.executor.cluster, &plan),
-    )?;
-    supervise(&submission, args)
+    let results = &args.run.input.results.results;
+    let limit = args.run.shutdown_timeout;
+    let cluster = cluster(&args.executor.cluster, &plan, results, limit)?;
+    let cluster = cluster.ok_or_else(|| Failure::internal("there is no cluster"))?;
+    let submission = Submission::create(results, shards, &plan, tasks, cluster)?;
+    match args.executor.cluster.kubernetes.print {
+        true => print_job(&submission),
+        false => supervise(&submission, args),
+    }
 }
 
-/// The number of tasks.
-pub fn shards(args: &ClusterArgs) -> Result<u32, Failure> {
-    args.shards.ok_or_else(|| {
-        Failure::input("`--executor slurm` needs the number of shards").hint("add `--shards N`")
-    })
+/// Prints the manifest of the job, which the user submits.
+fn print_job(submission: &Submission) -> VerbResult {
+    let stored = &submission.stored;
+    let command = command(submission);
+    print_manifest(&stored.cluster, &job_array(submission, &command))?;
+    let dir = submission.dir.to_string_lossy();
+    terminal::notice(format!(
+        "hint: submit it with `kubectl create -f`, then follow it: `rtf run --resume {}`",
+        shell_words::quote(&dir)
+    ));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Prints the manifest of a Job of Kubernetes to standard output.
+pub fn print_manifest(cluster: &Cluster, array: &JobArray<'_>) -> Result<(), Failure> {
+    let Cluster::Kubernetes(kubernetes) = cluster else {
+        return Err(Failure::internal("only Kubernetes has a manifest"));
+    };
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let runtime = runtime.map_err(Failure::internal)?;
+    let manifest = runtime.block_on(kubernetes.prepare(array)).map_err(cluster_failure)?;
+    terminal::stdout(|out| out.write_all(manifest.as_bytes()))
 }
 
 /// Plans all tests; returns the numbers of the shards that contain any.
@@ -97,76 +120,42 @@ fn supervise(submission: &Submission, args: &RunVerbArgs) -> VerbResult {
     let lock = submission.lock()?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let stopped_by = runtime.map_err(Failure::internal)?.block_on(async {
-        let job = find_or_submit(submission, &lock).await.map_err(|error| {
+        let job = submit(submission, &lock).await.map_err(|error| {
             submission.discard();
-            slurm_failure(error)
+            cluster_failure(error)
         })?;
         follow::follow(&job, submission, args.run.shutdown_timeout).await
     })?;
     collect::collect(submission, &args.run, stopped_by)
 }
 
-/// The job of the submission: stored, known to Slurm by its name, or submitted now.
-async fn find_or_submit(submission: &Submission, lock: &File) -> Result<JobId, SlurmError> {
+/// The job of the submission, which is submitted unless an earlier process has done so.
+async fn submit(submission: &Submission, lock: &File) -> Result<Job, ClusterError> {
+    let command = command(submission);
+    let array = job_array(submission, &command);
+    submission.stored.cluster.submit(&array, submission.is_resumed, lock).await
+}
+
+/// The verb of `rtf` and its arguments.
+fn command(submission: &Submission) -> Vec<String> {
+    std::iter::once("run".to_owned()).chain(submission.stored.args.clone()).collect()
+}
+
+fn job_array<'a>(submission: &'a Submission, command: &'a [String]) -> JobArray<'a> {
     let stored = &submission.stored;
-    let command: Vec<_> =
-        [stored.program.clone(), "run".to_owned()].into_iter().chain(stored.args.clone()).collect();
-    let array = JobArray {
+    JobArray {
         dir: &submission.dir,
         name: &stored.name,
         tasks: &stored.tasks,
         working_dir: Path::new(&stored.working_dir),
-        options: &stored.options,
-        command: &command,
-    };
-    match submission.is_resumed {
-        true => array.find_or_submit(lock).await,
-        false => array.submit(lock).await,
+        command,
     }
 }
 
-/// A command of Slurm failed.
-pub fn slurm_failure(error: SlurmError) -> Failure {
+/// A command of the scheduler failed.
+pub fn cluster_failure(error: ClusterError) -> Failure {
     let hint = error.hint();
     Failure::input(error).maybe_hint(hint)
-}
-
-/// The arguments of `sbatch`.
-pub fn slurm_options(args: &ClusterArgs, plan: &Plan) -> Vec<String> {
-    let mut options = args.args.clone();
-    if args.licenses {
-        let suites = plan.suites.iter();
-        let required = suites.flat_map(|suite| &suite.settings.requires);
-        let mut licenses: Vec<_> = required.map(|it| format!("{}:1", license(&it.name))).collect();
-        licenses.sort();
-        licenses.dedup();
-        if !licenses.is_empty() {
-            options.push(format!("--licenses={}", licenses.join(",")));
-        }
-    }
-    options
-}
-
-/// The licence for a resource: Slurm gives `:` and other characters a meaning.
-fn license(resource: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
-    resource.chars().map(|c| if is_plain(c) { c } else { '_' }).collect()
-}
-
-/// Refuses options that have no effect on this machine.
-pub fn refuse_local(args: &ClusterArgs) -> Result<(), Failure> {
-    let given = [
-        ("--shards", args.shards.is_some()),
-        ("--executor-arg", !args.args.is_empty()),
-        ("--executor-licenses", args.licenses),
-    ];
-    match given.iter().find(|(_, is_given)| *is_given) {
-        Some((option, _)) => {
-            let error = format!("`{option}` has no effect without `--executor slurm`");
-            Err(Failure::input(error).hint("add `--executor slurm`"))
-        }
-        None => Ok(()),
-    }
 }
 
 /// Refuses options that need the tests on this machine.
@@ -185,20 +174,10 @@ fn refuse_options(args: &RunVerbArgs) -> Result<(), Failure> {
     ];
     match refused.iter().find(|(_, is_given)| *is_given) {
         Some((option, _)) => {
-            let error = format!("`{option}` cannot be combined with `--executor slurm`");
+            let executor = args.executor.cluster.executor;
+            let error = format!("`{option}` cannot be combined with `--executor {executor}`");
             Err(Failure::input(error))
         }
         None => Ok(()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn licenses_have_plain_names() {
-        assert_eq!(license("robot:left-arm"), "robot_left-arm");
-        assert_eq!(license("a,b c"), "a_b_c");
     }
 }

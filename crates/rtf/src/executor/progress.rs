@@ -9,7 +9,7 @@ use rtf_model::EventKind;
 use rtf_report::journal;
 use rtf_report::run_dir::JOURNAL;
 
-use super::slurm::{JobId, TaskState};
+use super::cluster::{Job, JobState};
 use super::submission::Submission;
 use super::task_progress::TaskProgress;
 use crate::diagnostics::count;
@@ -17,14 +17,14 @@ use crate::terminal;
 
 /// Prints the progress when it has changed.
 pub struct Progress<'a> {
-    job: &'a JobId,
+    job: &'a Job,
     submission: &'a Submission,
     journals: HashMap<PathBuf, GrowingJournal>,
     tasks: TaskProgress,
 }
 
 impl<'a> Progress<'a> {
-    pub fn new(job: &'a JobId, submission: &'a Submission) -> Self {
+    pub fn new(job: &'a Job, submission: &'a Submission) -> Self {
         let tasks = TaskProgress::new(job, submission.stored.tasks.len());
         Self { job, submission, journals: HashMap::new(), tasks }
     }
@@ -34,13 +34,13 @@ impl<'a> Progress<'a> {
         let dir = self.submission.dir.to_string_lossy();
         let dir = shell_words::quote(&dir);
         let job = self.job;
-        terminal::notice(format!("slurm: job {job}: `rtf run --resume {dir}` resumes"));
+        terminal::notice(format!("{job}: `rtf run --resume {dir}` resumes"));
     }
 
     /// Prints a line if something has changed.
-    pub fn print(&mut self, tasks: &[TaskState]) {
+    pub fn print(&mut self, state: &JobState) {
         let (finished, all) = (self.finished_tests(), self.submission.stored.tests as usize);
-        self.tasks.print(tasks, &format!("; {finished} of {} finished", count(all, "test")));
+        self.tasks.print(state, &format!("; {finished} of {} finished", count(all, "test")));
     }
 
     fn finished_tests(&mut self) -> u32 {

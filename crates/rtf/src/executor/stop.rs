@@ -1,4 +1,4 @@
-//! Stops the tasks of a job: first with tear-downs, then without, then by Slurm itself.
+//! Stops the tasks of a job: first with tear-downs, then without, then by the scheduler itself.
 
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -7,18 +7,18 @@ use std::time::{Duration, Instant};
 
 use rtf_engine::guard::StopRequests;
 
-use super::slurm::{self, JobId, SlurmError, TaskState};
+use super::cluster::{ClusterError, Job, TaskState};
 use crate::terminal;
 
 /// The file that exists when the user has cancelled the tasks.
 pub const CANCELLED: &str = "cancelled";
 
 /// How much longer than their limit tasks may take to stop.
-const STOP_GRACE: Duration = Duration::from_secs(30);
+pub const STOP_GRACE: Duration = Duration::from_secs(30);
 
 /// The requests of the user to stop.
 pub struct Stop {
-    job: JobId,
+    job: Job,
     /// The directory with the mark of cancelled tasks.
     dir: PathBuf,
     /// How long tasks may take to stop.
@@ -33,7 +33,7 @@ pub struct Stop {
 
 impl Stop {
     /// Nothing is stopped yet. The tasks may take `shutdown_timeout` to stop.
-    pub fn new(job: &JobId, dir: &Path, shutdown_timeout: Duration) -> Self {
+    pub fn new(job: &Job, dir: &Path, shutdown_timeout: Duration) -> Self {
         Self {
             job: job.clone(),
             dir: dir.to_owned(),
@@ -60,7 +60,7 @@ impl Stop {
         if self.signal.is_none() {
             self.signal = Some(signal);
             self.first_at = Some(Instant::now());
-            terminal::notice(format!("slurm: job {}: stopping", self.job));
+            terminal::notice(format!("{}: stopping", self.job));
             if let Err(error) = File::create(self.dir.join(CANCELLED)) {
                 terminal::notice(format!("warning: cannot mark the tasks as cancelled: {error}"));
             }
@@ -78,24 +78,24 @@ impl Stop {
             self.cancel().await;
         }
         if tasks.iter().any(|task| task.is_waiting) {
-            report(slurm::cancel_waiting(&self.job).await);
+            report(self.job.cancel_waiting().await);
         }
         let running = tasks.iter().filter(|task| !task.is_waiting).map(|task| task.number);
         let new: Vec<u32> = running.filter(|number| self.terminated.insert(*number)).collect();
         if !new.is_empty() && !self.is_cancelled {
-            report(slurm::terminate(&self.job, &new).await);
+            report(self.job.terminate(&new, self.requests.count() > 1).await);
         }
     }
 
     async fn cancel(&mut self) {
         if !std::mem::replace(&mut self.is_cancelled, true) {
-            report(slurm::cancel(&self.job).await);
+            report(self.job.cancel().await);
         }
     }
 }
 
 /// A task may have ended before the command.
-fn report(result: Result<(), SlurmError>) {
+fn report(result: Result<(), ClusterError>) {
     if let Err(error) = result {
         terminal::notice(format!("warning: {error}"));
     }

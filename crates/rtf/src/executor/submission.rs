@@ -9,6 +9,7 @@ use rtf_plan::plan::Plan;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
+use super::cluster::Cluster;
 use super::last_attempt;
 use crate::error::Failure;
 
@@ -34,8 +35,6 @@ pub struct Submission {
 pub struct Stored {
     /// The name of the job.
     pub name: String,
-    /// The path of `rtf`.
-    pub program: String,
     /// The arguments of `rtf run`.
     pub args: Vec<String>,
     /// The working directory of `rtf run`.
@@ -46,8 +45,8 @@ pub struct Stored {
     pub tasks: Vec<u32>,
     /// The number of tests of all shards.
     pub tests: u32,
-    /// The user's arguments of `sbatch`, and the licences.
-    pub options: Vec<String>,
+    /// Where it is submitted, and how.
+    pub cluster: Cluster,
 }
 
 impl Submission {
@@ -57,22 +56,20 @@ impl Submission {
         shards: u32,
         plan: &Plan,
         tasks: Vec<u32>,
-        options: Vec<String>,
+        cluster: Cluster,
     ) -> Result<Self, Failure> {
         let name = format!("rtf-{}", &Uuid::now_v7().simple().to_string());
         let dir = std::path::absolute(results.join(DIR).join(&name));
         let dir = dir.map_err(Failure::internal)?;
-        let program = std::env::current_exe().map_err(Failure::internal)?;
         let working_dir = std::env::current_dir().map_err(Failure::internal)?;
         let stored = Stored {
             name,
-            program: text(program.into())?,
             args: run_arguments(std::env::args_os().skip(1))?,
             working_dir: text(working_dir.into())?,
             shards,
             tasks,
             tests: plan.tests,
-            options,
+            cluster,
         };
         text(dir.clone().into())?;
         let file = dir.join(STORED);
@@ -85,7 +82,7 @@ impl Submission {
     /// Opens the directory of a submission of another process.
     pub fn open(dir: &Path) -> Result<Self, Failure> {
         let file = dir.join(STORED);
-        let hint = "give the directory that `rtf run --executor slurm` printed";
+        let hint = "give the directory that `rtf run --executor …` printed";
         let dir = std::path::absolute(dir).map_err(Failure::internal)?;
         let json = fs::read(&file).map_err(|error| cannot("read", &file, &error).hint(hint))?;
         let stored = serde_json::from_slice(&json)
@@ -139,10 +136,10 @@ fn run_arguments(args: impl Iterator<Item = OsString>) -> Result<Vec<String>, Fa
 }
 
 /// Other texts cannot be stored.
-fn text(text: OsString) -> Result<String, Failure> {
+pub fn text(text: OsString) -> Result<String, Failure> {
     text.into_string().map_err(|text| {
         let error = format!("`{}` is not valid UTF-8", text.to_string_lossy());
-        Failure::input(error).hint("`--executor slurm` needs arguments and paths in UTF-8")
+        Failure::input(error).hint("`--executor` needs arguments and paths in UTF-8")
     })
 }
 
@@ -160,6 +157,7 @@ fn cannot(action: &str, path: &Path, error: &io::Error) -> Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::executor::cluster::slurm::Slurm;
 
     #[test]
     fn the_arguments_follow_the_verb() {
@@ -176,13 +174,12 @@ mod tests {
         let dir = tempfile::tempdir().expect("a directory");
         let stored = Stored {
             name: "rtf-1".to_owned(),
-            program: "rtf".to_owned(),
             args: Vec::new(),
             working_dir: "/".to_owned(),
             shards: 1,
             tasks: vec![1],
             tests: 1,
-            options: Vec::new(),
+            cluster: Cluster::Slurm(Slurm { program: "rtf".to_owned(), options: Vec::new() }),
         };
         let path = dir.path().canonicalize().expect("a path");
         let submission = Submission { dir: path.clone(), stored, is_resumed: false };

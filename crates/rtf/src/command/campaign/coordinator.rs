@@ -130,10 +130,7 @@ impl<'a, P: Pool> Coordinator<'a, P> {
         if self.is_stopped || self.judgement.is_final {
             return Ok(());
         }
-        let index = |id: &u64| usize::try_from(*id).ok()?.checked_sub(1);
-        let episode = |id: &u64| self.episodes.get(index(id)?).cloned();
-        let lists = self.ledger.take(self.pool.free()).into_iter();
-        let lists = lists.map(|ids| ids.iter().filter_map(episode).collect()).collect();
+        let lists = episodes_of(&self.ledger.take(self.pool.free()), self.episodes);
         self.pool.start(lists).await
     }
 
@@ -218,4 +215,11 @@ impl<'a, P: Pool> Coordinator<'a, P> {
         self.is_stopped = true;
         self.pool.stop(signal).await;
     }
+}
+
+/// The episodes with these ids, from all `episodes` of a campaign.
+pub fn episodes_of(lists: &[Vec<u64>], episodes: &[Episode]) -> Vec<Vec<Episode>> {
+    let index = |id: &u64| usize::try_from(*id).ok()?.checked_sub(1);
+    let episode = |id: &u64| episodes.get(index(id)?).cloned();
+    lists.iter().map(|ids| ids.iter().filter_map(episode).collect()).collect()
 }

@@ -16,10 +16,10 @@ use rtf_history::entry;
 use rtf_plan::plan::Plan;
 use rtf_report::escape;
 
-use super::coordinator::{CampaignEnd, Coordinator};
-use super::pool::{LocalPool, SlurmPool};
+use super::coordinator::{CampaignEnd, Coordinator, episodes_of};
+use super::pool::{ClusterPool, LocalPool};
 use super::summary::{self, EarlyEnd};
-use crate::campaign::directory::{CampaignDir, Description, SlurmArrays};
+use crate::campaign::directory::{CampaignDir, CampaignJobs, Description};
 use crate::campaign::judged::Judged;
 use crate::campaign::start::CampaignStart;
 use crate::campaign::{self, LoadedCampaign};
@@ -52,10 +52,13 @@ pub fn run(mut args: CampaignRunArgs, matches: &ArgMatches) -> VerbResult {
         None => begin(&args)?,
     };
     let Started { loaded, dir, .. } = &started;
+    if args.cluster.kubernetes.print {
+        return print_job(&started, &args);
+    }
     dir.write_judgement(None)?;
     let claimed = loaded.campaign.claim.rate;
-    let workers = match &dir.description.slurm {
-        Some(arrays) => format!("up to {}", count(arrays.shards as usize, "task")),
+    let workers = match &dir.description.jobs {
+        Some(jobs) => format!("up to {}", count(jobs.shards as usize, "task")),
         None => count(local_workers(&args), "worker"),
     };
     let episodes = count(loaded.episodes.episodes.len(), "episode");
@@ -74,6 +77,23 @@ pub fn run(mut args: CampaignRunArgs, matches: &ArgMatches) -> VerbResult {
         campaigns::import_ended(&target, dir);
     }
     Ok(ExitCode::from(summary::exit_code(&judgement, early_end.as_ref())))
+}
+
+/// Prints the manifest of the first job, which the user submits.
+fn print_job(started: &Started, args: &CampaignRunArgs) -> VerbResult {
+    let Started { loaded, dir, lock, .. } = started;
+    let Some(settings) = &dir.description.jobs else {
+        return Err(Failure::internal("there is no cluster"));
+    };
+    let episodes = &loaded.episodes.episodes;
+    let mut ledger = Ledger::new(episodes.len(), loaded.campaign.repeats);
+    let lists = episodes_of(&ledger.take(settings.shards as usize), episodes);
+    ClusterPool::new(dir, lock, settings, args.shutdown_timeout).print(&lists)?;
+    let dir = dir.path.to_string_lossy();
+    let dir = shell_words::quote(&dir);
+    let hint = "submit it with `kubectl create -f`, then follow it";
+    terminal::notice(format!("hint: {hint}: `rtf campaign run --resume {dir}`"));
+    Ok(ExitCode::SUCCESS)
 }
 
 /// How a campaign ended, for the history.
@@ -100,11 +120,11 @@ async fn coordinate(started: &Started, args: &CampaignRunArgs) -> Result<Campaig
         false => Ledger::new(loaded.episodes.episodes.len(), loaded.campaign.repeats),
     };
     let (campaign, episodes) = (&loaded.campaign, &loaded.episodes.episodes);
-    let Some(settings) = &dir.description.slurm else {
+    let Some(settings) = &dir.description.jobs else {
         let pool = LocalPool::new(dir, local_workers(args), args.shutdown_timeout);
         return Coordinator::new(campaign, episodes, read(&|_| true), pool)?.run(signals).await;
     };
-    let pool = SlurmPool::open(dir, lock, settings, args.shutdown_timeout).await?;
+    let pool = ClusterPool::open(dir, lock, settings, args.shutdown_timeout).await?;
     let followed: BTreeSet<u32> = pool.assignments().map(|it| it.worker).collect();
     let mut ledger = read(&|worker| !followed.contains(&worker));
     pool.assignments().for_each(|it| ledger.assign(it.left.iter().copied()));
@@ -114,11 +134,11 @@ async fn coordinate(started: &Started, args: &CampaignRunArgs) -> Result<Campaig
 /// Opens the directory of an earlier campaign.
 fn reopen(path: &Path, args: &CampaignRunArgs) -> Result<Started, Failure> {
     let dir = CampaignDir::open_judged(path)?;
-    if dir.description.slurm.is_some() {
-        refuse_workers(args)?;
+    if let Some(jobs) = &dir.description.jobs {
+        refuse_workers(args, jobs.cluster.name())?;
     }
     let lock = dir.lock()?;
-    if dir.description.slurm.is_none() {
+    if dir.description.jobs.is_none() {
         wait_for_workers(&dir, args.shutdown_timeout)?;
     }
     Ok(Started { loaded: campaign::reload(&dir)?, dir, lock, is_resumed: true })
@@ -143,7 +163,7 @@ fn begin(args: &CampaignRunArgs) -> Result<Started, Failure> {
     let loaded = campaign::load(file)?;
     loaded.print_warnings()?;
     let (mut description, plan) = describe(&loaded, file, &args.profile)?;
-    description.slurm = slurm_arrays(args, &plan)?;
+    description.jobs = jobs(args, &plan)?;
     description.start = Some(CampaignStart::find(&loaded, file, &description.working_dir));
     let parent = args.results.results.join("campaigns");
     let dir = CampaignDir::create(&parent, description, Some(&loaded.episodes))?;
@@ -180,32 +200,30 @@ fn describe(
         repeats: loaded.campaign.repeats,
         options: profile.to_options(),
         is_search: false,
-        slurm: None,
+        jobs: None,
         start: None,
     };
     Ok((description, planned.plan))
 }
 
-/// The job arrays, if the episodes are to run in a cluster.
-fn slurm_arrays(args: &CampaignRunArgs, plan: &Plan) -> Result<Option<SlurmArrays>, Failure> {
-    match args.cluster.executor {
-        ExecutorOption::Local => {
-            executor::refuse_local(&args.cluster)?;
-            Ok(None)
-        }
-        ExecutorOption::Slurm => {
-            refuse_workers(args)?;
-            let shards = executor::shards(&args.cluster)?;
-            let options = executor::slurm_options(&args.cluster, plan);
-            Ok(Some(SlurmArrays { shards, options }))
-        }
+/// The jobs, if the episodes are to run in a cluster.
+fn jobs(args: &CampaignRunArgs, plan: &Plan) -> Result<Option<CampaignJobs>, Failure> {
+    let cluster_args = &args.cluster;
+    executor::refuse_unused(cluster_args)?;
+    if cluster_args.executor == ExecutorOption::Local {
+        return Ok(None);
     }
+    refuse_workers(args, &cluster_args.executor.to_string())?;
+    let shards = executor::shards(cluster_args)?;
+    let cluster =
+        executor::cluster(cluster_args, plan, &args.results.results, args.shutdown_timeout)?;
+    Ok(cluster.map(|cluster| CampaignJobs { shards, cluster }))
 }
 
-fn refuse_workers(args: &CampaignRunArgs) -> Result<(), Failure> {
+fn refuse_workers(args: &CampaignRunArgs, executor: &str) -> Result<(), Failure> {
     match args.workers {
         Some(_) => {
-            let error = "`--workers` has no effect with `--executor slurm`";
+            let error = format!("`--workers` has no effect with `--executor {executor}`");
             Err(Failure::input(error).hint("`--shards N` is the number of tasks"))
         }
         None => Ok(()),

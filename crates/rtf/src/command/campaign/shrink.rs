@@ -70,7 +70,7 @@ fn find(args: &CampaignShrinkArgs) -> Result<(LoadedCampaign, Description, Episo
     let (loaded, description) = if input.is_dir() {
         let stored = CampaignDir::open(&input)?.description;
         let loaded = campaign::load(&stored.file)?;
-        let mut description = Description { is_search: true, slurm: None, start: None, ..stored };
+        let mut description = Description { is_search: true, jobs: None, start: None, ..stored };
         description.options.extend(args.profile.to_options());
         (loaded, description)
     } else {

@@ -1,8 +1,8 @@
 //! Where the workers of a campaign run: as processes of this machine ([`local`]), or as tasks of
-//! job arrays ([`slurm`]).
+//! jobs in a cluster ([`cluster`]).
 
+mod cluster;
 mod local;
-mod slurm;
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -13,8 +13,8 @@ use rtf_report::episode_results::EpisodeLine;
 use super::assignment::Assignment;
 use crate::error::Failure;
 
+pub use cluster::ClusterPool;
 pub use local::LocalPool;
-pub use slurm::SlurmPool;
 
 /// The workers of a campaign.
 pub trait Pool {

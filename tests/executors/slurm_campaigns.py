@@ -1,130 +1,14 @@
-"""Checks `rtf campaign run --executor slurm`: part of check.py."""
+"""Checks `rtf campaign run --executor slurm`: part of check_slurm.py."""
 
 from __future__ import annotations
 
-import json
 import os
 import signal
-import subprocess
 from collections import Counter
-from pathlib import Path
-from typing import Any
 
-from cluster import (
-    commands,
-    equal,
-    expect,
-    finish,
-    finish_with_output,
-    jobs,
-    scontrol,
-    start_waiting_tasks,
-    until,
-)
-
-# Half of the episodes fail. While the file `hold` exists, they wait.
-GRASP = """function TestCase.run()
-  local dir = os.getenv("RTF_PARAM_DIR")
-  local ran = io.open(dir .. "/ran", "a")
-  ran:write(os.getenv("RTF_EPISODE"), " ", os.getenv("SLURMD_NODENAME") or "local", "\\n")
-  ran:close()
-  rtf.sleep(0.1)
-  while io.open(dir .. "/hold") do rtf.sleep(0.05) end
-  rtf.check(tonumber(os.getenv("RTF_PARAM_LOAD")) < 1, "too heavy")
-end
-"""
-SUITE = '<suite name="grasp" {attributes}><test>Grasp.lua</test></suite>'
-CAMPAIGN = """<campaign suite="{suite}.xml" episodes="{episodes}" seed="3">
-  <parameter name="load" distribution="uniform" low="0" high="2"/>
-  <claim require="rate >= {rate}" confidence="0.9"/>
-  {stop}
-</campaign>
-"""
-
-EPISODES = 40
-
-Results = dict[int, tuple[str, str]]
-
-
-class Campaigns:
-    """A directory with campaigns, shared by all nodes."""
-
-    def __init__(self, rtf: str, directory: Path) -> None:
-        self.rtf = rtf
-        self.dir = directory
-        (directory / "Grasp.lua").write_text(GRASP)
-        (directory / "grasp.xml").write_text(SUITE.format(attributes=""))
-        # The licence of the cluster.
-        (directory / "robot.xml").write_text(SUITE.format(attributes='requires="robot"'))
-
-    def start(
-        self,
-        *args: str,
-        suite: str = "grasp",
-        episodes: int = EPISODES,
-        rate: str = "0.1",
-        stop: str = "",
-    ) -> subprocess.Popen[str]:
-        """Starts a campaign."""
-        text = CAMPAIGN.format(suite=suite, episodes=episodes, rate=rate, stop=stop)
-        if stop:
-            text = text.replace(' confidence="0.9"', "")
-        (self.dir / "campaign.xml").write_text(text)
-        return self.rtf_campaign("campaign.xml", "--set", f"dir={self.dir}", *args)
-
-    def start_in_cluster(self, *args: str, **campaign: Any) -> subprocess.Popen[str]:
-        """Starts a campaign with four tasks."""
-        return self.start("--executor", "slurm", "--shards", "4", *args, **campaign)
-
-    def resume(self) -> subprocess.Popen[str]:
-        """Continues the newest campaign."""
-        return self.rtf_campaign("--resume", str(self.newest()))
-
-    def rtf_campaign(self, *args: str) -> subprocess.Popen[str]:
-        """Starts `rtf campaign run`."""
-        command = [self.rtf, "campaign", "run", *args]
-        pipe = subprocess.PIPE
-        return subprocess.Popen(command, cwd=self.dir, text=True, stdout=pipe, stderr=pipe)
-
-    def hold(self) -> None:
-        """Lets the episodes wait."""
-        (self.dir / "hold").touch()
-
-    def release(self) -> None:
-        """Lets the episodes continue."""
-        (self.dir / "hold").unlink()
-
-    def ran(self) -> list[tuple[int, str]]:
-        """The episodes that have started, with their nodes."""
-        path = self.dir / "ran"
-        lines = path.read_text().splitlines() if path.exists() else []
-        return [(int(line.split()[0]), line.split()[1]) for line in lines]
-
-    def newest(self) -> Path:
-        """The directory of the newest campaign."""
-        return (self.dir / "rtf-results/campaigns/latest").resolve()
-
-    def results(self) -> Results:
-        """The final result and the reason of each episode. Fails if an episode has several."""
-        lines = (self.newest() / "results.jsonl").read_text().splitlines()
-        results = [json.loads(line) for line in lines]
-        found = {it["episode"]: (it["outcome"], it.get("reason", "")) for it in results}
-        equal(len(found), len(results))
-        return found
-
-    def add_late_results(self, episodes: set[int]) -> None:
-        """Adds a further result for each of these episodes, as a late attempt might."""
-        for file in self.newest().glob("workers/*/*Z-*/episodes.jsonl"):
-            lines = [json.loads(line) for line in file.read_text().splitlines()]
-            for episode in {line["episode"] for line in lines} & episodes:
-                with file.open("a") as more:
-                    more.write(json.dumps({"episode": episode, "outcome": "error"}) + "\n")
-
-    def recorded(self) -> Counter[int]:
-        """How many results each episode has in the files of the workers."""
-        files = self.newest().glob("workers/*/*Z-*/episodes.jsonl")
-        lines = [json.loads(line) for file in files for line in file.read_text().splitlines()]
-        return Counter(line["episode"] for line in lines if "outcome" in line)
+from campaigns import EPISODES, Campaigns
+from slurm import jobs, scontrol, start_waiting_tasks
+from waiting import commands, equal, expect, finish, finish_with_output, until
 
 
 def same_results(campaigns: Campaigns) -> None:

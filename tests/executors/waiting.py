@@ -1,4 +1,4 @@
-"""The cluster and its processes, for check.py and campaigns.py."""
+"""Waits and compares, for the checks of executors."""
 
 from __future__ import annotations
 
@@ -24,17 +24,6 @@ def finish_with_output(process: subprocess.Popen[str], code: int) -> tuple[str, 
     return stdout, stderr
 
 
-def jobs() -> dict[str, str]:
-    """The tasks that have not ended, with the reason why they wait."""
-    lines = output("squeue", "--noheader", "--array", "--format=%i %r").splitlines()
-    return dict(line.split(maxsplit=1) for line in lines)
-
-
-def nodes() -> set[str]:
-    """The states of the nodes."""
-    return set(output("sinfo", "--noheader", "--Node", "--format=%t").split())
-
-
 def commands(is_wanted: Callable[[str], bool]) -> dict[int, str]:
     """The processes with such a command, by id."""
     found = {}
@@ -55,29 +44,12 @@ def parent(process_id: int) -> int:
     return int(status.split("PPid:")[1].split()[0])
 
 
-def scontrol(*args: str) -> None:
-    """Changes the cluster."""
-    subprocess.run(["scontrol", *args], check=True)
-
-
-def start_waiting_tasks() -> None:
-    """Starts the tasks of a failed node soon: by default, they would start after two minutes."""
-    for task in [task for task, reason in jobs().items() if reason == "BeginTime"]:
-        # Slurm refuses to start a task in the second in which it was ended: "credential revoked".
-        scontrol("update", f"JobId={task}", "StartTime=now+2")
-
-
-def output(*command: str) -> str:
-    """The output of a command."""
-    return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
-
-
 def until(what: str, is_true: Callable[[], bool]) -> None:
     """Waits for something."""
     deadline = time.monotonic() + LIMIT
     while not is_true():
         if time.monotonic() > deadline:
-            sys.exit(f"after {LIMIT} s: not {what}: {output('squeue')}")
+            sys.exit(f"after {LIMIT} s: not {what}")
         time.sleep(0.05)
 
 

@@ -1,5 +1,5 @@
-//! Workers as tasks of job arrays of Slurm, one array at a time. Episodes that are repeated, and
-//! those that tasks have left, wait for the next array.
+//! Workers as tasks of jobs in a cluster, one job at a time. Episodes that are repeated, and
+//! those that tasks have left, wait for the next job.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -12,25 +12,25 @@ use super::super::assignment::Assignment;
 use super::super::worker;
 use super::{EndedWorker, Pool, WorkerEvent};
 use crate::campaign::arrays::CampaignArray;
-use crate::campaign::directory::{CampaignDir, SlurmArrays};
+use crate::campaign::directory::{CampaignDir, CampaignJobs};
 use crate::campaign::read_list;
 use crate::error::Failure;
+use crate::executor::cluster::{Job, JobArray};
 use crate::executor::follow::{POLL_INTERVAL, warn_once};
-use crate::executor::slurm::{self, JobArray, JobId};
 use crate::executor::stop::{CANCELLED, Stop};
 use crate::executor::task_progress::TaskProgress;
-use crate::executor::{EXIT_CODE, last_attempt, slurm_failure};
-use crate::terminal;
+use crate::executor::{EXIT_CODE, cluster_failure, last_attempt, print_manifest};
+use crate::{exit, terminal};
 
 /// SIGTERM.
 const TERM: i32 = 15;
 
 /// The tasks on a cluster.
-pub struct SlurmPool<'a> {
+pub struct ClusterPool<'a> {
     dir: &'a CampaignDir,
     /// The locked file of the campaign.
     lock: &'a File,
-    settings: &'a SlurmArrays,
+    settings: &'a CampaignJobs,
     shutdown_timeout: Duration,
     next_worker: u32,
     array: Option<ActiveArray>,
@@ -39,7 +39,7 @@ pub struct SlurmPool<'a> {
 /// An array with tasks that have not ended.
 struct ActiveArray {
     array: CampaignArray,
-    job: JobId,
+    job: Job,
     /// The tasks that have not ended, by number.
     tasks: BTreeMap<u32, Assignment>,
     stop: Stop,
@@ -50,16 +50,26 @@ struct ActiveArray {
     was_cancelled: bool,
 }
 
-impl<'a> SlurmPool<'a> {
+impl<'a> ClusterPool<'a> {
+    /// No task runs.
+    pub fn new(
+        dir: &'a CampaignDir,
+        lock: &'a File,
+        settings: &'a CampaignJobs,
+        shutdown_timeout: Duration,
+    ) -> Self {
+        let next_worker = dir.next_worker();
+        Self { dir, lock, settings, shutdown_timeout, next_worker, array: None }
+    }
+
     /// Follows the array that a killed process has left, if there is one.
     pub async fn open(
         dir: &'a CampaignDir,
         lock: &'a File,
-        settings: &'a SlurmArrays,
+        settings: &'a CampaignJobs,
         shutdown_timeout: Duration,
     ) -> Result<Self, Failure> {
-        let next_worker = dir.next_worker();
-        let mut pool = Self { dir, lock, settings, shutdown_timeout, next_worker, array: None };
+        let mut pool = Self::new(dir, lock, settings, shutdown_timeout);
         if let Some(array) = CampaignArray::find_active(dir)? {
             let mut tasks = BTreeMap::new();
             for task in array.tasks() {
@@ -78,28 +88,62 @@ impl<'a> SlurmPool<'a> {
         self.array.iter().flat_map(|array| array.tasks.values())
     }
 
+    /// Creates the workers for lists of episodes, and the array whose tasks they are.
+    fn create(
+        &mut self,
+        lists: &[Vec<Episode>],
+    ) -> Result<(CampaignArray, BTreeMap<u32, Assignment>), Failure> {
+        let first = self.next_worker;
+        let mut tasks = BTreeMap::new();
+        for (task, episodes) in (1..).zip(lists) {
+            self.dir.create_worker(self.next_worker, episodes)?;
+            let ids = episodes.iter().map(|episode| episode.id);
+            tasks.insert(task, Assignment::new(self.dir, self.next_worker, ids));
+            self.next_worker += 1;
+        }
+        Ok((CampaignArray::create(self.dir, first, self.next_worker - first)?, tasks))
+    }
+
+    /// Prints the manifest of the first job of a campaign, which the user submits.
+    pub fn print(mut self, lists: &[Vec<Episode>]) -> Result<(), Failure> {
+        let (array, _) = self.create(lists)?;
+        let (numbers, command) = self.job_parts(&array);
+        print_manifest(&self.settings.cluster, &self.job_array(&array, &numbers, &command))
+    }
+
+    /// The numbers of the tasks, and what they execute.
+    fn job_parts(&self, array: &CampaignArray) -> (Vec<u32>, [String; 2]) {
+        let limit = self.shutdown_timeout.as_millis();
+        let command = ["campaign-task".to_owned(), format!("--shutdown-timeout={limit}ms")];
+        (array.tasks().collect(), command)
+    }
+
+    fn job_array<'b>(
+        &'b self,
+        array: &'b CampaignArray,
+        tasks: &'b [u32],
+        command: &'b [String],
+    ) -> JobArray<'b> {
+        JobArray {
+            dir: &array.dir,
+            name: &array.stored.name,
+            tasks,
+            working_dir: &self.dir.description.working_dir,
+            command,
+        }
+    }
+
     /// Submits an array, unless another process has done so, and follows it.
     async fn follow(
         &mut self,
         array: CampaignArray,
         tasks: BTreeMap<u32, Assignment>,
     ) -> Result<(), Failure> {
-        let program = std::env::current_exe().map_err(Failure::internal)?;
-        let limit = self.shutdown_timeout.as_millis();
-        let numbers: Vec<u32> = array.tasks().collect();
-        let job_array = JobArray {
-            dir: &array.dir,
-            name: &array.stored.name,
-            tasks: &numbers,
-            working_dir: &self.dir.description.working_dir,
-            options: &self.settings.options,
-            command: &[
-                program.to_string_lossy().into_owned(),
-                "campaign-task".to_owned(),
-                format!("--shutdown-timeout={limit}ms"),
-            ],
-        };
-        let job = job_array.find_or_submit(self.lock).await.map_err(slurm_failure)?;
+        let (numbers, command) = self.job_parts(&array);
+        let job_array = self.job_array(&array, &numbers, &command);
+        // A new one has no job yet, and a name that no job has.
+        let submitted = self.settings.cluster.submit(&job_array, true, self.lock).await;
+        let job = submitted.map_err(cluster_failure)?;
         let mut stop = Stop::new(&job, &array.dir, self.shutdown_timeout);
         let was_cancelled = array.dir.join(CANCELLED).exists();
         if was_cancelled {
@@ -107,7 +151,7 @@ impl<'a> SlurmPool<'a> {
         }
         let path = self.dir.path.to_string_lossy();
         let path = shell_words::quote(&path);
-        terminal::notice(format!("slurm: job {job}: `rtf campaign run --resume {path}` resumes"));
+        terminal::notice(format!("{job}: `rtf campaign run --resume {path}` resumes"));
         let progress = TaskProgress::new(&job, numbers.len());
         let (polled_at, is_warned) = (None, false);
         let active =
@@ -117,7 +161,7 @@ impl<'a> SlurmPool<'a> {
     }
 }
 
-impl Pool for SlurmPool<'_> {
+impl Pool for ClusterPool<'_> {
     const POLL: Duration = Duration::from_secs(1);
     const PRINTS: bool = true;
 
@@ -133,15 +177,7 @@ impl Pool for SlurmPool<'_> {
         if lists.is_empty() {
             return Ok(());
         }
-        let first = self.next_worker;
-        let mut tasks = BTreeMap::new();
-        for (task, episodes) in (1..).zip(&lists) {
-            self.dir.create_worker(self.next_worker, episodes)?;
-            let ids = episodes.iter().map(|episode| episode.id);
-            tasks.insert(task, Assignment::new(self.dir, self.next_worker, ids));
-            self.next_worker += 1;
-        }
-        let array = CampaignArray::create(self.dir, first, self.next_worker - first)?;
+        let (array, tasks) = self.create(&lists)?;
         self.follow(array, tasks).await
     }
 
@@ -158,16 +194,20 @@ impl Pool for SlurmPool<'_> {
             let tasks = std::mem::take(&mut active.tasks).into_iter();
             let (still, ended) = tasks.partition(|(task, _)| left.contains(task));
             active.tasks = still;
+            let mut ended_workers = Vec::new();
             let ended: BTreeMap<u32, Assignment> = ended;
             for (task, assignment) in ended {
                 let output = active.array.dir.join(format!("output/{task}.txt"));
-                events.push(WorkerEvent::Ended(EndedWorker {
+                ended_workers.push(EndedWorker {
                     code: exit_code(&active.array.dir, task),
                     is_cancelled: active.was_cancelled,
                     outputs: vec![output, worker::output(self.dir, assignment.worker)],
                     assignment,
-                }));
+                });
             }
+            // A failed hook ends the other tasks, whose episodes are then not the bench's.
+            ended_workers.sort_by_key(|ended| ended.code != Some(exit::HOOK_FAILED));
+            events.extend(ended_workers.into_iter().map(WorkerEvent::Ended));
         }
         if active.tasks.is_empty() {
             active.array.end()?;
@@ -185,19 +225,19 @@ impl Pool for SlurmPool<'_> {
 }
 
 impl ActiveArray {
-    /// Asks Slurm for the tasks that have not ended, if it is time, and stops those that should
+    /// Asks the scheduler for the tasks that have not ended, if it is time, and stops those that should
     /// stop.
     async fn poll(&mut self) -> Option<BTreeSet<u32>> {
         if self.polled_at.is_some_and(|at| at.elapsed() < POLL_INTERVAL) {
             return None;
         }
         self.polled_at = Some(Instant::now());
-        match slurm::active_tasks(&self.job).await {
-            Ok(tasks) => {
+        match self.job.state().await {
+            Ok(state) => {
                 self.is_warned = false;
-                self.stop.stop_tasks(&tasks).await;
-                self.progress.print(&tasks, "");
-                Some(tasks.iter().map(|task| task.number).collect::<BTreeSet<u32>>())
+                self.stop.stop_tasks(&state.tasks).await;
+                self.progress.print(&state, "");
+                Some(state.tasks.iter().map(|task| task.number).collect::<BTreeSet<u32>>())
             }
             Err(error) => {
                 warn_once(&mut self.is_warned, &error);

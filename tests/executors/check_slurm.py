@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Checks `rtf run --executor slurm` with a real cluster of two nodes: tools/slurm.sh check.py RTF.
+"""Checks `rtf run --executor slurm` with a real cluster of two nodes:
+tools/slurm.sh check_slurm.py RTF.
 
 A sharded suite has the verdicts of a local run, a task of a node that fails is run again, a
 cancelled submission leaves nothing, and a submission whose process was killed is resumed. The
-same for campaigns, in campaigns.py. A further argument selects the checks whose names contain it.
+same for campaigns, in slurm_campaigns.py. A further argument selects the checks whose names contain it.
 """
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import signal
@@ -20,83 +20,13 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-import campaigns
+import slurm_campaigns
 from campaigns import Campaigns
-from cluster import (
-    commands,
-    equal,
-    expect,
-    finish,
-    jobs,
-    nodes,
-    parent,
-    scontrol,
-    start_waiting_tasks,
-    until,
-)
+from project import TESTS, Executor, Project, stored
+from slurm import jobs, nodes, scontrol, start_waiting_tasks
+from waiting import commands, equal, expect, finish, parent, until
 
-TESTS = 12
-
-PASSES = "function TestCase.run() end\n"
-FAILS = "function TestCase.run() rtf.fail('it is wrong') end\n"
-# Runs until the file `go` exists.
-WAITS = """function TestCase.run()
-  local started = io.open(os.getenv("RTF_PARAM_DIR") .. "/started", "a")
-  started:write(os.getenv("SLURMD_NODENAME"), "\\n")
-  started:close()
-  while not io.open(os.getenv("RTF_PARAM_DIR") .. "/go") do rtf.sleep(0.05) end
-end
-"""
-
-Verdicts = dict[str, str]
-
-
-class Project:
-    """A directory with a suite, shared by all nodes."""
-
-    def __init__(self, rtf: str, directory: Path) -> None:
-        self.rtf = rtf
-        self.dir = directory
-        (directory / "passes.lua").write_text(PASSES)
-        (directory / "fails.lua").write_text(FAILS)
-        (directory / "waits.lua").write_text(WAITS)
-        names = [f"T{number}" for number in range(TESTS)]
-        kinds = ["fails" if number % 5 == 0 else "passes" for number in range(TESTS)]
-        self.suite("arm", dict(zip(names, kinds, strict=True)))
-        self.suite("slow", dict.fromkeys("ABCD", "waits"))
-        # The licence of the cluster.
-        self.suite("robot", dict.fromkeys("ABCD", "waits"), 'requires="robot"')
-
-    def suite(self, name: str, tests: dict[str, str], attributes: str = "") -> None:
-        """Writes a suite with tests by name."""
-        lines = "".join(f'<test name="{test}">{kind}.lua</test>' for test, kind in tests.items())
-        (self.dir / f"{name}.xml").write_text(f'<suite name="{name}" {attributes}>{lines}</suite>')
-
-    def command(self, *args: str) -> list[str]:
-        """The command of a run."""
-        return [self.rtf, "run", "--no-history", *args]
-
-    def start(self, *args: str) -> subprocess.Popen[str]:
-        """Starts a run with four shards in the cluster."""
-        command = self.command(*args, "--executor", "slurm", "--shards", "4", "--shard-by", "count")
-        command += ["--set", f"dir={self.dir}"]
-        return subprocess.Popen(
-            command, cwd=self.dir, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-        )
-
-    def started(self) -> list[str]:
-        """The nodes of the tests that have started."""
-        path = self.dir / "started"
-        return path.read_text().split() if path.exists() else []
-
-    def go(self) -> None:
-        """Lets the waiting tests end."""
-        (self.dir / "go").touch()
-
-    def submission(self) -> Path:
-        """The directory of the only submission."""
-        (found,) = (self.dir / "rtf-results/.submissions").iterdir()
-        return found
+SLURM = Executor(["--executor", "slurm"])
 
 
 def main() -> int:
@@ -105,7 +35,7 @@ def main() -> int:
     word = sys.argv[2] if len(sys.argv) > 2 else ""
     runs = [verdicts, merged_reports, licences, failed_node, lost_task, cancelled, resumed]
     checks = [(check.__name__, partial(run, check)) for check in runs]
-    checks += [(check.__name__, partial(run_campaigns, check)) for check in campaigns.CHECKS]
+    checks += [(check.__name__, partial(run_campaigns, check)) for check in slurm_campaigns.CHECKS]
     for name, check in checks:
         if word not in name:
             continue
@@ -119,12 +49,12 @@ def main() -> int:
 
 def run(check: Callable[[Project], None], rtf: str, directory: Path) -> None:
     """Runs a check in a new directory."""
-    check(Project(rtf, directory))
+    check(Project(rtf, directory, SLURM))
 
 
 def run_campaigns(check: Callable[[Campaigns], None], rtf: str, directory: Path) -> None:
     """Runs a check of campaigns in a new directory."""
-    check(Campaigns(rtf, directory))
+    check(Campaigns(rtf, directory, SLURM))
 
 
 def verdicts(project: Project) -> None:
@@ -216,16 +146,6 @@ def resumed(project: Project) -> None:
     finish(follower, 0)
     equal(len(stored(project)), 4)
     equal((project.dir / "junit.xml").read_text().count("<testcase"), 4)
-
-
-def stored(project: Project) -> Verdicts:
-    """The verdicts of the newest run, by the names of the tests."""
-    journal = project.dir / "rtf-results/latest/events.jsonl"
-    events = [json.loads(line) for line in journal.read_text().splitlines()]
-    names = {event["test"]: event["name"] for event in events if event["type"] == "test-planned"}
-    finished = [event for event in events if event["type"] == "test-finished"]
-    equal(len(finished), len(names))
-    return {names[event["test"]]: event["verdict"] for event in finished}
 
 
 if __name__ == "__main__":
