@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import signal
 from collections import Counter
-from pathlib import Path
 
 from campaigns import EPISODES, Campaigns
 from kubernetes import NAMESPACE, Cluster
@@ -17,7 +16,7 @@ HOOKED = """<suite name="hooked">
 </suite>"""
 
 
-def campaign_results(cluster: Cluster, campaigns: Campaigns) -> None:
+def campaign_results(_: Cluster, campaigns: Campaigns) -> None:
     """The results of all episodes are the same on 2 local workers and in the cluster."""
     finish(campaigns.start("--workers", "2"), 0)
     expected = campaigns.results()
@@ -28,7 +27,8 @@ def campaign_results(cluster: Cluster, campaigns: Campaigns) -> None:
     equal(campaigns.results(), expected)
     equal({node for _, node in campaigns.ran()}, {"n1", "n2"})
     expect("4 of 4 tasks ended, 0 running, 0 waiting" in errors, errors)
-    equal(cluster.pods("Failed"), [])
+    # Failed episodes are no failure of a pod that another one would repeat.
+    expect("failed" not in errors, errors)
 
 
 def campaign_by_hand(cluster: Cluster, campaigns: Campaigns) -> None:
@@ -119,18 +119,13 @@ def campaign_cancelled_and_continued(cluster: Cluster, campaigns: Campaigns) -> 
     process.send_signal(signal.SIGINT)
     finish(process, 130)
     equal((cluster.objects("jobs"), cluster.objects("pods")), ([], []))
-    equal(commands(lambda command: is_in(campaigns.dir, command)), {})
+    equal(commands(lambda command: str(campaigns.dir) in command), {})
     before = campaigns.recorded()
     expect(len(before) < EPISODES - 4, str(before))
     campaigns.release()
     finish(campaigns.resume(), 0)
     equal(campaigns.recorded(), Counter(range(1, EPISODES + 1)))
     equal(sorted(campaigns.results()), list(range(1, EPISODES + 1)))
-
-
-def is_in(directory: Path, command: str) -> bool:
-    """Whether a command names a file in a directory."""
-    return str(directory) in command
 
 
 CHECKS = [

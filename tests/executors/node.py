@@ -12,6 +12,7 @@ of its processes: it must be the first process of a process namespace.
 
 from __future__ import annotations
 
+import ctypes
 import json
 import os
 import re
@@ -29,11 +30,14 @@ from typing import Any
 
 # Binds pairs of directories, changes the directory, and executes the command of the container.
 START = """
+mount -t proc proc /proc
 while [ "$1" != -- ]; do mkdir -p "$2"; mount --bind "$1" "$2"; shift 2; done
 cd "$2" && shift 2 && exec "$@"
 """
 INSECURE = ssl._create_unverified_context()
 LAST_LOG_LINES = 80
+LIBC = ctypes.CDLL(None, use_errno=True)
+CLONE_NEWPID = 0x20000000
 
 Object = dict[str, Any]
 
@@ -113,8 +117,7 @@ class Pod:
 
     def start(self) -> subprocess.Popen[bytes]:
         """Starts the container."""
-        command = ["unshare", "--mount", "--pid", "--fork", "--mount-proc", "--kill-child", "--"]
-        command += ["/bin/sh", "-c", START, "sh"]
+        command = ["unshare", "--mount", "--", "/bin/sh", "-e", "-c", START, "sh"]
         for mount in self.container.get("volumeMounts", []):
             command += [self.volume(mount["name"]), mount["mountPath"]]
         command += ["--", self.container.get("workingDir", "/")]
@@ -123,10 +126,22 @@ class Pod:
             environment[variable["name"]] = self.value(variable)
         words = self.container["command"] + self.container.get("args", [])
         command += [expand(word, environment) for word in words]
-        with self.log.open("wb") as log:
-            return subprocess.Popen(
-                command, env=environment, stdin=subprocess.DEVNULL, stdout=log, stderr=log
-            )
+        started: list[subprocess.Popen[bytes]] = []
+
+        def start() -> None:
+            # The next process of this thread is the first one of a namespace.
+            if LIBC.unshare(CLONE_NEWPID) != 0:
+                raise OSError(ctypes.get_errno(), "unshare")
+            nothing = subprocess.DEVNULL
+            with self.log.open("wb") as log:
+                started.append(
+                    subprocess.Popen(command, env=environment, stdin=nothing, stdout=log, stderr=log)
+                )
+
+        thread = threading.Thread(target=start)
+        thread.start()
+        thread.join()
+        return started[0]
 
     def volume(self, name: str) -> str:
         """The directory of a volume."""
@@ -191,17 +206,9 @@ class Pod:
         self.kill_timer.start()
 
     def signal(self, number: int) -> None:
-        """Signals the first process of the pod: the child of `unshare`, which forks at once."""
+        """Signals the first process of the pod."""
         assert self.process
-        parent = self.process.pid
-        while self.process.poll() is None:
-            try:
-                children = Path(f"/proc/{parent}/task/{parent}/children").read_text().split()
-            except OSError:
-                return
-            if children:
-                os.kill(int(children[0]), number)
-                return
+        self.process.send_signal(number)
 
 
 class Node:

@@ -16,7 +16,7 @@ FAILS = "function TestCase.run() rtf.fail('it is wrong') end\n"
 # Runs until the file `go` exists.
 WAITS = """function TestCase.run()
   local started = io.open(os.getenv("RTF_PARAM_DIR") .. "/started", "a")
-  started:write(os.getenv("SLURMD_NODENAME"), "\\n")
+  started:write(os.getenv("SLURMD_NODENAME") or os.getenv("NODE"), "\\n")
   started:close()
   while not io.open(os.getenv("RTF_PARAM_DIR") .. "/go") do rtf.sleep(0.05) end
 end

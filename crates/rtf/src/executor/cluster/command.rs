@@ -50,7 +50,7 @@ impl ClusterError {
     /// What the user can do about it.
     pub fn hint(&self) -> Option<&'static str> {
         match self {
-            Self::Execute { command: "kubectl", .. } => {
+            Self::Execute { command, .. } if command.starts_with("kubectl") => {
                 Some("install `kubectl`, and let its configuration name the cluster")
             }
             Self::Execute { .. } => Some("run `rtf` on a machine with Slurm's commands on PATH"),
