@@ -5,7 +5,7 @@
 . "$(dirname "$0")/env.sh"
 
 # The newest version that a module in tests/ requires.
-required=$(sed -n 's/^go //p' tests/telemetry/go.mod tests/telemetry/collector/go.mod | sort -V | tail -n 1)
+required=$(sed -n 's/^go //p' tests/{telemetry,telemetry/collector,executors/control_plane}/go.mod | sort -V | tail -n 1)
 version=$(go env GOVERSION 2>/dev/null || true)
 
 if [ -n "$version" ] && printf 'go%s\n' "$required" "${version#go}" | sort -V -C; then

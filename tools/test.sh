@@ -129,7 +129,7 @@ lint_python() {
   "$checkers/mypy" tests/history/*.py
   "$checkers/mypy" tests/campaign/*.py
   "$checkers/mypy" tests/telemetry/*.py
-  "$checkers/mypy" tests/slurm/*.py
+  "$checkers/mypy" tests/executors/*.py
 }
 
 sdk_python() {
@@ -405,9 +405,24 @@ history_postgres() {
   RTF_POSTGRES_BIN=$bin cargo test --quiet --locked -p rtf-history --test postgres -- --ignored
 }
 
-# `rtf run --executor slurm` with a real cluster, which needs root.
+# `--executor slurm` with a real cluster, which needs root.
 executor_slurm() {
-  tools/slurm.sh python3 tests/slurm/check.py "$TARGET/debug/rtf"
+  tools/slurm.sh python3 tests/executors/check_slurm.py "$TARGET/debug/rtf"
+}
+
+# `--executor kubernetes` with a real control plane, and nodes that need root.
+executor_kubernetes() {
+  local programs
+  programs=$(tests/executors/control_plane/build.sh)
+  unshare --mount --pid --fork --mount-proc --kill-child \
+    python3 tests/executors/check_kubernetes.py "$TARGET/debug/rtf" "$programs"
+}
+
+# What is submitted to Kubernetes, against its schemas.
+kubernetes_manifests() {
+  local programs
+  programs=$(tests/executors/control_plane/build.sh)
+  "$(tools/venv.sh kubernetes)/python" tests/executors/manifests.py "$TARGET/debug/rtf" "$programs"
 }
 
 # Runs an npm script of the page.
@@ -498,6 +513,8 @@ step 'history export' history_export
 step 'history in PostgreSQL' history_postgres
 step 'telemetry' telemetry
 step 'executor slurm' executor_slurm
+step 'executor kubernetes' executor_kubernetes
+step 'kubernetes manifests' kubernetes_manifests
 step 'debugging' debugging
 step 'ci helpers' ci_helpers
 step 'guide' env RTF_PYTHON="$checkers/python" tools/check_docs.py "$TARGET/release/rtf" README.md \

@@ -10,6 +10,7 @@ from measuring.bench import Bench
 from measuring.model import Group
 
 from lines import (
+    campaigns,
     collapse,
     frameworks,
     history,
@@ -34,6 +35,7 @@ MODULES = (
     collapse,
     page,
     watched,
+    campaigns,
     slurm,
 )
 

@@ -29,9 +29,9 @@ run_buildah rm "$base" >/dev/null
 
 mkdir -p "$work/context/suites"
 cp "$packages"/rtf_*.deb "$work/context"
-cp tests/install/downstream/interpreted.xml tests/install/downstream/*.{lua,py,rb} "$work/context/suites"
+cp tests/install/downstream/interpreted.xml tests/install/downstream/*.{lua,py} "$work/context/suites"
 run_buildah build --quiet --file packaging/container/Containerfile --build-arg BASE=localhost/debian \
-  --build-arg PACKAGES="python3 ruby" --build-arg DIRECTORY=/home/ada/suites --tag localhost/robot-tests "$work/context"
+  --build-arg DIRECTORY=/home/ada/suites --tag localhost/robot-tests "$work/context"
 
 container=$(run_buildah from --pull-never localhost/robot-tests)
 # As the script of a task calls it: in the image's working directory, with `rtf` from PATH, and results in a volume.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Tests the Debian packages: two builds are identical, lintian reports no error, and in a minimal
 # Debian (tools/minimal_debian.sh) a user installs them, runs a suite, builds a plug-in, replaces
-# robot-testing-framework, and removes everything.
+# robot-testing-framework, and removes everything. The image of packaging/container is built and used.
 #
 # Needs `make build`, and root, or sudo without a password.
 
@@ -114,3 +114,7 @@ started=$SECONDS
 run_in_base "$debian" network /project /session.sh
 say "in a minimal Debian: $((SECONDS - started)) s"
 finish_checks "two builds differ, or lintian found an error"
+
+# An image for Kubernetes.
+unpack_base "$work/image"
+tests/install/container.sh "$work/packages" "$work/image"

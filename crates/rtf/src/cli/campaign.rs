@@ -47,7 +47,7 @@ pub struct CampaignRunArgs {
 
     /// Continue an earlier campaign, whose results are in the directory DIR
     #[arg(long, value_name = "DIR", conflicts_with_all = ["file", "profile", "set"])]
-    #[arg(conflicts_with_all = ["executor", "shards", "args", "licenses"])]
+    #[arg(conflicts_with_all = ["executor", "shards", "args", "licenses", "image", "claim", "patch"])]
     pub resume: Option<PathBuf>,
 
     /// Time limit for all tear-downs and hooks after a signal; then rtf kills all

@@ -176,7 +176,7 @@ impl Object {
         let status = &self.status;
         let containers = status.init_container_statuses.iter().chain(&status.container_statuses);
         let ended = containers.filter_map(|container| container.state.terminated.as_ref());
-        let Some(ended) = ended.filter(|it| it.exit_code != 0).last() else {
+        let Some(ended) = ended.filter(|it| it.exit_code != 0).next_back() else {
             return Some(String::new());
         };
         let Terminated { exit_code, reason, message } = ended;
