@@ -1,4 +1,4 @@
-"""10 000 episodes of a trivial simulator: what rtf adds to each, its memory, and the merged report."""
+"""10 000 episodes of a trivial simulator: what rtf adds to each, its memory, the merged report."""
 
 from __future__ import annotations
 

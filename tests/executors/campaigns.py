@@ -15,7 +15,8 @@ from waiting import equal
 GRASP = """function TestCase.run()
   local dir = os.getenv("RTF_PARAM_DIR")
   local ran = io.open(dir .. "/ran", "a")
-  ran:write(os.getenv("RTF_EPISODE"), " ", os.getenv("SLURMD_NODENAME") or os.getenv("NODE") or "local", "\\n")
+  local node = os.getenv("SLURMD_NODENAME") or os.getenv("NODE") or "local"
+  ran:write(os.getenv("RTF_EPISODE"), " ", node, "\\n")
   ran:close()
   rtf.sleep(0.1)
   while io.open(dir .. "/hold") do rtf.sleep(0.05) end

@@ -3,11 +3,12 @@
 
     unshare --mount --pid --fork --mount-proc --kill-child check_kubernetes.py RTF PROGRAMS [WORD]
 
-PROGRAMS is the directory that control_plane/build.sh prints. All processes end with this one. The results directory is a mount that
-only this process and the pods with the volume see. A sharded suite has the verdicts of a local run,
-pods that fail or are evicted run again, a failed hook ends the job, a cancelled submission leaves
-nothing, and a submission whose process was killed is resumed. The same for campaigns, in
-kubernetes_campaigns.py. WORD selects the checks whose names contain it.
+PROGRAMS is the directory that control_plane/build.sh prints. All processes end with this one. The
+results directory is a mount that only this process and the pods with the volume see. A sharded
+suite has the verdicts of a local run, pods that fail or are evicted run again, a failed hook ends
+the job, a cancelled submission leaves nothing, and a submission whose process was killed is
+resumed. The same for campaigns, in kubernetes_campaigns.py. WORD selects the checks whose names
+contain it.
 """
 
 from __future__ import annotations
@@ -163,9 +164,7 @@ def by_hand(cluster: Cluster, project: Project) -> None:
     (project.dir / "job.json").write_text(output)
     job = json.loads(output)
     equal(job["spec"]["completionMode"], "Indexed")
-    cluster.kubectl(
-        "create", "--namespace", NAMESPACE, "--filename", str(project.dir / "job.json")
-    )
+    cluster.kubectl("create", "--namespace", NAMESPACE, "--filename", str(project.dir / "job.json"))
     resume = [project.rtf, "run", "--resume", str(project.submission())]
     finish(project.executor.start(resume, Path("/")), 1)
     equal(len(stored(project)), TESTS)
@@ -257,7 +256,7 @@ def no_image(cluster: Cluster, project: Project) -> None:
     """An image that cannot be pulled is reported, and the job can be cancelled."""
     project.executor = executor(cluster, image="missing:1")
     process = project.start("arm.xml")
-    lines = []
+    lines: list[str] = []
     assert process.stderr
     while "ErrImagePull" not in (line := process.stderr.readline()):
         expect(line != "", "".join(lines))
@@ -268,13 +267,14 @@ def no_image(cluster: Cluster, project: Project) -> None:
     nothing_is_left(cluster, project.dir)
 
 
-def no_volume(cluster: Cluster, project: Project) -> None:
-    """A task that does not find the submission is reported with what it printed."""
-    wrong = PATCH + '          volumeMounts: [{name: results, mountPath: "/tmp/elsewhere"}]\n'
-    (project.dir / "patch.yaml").write_text(wrong + "          $patch: merge\n")
-    (project.dir / "patch.yaml").write_text(PATCH.replace("env:", "command: [sh, /missing]\n          env:"))
+def no_script(cluster: Cluster, project: Project) -> None:
+    """A container that cannot start is reported with what it printed, and is not repeated."""
+    command = "command: [sh, /missing]\n          "
+    (project.dir / "patch.yaml").write_text(PATCH.replace("env:", f"{command}env:"))
     errors = finish(project.start("arm.xml"), 5)
-    expect(re.search("exit code (2|127), and is not repeated: .*missing", errors) is not None, errors)
+    expect(
+        re.search("exit code (2|127), and is not repeated: .*missing", errors) is not None, errors
+    )
     expect("error: task 1 died: it has no journal" in errors, errors)
     equal(cluster.pods("Running"), [])
 
@@ -309,7 +309,7 @@ SUITES = [
     cancelled_twice,
     resumed,
     no_image,
-    no_volume,
+    no_script,
     refusals,
 ]
 

@@ -4,7 +4,8 @@ tools/slurm.sh check_slurm.py RTF.
 
 A sharded suite has the verdicts of a local run, a task of a node that fails is run again, a
 cancelled submission leaves nothing, and a submission whose process was killed is resumed. The
-same for campaigns, in slurm_campaigns.py. A further argument selects the checks whose names contain it.
+same for campaigns, in slurm_campaigns.py. A further argument selects the checks whose names
+contain it.
 """
 
 from __future__ import annotations

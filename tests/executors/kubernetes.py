@@ -46,6 +46,7 @@ class Cluster:
             self.kubeconfig(user).write_text(json.dumps(self.configuration(user)))
 
     def __enter__(self) -> Cluster:
+        """Starts everything."""
         try:
             self.start_control_plane()
             self.create_objects()
@@ -59,6 +60,7 @@ class Cluster:
     def __exit__(
         self, kind: type[BaseException] | None, _: BaseException | None, __: TracebackType | None
     ) -> None:
+        """Ends everything; after an error, prints the logs."""
         if kind:
             for log in sorted(self.dir.glob("*.out")):
                 tail = log.read_text(errors="replace").splitlines()[-8:]
@@ -207,14 +209,17 @@ class Cluster:
         pods = self.objects("pods")
         return [pod["metadata"]["name"] for pod in pods if pod["status"].get("phase") == phase]
 
+    def uncordon(self) -> bool:
+        """Permits pods on all nodes. Returns whether all nodes exist."""
+        return self.kubectl_succeeds("uncordon", *NODES)
+
     def clean(self) -> None:
         """Removes ended jobs, and waits until nothing is left."""
         self.kubectl("delete", "jobs", "--all", "--namespace", NAMESPACE, "--cascade=foreground")
         until("no pod is left", lambda: not self.objects("pods"))
         for node in NODES.keys() - self.processes.keys():
             self.start_node(node)
-        for node in NODES:
-            until("the node exists", lambda node=node: self.kubectl_succeeds("uncordon", node))
+        until("all nodes exist", self.uncordon)
         shutil.rmtree(self.volume)
         self.volume.mkdir()
 

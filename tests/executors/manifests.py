@@ -58,7 +58,11 @@ def main() -> int:
             command = [rtf, *verb, *OPTIONS, "--shards", "2", *options]
             path = f"{programs}:{os.environ['PATH']}"
             done = subprocess.run(
-                command, check=True, cwd=directory, capture_output=True, env=os.environ | {"PATH": path}
+                command,
+                check=True,
+                cwd=directory,
+                capture_output=True,
+                env=os.environ | {"PATH": path},
             )
             manifest: dict[str, Any] = json.loads(done.stdout)
             return manifest
@@ -69,21 +73,22 @@ def main() -> int:
             printed(*run, options=["--executor-patch", "patch.yaml", "--executor-licenses"]),
             printed("campaign", "run", "campaign.xml", options=["--executor-claim", "results"]),
         ]
-        check_contents(*manifests, directory)
+        check_contents(manifests, directory)
     for manifest in manifests:
         for version in VERSIONS:
             kubernetes_validate.validate(manifest, version, strict=True)
-        misspelt = json.loads(json.dumps(manifest).replace("podFailurePolicy", "podFailurePolicies"))
+        misspelt = json.loads(
+            json.dumps(manifest).replace("podFailurePolicy", "podFailurePolicies")
+        )
         expect(not is_valid(misspelt), "a misspelt field is valid")
     print(f"ok  {len(manifests)} manifests, Kubernetes {', '.join(VERSIONS)}")
     return 0
 
 
-def check_contents(
-    run: dict[str, Any], patched: dict[str, Any], campaign: dict[str, Any], directory: Path
-) -> None:
+def check_contents(manifests: list[dict[str, Any]], directory: Path) -> None:
     """The options and the patch are in the manifests."""
-    for manifest in (run, patched, campaign):
+    run, patched, campaign = manifests
+    for manifest in manifests:
         equal((manifest["spec"]["completions"], manifest["spec"]["completionMode"]), (2, "Indexed"))
     pod = run["spec"]["template"]["spec"]
     claim = {"name": "results", "persistentVolumeClaim": {"claimName": "results"}}

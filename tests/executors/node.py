@@ -135,7 +135,9 @@ class Pod:
             nothing = subprocess.DEVNULL
             with self.log.open("wb") as log:
                 started.append(
-                    subprocess.Popen(command, env=environment, stdin=nothing, stdout=log, stderr=log)
+                    subprocess.Popen(
+                        command, env=environment, stdin=nothing, stdout=log, stderr=log
+                    )
                 )
 
         thread = threading.Thread(target=start)

@@ -68,7 +68,9 @@ class Project:
 
     def start(self, *args: str) -> subprocess.Popen[str]:
         """Starts a run with four shards in the cluster."""
-        command = self.command(*args, *self.executor.options, "--shards", "4", "--shard-by", "count")
+        command = self.command(
+            *args, *self.executor.options, "--shards", "4", "--shard-by", "count"
+        )
         command += ["--set", f"dir={self.dir}"]
         return self.executor.start(command, self.dir)
 

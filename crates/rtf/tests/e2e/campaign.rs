@@ -275,11 +275,21 @@ fn mistakes_are_reported_before_anything_starts() {
     hint: `rtf campaign run` prints the directory of its results
     ");
     let slurm = ["--executor", "slurm", "--shards", "2"];
+    let kubernetes = ["--executor", "kubernetes", "--shards", "2"];
     for (options, error) in [
-        (&["--shards", "2"][..], "`--shards` has no effect without `--executor slurm`"),
+        (&["--shards", "2"][..], "`--shards` has no effect without `--executor slurm` or"),
         (&slurm[..2], "`--executor slurm` needs the number of shards"),
         (&[&slurm[..], &["-w2"]].concat(), "`--workers` has no effect with `--executor slurm`"),
         (&[&slurm[..], &["--resume", "."]].concat(), "cannot be used with"),
+        (
+            &[&slurm[..], &["--executor-print"]].concat(),
+            "`--executor-print` has no effect without `--executor kubernetes`",
+        ),
+        (&kubernetes, "`--executor kubernetes` needs an image with `rtf` and the suites"),
+        (
+            &[&kubernetes[..], &["--executor-image", "i"]].concat(),
+            "`--executor kubernetes` needs a shared volume for the results",
+        ),
     ] {
         let finished = run(&valid, options);
         assert_eq!(finished.code, Some(2), "{options:?}");

@@ -175,8 +175,8 @@ impl Object {
     fn failure(&self) -> Option<String> {
         let status = &self.status;
         let containers = status.init_container_statuses.iter().chain(&status.container_statuses);
-        let ended = containers.filter_map(|container| container.state.terminated.as_ref());
-        let Some(ended) = ended.filter(|it| it.exit_code != 0).next_back() else {
+        let mut ended = containers.filter_map(|container| container.state.terminated.as_ref());
+        let Some(ended) = ended.rfind(|it| it.exit_code != 0) else {
             return Some(String::new());
         };
         let Terminated { exit_code, reason, message } = ended;
