@@ -110,7 +110,8 @@ put_tree docs share/doc/rtf/docs '*.md' '*.png' '*.svg'
 put_tree spec share/doc/rtf/spec '*.md' '*.xsd'
 # What the pages lead to.
 for file in sdk/{ada,lua,python,ruby}/README.md sdk/c/include/rtf/plugin.h fixtures/needs.json schemas/openapi.json \
-  packaging/action/{action,example}.yml packaging/gitlab/rtf.yml packaging/jenkins/Jenkinsfile; do
+  packaging/action/{action,example}.yml packaging/gitlab/rtf.yml packaging/jenkins/Jenkinsfile \
+  packaging/container/{Containerfile,role.yaml}; do
   put 644 "$file" "share/doc/rtf/$file"
 done
 put_tree examples share/doc/rtf/examples '*.md' '*.xml' '*.toml' '*.launch' '*.sh' CMakeLists.txt \

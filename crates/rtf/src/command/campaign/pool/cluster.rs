@@ -16,7 +16,7 @@ use crate::campaign::directory::{CampaignDir, CampaignJobs};
 use crate::campaign::read_list;
 use crate::error::Failure;
 use crate::executor::cluster::{Job, JobArray};
-use crate::executor::follow::{POLL_INTERVAL, warn_once};
+use crate::executor::follow::{PollTimer, warn_once};
 use crate::executor::stop::{CANCELLED, Stop};
 use crate::executor::task_progress::TaskProgress;
 use crate::executor::{EXIT_CODE, cluster_failure, last_attempt, print_manifest};
@@ -44,7 +44,7 @@ struct ActiveArray {
     tasks: BTreeMap<u32, Assignment>,
     stop: Stop,
     progress: TaskProgress,
-    polled_at: Option<Instant>,
+    timer: PollTimer,
     is_warned: bool,
     /// Whether the tasks were stopped before this process followed them.
     was_cancelled: bool,
@@ -153,9 +153,9 @@ impl<'a> ClusterPool<'a> {
         let path = shell_words::quote(&path);
         terminal::notice(format!("{job}: `rtf campaign run --resume {path}` resumes"));
         let progress = TaskProgress::new(&job, numbers.len());
-        let (polled_at, is_warned) = (None, false);
+        let (timer, is_warned) = (PollTimer::now(), false);
         let active =
-            ActiveArray { array, job, tasks, stop, progress, polled_at, is_warned, was_cancelled };
+            ActiveArray { array, job, tasks, stop, progress, timer, is_warned, was_cancelled };
         self.array = Some(active);
         Ok(())
     }
@@ -219,7 +219,7 @@ impl Pool for ClusterPool<'_> {
     async fn stop(&mut self, signal: i32) {
         if let Some(active) = &mut self.array {
             active.stop.request(signal).await;
-            active.polled_at = None;
+            active.timer = PollTimer::now();
         }
     }
 }
@@ -228,11 +228,13 @@ impl ActiveArray {
     /// Asks the scheduler for the tasks that have not ended, if it is time, and stops those that should
     /// stop.
     async fn poll(&mut self) -> Option<BTreeSet<u32>> {
-        if self.polled_at.is_some_and(|at| at.elapsed() < POLL_INTERVAL) {
+        if !self.timer.is_due() {
             return None;
         }
-        self.polled_at = Some(Instant::now());
-        match self.job.state().await {
+        let begin = Instant::now();
+        let state = self.job.state().await;
+        self.timer = PollTimer::after(begin);
+        match state {
             Ok(state) => {
                 self.is_warned = false;
                 self.stop.stop_tasks(&state.tasks).await;
