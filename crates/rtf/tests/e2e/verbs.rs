@@ -250,14 +250,21 @@ fn help_of_run() {
                                 and suspend its limits
 
     Executor:
-          --executor <EXECUTOR>  Where to run: on this machine (`local`), or as a job array of `slurm`
-                                 [default: local]
-          --shards <N>           Split the tests or episodes into N shards, which the executor runs as
-                                 tasks
-          --executor-arg <ARG>   Pass an argument to `sbatch`: `--partition=sim`, `--time=1:00:00`
-          --executor-licenses    Request a licence of Slurm for each resource that the suites require
-          --resume               Follow and merge the submission whose directory is FILE, with its
-                                 original options
+          --executor <EXECUTOR>     Where to run: on this machine (`local`), or in a cluster (`slurm`,
+                                    `kubernetes`) [default: local]
+          --shards <N>              Split the tests or episodes into N shards, which the executor runs
+                                    as tasks
+          --executor-arg <ARG>      Pass an argument to `sbatch` (`--partition=sim`) or `kubectl`
+                                    (`--namespace=sim`)
+          --executor-licenses       Request a licence of Slurm or an extended resource of Kubernetes for
+                                    each resource that the suites require
+          --executor-image <IMAGE>  Kubernetes: the container image with `rtf` and the suites
+          --executor-claim <CLAIM>  Kubernetes: the PersistentVolumeClaim of the results directory
+          --executor-patch <FILE>   Kubernetes: merge FILE (YAML or JSON) into the Job: resources, node
+                                    selectors, variables
+          --executor-print          Kubernetes: print the Job instead of submitting it
+          --resume                  Follow and merge the submission whose directory is FILE, with its
+                                    original options
     ----- stderr
     ");
 }
