@@ -415,14 +415,14 @@ executor_kubernetes() {
   local programs
   programs=$(tests/executors/control_plane/build.sh)
   unshare --mount --pid --fork --mount-proc --kill-child \
-    python3 tests/executors/check_kubernetes.py "$TARGET/debug/rtf" "$programs"
+    python3 tests/executors/check_kubernetes.py "$TARGET/release/rtf" "$programs"
 }
 
 # What is submitted to Kubernetes, against its schemas.
 kubernetes_manifests() {
   local programs
   programs=$(tests/executors/control_plane/build.sh)
-  "$(tools/venv.sh kubernetes)/python" tests/executors/manifests.py "$TARGET/debug/rtf" "$programs"
+  "$(tools/venv.sh kubernetes)/python" tests/executors/manifests.py "$TARGET/release/rtf" "$programs"
 }
 
 # Runs an npm script of the page.
@@ -473,6 +473,9 @@ robots_and_frameworks() {
   step 'example 07' example_07
   step 'example 08' example_08
   step 'example 10' example_10
+  # The first step builds Kubernetes, which takes minutes.
+  step 'kubernetes manifests' kubernetes_manifests
+  step 'executor kubernetes' executor_kubernetes
   step_with 'clock ros2' ros2 clock_ros2
   step_with 'fixture ros2launch' ros2 fixture_ros2launch
   step_with 'fixture orocos' orocos fixture_orocos
@@ -513,8 +516,6 @@ step 'history export' history_export
 step 'history in PostgreSQL' history_postgres
 step 'telemetry' telemetry
 step 'executor slurm' executor_slurm
-step 'executor kubernetes' executor_kubernetes
-step 'kubernetes manifests' kubernetes_manifests
 step 'debugging' debugging
 step 'ci helpers' ci_helpers
 step 'guide' env RTF_PYTHON="$checkers/python" tools/check_docs.py "$TARGET/release/rtf" README.md \

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-LIMIT = 120.0
+LIMIT = 240.0
 """Seconds in which each expected event must occur."""
 
 
