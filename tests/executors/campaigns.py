@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from project import Executor
-from waiting import equal
+from waiting import equal, expect, finish, until
 
 # Half of the episodes fail. While the file `hold` exists, they wait.
 GRASP = """function TestCase.run()
@@ -67,6 +67,15 @@ class Campaigns:
         """Starts a campaign with four tasks."""
         return self.start(*self.executor.options, "--shards", "4", *args, **campaign)
 
+    def start_and_hold(self, results: int) -> subprocess.Popen[str]:
+        """Starts a campaign with four tasks, which all wait in an episode after some results."""
+        process = self.start_in_cluster()
+        until("some episodes have results", lambda: self.recorded().total() >= results)
+        self.hold()
+        until("all tasks wait", lambda: len(self.ran()) == self.recorded().total() + 4)
+        expect(len(self.recorded()) < EPISODES - 4, "most episodes have results")
+        return process
+
     def resume(self) -> subprocess.Popen[str]:
         """Continues the newest campaign."""
         return self.rtf_campaign("--resume", str(self.newest()))
@@ -115,3 +124,23 @@ class Campaigns:
         files = self.newest().glob("workers/*/*Z-*/episodes.jsonl")
         lines = [json.loads(line) for file in files for line in file.read_text().splitlines()]
         return Counter(line["episode"] for line in lines if "outcome" in line)
+
+    def ran_once(self) -> None:
+        """Each episode has one final result and one result of a worker."""
+        equal(self.recorded(), Counter(range(1, EPISODES + 1)))
+        equal(sorted(self.results()), list(range(1, EPISODES + 1)))
+
+    def two_tasks_ran_again(self, before: Counter[int]) -> None:
+        """After a node failed, its two tasks continued in the same job, without the episodes that
+        had results before. Each episode has one final result, which is that of a local run.
+        """
+        results = self.results()
+        equal(sorted(results), list(range(1, EPISODES + 1)))
+        equal([path.name for path in (self.newest() / "arrays").iterdir()], ["1"])
+        attempts = self.newest().glob("arrays/1/parts/*/*")
+        equal(sorted(attempt.name for attempt in attempts), ["0", "0", "0", "0", "1", "1"])
+        runs = Counter(episode for episode, _ in self.ran())
+        equal({episode for episode in before if runs[episode] > 1}, set())
+        equal(len([episode for episode in runs if runs[episode] == 2]), 2)
+        finish(self.start("--workers", "2"), 0)
+        equal(self.results(), results)

@@ -31,12 +31,12 @@ mkdir -p "$work/context/suites"
 cp "$packages"/rtf_*.deb "$work/context"
 cp tests/install/downstream/interpreted.xml tests/install/downstream/*.{lua,py} "$work/context/suites"
 run_buildah build --quiet --file packaging/container/Containerfile --build-arg BASE=localhost/debian \
-  --build-arg DIRECTORY=/home/ada/suites --tag localhost/robot-tests "$work/context"
+  --build-arg DIRECTORY=/home/me/suites --tag localhost/robot-tests "$work/context"
 
 container=$(run_buildah from --pull-never localhost/robot-tests)
 # As the script of a task calls it: in the image's working directory, with `rtf` from PATH, and results in a volume.
 mkdir "$work/results"
 # shellcheck disable=SC2016 # the shell in the container expands that
-run_buildah run --volume "$work/results:/home/ada/suites/rtf-results" "$container" -- \
-  /bin/sh -c '[ "$PWD" = /home/ada/suites ] && exec rtf run --no-history interpreted.xml'
+run_buildah run --volume "$work/results:/home/me/suites/rtf-results" "$container" -- \
+  /bin/sh -c '[ "$PWD" = /home/me/suites ] && exec rtf run --no-history interpreted.xml'
 [ -e "$work/results/latest/events.jsonl" ] || die "the results are not in the volume"
