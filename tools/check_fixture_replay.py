@@ -13,6 +13,7 @@ import contextlib
 import json
 import os
 import signal
+import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -126,7 +127,7 @@ class Scene:
 
     def killed(self) -> None:
         """A replay that dies before its end is a collapse."""
-        play = f"{self.mcap} /level --to {self.middleware} --rate 0.05"
+        play = f"{self.mcap} /level --to {self.middleware} --rate 0.5"
         run = self.start("replay", play, "killed")
 
         def kill_replay() -> None:
@@ -238,21 +239,18 @@ def cut(file: Path, torn: Path) -> tuple[Path, int]:
 
 
 def cut_bag(file: Path, torn: Path) -> tuple[Path, int]:
-    """Write a bag with many chunks and cut it off; the number of complete messages."""
+    """Write a bag with many chunks and cut it off; the number of messages ROS can restore."""
     import rosbag  # noqa: PLC0415 - only with ROS
 
-    ends: list[tuple[int, int]] = []
-    written = 0
     with rosbag.Bag(str(file)) as bag, rosbag.Bag(str(torn), "w", chunk_threshold=512) as copy:
         for topic, message, at in bag.read_messages(topics=["/level"]):
             copy.write(topic, message, at)
-            written += 1
-            if not copy._chunk_open:
-                ends.append((copy._file.tell(), written))
-    end, complete = ends[len(ends) // 2]
-    # In the next chunk.
-    os.truncate(torn, end + 20)
-    return torn, complete
+    os.truncate(torn, torn.stat().st_size // 2)
+    restored = torn.with_name("restored.bag")
+    restored.write_bytes(torn.read_bytes())
+    subprocess.run(["rosbag", "reindex", "-q", str(restored)], check=True)
+    with rosbag.Bag(str(restored)) as bag:
+        return torn, int(bag.get_message_count())
 
 
 if __name__ == "__main__":
