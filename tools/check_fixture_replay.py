@@ -9,27 +9,22 @@ MIDDLEWARE is `ros1` or `yarp`; all its programs are real. Needs a Python with t
 
 from __future__ import annotations
 
-import contextlib
-import json
 import os
 import signal
-import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import processes
+from recordings import cut, cut_bag, series
 from run import Run, expect, expect_in
 
+REPLAY = "live.replay"
 VERDICTS = {"few": "passed", "none": "failed"}
 # The node computes the same numbers from the same numbers.
 VALUE_TOLERANCE = 1e-12
 # Of the times between two messages; the machine is busy.
 TIME_TOLERANCE_SECS = 0.75
-
-Series = dict[str, list[tuple[float, float]]]
 
 
 def main() -> int:
@@ -69,56 +64,64 @@ class Scene:
         expect("recorded messages", len(self.recorded["/level"]), 150)
         alarms = {value for _, value in self.recorded["/alarms"]}
         expect("the limit of the tests divides the alarms", 0 < max(alarms) < 100, True)
+        self.command_for_failed_test(run)
+
+    def command_for_failed_test(self, run: Run) -> None:
+        """The command that the report prints repeats the failure without the live source."""
+        lines = [line.split() for line in run.output.read_text().splitlines()]
+        (words,) = [line[1:] for line in lines if line[:1] == ["replay"]]
+        expect("command", words[:2], ["rtf", "run"])
+        expect(
+            "its recording", words[-1], f"recording={attached(run, 'none', '.mcap', as_shown=True)}"
+        )
+        print(f"--- {self.middleware}: {' '.join(words)}", flush=True)
+        repeated = Run(str(self.rtf), words[2], self.directory / "command.run", *words[3:])
+        self.finish(repeated, {"none": "failed"})
 
     def same_verdicts(self) -> None:
         """With the recording in place of the source, verdicts and outputs are the same."""
-        run = self.start("replay", f"{self.mcap} /level --to {self.middleware}")
+        run = self.start(REPLAY, str(self.mcap))
         self.finish(run, VERDICTS)
         self.expect_same(run, with_times=True)
-        (duration,) = {
-            event["value"]
-            for event in run.events("fixture-provided")
-            if event["name"] == "duration"
-        }
+        provided = run.events("fixture-provided")
+        (duration,) = {event["value"] for event in provided if event["name"] == "duration"}
         expect("provided duration", 2 < duration < 10, True)
 
     def in_lock_step(self) -> None:
         """At a rate that no node can follow, each message waits for the answer before."""
-        play = f"{self.mcap} /level --to {self.middleware} --rate 1000"
-        run = self.start("replay", f"{play} --acknowledge /level={self.answer}", "lock-step")
+        options = f"--rate 1000 --acknowledge /level={self.answer}"
+        run = self.start(REPLAY, f"{self.mcap} {options}", "lock-step")
         self.finish(run, VERDICTS)
         self.expect_same(run)
 
     def own_format(self) -> None:
         """The middleware's own recording is played, too, and only the requested part of it."""
         suite = "bag" if self.middleware == "ros1" else "dump"
-        run = self.start(suite, f"{self.own} /level --rate 4")
+        run = self.start(suite, f"{self.own} --rate 4")
         self.finish(run, VERDICTS)
         self.expect_same(run)
-        run = self.start(suite, f"{self.own} /level --start 99", "too late")
-        self.expect_broken(run, "--start 99: the recording has only ")
+        run = self.start(suite, f"{self.own} --start 99", "too late")
+        expect("exit code", run.wait(), 1)
+        expect_in("--start 99: the recording has only ", run.reason("fixture-broken"))
 
     def in_recorded_time(self) -> None:
         """A suite with `clock` follows the recording."""
-        play = f"{self.mcap} /level --to {self.middleware} --rate 2 --clock"
-        run = self.start("clock", play)
+        run = self.start("clock", f"{self.mcap} --rate 2 --clock")
         self.finish(run, VERDICTS)
         self.expect_same(run)
 
     def torn(self) -> None:
         """What a killed recorder has left is played as far as it goes."""
-        file, complete = cut(self.mcap, self.directory / "torn.mcap")
-        self.play_torn(f"{file} /level --to {self.middleware}", "replay", complete)
+        self.play_torn(REPLAY, *cut(self.mcap, self.directory / "torn.mcap"))
         if self.middleware == "ros1":
-            file, complete = cut_bag(self.own, self.directory / "torn.bag")
-            self.play_torn(f"{file} /level", "bag", complete)
+            self.play_torn("bag", *cut_bag(self.own, self.directory / "torn.bag"))
 
-    def play_torn(self, play: str, suite: str, complete: int) -> None:
+    def play_torn(self, suite: str, file: Path, complete: int) -> None:
         """All complete messages are played, and the report says that some are missing."""
-        expect("complete messages", 0 < complete < 150, True)
-        run = self.start(suite, play, f"torn {suite}", f"--set=messages={complete}")
+        expect("some messages are complete", 0 < complete < 150, True)
+        run = self.start(suite, str(file), file.name, f"--set=messages={complete}")
         run.wait()
-        expect("attempts", "error" in run.attempts() or "collapsed" in run.attempts(), False)
+        expect("verdicts", set(run.attempts()) <= {"passed", "failed"}, True)
         got = series(attached(run, "few", ".mcap"))
         expect("played messages", len(got["/level"]), complete)
         notes = [str(event) for event in run.events("message") if "is incomplete" in str(event)]
@@ -127,8 +130,7 @@ class Scene:
 
     def killed(self) -> None:
         """A replay that dies before its end is a collapse."""
-        play = f"{self.mcap} /level --to {self.middleware} --rate 0.5"
-        run = self.start("replay", play, "killed")
+        run = self.start(REPLAY, f"{self.mcap} --rate 0.5", "killed")
 
         def kill_replay() -> None:
             for pid in processes.running("process.py"):
@@ -141,22 +143,21 @@ class Scene:
 
     def refused(self) -> None:
         """Everything that cannot be played is named at once, before any test."""
-        play = f"{self.mcap} /level=/a /smooth=/a /no-such --to {self.middleware}"
-        run = self.start("replay", play, "refused")
-        self.expect_broken(run, "has no topic /no-such; it has /")
-        self.expect_broken(run, "two topics are played as /a")
-        play = f"{self.mcap} /level --to {self.middleware} --timeout 1 --subscriber /nobody"
-        run = self.start("replay", play, "nobody")
+        run = self.start(REPLAY, f"{self.mcap} /smooth=/level /no-such", "refused")
         expect("exit code", run.wait(), 1)
-        expect_in("/nobody", run.reasons()[0])
+        expect_in("has no topic /no-such; it has /", run.reason("fixture-broken"))
+        expect_in("two topics are played as /level", run.reason("fixture-broken"))
+        run = self.start(REPLAY, f"{self.mcap} --timeout 1 --subscriber /nobody", "nobody")
+        expect("exit code", run.wait(), 1)
         expect_in("not within 1 s: ", run.reasons()[0])
+        expect_in("/nobody", run.reasons()[0])
 
-    def start(self, suite: str, play: str = "", name: str = "", *options: str) -> Run:
+    def start(self, suite: str, recording: str = "", name: str = "", *options: str) -> Run:
         """Starts a run."""
         name = name or suite
         print(f"--- {self.middleware}: {name}", flush=True)
         file = self.suites / f"{self.middleware}-{suite}.xml"
-        settings = [f"--set=play={play}"] if play else []
+        settings = [f"--set=recording={recording}"] if recording else []
         return Run(str(self.rtf), str(file), self.directory / f"{name}.run", *settings, *options)
 
     def finish(self, run: Run, verdicts: dict[str, str]) -> None:
@@ -178,14 +179,9 @@ class Scene:
                 print(f"{name}: largest difference in time {drift * 1000:.1f} ms")
                 expect(f"times of {name}", drift <= TIME_TOLERANCE_SECS, True)
 
-    def expect_broken(self, run: Run, reason: str) -> None:
-        """The set-up fails with this reason."""
-        expect("exit code", run.wait(), 1)
-        expect_in(reason, run.reason("fixture-broken"))
 
-
-def attached(run: Run, test: str, ending: str) -> Path:
-    """The file of the last attempt of a test with this ending."""
+def attached(run: Run, test: str, ending: str, *, as_shown: bool = False) -> Path:
+    """The file of the last attempt of a test with this ending, or its path in the report."""
     files = [
         run.journal.parent / event["attachment"]["path"]
         for event in run.events("attached")
@@ -193,64 +189,8 @@ def attached(run: Run, test: str, ending: str) -> Path:
     ]
     found = [file for file in files if file.name.endswith(ending)]
     expect(f"a {ending} of {test}", len(found) > 0, True)
-    return found[-1].resolve()
-
-
-def messages(file: Path) -> Iterator[Any]:
-    """The schemas, channels and messages of a recording."""
-    from mcap.reader import make_reader  # noqa: PLC0415 - the linters run without it
-
-    with file.open("rb") as stream:
-        yield from make_reader(stream).iter_messages()
-
-
-def series(file: Path) -> Series:
-    """The times since the first message of a channel, and the values."""
-    found: Series = {}
-    for _, channel, message in messages(file):
-        if channel.topic != "/log":
-            value = json.loads(message.data)["value"]
-            found.setdefault(channel.topic, []).append((message.log_time * 1e-9, value))
-    return {
-        name: [(at - points[0][0], value) for at, value in points] for name, points in found.items()
-    }
-
-
-def cut(file: Path, torn: Path) -> tuple[Path, int]:
-    """Write a recording with many chunks and cut it off; the number of complete messages."""
-    from mcap.reader import NonSeekingReader  # noqa: PLC0415
-    from mcap.writer import Writer  # noqa: PLC0415
-
-    with torn.open("wb") as stream:
-        writer = Writer(stream, chunk_size=1024)
-        writer.start()
-        schema = writer.register_schema("measurement", "jsonschema", b"{}")
-        level = writer.register_channel("/level", "json", schema)
-        for _, channel, message in messages(file):
-            if channel.topic == "/level":
-                writer.add_message(level, message.log_time, message.data, message.log_time)
-        writer.finish()
-    os.truncate(torn, torn.stat().st_size // 2)
-    complete = 0
-    with torn.open("rb") as stream, contextlib.suppress(Exception):
-        for _ in NonSeekingReader(stream).iter_messages(log_time_order=False):
-            complete += 1
-    return torn, complete
-
-
-def cut_bag(file: Path, torn: Path) -> tuple[Path, int]:
-    """Write a bag with many chunks and cut it off; the number of messages ROS can restore."""
-    import rosbag  # noqa: PLC0415 - only with ROS
-
-    with rosbag.Bag(str(file)) as bag, rosbag.Bag(str(torn), "w", chunk_threshold=512) as copy:
-        for topic, message, at in bag.read_messages(topics=["/level"]):
-            copy.write(topic, message, at)
-    os.truncate(torn, torn.stat().st_size // 2)
-    restored = torn.with_name("restored.bag")
-    restored.write_bytes(torn.read_bytes())
-    subprocess.run(["rosbag", "reindex", "-q", str(restored)], check=True)
-    with rosbag.Bag(str(restored)) as bag:
-        return torn, int(bag.get_message_count())
+    path: Path = found[-1]
+    return path if as_shown else path.resolve()
 
 
 if __name__ == "__main__":

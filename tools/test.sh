@@ -112,7 +112,7 @@ lint_python() {
   "$checkers/mypy" fixtures
   "$checkers/mypy" tests/fixtures/*.py tests/fixtures/ros2launch/*.py \
     tests/fixtures/orocos/*.py tests/fixtures/yarp/*.py
-  "$checkers/mypy" tests/fixtures/clock/*.py
+  "$checkers/mypy" tests/fixtures/clock/*.py tests/fixtures/replay/*.py
   "$checkers/mypy" packaging/*.py
   "$checkers/mypy" benches/bench.py
   "$checkers/mypy" tests/predecessor/*.py
@@ -176,7 +176,8 @@ suites_are_valid() {
   local suites campaigns
   suites=$(files ':(glob)examples/*/*.xml' 'crates/rtf/templates/*.xml' 'tests/install/*.xml' 'tests/wheel/*.xml' 'tests/fixtures/*/suite.xml' 'tests/frameworks/*/suite.xml' \
     'tests/ctest/project/arm.xml' 'tests/colcon/workspace/src/*/test/*.xml' \
-    'tests/fixtures/yarp/suites/*.xml' 'tests/fixtures/ros1/*.xml' 'tests/fixtures/clock/*.xml')
+    'tests/fixtures/yarp/suites/*.xml' 'tests/fixtures/ros1/*.xml' 'tests/fixtures/clock/*.xml' \
+    'tests/fixtures/replay/*.xml')
   campaigns=$(xargs -d '\n' grep -l '^<campaign' <<<"$suites")
   grep -vxF "$campaigns" <<<"$suites" | xargs -d '\n' xmllint --noout --schema spec/suite.xsd
   xargs -d '\n' xmllint --noout --schema spec/campaign.xsd <<<"$campaigns"
@@ -225,6 +226,21 @@ clock_yarp() {
 
 fixture_yarp() {
   python3 tools/check_fixture_yarp.py "$TARGET/release/rtf" tests/fixtures/yarp/suites
+}
+
+# Debian's rospy belongs to Debian's Python, which needs the library `mcap`, too.
+fixture_replay_ros1() {
+  local library
+  library=$(PATH=/usr/bin:$PATH tools/venv.sh mcap)
+  PYTHONPATH=$("$library/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))') \
+    /usr/bin/python3 tools/check_fixture_replay.py "$TARGET/release/rtf" tests/fixtures/replay ros1
+}
+
+fixture_replay_yarp() {
+  local library
+  library=$(tools/venv.sh mcap)
+  PATH="$library:$PATH" python3 tools/check_fixture_replay.py "$TARGET/release/rtf" \
+    tests/fixtures/replay yarp
 }
 
 example_03() {
@@ -466,9 +482,11 @@ robots_and_frameworks() {
   step_with 'example 03' yarp example_03
   step_with 'fixture yarp' yarp fixture_yarp
   step_with 'clock yarp' yarp clock_yarp
+  step_with 'fixture replay yarp' yarp fixture_replay_yarp
   step_with 'example 04' yarp example_04
   step_with 'example 05' ros1 example_05
   step_with 'clock ros1' ros1 clock_ros1
+  step_with 'fixture replay ros1' ros1 fixture_replay_ros1
   step_with 'example 06' ros2 example_06
   step 'example 07' example_07
   step 'example 08' example_08

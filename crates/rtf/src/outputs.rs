@@ -91,6 +91,7 @@ pub fn console_options(dir: &Path, verbose: bool) -> ConsoleOptions {
         verbosity: if verbose { Verbosity::Verbose } else { Verbosity::Normal },
         folder: Some(dir.to_owned()),
         rerun: rerun_command::for_run(),
+        replay: rerun_command::for_replay(),
         ..ConsoleOptions::default()
     }
 }

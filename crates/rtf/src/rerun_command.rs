@@ -1,9 +1,15 @@
-//! The command that reruns a failed test or case, for the summary of a run.
+//! The command that reruns a failed test or case, or replays its recording, for the summary of
+//! a run.
 
+use std::path::Path;
 use std::sync::OnceLock;
 
 use rtf_model::{Record, TestId};
-use rtf_report::console::{RerunCommand, rerun_suite};
+use rtf_plan::suite::replay_suite;
+use rtf_report::console::{ReplayCommand, RerunCommand, rerun_suite};
+
+/// The parameter of a suite that replays: the path of the recording.
+const RECORDING: &str = "recording";
 
 /// A command that names the suite or the plug-in, with the options without which it
 /// would be another test.
@@ -19,6 +25,23 @@ pub fn for_run() -> RerunCommand {
         }
         command += config_options;
         Some(command)
+    })
+}
+
+/// A command that runs the test in the suite `SUITE.replay.xml`, if that exists next to the
+/// test's suite.
+pub fn for_replay() -> ReplayCommand {
+    Box::new(|record, test, recording| {
+        let test = record.tests.get(test.index())?;
+        let file = &record.suites.get(test.plan.suite.index())?.plan.file;
+        let suite = (!file.is_empty()).then(|| replay_suite(Path::new(file)))?;
+        if !suite.is_file() {
+            return None;
+        }
+        let what = format!("{}::{}", suite.display(), test.plan.name);
+        let recording = format!("{RECORDING}={}", recording.display());
+        let options = config_options(record) + &join([("--set", &recording)].into_iter());
+        Some(format!("rtf run {}{options}", shell_words::quote(&what)))
     })
 }
 

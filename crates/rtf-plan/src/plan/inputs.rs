@@ -10,7 +10,7 @@ use super::plugin_search::{self, PluginFinder};
 use super::search_scope::SearchScope;
 use super::suite::DirectPlugin;
 use super::{InputPath, Options};
-use crate::suite::is_suite_file;
+use crate::suite::{is_replay_suite, is_suite_file};
 use crate::wording::quoted;
 
 /// A suite file or a plug-in to run.
@@ -200,7 +200,9 @@ fn resolve_dir(
         let name = Path::new(&dir.name).join(inside).to_string_lossy().into_owned();
         InputFile { path, name }
     };
-    let is_suite = |path: &PathBuf| has_extension(path, "xml") && is_suite_file(path);
+    let is_suite = |path: &PathBuf| {
+        has_extension(path, "xml") && !is_replay_suite(path) && is_suite_file(path)
+    };
     let mut inputs: Vec<ResolvedInput> = Vec::new();
     if content != DirContent::Plugins {
         let suites = files.iter().filter(|path| is_suite(path)).cloned();

@@ -56,6 +56,7 @@ pub use root::parse;
 pub use shared_settings::{SharedSettings, shared_settings};
 pub use source::{SourceMap, SourceText, Span, Spanned};
 pub use source_file::{
-    MAX_SUITE_BYTES, UnreadableFile, is_campaign_file, is_suite_file, read_source,
+    MAX_SUITE_BYTES, UnreadableFile, is_campaign_file, is_replay_suite, is_suite_file, read_source,
+    replay_suite,
 };
 pub use types::*;

@@ -1,8 +1,9 @@
 //! Reads the text of a suite file or of an `rtf.toml`.
 
+use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{ErrorKind, Read as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use rtf_model::Diagnostic;
 
@@ -14,10 +15,27 @@ pub const MAX_SUITE_BYTES: u64 = 64 * 1024 * 1024;
 /// The size of the prefix in which [`begins_with`] searches the first element.
 const PREFIX_BYTES: u64 = 64 * 1024;
 
+const REPLAY_EXTENSION: &str = "replay.xml";
+
 /// Checks whether a file's first element is `<suite>`, even if the file is malformed.
 #[must_use]
 pub fn is_suite_file(path: &Path) -> bool {
     begins_with(path, "suite")
+}
+
+/// Returns the path of the suite that replays recordings of a suite: `arm.replay.xml` for
+/// `arm.xml`. The file need not exist.
+#[must_use]
+pub fn replay_suite(suite: &Path) -> PathBuf {
+    suite.with_extension(REPLAY_EXTENSION)
+}
+
+/// Whether this is the name of a suite that replays recordings of another one. It needs a
+/// recording, so that it is not one of the suites of its directory.
+#[must_use]
+pub fn is_replay_suite(path: &Path) -> bool {
+    let name = path.file_name().and_then(OsStr::to_str).unwrap_or_default();
+    name.strip_suffix(REPLAY_EXTENSION).is_some_and(|stem| stem.ends_with('.'))
 }
 
 /// Checks whether a file's first element is `<campaign>`, even if the file is malformed.

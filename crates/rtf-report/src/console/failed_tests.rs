@@ -8,6 +8,9 @@ use super::{ConsoleOptions, case_summary};
 use crate::cases::TestCases;
 use crate::{escape, explain, known_failure, logs, words};
 
+/// The endings of recordings that a fixture can replay.
+const RECORDINGS: [&str; 3] = [".mcap", ".bag", ".tar.gz"];
+
 /// Lists the tests that did not pass.
 pub(super) fn show(page: &mut ConsoleLines, options: &ConsoleOptions, record: &Record) {
     let failed: Vec<_> = record.tests.iter().filter(|test| is_failed(record, test)).collect();
@@ -63,9 +66,21 @@ fn failed_test(
     if let Some(command) = (options.rerun)(record, id, None) {
         page.fact("rerun", &escape::line(&command));
     }
+    if let Some(command) = replay(options, record, test) {
+        page.fact("replay", &escape::line(&command));
+    }
     if let Some(cases) = &cases {
         case_summary::failed_cases(page, options, record, (test, cases));
     }
+}
+
+/// Returns the command that replays the recording of the attempt that failed.
+fn replay(options: &ConsoleOptions, record: &Record, test: &TestRecord) -> Option<String> {
+    let attachments = &test.decisive_attempt()?.attachments;
+    let is_recording = |path: &str| RECORDINGS.iter().any(|ending| path.ends_with(ending));
+    let recording = attachments.iter().find(|each| !each.omitted && is_recording(&each.path))?;
+    let path = options.folder.as_ref()?.join(&recording.path);
+    (options.replay)(record, test.plan.test, &path)
 }
 
 /// `  arm/MoveTest  failed in set-up`.

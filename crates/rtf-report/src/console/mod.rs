@@ -28,7 +28,7 @@ use rtf_model::{Event, Micros, Record};
 pub(crate) use progress::{Bar, BarState};
 
 pub use details::drop_details;
-pub use options::{ConsoleOptions, RerunCommand, Verbosity, rerun_suite};
+pub use options::{ConsoleOptions, ReplayCommand, RerunCommand, Verbosity, rerun_suite};
 
 use crate::background_writer::BackgroundWriter;
 use crate::disconnect::UntilDisconnect;

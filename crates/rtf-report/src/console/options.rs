@@ -22,6 +22,10 @@ pub enum Verbosity {
 /// there is none.
 pub type RerunCommand = Box<dyn Fn(&Record, TestId, Option<&str>) -> Option<String> + Send>;
 
+/// Returns the command that runs a test with a recording of it in place of the live source;
+/// the path is that of the recording. `None` if there is no suite for that.
+pub type ReplayCommand = Box<dyn Fn(&Record, TestId, &Path) -> Option<String> + Send>;
+
 /// Options of the console.
 pub struct ConsoleOptions {
     /// How much is shown during the run.
@@ -33,6 +37,8 @@ pub struct ConsoleOptions {
     pub progress: bool,
     /// Returns the command that reruns a failed test.
     pub rerun: RerunCommand,
+    /// Returns the command that replays the recording of a failed test.
+    pub replay: ReplayCommand,
 }
 
 impl ConsoleOptions {
@@ -50,6 +56,7 @@ impl Default for ConsoleOptions {
             folder: None,
             progress: true,
             rerun: Box::new(rerun_suite),
+            replay: Box::new(|_, _, _| None),
         }
     }
 }

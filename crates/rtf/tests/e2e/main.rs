@@ -70,6 +70,7 @@ mod profiles;
 mod python_exit;
 mod remote;
 mod repetition;
+mod replay;
 mod reports;
 mod rerun;
 mod resources;
