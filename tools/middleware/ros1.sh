@@ -3,4 +3,4 @@
 # in /usr/bin, so no set-up script is needed.
 
 need_packages python3-roslaunch python3-rosbag python3-rospy python3-std-msgs python3-std-srvs \
-  rosout libroscpp-dev libstd-msgs-dev g++ cmake
+  rosout libroscpp-dev libstd-msgs-dev g++ cmake python3-venv
