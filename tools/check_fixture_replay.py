@@ -10,6 +10,7 @@ MIDDLEWARE is `ros1` or `yarp`; all its programs are real. Needs a Python with t
 from __future__ import annotations
 
 import os
+import shlex
 import signal
 import sys
 import tempfile
@@ -68,12 +69,11 @@ class Scene:
 
     def command_for_failed_test(self, run: Run) -> None:
         """The command that the report prints repeats the failure without the live source."""
-        lines = [line.split() for line in run.output.read_text().splitlines()]
-        (words,) = [line[1:] for line in lines if line[:1] == ["replay"]]
+        lines = run.output.read_text().splitlines()
+        (line,) = [line for line in lines if line.startswith("    replay ")]
+        words = shlex.split(line)[1:]
         expect("command", words[:2], ["rtf", "run"])
-        expect(
-            "its recording", words[-1], f"recording={attached(run, 'none', '.mcap', as_shown=True)}"
-        )
+        expect("its recording", words[-1], f"recording={attached(run, 'none', '.mcap')}")
         print(f"--- {self.middleware}: {' '.join(words)}", flush=True)
         repeated = Run(str(self.rtf), words[2], self.directory / "command.run", *words[3:])
         self.finish(repeated, {"none": "failed"})
@@ -180,8 +180,8 @@ class Scene:
                 expect(f"times of {name}", drift <= TIME_TOLERANCE_SECS, True)
 
 
-def attached(run: Run, test: str, ending: str, *, as_shown: bool = False) -> Path:
-    """The file of the last attempt of a test with this ending, or its path in the report."""
+def attached(run: Run, test: str, ending: str) -> Path:
+    """The file of the last attempt of a test with this ending."""
     files = [
         run.journal.parent / event["attachment"]["path"]
         for event in run.events("attached")
@@ -189,8 +189,8 @@ def attached(run: Run, test: str, ending: str, *, as_shown: bool = False) -> Pat
     ]
     found = [file for file in files if file.name.endswith(ending)]
     expect(f"a {ending} of {test}", len(found) > 0, True)
-    path: Path = found[-1]
-    return path if as_shown else path.resolve()
+    path: Path = found[-1].resolve()
+    return path
 
 
 if __name__ == "__main__":
