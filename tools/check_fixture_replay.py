@@ -17,7 +17,7 @@ import tempfile
 from pathlib import Path
 
 import processes
-from recordings import cut, cut_bag, series
+from recordings import as_mcap, cut, cut_bag, series
 from run import Run, expect, expect_in
 
 REPLAY = "live.replay"
@@ -100,6 +100,11 @@ class Scene:
         run = self.start(suite, f"{self.own} --rate 4")
         self.finish(run, VERDICTS)
         self.expect_same(run)
+        if self.middleware == "ros1":
+            file = as_mcap(self.own, self.directory / "ros1.mcap")
+            run = self.start(REPLAY, f"{file} --rate 4", "messages in MCAP")
+            self.finish(run, VERDICTS)
+            self.expect_same(run)
         run = self.start(suite, f"{self.own} --start 99", "too late")
         expect("exit code", run.wait(), 1)
         expect_in("--start 99: the recording has only ", run.reason("fixture-broken"))

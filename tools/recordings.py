@@ -37,6 +37,25 @@ def series(file: Path) -> Series:
     }
 
 
+def as_mcap(bag: Path, path: Path) -> Path:
+    """Write the messages of a bag into an MCAP file as ROS's converters do."""
+    from mcap.writer import Writer  # noqa: PLC0415
+
+    rosbag: Any = importlib.import_module("rosbag")
+    channels: dict[str, int] = {}
+    with path.open("wb") as stream, rosbag.Bag(str(bag)) as source:
+        writer = Writer(stream)
+        writer.start(profile="ros1")
+        for topic, (kind, data, md5sum, *_, found), at in source.read_messages(raw=True):
+            if topic not in channels:
+                text = found._full_text.encode()
+                schema = writer.register_schema(kind, "ros1msg", text)
+                channels[topic] = writer.register_channel(topic, "ros1", schema, {"md5sum": md5sum})
+            writer.add_message(channels[topic], at.to_nsec(), data, at.to_nsec())
+        writer.finish()
+    return path
+
+
 def cut(file: Path, torn: Path) -> tuple[Path, int]:
     """Write a recording with many chunks and cut it off; the number of complete messages."""
     from mcap.reader import NonSeekingReader  # noqa: PLC0415

@@ -60,5 +60,10 @@ fn without_such_a_suite_there_is_no_command() {
 fn a_suite_that_replays_is_not_one_of_its_directory() {
     let folder = folder();
     folder.file("my arm.replay.xml", REPLAY);
-    assert_snapshot!(folder.shown(&folder.rtf(&["list", "."])), @"");
+    assert_snapshot!(folder.shown(&folder.rtf(&["list", "."])), @"
+    exit code 0
+    ----- stdout
+    arm/recorded
+    ----- stderr
+    ");
 }
