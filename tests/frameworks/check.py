@@ -23,6 +23,7 @@ The corpus is `tests/frameworks/TYPE`; `build.sh TYPE` has built it, and its exp
               "silent": ["<?xml"],             texts that its output must not contain
               "stacks": ["…"],                 parts of its stack dumps
               "measured": {}, "messages": ["…"],    outside of its cases, as below
+              "like": "arm_test",              everything else is as in this test of the run
               "counts": {"passed": 9},         instead of `cases`: how many have each verdict
               "cases": {                       exactly the cases that it reports
                 "Arm.Passes": "passed",        short for {"verdict": "passed"}
@@ -124,7 +125,8 @@ class Corpus:
         expected = run.get("tests", {})
         self.expect(f"{title}: tests", sorted(tests), sorted(expected))
         for name in expected.keys() & tests.keys():
-            self.check_test(f"{title}: {name}", tests[name], expected[name])
+            like = expected.get(expected[name].get("like", name), {})
+            self.check_test(f"{title}: {name}", tests[name], {**like, **expected[name]})
         return tests
 
     def check_test(self, title: str, got: TestResult, expected: Table) -> None:

@@ -18,6 +18,7 @@ pub fn plugin(suite: &SuitePlan, name: &str, plan: &PluginPlan, repetition: u32)
         cases: Vec::new(),
         case_timeout_ms: None,
         separate_cases: false,
+        fork_at_main: false,
         parameters: Vec::new(),
         fixture_values: Vec::new(),
     }

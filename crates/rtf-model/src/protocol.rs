@@ -222,6 +222,10 @@ pub struct Plugin {
     /// Whether each case needs a separate process. Only for hosts that run cases in programs.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub separate_cases: bool,
+    /// Whether these processes may be forked after the static objects of the program are
+    /// constructed.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub fork_at_main: bool,
     /// The values of fixtures that it can use.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fixture_values: Vec<FixtureValue>,

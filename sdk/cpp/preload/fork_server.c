@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // librtf-fork-server.so: rtf preloads it (LD_PRELOAD) into a program whose cases run in a
 // process each. The program is executed and linked once; it stops before its first
-// constructor, and forks a process for each case, the next one ahead. See "Forked programs"
-// in spec/frameworks.md.
+// constructor or before `main`, and forks a process for each case, the next one ahead. See
+// "Forked programs" in spec/frameworks.md.
 //
 // It uses the C library only, because the program may not contain C++.
 #define _GNU_SOURCE
@@ -22,7 +22,8 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
-// The number of the descriptor at which the supervisor is connected.
+// The number of the descriptor at which the supervisor is connected, and `,main` to stop before
+// `main`.
 #define SOCKET_VARIABLE "RTF_PROGRAM_FORKS"
 
 // The longest request, and the number of descriptors in it.
@@ -226,14 +227,14 @@ static int was_taken(int taken)
     return length == sizeof byte;
 }
 
-// Keeps one process ahead of the requests. Returns the strings of the program in a new process
-// only.
+// Keeps one process ahead of the requests. Returns the strings of the program in a new process,
+// and NULL at the end of the server.
 static char **serve(int socket, int *count)
 {
     struct Thread thread;
     if (!has_one_thread() || read_thread(&thread) != 0) {
         answer(socket, -1);
-        _exit(0);
+        return NULL;
     }
     answer(socket, getpid());
     for (;;) {
@@ -248,14 +249,29 @@ static char **serve(int socket, int *count)
         }
         answer(socket, pid);
         if (pid < 0) {
-            _exit(0);
+            return NULL;
         }
         close(taken[1]);
         if (!was_taken(taken[0])) {
-            _exit(0);
+            return NULL;
         }
         close(taken[0]);
     }
+}
+
+// The program's `main`, and the socket of the server that stops before it.
+static Main program_main;
+static int main_socket;
+
+// Called as `main`, after the program's own constructors.
+static int serve_main(int argc, char **argv, char **environment)
+{
+    (void)environment;
+    // What constructors have printed would be in the buffers of all processes.
+    fflush(NULL);
+    argv = serve(main_socket, &argc);
+    // The server ends as a program: static objects that it has constructed are destroyed.
+    return argv == NULL ? 0 : program_main(argc, argv, environ);
 }
 
 // Called by the start code of each program, before the program's own constructors.
@@ -272,7 +288,21 @@ __attribute__((visibility("default"))) int __libc_start_main(Main main, int argc
     }
     memcpy(&start, &found, sizeof start);
     if (socket != NULL) {
-        argv = serve(atoi(socket), &argc);
+        char *point = NULL;
+        const int descriptor = (int)strtol(socket, &point, 10);
+        if (strcmp(point, ",main") != 0) {
+            argv = serve(descriptor, &argc);
+            if (argv == NULL) {
+                _exit(0);
+            }
+        } else {
+            // A program that a constructor starts must not become a server, too.
+            fcntl(descriptor, F_SETFD, FD_CLOEXEC);
+            unsetenv(SOCKET_VARIABLE);
+            main_socket = descriptor;
+            program_main = main;
+            main = serve_main;
+        }
     }
     return start(main, argc, argv, init, fini, rtld_fini, stack_end);
 }

@@ -1,6 +1,6 @@
 //! The fork server of a program whose cases run in a process each: the program is executed
-//! and linked once, and stops before its own constructors. See "Forked programs" in
-//! `spec/frameworks.md`.
+//! and linked once, and stops before its own constructors or before `main`. See "Forked
+//! programs" in `spec/frameworks.md`.
 
 use std::ffi::{OsStr, OsString};
 use std::fs::File;
@@ -41,6 +41,15 @@ const STOP_CHECK: Duration = Duration::from_millis(50);
 /// The time that the server has to end by itself.
 const END_LIMIT: Duration = Duration::from_secs(1);
 
+/// Where the program waits and is forked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ForkPoint {
+    /// Before its own constructors.
+    Start,
+    /// After them.
+    Main,
+}
+
 /// A program that waits before its start, and is forked for each case.
 #[derive(Debug)]
 pub(super) struct ForkServer {
@@ -64,6 +73,7 @@ impl ForkServer {
     /// stop it. `None` if the program's processes must be executed.
     pub(super) fn start(
         command: Command,
+        point: ForkPoint,
         scratch: &Path,
         is_stopping: impl Fn() -> bool,
     ) -> Option<Self> {
@@ -72,18 +82,19 @@ impl ForkServer {
         if inherits || is_disabled || !elf::loads_libraries(Path::new(command.get_program())) {
             return None;
         }
-        let server = Self::spawn(command, scratch)?;
+        let server = Self::spawn(command, point, scratch)?;
         server.answers(is_stopping).then_some(server)
     }
 
-    fn spawn(mut command: Command, scratch: &Path) -> Option<Self> {
+    fn spawn(mut command: Command, point: ForkPoint, scratch: &Path) -> Option<Self> {
         preload::add(&mut command, preload::library(LIBRARY)?, scratch).ok()?;
         let (session, report) = (placeholder().ok()?, placeholder().ok()?);
         let flags = SocketFlags::CLOEXEC;
         let (socket, theirs) =
             socketpair(AddressFamily::UNIX, SocketType::SEQPACKET, flags, None).ok()?;
         rustix::io::fcntl_setfd(&theirs, FdFlags::empty()).ok()?;
-        command.env(PROGRAM_FORKS_VARIABLE, theirs.as_raw_fd().to_string());
+        let point = if point == ForkPoint::Main { ",main" } else { "" };
+        command.env(PROGRAM_FORKS_VARIABLE, format!("{}{point}", theirs.as_raw_fd()));
         command.env(BIND_VARIABLE, "1");
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
         let process = command.process_group(0).spawn().ok()?;

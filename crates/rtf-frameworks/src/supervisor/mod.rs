@@ -22,7 +22,7 @@ use rustix::process::{Pid, Signal, kill_process_group};
 use crate::case_reporter::CaseReporter;
 use crate::framework::{CaseResult, Framework, ListedCase, Selection, StackDump, TestProgram};
 use crate::wanted::WantedCases;
-use fork_server::ForkServer;
+use fork_server::{ForkPoint, ForkServer};
 use process::{ProcessEnd, Termination};
 
 /// The process that runs cases at the moment, for other threads.
@@ -77,6 +77,7 @@ struct TestRun<'a> {
     running: &'a RunningProgram,
     case_timeout: Option<Duration>,
     separate: bool,
+    fork_point: ForkPoint,
     fixture_values: &'a [FixtureValue],
     /// For temporary files.
     scratch: &'a Path,
@@ -112,6 +113,7 @@ pub fn run(
         running,
         case_timeout: plugin.case_timeout_ms.map(Duration::from_millis),
         separate,
+        fork_point: if plugin.fork_at_main { ForkPoint::Main } else { ForkPoint::Start },
         fixture_values: &plugin.fixture_values,
         scratch,
         stack_file: scratch.join("stacks"),
@@ -186,7 +188,7 @@ impl TestRun<'_> {
 
     fn start_fork_server(&self) -> Option<ForkServer> {
         let command = self.framework.fork_server_command(&self.program)?;
-        ForkServer::start(command, self.scratch, || self.is_stopping())
+        ForkServer::start(command, self.fork_point, self.scratch, || self.is_stopping())
     }
 
     /// Runs a test whose cases are not known, or are announced by the program.

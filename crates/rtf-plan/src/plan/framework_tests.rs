@@ -8,7 +8,7 @@ use std::sync::Arc;
 use rtf_model::Diagnostic;
 
 use super::checks::{CheckId, PluginChecks, PluginUse};
-use super::frameworks::{self, FRAMEWORKS};
+use super::frameworks::{self, FRAMEWORKS, Forks};
 use super::hosts::HostKind;
 use super::search_scope::SearchScope;
 use super::use_site::{PluginRole, UseSite};
@@ -16,7 +16,7 @@ use super::{
     CaseListing, CaseSelection, CasesInPrograms, ListedCase, Options, SuitePlan, TestPlan,
     case_patterns,
 };
-use crate::suite::{DeclaredLimits, DeclaredTest, SourceText, Spanned, TestIsolation};
+use crate::suite::{DeclaredLimits, DeclaredTest, ForkPoint, SourceText, Spanned, TestIsolation};
 use crate::wording::quoted;
 
 /// A test of another framework.
@@ -31,6 +31,7 @@ pub(super) struct FrameworkTest {
     /// The patterns that select its cases.
     patterns: Option<Spanned<String>>,
     separate: bool,
+    fork_at_main: bool,
     /// Its check; `None` before [`FrameworkTests::add_checks`].
     check: Option<CheckId>,
 }
@@ -41,6 +42,7 @@ impl FrameworkTest {
         let kind = frameworks::by_name(&declared.plugin.plugin_type.as_ref()?.value)?;
         let cases = declared.cases.as_deref();
         let isolation = cases.and_then(|cases| cases.isolation.as_ref());
+        let fork = cases.and_then(|cases| cases.fork.as_ref());
         // Its combinations share a check: the variables of the matrix come first.
         let parameters = declared.combination.as_ref().map_or(0, |it| it.parameters.len());
         Some(Self {
@@ -49,6 +51,7 @@ impl FrameworkTest {
             env: declared.env.iter().skip(parameters).cloned().collect(),
             patterns: cases.and_then(|cases| cases.patterns.clone()),
             separate: isolation.is_some_and(|it| it.value == TestIsolation::Case),
+            fork_at_main: fork.is_some_and(|it| it.value == ForkPoint::Main),
             check: None,
         })
     }
@@ -65,7 +68,12 @@ impl FrameworkTest {
 
     /// Returns the plan of its cases, before they are listed.
     pub fn plan(&self, limits: DeclaredLimits) -> CasesInPrograms {
-        CasesInPrograms { case_timeout: limits.case, separate: self.separate, listed: None }
+        CasesInPrograms {
+            case_timeout: limits.case,
+            separate: self.separate,
+            fork_at_main: self.fork_at_main,
+            listed: None,
+        }
     }
 }
 
@@ -125,6 +133,7 @@ pub(super) fn check_attributes(
     let separate = isolation.filter(|it| it.value == TestIsolation::Case).map(|it| it.span);
     let shared = isolation.filter(|it| it.value == TestIsolation::Shared).map(|it| it.span);
     let patterns = cases.patterns.as_ref().map(|patterns| patterns.span);
+    let fork = cases.fork.as_ref().map(|fork| fork.span);
     let mut problems = Vec::new();
     let mut report = |span, message: String, hint: &str| {
         let problem = Diagnostic::error("not-of-this-type", message).hint(hint);
@@ -135,6 +144,7 @@ pub(super) fn check_attributes(
             (patterns, "cases", "`rtf run SUITE::TEST/CASE` selects a case of a plug-in"),
             (cases.case_timeout, "case-timeout", "`timeout` limits the whole test"),
             (separate, "isolation=\"case\"", "each test already has a separate process"),
+            (fork, "fork", "`rtf run --fork` chooses how processes of plug-ins start"),
         ];
         for (span, name, hint) in attributes {
             let Some(span) = span else { continue };
@@ -158,7 +168,28 @@ pub(super) fn check_attributes(
             report(span, message, "if the program can select tests, use `param`");
         }
     }
+    let forks = kind.framework.map_or(Forks::Never, |framework| framework.forks);
+    if let (Some(span), Some((message, hint))) = (fork, fork_problem(forks, separate.is_some())) {
+        report(span, message.to_owned(), &hint);
+    }
     problems
+}
+
+/// Why a test cannot have `fork`: the problem and a hint.
+fn fork_problem(forks: Forks, is_separate: bool) -> Option<(&'static str, String)> {
+    let can_fork = |kind: &&HostKind| kind.framework.is_some_and(|it| it.forks != Forks::Never);
+    match forks {
+        Forks::Always => None,
+        Forks::IfSeparate if is_separate => None,
+        Forks::IfSeparate => {
+            let hint = "without it, one process runs all cases, and nothing is forked";
+            Some(("`fork` needs `isolation=\"case\"`", hint.to_owned()))
+        }
+        Forks::Never => {
+            let types = quoted(FRAMEWORKS.iter().filter(can_fork).map(|kind| kind.name), ", ");
+            Some(("`fork` is for programs that can be forked", format!("their types are {types}")))
+        }
+    }
 }
 
 /// The tests of other frameworks in a suite, by the name of the test.

@@ -17,8 +17,21 @@ pub(super) struct Framework {
     /// Whether `rtf run` lists them although no case is selected: the list checks the program,
     /// or compiles it.
     pub lists_before_run: bool,
+    /// Which processes of its programs can be forked (`spec/frameworks.md`).
+    pub forks: Forks,
     /// The limit of the check of one file; `None` for the usual one.
     pub check_limit: Option<Duration>,
+}
+
+/// Which processes of the programs of a framework can be forked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Forks {
+    /// None.
+    Never,
+    /// Those of tests whose cases have a process each.
+    IfSeparate,
+    /// All: each case always has a process.
+    Always,
 }
 
 /// The kind of file that a test of another framework names.
@@ -61,8 +74,10 @@ const LISTED_PROGRAM: Framework = Framework {
     subject: TestSubject::Program,
     lists_cases: true,
     lists_before_run: true,
+    forks: Forks::Never,
     check_limit: LIST_LIMIT,
 };
+const FORKED_PROGRAM: Framework = Framework { forks: Forks::IfSeparate, ..LISTED_PROGRAM };
 const UNLISTED_PROGRAM: Framework =
     Framework { lists_cases: false, check_limit: None, ..LISTED_PROGRAM };
 const PYTHON_TESTS: Framework =
@@ -72,10 +87,10 @@ const BUILT_DIRECTORY: Framework =
 
 /// All frameworks.
 pub(super) static FRAMEWORKS: [HostKind; 15] = [
-    kind(&["gtest"], LISTED_PROGRAM),
-    kind(&["catch2"], LISTED_PROGRAM),
-    kind(&["doctest"], LISTED_PROGRAM),
-    kind(&["boost"], LISTED_PROGRAM),
+    kind(&["gtest"], FORKED_PROGRAM),
+    kind(&["catch2"], FORKED_PROGRAM),
+    kind(&["doctest"], FORKED_PROGRAM),
+    kind(&["boost"], Framework { forks: Forks::Always, ..LISTED_PROGRAM }),
     kind(&["cppunit"], UNLISTED_PROGRAM),
     kind(&["aunit"], UNLISTED_PROGRAM),
     HostKind {

@@ -310,6 +310,9 @@ pub struct CasesInPrograms {
     pub case_timeout: Option<Duration>,
     /// Whether each case needs a separate process.
     pub separate: bool,
+    /// Whether these processes may be forked after the program's static objects are
+    /// constructed.
+    pub fork_at_main: bool,
     /// All cases of the test, in the order of the framework; `None` if they are known only
     /// when it runs.
     pub listed: Option<Arc<[ListedCase]>>,

@@ -76,6 +76,7 @@ pub(super) const TEST: ElementSchema = ElementSchema {
         "critical",
         "exclusive",
         "isolation",
+        "fork",
         "expect",
         "issue",
         "until",

@@ -8,8 +8,9 @@ use rtf_model::Diagnostic;
 use super::reader::ElementReader;
 use super::schema::{self, check};
 use super::{
-    AfterCollapse, DeclaredCases, DeclaredLimits, DeclaredPlugin, DeclaredTest, Leaks, Retries,
-    Span, Spanned, TestIsolation, TestSettings, env, known_failure, learn, matrix, reference,
+    AfterCollapse, DeclaredCases, DeclaredLimits, DeclaredPlugin, DeclaredTest, ForkPoint, Leaks,
+    Retries, Span, Spanned, TestIsolation, TestSettings, env, known_failure, learn, matrix,
+    reference,
 };
 
 /// The defaults that a suite declares for its tests.
@@ -78,7 +79,7 @@ pub(super) fn read(
 }
 
 /// The attributes about processes and cases. Most tests have none of them.
-const CASE_ATTRIBUTES: [&str; 3] = ["cases", "case-timeout", "isolation"];
+const CASE_ATTRIBUTES: [&str; 4] = ["cases", "case-timeout", "isolation", "fork"];
 
 /// The values of [`CASE_ATTRIBUTES`].
 #[derive(Default)]
@@ -123,8 +124,12 @@ fn cases(
         .filter(|isolation| *isolation == TestIsolation::Case || node.has_attribute("type"))
         .zip(position("isolation"))
         .map(|(isolation, span)| Spanned::new(isolation, span));
-    let is_empty = patterns.is_none() && case_timeout.is_none() && isolation.is_none();
-    (!is_empty).then_some(DeclaredCases { patterns, case_timeout, isolation })
+    let fork =
+        reader.choice(node, "fork", &[("start", ForkPoint::Start), ("main", ForkPoint::Main)]);
+    let fork = fork.zip(position("fork")).map(|(point, span)| Spanned::new(point, span));
+    let is_empty =
+        patterns.is_none() && case_timeout.is_none() && isolation.is_none() && fork.is_none();
+    (!is_empty).then_some(DeclaredCases { patterns, case_timeout, isolation, fork })
 }
 
 /// Reads the limits of tests; on `<suite>` their attributes have the prefix `test-`.

@@ -205,6 +205,17 @@ pub struct DeclaredCases {
     pub case_timeout: Option<Span>,
     /// The `isolation`, unless it is `process`.
     pub isolation: Option<Spanned<TestIsolation>>,
+    /// The `fork`.
+    pub fork: Option<Spanned<ForkPoint>>,
+}
+
+/// Where a program with a process for each case is forked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ForkPoint {
+    /// Before its own constructors.
+    Start,
+    /// After them.
+    Main,
 }
 
 /// The processes of a test, unless it has a separate one.

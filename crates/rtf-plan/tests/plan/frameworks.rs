@@ -163,14 +163,31 @@ fn cases_have_limits_and_processes() {
     let cases = |attributes: &str| {
         let suite = format!("<suite><test type='gtest' {attributes}>arm_test</test></suite>");
         let cases = first(&bench, &suite).cases_in_programs.unwrap();
-        (cases.case_timeout, cases.separate)
+        (cases.case_timeout, cases.separate, cases.fork_at_main)
     };
-    assert_eq!(cases("case-timeout='2s'"), (Some(Duration::from_secs(2)), false));
-    assert_eq!(cases("isolation='case'"), (None, true));
-    assert_eq!(cases("isolation='process'"), (None, false));
+    assert_eq!(cases("case-timeout='2s'"), (Some(Duration::from_secs(2)), false, false));
+    assert_eq!(cases("isolation='case'"), (None, true, false));
+    assert_eq!(cases("isolation='case' fork='start'"), (None, true, false));
+    assert_eq!(cases("isolation='case' fork='main'"), (None, true, true));
+    assert_eq!(cases("isolation='process'"), (None, false, false));
     // The scale of a slow machine applies.
     bench.file("cell/rtf.toml", "[timeouts]\nscale = 2.0\n");
-    assert_eq!(cases("case-timeout='2s'"), (Some(Duration::from_secs(4)), false));
+    assert_eq!(cases("case-timeout='2s'"), (Some(Duration::from_secs(4)), false, false));
+}
+
+#[test]
+fn only_programs_with_a_process_for_each_case_are_forked() {
+    let bench = bench();
+    bench.file("cell/A.lua", "");
+    let boost = "<suite><test type='boost' fork='main'>arm_test</test></suite>";
+    assert!(first(&bench, boost).cases_in_programs.unwrap().fork_at_main);
+    let shown = bench.shown(
+        "<suite>\n<test fork='main'>A.lua</test>\n\
+         <test type='gtest' fork='main'>arm_test</test>\n\
+         <test type='ctest' isolation='case' fork='start'>.</test>\n\
+         <test type='gtest' isolation='case' fork='early'>arm_test</test>\n</suite>",
+    );
+    insta::assert_snapshot!(shown, @"");
 }
 
 #[test]

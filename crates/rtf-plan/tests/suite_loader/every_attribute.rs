@@ -5,7 +5,7 @@ use std::time::Duration;
 use rtf_model::{Trigger, Verdict};
 use rtf_plan::suite::{
     AfterCollapse, ClockSource, DeclaredLimits, DeclaredProbe, DeclaredProbeKind,
-    DeclaredValueSource, FixtureKind, HookKind, Leaks, MatrixDimension, MiddlewareProbe,
+    DeclaredValueSource, FixtureKind, ForkPoint, HookKind, Leaks, MatrixDimension, MiddlewareProbe,
     ReferenceUser, TestIsolation,
 };
 
@@ -80,6 +80,7 @@ fn cases_of_other_frameworks_are_read() {
     let cases = test.cases.as_ref().unwrap();
     assert_eq!(cases.patterns.as_ref().unwrap().value, "Arm.* !*Slow");
     assert_eq!(cases.isolation.as_ref().unwrap().value, TestIsolation::Case);
+    assert_eq!(cases.fork.as_ref().unwrap().value, ForkPoint::Main);
     assert!(cases.case_timeout.is_some());
 }
 

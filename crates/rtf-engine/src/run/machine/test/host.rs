@@ -143,6 +143,7 @@ fn plugin_of(
         },
         case_timeout_ms: programs.and_then(|programs| programs.case_timeout).map(milliseconds),
         separate_cases: programs.is_some_and(|programs| programs.separate),
+        fork_at_main: programs.is_some_and(|programs| programs.fork_at_main),
         ..plugin(suite, &plan.name, &plan.plugin, request.repetition)
     };
     values.extend_request(&mut plugin);

@@ -30,14 +30,17 @@ fn the_host_gets_the_limit_and_the_isolation_of_cases() {
         let plan = in_programs(CasesInPrograms {
             case_timeout: Some(limit),
             separate: true,
+            fork_at_main: true,
             ..CasesInPrograms::default()
         });
         let plugin = request(&plan);
-        assert_eq!((plugin.case_timeout_ms, plugin.separate_cases), (Some(sent), true));
+        assert_eq!(plugin.case_timeout_ms, Some(sent));
+        assert!(plugin.separate_cases && plugin.fork_at_main);
     }
     for plan in [in_programs(CasesInPrograms::default()), suite(0, 1)] {
         let plugin = request(&plan);
-        assert_eq!((plugin.case_timeout_ms, plugin.separate_cases), (None, false));
+        assert_eq!(plugin.case_timeout_ms, None);
+        assert!(!plugin.separate_cases && !plugin.fork_at_main);
     }
 }
 
