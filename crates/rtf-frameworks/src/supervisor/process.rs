@@ -140,6 +140,7 @@ fn start<'a>(
         test,
         pid,
         session,
+        is_session_closed: false,
         source: channel.source.or(outputs.report),
         outputs: outputs.watched,
         reader: test.framework.reader(&launch),
@@ -219,6 +220,8 @@ struct RunningProcess<'a> {
     test: &'a TestRun<'a>,
     pid: Pid,
     session: SessionSocket,
+    /// Whether the program, and everything that it started, has closed its end of the session.
+    is_session_closed: bool,
     source: Option<Source>,
     outputs: Vec<(OutputStream, File)>,
     reader: Box<dyn ReportReader>,
@@ -267,15 +270,24 @@ impl RunningProcess<'_> {
     }
 
     /// Waits for an input or the end of the process.
-    fn wait(&self, exited: BorrowedFd<'_>, limit: Option<Duration>) -> Wakeup {
+    fn wait(&mut self, exited: BorrowedFd<'_>, limit: Option<Duration>) -> Wakeup {
         let input = |fd| PollFd::from_borrowed_fd(fd, PollFlags::IN);
-        let mut fds = vec![input(exited), input(self.session.as_fd())];
+        let mut fds = vec![input(exited)];
+        // A closed session always has an input: waiting for the end of the program with it would
+        // take a processor from the program.
+        let watches_session = !self.is_session_closed;
+        fds.extend(watches_session.then(|| input(self.session.as_fd())));
         fds.extend(self.source.as_ref().map(|source| input(source.as_fd())));
         fds.extend(self.outputs.iter().map(|(_, file)| input(file.as_fd())));
         let limit = limit.and_then(|limit| Timespec::try_from(limit).ok());
-        match poll(&mut fds, limit.as_ref()) {
+        let ready = poll(&mut fds, limit.as_ref());
+        let has_exited = fds[0].revents().contains(PollFlags::IN);
+        // What it has sent before is read next, and there is nothing more.
+        let is_closed = watches_session && fds[1].revents().contains(PollFlags::HUP);
+        self.is_session_closed |= is_closed;
+        match ready {
             Ok(0) => Wakeup::Limit,
-            Ok(_) if fds[0].revents().contains(PollFlags::IN) => Wakeup::Exit,
+            Ok(_) if has_exited => Wakeup::Exit,
             Ok(_) | Err(Errno::INTR) => Wakeup::Input,
             Err(_) => Wakeup::Exit,
         }
