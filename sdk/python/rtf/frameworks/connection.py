@@ -15,7 +15,7 @@ from rtf.host.channel import end_without_runner
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
     from typing import Any
 
 SESSION_VARIABLE = "RTF_SESSION"
@@ -62,12 +62,20 @@ class Connection:
 
     def post(self, method: str, params: Mapping[str, object]) -> None:
         """Send a packet without waiting for an answer."""
+        packet: dict[str, object] = {"method": method, "answer": False, "params": params}
+        self._send(_packets(packet))
+
+    def post_encoded(self, method: str, params: str) -> None:
+        """Send a short packet without waiting for an answer. `params` is a JSON object."""
+        text = f'{{"method":"{method}","answer":false,"params":{params}}}'
+        self._send((text.encode("utf-8", "replace"),))
+
+    def _send(self, packets: Iterable[bytes]) -> None:
         if not self.is_ours():
             return
-        packet: dict[str, object] = {"method": method, "answer": False, "params": params}
         try:
-            for part in _packets(packet):
-                self._socket.send(part)
+            for packet in packets:
+                self._socket.send(packet)
         except (BrokenPipeError, ConnectionResetError):
             end_without_runner()
 
@@ -110,6 +118,11 @@ def portions(names: list[str]) -> Iterator[list[str]]:
         size += length
     if portion:
         yield portion
+
+
+def encoded_text(text: str) -> str:
+    """Return a text as JSON, in a tenth of the time that an object with this text takes."""
+    return _ENCODER.encode(text)
 
 
 def _encode(packet: dict[str, object]) -> bytes:

@@ -10,7 +10,7 @@ import pytest
 
 from rtf import session as rtf_session
 from rtf.frameworks import pytest_details
-from rtf.frameworks.connection import Rejected, portions
+from rtf.frameworks.connection import Rejected, encoded_text, portions
 from rtf.frameworks.pytest_failures import DETAILS, FailureDetails
 from rtf.frameworks.pytest_texts import (
     collection_problem,
@@ -32,11 +32,13 @@ _PHASES = {"setup": "set-up: ", "teardown": "tear-down: "}
 class OpenCase:
     """A case that runs."""
 
-    __slots__ = ("has_problem", "outcome", "path", "reason", "seconds")
+    __slots__ = ("has_problem", "name", "outcome", "path", "reason", "seconds")
 
     def __init__(self, path: str) -> None:
         """Its result is that of its messages, unless a report says otherwise."""
         self.path = path
+        # As JSON.
+        self.name = encoded_text(path)
         self.seconds = 0.0
         self.has_problem = False
         self.outcome: str | None = None
@@ -47,15 +49,20 @@ class OpenCase:
         if self.outcome is None:
             self.outcome, self.reason = outcome, reason
 
-    def result(self) -> dict[str, object]:
-        """Return the parameters of `case-finished`."""
+    def report_result(self, connection: Connection) -> None:
+        """Report that it has finished."""
+        seconds, has_outcome = self.seconds, self.outcome is not None and not self.has_problem
+        if seconds and not has_outcome:
+            # Most cases.
+            text = f'{{"name":{self.name},"duration_us":{int(seconds * 1e6)}}}'
+            connection.post_encoded("case-finished", text)
+            return
         params: dict[str, object] = {"name": self.path}
-        if self.seconds:
-            params["duration_us"] = int(self.seconds * 1e6)
-        if self.outcome is not None and not self.has_problem:
-            params["outcome"] = self.outcome
-            params["reason"] = self.reason
-        return params
+        if seconds:
+            params["duration_us"] = int(seconds * 1e6)
+        if has_outcome:
+            params["outcome"], params["reason"] = self.outcome, self.reason
+        connection.post("case-finished", params)
 
 
 class Reporter(FailureDetails):
@@ -71,6 +78,8 @@ class Reporter(FailureDetails):
         self._root = str(config.rootpath)
         self._starts = pytest_details.Starts(self._root)
         self._items: dict[str, pytest.Item] = {}
+        # The names of their files as JSON.
+        self._files: dict[str, str] = {}
         self._open: dict[str, OpenCase] = {}
         # Modules that skip themselves: name and reason.
         self._skipped_modules: dict[str, str] = {}
@@ -142,7 +151,17 @@ class Reporter(FailureDetails):
 
     def _start(self, nodeid: str, params: dict[str, object]) -> OpenCase:
         case = self._open[nodeid] = OpenCase(nodeid)
-        self._connection.post("case-started", params)
+        location: Any = params.get("location")
+        if location is None or len(params) > 2:  # noqa: PLR2004 - and the name
+            self._connection.post("case-started", params)
+            return case
+        # Most cases.
+        file, line = location["file"], location["line"]
+        name = self._files.get(file)
+        if name is None:
+            name = self._files[file] = encoded_text(file)
+        text = f'{{"name":{case.name},"location":{{"file":{name},"line":{line}}}}}'
+        self._connection.post_encoded("case-started", text)
         return case
 
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[Any]) -> None:
@@ -187,7 +206,7 @@ class Reporter(FailureDetails):
         self._details.clear()
         case = self._open.pop(nodeid, None)
         if case is not None:
-            self._connection.post("case-finished", case.result())
+            case.report_result(self._connection)
 
     def _report_subtest(self, parent: OpenCase, report: pytest.TestReport, context: Any) -> None:
         name = subtest_name(context)
@@ -197,7 +216,7 @@ class Reporter(FailureDetails):
         case = OpenCase(f"{parent.path}/{name}")
         self._judge(case, report)
         self._report_leftovers(case, report, with_properties=False)
-        self._connection.post("case-finished", case.result())
+        case.report_result(self._connection)
 
     def _judge(self, case: OpenCase, report: pytest.TestReport) -> None:
         case.seconds += report.duration
@@ -280,7 +299,7 @@ class Reporter(FailureDetails):
             reason = f"the run was ended: {excinfo.exconly()}"
             for case in self._open.values():
                 case.set("error", reason)
-                self._connection.post("case-finished", case.result())
+                case.report_result(self._connection)
             self._open.clear()
 
     def pytest_internalerror(self, excrepr: object) -> None:
