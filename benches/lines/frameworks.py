@@ -10,13 +10,19 @@ from measuring.bench import Bench, Launched
 from measuring.model import Group, Limit, Line, MeasuringError, Samples, Work
 
 COUNT = 1000
+LARGE_COUNT = 5000
 UNIT = "ms a case"
 
 BARE = "the program alone"
 BARE_BUSY = "the program alone, 1 ms a case"
 RTF = "rtf, gtest"
 RTF_BUSY = "rtf, gtest, 1 ms a case"
+BARE_COUNTED = "the program alone, 1 to 5000 cases"
+RTF_COUNTED = "rtf, gtest, 1 to 5000 cases"
+FIRST = "ms a run"
+FURTHER = "µs a further case"
 RTF_SEPARATE = "rtf, gtest, a process for each case"
+RTF_AT_MAIN = "rtf, gtest, a process for each case, forked at main"
 CTEST = "ctest with an entry for each case"
 PYTEST = "pytest alone"
 RTF_PYTEST = "rtf, pytest"
@@ -31,10 +37,13 @@ def group(bench: Bench) -> Group:
     works = (
         Work(BARE, lambda: a_case(bench.launch([trivial])), no_gtest),
         Work(RTF, rtf(bench, "gtest"), no_gtest),
+        Work(BARE_COUNTED, lambda: counted(lambda n: bare_counted(bench, n)), no_gtest),
+        Work(RTF_COUNTED, lambda: counted(lambda n: rtf_counted(bench, n)), no_gtest),
         Work(BARE_BUSY, lambda: a_case(bench.launch([busy])), no_gtest),
         Work(RTF_BUSY, rtf(bench, "gtest-busy"), no_gtest),
         Work(CTEST, ctest(bench, trivial), no_ctest),
         Work(RTF_SEPARATE, rtf(bench, "gtest", ' isolation="case"'), no_gtest),
+        Work(RTF_AT_MAIN, rtf(bench, "gtest", ' isolation="case" fork="main"'), no_gtest),
         Work(PYTEST, pytest(bench), no_pytest),
         Work(RTF_PYTEST, rtf_pytest(bench), no_pytest),
     )
@@ -45,7 +54,10 @@ def group(bench: Bench) -> Group:
     lines = (
         Line(f"{COUNT} gtest cases of 1 ms, one process", RTF_BUSY, UNIT, BARE_BUSY, near_bare),
         Line(f"{COUNT} gtest cases that do nothing, one process: goal", RTF, UNIT, BARE, goal),
+        Line("one gtest case", RTF_COUNTED, FIRST, BARE_COUNTED),
+        Line("each further gtest case that does nothing", RTF_COUNTED, FURTHER, BARE_COUNTED),
         Line(f"{COUNT} gtest cases, own process each: goal", RTF_SEPARATE, UNIT, CTEST, half),
+        Line(f"{COUNT} gtest cases, forked at main: goal", RTF_AT_MAIN, UNIT, CTEST, half),
         Line(f"{COUNT} pytest functions", RTF_PYTEST, UNIT, PYTEST, near_pytest),
     )
     return Group("frameworks", works, lines, rounds=3)
@@ -53,9 +65,32 @@ def group(bench: Bench) -> Group:
 
 def rtf(bench: Bench, program: str, attributes: str = "") -> Callable[[], Samples]:
     """Runs a program of GoogleTest with rtf."""
-    name = program + ("-separate" if attributes else "")
+    name = program + "".join(letter for letter in attributes if letter.isalpha())
     element = f'<test type="gtest"{attributes}>{program}</test>'
     return passing(bench, suite.write(bench, name, [element]))
+
+
+def counted(seconds: Callable[[int], float]) -> Samples:
+    """The time of a program with one case, and that of each further one."""
+    one, some, many = (seconds(count) for count in (1, COUNT, LARGE_COUNT))
+    return {FIRST: [one * 1e3], FURTHER: [(many - some) * 1e6 / (LARGE_COUNT - COUNT)]}
+
+
+def bare_counted(bench: Bench, count: int) -> float:
+    """Runs the program alone with so many cases."""
+    program = str(bench.directory / "gtest-counted")
+    return bench.launch(["/usr/bin/env", f"BENCH_CASES={count}", program]).seconds
+
+
+def rtf_counted(bench: Bench, count: int) -> float:
+    """Runs it with rtf."""
+    elements = [
+        f'<env name="BENCH_CASES" value="{count}"/>',
+        '<test type="gtest">gtest-counted</test>',
+    ]
+    with suite.Run(bench, suite.write(bench, f"gtest-{count}", elements)) as run:
+        run.expect("case-finished", count, '"verdict":"passed"')
+        return run.launched.seconds
 
 
 def rtf_pytest(bench: Bench) -> Callable[[], Samples]:

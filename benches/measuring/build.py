@@ -41,6 +41,8 @@ def build(bench: Bench) -> None:
         for name, micros in (("gtest", 0), ("gtest-busy", 1000)):
             program = [*source("ManyCases.cpp"), *output(bench, name), f"-DMICROS={micros}"]
             commands.append([*CPP[:2], "-O0", include, *program, *libraries])
+        counted = [*source("CountedCases.cpp"), *output(bench, "gtest-counted")]
+        commands.append([*CPP, *counted, *libraries])
     if bench.predecessor:
         old = [f"-I{bench.predecessor.include}", f"-L{bench.predecessor.libraries}"]
         libraries = ["-lrobottestingframework-dll", "-lrobottestingframework"]
