@@ -78,8 +78,8 @@ def counted(seconds: Callable[[int], float]) -> Samples:
 
 def bare_counted(bench: Bench, count: int) -> float:
     """Runs the program alone with so many cases."""
-    program = str(bench.directory / "gtest-counted")
-    return bench.launch(["/usr/bin/env", f"BENCH_CASES={count}", program]).seconds
+    settings = {"BENCH_CASES": str(count)}
+    return bench.launch([str(bench.directory / "gtest-counted")], settings=settings).seconds
 
 
 def rtf_counted(bench: Bench, count: int) -> float:
