@@ -6,6 +6,8 @@ mod process;
 mod session_socket;
 mod stack;
 mod streams;
+#[cfg(test)]
+mod tests;
 
 use std::cell::Cell;
 use std::collections::VecDeque;

@@ -187,7 +187,20 @@ fn only_programs_with_a_process_for_each_case_are_forked() {
          <test type='ctest' isolation='case' fork='start'>.</test>\n\
          <test type='gtest' isolation='case' fork='early'>arm_test</test>\n</suite>",
     );
-    insta::assert_snapshot!(shown, @"");
+    insta::assert_snapshot!(shown, @"
+    not-of-this-type: `fork` is only for tests of other frameworks
+      2:13 main
+      note: their types are `gtest`, `catch2`, `doctest`, `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `ctest`, `rostest`, `cargo`, `go`, `tap`, `program`
+      hint: `rtf run --fork` chooses how processes of plug-ins start
+    not-of-this-type: `fork` needs `isolation=\"case\"`
+      3:26 main
+      hint: without it, one process runs all cases, and nothing is forked
+    not-of-this-type: `fork` is for programs that can be forked
+      4:43 start
+      hint: their types are `gtest`, `catch2`, `doctest`, `boost`
+    invalid-value: `fork` has to be `start` or `main`: `early`
+      5:43 early
+    ");
 }
 
 #[test]
