@@ -182,6 +182,12 @@ impl Parser {
 fn apply(function: &str, argument: Parsed, span: Span) -> Result<Parsed, ParseError> {
     if let "rise" | "fall" = function {
         let inner = Box::new(argument.condition()?);
+        if inner.is_temporal() {
+            return Err(ParseError::new(
+                inner.span(),
+                format!("`{function}` has no temporal operator inside"),
+            ));
+        }
         return Ok(Parsed::Condition(Condition::Edge { rises: function == "rise", inner, span }));
     }
     let inner = Box::new(argument.number()?);

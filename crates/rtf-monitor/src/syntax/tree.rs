@@ -176,6 +176,12 @@ impl Condition {
         }
     }
 
+    /// Whether it has a temporal operator or an edge.
+    pub(crate) fn is_temporal(&self) -> bool {
+        matches!(self, Self::Window { .. } | Self::UpTo { .. } | Self::Edge { .. })
+            || self.parts().iter().any(Condition::is_temporal)
+    }
+
     /// Whether a constant has a unit that is not converted.
     pub(crate) fn has_units(&self) -> bool {
         let has_unit = |part: &Number| matches!(part, Number::Literal { unit: Some(_), .. });

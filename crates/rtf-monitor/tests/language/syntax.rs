@@ -90,6 +90,7 @@ fn invalid_formulas() {
             "the rate of `hold` or `rate` is zero between the samples",
         ),
         ("hold(x + 1) < 1", "x + 1", "`hold` has the name of a signal as its argument"),
+        ("rise(x and once y)", "x and once y", "`rise` has no temporal operator inside"),
         ("x < 1e999", "1e999", "this number is too large or malformed"),
         ("x < 1.2.3", "1.2.", "malformed number"),
         ("'x < 1", "'", "the closing `'` is missing"),

@@ -1,0 +1,121 @@
+//! The least and greatest of two functions.
+
+use super::{Function, Knot};
+
+/// The least of two functions on the same interval.
+pub(crate) fn least(left: &Function, right: &Function) -> Function {
+    Merge { sign: 1.0, functions: [left, right] }.run()
+}
+
+/// The greatest of two functions on the same interval.
+pub(crate) fn greatest(left: &Function, right: &Function) -> Function {
+    Merge { sign: -1.0, functions: [left, right] }.run()
+}
+
+/// A merge of the knots of two functions. With the sign -1, the greatest replaces the least.
+struct Merge<'a> {
+    sign: f64,
+    functions: [&'a Function; 2],
+}
+
+/// The knots of both functions at a time, some of which are within lines.
+struct Column {
+    time: f64,
+    knots: [Knot; 2],
+    /// Whether the functions have a knot here.
+    own: [bool; 2],
+}
+
+impl Merge<'_> {
+    fn run(&self) -> Function {
+        let mut next = [0, 0];
+        let first = self.column(&mut next);
+        let mut active = self.lower(first.knots.map(|knot| knot.right), 0);
+        let mut result = Function::starting(self.knot(&first));
+        let mut previous = first;
+        // The last knot, if it was within the line of the lower function.
+        let mut omitted = None;
+        while self.has_next(next) {
+            let column = self.column(&mut next);
+            let start = previous.knots.map(|knot| knot.right);
+            let end = column.knots.map(|knot| knot.left);
+            let before = self.lower(start, active);
+            let after = self.lower(end, before);
+            let mut is_bend = false;
+            if before != after {
+                // Where the lines cross, the other function continues.
+                let (near, far) = (start[after] - start[before], end[before] - end[after]);
+                let fraction = near / (near + far);
+                let time = previous.time + (column.time - previous.time) * fraction;
+                let value = start[before] + (end[before] - start[before]) * fraction;
+                if time <= previous.time {
+                    omitted.take().into_iter().for_each(|knot| result.push(knot));
+                } else if time < column.time {
+                    result.push(Knot::flat(time, value));
+                } else {
+                    is_bend = true;
+                }
+            }
+            let following = self.lower(column.knots.map(|knot| knot.right), after);
+            let is_within = following == after
+                && !is_bend
+                && !column.own[after]
+                && self.lower(column.knots.map(|knot| knot.at), after) == after;
+            if is_within && self.has_next(next) {
+                omitted = Some(self.knot(&column));
+            } else {
+                omitted = None;
+                result.push(self.knot(&column));
+            }
+            active = following;
+            previous = column;
+        }
+        result
+    }
+
+    fn has_next(&self, next: [usize; 2]) -> bool {
+        (0..2).any(|index| next[index] < self.functions[index].knots.len())
+    }
+
+    /// The next time at which a function has a knot.
+    fn column(&self, next: &mut [usize; 2]) -> Column {
+        let time_of = |index: usize| {
+            self.functions[index].knots.get(next[index]).map_or(f64::INFINITY, |knot| knot.time)
+        };
+        let time = time_of(0).min(time_of(1));
+        let own = [time_of(0) <= time, time_of(1) <= time];
+        let knots = [0, 1].map(|index| {
+            let function = self.functions[index];
+            if own[index] {
+                function.knots[next[index]]
+            } else if next[index] == 0 {
+                Knot { time, ..function.knots[0] }
+            } else if next[index] >= function.knots.len() {
+                Knot { time, ..function.knots[function.knots.len() - 1] }
+            } else {
+                Knot::flat(time, function.between(next[index] - 1, time))
+            }
+        });
+        for index in 0..2 {
+            next[index] += usize::from(own[index]);
+        }
+        Column { time, knots, own }
+    }
+
+    /// The index of the lower value; `tied` if they are equal.
+    fn lower(&self, values: [f64; 2], tied: usize) -> usize {
+        let other = 1 - tied;
+        if self.sign * values[other] < self.sign * values[tied] { other } else { tied }
+    }
+
+    fn knot(&self, column: &Column) -> Knot {
+        let pick = |values: [f64; 2]| values[self.lower(values, 0)];
+        let [first, second] = &column.knots;
+        Knot {
+            time: column.time,
+            left: pick([first.left, second.left]),
+            at: pick([first.at, second.at]),
+            right: pick([first.right, second.right]),
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! `until` and `since` without an interval.
+//!
+//! From the end backwards: on a line of both operands, the result is the median-like combination of
+//! three lines, whose kinks are where two of them cross.
+
+use super::{Function, Knot, interpolate};
+
+/// `condition until goal` on their common interval. `end` is the value of the result directly after
+/// the interval.
+pub(crate) fn until(condition: &Function, goal: &Function, end: f64) -> Function {
+    // The knots are collected from the last to the first, on the negative time.
+    let columns = columns(condition, goal);
+    let last = columns.len() - 1;
+    let mut value = at(&columns[last], end);
+    let knot = Knot { time: -columns[last].time, left: end, at: value, right: value };
+    let mut result = Function::starting(knot);
+    for index in (0..last).rev() {
+        let (near, far) = (&columns[index], &columns[index + 1]);
+        let piece = Piece {
+            condition: [near.condition.right, far.condition.left],
+            goal: [near.goal.right, far.goal.left],
+            after: value,
+        };
+        let duration = far.time - near.time;
+        let bends = piece.bends();
+        result.last_mut().right = piece.value(1.0);
+        for fraction in bends {
+            let time = near.time + duration * fraction;
+            result.push(Knot::flat(-time, piece.value(fraction)));
+        }
+        let limit = piece.value(0.0);
+        value = at(near, limit);
+        // In reversed time, the limit from the right comes first.
+        result.push(Knot { time: -near.time, left: limit, at: value, right: value });
+    }
+    result.reversed()
+}
+
+/// `condition since goal`; `before` is the value of the result directly before the interval.
+pub(crate) fn since(condition: &Function, goal: &Function, before: f64) -> Function {
+    until(&condition.clone().reversed(), &goal.clone().reversed(), before).reversed()
+}
+
+/// Both functions at a time.
+struct Column {
+    time: f64,
+    condition: Knot,
+    goal: Knot,
+}
+
+/// The value at a knot, if `after` is the limit of the result from the right.
+fn at(column: &Column, after: f64) -> f64 {
+    column.goal.at.max(after).min(column.condition.at)
+}
+
+/// The functions between two knots.
+struct Piece {
+    condition: [f64; 2],
+    goal: [f64; 2],
+    /// The result at the end of the piece, which is not part of it.
+    after: f64,
+}
+
+impl Piece {
+    /// Lines whose combination is the result: the condition, the goal or the constant that replaces
+    /// it, and a constant.
+    fn lines(&self) -> [[f64; 2]; 3] {
+        let [start, end] = self.condition;
+        if end >= start {
+            // The least value of the condition is at the time of judgement.
+            return [self.condition, self.goal, [self.goal[1].max(self.after); 2]];
+        }
+        let rest = end.min(self.after);
+        let goal = if self.goal[1] > self.goal[0] { [self.peak(); 2] } else { self.goal };
+        [self.condition, goal, [rest; 2]]
+    }
+
+    /// The result at a fraction of the time.
+    fn value(&self, fraction: f64) -> f64 {
+        let [condition, goal, rest] =
+            self.lines().map(|[start, end]| interpolate((0.0, start), (1.0, end), fraction));
+        if self.condition[1] >= self.condition[0] {
+            condition.min(goal.max(rest))
+        } else {
+            condition.min(goal).max(rest)
+        }
+    }
+
+    /// The greatest of min(goal, condition), if the condition falls and the goal rises: where they
+    /// cross, or beyond each value of the condition.
+    fn peak(&self) -> f64 {
+        if self.goal[1] <= self.condition[1] {
+            return self.goal[1];
+        }
+        match crossing(self.condition, self.goal) {
+            Some(fraction) => interpolate((0.0, self.goal[0]), (1.0, self.goal[1]), fraction),
+            None => f64::INFINITY,
+        }
+    }
+
+    /// Where two of the lines cross, as decreasing fractions of the time.
+    fn bends(&self) -> Vec<f64> {
+        let [first, second, third] = self.lines();
+        let pairs = [(first, second), (first, third), (second, third)];
+        let mut bends: Vec<_> =
+            pairs.into_iter().filter_map(|(left, right)| crossing(left, right)).collect();
+        bends.sort_by(|left, right| right.total_cmp(left));
+        bends
+    }
+}
+
+/// The fraction of the time at which two lines cross, unless they only meet at an end.
+fn crossing(left: [f64; 2], right: [f64; 2]) -> Option<f64> {
+    let (start, end) = (left[0] - right[0], left[1] - right[1]);
+    let crosses = (start < 0.0 && end > 0.0) || (start > 0.0 && end < 0.0);
+    let fraction = start / (start - end);
+    (crosses && fraction > 0.0 && fraction < 1.0).then_some(fraction)
+}
+
+/// All times at which a function has a knot.
+fn columns(condition: &Function, goal: &Function) -> Vec<Column> {
+    let mut columns = Vec::with_capacity(condition.knots.len() + goal.knots.len());
+    let (mut left, mut right) = (0, 0);
+    while left < condition.knots.len() || right < goal.knots.len() {
+        let time_of = |function: &Function, index: usize| {
+            function.knots.get(index).map_or(f64::INFINITY, |knot| knot.time)
+        };
+        let time = time_of(condition, left).min(time_of(goal, right));
+        let knot = |function: &Function, index: &mut usize| {
+            if time_of(function, *index) <= time {
+                *index += 1;
+                return function.knots[*index - 1];
+            }
+            function.knot_at(time)
+        };
+        let condition = knot(condition, &mut left);
+        let goal = knot(goal, &mut right);
+        columns.push(Column { time, condition, goal });
+    }
+    columns
+}

@@ -1,0 +1,257 @@
+//! The supremum of a function over a window that slides with time.
+//!
+//! Between two times at which an end of the window meets a knot, the supremum is the greatest of
+//! two lines (the function at the ends of the window) and a constant (the knots inside). A queue of
+//! decreasing values has the knots inside, as in D. Lemire, *Streaming maximum-minimum filter using
+//! no more than three comparisons per element*, 2006.
+
+use std::collections::VecDeque;
+
+use super::{Function, Knot};
+
+/// A window relative to the time, which may begin and end before it; and the times of the result.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounds {
+    /// Where the window begins, in seconds relative to the time.
+    pub start: f64,
+    /// Where it ends; not less than `start`.
+    pub end: f64,
+    /// The first time of the result.
+    pub from: f64,
+    /// The last time of the result.
+    pub to: f64,
+}
+
+/// The supremum over the part of the window that is within the interval of the function; `-inf` if
+/// there is none.
+pub(crate) fn supremum(function: &Function, bounds: Bounds) -> Function {
+    let mut sweep = Sweep {
+        knots: &function.knots,
+        function,
+        bounds,
+        entered: 0,
+        left: 0,
+        inside: VecDeque::new(),
+    };
+    sweep.skip_to(bounds.from);
+    sweep.run()
+}
+
+/// What determines the supremum on a part of a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Source {
+    /// The line after this knot, at the start of the window.
+    Start(usize),
+    /// The line after this knot, at the end of the window.
+    End(usize),
+    /// The knots inside.
+    Inside(f64),
+}
+
+/// A line on the time between two events.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    source: Source,
+    start: f64,
+    end: f64,
+}
+
+struct Sweep<'a> {
+    knots: &'a [Knot],
+    function: &'a Function,
+    bounds: Bounds,
+    /// How many knots the end of the window has passed.
+    entered: usize,
+    /// How many knots the start of the window has passed.
+    left: usize,
+    /// The knots inside the window that may become the greatest, and their values.
+    inside: VecDeque<(usize, f64)>,
+}
+
+impl Sweep<'_> {
+    /// Moves the window to a time; knots at its ends are not passed.
+    fn skip_to(&mut self, time: f64) {
+        while self.entry(self.entered) < time {
+            self.enter();
+        }
+        while self.exit(self.left) < time {
+            self.leave();
+        }
+    }
+
+    /// When the end of the window meets a knot.
+    fn entry(&self, index: usize) -> f64 {
+        self.knots.get(index).map_or(f64::INFINITY, |knot| knot.time - self.bounds.end)
+    }
+
+    /// When the start of the window meets a knot.
+    fn exit(&self, index: usize) -> f64 {
+        self.knots.get(index).map_or(f64::INFINITY, |knot| knot.time - self.bounds.start)
+    }
+
+    fn enter(&mut self) {
+        let knot = &self.knots[self.entered];
+        let mut value = knot.at;
+        if self.entered > 0 {
+            value = value.max(knot.left);
+        }
+        if self.entered + 1 < self.knots.len() {
+            value = value.max(knot.right);
+        }
+        while self.inside.back().is_some_and(|(_, last)| *last <= value) {
+            self.inside.pop_back();
+        }
+        self.inside.push_back((self.entered, value));
+        self.entered += 1;
+    }
+
+    fn leave(&mut self) {
+        if self.inside.front().is_some_and(|(index, _)| *index == self.left) {
+            self.inside.pop_front();
+        }
+        self.left += 1;
+    }
+
+    fn run(&mut self) -> Function {
+        let Bounds { from, to, .. } = self.bounds;
+        let first = self.point(from);
+        self.pass(from);
+        let mut result = Function::starting(Knot::flat(from, first));
+        let mut time = from;
+        let mut pending: Option<(Knot, Source)> = None;
+        while time < to {
+            let next = self.entry(self.entered).min(self.exit(self.left)).min(to);
+            let pieces = upper_envelope(self.lines(time, next));
+            let first = pieces.first().map_or(f64::NEG_INFINITY, |(_, value, _)| *value);
+            if let Some((knot, source)) = pending.take() {
+                let continues = pieces.first().is_some_and(|(_, _, next)| *next == source);
+                if !continues {
+                    result.push(Knot { right: first, ..knot });
+                }
+            } else {
+                result.last_mut().right = first;
+            }
+            for (fraction, value, _) in pieces.iter().skip(1).take(pieces.len().saturating_sub(2)) {
+                result.push(Knot::flat(time + (next - time) * fraction, *value));
+            }
+            let (_, end, source) =
+                pieces.last().copied().unwrap_or((1.0, f64::NEG_INFINITY, NOTHING));
+            let at = self.point(next);
+            self.pass(next);
+            pending = Some((Knot { time: next, left: end, at, right: at }, source));
+            time = next;
+        }
+        if let Some((knot, _)) = pending {
+            result.push(knot);
+        }
+        result
+    }
+
+    /// Passes the knots at the ends of the window.
+    fn pass(&mut self, time: f64) {
+        while self.entry(self.entered) <= time {
+            self.enter();
+        }
+        while self.exit(self.left) <= time {
+            self.leave();
+        }
+    }
+
+    /// The supremum at a time, at which the ends of the window may be at knots not yet passed.
+    fn point(&self, time: f64) -> f64 {
+        let mut value = f64::NEG_INFINITY;
+        let meets_entry = self.entry(self.entered) <= time;
+        let meets_exit = self.exit(self.left) <= time;
+        let first = self.left + usize::from(meets_exit);
+        for (index, inside) in self.inside.iter().take(2) {
+            if *index >= first {
+                value = value.max(*inside);
+            }
+        }
+        if meets_exit {
+            let knot = &self.knots[self.left];
+            value = value.max(knot.at);
+            if self.bounds.end > self.bounds.start && self.left + 1 < self.knots.len() {
+                value = value.max(knot.right);
+            }
+        } else if let Some(line) = self.start_line() {
+            value = value.max(self.function.between(line, time + self.bounds.start));
+        }
+        if meets_entry {
+            let knot = &self.knots[self.entered];
+            value = value.max(knot.at);
+            if self.bounds.end > self.bounds.start && self.entered > 0 {
+                value = value.max(knot.left);
+            }
+        } else if let Some(line) = self.end_line() {
+            value = value.max(self.function.between(line, time + self.bounds.end));
+        }
+        value
+    }
+
+    /// The line at the start of the window, as the index of the knot before it.
+    fn start_line(&self) -> Option<usize> {
+        (self.left > 0 && self.left < self.knots.len()).then(|| self.left - 1)
+    }
+
+    /// The line at the end of the window.
+    fn end_line(&self) -> Option<usize> {
+        (self.entered > 0 && self.entered < self.knots.len()).then(|| self.entered - 1)
+    }
+
+    /// The lines between two events.
+    fn lines(&self, time: f64, next: f64) -> [Option<Line>; 3] {
+        let line = |index: usize, offset: f64, source: Source| Line {
+            source,
+            start: self.function.between(index, time + offset),
+            end: self.function.between(index, next + offset),
+        };
+        let Bounds { start, end, .. } = self.bounds;
+        [
+            self.start_line().map(|index| line(index, start, Source::Start(index))),
+            self.end_line().map(|index| line(index, end, Source::End(index))),
+            self.inside.front().map(|(_, value)| Line {
+                source: Source::Inside(*value),
+                start: *value,
+                end: *value,
+            }),
+        ]
+    }
+}
+
+/// The source of the supremum over an empty window.
+const NOTHING: Source = Source::Inside(f64::NEG_INFINITY);
+
+/// The greatest of lines: where it begins, bends and ends, as fractions of the time, with the value
+/// and what determines the part that ends there (for the first: that begins there).
+fn upper_envelope(lines: [Option<Line>; 3]) -> Vec<(f64, f64, Source)> {
+    let greater = |left: &Line, right: &Line| {
+        left.start.total_cmp(&right.start).then(left.end.total_cmp(&right.end))
+    };
+    let Some(mut current) = lines.iter().flatten().copied().max_by(greater) else {
+        return vec![(0.0, f64::NEG_INFINITY, NOTHING), (1.0, f64::NEG_INFINITY, NOTHING)];
+    };
+    let mut envelope = vec![(0.0, current.start, current.source)];
+    let mut reached = 0.0;
+    loop {
+        // The next line that is greater at the end: the one that crosses first.
+        let crossings = lines.iter().flatten().filter(|line| line.end > current.end).map(|line| {
+            let (below, above) = (current.start - line.start, line.end - current.end);
+            (if below > 0.0 { below / (below + above) } else { 0.0 }, line)
+        });
+        let first = crossings.min_by(|left, right| {
+            left.0.total_cmp(&right.0).then(right.1.end.total_cmp(&left.1.end))
+        });
+        let Some((fraction, line)) = first else { break };
+        if fraction > reached && fraction < 1.0 {
+            let value = current.start + (current.end - current.start) * fraction;
+            envelope.push((fraction, value, current.source));
+            reached = fraction;
+        } else if envelope.len() == 1 {
+            envelope[0] = (0.0, current.start.max(line.start), line.source);
+        }
+        current = *line;
+    }
+    envelope.push((1.0, current.end, current.source));
+    envelope
+}
