@@ -58,6 +58,33 @@ def check_reference(program: str, count: int, seed: int) -> int:
     return compare("reference", tasks, run(program, tasks), expected)
 
 
+def check_rtamt(program: str, count: int, seed: int) -> int:
+    """Held signals, with both evaluators of rtamt."""
+    # Only this comparison needs rtamt.
+    import peer
+
+    tasks = [peer.make(seed + index, 1 + index % 3) for index in range(count)]
+    answers = run(program, tasks)
+    different = 0
+    for name in ("dense", "discrete"):
+        compared: list[Task] = []
+        found = []
+        expected: list[tuple[str | None, float | None]] = []
+        for task, answer in zip(tasks, answers, strict=True):
+            formula, traces, _ = task
+            judge = peer.dense if name == "dense" else peer.discrete
+            robustness = judge(formula, traces)
+            if robustness is not None:
+                compared.append(task)
+                found.append(answer)
+                expected.append((None, robustness))
+        different += compare(f"rtamt {name}", compared, found, expected)
+        if len(compared) < count // 2:
+            print(f"rtamt {name}: only {len(compared)} of {count} formulas are comparable")
+            different += 1
+    return different
+
+
 def compare(
     name: str,
     tasks: list[Task],
@@ -94,6 +121,7 @@ def main() -> int:
     parser.add_argument("program")
     arguments = parser.parse_args()
     different = check_reference(arguments.program, arguments.count, arguments.seed)
+    different += check_rtamt(arguments.program, arguments.count, arguments.seed)
     return 1 if different else 0
 
 

@@ -8,7 +8,7 @@ use crate::node::Program;
 use crate::syntax::{Condition, Quantifier, Tense};
 
 /// How many knots are collected before they are judged at once.
-const MIN_KNOTS: u64 = 256;
+const MIN_KNOTS: u64 = 64;
 
 /// From this number of changes of truth on, the component is not checked at each sample, but each
 /// time this fraction of it arrived.

@@ -27,7 +27,7 @@ pub enum MonitorError {
 /// Judges a formula while samples arrive.
 ///
 /// Memory: an `always` or `eventually` without an interval that is not within another temporal
-/// operator keeps the samples of about three times the horizon of its operand, and at least 256.
+/// operator keeps the samples of about three times the horizon of its operand, and at least 64.
 /// Other formulas with a horizon keep the samples up to it. The rest (unbounded operators of the
 /// future within others, `until` without an interval) keep all samples.
 #[derive(Clone, Debug)]

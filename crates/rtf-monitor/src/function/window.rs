@@ -124,7 +124,9 @@ impl Sweep<'_> {
             let pieces = upper_envelope(self.lines(time, next));
             let first = pieces.first().map_or(f64::NEG_INFINITY, |(_, value, _)| *value);
             if let Some((knot, source)) = pending.take() {
-                let continues = pieces.first().is_some_and(|(_, _, next)| *next == source);
+                // A limit may leave the window when another one enters it.
+                let continues = knot.at == knot.left
+                    && pieces.first().is_some_and(|(_, _, next)| *next == source);
                 if !continues {
                     result.push(Knot { right: first, ..knot });
                 }
