@@ -168,7 +168,7 @@ impl Component {
     }
 
     /// The value with a mode, judged up to a time.
-    fn value(&self, kind: Kind, mode: Mode, to: f64) -> f64 {
+    pub(crate) fn value(&self, kind: Kind, mode: Mode, to: f64) -> f64 {
         if let Some(result) = self.result {
             return result[index(kind)];
         }

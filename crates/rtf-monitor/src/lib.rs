@@ -29,3 +29,6 @@ pub use monitor::{Monitor, MonitorError};
 pub use offline::judge;
 pub use syntax::ParseError;
 pub use unit::UnitError;
+
+#[cfg(test)]
+mod random_tests;

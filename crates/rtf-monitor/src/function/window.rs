@@ -81,12 +81,21 @@ impl Sweep<'_> {
 
     /// When the end of the window meets a knot.
     fn entry(&self, index: usize) -> f64 {
-        self.knots.get(index).map_or(f64::INFINITY, |knot| knot.time - self.bounds.end)
+        let Some(knot) = self.knots.get(index) else { return f64::INFINITY };
+        let Bounds { end, from, .. } = self.bounds;
+        let time = knot.time - end;
+        // The function begins where the first window ends, apart from rounding.
+        let is_first =
+            index == 0 && (time - from).abs() <= 4.0 * f64::EPSILON * (knot.time.abs() + end.abs());
+        if is_first { from } else { time }
     }
 
     /// When the start of the window meets a knot.
     fn exit(&self, index: usize) -> f64 {
-        self.knots.get(index).map_or(f64::INFINITY, |knot| knot.time - self.bounds.start)
+        let Some(knot) = self.knots.get(index) else { return f64::INFINITY };
+        let time = knot.time - self.bounds.start;
+        // No window begins after the function ends, apart from rounding.
+        if index + 1 == self.knots.len() { time.max(self.bounds.to) } else { time }
     }
 
     fn enter(&mut self) {
