@@ -22,13 +22,13 @@ pub(crate) fn until(condition: &Function, goal: &Function, end: f64) -> Function
             after: value,
         };
         let duration = far.time - near.time;
-        let bends = piece.bends();
-        result.last_mut().right = piece.value(1.0);
-        for fraction in bends {
+        let lines = piece.lines();
+        result.last_mut().right = piece.value(&lines, 1.0);
+        for fraction in bends(&lines).into_iter().filter(|fraction| *fraction > 0.0) {
             let time = near.time + duration * fraction;
-            result.push(Knot::flat(-time, piece.value(fraction)));
+            result.push(Knot::flat(-time, piece.value(&lines, fraction)));
         }
-        let limit = piece.value(0.0);
+        let limit = piece.value(&lines, 0.0);
         value = at(near, limit);
         // In reversed time, the limit from the right comes first.
         result.push(Knot { time: -near.time, left: limit, at: value, right: value });
@@ -76,9 +76,9 @@ impl Piece {
     }
 
     /// The result at a fraction of the time.
-    fn value(&self, fraction: f64) -> f64 {
+    fn value(&self, lines: &[[f64; 2]; 3], fraction: f64) -> f64 {
         let [condition, goal, rest] =
-            self.lines().map(|[start, end]| interpolate((0.0, start), (1.0, end), fraction));
+            lines.map(|[start, end]| interpolate((0.0, start), (1.0, end), fraction));
         if self.condition[1] >= self.condition[0] {
             condition.min(goal.max(rest))
         } else {
@@ -97,16 +97,15 @@ impl Piece {
             None => f64::INFINITY,
         }
     }
+}
 
-    /// Where two of the lines cross, as decreasing fractions of the time.
-    fn bends(&self) -> Vec<f64> {
-        let [first, second, third] = self.lines();
-        let pairs = [(first, second), (first, third), (second, third)];
-        let mut bends: Vec<_> =
-            pairs.into_iter().filter_map(|(left, right)| crossing(left, right)).collect();
-        bends.sort_by(|left, right| right.total_cmp(left));
-        bends
-    }
+/// Where two of the lines cross, as decreasing fractions of the time; 0 if they do not.
+fn bends(lines: &[[f64; 2]; 3]) -> [f64; 3] {
+    let [first, second, third] = *lines;
+    let mut bends = [(first, second), (first, third), (second, third)]
+        .map(|(left, right)| crossing(left, right).unwrap_or(0.0));
+    bends.sort_unstable_by(|left, right| right.total_cmp(left));
+    bends
 }
 
 /// The fraction of the time at which two lines cross, unless they only meet at an end.
@@ -120,21 +119,26 @@ fn crossing(left: [f64; 2], right: [f64; 2]) -> Option<f64> {
 /// All times at which a function has a knot.
 fn columns(condition: &Function, goal: &Function) -> Vec<Column> {
     let mut columns = Vec::with_capacity(condition.knots.len() + goal.knots.len());
-    let (mut left, mut right) = (0, 0);
-    while left < condition.knots.len() || right < goal.knots.len() {
-        let time_of = |function: &Function, index: usize| {
-            function.knots.get(index).map_or(f64::INFINITY, |knot| knot.time)
-        };
-        let time = time_of(condition, left).min(time_of(goal, right));
-        let knot = |function: &Function, index: &mut usize| {
-            if time_of(function, *index) <= time {
-                *index += 1;
-                return function.knots[*index - 1];
+    let mut next = [0, 0];
+    let time_of = |function: &Function, index: usize| {
+        function.knots.get(index).map_or(f64::INFINITY, |knot| knot.time)
+    };
+    while next[0] < condition.knots.len() || next[1] < goal.knots.len() {
+        let time = time_of(condition, next[0]).min(time_of(goal, next[1]));
+        let [left, right] = [condition, goal].map(|function| function.knots.as_slice());
+        let knot = |function: &Function, knots: &[Knot], next: &mut usize| {
+            if time_of(function, *next) <= time {
+                *next += 1;
+                knots[*next - 1]
+            } else if *next > 0 && *next < knots.len() {
+                Knot::flat(time, function.between(*next - 1, time))
+            } else {
+                // The intervals are the same, apart from rounding.
+                Knot { time, ..knots[(*next).min(knots.len() - 1)] }
             }
-            function.knot_at(time)
         };
-        let condition = knot(condition, &mut left);
-        let goal = knot(goal, &mut right);
+        let condition = knot(condition, left, &mut next[0]);
+        let goal = knot(goal, right, &mut next[1]);
         columns.push(Column { time, condition, goal });
     }
     columns

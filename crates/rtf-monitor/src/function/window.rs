@@ -130,23 +130,19 @@ impl Sweep<'_> {
         let mut pending: Option<(Knot, Source)> = None;
         while time < to {
             let next = self.entry(self.entered).min(self.exit(self.left)).min(to);
-            let pieces = upper_envelope(self.lines(time, next));
-            let first = pieces.first().map_or(f64::NEG_INFINITY, |(_, value, _)| *value);
+            let envelope = Envelope::new(self.lines(time, next));
             if let Some((knot, source)) = pending.take() {
                 // A limit may leave the window when another one enters it.
-                let continues = knot.at == knot.left
-                    && pieces.first().is_some_and(|(_, _, next)| *next == source);
-                if !continues {
-                    result.push(Knot { right: first, ..knot });
+                if knot.at != knot.left || envelope.first.source != source {
+                    result.push(Knot { right: envelope.first.start, ..knot });
                 }
             } else {
-                result.last_mut().right = first;
+                result.last_mut().right = envelope.first.start;
             }
-            for (fraction, value, _) in pieces.iter().skip(1).take(pieces.len().saturating_sub(2)) {
+            for (fraction, value) in envelope.bends() {
                 result.push(Knot::flat(time + (next - time) * fraction, *value));
             }
-            let (_, end, source) =
-                pieces.last().copied().unwrap_or((1.0, f64::NEG_INFINITY, NOTHING));
+            let Line { end, source, .. } = envelope.last;
             let at = self.point(next);
             self.pass(next);
             pending = Some((Knot { time: next, left: end, at, right: at }, source));
@@ -230,39 +226,58 @@ impl Sweep<'_> {
     }
 }
 
-/// The source of the supremum over an empty window.
-const NOTHING: Source = Source::Inside(f64::NEG_INFINITY);
+/// The supremum over an empty window.
+const NOTHING: Line = Line {
+    source: Source::Inside(f64::NEG_INFINITY),
+    start: f64::NEG_INFINITY,
+    end: f64::NEG_INFINITY,
+};
 
-/// The greatest of lines: where it begins, bends and ends, as fractions of the time, with the value
-/// and what determines the part that ends there (for the first: that begins there).
-fn upper_envelope(lines: [Option<Line>; 3]) -> Vec<(f64, f64, Source)> {
-    let greater = |left: &Line, right: &Line| {
-        left.start.total_cmp(&right.start).then(left.end.total_cmp(&right.end))
-    };
-    let Some(mut current) = lines.iter().flatten().copied().max_by(greater) else {
-        return vec![(0.0, f64::NEG_INFINITY, NOTHING), (1.0, f64::NEG_INFINITY, NOTHING)];
-    };
-    let mut envelope = vec![(0.0, current.start, current.source)];
-    let mut reached = 0.0;
-    loop {
-        // The next line that is greater at the end: the one that crosses first.
-        let crossings = lines.iter().flatten().filter(|line| line.end > current.end).map(|line| {
-            let (below, above) = (current.start - line.start, line.end - current.end);
-            (if below > 0.0 { below / (below + above) } else { 0.0 }, line)
-        });
-        let first = crossings.min_by(|left, right| {
-            left.0.total_cmp(&right.0).then(right.1.end.total_cmp(&left.1.end))
-        });
-        let Some((fraction, line)) = first else { break };
-        if fraction > reached && fraction < 1.0 {
-            let value = current.start + (current.end - current.start) * fraction;
-            envelope.push((fraction, value, current.source));
-            reached = fraction;
-        } else if envelope.len() == 1 {
-            envelope[0] = (0.0, current.start.max(line.start), line.source);
+/// The greatest of lines.
+struct Envelope {
+    /// The line that is the greatest at the start.
+    first: Line,
+    /// The line that is the greatest at the end.
+    last: Line,
+    /// Where another line becomes the greatest: the fraction of the time, and the value.
+    bends: [(f64, f64); 2],
+    /// How many of them there are.
+    count: usize,
+}
+
+impl Envelope {
+    fn new(lines: [Option<Line>; 3]) -> Self {
+        let order = |left: &Line, right: &Line| {
+            left.start.total_cmp(&right.start).then(left.end.total_cmp(&right.end))
+        };
+        let first = lines.iter().flatten().copied().max_by(order).unwrap_or(NOTHING);
+        let mut envelope = Self { first, last: first, bends: [(0.0, 0.0); 2], count: 0 };
+        while envelope.count < 2 {
+            let current = envelope.last;
+            // Of the lines that are greater at the end, the one that crosses first.
+            let crossing = |line: &Line| {
+                let (below, above) = (current.start - line.start, line.end - current.end);
+                (if below > 0.0 { below / (below + above) } else { 0.0 }, *line)
+            };
+            let greater = lines.iter().flatten().filter(|line| line.end > current.end);
+            let next = greater.map(crossing).min_by(|left, right| {
+                left.0.total_cmp(&right.0).then(right.1.end.total_cmp(&left.1.end))
+            });
+            let Some((fraction, line)) = next else { break };
+            let reached = envelope.bends().last().map_or(0.0, |bend| bend.0);
+            if fraction > reached && fraction < 1.0 {
+                let value = current.start + (current.end - current.start) * fraction;
+                envelope.bends[envelope.count] = (fraction, value);
+                envelope.count += 1;
+            } else if envelope.count == 0 {
+                envelope.first = line;
+            }
+            envelope.last = line;
         }
-        current = *line;
+        envelope
     }
-    envelope.push((1.0, current.end, current.source));
-    envelope
+
+    fn bends(&self) -> &[(f64, f64)] {
+        &self.bends[..self.count]
+    }
 }
