@@ -123,6 +123,13 @@ impl Atom {
         self.functions.as_ref().map_or(0, |[_, truth]| truth.knots().len())
     }
 
+    /// How many samples and values are kept.
+    pub(crate) fn kept(&self) -> usize {
+        let samples: usize = self.slots.iter().map(|slot| slot.samples.len()).sum();
+        let functions = self.functions.iter().flatten();
+        samples + functions.map(|function| function.knots().len()).sum::<usize>()
+    }
+
     /// How many samples wait for those of another signal.
     pub(crate) fn waiting(&self) -> usize {
         self.slots

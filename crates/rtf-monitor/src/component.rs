@@ -119,6 +119,11 @@ impl Component {
         self.unchecked += 1;
     }
 
+    /// How many samples and values are kept.
+    pub(crate) fn kept(&self) -> usize {
+        self.atoms.iter().map(Atom::kept).sum()
+    }
+
     /// The greatest number of samples that wait for another signal.
     pub(crate) fn waiting(&self) -> usize {
         self.atoms.iter().map(Atom::waiting).max().unwrap_or(0)
@@ -228,6 +233,9 @@ impl Component {
                 let result = [Kind::Margin, Kind::Truth].map(|kind| self.value(kind, mode, to));
                 self.is_decided |= result[1] * self.polarity < 0.0;
                 self.result = Some(result);
+                for atom in &mut self.atoms {
+                    atom.forget(f64::INFINITY);
+                }
             }
             Scope::Start => {}
             Scope::Unbounded(quantifier, _) => {

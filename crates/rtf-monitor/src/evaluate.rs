@@ -9,7 +9,7 @@
 
 use crate::atom::{Atom, Extension, Kind};
 use crate::function::{Bounds, Function, greatest, least, since, supremum, until};
-use crate::node::{Memory, Node, Temporal};
+use crate::node::{Node, Temporal};
 use crate::syntax::{Quantifier, Tense};
 
 /// Which samples are there, and what is assumed about others.
@@ -178,7 +178,7 @@ impl Evaluation<'_> {
             let bounds = Bounds { start: -interval.to, end: -interval.from, from, to };
             return extremum(function, quantifier, bounds);
         };
-        let value = self.memories[memory.index];
+        let value = self.memories[memory];
         let inner_begin = if value.is_some() { begin - interval.from } else { f64::NEG_INFINITY };
         let function = self.function(inner, inner_begin, end);
         let earlier = value.unwrap_or(if quantifier == Quantifier::Some {
@@ -271,7 +271,7 @@ impl Evaluation<'_> {
         if to - delay < self.start {
             return Function::constant(from, to, f64::NEG_INFINITY);
         }
-        let value = temporal.memory.and_then(|memory| self.memories[memory.index]);
+        let value = temporal.memory.and_then(|memory| self.memories[memory]);
         let first = if value.is_some() { begin - delay } else { f64::NEG_INFINITY };
         let condition = self.function(&sides[0], first, to);
         let goal = self.function(&sides[1], first, to);
@@ -289,10 +289,10 @@ impl Evaluation<'_> {
     }
 
     /// Stores the value of an operator of the past for the next evaluation.
-    fn remember(&mut self, memory: Memory, begin: f64, value: impl Fn(f64) -> f64) {
+    fn remember(&mut self, memory: usize, begin: f64, value: impl Fn(f64) -> f64) {
         if let Some((advance, memories)) = &mut self.next {
             let time = begin + *advance;
-            memories[memory.index] = (time >= self.start).then(|| value(time));
+            memories[memory] = (time >= self.start).then(|| value(time));
         }
     }
 

@@ -115,6 +115,13 @@ impl Monitor {
         self.update()
     }
 
+    /// How many samples and values between them the monitor keeps.
+    #[must_use]
+    pub fn kept_samples(&self) -> usize {
+        let kept: usize = self.components.iter().map(Component::kept).sum();
+        kept + self.early.iter().map(VecDeque::len).sum::<usize>()
+    }
+
     /// Ends the trace at `end`, in seconds, or at the last sample if that is later. The last value
     /// of each signal is held up to the end. Later samples are ignored.
     pub fn finish(&mut self, end: f64) -> Outcome {

@@ -28,18 +28,9 @@ pub(crate) struct Temporal {
     pub interval: Interval,
     /// 1, or -1 if it is negated as a part of the formula.
     pub polarity: f64,
-    /// The place of the value that an unbounded operator of the past had at the start of what is
+    /// The index of the value that an unbounded operator of the past had at the start of what is
     /// kept.
-    pub memory: Option<Memory>,
-}
-
-/// Where the value of an operator of the past is stored.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Memory {
-    /// The index of the value.
-    pub index: usize,
-    /// When the operands begin, in seconds after the start of what is evaluated.
-    pub shift: f64,
+    pub memory: Option<usize>,
 }
 
 impl Node {
@@ -188,7 +179,7 @@ impl Program {
             Tense::Past if interval.to.is_finite() => shift - interval.to,
             Tense::Past => {
                 let shift = shift - interval.from;
-                memory = Some(Memory { index: self.memories, shift });
+                memory = Some(self.memories);
                 self.memories += 1;
                 shift
             }

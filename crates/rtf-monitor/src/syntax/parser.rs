@@ -81,11 +81,6 @@ impl Parser {
         self.tokens.get(self.at)
     }
 
-    /// The token after the next one.
-    pub(super) fn peek_second(&self) -> Option<&TokenKind> {
-        self.tokens.get(self.at + 1).map(|token| &token.kind)
-    }
-
     pub(super) fn advance(&mut self) -> Option<Token> {
         let token = self.tokens.get(self.at).cloned();
         self.at += usize::from(token.is_some());

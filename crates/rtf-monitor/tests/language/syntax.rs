@@ -5,7 +5,7 @@ use std::time::Duration;
 use rtf_monitor::{Formula, ParseError};
 
 fn error(text: &str) -> (ParseError, &str) {
-    let error = Formula::parse(text).expect_err(text);
+    let error = Formula::parse(text).unwrap_err();
     let part = &text[error.range.clone()];
     (error, part)
 }

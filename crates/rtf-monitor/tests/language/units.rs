@@ -9,7 +9,7 @@ fn check(text: &str) -> Result<Formula, Vec<UnitError>> {
         None if name.starts_with('u') => None,
         None => Some(String::new()),
     };
-    Formula::parse(text).expect(text).check_units(&unit_of)
+    Formula::parse(text).unwrap().check_units(&unit_of)
 }
 
 #[test]
