@@ -128,6 +128,7 @@ lint_python() {
   "$checkers/mypy" tests/frameworks/cargo/own.py
   "$checkers/mypy" tests/history/*.py
   "$checkers/mypy" tests/campaign/*.py
+  "$checkers/mypy" tests/monitor/*.py
   "$checkers/mypy" tests/telemetry/*.py
   "$checkers/mypy" tests/executors/*.py
 }
@@ -406,6 +407,14 @@ campaign_oracle() {
   "$python" tests/campaign/sequential.py tests/campaign/scipy.json
 }
 
+# Robustness of random formulas, compared with rtamt and with a second implementation.
+monitor_oracle() {
+  local python
+  python=$(PIP_NO_DEPS=1 tools/venv.sh monitor)/python
+  cargo build --quiet --locked -p rtf-monitor --example robustness
+  "$python" tests/monitor/oracle.py "$TARGET/debug/examples/robustness"
+}
+
 # Parquet files of the history, read by Apache Arrow.
 history_export() {
   "$(tools/venv.sh export)/python" tests/history/export.py "$TARGET/debug/rtf"
@@ -530,6 +539,7 @@ step 'rust tests' env --default-signal=HUP cargo test --workspace --locked --no-
 step 'web api' web_api
 step 'history change points' history_change_points
 step 'campaign oracle' campaign_oracle
+step 'monitor oracle' monitor_oracle
 step 'history export' history_export
 step 'history in PostgreSQL' history_postgres
 step 'telemetry' telemetry

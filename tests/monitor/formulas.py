@@ -23,26 +23,24 @@ def text(node: Node, rtamt: bool = False) -> str:
     """The text, with seconds as the unit of intervals."""
     parts = [text(part, rtamt) for part in node.parts]
     operator = node.operator
-    if operator in ("signal", "constant"):
-        return str(node.leaf)
-    if operator == "hold":
-        return str(node.leaf) if rtamt else f"hold({node.leaf})"
-    if operator in ("abs", "min", "max", "rate", "rise", "fall"):
-        return f"{operator}({', '.join(parts)})"
-    if operator == "negative":
-        return f"(0 - {parts[0]})" if rtamt else f"(-{parts[0]})"
-    if operator == "not":
-        return f"(not ({parts[0]}))"
     interval = ""
     if node.interval is not None:
         low, high = node.interval
         interval = f"[{low},{'inf' if high is None else high}]"
-    if len(parts) == 1:
-        return f"({operator}{interval} ({parts[0]}))"
-    if rtamt and operator in COMPARISONS:
-        names = {"==": "==", "!=": "!=="}
-        operator = names.get(operator, operator)
-    return f"({parts[0]} {operator}{interval} {parts[1]})"
+    if operator in ("signal", "constant") or (operator == "hold" and rtamt):
+        result = str(node.leaf)
+    elif operator == "hold":
+        result = f"hold({node.leaf})"
+    elif operator in ("abs", "min", "max", "rate", "rise", "fall"):
+        result = f"{operator}({', '.join(parts)})"
+    elif operator == "negative":
+        result = f"(0 - {parts[0]})" if rtamt else f"(-{parts[0]})"
+    elif len(parts) == 1:
+        result = f"({operator}{interval} ({parts[0]}))"
+    else:
+        sign = "!==" if rtamt and operator == "!=" else operator
+        result = f"({parts[0]} {sign}{interval} {parts[1]})"
+    return result
 
 
 def horizon(node: Node) -> int:

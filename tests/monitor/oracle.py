@@ -11,6 +11,7 @@ import math
 import subprocess
 import sys
 
+import peer
 import reference
 from formulas import Choices, Generator, Node, text
 
@@ -33,19 +34,21 @@ def run(program: str, tasks: list[Task]) -> list[dict[str, object]]:
 
 
 def is_equal(one: float | None, other: float | None) -> bool:
+    """Whether two robustnesses are equal, apart from rounding."""
     if one is None or other is None:
         return one is None and other is None
     return one == other or abs(one - other) <= TOLERANCE * max(1.0, abs(one))
 
 
 def number(value: object) -> float | None:
+    """A robustness that the program printed."""
     return None if value is None else float(str(value))
 
 
 def check_reference(program: str, count: int, seed: int) -> int:
     """Linear and held signals, all operators, and the end of the trace."""
     tasks: list[Task] = []
-    expected = []
+    expected: list[tuple[str | None, float | None]] = []
     for index in range(count):
         steepest = 1 + index % 2
         generator = Generator(seed + index, Choices())
@@ -60,9 +63,6 @@ def check_reference(program: str, count: int, seed: int) -> int:
 
 def check_rtamt(program: str, count: int, seed: int) -> int:
     """Held signals, with both evaluators of rtamt."""
-    # Only this comparison needs rtamt.
-    import peer
-
     tasks = [peer.make(seed + index, 1 + index % 3) for index in range(count)]
     answers = run(program, tasks)
     different = 0
@@ -115,6 +115,7 @@ def compare(
 
 
 def main() -> int:
+    """Exits with 1 if a robustness or verdict differs."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=1000)

@@ -1,7 +1,7 @@
 """Judges formulas with rtamt.
 
-Both of its evaluators hold each sample until the next one. What differs from spec/monitors.md is not
-compared:
+Both of its evaluators hold each sample until the next one. What differs from spec/monitors.md is
+not compared:
 
 - In discrete time, the first condition of `until` and `since` need not hold at the time of the
   second one, and a window may reach beyond the end of the trace.

@@ -9,7 +9,9 @@ windows are those of slices. Numbers are integers: multiples of 1/grid.
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from formulas import Node, horizon
@@ -81,32 +83,33 @@ class Evaluation:
         """The length of a sequence up to a time in seconds: without the last limit."""
         return 3 * round(end * self.grid) + 2
 
-    def function(self, node: Node, polarity: int, end: float | None = None) -> Values:
+    def function(self, node: Node, polarity: int, end: float = 0) -> Values:
         """The sequence from 0 to `end` in seconds; it may be longer."""
-        if end is None:
-            end = 0
-        operator = node.operator
-        match operator:
-            case "not":
-                return [-value for value in self.function(node.parts[0], -polarity, end)]
-            case "and" | "or" | "->":
-                first = self.function(node.parts[0], -polarity if operator == "->" else polarity, end)
-                second = self.function(node.parts[1], polarity, end)
-                if operator == "->":
-                    first = [-value for value in first]
-                pick = min if operator == "and" else max
-                return [pick(pair) for pair in zip(first, second, strict=False)]
-            case "rise" | "fall":
-                return self.edge(node, polarity, end)
-            case "always" | "eventually":
-                return self.future(node, polarity, end)
-            case "historically" | "once":
-                return self.past(node, polarity, end)
-            case "until":
-                return self.until(node, polarity, end)
-            case "since":
-                return self.since(node, polarity, end)
-        return self.comparison(node, polarity, end)
+        evaluate = {
+            "not": self.negation,
+            "and": self.junction,
+            "or": self.junction,
+            "->": self.junction,
+            "rise": self.edge,
+            "fall": self.edge,
+            "always": self.future,
+            "eventually": self.future,
+            "historically": self.past,
+            "once": self.past,
+            "until": self.until,
+            "since": self.since,
+        }.get(node.operator, self.comparison)
+        return evaluate(node, polarity, end)
+
+    def negation(self, node: Node, polarity: int, end: float) -> Values:
+        return [-value for value in self.function(node.parts[0], -polarity, end)]
+
+    def junction(self, node: Node, polarity: int, end: float) -> Values:
+        sign = -1 if node.operator == "->" else 1
+        first = self.function(node.parts[0], sign * polarity, end)
+        second = self.function(node.parts[1], polarity, end)
+        pick = min if node.operator == "and" else max
+        return [pick(sign * one, other) for one, other in zip(first, second, strict=False)]
 
     def steps(self, seconds: int) -> int:
         return 3 * seconds * self.grid
@@ -236,11 +239,11 @@ class Evaluation:
     def truth(self, margins: Values, holds_at_zero: bool) -> Values:
         """Limits that are 0 have the sign of the line next to them."""
         result = []
-        for place, margin in enumerate(margins):
+        for place in range(len(margins)):
             # The other end of the line that a limit belongs to.
             other = {0: place - 1, 1: place, 2: place + 1}[place % 3]
-            if margin == 0 and place % 3 != 1 and 0 <= other < len(margins):
-                margin = margins[other]
+            is_limit = place % 3 != 1 and 0 <= other < len(margins)
+            margin = margins[other if margins[place] == 0 and is_limit else place]
             is_true = margin > 0 or (margin == 0 and holds_at_zero)
             result.append(INFINITY if is_true else -INFINITY)
         return result
@@ -248,35 +251,31 @@ class Evaluation:
     def number(self, node: Node) -> Values:
         """The sequence up to the end of the trace."""
         parts = [self.number(part) for part in node.parts]
-        match node.operator:
-            case "constant":
-                assert isinstance(node.leaf, int)
-                return [node.leaf * self.grid] * self.length(self.reference.end)
-            case "signal" | "hold":
-                return self.signal(str(node.leaf), node.operator == "hold")
-            case "negative":
-                return [-value for value in parts[0]]
-            case "abs":
-                return [abs(value) for value in parts[0]]
-            case "min":
-                return [min(pair) for pair in zip(*parts, strict=True)]
-            case "max":
-                return [max(pair) for pair in zip(*parts, strict=True)]
-            case "+":
-                return [one + other for one, other in zip(*parts, strict=True)]
-        assert node.operator == "-"
-        return [one - other for one, other in zip(*parts, strict=True)]
+        operator = node.operator
+        if operator == "constant":
+            return [float(str(node.leaf)) * self.grid] * self.length(self.reference.end)
+        if operator in ("signal", "hold"):
+            return self.signal(str(node.leaf), operator == "hold")
+        functions: dict[str, Callable[..., float]] = {
+            "negative": lambda value: -value,
+            "abs": abs,
+            "min": min,
+            "max": max,
+            "+": lambda one, other: one + other,
+            "-": lambda one, other: one - other,
+        }
+        return [functions[operator](*values) for values in zip(*parts, strict=True)]
 
     def signal(self, name: str, is_held: bool) -> Values:
         samples = list(self.reference.traces[name])
         if samples[-1][0] < self.reference.end:
             samples.append((self.reference.end, samples[-1][1]))
         values: Values = [samples[0][1] * self.grid] * 2
-        for (start, one), (end, other) in zip(samples, samples[1:], strict=False):
+        for (start, one), (end, other) in itertools.pairwise(samples):
             steps = (end - start) * self.grid
             values.append(one * self.grid)
             for step in range(1, steps + 1):
-                value = one * self.grid
+                value: float = one * self.grid
                 if not is_held:
                     rise = (other - one) * self.grid * step
                     assert rise % steps == 0 or steps > self.grid

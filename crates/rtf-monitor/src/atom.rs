@@ -1,11 +1,11 @@
 //! A comparison of signals: samples → its margin and truth as functions of time.
 
-use std::collections::VecDeque;
-
-use crate::expression::{Expression, Leaf, Line, Part};
-use crate::function::{Function, Knot, interpolate};
+use crate::comparison::Comparison;
+use crate::expression::{Leaf, Line, Part};
+use crate::function::{Function, Knot};
 use crate::judgement::SignalValue;
-use crate::syntax::{Comparison as Sign, Span};
+use crate::samples::Samples;
+use crate::syntax::Span;
 
 /// Which function of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,33 +25,11 @@ pub(crate) enum Extension {
     Unchanged,
 }
 
-/// What a comparison is, apart from its samples.
-#[derive(Clone, Debug)]
-pub(crate) struct Comparison {
-    pub expression: Expression,
-    pub leaves: Vec<Leaf>,
-    pub comparison: Sign,
-    /// 1, or -1 if it is negated as a part of the formula.
-    pub polarity: f64,
-    /// Its part of the text.
-    pub span: Span,
-}
-
-/// The samples of a signal.
-#[derive(Clone, Debug)]
-struct Slot {
-    signal: usize,
-    /// The first one may be before the start of the trace.
-    samples: VecDeque<(f64, f64)>,
-    /// The last sample that is not after the progress.
-    current: usize,
-}
-
 /// A comparison with its samples.
 #[derive(Clone, Debug)]
 pub(crate) struct Atom {
     comparison: Comparison,
-    slots: Vec<Slot>,
+    slots: Vec<Samples>,
     /// The slot of each leaf.
     places: Vec<usize>,
     has_rate: bool,
@@ -68,13 +46,13 @@ pub(crate) struct Atom {
 
 impl Atom {
     pub(crate) fn new(comparison: Comparison) -> Self {
-        let mut slots: Vec<Slot> = Vec::new();
+        let mut slots: Vec<Samples> = Vec::new();
         let mut places = Vec::new();
         for leaf in &comparison.leaves {
-            let known = slots.iter().position(|slot| slot.signal == leaf.signal);
+            let known = slots.iter().position(|slot| slot.signal() == leaf.signal);
             places.push(known.unwrap_or(slots.len()));
             if known.is_none() {
-                slots.push(Slot { signal: leaf.signal, samples: VecDeque::new(), current: 0 });
+                slots.push(Samples::new(leaf.signal));
             }
         }
         Self {
@@ -101,7 +79,7 @@ impl Atom {
 
     /// Whether it has a signal.
     pub(crate) fn has_signal(&self, signal: usize) -> bool {
-        self.slots.iter().any(|slot| slot.signal == signal)
+        self.slots.iter().any(|slot| slot.signal() == signal)
     }
 
     /// Up to which time it is known. A comparison of constants is always known.
@@ -125,27 +103,24 @@ impl Atom {
 
     /// How many samples and values are kept.
     pub(crate) fn kept(&self) -> usize {
-        let samples: usize = self.slots.iter().map(|slot| slot.samples.len()).sum();
+        let samples: usize = self.slots.iter().map(|slot| slot.len()).sum();
         let functions = self.functions.iter().flatten();
         samples + functions.map(|function| function.knots().len()).sum::<usize>()
     }
 
     /// How many samples wait for those of another signal.
     pub(crate) fn waiting(&self) -> usize {
-        self.slots
-            .iter()
-            .map(|slot| slot.samples.len() - slot.current.min(slot.samples.len()))
-            .sum()
+        self.slots.iter().map(Samples::waiting).sum()
     }
 
     /// Starts the trace, with the last sample of each signal that is not after `start`.
     pub(crate) fn begin(&mut self, start: f64, samples: &dyn Fn(usize) -> (f64, f64)) {
         for slot in &mut self.slots {
-            slot.samples.push_back(samples(slot.signal));
+            slot.push(samples(slot.signal()));
         }
         if self.slots.is_empty() {
             let value = self.comparison.expression.value(&[]);
-            let (margin, truth) = self.point(value);
+            let (margin, truth) = self.comparison.point(value);
             let functions = [margin, truth];
             self.functions =
                 Some(functions.map(|value| Function::starting(Knot::flat(start, value))));
@@ -155,8 +130,8 @@ impl Atom {
     /// Takes a sample, later than the previous one of its signal. Returns whether the truth changes.
     pub(crate) fn sample(&mut self, start: f64, signal: usize, sample: (f64, f64)) -> bool {
         for slot in &mut self.slots {
-            if slot.signal == signal {
-                slot.samples.push_back(sample);
+            if slot.signal() == signal {
+                slot.push(sample);
             }
         }
         self.process(start)
@@ -164,17 +139,16 @@ impl Atom {
 
     /// Computes the functions up to the last sample of the slowest signal.
     pub(crate) fn process(&mut self, start: f64) -> bool {
-        let last = |slot: &Slot| slot.samples.back().map_or(f64::NEG_INFINITY, |last| last.0);
-        let known = self.slots.iter().map(last).fold(f64::INFINITY, f64::min);
+        let known = self.slots.iter().map(Samples::last_time).fold(f64::INFINITY, f64::min);
         if !known.is_finite() || known < start {
             return false;
         }
         let mut changed = false;
         if self.functions.is_none() {
-            self.skip_to(start);
+            self.slots.iter_mut().for_each(|slot| slot.pass(start));
             self.lines_at(start);
             let value = self.comparison.expression.value(&self.lines);
-            let (margin, truth) = self.point(value);
+            let (margin, truth) = self.comparison.point(value);
             self.functions =
                 Some([margin, truth].map(|value| Function::starting(Knot::flat(start, value))));
             changed = true;
@@ -184,23 +158,11 @@ impl Atom {
             if time >= known {
                 return changed;
             }
-            let next = |slot: &Slot| {
-                slot.samples.get(slot.current + 1).map_or(f64::INFINITY, |next| next.0)
-            };
-            let next = self.slots.iter().map(next).fold(f64::INFINITY, f64::min);
+            let next = self.slots.iter().map(Samples::next_time).fold(f64::INFINITY, f64::min);
             if !next.is_finite() {
                 return changed;
             }
             changed |= self.piece(time, next);
-        }
-    }
-
-    /// Makes the last sample that is not after a time the current one of each signal.
-    fn skip_to(&mut self, time: f64) {
-        for slot in &mut self.slots {
-            while slot.samples.get(slot.current + 1).is_some_and(|next| next.0 <= time) {
-                slot.current += 1;
-            }
         }
     }
 
@@ -213,7 +175,7 @@ impl Atom {
         }
         let mut parts = std::mem::take(&mut self.parts);
         self.comparison.expression.parts(&self.lines, to - from, &mut parts);
-        self.skip_to(to);
+        self.slots.iter_mut().for_each(|slot| slot.pass(to));
         let mut changed = false;
         let mut time = from;
         for (index, (fraction, line)) in parts.iter().enumerate() {
@@ -235,16 +197,16 @@ impl Atom {
             // The value before one that is not finite is held.
             [start, end] if start.is_finite() && !end.is_finite() => [start; 2],
             [start, _] if !start.is_finite() => {
-                return self.append_margin((from, to), [self.point(start).0; 2], None);
+                return self.append_margin((from, to), [self.comparison.point(start).0; 2], None);
             }
             line => line,
         };
-        let margin = line.map(|value| self.margin(value));
+        let margin = line.map(|value| self.comparison.margin(value));
         let middle = from + (to - from) * line[0] / (line[0] - line[1]);
         if line[0] * line[1] >= 0.0 || middle <= from || middle >= to {
             return self.append_margin((from, to), margin, None);
         }
-        if let Sign::Equal | Sign::Different = self.comparison.comparison {
+        if self.comparison.is_absolute() {
             return self.append_margin((from, middle), [margin[0], 0.0], None)
                 | self.append_margin((middle, to), [0.0, margin[1]], None);
         }
@@ -256,9 +218,9 @@ impl Atom {
         let (_, to) = range;
         let [start, end] = line;
         // A line that begins or ends at 0 is on one side of it otherwise.
-        let left = self.truth(if start == 0.0 { end } else { start });
-        let mut right = self.truth(if end == 0.0 { start } else { end });
-        let [at_zero, at_end] = [0.0, end].map(|margin| self.truth(margin));
+        let left = self.comparison.truth(if start == 0.0 { end } else { start });
+        let mut right = self.comparison.truth(if end == 0.0 { start } else { end });
+        let [at_zero, at_end] = [0.0, end].map(|margin| self.comparison.truth(margin));
         let is_rate = self.has_rate;
         let Some([margin, truth]) = &mut self.functions else { return false };
         let last = margin.last_mut();
@@ -286,8 +248,7 @@ impl Atom {
         if self.has_rate {
             return false;
         }
-        let is_finite = |slot: &Slot| slot.samples[slot.current].1.is_finite();
-        let is_continuous = self.is_linear && self.slots.iter().all(is_finite);
+        let is_continuous = self.is_linear && self.slots.iter().all(Samples::is_finite);
         if is_continuous
             && let Some([margin, _]) = &self.functions
             && margin.last().left.is_finite()
@@ -296,7 +257,7 @@ impl Atom {
         }
         self.lines_at(time);
         let value = self.comparison.expression.value(&self.lines);
-        let (value, truth_value) = self.point(value);
+        let (value, truth_value) = self.comparison.point(value);
         let Some([margin, truth]) = &mut self.functions else { return false };
         let last = margin.last_mut();
         (last.at, last.right) = (value, value);
@@ -312,34 +273,6 @@ impl Atom {
             let slot = &self.slots[*place];
             self.lines.push([slot.value(leaf.is_held, time); 2]);
         }
-    }
-
-    /// The margin of a difference.
-    fn margin(&self, difference: f64) -> f64 {
-        match self.comparison.comparison {
-            Sign::Equal => -difference.abs(),
-            Sign::Different => difference.abs(),
-            _ => difference,
-        }
-    }
-
-    /// The margin and truth of a difference.
-    fn point(&self, difference: f64) -> (f64, f64) {
-        if !difference.is_finite() {
-            let margin = f64::NEG_INFINITY * self.comparison.polarity;
-            return (margin, margin);
-        }
-        let margin = self.margin(difference);
-        (margin, self.truth(margin))
-    }
-
-    fn truth(&self, margin: f64) -> f64 {
-        let holds_at_zero = matches!(
-            self.comparison.comparison,
-            Sign::LessOrEqual | Sign::GreaterOrEqual | Sign::Equal
-        );
-        let is_true = margin > 0.0 || (margin >= 0.0 && holds_at_zero);
-        if is_true { f64::INFINITY } else { f64::NEG_INFINITY }
     }
 
     /// A function on an interval that begins after the start of the trace. For an edge, a held
@@ -386,8 +319,7 @@ impl Atom {
     pub(crate) fn values(&self, time: f64) -> Vec<SignalValue> {
         let value = |(leaf, place): (&Leaf, &usize)| {
             let slot = &self.slots[*place];
-            let last = slot.samples.back().map_or(time, |last| last.0);
-            let time = time.min(last);
+            let time = time.min(slot.last_time());
             SignalValue { signal: leaf.signal, time, value: slot.past_value(leaf.is_held, time) }
         };
         self.comparison.leaves.iter().zip(&self.places).map(value).collect()
@@ -407,10 +339,7 @@ impl Atom {
             function.forget(time);
         }
         for slot in &mut self.slots {
-            let count = slot.samples.partition_point(|sample| sample.0 <= time);
-            let count = count.saturating_sub(1).min(slot.current);
-            slot.samples.drain(..count);
-            slot.current -= count;
+            slot.forget(time);
         }
     }
 }
@@ -419,29 +348,5 @@ fn extension_value(extension: Option<Extension>, last: f64) -> f64 {
     match extension {
         Some(Extension::Value(value)) => value,
         Some(Extension::Unchanged) | None => last,
-    }
-}
-
-impl Slot {
-    /// The value between the current sample and the next.
-    fn value(&self, is_held: bool, time: f64) -> f64 {
-        between(&self.samples, self.current, is_held, time)
-    }
-
-    /// The value at any time that is kept.
-    fn past_value(&self, is_held: bool, time: f64) -> f64 {
-        let index = self.samples.partition_point(|sample| sample.0 <= time).saturating_sub(1);
-        between(&self.samples, index, is_held, time)
-    }
-}
-
-/// The value at a time between a sample and the next.
-fn between(samples: &VecDeque<(f64, f64)>, index: usize, is_held: bool, time: f64) -> f64 {
-    let start = samples[index];
-    match samples.get(index + 1) {
-        Some(end) if !is_held && start.1.is_finite() && end.1.is_finite() => {
-            interpolate(start, *end, time)
-        }
-        _ => start.1,
     }
 }

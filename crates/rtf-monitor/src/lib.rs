@@ -9,6 +9,7 @@
 //! `spec/monitors.md` defines the language and its semantics, and names the sources.
 
 mod atom;
+mod comparison;
 mod component;
 mod evaluate;
 mod explain;
@@ -19,6 +20,7 @@ mod judgement;
 mod monitor;
 mod node;
 mod offline;
+mod samples;
 mod shape;
 mod syntax;
 mod unit;

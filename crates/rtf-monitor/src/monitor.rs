@@ -14,7 +14,7 @@ use crate::shape::Shape;
 const MAX_EARLY: usize = 65_536;
 
 /// How many samples may wait for those of a slower signal. Then its value counts as unchanged.
-const MAX_WAITING: usize = 1_000_000;
+const MAX_WAITING: usize = 200_000;
 
 /// A formula that cannot be monitored.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

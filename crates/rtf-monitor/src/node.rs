@@ -1,7 +1,7 @@
 //! The syntax tree, prepared for evaluation: comparisons are numbered, and each part of the formula
 //! knows where its function begins.
 
-use crate::atom::Comparison;
+use crate::comparison::Comparison;
 use crate::expression::Expression;
 use crate::syntax::{Comparison as Sign, Condition, Interval, Quantifier, Tense};
 
@@ -117,17 +117,17 @@ impl Program {
             Condition::Comparison { comparison, sides, span } => {
                 let mut leaves = Vec::new();
                 let expression = Expression::difference(*comparison, sides, &mut leaves);
-                let comparison = *comparison;
+                let sign = *comparison;
                 let span = span.clone();
-                let atom = Comparison { expression, leaves, comparison, polarity, span };
+                let atom = Comparison { expression, leaves, sign, polarity, span };
                 self.atom(atom, shift)
             }
             Condition::Truth { index, span } => {
                 let mut leaves = Vec::new();
                 let expression = Expression::truth(*index, &mut leaves);
                 let span = span.clone();
-                let comparison = Sign::Greater;
-                let atom = Comparison { expression, leaves, comparison, polarity, span };
+                let sign = Sign::Greater;
+                let atom = Comparison { expression, leaves, sign, polarity, span };
                 self.atom(atom, shift)
             }
             Condition::Not(inner, _) => Node::Not(Box::new(self.compile(inner, -polarity, shift))),
