@@ -119,6 +119,11 @@ impl Component {
         self.unchecked += 1;
     }
 
+    /// Whether it forgets samples.
+    pub(crate) fn is_bounded(&self) -> bool {
+        !self.program.node.is_unbounded()
+    }
+
     /// How many samples and values are kept.
     pub(crate) fn kept(&self) -> usize {
         self.atoms.iter().map(Atom::kept).sum()
@@ -219,7 +224,7 @@ impl Component {
     /// Judges what is complete, and forgets the samples that are not necessary any more, if there
     /// are enough of them.
     pub(crate) fn judge(&mut self) {
-        if self.result.is_some() || self.program.node.is_unbounded() {
+        if self.result.is_some() || !self.is_bounded() {
             return;
         }
         let known = self.atoms.iter().map(Atom::progress).fold(f64::INFINITY, f64::min);
@@ -233,8 +238,9 @@ impl Component {
                 let result = [Kind::Margin, Kind::Truth].map(|kind| self.value(kind, mode, to));
                 self.is_decided |= result[1] * self.polarity < 0.0;
                 self.result = Some(result);
-                for atom in &mut self.atoms {
-                    atom.forget(f64::INFINITY);
+                // What is against the formula may have to be explained.
+                if result[1] * self.polarity > 0.0 {
+                    self.atoms.iter_mut().for_each(|atom| atom.forget(f64::INFINITY));
                 }
             }
             Scope::Start => {}

@@ -24,12 +24,7 @@ pub enum MonitorError {
     UnitsNotConverted,
 }
 
-/// Judges a formula while samples arrive.
-///
-/// Memory: an `always` or `eventually` without an interval that is not within another temporal
-/// operator keeps the samples of about three times the horizon of its operand, and at least 64.
-/// Other formulas with a horizon keep the samples up to it. The rest (unbounded operators of the
-/// future within others, `until` without an interval) keep all samples.
+/// Judges a formula while samples arrive. `spec/monitors.md` lists which samples are kept.
 #[derive(Clone, Debug)]
 pub struct Monitor {
     shape: Shape,
@@ -113,6 +108,12 @@ impl Monitor {
             return None;
         }
         self.update()
+    }
+
+    /// Whether the memory has a bound that does not depend on the length of the trace.
+    #[must_use]
+    pub fn is_bounded(&self) -> bool {
+        self.components.iter().all(Component::is_bounded)
     }
 
     /// How many samples and values between them the monitor keeps.

@@ -225,3 +225,41 @@ fn a_violation_is_reported_with_the_first_sample_that_determines_it() {
     }
     assert!(early > 200, "{early} violations after the first quarter");
 }
+
+#[test]
+fn any_sample_is_judged() {
+    const VALUES: [f64; 12] = [
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        f64::MAX,
+        f64::MIN,
+        f64::MIN_POSITIVE,
+        5e-324,
+        1e17,
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+    ];
+    let mut random = Random(3);
+    let mut value = move || VALUES[usize::try_from(random.next(VALUES.len() as u64)).unwrap()];
+    let mut random = Random(4);
+    for index in 0..3000 {
+        let text = random.formula(1 + index % 4);
+        let formula = Formula::parse(&text).unwrap();
+        let mut monitor = Monitor::new(&formula).unwrap();
+        let mut time = -0.1;
+        for _ in 0..60 {
+            time += random.real() * 0.01;
+            let time = if random.next(10) == 0 { value() } else { time };
+            let signal = usize::try_from(random.next(4)).unwrap();
+            monitor.sample(signal, time, if random.next(2) == 0 { value() } else { time * 9.0 });
+            if random.next(20) == 0 {
+                monitor.advance(signal, value());
+            }
+        }
+        let outcome = monitor.finish(value());
+        assert!(!outcome.robustness.is_some_and(f64::is_nan), "{text}: {outcome:?}");
+    }
+}

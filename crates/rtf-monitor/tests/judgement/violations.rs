@@ -103,6 +103,7 @@ fn memory_is_bounded() {
     ] {
         let formula = Formula::parse(text).unwrap();
         let mut monitor = Monitor::new(&formula).unwrap();
+        assert!(monitor.is_bounded());
         let mut most = 0;
         for step in 0..30_000_u32 {
             let time = f64::from(step) / 1000.0;
@@ -129,4 +130,33 @@ fn a_silent_signal_does_not_fill_the_memory() {
         monitor.sample(0, f64::from(step), f64::from(step % 2));
     }
     assert!(monitor.kept_samples() < 250_000, "{}", monitor.kept_samples());
+}
+
+#[test]
+fn formulas_that_keep_all_samples() {
+    for text in ["always(p -> eventually q)", "p until q", "once(always p)"] {
+        let monitor = Monitor::new(&Formula::parse(text).unwrap()).unwrap();
+        assert!(!monitor.is_bounded(), "{text}");
+    }
+}
+
+#[test]
+fn the_largest_formulas_are_judged() {
+    let deep = |prefix: &str| format!("{}x < 9", prefix.repeat(60));
+    let long = |separator: &str| vec!["x < 9"; 240].join(separator);
+    for text in [
+        deep("not "),
+        deep("always[0,1ms] "),
+        "not once[0,1ms] ".repeat(30) + "x < 9",
+        long(" and "),
+        format!("{} < 9000", vec!["x"; 490].join(" + ")),
+        format!("{} < 9", vec!["abs("; 60].join("") + "x" + &")".repeat(60)),
+    ] {
+        let formula = Formula::parse(&text).unwrap();
+        let mut monitor = Monitor::new(&formula).unwrap();
+        for step in 0..300_u32 {
+            assert_eq!(monitor.sample(0, f64::from(step) / 1000.0, f64::from(step % 5)), None);
+        }
+        assert_eq!(monitor.finish(0.3).verdict, Verdict::Holds, "{text}");
+    }
 }
