@@ -10,6 +10,8 @@ pub(crate) struct Comparison {
     pub expression: Expression,
     pub leaves: Vec<Leaf>,
     pub sign: Sign,
+    /// Whether it is a signal as a condition, which is true or false without a size.
+    pub is_truth: bool,
     /// 1, or -1 if it is negated as a part of the formula.
     pub polarity: f64,
     /// Its part of the text.
@@ -25,6 +27,7 @@ impl Comparison {
     /// The margin of a difference.
     pub(crate) fn margin(&self, difference: f64) -> f64 {
         match self.sign {
+            _ if self.is_truth => self.truth(difference),
             Sign::Equal => -difference.abs(),
             Sign::Different => difference.abs(),
             _ => difference,

@@ -119,7 +119,7 @@ impl Program {
                 let expression = Expression::difference(*comparison, sides, &mut leaves);
                 let sign = *comparison;
                 let span = span.clone();
-                let atom = Comparison { expression, leaves, sign, polarity, span };
+                let atom = Comparison { expression, leaves, sign, is_truth: false, polarity, span };
                 self.atom(atom, shift)
             }
             Condition::Truth { index, span } => {
@@ -127,7 +127,7 @@ impl Program {
                 let expression = Expression::truth(*index, &mut leaves);
                 let span = span.clone();
                 let sign = Sign::Greater;
-                let atom = Comparison { expression, leaves, sign, polarity, span };
+                let atom = Comparison { expression, leaves, sign, is_truth: true, polarity, span };
                 self.atom(atom, shift)
             }
             Condition::Not(inner, _) => Node::Not(Box::new(self.compile(inner, -polarity, shift))),

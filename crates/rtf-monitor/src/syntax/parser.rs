@@ -104,12 +104,20 @@ impl Parser {
                 error(&format!("`{symbol}`")).hint("it closes nothing")
             }
             TokenKind::Symbol(symbol) => error(&format!("`{symbol}`")),
+            TokenKind::Word(word) if self.follows_number(token) => error(&format!("`{word}`"))
+                .hint("a unit follows its number without a space, for example `5deg`"),
             TokenKind::Word(word) => {
                 error(&format!("`{word}`")).hint("an operator is missing, for example `and`")
             }
             TokenKind::Quoted(name) => error(&format!("signal `{name}`")),
             TokenKind::Number(value, _) => error(&format!("number `{value}`")),
         }
+    }
+
+    fn follows_number(&self, token: &Token) -> bool {
+        let index = self.tokens.partition_point(|other| other.span.start < token.span.start);
+        let previous = index.checked_sub(1).map(|previous| &self.tokens[previous].kind);
+        matches!(previous, Some(TokenKind::Number(..)))
     }
 
     /// Takes a symbol if it is next.

@@ -43,11 +43,16 @@ fn a_mode_that_is_held_does_not_pass_other_modes() {
 }
 
 #[test]
-fn a_signal_as_a_condition_is_above_one_half() {
-    let samples = [("ready", 0.0, 0.0), ("ready", 1.0, 1.0)];
-    assert_eq!(outcome("eventually ready", &samples, 2.0), (HOLDS, Some(0.5)));
-    assert_eq!(outcome("always ready", &samples, 2.0), (VIOLATED, Some(-0.5)));
-    assert_eq!(outcome("always[0,0.9](not ready)", &samples, 2.0), (HOLDS, Some(0.5)));
+fn a_signal_as_a_condition_has_no_size() {
+    let samples = [("ready", 0.0, 0.0), ("q", 0.0, 9.0), ("ready", 1.0, 1.0), ("q", 2.0, 9.0)];
+    let infinite = f64::INFINITY;
+    assert_eq!(outcome("eventually ready", &samples, 2.0), (HOLDS, Some(infinite)));
+    assert_eq!(outcome("always ready", &samples, 2.0), (VIOLATED, Some(-infinite)));
+    assert_eq!(outcome("always[0,0.9](not ready)", &samples, 2.0), (HOLDS, Some(infinite)));
+    assert_eq!(outcome("always(ready > 0.5)", &samples, 2.0), (VIOLATED, Some(-0.5)));
+    // The robustness is that of the position.
+    assert_eq!(outcome("always(ready -> q < 2)", &samples, 2.0), (VIOLATED, Some(-7.0)));
+    assert_eq!(outcome("always(ready -> q < 20)", &samples, 2.0), (HOLDS, Some(11.0)));
 }
 
 #[test]
@@ -70,8 +75,8 @@ fn windows_of_the_past_begin_at_the_start() {
 fn incomplete_windows_are_not_judged() {
     let response = "always(p -> eventually[0,1](q > 0))";
     let samples = [("p", 0.0, 0.0), ("q", 0.0, -2.0), ("p", 5.0, 1.0), ("q", 5.0, -2.0)];
-    assert_eq!(outcome(response, &samples, 5.5), (HOLDS, Some(0.5)));
-    assert_eq!(outcome(response, &samples, 6.5), (VIOLATED, Some(-0.5)));
+    assert_eq!(outcome(response, &samples, 5.5).0, HOLDS);
+    assert_eq!(outcome(response, &samples, 6.5), (VIOLATED, Some(-2.0)));
     assert_eq!(outcome("always[0,10](q < 0)", &samples, 5.0), (NOT_ENOUGH_DATA, None));
     assert_eq!(outcome("always[0,10](q > 0)", &samples, 5.0), (VIOLATED, Some(-2.0)));
     assert_eq!(outcome("eventually[0,10](q < 0)", &samples, 5.0), (HOLDS, Some(2.0)));

@@ -111,6 +111,9 @@ fn hints() {
     assert_eq!(hint("a || b"), "write `or`");
     assert_eq!(hint("1 < x < 2"), "write `1 < x and x < 2`");
     assert_eq!(hint("always[2s,1s] x"), "exchange the bounds");
+    let unit = "a unit follows its number without a space, for example `5deg`";
+    assert_eq!(hint("x < 5 deg"), unit);
+    assert_eq!(hint("always[0, 1 s] x"), unit);
 }
 
 #[test]
