@@ -51,7 +51,7 @@ def check_reference(program: str, count: int, seed: int) -> int:
     expected: list[tuple[str | None, float | None]] = []
     for index in range(count):
         steepest = 1 + index % 2
-        generator = Generator(seed + index, Choices())
+        generator = Generator(seed + index, Choices(rates=True))
         formula = generator.formula(1 + index % 4)
         end = generator.random.randint(0, 9)
         traces = {name: generator.trace(end, steepest) for name in ("x", "y")}

@@ -194,7 +194,7 @@ class Evaluation:
         after = truth.function(node.parts[0], polarity * sign, end + 1 / self.grid)
         before = truth.function(node.parts[0], -polarity * sign, end)
         # A held value is known directly after the last sample.
-        is_held = all(leaf == "hold" for leaf in self.leaves(node.parts[0]))
+        is_held = not self.operators(node.parts[0]) & {"signal", "rate"}
         last = self.length(self.reference.end) - 1
         if is_held and last + 1 < len(after):
             after[last + 1] = after[last]
@@ -226,15 +226,18 @@ class Evaluation:
                 case _:
                     margin = abs(one - other)
             margins.append(margin)
+        is_rate = "rate" in self.operators(node)
         if self.mode.is_truth:
             margins = self.truth(margins, node.operator in ("<=", ">=", "=="))
+        if is_rate:
+            # The slope is known up to the next sample.
+            margins[-1] = self.unknown(polarity) if self.mode.sign else margins[-2]
         missing = self.length(end) + 3 - len(margins)
         value = self.unknown(polarity) if self.mode.sign else margins[-1]
         return margins + [value] * max(0, missing)
 
-    def leaves(self, node: Node) -> list[str]:
-        own = [node.operator] if node.operator in ("signal", "hold") else []
-        return own + [leaf for part in node.parts for leaf in self.leaves(part)]
+    def operators(self, node: Node) -> set[str]:
+        return {node.operator}.union(*(self.operators(part) for part in node.parts))
 
     def truth(self, margins: Values, holds_at_zero: bool) -> Values:
         """Limits that are 0 have the sign of the line next to them."""
@@ -256,6 +259,8 @@ class Evaluation:
             return [float(str(node.leaf)) * self.grid] * self.length(self.reference.end)
         if operator in ("signal", "hold"):
             return self.signal(str(node.leaf), operator == "hold")
+        if operator == "rate":
+            return self.rate(parts[0])
         functions: dict[str, Callable[..., float]] = {
             "negative": lambda value: -value,
             "abs": abs,
@@ -283,3 +288,14 @@ class Evaluation:
                 at = other * self.grid if step == steps else value
                 values.extend([value, at] + ([at] if step < steps else []))
         return values
+
+    def rate(self, values: Values) -> Values:
+        """The slopes of a function that is linear between full seconds."""
+        steps = range(2, len(values) - 2, 3)
+        slopes = [(values[place + 1] - values[place]) * self.grid for place in steps]
+        if not slopes:
+            return [0.0] * len(values)
+        result = [slopes[0]] * 2
+        for slope, after in zip(slopes, [*slopes[1:], slopes[-1]], strict=True):
+            result += [slope, slope, after]
+        return result

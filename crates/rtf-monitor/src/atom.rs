@@ -220,7 +220,8 @@ impl Atom {
         // A line that begins or ends at 0 is on one side of it otherwise.
         let left = self.comparison.truth(if start == 0.0 { end } else { start });
         let mut right = self.comparison.truth(if end == 0.0 { start } else { end });
-        let [at_zero, at_end] = [0.0, end].map(|margin| self.comparison.truth(margin));
+        let [at_zero, at_start, at_end] =
+            [0.0, start, end].map(|margin| self.comparison.truth(margin));
         let is_rate = self.has_rate;
         let Some([margin, truth]) = &mut self.functions else { return false };
         let last = margin.last_mut();
@@ -233,7 +234,7 @@ impl Atom {
         let before = last.at;
         last.right = left;
         if is_rate {
-            last.at = left;
+            last.at = at_start;
         }
         match crossing {
             Some(time) => truth.push(Knot { time, left, at: at_zero, right }),
