@@ -1,5 +1,6 @@
 //! Arithmetic of signals on a part of time where each signal is linear.
 
+use crate::function::crossing;
 use crate::syntax::{Arithmetic, Comparison, Extreme, Number};
 
 /// The values at the start and end of a line.
@@ -151,7 +152,7 @@ impl Expression {
             Self::Negative(inner) => inner.line(leaves, duration, split).map(|value| -value),
             Self::Absolute(inner) => {
                 let line = inner.line(leaves, duration, split);
-                *split = split.or_else(|| crossing(line, [0.0; 2]));
+                *split = split.or_else(|| kink(line, [0.0; 2]));
                 line.map(f64::abs)
             }
             Self::Extreme(which, parts) => {
@@ -159,7 +160,7 @@ impl Expression {
                 let first = lines.next().unwrap_or([f64::NAN; 2]);
                 let rest: Vec<_> = lines.collect();
                 rest.into_iter().fold(first, |best, line| {
-                    *split = split.or_else(|| crossing(best, line));
+                    *split = split.or_else(|| kink(best, line));
                     [extreme(*which, best[0], line[0]), extreme(*which, best[1], line[1])]
                 })
             }
@@ -192,12 +193,7 @@ fn extreme(which: Extreme, left: f64, right: f64) -> f64 {
     }
 }
 
-/// The fraction at which two lines cross.
-fn crossing(left: Line, right: Line) -> Option<f64> {
-    let (start, end) = (left[0] - right[0], left[1] - right[1]);
-    if !((start < 0.0 && end > 0.0) || (start > 0.0 && end < 0.0)) {
-        return None;
-    }
-    let fraction = start / (start - end);
-    (fraction > RESOLUTION && fraction < 1.0 - RESOLUTION).then_some(fraction)
+/// The fraction at which two lines cross, unless that is at an end.
+fn kink(left: Line, right: Line) -> Option<f64> {
+    crossing(left, right).filter(|fraction| *fraction > RESOLUTION && *fraction < 1.0 - RESOLUTION)
 }

@@ -248,3 +248,11 @@ pub(crate) fn interpolate(start: (f64, f64), end: (f64, f64), time: f64) -> f64 
     let fraction = (time - start.0) / (end.0 - start.0);
     start.1 + (end.1 - start.1) * fraction
 }
+
+/// The fraction of the time at which two lines cross, unless they only meet at an end.
+pub(crate) fn crossing(left: [f64; 2], right: [f64; 2]) -> Option<f64> {
+    let (start, end) = (left[0] - right[0], left[1] - right[1]);
+    let crosses = (start < 0.0 && end > 0.0) || (start > 0.0 && end < 0.0);
+    let fraction = start / (start - end);
+    (crosses && fraction > 0.0 && fraction < 1.0).then_some(fraction)
+}

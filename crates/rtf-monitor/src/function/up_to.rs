@@ -3,7 +3,7 @@
 //! From the end backwards: on a line of both operands, the result is the median-like combination of
 //! three lines, whose kinks are where two of them cross.
 
-use super::{Function, Knot, interpolate};
+use super::{Function, Knot, crossing, interpolate};
 
 /// `condition until goal` on their common interval. `end` is the value of the result directly after
 /// the interval.
@@ -106,14 +106,6 @@ fn bends(lines: &[[f64; 2]; 3]) -> [f64; 3] {
         .map(|(left, right)| crossing(left, right).unwrap_or(0.0));
     bends.sort_unstable_by(|left, right| right.total_cmp(left));
     bends
-}
-
-/// The fraction of the time at which two lines cross, unless they only meet at an end.
-fn crossing(left: [f64; 2], right: [f64; 2]) -> Option<f64> {
-    let (start, end) = (left[0] - right[0], left[1] - right[1]);
-    let crosses = (start < 0.0 && end > 0.0) || (start > 0.0 && end < 0.0);
-    let fraction = start / (start - end);
-    (crosses && fraction > 0.0 && fraction < 1.0).then_some(fraction)
 }
 
 /// All times at which a function has a knot.
