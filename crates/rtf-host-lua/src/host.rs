@@ -168,6 +168,8 @@ impl LoadedScript {
         let mut args = MultiValue::from_iter([function]);
         match notification {
             TestNotification::Started(starts) => args.push_back(self.test(&starts.test)?),
+            // Never subscribed to.
+            TestNotification::Ended(_) => return Ok(StepEnd::Done),
             TestNotification::Finished(ends) => {
                 args.push_back(self.test(&ends.test)?);
                 args.push_back(ends.verdict.as_str().into_lua(&self.lua)?);

@@ -125,6 +125,8 @@ impl LoadedPlugin {
     fn notify(&mut self, notification: TestNotification<'_>) -> StepEnd {
         let (function, test, verdict, reason) = match notification {
             TestNotification::Started(starts) => (self.table.test_started, &starts.test, "", ""),
+            // Never subscribed to.
+            TestNotification::Ended(_) => return StepEnd::Done,
             TestNotification::Finished(ends) => {
                 let reason = ends.reason.as_deref().unwrap_or_default();
                 (self.table.test_finished, &ends.test, ends.verdict.as_str(), reason)

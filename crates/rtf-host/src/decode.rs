@@ -82,6 +82,7 @@ pub(crate) fn decode(line: &[u8]) -> Incoming {
         "set-up-fixture" => parse(params).map(Request::SetUpFixture),
         "check-fixture" => Ok(Request::CheckFixture {}),
         "test-started" => parse(params).map(Request::TestStarted),
+        "test-ended" => parse(params).map(Request::TestEnded),
         "test-finished" => parse(params).map(Request::TestFinished),
         "tear-down-fixture" => Ok(Request::TearDownFixture {}),
         "interrupt" => parse::<Interrupt>(params)

@@ -2,7 +2,8 @@
 
 use rtf_model::Location;
 use rtf_model::protocol::{
-    Initialize, Initialized, Plugin, Subscription, TestFinishedParams, TestStartedParams,
+    Initialize, Initialized, Plugin, Subscription, TestEndedParams, TestFinishedParams,
+    TestStartedParams,
 };
 
 use crate::Session;
@@ -47,6 +48,8 @@ impl Step {
 pub enum TestNotification<'a> {
     /// An attempt is about to start: `testStarted`.
     Started(&'a TestStartedParams),
+    /// The process of an attempt has ended: `testEnded`.
+    Ended(&'a TestEndedParams),
     /// An attempt has a verdict: `testFinished`.
     Finished(&'a TestFinishedParams),
 }
@@ -57,6 +60,7 @@ impl TestNotification<'_> {
     pub fn name(self) -> &'static str {
         match self {
             Self::Started(_) => "testStarted",
+            Self::Ended(_) => "testEnded",
             Self::Finished(_) => "testFinished",
         }
     }

@@ -104,6 +104,7 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
             Request::SetUpFixture(plugin) => self.set_up_fixture(&plugin),
             Request::CheckFixture {} => self.check_fixture(),
             Request::TestStarted(starts) => self.notify(TestNotification::Started(&starts)),
+            Request::TestEnded(ends) => self.notify(TestNotification::Ended(&ends)),
             Request::TestFinished(ends) => {
                 self.session.set_attachments_dir(ends.attachments_dir.as_deref());
                 self.notify(TestNotification::Finished(&ends));

@@ -11,6 +11,7 @@
 mod clock;
 mod diagnostic;
 mod event;
+mod finding;
 mod ids;
 mod journal;
 mod manifest;
@@ -32,6 +33,7 @@ pub use event::{
     Output, Parameter, Phase, RunStarted, Significance, Source, StopCause, Stream, SuitePlanned,
     TestFinished, TestPlanned, Trigger, signal_name, value_text,
 };
+pub use finding::{Finding, FindingSeverity};
 pub use ids::{CaseId, FixtureId, HookId, Micros, SuiteId, TestId};
 pub use journal::{Damage, EventCheck, LineCheck, LineChecker, LineSealer, StreamChecker};
 pub use manifest::{Manifest, Origin, Revision};

@@ -14,8 +14,8 @@ use serde_json::Value;
 
 pub use self::rpc::{Reply, RpcError, RpcMessage};
 use crate::{
-    Attachment, CaseId, CaseStart, Measurement, Message, Outcome, Parameter, Phase, Samples,
-    TestId, Verdict,
+    Attachment, CaseId, CaseStart, Finding, Measurement, Message, Outcome, Parameter, Phase,
+    Samples, TestId, Verdict,
 };
 
 /// The protocol version of this crate. Runner and host must agree on it.
@@ -110,6 +110,9 @@ pub enum Request {
     /// Notify the fixture that an attempt of a test is about to start, if it has
     /// subscribed with [`Answer::subscriptions`]. Answered with [`Answer`].
     TestStarted(TestStartedParams),
+    /// Notify the fixture that the process of an attempt has ended, in the same way. The
+    /// verdict waits for the answer.
+    TestEnded(TestEndedParams),
     /// Notify the fixture of the verdict of an attempt, in the same way.
     TestFinished(TestFinishedParams),
     /// Tear the fixture down. Answered with [`Answer`].
@@ -273,6 +276,8 @@ impl CaseSelector {
 pub enum Subscription {
     /// An attempt is about to start: [`Request::TestStarted`].
     TestStarted,
+    /// The process of an attempt has ended: [`Request::TestEnded`].
+    TestEnded,
     /// An attempt was judged: [`Request::TestFinished`].
     TestFinished,
 }
@@ -297,6 +302,17 @@ pub struct TestAttempt {
 pub struct TestStartedParams {
     /// The attempt.
     pub test: TestAttempt,
+}
+
+/// The process of an attempt has ended.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct TestEndedParams {
+    /// The attempt.
+    pub test: TestAttempt,
+    /// Whether the runner stopped it, which decides the verdict: it did not run to its end.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stopped: bool,
 }
 
 /// An attempt of a test was judged.
@@ -350,6 +366,15 @@ pub enum Notification {
     Measured(Measurement),
     /// Samples of a signal, by a test.
     Sampled(Samples),
+    /// Samples of a signal that a fixture took while a test ran.
+    Observed {
+        /// The test.
+        test: TestId,
+        /// The samples.
+        samples: Samples,
+    },
+    /// A fixture found a problem of a running test.
+    Finding(Finding),
     /// A test attaches a file, or a fixture does for the test that it was notified of.
     Attached(Attachment),
     /// A fixture has failed. May arrive at any time.

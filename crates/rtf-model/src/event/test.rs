@@ -58,6 +58,8 @@ pub enum StopCause {
     Interrupt,
     /// The host violated the protocol.
     Protocol,
+    /// A fixture found a problem with which the test must not continue.
+    Finding,
 }
 
 /// The result of one attempt of a test.

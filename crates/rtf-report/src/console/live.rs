@@ -296,6 +296,7 @@ impl Live<'_> {
             StopCause::Collapse => "collapse",
             StopCause::Interrupt => "interrupt",
             StopCause::Protocol => "protocol",
+            StopCause::Finding => "finding",
         };
         let reason = words::first_line(reason);
         page.remark((LOUD, "stopping"), &format!("{} ({cause}): {reason}", self.test(id)));

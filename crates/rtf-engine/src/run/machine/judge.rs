@@ -2,7 +2,7 @@
 //! decides; the host's own reason counts only if nothing was reported.
 
 use rtf_model::protocol::{Answer, RpcError};
-use rtf_model::{CaseId, ExitStatus, LeakedProcess, Outcome, Phase, StopCause, Verdict};
+use rtf_model::{CaseId, ExitStatus, Finding, LeakedProcess, Outcome, Phase, StopCause, Verdict};
 
 use rtf_plan::plan::Leaks;
 
@@ -67,6 +67,13 @@ impl TestProblem {
 }
 
 impl Evidence {
+    /// Records a finding of a fixture. Its verdict holds in every phase: the fixture watches the
+    /// robot, not what the plug-in does.
+    pub fn record_finding(&mut self, finding: &Finding, phase: Phase) {
+        let (verdict, reason) = (finding.severity.verdict(), finding.text.clone());
+        self.first_problem.get_or_insert(TestProblem { verdict, reason, phase, case: None });
+    }
+
     /// The worse of the problems inside and outside of cases.
     fn problem(&self) -> Option<TestProblem> {
         let mut problem = self.first_problem.clone();
@@ -85,6 +92,7 @@ pub fn judge(evidence: &Evidence, last_phase: Phase) -> Judgement {
             StopCause::Collapse => Verdict::Collapsed,
             StopCause::Interrupt => Verdict::Interrupted,
             StopCause::Protocol => Verdict::Error,
+            StopCause::Finding => Verdict::Failed,
         };
         return Judgement::new(verdict, reason.clone(), *phase).in_case(evidence);
     }

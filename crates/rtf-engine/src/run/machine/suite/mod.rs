@@ -7,6 +7,7 @@ mod attempts;
 #[cfg(debug_assertions)]
 mod deadline_invariant;
 mod episodes;
+mod findings;
 mod fixture_examinations;
 mod scheduler;
 mod shared_host;
@@ -179,8 +180,10 @@ impl<'p> SuiteMachine<'p> {
             if matches!(input, ProcessEvent::Dying) {
                 self.on_fixture_dying(index, cx);
             }
-            let failure = self.fixtures.get(index).handle(input, cx);
-            self.on_fixture_failure(index, failure, cx);
+            if let Some(input) = self.take_test_report(index, input, cx) {
+                let failure = self.fixtures.get(index).handle(input, cx);
+                self.on_fixture_failure(index, failure, cx);
+            }
             self.confirm_passed();
         } else if let Some(fixture) = self.fixtures.that_resets(host) {
             fixture.handle_reset(input, cx);

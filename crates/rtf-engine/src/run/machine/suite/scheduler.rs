@@ -153,13 +153,28 @@ impl<'p> Scheduler<'p> {
         self.active.iter_mut().find(|active| active.plan.id == test)
     }
 
-    /// Judges the next ended attempt.
+    /// The next attempt whose process has ended, and whether it was stopped; each once.
+    pub fn take_end(&mut self) -> Option<(TestAttempt, bool)> {
+        self.active.iter_mut().find_map(|active| {
+            let run = active.run.as_mut()?;
+            let was_stopped = run.was_stopped();
+            run.take_end().then(|| (active.attempt(), was_stopped))
+        })
+    }
+
+    /// Judges the next ended attempt about which no fixture is still asked. The verdict of one
+    /// that was stopped waits for no fixture.
     pub fn judge_next(
         &mut self,
+        delivered: impl Fn(TestId) -> bool,
         cx: &mut Context<'_>,
     ) -> Option<(TestAttempt, Verdict, Option<String>)> {
         self.active.iter_mut().find_map(|active| {
-            let (verdict, reason) = active.run.as_mut()?.judge(cx)?;
+            let run = active.run.as_mut()?;
+            if !run.was_stopped() && !delivered(active.plan.id) {
+                return None;
+            }
+            let (verdict, reason) = run.judge(cx)?;
             Some((active.attempt(), verdict, reason))
         })
     }

@@ -1,8 +1,11 @@
-//! Notifies subscribed fixtures that an attempt is about to start, and of its verdict.
-//! The next attempt waits for their replies; hooks do not, so that a recorder never delays
-//! parking the robot.
+//! Notifies subscribed fixtures that an attempt is about to start, that its process has ended,
+//! and of its verdict. The verdict waits for the reply to the second one, unless the runner
+//! stopped the test. The next attempt waits for all replies; hooks do not, so that a recorder
+//! never delays parking the robot.
 
-use rtf_model::protocol::{Request, Subscription, TestFinishedParams, TestStartedParams};
+use rtf_model::protocol::{
+    Request, Subscription, TestEndedParams, TestFinishedParams, TestStartedParams,
+};
 use rtf_model::{EventKind, Phase};
 
 use super::SuiteMachine;
@@ -30,11 +33,23 @@ impl SuiteMachine<'_> {
     /// Judges ended tests, which may trigger hooks, and finishes those whose verdict all
     /// subscribers have received.
     pub(super) fn judge_tests(&mut self, cx: &mut Context<'_>) {
-        while let Some((test, verdict, reason)) = self.scheduler.judge_next(cx) {
+        while let Some((test, stopped)) = self.scheduler.take_end() {
+            let topic = (Subscription::TestEnded, test.id);
+            if self.fixtures.any_subscribes_to(topic.0) {
+                let ended = Request::TestEnded(TestEndedParams { test, stopped });
+                self.fixtures.notify(topic, &ended, cx);
+            }
+        }
+        while let Some((test, verdict, reason)) =
+            self.scheduler.judge_next(|test| !self.fixtures.any_notified_of(test), cx)
+        {
             self.hooks.trigger_by_verdict(&test, verdict, reason.as_deref());
             let topic = (Subscription::TestFinished, test.id);
-            if self.fixtures.any_subscribes_to(topic.0) {
+            let is_notified = self.fixtures.any_subscribes_to(topic.0);
+            if is_notified || self.fixtures.any_notified_of(test.id) {
                 cx.emit(EventKind::TestPhase { test: test.id, phase: Phase::Notify });
+            }
+            if is_notified {
                 let ends = TestFinishedParams { test, verdict, reason, attachments_dir: None };
                 self.fixtures.notify(topic, &Request::TestFinished(ends), cx);
             }

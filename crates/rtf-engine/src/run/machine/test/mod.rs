@@ -51,6 +51,8 @@ pub struct TestRun<'p> {
     /// With a simulated clock: measures the phase.
     stopwatch: Option<Stopwatch>,
     state: AttemptState,
+    /// Whether fixtures were notified that its process has ended.
+    is_end_notified: bool,
     has_fixtures: bool,
     leak: Option<String>,
     output: OutputCapture,
@@ -92,6 +94,7 @@ impl<'p> TestRun<'p> {
             backstop: suite.clock.as_ref().map(|clock| clock.backstop),
             stopwatch: None,
             state: AttemptState::Running,
+            is_end_notified: false,
             has_fixtures: !suite.fixtures.is_empty(),
             leak: None,
             output: OutputCapture::new(Source::Test(plan.id)),

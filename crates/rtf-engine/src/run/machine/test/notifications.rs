@@ -34,10 +34,14 @@ impl TestRun<'_> {
             }
             Notification::Attached(_) => {}
             Notification::Provided { .. } => self.report_error(PROVIDED.to_owned(), cx),
-            Notification::Collapsed { .. } => {
-                self.on_protocol_error("sent `collapsed`, which is for fixtures".to_owned(), cx);
-            }
+            Notification::Collapsed { .. } => self.on_fixture_notification("collapsed", cx),
+            Notification::Finding(_) => self.on_fixture_notification("finding", cx),
+            Notification::Observed { .. } => self.on_fixture_notification("observed", cx),
         }
+    }
+
+    fn on_fixture_notification(&mut self, method: &str, cx: &mut Context<'_>) {
+        self.on_protocol_error(format!("sent `{method}`, which is for fixtures"), cx);
     }
 
     fn enter_phase(&mut self, phase: Phase, cx: &mut Context<'_>) {

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use rtf_model::{ExitStatus, LeakedProcess, TestFinished, Verdict};
+use rtf_model::{EventKind, ExitStatus, Finding, LeakedProcess, StopCause, TestFinished, Verdict};
 
 use super::{CarriedCases, TestRun};
 use crate::run::machine::context::Context;
@@ -64,6 +64,29 @@ impl TestRun<'_> {
             AttemptState::AwaitsCollapse => self.set_limit(COLLAPSE_WAIT, cx),
             _ => self.clear(TestTimer::Limit, cx),
         }
+    }
+
+    /// A fixture found a problem, before the verdict.
+    pub fn on_finding(&mut self, finding: Finding, cx: &mut Context<'_>) {
+        let message = finding.message();
+        if message.critical {
+            self.critical.get_or_insert_with(|| finding.text.clone());
+        }
+        cx.emit(EventKind::Message { source: self.source(), message, test: None });
+        self.evidence.record_finding(&finding, self.phase);
+        if finding.severity.ends_test() {
+            self.stop(StopCause::Finding, finding.text, cx);
+        }
+    }
+
+    /// Whether fixtures have to be notified of the end of its process; true once.
+    pub fn take_end(&mut self) -> bool {
+        self.has_exited() && !std::mem::replace(&mut self.is_end_notified, true)
+    }
+
+    /// Whether it was asked to stop, which decides its verdict.
+    pub fn was_stopped(&self) -> bool {
+        self.evidence.stopped.is_some()
     }
 
     pub fn has_exited(&self) -> bool {

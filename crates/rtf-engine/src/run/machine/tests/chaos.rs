@@ -6,8 +6,8 @@ use std::time::Duration;
 use proptest::prelude::*;
 use rtf_model::protocol::{Notification, Reply};
 use rtf_model::{
-    CaseId, CaseStart, Episode, EventKind, ExitStatus, Message, MessageKind, Phase, Source, TestId,
-    Trigger, Verdict,
+    CaseId, CaseStart, Episode, EventKind, ExitStatus, Finding, FindingSeverity, Message,
+    MessageKind, Phase, Source, TestId, Trigger, Verdict,
 };
 
 use super::world::{SECOND, World, hook, suite};
@@ -55,6 +55,7 @@ fn report(choice: u8) -> Notification {
             let names = (1..=3).map(|case| format!("pose {case}")).collect();
             Notification::CasesPlanned { names }
         }
+        2 if choice & 1 == 0 => about_test(number),
         2 => {
             let name = if choice > 128 { "port" } else { "pid" }.to_owned();
             Notification::Provided { name, value: number.into() }
@@ -78,6 +79,18 @@ fn report(choice: u8) -> Notification {
     }
 }
 
+/// A finding about a test, or samples that a fixture took.
+fn about_test(number: u32) -> Notification {
+    let test = TestId(number / 4 % 4);
+    if number & 2 == 0 {
+        let samples = serde_json::json!({ "name": "q", "points": [[0.5, 1.5]], "case": 1 });
+        return Notification::Observed { test, samples: serde_json::from_value(samples).unwrap() };
+    }
+    let (_, severity) = FindingSeverity::ALL[number as usize / 64];
+    let (text, location) = ("`q` is 2".to_owned(), None);
+    Notification::Finding(Finding { test, severity, text, location })
+}
+
 pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool) {
     let alive: Vec<_> = world.hosts.iter().map(|(host, source)| (*host, *source)).collect();
     if act_idle(world, choice) {
@@ -99,7 +112,7 @@ pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool)
         0..=4 => {
             if let Some(id) = answerable(world) {
                 let outcome = if choice > 200 { "failed" } else { "passed" };
-                let topics = ["test-started", "test-finished"];
+                let topics = ["test-started", "test-ended", "test-finished"];
                 let continues = shared && outcome == "passed" && matches!(source, Source::Test(_));
                 let value = serde_json::json!({
                     "outcome": outcome, "subscriptions": topics, "continues": continues
