@@ -21,6 +21,7 @@ pub mod protocol;
 mod record;
 mod report;
 mod samples;
+mod signals;
 mod trend;
 mod usage;
 mod verdict;
@@ -49,6 +50,10 @@ pub use report::{
     format_rounded,
 };
 pub use samples::{Samples, SignalOutline};
+pub use signals::{
+    MeasuredFixture, MonitorConfig, ProcessQuantity, SignalConfig, SignalProgram, SignalSource,
+    SignalTime, SignalsConfig,
+};
 pub use usage::{Growth, Resource, Usage, UsageSeries};
 pub use verdict::{Outcome, Verdict};
 

@@ -10,7 +10,8 @@ use super::profile_view::{ConfigRequest, ProfileView};
 use crate::plan::defaults;
 use crate::suite::{
     DeclaredLimits, DeclaredPlugin, DeclaredProbeKind, DeclaredProbes, DeclaredProvide,
-    DeclaredSuite, DeclaredValueSource, FixtureKind, HookKind, MAX_DURATION, SourceText, Span,
+    DeclaredSourceKind, DeclaredSuite, DeclaredValueSource, FixtureKind, HookKind, MAX_DURATION,
+    SourceText, Span,
 };
 use crate::wording::nearest;
 
@@ -224,6 +225,11 @@ impl ParamSubstitution<'_> {
                     self.probes(&mut process.probes);
                 }
                 FixtureKind::Attached(probes) => self.probes(probes),
+            }
+        }
+        for source in &mut suite.signals {
+            if let DeclaredSourceKind::Program { command, .. } = &mut source.kind {
+                self.words(&mut command.value, command.span);
             }
         }
         for hook in &mut suite.hooks {

@@ -153,6 +153,22 @@ pub(super) static HOSTS: [HostKind; 4] = [
     },
 ];
 
+/// The host of the fixture `signals`, which no suite names.
+pub(super) static SIGNALS: HostKind = HostKind {
+    name: "signals",
+    extensions: &[],
+    prefixes: &[],
+    library_path: None,
+    class_prefix: None,
+    framework: None,
+    start: HostStart::Shipped {
+        program: "rtf-host-signals",
+        arguments: &[],
+        sdk: None,
+        forks: false,
+    },
+};
+
 const fn shipped(program: &'static str) -> HostStart {
     HostStart::Shipped { program, arguments: &[], sdk: None, forks: true }
 }

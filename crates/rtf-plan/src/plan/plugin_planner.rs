@@ -121,6 +121,19 @@ impl<'a, 'c> PluginPlanner<'a, 'c> {
         self.finish(file, param, PluginUsage { kind, role, env: &[], site, optional: false })
     }
 
+    /// Plans a plug-in that is part of its host, with its parameter string and arguments. `file`
+    /// is only shown.
+    pub fn plan_built_in(
+        &mut self,
+        kind: &'static HostKind,
+        file: &str,
+        (param, args): (String, Vec<String>),
+        site: &UseSite,
+    ) -> Option<PluginPlan> {
+        let (host, plugin_type) = (self.host(kind, &[], site)?, Arc::from(kind.name));
+        Some(PluginPlan { plugin_type, file: file.into(), param, args, host })
+    }
+
     fn finish(&mut self, file: &Path, param: String, usage: PluginUsage<'_>) -> Option<PluginPlan> {
         if let Err(problem) = utf8(file) {
             self.context.problems.push(usage.site.label(*problem, ""));

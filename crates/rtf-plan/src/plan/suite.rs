@@ -13,10 +13,11 @@ use super::names::UniqueNames;
 use super::plugin_planner::PluginPlanner;
 use super::plugin_search::base_name;
 use super::search_scope::SearchScope;
-use super::test_planner::{SharedLimits, TestPlanner};
+use super::signals::DeclaredSignals;
+use super::test_planner::{PlannedTests, SharedLimits, TestPlanner};
 use super::{
     Compatibility, Isolation, OwnMiddleware, Preparation, SuitePlan, SuiteSettings, TestPlan,
-    TestSettings, clock, fixture, hook, middleware,
+    TestSettings, clock, fixture, hook, middleware, signals,
 };
 use crate::config;
 use crate::suite::{DeclaredMiddleware, DeclaredSuite, DeclaredTest, FixtureKind, SourceText};
@@ -43,6 +44,8 @@ pub(super) fn plan_suite(
     let named = suite.tests.iter().filter(|test| is_first_of_matrix(test));
     let declared = named.map(|test| test.name.as_ref());
     let mut names = UniqueNames::reserve("test", declared, source, &mut context.problems);
+    let fixture_names = suite.fixtures.iter().filter_map(|fixture| fixture.name.as_ref());
+    let fixture_names = fixture_names.map(|name| name.value.clone()).collect();
     let fallback_dir = fallback_dir.as_deref();
     let scope = SearchScope { runner, dir: &dir, fallback_dir, suite_env: &env, own_env: &[] };
     let mut planner = PluginPlanner::new(context, scope);
@@ -51,7 +54,15 @@ pub(super) fn plan_suite(
     let clock = clock::plan(&mut planner, source, suite.clock, &mut fixtures);
     let hooks = hook::plan_all(&mut planner, source, suite.hooks);
     let tests = TestPlanner::new(&mut planner, source, &mut names);
-    let (tests, frameworks) = tests.plan(&suite.tags, suite.tests);
+    let PlannedTests { tests, frameworks, monitors } = tests.plan(&suite.tags, suite.tests);
+    let declared = DeclaredSignals {
+        sources: suite.signals,
+        monitors: suite.monitors,
+        of_tests: monitors,
+        fixtures: fixture_names,
+        has_clock: clock.is_some(),
+    };
+    signals::plan(&mut planner, source, declared, &mut fixtures);
     planner.report_missing();
     let plan = SuitePlan {
         id: SuiteId(0),

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use rtf_model::TestId;
 
 use super::framework_tests::{self, FrameworkTest, FrameworkTests};
+use super::monitors::JudgedTests;
 use super::names::UniqueNames;
 use super::plugin_planner::PluginPlanner;
 use super::plugin_search::base_name;
@@ -58,6 +59,17 @@ pub(super) struct TestPlanner<'p, 'a, 'c> {
     matrix: Option<(Arc<str>, Option<PluginPlan>)>,
     plans: Vec<TestPlan>,
     frameworks: FrameworkTests,
+    monitors: JudgedTests,
+}
+
+/// The planned tests of a suite.
+pub(super) struct PlannedTests {
+    /// The tests.
+    pub tests: Vec<TestPlan>,
+    /// Those of other frameworks.
+    pub frameworks: FrameworkTests,
+    /// Their monitors.
+    pub monitors: JudgedTests,
 }
 
 impl<'p, 'a, 'c> TestPlanner<'p, 'a, 'c> {
@@ -75,18 +87,16 @@ impl<'p, 'a, 'c> TestPlanner<'p, 'a, 'c> {
             matrix: None,
             plans: Vec::new(),
             frameworks: FrameworkTests::default(),
+            monitors: JudgedTests::default(),
         }
     }
 
     /// Plans the tests; omits those without a plug-in, which are reported.
-    pub fn plan(
-        mut self,
-        suite_tags: &[String],
-        tests: Vec<DeclaredTest>,
-    ) -> (Vec<TestPlan>, FrameworkTests) {
+    pub fn plan(mut self, suite_tags: &[String], tests: Vec<DeclaredTest>) -> PlannedTests {
         self.plans.reserve_exact(tests.len());
         tests.into_iter().for_each(|test| self.add(suite_tags, test));
-        (self.plans, self.frameworks)
+        let Self { plans: tests, frameworks, monitors, .. } = self;
+        PlannedTests { tests, frameworks, monitors }
     }
 
     fn add(&mut self, suite_tags: &[String], mut test: DeclaredTest) {
@@ -107,6 +117,7 @@ impl<'p, 'a, 'c> TestPlanner<'p, 'a, 'c> {
             }
             Some(combination) => self.combination(combination, declared, framework.as_ref()),
         };
+        self.monitors.add(&name, test.monitors);
         let Some(plugin) = plugin else { return };
         let was = was.map(|was| match &combination {
             Some(combination) => matrix::combination_name(&was, &combination.parameters),

@@ -21,6 +21,7 @@ mod known_failure;
 mod learn;
 pub mod matrix;
 mod middleware;
+mod monitor;
 mod param_string;
 pub mod port_reference;
 mod prepass;
@@ -35,9 +36,12 @@ mod root;
 pub mod schema;
 mod shared_settings;
 mod signal;
+mod signal_source;
+mod signal_types;
 mod source;
 mod source_file;
 mod test;
+mod text_position;
 mod types;
 mod xml;
 
@@ -54,9 +58,11 @@ pub use param_string::split_param;
 pub use reader::ElementReader;
 pub use root::parse;
 pub use shared_settings::{SharedSettings, shared_settings};
+pub use signal_types::*;
 pub use source::{SourceMap, SourceText, Span, Spanned};
 pub use source_file::{
     MAX_SUITE_BYTES, UnreadableFile, is_campaign_file, is_replay_suite, is_suite_file, read_source,
     replay_suite,
 };
+pub use text_position::position_of;
 pub use types::*;

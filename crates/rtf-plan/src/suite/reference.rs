@@ -5,7 +5,7 @@ use std::ops::Range;
 use rtf_model::Diagnostic;
 
 use super::reader::ElementReader;
-use super::{Span, Spanned, fixture_reference, port_reference};
+use super::{Span, Spanned, fixture_reference, port_reference, position_of};
 use crate::placeholder::{Segment, segments};
 
 /// A kind of reference.
@@ -65,20 +65,11 @@ pub(super) fn is_in(text: &str) -> bool {
     port_reference::mentions(text) || fixture_reference::mentions(text)
 }
 
-/// Returns the position of a part of a value, or of the whole value if entities
-/// or line breaks shift the part.
+/// Returns the position of a part of a value.
 pub(super) fn position(
     reader: &ElementReader<'_>,
     value: &Spanned<String>,
     part: Range<usize>,
 ) -> Span {
-    let raw = reader.source.text().get(value.span.range()).unwrap_or_default();
-    let lead = raw.len() - raw.trim_start().len();
-    if raw == value.value {
-        value.span.part(part)
-    } else if raw.trim() == value.value {
-        value.span.part(part.start + lead..part.end + lead)
-    } else {
-        value.span
-    }
+    position_of(reader.source, value, part)
 }

@@ -8,7 +8,8 @@ use super::schema::{self, check};
 use super::test::{self, TestDefaults};
 use super::{
     DeclaredIsolation, DeclaredMiddleware, DeclaredSuite, ReferenceUser, SourceText, Spanned,
-    SuiteSettings, TestSettings, clock, env, fixture, hook, read_document, reference, requires,
+    SuiteSettings, TestSettings, clock, env, fixture, hook, monitor, read_document, reference,
+    requires, signal_source,
 };
 
 /// Parses the text of a suite file and adds every problem to `problems`.
@@ -77,13 +78,16 @@ fn read_suite(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> DeclaredSui
         clock: clock::read(reader, root),
         fixtures: Vec::new(),
         hooks: Vec::new(),
+        signals: Vec::new(),
+        monitors: Vec::new(),
         tests: Vec::new(),
         fixture_references: super::FixtureReferences::default(),
     };
     for node in root.children().filter(Node::is_element) {
         reader.user = match node.tag_name().name() {
             "fixture" => ReferenceUser::Fixture(suite.fixtures.len()),
-            "hook" | "test" => ReferenceUser::TestOrHook,
+            // Signals are read after all fixtures are set up.
+            "hook" | "test" | "signal" | "signals" => ReferenceUser::TestOrHook,
             _ => ReferenceUser::Suite,
         };
         read_child(reader, node, &mut suite, defaults);
@@ -122,6 +126,9 @@ fn read_child(
         }
         "fixture" => suite.fixtures.extend(fixture::read(reader, node)),
         "hook" => suite.hooks.extend(hook::read(reader, node)),
+        "signal" => suite.signals.extend(signal_source::read(reader, node)),
+        "signals" => suite.signals.extend(signal_source::read_group(reader, node)),
+        "monitor" => suite.monitors.extend(monitor::read(reader, node)),
         "test" => suite.tests.extend(test::read(reader, node, defaults)),
         _ => {}
     }

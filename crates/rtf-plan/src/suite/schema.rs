@@ -48,7 +48,17 @@ pub(super) const SUITE: ElementSchema = ElementSchema {
         "test-slow",
         "test-grace",
     ],
-    elements: &["description", "environment", "env", "fixture", "hook", "test"],
+    elements: &[
+        "description",
+        "environment",
+        "env",
+        "fixture",
+        "hook",
+        "signal",
+        "signals",
+        "monitor",
+        "test",
+    ],
     text: false,
 };
 
@@ -82,7 +92,7 @@ pub(super) const TEST: ElementSchema = ElementSchema {
         "until",
         "was",
     ],
-    elements: &["env", "matrix", "matrix-exclude", "learn"],
+    elements: &["env", "matrix", "matrix-exclude", "learn", "monitor"],
     text: true,
 };
 
@@ -151,6 +161,26 @@ pub(super) const ATTACHED: ElementSchema = ElementSchema {
     elements: &["ready", "alive", "reset", "env", "provide"],
     text: false,
 };
+
+/// `<signals>`.
+pub(super) const SIGNALS: ElementSchema = ElementSchema {
+    name: "signals",
+    attributes: &["time", "wait"],
+    elements: &["command", "signal"],
+    text: false,
+};
+/// `<signal>` in `<signals>`.
+pub(super) const COLUMN: ElementSchema = leaf("signal", &["name", "unit"]);
+/// `<signal>` with its own source.
+pub(super) const SIGNAL: ElementSchema = ElementSchema {
+    name: "signal",
+    attributes: &["name", "unit", "time", "wait", "fixture", "of", "every"],
+    elements: &["command"],
+    text: false,
+};
+/// `<monitor>`.
+pub(super) const MONITOR: ElementSchema =
+    ElementSchema { name: "monitor", attributes: &["name", "severity"], elements: &[], text: true };
 
 /// `<hook>`. `hook.rs` checks which attributes require a plug-in.
 pub(super) const HOOK: ElementSchema = ElementSchema {

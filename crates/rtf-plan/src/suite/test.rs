@@ -10,6 +10,7 @@ use super::schema::{self, check};
 use super::{
     AfterCollapse, DeclaredCases, DeclaredLimits, DeclaredPlugin, DeclaredTest, ForkPoint, Leaks,
     Retries, Span, Spanned, TestIsolation, TestSettings, env, known_failure, learn, matrix,
+    monitor,
     reference,
 };
 
@@ -56,6 +57,7 @@ pub(super) fn read(
     let tags = values(reader.words(node, "tags"));
     let env = env::read(reader, node);
     let learn = learn::read(reader, node);
+    let monitors = monitor::read_all(reader, node);
     let known_failure = known_failure::read(reader, node).map(Box::new);
     let matrix = matrix::read(reader, node).map(Box::new);
     let plugin = plugin(reader, node)?;
@@ -72,6 +74,7 @@ pub(super) fn read(
         tags,
         env,
         learn,
+        monitors,
         known_failure,
         matrix,
         combination,

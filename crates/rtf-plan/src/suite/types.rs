@@ -6,7 +6,10 @@ use jiff::Timestamp;
 use jiff::civil::Date;
 use rtf_model::{Trigger, Verdict};
 
-use super::{Combination, DeclaredFixture, DeclaredMatrix, FixtureReferences, Span, Spanned};
+use super::{
+    Combination, DeclaredFixture, DeclaredMatrix, DeclaredMonitor, DeclaredSource,
+    FixtureReferences, Span, Spanned,
+};
 
 /// The contents of a suite file.
 #[derive(Clone, Debug)]
@@ -29,6 +32,10 @@ pub struct DeclaredSuite {
     pub fixtures: Vec<DeclaredFixture>,
     /// The hooks, in order.
     pub hooks: Vec<DeclaredHook>,
+    /// The sources of signals, in order.
+    pub signals: Vec<DeclaredSource>,
+    /// The monitors of all tests.
+    pub monitors: Vec<DeclaredMonitor>,
     /// The tests, in order.
     pub tests: Vec<DeclaredTest>,
     /// The references to values of fixtures.
@@ -160,6 +167,8 @@ pub struct DeclaredTest {
     pub env: Vec<(String, String)>,
     /// The limits that it learns from earlier runs.
     pub learn: Vec<LearnPlan>,
+    /// The monitors of this test.
+    pub monitors: Vec<DeclaredMonitor>,
     /// Its known failure.
     pub known_failure: Option<Box<DeclaredKnownFailure>>,
     /// The values with which it runs; `None` for a test without a matrix.

@@ -30,7 +30,9 @@ impl Bench {
         };
         let options = Options::new(runner);
         let bench = Self { _dir: dir, root, options };
-        for host in ["rtf-host-native", "rtf-host-lua", "rtf-host-framework", "python3"] {
+        for host in
+            ["rtf-host-native", "rtf-host-lua", "rtf-host-framework", "rtf-host-signals", "python3"]
+        {
             bench.program(&format!("bin/{host}"), "exit 0");
         }
         bench

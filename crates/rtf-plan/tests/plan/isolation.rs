@@ -112,10 +112,10 @@ fn invalid_ports_are_reported_with_their_positions() {
       5:26 ${port: a `}` is missing after it
       hint: `$${port:` stands for these characters
     invalid-port: the ports `a-b` and `A-B` would both be in `RTF_PORT_A_B`
-      6:14 &amp; ${prot:sim} ${PORT:-5} ${port:A-B}
+      6:45 ${port:A-B}
       3:51 ${port:a-b} the other one
     no-port: `${prot:` means itself
-      6:14 &amp; ${prot:sim} ${PORT:-5} ${port:A-B}
+      6:22 ${prot:
       hint: did you mean `${port:`?
     ");
 }

@@ -17,4 +17,5 @@ mod named_cases;
 mod plugins;
 mod predecessor;
 mod select;
+mod signals;
 mod suites;

@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
-use rtf_model::{Trigger, Verdict};
+use rtf_model::{FindingSeverity, ProcessQuantity, SignalTime, Trigger, Verdict};
 use rtf_plan::suite::{
     AfterCollapse, ClockSource, DeclaredLimits, DeclaredProbe, DeclaredProbeKind,
-    DeclaredValueSource, FixtureKind, ForkPoint, HookKind, Leaks, MatrixDimension, MiddlewareProbe,
-    ReferenceUser, TestIsolation,
+    DeclaredSourceKind, DeclaredValueSource, FixtureKind, ForkPoint, HookKind, Leaks,
+    MatrixDimension, MiddlewareProbe, ReferenceUser, TestIsolation,
 };
 
 use crate::file;
@@ -178,8 +178,29 @@ fn every_value_of_a_fixture_is_read() {
         references.iter().map(|it| (it.fixture.as_str(), it.value.as_str(), it.user)).collect();
     let (driver, remote) = (ReferenceUser::Fixture(1), ReferenceUser::Fixture(4));
     let remote = ["host", "host", "port"].map(|value| ("sim", value, remote));
-    let hook = ("sim", "port", ReferenceUser::TestOrHook);
-    assert_eq!(users, [&[("sim", "port", driver)], &remote[..], &[hook]].concat());
+    let later = ("sim", "port", ReferenceUser::TestOrHook);
+    assert_eq!(users, [&[("sim", "port", driver)], &remote[..], &[later, later]].concat());
+}
+
+#[test]
+fn signals_and_monitors_are_read() {
+    let (suite, _) = file("valid/everything.xml");
+    let [elbow, load, arm] = &*suite.signals else { panic!("{:?}", suite.signals) };
+    let DeclaredSourceKind::Program { command, time, wait } = &elbow.kind else { panic!() };
+    assert_eq!(command.value[2..], ["--port", "${fixture:sim.port}"]);
+    assert_eq!((*time, *wait), (SignalTime::Arrival, false));
+    assert_eq!(elbow.signals[0].unit.value, "rad");
+    let DeclaredSourceKind::Fixture { name, quantity, every } = &load.kind else { panic!() };
+    assert_eq!((&*name.value, *quantity), ("sim", ProcessQuantity::Cpu));
+    assert_eq!(*every, Some(Duration::from_secs(1)));
+    let DeclaredSourceKind::Program { time, wait, .. } = &arm.kind else { panic!() };
+    assert_eq!((*time, *wait), (SignalTime::Own, true));
+    let names: Vec<_> = arm.signals.iter().map(|it| (&*it.name.value, &*it.unit.value)).collect();
+    assert_eq!(names, [("arm/q", "deg"), ("t", "")]);
+    let monitor = &suite.monitors[0];
+    assert_eq!((&*monitor.name.value, monitor.severity), ("no overshoot", FindingSeverity::Stop));
+    assert_eq!(monitor.formula.value, "always(elbow <= 1.05rad)");
+    assert_eq!(suite.tests[0].monitors[0].severity, FindingSeverity::Fail);
 }
 
 #[test]

@@ -1,0 +1,138 @@
+//! Checks the formulas of monitors against the signals of their suite.
+
+use std::ops::Range;
+
+use rtf_model::{Diagnostic, Location, MonitorConfig};
+use rtf_monitor::Formula;
+
+use super::names::UniqueNames;
+use crate::suite::{DeclaredMonitor, DeclaredSignal, SourceText, position_of};
+use crate::wording::{quoted, suggest};
+
+/// The monitors of tests. The combinations of a matrix share theirs.
+#[derive(Debug, Default)]
+pub(super) struct JudgedTests {
+    monitors: Vec<(DeclaredMonitor, Vec<String>)>,
+}
+
+impl JudgedTests {
+    /// Adds the monitors of a test with this name.
+    pub fn add(&mut self, test: &str, monitors: Vec<DeclaredMonitor>) {
+        for monitor in monitors {
+            match self.monitors.iter_mut().find(|(known, _)| known.span == monitor.span) {
+                Some((_, tests)) => tests.push(test.to_owned()),
+                None => self.monitors.push((monitor, vec![test.to_owned()])),
+            }
+        }
+    }
+
+    /// Checks whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.monitors.is_empty()
+    }
+}
+
+/// Plans the monitors of a suite and of its tests, and reports invalid ones.
+pub(super) fn plan(
+    of_suite: &[DeclaredMonitor],
+    of_tests: &JudgedTests,
+    signals: &[&DeclaredSignal],
+    (source, problems): (&SourceText, &mut Vec<Diagnostic>),
+) -> Vec<MonitorConfig> {
+    report_duplicates(of_suite, of_tests, source, problems);
+    let of_tests = of_tests.monitors.iter().map(|(monitor, tests)| (monitor, Some(tests.clone())));
+    let all = of_suite.iter().map(|monitor| (monitor, None)).chain(of_tests);
+    let mut plans = Vec::new();
+    for (monitor, tests) in all {
+        problems.extend(FormulaCheck { monitor, signals, source }.problems());
+        let location = Location { file: source.name().to_owned(), line: source.line(monitor.span) };
+        plans.push(MonitorConfig {
+            name: monitor.name.value.clone(),
+            formula: monitor.formula.value.clone(),
+            severity: monitor.severity,
+            location,
+            tests,
+        });
+    }
+    plans
+}
+
+/// A name is unique in the suite, and among the monitors that judge one test.
+fn report_duplicates(
+    of_suite: &[DeclaredMonitor],
+    of_tests: &JudgedTests,
+    source: &SourceText,
+    problems: &mut Vec<Diagnostic>,
+) {
+    let of_suite: Vec<_> = of_suite.iter().map(|monitor| Some(&monitor.name)).collect();
+    UniqueNames::reserve("monitor", of_suite.iter().copied(), source, problems);
+    let mut tests: Vec<&[String]> =
+        of_tests.monitors.iter().map(|(_, tests)| tests.as_slice()).collect();
+    tests.dedup();
+    for tests in tests {
+        let own = of_tests.monitors.iter().filter(|(_, judged)| judged == tests);
+        let own: Vec<_> = own.map(|(monitor, _)| Some(&monitor.name)).collect();
+        let mut found = Vec::new();
+        UniqueNames::reserve("monitor", of_suite.iter().chain(&own).copied(), source, &mut found);
+        // Those of the suite alone were reported.
+        found.retain(|problem| !problems.contains(problem));
+        problems.append(&mut found);
+    }
+}
+
+struct FormulaCheck<'a> {
+    monitor: &'a DeclaredMonitor,
+    signals: &'a [&'a DeclaredSignal],
+    source: &'a SourceText,
+}
+
+impl FormulaCheck<'_> {
+    fn problems(&self) -> Vec<Diagnostic> {
+        let formula = match Formula::parse(&self.monitor.formula.value) {
+            Ok(formula) => formula,
+            Err(error) => {
+                let problem = Diagnostic::error("invalid-formula", error.message);
+                return vec![self.at(problem, error.range, error.hint)];
+            }
+        };
+        let references = formula.signals().iter();
+        let mut problems: Vec<_> = references
+            .filter(|reference| self.unit_of(&reference.name).is_none())
+            .map(|reference| {
+                self.at(self.unknown_signal(&reference.name), reference.range.clone(), None)
+            })
+            .collect();
+        if let Err(errors) = formula.check_units(&|name| self.unit_of(name)) {
+            for error in errors {
+                let problem = Diagnostic::error("unit-mismatch", error.message);
+                problems.push(self.at(problem, error.range, error.hint));
+            }
+        }
+        problems
+    }
+
+    fn unit_of(&self, name: &str) -> Option<String> {
+        let signal = self.signals.iter().find(|signal| signal.name.value == name)?;
+        Some(signal.unit.value.clone())
+    }
+
+    fn unknown_signal(&self, name: &str) -> Diagnostic {
+        let problem = Diagnostic::error("unknown-signal", format!("there is no signal `{name}`"));
+        let known = || self.signals.iter().map(|signal| signal.name.value.as_str());
+        let problem = suggest(problem, name, known());
+        match (&problem.hint, self.signals) {
+            (Some(_), _) => problem,
+            (None, []) => problem.hint("declare it with `<signal>` in the suite"),
+            (None, _) => problem.note(format!("the suite has {}", quoted(known(), ", "))),
+        }
+    }
+
+    fn at(&self, problem: Diagnostic, range: Range<usize>, hint: Option<String>) -> Diagnostic {
+        let span = position_of(self.source, &self.monitor.formula, range);
+        let problem = problem.label(self.source.label(span, ""));
+        match hint {
+            Some(hint) => problem.hint(hint),
+            None => problem,
+        }
+    }
+}

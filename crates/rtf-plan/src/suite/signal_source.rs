@@ -1,0 +1,121 @@
+//! `<signals>` and `<signal>`: programs and fixtures whose values are recorded during tests.
+
+use roxmltree::Node;
+use rtf_model::{Diagnostic, ProcessQuantity, SignalTime};
+
+use super::reader::ElementReader;
+use super::schema::{self, check};
+use super::{DeclaredSignal, DeclaredSource, DeclaredSourceKind, Span, Spanned, command};
+
+/// Reads a `<signals>`; `None` if it declares no signal.
+pub(super) fn read_group(
+    reader: &mut ElementReader<'_>,
+    node: Node<'_, '_>,
+) -> Option<DeclaredSource> {
+    check(reader, node, &schema::SIGNALS);
+    let kind = program(reader, node);
+    let children = node.children().filter(|child| child.has_tag_name("signal"));
+    let mut signals = Vec::new();
+    for child in children {
+        check(reader, child, &schema::COLUMN);
+        signals.extend(signal(reader, child));
+    }
+    if !node.children().any(|child| child.has_tag_name("signal")) {
+        reader.missing(node, "a `<signal>` for each value on a line");
+    }
+    let kind = kind?;
+    (!signals.is_empty()).then_some(DeclaredSource { kind, signals })
+}
+
+/// Reads a `<signal>` that has its own source; `None` if it has no name or source.
+pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredSource> {
+    check(reader, node, &schema::SIGNAL);
+    let has_command = node.children().any(|child| child.has_tag_name("command"));
+    let Some(attribute) = node.attribute_node("fixture") else {
+        for name in ["of", "every"] {
+            report_without_effect(reader, node, (name, "is only for a signal with `fixture`"));
+        }
+        if !has_command {
+            reader.missing(node, "a source: a `<command>`, or the attributes `fixture` and `of`");
+        }
+        let kind = if has_command { program(reader, node) } else { None };
+        let signal = signal(reader, node);
+        return Some(DeclaredSource { kind: kind?, signals: vec![signal?] });
+    };
+    if has_command {
+        let message = "a signal has one source: a `<command>` or a `fixture`";
+        let label = reader.source.label(Span::new(attribute.range_qname()), "a second source");
+        reader.report(Diagnostic::error("several-sources", message).label(label));
+    }
+    for name in ["time", "wait"] {
+        report_without_effect(reader, node, (name, "is only for a signal with a `<command>`"));
+    }
+    report_without_effect(reader, node, ("unit", "is fixed for a signal with `fixture`"));
+    let kind = fixture(reader, node);
+    let signal = signal(reader, node);
+    let (Some(kind), Some(mut signal)) = (kind, signal) else { return None };
+    if let DeclaredSourceKind::Fixture { quantity, .. } = &kind {
+        quantity.unit().clone_into(&mut signal.unit.value);
+    }
+    Some(DeclaredSource { kind, signals: vec![signal] })
+}
+
+fn report_without_effect(
+    reader: &mut ElementReader<'_>,
+    node: Node<'_, '_>,
+    (name, what): (&str, &str),
+) {
+    let Some(attribute) = node.attribute_node(name) else { return };
+    let label = reader.source.label(Span::new(attribute.range_qname()), "");
+    reader.report(Diagnostic::error("wrong-type", format!("`{name}` {what}")).label(label));
+}
+
+fn program(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredSourceKind> {
+    let times =
+        [("clock", SignalTime::Clock), ("own", SignalTime::Own), ("arrival", SignalTime::Arrival)];
+    let time = reader.choice(node, "time", &times).unwrap_or_default();
+    let wait = reader.boolean(node, "wait").unwrap_or(true);
+    let mut first = None;
+    let mut command = None;
+    for child in node.children().filter(|child| child.has_tag_name("command")) {
+        reader.once(child, &mut first);
+        let read = command::read(reader, child);
+        command.get_or_insert(read);
+    }
+    if command.is_none() {
+        reader.missing(node, "a `<command>` that writes the samples");
+    }
+    Some(DeclaredSourceKind::Program { command: command?, time, wait })
+}
+
+fn fixture(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredSourceKind> {
+    let quantities = [
+        ("cpu", ProcessQuantity::Cpu),
+        ("rss", ProcessQuantity::Rss),
+        ("fds", ProcessQuantity::Fds),
+    ];
+    if !node.has_attribute("of") {
+        reader.missing(node, "the attribute `of`: `cpu`, `rss` or `fds`");
+    }
+    let quantity = reader.choice(node, "of", &quantities);
+    let every = reader.duration(node, "every");
+    let name = reader.word(node, "fixture");
+    Some(DeclaredSourceKind::Fixture { name: name?, quantity: quantity?, every })
+}
+
+fn signal(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredSignal> {
+    if !node.has_attribute("name") {
+        reader.missing(node, "the attribute `name`");
+    }
+    let name = reader.word(node, "name")?;
+    // Formulas quote names that are not words.
+    if name.value.contains(|c: char| c.is_control() || matches!(c, '"' | '\'')) {
+        let hint = "a name has no quotes and no control characters";
+        reader.wrong("name", &name, "is not the name of a signal", Some(hint));
+        return None;
+    }
+    let unit = reader.attribute(node, "unit");
+    let unit = unit.map(|unit| Spanned::new(unit.value.trim().to_owned(), unit.span));
+    let unit = unit.unwrap_or_else(|| Spanned::new(String::new(), name.span));
+    Some(DeclaredSignal { name, unit })
+}
