@@ -1,6 +1,7 @@
 //! The host's end of the channel, which its threads share.
 
 mod cases;
+mod findings;
 mod program;
 
 use std::collections::VecDeque;

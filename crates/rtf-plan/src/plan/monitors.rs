@@ -25,11 +25,6 @@ impl JudgedTests {
             }
         }
     }
-
-    /// Checks whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.monitors.is_empty()
-    }
 }
 
 /// Plans the monitors of a suite and of its tests, and reports invalid ones.

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_model::{
-    Diagnostic, FixtureId, MeasuredFixture, MonitorConfig, SignalConfig, SignalProgram,
-    SignalSource, SignalsConfig,
+    Diagnostic, FixtureId, MeasuredFixture, SignalConfig, SignalProgram, SignalSource,
+    SignalsConfig,
 };
 
 use super::fixture::{RESTART_DELAY, RESTARTS};

@@ -1,0 +1,113 @@
+//! The functions of the fixture.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use rtf_host::{HostPlugin, LoadError, PluginKind, Session, Step, StepEnd, TestNotification};
+use rtf_model::protocol::{Initialized, PROTOCOL_VERSION, Plugin, StackSupport, Subscription};
+
+use crate::settings::Settings;
+use crate::watch::Watch;
+
+/// How long set-up waits for the first line of each program: less than its default limit, so
+/// that the reason contains the program.
+const FIRST_LINE_LIMIT: Duration = Duration::from_secs(50);
+/// The interval at which set-up looks for them.
+const POLL: Duration = Duration::from_millis(2);
+
+/// The fixture.
+pub(crate) struct SignalsHost {
+    session: Session,
+    settings: Arc<Settings>,
+    watch: Option<Watch>,
+}
+
+impl SignalsHost {
+    pub fn new(session: Session) -> Self {
+        Self { session, settings: Arc::default(), watch: None }
+    }
+
+    fn set_up(&mut self) -> StepEnd {
+        match Watch::start(&self.settings, &self.session) {
+            Ok(watch) => self.watch = Some(watch),
+            Err(problem) => return StepEnd::Broken(problem, None),
+        }
+        let deadline = Instant::now() + FIRST_LINE_LIMIT;
+        while let Some(watch) = &self.watch {
+            if let Some(problem) = watch.problem() {
+                return StepEnd::Broken(problem, None);
+            }
+            if watch.is_ready() {
+                break;
+            }
+            if Instant::now() >= deadline {
+                let text = format!(
+                    "nothing was written within {FIRST_LINE_LIMIT:?} by {}; if it writes only \
+                     while a test runs, write `wait=\"false\"` in the suite",
+                    watch.missing()
+                );
+                return StepEnd::Broken(text, None);
+            }
+            if self.session.wait(POLL) {
+                return StepEnd::Stopped;
+            }
+        }
+        StepEnd::Done
+    }
+
+    fn tear_down(&mut self) -> StepEnd {
+        self.watch.take().into_iter().for_each(Watch::stop);
+        StepEnd::Done
+    }
+}
+
+impl HostPlugin for SignalsHost {
+    fn describe(&self) -> Initialized {
+        Initialized {
+            protocol: PROTOCOL_VERSION,
+            host: format!("signals {}", env!("CARGO_PKG_VERSION")),
+            stack: StackSupport::None,
+            supports_shared: false,
+            selects_cases: false,
+        }
+    }
+
+    fn load(&mut self, kind: PluginKind, plugin: &Plugin) -> Result<(), LoadError> {
+        let settings = match kind {
+            PluginKind::Fixture => Settings::read(plugin),
+            PluginKind::Test => Err("`signals` is a fixture, not a test".to_owned()),
+        };
+        let settings = settings.map_err(|message| LoadError { message, location: None })?;
+        self.settings = Arc::new(settings);
+        Ok(())
+    }
+
+    fn step(&mut self, step: Step) -> StepEnd {
+        match step {
+            Step::Setup => self.set_up(),
+            Step::TearDown => self.tear_down(),
+            Step::Check => match self.watch.as_ref().and_then(Watch::problem) {
+                Some(problem) => StepEnd::Broken(problem, None),
+                None => StepEnd::Done,
+            },
+            Step::Run => StepEnd::Refused,
+        }
+    }
+
+    fn subscriptions(&self) -> Vec<Subscription> {
+        vec![Subscription::TestStarted, Subscription::TestEnded]
+    }
+
+    fn notify(&mut self, notification: TestNotification<'_>) -> StepEnd {
+        let Some(watch) = &self.watch else { return StepEnd::Refused };
+        let result = match notification {
+            TestNotification::Started(started) => watch.start_test(&started.test),
+            TestNotification::Ended(ended) => watch.finish_test(ended.test.id, ended.stopped),
+            TestNotification::Finished(_) => Ok(()),
+        };
+        match result {
+            Ok(()) => StepEnd::Done,
+            Err(problem) => StepEnd::Broken(problem, None),
+        }
+    }
+}

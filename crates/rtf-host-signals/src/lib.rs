@@ -1,0 +1,35 @@
+//! The host of the fixture `signals`: it records signals while tests run, and judges them by the
+//! monitors of the suite. `spec/signals.md` specifies it.
+//!
+//! [`host`] implements the functions of a fixture. One thread ([`watch`]) reads the programs that
+//! write samples ([`program`], [`line`]), one for each measured fixture reads `/proc`
+//! ([`processes`]). Both pass samples to the [`recorder`], which knows the running tests
+//! ([`test_run`]) with their batches ([`batches`]) and monitors ([`judge`]).
+
+mod batches;
+mod clock;
+mod host;
+mod judge;
+mod line;
+mod processes;
+mod program;
+mod recorder;
+mod settings;
+mod source_time;
+mod test_run;
+mod watch;
+
+use std::path::Path;
+
+use rtf_host::{CheckedFile, HostProgram, Session, serve};
+
+/// The program. It has no plug-ins: `--check` accepts every file.
+pub const PROGRAM: HostProgram<()> = HostProgram { check, prepare: || (), serve: serve_signals };
+
+fn check(file: &Path) -> CheckedFile {
+    CheckedFile::good(file, None)
+}
+
+fn serve_signals(session: &Session, (): ()) -> std::io::Result<()> {
+    serve(session, host::SignalsHost::new(session.clone()))
+}
