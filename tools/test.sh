@@ -109,6 +109,7 @@ lint_python() {
   "$checkers/mypy" examples/06-ros2/*.py
   "$checkers/mypy" examples/07-levels/*.py
   "$checkers/mypy" examples/08-cases/*.py
+  "$checkers/mypy" examples/11-signals/*.py
   "$checkers/mypy" fixtures
   "$checkers/mypy" tests/fixtures/*.py tests/fixtures/ros2launch/*.py \
     tests/fixtures/orocos/*.py tests/fixtures/yarp/*.py
@@ -280,6 +281,10 @@ example_10() {
   search=$(tools/venv.sh search)
   PATH="$simulation:$PATH" python3 tools/check_example_10.py "$TARGET/release/rtf" \
     examples/10-campaign "$search/python"
+}
+
+example_11() {
+  python3 tools/check_example_11.py "$TARGET/release/rtf" examples/11-signals
 }
 
 # The tests of a package on PyPI, compared with pytest's own report.
@@ -500,6 +505,7 @@ robots_and_frameworks() {
   step 'example 07' example_07
   step 'example 08' example_08
   step 'example 10' example_10
+  step 'example 11' example_11
   # The first step builds Kubernetes, which takes minutes.
   step 'kubernetes manifests' kubernetes_manifests
   step 'executor kubernetes' executor_kubernetes
@@ -548,7 +554,7 @@ step 'debugging' debugging
 step 'ci helpers' ci_helpers
 step 'guide' env RTF_PYTHON="$checkers/python" tools/check_docs.py "$TARGET/release/rtf" README.md \
   docs/tutorials/{first-test,first-fixture,cpp-plugin}.md docs/explanation/isolation.md \
-  docs/how-to/{writing-tests,simulation-time,recorders,real-robot}.md \
+  docs/how-to/{writing-tests,simulation-time,recorders,real-robot,signals}.md \
   docs/how-to/migrating-{rtf2,launch-testing,pytest,robot-framework}.md docs/reference/junit.md
 step 'guide commands' tools/check_running.py "$TARGET/release/rtf" \
   docs/how-to/{running,flaky-tests,soak,parallel,profiles,doctor,sharding,history}.md

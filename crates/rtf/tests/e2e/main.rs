@@ -88,6 +88,7 @@ mod testrunner_defects;
 mod unprivileged_isolation;
 mod verbs;
 mod watch;
+mod watched_signals;
 mod web;
 #[path = "../../../rtf-web/tests/server/client.rs"]
 mod web_client;

@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+"""Runs example 11 as a user does: a monitor finds an overshoot in a test that would pass, more
+damping avoids it, and a violated limit stops a test.
+
+check_example_11.py RTF DIRECTORY
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+from run import Event, Run, expect, expect_in
+
+SHELF = 1.05
+"""In radians."""
+
+
+def main() -> int:
+    """Runs all; exits at the first difference."""
+    rtf, example = str(Path(sys.argv[1]).resolve()), Path(sys.argv[2]).resolve()
+    suite = str(example / "arm.xml")
+    with tempfile.TemporaryDirectory() as directory:
+        results = Path(directory)
+        overshoot(Run(rtf, suite, results / "overshoot"))
+        damped(Run(rtf, suite, results / "damped", "--set", "damping=1"))
+        copy = results / "copy"
+        shutil.copytree(example, copy)
+        text = (copy / "arm.xml").read_text()
+        expect_in("always(12rad/s >", text)
+        (copy / "arm.xml").write_text(text.replace("always(12rad/s >", "always(5rad/s >"))
+        stopped(Run(rtf, str(copy / "arm.xml"), results / "stopped"))
+    return 0
+
+
+def overshoot(run: Run) -> None:
+    """The test itself reports no failure; the samples show how long the arm was at the shelf."""
+    expect("exit code", run.wait(), 1)
+    expect("verdicts", run.verdicts(), {"near": "passed", "far": "failed"})
+    [failure] = [event for event in run.events("message") if event["message"]["kind"] == "failure"]
+    expect("test", run.name({"test": failure["source"]["test"]}), "far")
+    expect_in("monitor `does not touch the shelf`: `1.05rad > q` does not hold", str(failure))
+    points = samples(run, "far", "q")
+    above = [time for time, value in points if value > SHELF]
+    expect("80 ms at the shelf", 0.05 < above[-1] - above[0] < 0.15, True)
+    expect("samples of each test", len(samples(run, "near", "q")) > 300, True)
+    expect("signals", signals(run), {"q", "dq", "goal", "memory"})
+    robustness = measured(run, "monitor/does not touch the shelf")
+    expect("near the shelf", robustness["near"] > 0.4, True)
+    expect("in the shelf", -0.1 < robustness["far"] < 0, True)
+
+
+def damped(run: Run) -> None:
+    """More damping."""
+    expect("exit code", run.wait(), 0)
+    expect("all monitors hold", all(value > 0 for value in all_measured(run)), True)
+
+
+def stopped(run: Run) -> None:
+    """The motion is interrupted."""
+    expect("exit code", run.wait(), 1)
+    expect("verdicts", run.verdicts(), {"near": "passed", "far": "failed"})
+    [stopping] = run.events("test-stopping")
+    expect("cause", stopping["cause"], "finding")
+    expect_in("monitor `torn cable`", stopping["reason"])
+
+
+def samples(run: Run, test: str, signal: str) -> list[tuple[float, float]]:
+    """All samples of a signal in a test."""
+    found = [event for event in run.events("sampled") if run.name(event) == test]
+    batches = [event["samples"] for event in found if event["samples"]["name"] == signal]
+    return [(time, value) for batch in batches for time, value in batch["points"]]
+
+
+def signals(run: Run) -> set[str]:
+    """The names of all signals."""
+    return {event["samples"]["name"] for event in run.events("sampled")}
+
+
+def measured(run: Run, name: str) -> dict[str, float]:
+    """A measurement of each test."""
+    found: list[Event] = [
+        event for event in run.events("measured") if event["measurement"]["name"] == name
+    ]
+    return {run.name(event): event["measurement"]["value"] for event in found}
+
+
+def all_measured(run: Run) -> list[float]:
+    """The values of all measurements of monitors."""
+    values = [event["measurement"] for event in run.events("measured")]
+    return [each["value"] for each in values if each["name"].startswith("monitor/")]
+
+
+if __name__ == "__main__":
+    sys.exit(main())
