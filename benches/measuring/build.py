@@ -16,11 +16,12 @@ INCLUDES = [f"-I{TOP / 'sdk' / language / 'include'}" for language in ("c", "cpp
 C = ["cc", "-std=gnu11", "-O2"]
 CPP = ["c++", "-std=c++17", "-O2"]
 MODULE = ["-fPIC", "-shared"]
+SIGNALS = ("Violator.py", "SignalLoad.py", "signal_rows.py")
 
 
 def build(bench: Bench) -> None:
     """Builds everything into the bench's directory, in parallel."""
-    for script in ("Trivial.lua", "Trivial.py", "Ticker.py", "Gate.py", "Steps.py"):
+    for script in ("Trivial.lua", "Trivial.py", "Ticker.py", "Gate.py", "Steps.py", *SIGNALS):
         shutil.copy(SOURCES / script, bench.directory)
     commands = [
         [*C, *source("launch.c"), *output(bench, "launch")],
