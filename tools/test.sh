@@ -114,6 +114,7 @@ lint_python() {
   "$checkers/mypy" tests/fixtures/*.py tests/fixtures/ros2launch/*.py \
     tests/fixtures/orocos/*.py tests/fixtures/yarp/*.py
   "$checkers/mypy" tests/fixtures/clock/*.py tests/fixtures/replay/*.py
+  "$checkers/mypy" tests/fixtures/signals/*.py
   "$checkers/mypy" packaging/*.py
   "$checkers/mypy" benches/bench.py
   "$checkers/mypy" tests/predecessor/*.py
@@ -179,7 +180,7 @@ suites_are_valid() {
   suites=$(files ':(glob)examples/*/*.xml' 'crates/rtf/templates/*.xml' 'tests/install/*.xml' 'tests/wheel/*.xml' 'tests/fixtures/*/suite.xml' 'tests/frameworks/*/suite.xml' \
     'tests/ctest/project/arm.xml' 'tests/colcon/workspace/src/*/test/*.xml' \
     'tests/fixtures/yarp/suites/*.xml' 'tests/fixtures/ros1/*.xml' 'tests/fixtures/clock/*.xml' \
-    'tests/fixtures/replay/*.xml')
+    'tests/fixtures/replay/*.xml' 'tests/fixtures/signals/*.xml')
   campaigns=$(xargs -d '\n' grep -l '^<campaign' <<<"$suites")
   grep -vxF "$campaigns" <<<"$suites" | xargs -d '\n' xmllint --noout --schema spec/suite.xsd
   xargs -d '\n' xmllint --noout --schema spec/campaign.xsd <<<"$campaigns"
@@ -281,6 +282,10 @@ example_10() {
   search=$(tools/venv.sh search)
   PATH="$simulation:$PATH" python3 tools/check_example_10.py "$TARGET/release/rtf" \
     examples/10-campaign "$search/python"
+}
+
+signals_ros1() {
+  python3 tools/check_signals_ros1.py "$TARGET/release/rtf" tests/fixtures/signals
 }
 
 example_11() {
@@ -501,6 +506,7 @@ robots_and_frameworks() {
   step_with 'example 05' ros1 example_05
   step_with 'clock ros1' ros1 clock_ros1
   step_with 'fixture replay ros1' ros1 fixture_replay_ros1
+  step_with 'signals ros1' ros1 signals_ros1
   step_with 'example 06' ros2 example_06
   step 'example 07' example_07
   step 'example 08' example_08

@@ -19,6 +19,8 @@ pub(super) const TIMEOUT: Duration = Duration::from_secs(5);
 pub(super) const STARTUP_TIME: Duration = Duration::from_secs(2);
 /// The probe program, relative to the directory of the shipped fixture managers.
 const PROGRAM: &str = "rtf_fixtures/probe.py";
+/// The program that reads fields of ROS 1 topics.
+const ROS_SIGNALS: &str = "rtf_fixtures/ros1_signals.py";
 /// Options that speed up the interpreter; the ROS 2 probes need installed packages.
 const ISOLATED: [&str; 2] = ["-E", "-S"];
 
@@ -32,18 +34,32 @@ pub(super) fn starts_middleware(plugin: &DeclaredPlugin) -> bool {
     plugin.plugin_type.is_none() && STARTING_MIDDLEWARE.contains(&plugin.name.value.as_str())
 }
 
+/// Returns the program and first arguments of a command that writes fields of ROS 1 topics.
+pub(super) fn signals(scope: &SearchScope<'_>) -> Result<Vec<String>, Box<Diagnostic>> {
+    let program = shipped_program(ROS_SIGNALS, "topics of ROS 1 cannot be read", scope)?;
+    Ok(vec![utf8(&hosts::python(scope)?)?, utf8(&program)?])
+}
+
+fn shipped_program(
+    name: &str,
+    consequence: &str,
+    scope: &SearchScope<'_>,
+) -> Result<PathBuf, Box<Diagnostic>> {
+    let program = shipped_dir(scope).map(|dir| dir.join(name));
+    program.filter(|program| program.is_file()).ok_or_else(|| {
+        let hint = "it is installed together with `rtf`, in `share/rtf/fixtures`";
+        let message = format!("{consequence}: `{name}` is missing");
+        Diagnostic::error("no-such-program", message).hint(hint).into()
+    })
+}
+
 /// Plans the command of a probe.
 pub(super) fn probe(
     query: &MiddlewareProbe,
     timeout: Duration,
     scope: &SearchScope<'_>,
 ) -> Result<ProbeKind, Box<Diagnostic>> {
-    let program = shipped_dir(scope).map(|dir| dir.join(PROGRAM));
-    let Some(program) = program.filter(|program: &PathBuf| program.is_file()) else {
-        let message = format!("`{}` cannot be probed: `{PROGRAM}` is missing", query.kind);
-        let hint = "it is installed together with `rtf`, in `share/rtf/fixtures`";
-        return Err(Diagnostic::error("no-such-program", message).hint(hint).into());
-    };
+    let program = shipped_program(PROGRAM, &format!("`{}` cannot be probed", query.kind), scope)?;
     let mut command = vec![utf8(&hosts::python(scope)?)?];
     if !query.kind.starts_with("ros2-") {
         command.extend(ISOLATED.map(str::to_owned));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_model::{
-    Diagnostic, FixtureId, MeasuredFixture, SignalConfig, SignalProgram, SignalSource,
+    Diagnostic, FixtureId, MeasuredFixture, SignalConfig, SignalProgram, SignalSource, SignalTime,
     SignalsConfig,
 };
 
@@ -15,7 +15,7 @@ use super::monitors::{self, JudgedTests};
 use super::names::UniqueNames;
 use super::plugin_planner::PluginPlanner;
 use super::use_site::UseSite;
-use super::{FixtureBody, FixturePlan, defaults, program};
+use super::{FixtureBody, FixturePlan, defaults, middleware, program};
 use crate::suite::{
     DeclaredMonitor, DeclaredSignal, DeclaredSource, DeclaredSourceKind, SourceText, Spanned,
 };
@@ -100,8 +100,38 @@ impl SourcePlanner<'_, '_, '_> {
     fn plan(mut self) -> (Vec<SignalSource>, Vec<String>) {
         let declared = self.declared;
         let mut args = Vec::new();
-        let sources = declared.sources.iter().filter_map(|one| self.one(one, &mut args)).collect();
+        let mut sources: Vec<_> =
+            declared.sources.iter().filter_map(|one| self.one(one, &mut args)).collect();
+        sources.extend(self.topics(&mut args));
         (sources, args)
+    }
+
+    /// One program reads the fields of all topics.
+    fn topics(&mut self, args: &mut Vec<String>) -> Option<SignalSource> {
+        let of_topics = self.declared.sources.iter().filter_map(|source| match &source.kind {
+            DeclaredSourceKind::Ros(field) => Some((field, source.signals.first()?)),
+            _ => None,
+        });
+        let (fields, signals): (Vec<_>, Vec<_>) = of_topics.unzip();
+        let first = fields.first()?;
+        match middleware::signals(&self.planner.scope()) {
+            Ok(words) => {
+                let all = words.into_iter().chain(fields.iter().map(|field| field.value.clone()));
+                let before = args.len();
+                args.extend(all);
+                Some(SignalSource::Program(SignalProgram {
+                    words: args.len() - before,
+                    signals: signals.into_iter().map(config_of).collect(),
+                    time: SignalTime::Clock,
+                    wait: true,
+                }))
+            }
+            Err(problem) => {
+                let label = self.source.label(first.span, "");
+                self.planner.context.problems.push(problem.label(label));
+                None
+            }
+        }
     }
 
     fn one(&mut self, declared: &DeclaredSource, args: &mut Vec<String>) -> Option<SignalSource> {
@@ -115,6 +145,7 @@ impl SourcePlanner<'_, '_, '_> {
                 args.extend(words);
                 Some(SignalSource::Program(program))
             }
+            DeclaredSourceKind::Ros(_) => None,
             DeclaredSourceKind::Fixture { name, quantity, every } => {
                 if let Some(problem) = self.fixture_problem(name) {
                     let label = self.source.label(name.span, "");

@@ -174,7 +174,7 @@ pub(super) const COLUMN: ElementSchema = leaf("signal", &["name", "unit"]);
 /// `<signal>` with its own source.
 pub(super) const SIGNAL: ElementSchema = ElementSchema {
     name: "signal",
-    attributes: &["name", "unit", "time", "wait", "fixture", "of", "every"],
+    attributes: &["name", "unit", "time", "wait", "ros", "fixture", "of", "every"],
     elements: &["command"],
     text: false,
 };

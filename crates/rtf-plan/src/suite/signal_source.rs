@@ -1,5 +1,6 @@
 //! `<signals>` and `<signal>`: programs and fixtures whose values are recorded during tests.
 
+use regex::Regex;
 use roxmltree::Node;
 use rtf_model::{Diagnostic, ProcessQuantity, SignalTime};
 
@@ -27,31 +28,42 @@ pub(super) fn read_group(
     (!signals.is_empty()).then_some(DeclaredSource { kind, signals })
 }
 
+/// The sources of a `<signal>`.
+const SOURCES: &str = "a source: a `<command>`, `ros`, or `fixture` and `of`";
+
+/// A field of a topic: the topic, and names with an index or not.
+const FIELD: &str = r"^/[^.]*(\.[A-Za-z][A-Za-z0-9_]*(\[[^\]]+\])?)+$";
+
+/// The attributes of a `<signal>` that only signals with certain sources have.
+const OF_COMMAND: [(&str, &str); 2] = [
+    ("time", "is only for a signal with a `<command>`"),
+    ("wait", "is only for a signal with a `<command>`"),
+];
+const OF_FIXTURE: [(&str, &str); 2] = [
+    ("of", "is only for a signal with `fixture`"),
+    ("every", "is only for a signal with `fixture`"),
+];
+
 /// Reads a `<signal>` that has its own source; `None` if it has no name or source.
 pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredSource> {
     check(reader, node, &schema::SIGNAL);
-    let has_command = node.children().any(|child| child.has_tag_name("command"));
-    let Some(attribute) = node.attribute_node("fixture") else {
-        for name in ["of", "every"] {
-            report_without_effect(reader, node, (name, "is only for a signal with `fixture`"));
+    report_second_source(reader, node);
+    let kind = if node.has_attribute("fixture") {
+        report_without_effect(reader, node, &OF_COMMAND);
+        report_without_effect(reader, node, &[("unit", "is fixed for a signal with `fixture`")]);
+        fixture(reader, node)
+    } else {
+        report_without_effect(reader, node, &OF_FIXTURE);
+        if node.has_attribute("ros") {
+            report_without_effect(reader, node, &OF_COMMAND);
+            topic(reader, node)
+        } else if node.children().any(|child| child.has_tag_name("command")) {
+            program(reader, node)
+        } else {
+            reader.missing(node, SOURCES);
+            None
         }
-        if !has_command {
-            reader.missing(node, "a source: a `<command>`, or the attributes `fixture` and `of`");
-        }
-        let kind = if has_command { program(reader, node) } else { None };
-        let signal = signal(reader, node);
-        return Some(DeclaredSource { kind: kind?, signals: vec![signal?] });
     };
-    if has_command {
-        let message = "a signal has one source: a `<command>` or a `fixture`";
-        let label = reader.source.label(Span::new(attribute.range_qname()), "a second source");
-        reader.report(Diagnostic::error("several-sources", message).label(label));
-    }
-    for name in ["time", "wait"] {
-        report_without_effect(reader, node, (name, "is only for a signal with a `<command>`"));
-    }
-    report_without_effect(reader, node, ("unit", "is fixed for a signal with `fixture`"));
-    let kind = fixture(reader, node);
     let signal = signal(reader, node);
     let (Some(kind), Some(mut signal)) = (kind, signal) else { return None };
     if let DeclaredSourceKind::Fixture { quantity, .. } = &kind {
@@ -60,14 +72,39 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option
     Some(DeclaredSource { kind, signals: vec![signal] })
 }
 
+fn report_second_source(reader: &mut ElementReader<'_>, node: Node<'_, '_>) {
+    let command = node.children().find(|child| child.has_tag_name("command"));
+    let command = command.map(ElementReader::tag);
+    let attribute = |name| Some(Span::new(node.attribute_node(name)?.range_qname()));
+    let sources = [command, attribute("ros"), attribute("fixture")];
+    if let Some(second) = sources.into_iter().flatten().nth(1) {
+        let message = "a signal has one source: a `<command>`, `ros` or `fixture`";
+        let label = reader.source.label(second, "a second source");
+        reader.report(Diagnostic::error("several-sources", message).label(label));
+    }
+}
+
 fn report_without_effect(
     reader: &mut ElementReader<'_>,
     node: Node<'_, '_>,
-    (name, what): (&str, &str),
+    attributes: &[(&str, &str)],
 ) {
-    let Some(attribute) = node.attribute_node(name) else { return };
-    let label = reader.source.label(Span::new(attribute.range_qname()), "");
-    reader.report(Diagnostic::error("wrong-type", format!("`{name}` {what}")).label(label));
+    for (name, what) in attributes {
+        let Some(attribute) = node.attribute_node(*name) else { continue };
+        let label = reader.source.label(Span::new(attribute.range_qname()), "");
+        reader.report(Diagnostic::error("wrong-type", format!("`{name}` {what}")).label(label));
+    }
+}
+
+/// Reads the field of a topic; `fixtures/rtf_fixtures/ros1_signals.py` has the same syntax.
+fn topic(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredSourceKind> {
+    let field = reader.word(node, "ros")?;
+    if !Regex::new(FIELD).is_ok_and(|pattern| pattern.is_match(&field.value)) {
+        let hint = "write a topic and a field: `/joint_states.position[elbow]`, `/odom.twist.twist.linear.x`";
+        reader.wrong("ros", &field, "is not a field of a topic", Some(hint));
+        return None;
+    }
+    Some(DeclaredSourceKind::Ros(field))
 }
 
 fn program(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredSourceKind> {

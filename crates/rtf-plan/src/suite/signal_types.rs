@@ -27,6 +27,8 @@ pub enum DeclaredSourceKind {
         /// Whether the first test waits for its first line.
         wait: bool,
     },
+    /// A field of a ROS 1 topic: `/joint_states.position[elbow]`.
+    Ros(Spanned<String>),
     /// The processes of a fixture.
     Fixture {
         /// The name of the fixture.

@@ -67,6 +67,30 @@ fn signals_become_a_fixture_that_depends_on_all_others() {
     assert_eq!(tests, Some(&["B[n=1]".to_owned(), "B[n=2]".to_owned()][..]));
 }
 
+/// One program reads all topics.
+#[test]
+fn topics_of_ros_share_a_program() {
+    let bench = bench();
+    bench.file("share/rtf/fixtures/rtf_fixtures/ros1_signals.py", "");
+    bench.file(
+        "cell/s.xml",
+        "<suite><signal name='q' ros='/joint_states.position[elbow]'/>\
+         <signal name='t'><command>./read t</command></signal>\
+         <signal name='v' unit='m/s' ros='/odom.twist.twist.linear.x'/><test>A.lua</test></suite>",
+    );
+    let plan = bench.plan(&["s.xml"]);
+    let (plugin, config) = signals(&plan);
+    let script = bench.path("share/rtf/fixtures/rtf_fixtures/ros1_signals.py");
+    let python = bench.path("bin/python3");
+    let fields = ["/joint_states.position[elbow]", "/odom.twist.twist.linear.x"];
+    let program: [&str; 4] = [&python, &script, fields[0], fields[1]];
+    assert_eq!(plugin.args[2..], program);
+    let [_, SignalSource::Program(topics)] = &*config.sources else { panic!("{config:?}") };
+    let names: Vec<_> = topics.signals.iter().map(|signal| &*signal.name).collect();
+    assert_eq!((topics.words, names), (4, vec!["q", "v"]));
+    assert_eq!((topics.time, topics.wait), (SignalTime::Clock, true));
+}
+
 #[test]
 fn a_suite_without_signals_has_no_such_fixture() {
     let bench = bench();
@@ -93,7 +117,7 @@ fn all_problems_of_signals_are_reported() {
          <test>A.lua</test></suite>"
     ));
     assert_snapshot!(shown, @r#"
-    incomplete: `<signal>` needs a source: a `<command>`, or the attributes `fixture` and `of`
+    incomplete: `<signal>` needs a source: a `<command>`, `ros`, or `fixture` and `of`
       3:10 <signal
     unknown-fixture: there is no fixture `simm`
       4:36 simm
@@ -104,7 +128,7 @@ fn all_problems_of_signals_are_reported() {
       5:59 unit
     wrong-type: `robot` cannot be measured: it is attached: `rtf` does not know its processes
       6:36 robot
-    several-sources: a signal has one source: a `<command>` or a `fixture`
+    several-sources: a signal has one source: a `<command>`, `ros` or `fixture`
       7:30 fixture a second source
     invalid-value: `name` is not the name of a signal: `"a`
       8:24 &quot;a

@@ -185,7 +185,7 @@ fn every_value_of_a_fixture_is_read() {
 #[test]
 fn signals_and_monitors_are_read() {
     let (suite, _) = file("valid/everything.xml");
-    let [elbow, load, arm] = &*suite.signals else { panic!("{:?}", suite.signals) };
+    let [elbow, load, wrist, arm] = &*suite.signals else { panic!("{:?}", suite.signals) };
     let DeclaredSourceKind::Program { command, time, wait } = &elbow.kind else { panic!() };
     assert_eq!(command.value[2..], ["--port", "${fixture:sim.port}"]);
     assert_eq!((*time, *wait), (SignalTime::Arrival, false));
@@ -193,6 +193,8 @@ fn signals_and_monitors_are_read() {
     let DeclaredSourceKind::Fixture { name, quantity, every } = &load.kind else { panic!() };
     assert_eq!((&*name.value, *quantity), ("sim", ProcessQuantity::Cpu));
     assert_eq!(*every, Some(Duration::from_secs(1)));
+    let DeclaredSourceKind::Ros(field) = &wrist.kind else { panic!() };
+    assert_eq!(field.value, "/joint_states.position[wrist_1.x]");
     let DeclaredSourceKind::Program { time, wait, .. } = &arm.kind else { panic!() };
     assert_eq!((*time, *wait), (SignalTime::Own, true));
     let names: Vec<_> = arm.signals.iter().map(|it| (&*it.name.value, &*it.unit.value)).collect();
