@@ -1,4 +1,4 @@
-"""Runs for some seconds, and measures the processes that record signals meanwhile."""
+"""Runs for some seconds, and measures the processes that record signals during this time."""
 
 from __future__ import annotations
 

@@ -34,8 +34,8 @@ impl SignalsHost {
         }
         let deadline = Instant::now() + FIRST_LINE_LIMIT;
         while let Some(watch) = &self.watch {
-            if let Some(problem) = watch.problem() {
-                return StepEnd::Broken(problem, None);
+            if watch.has_collapsed() {
+                return StepEnd::Stopped;
             }
             if watch.is_ready() {
                 break;
@@ -86,10 +86,10 @@ impl HostPlugin for SignalsHost {
         match step {
             Step::Setup => self.set_up(),
             Step::TearDown => self.tear_down(),
-            Step::Check => match self.watch.as_ref().and_then(Watch::problem) {
-                Some(problem) => StepEnd::Broken(problem, None),
-                None => StepEnd::Done,
-            },
+            Step::Check if self.watch.as_ref().is_some_and(Watch::has_collapsed) => {
+                StepEnd::Stopped
+            }
+            Step::Check => StepEnd::Done,
             Step::Run => StepEnd::Refused,
         }
     }
@@ -106,6 +106,7 @@ impl HostPlugin for SignalsHost {
             TestNotification::Finished(_) => Ok(()),
         };
         match result {
+            Ok(()) if watch.has_collapsed() => StepEnd::Stopped,
             Ok(()) => StepEnd::Done,
             Err(problem) => StepEnd::Broken(problem, None),
         }

@@ -163,8 +163,8 @@ impl Program {
         }
         let clock = recorder.clock().description();
         let what = format!(
-            "wrote the time {written}, which are not {clock} ({now:.3}); write `time=\"own\"` in \
-             the suite for another clock"
+            "wrote the time {written}, but its times have to be {clock} (now {now:.3}); `time=\"own\"` \
+             in the suite is for another clock"
         );
         Err(self.describe(recorder, &what))
     }

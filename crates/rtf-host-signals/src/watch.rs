@@ -51,30 +51,25 @@ impl Shared {
     fn state(&self) -> MutexGuard<'_, WatchState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
-
-    /// Reads one program; false if it is not usable any more.
-    fn read(&self, index: usize) -> bool {
-        let result = self.state().read(index);
-        let Err(problem) = result else { return true };
-        self.session.collapsed(&problem);
-        false
-    }
 }
 
 impl WatchState {
-    fn read(&mut self, index: usize) -> Result<(), String> {
+    /// Reads one program; false if it is not usable any more, which is a collapse.
+    fn read(&mut self, index: usize, session: &Session) -> bool {
         let result = self.programs[index].read(&mut self.recorder);
-        if let Err(problem) = &result {
-            self.problem.get_or_insert_with(|| problem.clone());
+        let Err(problem) = result else { return true };
+        if self.problem.is_none() {
+            session.collapsed(&problem);
+            self.problem = Some(problem);
         }
-        result
+        false
     }
 
-    /// Reads everything that the programs have written. The other thread reports problems.
-    fn drain(&mut self) {
+    /// Reads everything that the programs have written.
+    fn drain(&mut self, session: &Session) {
         for index in 0..self.programs.len() {
             if self.problem.is_none() {
-                drop(self.read(index));
+                self.read(index, session);
             }
         }
     }
@@ -127,9 +122,9 @@ impl Watch {
         missing.join(", ")
     }
 
-    /// Why the fixture has collapsed.
-    pub fn problem(&self) -> Option<String> {
-        self.shared.state().problem.clone()
+    /// Whether the fixture has collapsed, which was reported.
+    pub fn has_collapsed(&self) -> bool {
+        self.shared.state().problem.is_some()
     }
 
     pub fn start_test(&self, test: &TestAttempt) -> Result<(), String> {
@@ -138,10 +133,8 @@ impl Watch {
 
     pub fn finish_test(&self, test: TestId, was_stopped: bool) -> Result<(), String> {
         let mut state = self.shared.state();
-        state.drain();
-        let problem = state.problem.clone();
-        state.recorder.finish(test, was_stopped)?;
-        problem.map_or(Ok(()), Err)
+        state.drain(&self.shared.session);
+        state.recorder.finish(test, was_stopped)
     }
 
     /// Ends the threads and programs.
@@ -175,7 +168,9 @@ fn read_programs(shared: &Shared, outputs: Vec<OwnedFd>, wake: &OwnedFd) {
         }
         let ready: Vec<bool> = polled[1..].iter().map(|it| !it.revents().is_empty()).collect();
         let mut ready = ready.into_iter();
-        outputs.retain(|(index, _)| !ready.next().unwrap_or_default() || shared.read(*index));
+        outputs.retain(|(index, _)| {
+            !ready.next().unwrap_or_default() || shared.state().read(*index, &shared.session)
+        });
         if Instant::now() >= next_send {
             next_send = Instant::now() + SEND_INTERVAL;
             shared.state().recorder.send();

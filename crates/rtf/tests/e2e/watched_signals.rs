@@ -171,7 +171,7 @@ fn a_program_that_does_not_write_samples_is_reported() {
     for (program, reason) in [
         ("print(\"1 2 3\", flush=True)", "the program of `q` wrote `1 2 3`, expected a time and 1"),
         ("pass", "the program of `q` ended with exit status: 0: `python3 -c pass`"),
-        ("print(\"1.5 0\", flush=True); input()", "wrote the time 1.5, which are not seconds since"),
+        ("print(\"1.5 0\", flush=True); input()", "wrote the time 1.5, but its times have to be seconds"),
         ("raise SystemExit(3)", "the program of `q` ended with exit status: 3"),
     ] {
         let (finished, journal, _folder) = run(&format!(
