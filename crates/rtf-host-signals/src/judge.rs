@@ -36,6 +36,12 @@ impl RunningMonitor {
         self.index
     }
 
+    /// Whether it has reported a violation.
+    #[cfg(test)]
+    pub fn has_reported(&self) -> bool {
+        self.has_reported
+    }
+
     /// Takes a sample of the signal with this index in the formula; returns a violation once.
     pub fn sample(&mut self, signal: usize, time: f64, value: f64) -> Option<Violation> {
         self.once(|monitor| monitor.sample(signal, time, value))

@@ -86,3 +86,6 @@ impl Recorder {
         Ok(TestStart { instant: Instant::now(), clock })
     }
 }
+
+#[cfg(test)]
+mod tests;

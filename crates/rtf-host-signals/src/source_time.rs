@@ -38,6 +38,12 @@ impl Origin {
         })
     }
 
+    /// The zero, if it is known.
+    #[cfg(test)]
+    pub fn zero(self) -> Option<f64> {
+        self.0
+    }
+
     /// The time of a sample in the test, in seconds, to the microsecond. Negative before its
     /// start.
     pub fn time_of(&mut self, sample: SampleTime, start: TestStart) -> f64 {

@@ -118,6 +118,18 @@ impl TestRun {
         session.finding(Finding { test: self.id, severity, text, location });
     }
 
+    /// Its zero on the clock of a source.
+    #[cfg(test)]
+    pub fn zero_of(&self, source: usize) -> Option<f64> {
+        self.origins[source].zero()
+    }
+
+    /// Whether a monitor has reported a violation.
+    #[cfg(test)]
+    pub fn has_violation(&self) -> bool {
+        self.monitors.iter().any(RunningMonitor::has_reported)
+    }
+
     /// Sends the samples that were taken.
     pub fn send(&mut self, session: &Session) {
         self.batches.send(session);
