@@ -19,7 +19,7 @@ from run import Run, expect, expect_in
 Points = list[tuple[float, float]]
 
 UNKNOWN = "/joint_states.position[elbow]", "/joint_states.position[ankle]"
-LOW = "always(0.5rad > wrist)", "always(0.001rad > wrist)"
+LOW = "always(100rad > wrist)", "always(0.001rad > wrist)"
 
 
 def main() -> int:

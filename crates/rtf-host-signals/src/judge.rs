@@ -36,24 +36,9 @@ impl RunningMonitor {
         self.index
     }
 
-    /// Whether it has reported a violation.
-    #[cfg(test)]
-    pub fn has_reported(&self) -> bool {
-        self.has_reported
-    }
-
     /// Takes a sample of the signal with this index in the formula; returns a violation once.
     pub fn sample(&mut self, signal: usize, time: f64, value: f64) -> Option<Violation> {
-        self.once(|monitor| monitor.sample(signal, time, value))
-    }
-
-    /// No sample of a signal arrives before `time`.
-    pub fn advance(&mut self, signal: usize, time: f64) -> Option<Violation> {
-        self.once(|monitor| monitor.advance(signal, time))
-    }
-
-    fn once(&mut self, step: impl FnOnce(&mut Monitor) -> Option<Violation>) -> Option<Violation> {
-        let violation = step(&mut self.monitor)?;
+        let violation = self.monitor.sample(signal, time, value)?;
         (!std::mem::replace(&mut self.has_reported, true)).then_some(violation)
     }
 

@@ -149,8 +149,10 @@ impl Program {
         let time = SampleTime { written, arrival };
         let first = recorder.settings().programs[self.index].first_signal;
         for (offset, value) in self.values.iter().enumerate() {
-            let (source, signal) = (self.index, first + offset);
-            recorder.sample(SignalSample { source, signal, time, value: *value });
+            if let Some(value) = *value {
+                let (source, signal) = (self.index, first + offset);
+                recorder.sample(SignalSample { source, signal, time, value });
+            }
         }
         Ok(())
     }

@@ -36,8 +36,7 @@ pub(crate) struct SignalSample {
     /// The index of the signal.
     pub signal: usize,
     pub time: SampleTime,
-    /// `None`: the signal has no sample at this time.
-    pub value: Option<f64>,
+    pub value: f64,
 }
 
 impl TestRun {
@@ -86,20 +85,14 @@ impl TestRun {
         }
         for (monitor, in_formula) in &self.judges[sample.signal] {
             let monitor = &mut self.monitors[*monitor];
-            let violation = match sample.value {
-                Some(value) => monitor.sample(*in_formula, time, value),
-                None => monitor.advance(*in_formula, time),
-            };
-            if let Some(violation) = violation {
+            if let Some(violation) = monitor.sample(*in_formula, time, sample.value) {
                 let monitor = &settings.monitors[monitor.index()];
                 let signals = &settings.signals;
                 MonitorReport { session, test: self.id, monitor, signals }.violation(&violation);
             }
         }
-        if let Some(value) = sample.value {
-            self.last[sample.signal] = Some(time);
-            self.batches.add(sample.signal, time, value, session);
-        }
+        self.last[sample.signal] = Some(time);
+        self.batches.add(sample.signal, time, sample.value, session);
     }
 
     /// Reports the first time that is before an earlier one.
@@ -122,12 +115,6 @@ impl TestRun {
     #[cfg(test)]
     pub fn zero_of(&self, source: usize) -> Option<f64> {
         self.origins[source].zero()
-    }
-
-    /// Whether a monitor has reported a violation.
-    #[cfg(test)]
-    pub fn has_violation(&self) -> bool {
-        self.monitors.iter().any(RunningMonitor::has_reported)
     }
 
     /// Sends the samples that were taken.

@@ -208,6 +208,6 @@ fn record(shared: &Shared, source: usize, settings: &ProcessSettings, value: Opt
     let mut state = shared.state();
     let Some(written) = state.recorder.clock().now() else { return };
     let time = SampleTime { written: Some(written), arrival: Instant::now() };
-    let (signal, value) = (settings.signal, Some(value));
+    let signal = settings.signal;
     state.recorder.sample(SignalSample { source, signal, time, value });
 }

