@@ -17,6 +17,17 @@ rtf.sleep(seconds); rtf.report('end of the test') end\n\
 function TestCase.tearDown() os.remove('high') end\n";
 const QUIET: &str = "function TestCase.run() rtf.sleep(0.2) end\n";
 
+/// Creates a file when it has used half a second of processor time since the file `start` exists.
+const BUSY: &str = "import os, time\n\
+while not os.path.exists('start'): time.sleep(0.005)\n\
+begin = time.process_time()\n\
+while time.process_time() < begin + 0.5: pass\n\
+open('busy', 'w').close()\n\
+while True: pass\n";
+/// Waits for that.
+const UNTIL_BUSY: &str = "function TestCase.run() io.open('start', 'w'):close()\n\
+rtf.require(rtf.wait_until(function() return io.open('busy') ~= nil end, 60, 'use')) end\n";
+
 const SIGNALS: &str = "<signals time='own'><command>python3 source.py</command>\
 <signal name='q' unit='rad'/><signal name='count'/></signals>\n";
 
@@ -148,13 +159,16 @@ fn a_monitor_without_samples_is_an_error() {
 
 #[test]
 fn the_processes_of_a_fixture_are_measured() {
-    let (finished, journal, _folder) =
-        run("<fixture type='process' name='sim'><command>python3 -c 'while True: pass'</command>\
-         </fixture>
+    let folder = folder(
+        "<fixture type='process' name='sim'><command>python3 busy.py</command></fixture>
          <signal name='load' fixture='sim' of='cpu' every='20ms'/>
          <signal name='memory' fixture='sim' of='rss' every='20ms'/>
          <signal name='files' fixture='sim' of='fds' every='20ms'/>
-         <test> Quiet.lua </test>");
+         <test> Busy.lua </test>",
+    );
+    folder.file("busy.py", BUSY).file("Busy.lua", UNTIL_BUSY);
+    let finished = folder.rtf(&["run", "s.xml"]);
+    let journal = folder.journal();
     assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
     let load = series(&journal, 0, "load");
     assert!(load.max.unwrap() > 0.0, "{load:?}");
