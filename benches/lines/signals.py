@@ -41,7 +41,7 @@ def group(bench: Bench) -> Group:
         Work(RECORDING, lambda: recording(bench, many(bench))),
     )
     what = f"{SIGNALS} signals at {RATE_HZ} Hz for {SECONDS} s"
-    median, tail = Limit(5, required=False), Limit(20, required=False)
+    median = tail = Limit(5, required=False)
     lines = (
         Line("sample → test asked to stop, median", VIOLATION, LATENCY, limit=median),
         Line(
