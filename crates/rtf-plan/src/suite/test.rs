@@ -10,8 +10,7 @@ use super::schema::{self, check};
 use super::{
     AfterCollapse, DeclaredCases, DeclaredLimits, DeclaredPlugin, DeclaredTest, ForkPoint, Leaks,
     Retries, Span, Spanned, TestIsolation, TestSettings, env, known_failure, learn, matrix,
-    monitor,
-    reference,
+    monitor, reference,
 };
 
 /// The defaults that a suite declares for its tests.
