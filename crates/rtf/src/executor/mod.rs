@@ -2,7 +2,7 @@
 //! their runs and merges them; `spec/executors.md`. Campaigns use the same jobs.
 //!
 //! - [`options`]: what the command line says about the executor.
-//! - [`cluster`]: a job whose tasks each execute a command. Knows no tests.
+//! - [`mod@cluster`]: a job whose tasks each execute a command. Knows no tests.
 //! - [`submission`]: the directory of a submission.
 //! - [`follow`]: waits for the tasks.
 //! - [`stop`]: stops the tasks of a job.
