@@ -2,7 +2,7 @@
 //! monitors of the suite. `spec/signals.md` specifies it.
 //!
 //! [`host`] implements the functions of a fixture. One thread ([`watch`]) reads the programs that
-//! write samples ([`program`], [`line`]), one for each measured fixture reads `/proc`
+//! write samples ([`program`], [`mod@line`]), one for each measured fixture reads `/proc`
 //! ([`processes`]). Both pass samples to the [`recorder`], which knows the running tests
 //! ([`test_run`]) with their batches ([`batches`]) and monitors ([`judge`]).
 
