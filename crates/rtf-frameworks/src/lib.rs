@@ -18,6 +18,8 @@ mod supervisor;
 mod wanted;
 mod xml_stream;
 
+pub use frameworks::foreign;
+
 use std::ffi::OsString;
 
 use rtf_host::Session;

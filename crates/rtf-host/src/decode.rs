@@ -14,7 +14,7 @@ pub(crate) const INVALID_REQUEST: i32 = -32600;
 
 /// A decoded line.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Incoming {
+pub enum Incoming {
     /// A request, or a notification when it has no number.
     Request {
         /// The request's number.
@@ -33,14 +33,16 @@ pub(crate) enum Incoming {
 
 impl Incoming {
     /// The request's number.
-    pub(crate) fn id(&self) -> Option<u64> {
+    #[must_use]
+    pub fn id(&self) -> Option<u64> {
         match self {
             Self::Request { id, .. } | Self::Refused { id, .. } => *id,
         }
     }
 
     /// The request, unless it is refused.
-    pub(crate) fn request(&self) -> Option<&Request> {
+    #[must_use]
+    pub fn request(&self) -> Option<&Request> {
         match self {
             Self::Request { request, .. } => Some(request),
             Self::Refused { .. } => None,
@@ -66,7 +68,8 @@ struct Interrupt {
 }
 
 /// Decodes a line without its end.
-pub(crate) fn decode(line: &[u8]) -> Incoming {
+#[must_use]
+pub fn decode(line: &[u8]) -> Incoming {
     let envelope: Envelope<'_> = match serde_json::from_slice(line) {
         Ok(envelope) => envelope,
         Err(error) => {

@@ -25,6 +25,7 @@ mod writer;
 
 pub use cases::CaseEnd;
 pub use check::{CheckedFile, check, check_each, files_to_check};
+pub use decode::{Incoming, decode};
 pub use plugin::{HostPlugin, LoadError, PluginKind, Reaction, Step, StepEnd, TestNotification};
 pub use program::HostProgram;
 pub use sampling::Sample;

@@ -24,6 +24,7 @@ mod metrics;
 mod page;
 mod problem;
 mod regular_file;
+mod routes;
 mod runs;
 mod server;
 mod stream_file;
@@ -39,5 +40,6 @@ pub use capabilities::{Capabilities, FinishedRun, RerunRejected, RunControl, Run
 pub use connections::Limits;
 pub use history_source::{HistorySource, TestCondition};
 pub use journal_notifier::JournalNotifier;
+pub use routes::Routes;
 pub use server::{BoundServer, ServeError, Service, Settings, ShutdownHandle, WebServer};
 pub use tls::TlsError;

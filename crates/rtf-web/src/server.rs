@@ -7,26 +7,21 @@ use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use axum::routing::get;
-use axum::{Router, middleware};
 use axum_server::tls_rustls::RustlsAcceptor;
 use axum_server::{Handle, Server as HttpServer};
 use hyper_util::rt::TokioTimer;
 use rtf_report::console::RerunCommand;
-use tokio::sync::{Semaphore, watch};
-use tower_http::catch_panic::CatchPanicLayer;
-use tower_http::compression::{CompressionLayer, CompressionLevel};
+use tokio::sync::watch;
 
-use crate::access::{self, Access, AccessLog, Hosts, Rules, Secret, TokenError, WrongToken};
+use crate::access::{self, Hosts, Rules, Secret, TokenError, WrongToken};
 use crate::app::App;
 use crate::campaign_report::CampaignSource;
 use crate::capabilities::Capabilities;
 use crate::connections::{Limits, Listener, Peer};
 use crate::history_source::HistorySource;
 use crate::journal_notifier::JournalNotifier;
-use crate::runs::Runs;
+use crate::routes::{Prepared, Routes, router};
 use crate::tls::{self, Tls, TlsError};
-use crate::{api, legacy, metrics, page};
 
 /// How many ports are tried when the first one is taken.
 const PORTS: u16 = 50;
@@ -178,28 +173,11 @@ impl BoundServer {
     /// The thread cannot be started.
     pub fn serve(self, service: Service<'_>) -> Result<WebServer, ServeError> {
         let Self { listener, address, wanted, token, tls, hosts, remote, limits } = self;
-        let Service { results, history, campaigns, metrics, role, rerun, wrong_token } = service;
         let shown = token.text().to_owned();
         let rules = Rules { remote, tls: tls.is_some() };
-        let log = AccessLog::start(wrong_token).map_err(ServeError::Start)?;
-        let access = Access::new(token, hosts, rules, log)?;
-        let (ending, ends) = watch::channel(false);
-        let (grown, grows) = watch::channel(0);
-        let lingers = Arc::new(OnceLock::new());
-        let app = App {
-            runs: Arc::new(Runs::new(results, role.own().map(str::to_owned))),
-            history,
-            campaigns,
-            metrics,
-            access: Arc::new(access),
-            role,
-            rerun,
-            grown: grows,
-            ending: ends,
-            streams: App::streams(),
-            lingers: lingers.clone(),
-            files: Arc::new(Semaphore::new(limits.files())),
-        };
+        let access = (token, hosts, rules);
+        let Prepared { app, ending, grown } = Prepared::new(access, limits, service)?;
+        let lingers = app.lingers.clone();
         let fingerprint = tls.as_ref().and_then(|tls| tls.fingerprint.clone());
         let (is_tls, token) = (tls.is_some(), shown);
         let run = move || serve(listener, limits, tls, app);
@@ -216,6 +194,18 @@ impl BoundServer {
             lingers,
             thread,
         })
+    }
+
+    /// Answers requests without connections: for tests with arbitrary requests.
+    ///
+    /// # Errors
+    /// The thread that reports wrong tokens cannot be started.
+    pub fn without_connections(self, service: Service<'_>) -> Result<Routes, ServeError> {
+        let rules = Rules { remote: self.remote, tls: self.tls.is_some() };
+        let token = self.token.text().to_owned();
+        let access = (self.token, self.hosts, rules);
+        let Prepared { app, ending, grown } = Prepared::new(access, self.limits, service)?;
+        Ok(Routes::new(app, token, self.address, (ending, grown)))
     }
 }
 
@@ -316,21 +306,6 @@ fn listen(wanted: SocketAddr) -> Result<TcpListener, ServeError> {
             Err(source) => return Err(ServeError::Listen { address, source }),
         }
     }
-}
-
-fn router(app: App) -> Router {
-    let guard = middleware::from_fn_with_state(app.clone(), access::guard);
-    api::router()
-        .route("/status", get(legacy::status))
-        .route("/update", get(legacy::update))
-        .route("/api/docs", get(page::docs))
-        .route("/metrics", get(metrics::metrics))
-        .fallback_service(get(page::page))
-        .layer(CompressionLayer::new().quality(CompressionLevel::Fastest))
-        .layer(guard)
-        .layer(CatchPanicLayer::new())
-        .layer(middleware::from_fn(page::headers))
-        .with_state(app)
 }
 
 fn serve(listener: TcpListener, limits: Limits, tls: Option<Tls>, app: App) -> io::Result<()> {

@@ -72,7 +72,7 @@ impl Framework for BoostTest {
         command.arg("--list_content=DOT").args(&test.args);
         let listed = listing::run(command, LIST_LIMIT)?;
         let texts = [&listed.stderr, &listed.stdout];
-        let cases = texts.iter().find_map(|text| list::parse(&String::from_utf8_lossy(text)));
+        let cases = texts.iter().find_map(|text| parse_list(&String::from_utf8_lossy(text)));
         cases.map(Some).ok_or_else(|| not_boost(&test.file, &listed))
     }
 
@@ -128,8 +128,13 @@ fn command(file: &Path) -> Command {
     command
 }
 
-fn report_file(scratch: &Path) -> PathBuf {
+pub(super) fn report_file(scratch: &Path) -> PathBuf {
     scratch.join("boost.xml")
+}
+
+/// The cases in a list; `None` if it is none.
+pub(super) fn parse_list(text: &str) -> Option<Vec<ListedCase>> {
+    list::parse(text)
 }
 
 /// A filter for a case. A comma, which separates names and cannot be escaped, is replaced by

@@ -134,7 +134,7 @@ fn list(test: &TestProgram, specification: Option<&str>) -> Result<Vec<ListedCas
 }
 
 /// The cases in a list; `None` if it is none.
-fn parse_list(text: &[u8]) -> Option<Vec<ListedCase>> {
+pub(super) fn parse_list(text: &[u8]) -> Option<Vec<ListedCase>> {
     let (mut stream, mut events) = (XmlStream::default(), Vec::new());
     stream.feed(text, &mut events).ok()?;
     let [XmlEvent::Start { name, .. }, events @ ..] = events.as_slice() else { return None };

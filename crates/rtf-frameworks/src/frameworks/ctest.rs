@@ -137,7 +137,7 @@ impl CTest {
     }
 }
 
-fn listed(test: &CTestCase) -> ListedCase {
+pub(super) fn listed(test: &CTestCase) -> ListedCase {
     ListedCase {
         name: test.name.clone(),
         location: test.location.clone().map(|(file, line)| Location { file, line }),
@@ -159,8 +159,7 @@ fn read_tests(test: &TestProgram) -> Result<Vec<CTestCase>, ListError> {
     command.current_dir(&test.file).arg("--show-only=json-v1").args(config(&test.args)?);
     let found = listing::run(command, LIST_LIMIT)?;
     let is_empty = |tests: &Vec<CTestCase>| tests.is_empty() && test.args.is_empty();
-    let tests = properties::parse(&found.stdout).and_then(fixtures::ordered);
-    match tests {
+    match parse_list(&found.stdout) {
         Ok(tests) if is_empty(&tests) => Err(ListError::new(
             "the build directory has no tests; with several configurations, choose one with \
              `param=\"-C Release\"`",
@@ -170,6 +169,20 @@ fn read_tests(test: &TestProgram) -> Result<Vec<CTestCase>, ListError> {
             format!("{error}\n{}", String::from_utf8_lossy(found.stderr.trim_ascii())).trim_end(),
         )),
     }
+}
+
+/// The tests in a list, in the order in which they run.
+///
+/// # Errors
+/// It is no list, or the tests cannot be ordered.
+pub(super) fn parse_list(json: &[u8]) -> Result<Vec<CTestCase>, String> {
+    properties::parse(json).and_then(fixtures::ordered)
+}
+
+/// The reader for the first test of a list, or for one without properties.
+pub(super) fn reader_of_first(list: &[u8]) -> Box<dyn ReportReader> {
+    let tests = parse_list(list).unwrap_or_default();
+    Box::new(judge::Judge::new(tests.into_iter().next().unwrap_or_default()))
 }
 
 /// The arguments for `ctest`: only the configuration.

@@ -107,10 +107,8 @@ impl Framework for GoogleTest {
         let listed = listing::run(command, LIST_LIMIT)?;
         let runs_disabled = test.args.iter().any(|arg| arg.starts_with(RUN_DISABLED));
         let text = std::fs::read(&report).unwrap_or_default();
-        match serde_json::from_slice::<Report>(&text) {
-            Ok(report) => Ok(Some(cases(&report, runs_disabled))),
-            Err(_) => Err(not_gtest(&test.file, &listed)),
-        }
+        let cases = parse_list(&text, runs_disabled);
+        cases.map(Some).ok_or_else(|| not_gtest(&test.file, &listed))
     }
 
     fn channel(&self) -> ReportChannel {
@@ -181,12 +179,18 @@ fn utf8(text: &str) -> String {
     bytes.and_then(|bytes| String::from_utf8(bytes).ok()).unwrap_or_else(|| text.to_owned())
 }
 
-fn report_file(scratch: &Path) -> std::path::PathBuf {
+pub(super) fn report_file(scratch: &Path) -> std::path::PathBuf {
     scratch.join("gtest.json")
 }
 
 fn output_flag(file: &Path) -> String {
     format!("--gtest_output=json:{}", file.display())
+}
+
+/// The cases in a list; `None` if it is none.
+pub(super) fn parse_list(text: &[u8], runs_disabled: bool) -> Option<Vec<ListedCase>> {
+    let report = serde_json::from_slice::<Report>(text).ok()?;
+    Some(cases(&report, runs_disabled))
 }
 
 fn cases(report: &Report, runs_disabled: bool) -> Vec<ListedCase> {

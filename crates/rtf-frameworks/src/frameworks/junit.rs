@@ -72,11 +72,8 @@ impl Framework for JUnit {
             .arg(format!("--config=junit.platform.reporting.output.dir={}", dir.path().display()));
         let listed = listing::run(command, LIST_LIMIT)?;
         let report = std::fs::read(dir.path().join("open-test-report.xml")).unwrap_or_default();
-        let mut events = TestEvents::default();
-        let parsed = events.feed(&report);
-        let cases = parsed.map(stream::listed_cases);
-        match cases {
-            Ok(cases) if !cases.is_empty() => Ok(Some(cases)),
+        match parse_list(&report) {
+            Some(cases) if !cases.is_empty() => Ok(Some(cases)),
             _ => Err(no_tests(test, &listed)),
         }
     }
@@ -115,6 +112,11 @@ impl Framework for JUnit {
     fn stack_dump(&self) -> StackDump {
         StackDump::SignalToOutput(rustix::process::Signal::QUIT)
     }
+}
+
+/// The cases in the report of a dry run; `None` if it is none.
+pub(super) fn parse_list(report: &[u8]) -> Option<Vec<ListedCase>> {
+    TestEvents::default().feed(report).ok().map(stream::listed_cases)
 }
 
 /// The command for both: a run, and the list.

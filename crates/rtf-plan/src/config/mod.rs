@@ -27,7 +27,7 @@ pub use profile_view::{ConfigRequest, ProfileView};
 pub use quarantine::Quarantine;
 pub use run_config::{RunConfig, RunValue, input_dir};
 pub use schema::json_schema;
-pub use toml_reader::{Entry, Layer};
+pub use toml_reader::{Entry, Layer, ParsedConfig, parse};
 
 pub(crate) use overlay::{DirectPluginConfig, direct_plugin_config, overlay_suite};
 pub(crate) use param_reference::sample;

@@ -44,7 +44,7 @@ impl Layer {
 
 /// The contents of an `rtf.toml`.
 #[derive(Debug, Default)]
-pub(super) struct ParsedConfig {
+pub struct ParsedConfig {
     /// The profile that applies unless the user selects one.
     pub profile: Option<Spanned<String>>,
     /// The values outside of profiles.
@@ -53,8 +53,8 @@ pub(super) struct ParsedConfig {
     pub profiles: Vec<(Spanned<String>, Layer)>,
 }
 
-/// Parses the text of an `rtf.toml`.
-pub(super) fn parse(source: &SourceText, problems: &mut Vec<Diagnostic>) -> ParsedConfig {
+/// Parses the text of an `rtf.toml`, and adds every problem to `problems`.
+pub fn parse(source: &SourceText, problems: &mut Vec<Diagnostic>) -> ParsedConfig {
     let (table, errors) = DeTable::parse_recoverable(source.text());
     for error in errors {
         let span = Span::new(error.span().unwrap_or_default());
