@@ -113,7 +113,7 @@ def run(program: Path, name: str, inputs: list[str], seconds: int) -> Result:
     log = BUILD / f"{name}.log"
     with log.open("wb") as output:
         ended = subprocess.run(
-            command, env=environment, stdin=subprocess.DEVNULL, stdout=output, stderr=output, check=False
+            command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=output, check=False
         )
     text = log.read_text(errors="replace")
     return Result(

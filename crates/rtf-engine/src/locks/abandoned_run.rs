@@ -3,6 +3,9 @@
 //! Its drivers still run, and its hooks did not. The kernel has released its lock, but the
 //! lock's file names the owner. The next run with the lock stops the processes of the owner's
 //! scope. A live run is never affected, because it would hold the lock.
+//!
+//! All users may write the file, so the scope is that of this user's own record. If there is none,
+//! the owner was another user, whose processes cannot be stopped, or the file lies.
 
 use std::time::Duration;
 
@@ -21,6 +24,8 @@ const KILL_LIMIT: Duration = Duration::from_secs(5);
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
 const SIGTERM: i32 = 15;
 const SIGKILL: i32 = 9;
+/// The signals, and how long each of them may take.
+const STEPS: [(i32, Duration); 2] = [(SIGTERM, TERM_GRACE), (SIGKILL, KILL_LIMIT)];
 
 /// Stops the processes of an owner that was killed with its guard, and emits a warning.
 pub async fn stop_processes(owner: &LockOwner, events: &Events) {
@@ -29,7 +34,9 @@ pub async fn stop_processes(owner: &LockOwner, events: &Events) {
         format!("the runner and the guard of {owner} were killed: its hooks did not run"),
     );
     let mut known = Vec::new();
-    for (signal, limit) in [(SIGTERM, TERM_GRACE), (SIGKILL, KILL_LIMIT)] {
+    // An empty scope would be that of all runs.
+    let has_record = !owner.scope.is_empty();
+    for (signal, limit) in has_record.then_some(STEPS).into_iter().flatten() {
         let end = Instant::now() + limit;
         let mut signalled = Vec::new();
         loop {

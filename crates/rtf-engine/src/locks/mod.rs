@@ -3,10 +3,11 @@
 //! A lock is a kernel lock on a file. It ends with the last process that holds it: the runner,
 //! or after its death the guard, which runs the hooks first. The file names the owner for users;
 //! a release empties it. So a run that gets the lock of a file with contents knows that runner
-//! and guard of the owner were killed, and stops their processes. Files are never removed,
-//! because waiting runs have them open.
+//! and guard of the owner were killed, and stops their processes if the owner's user has a
+//! record of it ([`own_record`]). Files are never removed, because waiting runs have them open.
 
 mod abandoned_run;
+mod own_record;
 mod unix;
 mod wait;
 
@@ -70,6 +71,7 @@ pub struct Locks {
 pub struct Lock {
     file: File,
     /// The previous owner, if it did not release the lock because runner and guard were killed.
+    /// Its scope is empty if this user has no record of it.
     abandoned: Option<LockOwner>,
 }
 
@@ -110,9 +112,16 @@ impl Locks {
     ) -> io::Result<Result<Lock, Vec<HeldLock>>> {
         let mut held = Vec::new();
         for slot in 1..=resource.slots {
-            let mut file = open(&self.dir.join(format!("{}.{slot}", resource.name)))?;
+            let path = self.dir.join(format!("{}.{slot}", resource.name));
+            let mut file = open(&path)?;
             if unix::lock(&file)? {
                 let abandoned = Some(read(&mut file)).filter(|before| !before.scope.is_empty());
+                // Without a record, the lock protects the robot as well.
+                let recorded = own_record::replace(&path, &owner.scope).unwrap_or_default();
+                let abandoned = abandoned.map(|before| match before.scope == recorded {
+                    true => before,
+                    false => LockOwner { scope: String::new(), ..before },
+                });
                 let text = serde_json::to_string(owner)?;
                 file.set_len(0)?;
                 file.rewind()?;
@@ -226,6 +235,24 @@ mod tests {
         let three = take("three");
         assert_eq!(three.abandoned, Some(owner("two")));
         assert_eq!(locks.held().unwrap()[0].owner, owner("three"));
+    }
+
+    #[test]
+    fn what_others_write_into_a_lock_stops_no_process() {
+        let dir = tempfile::tempdir().unwrap();
+        let locks = Locks::open(dir.path()).unwrap();
+        let robot = RequiredResource { name: "robot".to_owned(), slots: 1 };
+        let forged = LockOwner {
+            run: "a live run".to_owned(),
+            scope: "2026-11-25T02-50-00Z-1f3a.0.".to_owned(),
+            ..LockOwner::default()
+        };
+        let text = serde_json::to_string(&forged).unwrap();
+        std::fs::write(dir.path().join("robot.1"), text).unwrap();
+        let taken = locks.try_acquire(&robot, &LockOwner::default()).unwrap().unwrap();
+        let expected = LockOwner { scope: String::new(), ..forged };
+        assert_eq!(taken.abandoned, Some(expected), "it is told, but not believed");
+        assert!(locks.held().unwrap().iter().all(|held| held.name == "robot"));
     }
 
     #[test]

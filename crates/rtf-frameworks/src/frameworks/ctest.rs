@@ -179,10 +179,11 @@ pub(super) fn parse_list(json: &[u8]) -> Result<Vec<CTestCase>, String> {
     properties::parse(json).and_then(fixtures::ordered)
 }
 
-/// The reader for the first test of a list, or for one without properties.
-pub(super) fn reader_of_first(list: &[u8]) -> Box<dyn ReportReader> {
+/// The reader for a test with the properties of the first one in a list.
+pub(super) fn reader_of_first(list: &[u8], name: &str) -> Box<dyn ReportReader> {
     let tests = parse_list(list).unwrap_or_default();
-    Box::new(judge::Judge::new(tests.into_iter().next().unwrap_or_default()))
+    let first = tests.into_iter().next().unwrap_or_default();
+    Box::new(judge::Judge::new(CTestCase { name: name.to_owned(), ..first }))
 }
 
 /// The arguments for `ctest`: only the configuration.

@@ -40,7 +40,8 @@ pub fn count_listed(framework: &str, printed: &[u8]) -> Option<usize> {
 /// What a process of a program wrote, for [`read_report`].
 #[derive(Clone, Copy, Debug)]
 pub struct Written<'a> {
-    /// The file that it wrote at its end; for `CTest` the list of tests, of which it is the first.
+    /// The file that it wrote at its end; for `CTest` the list of tests, of which it is the first;
+    /// for others its standard error.
     pub document: &'a [u8],
     /// The report, or its output for frameworks whose output is the report.
     pub report: &'a [u8],
@@ -66,7 +67,7 @@ pub fn read_report(
     let cases = Selection { cases: &listed, is_all: false };
     let launch = Launch { test: &test, cases, channel: OpenChannel::None, scratch };
     let mut reader = match framework {
-        "ctest" => ctest::reader_of_first(written.document),
+        "ctest" => ctest::reader_of_first(written.document, case),
         _ => {
             place(framework, scratch, written.document)?;
             adapter.reader(&launch)
@@ -102,13 +103,15 @@ fn feed(
 ) -> bool {
     for piece in written.report.chunks(written.piece) {
         reader.output(OutputStream::Stdout, piece, reporter);
-        reader.output(OutputStream::Stderr, piece, reporter);
         if reader.report(piece, reporter).is_err() {
             return false;
         }
         if reader.holds_back() {
             reader.release(reporter);
         }
+    }
+    for piece in written.document.chunks(written.piece) {
+        reader.output(OutputStream::Stderr, piece, reporter);
     }
     let is_complete = reader.finish(written.end, reporter).is_ok();
     // A reason is read even if it is not needed.

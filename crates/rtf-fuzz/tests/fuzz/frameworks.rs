@@ -4,6 +4,7 @@
 use std::collections::HashSet;
 use std::io::Read as _;
 use std::os::unix::net::UnixStream;
+use std::sync::LazyLock;
 
 use rtf_frameworks::foreign::{LISTS, Written, count_listed, read_report};
 use rtf_host::Session;
@@ -13,6 +14,10 @@ use rtf_process::codec::{HostMessage, decode};
 
 /// The case that the process runs.
 const CASE: &str = "Arm.moves";
+
+/// The directory for files of the process.
+static SCRATCH: LazyLock<tempfile::TempDir> =
+    LazyLock::new(|| tempfile::tempdir().expect("a directory"));
 
 macro_rules! targets {
     ($($name:ident),*) => {
@@ -57,9 +62,8 @@ fn run(framework: &str, written: &Written<'_>) -> (bool, Vec<String>) {
         let mut bytes = Vec::new();
         ours.read_to_end(&mut bytes).map(|_| bytes)
     });
-    let scratch = tempfile::tempdir().expect("a directory");
     let session = Session::over(theirs);
-    let is_good = read_report(framework, CASE, written, &session, scratch.path());
+    let is_good = read_report(framework, CASE, written, &session, SCRATCH.path());
     drop(session);
     let bytes = received.join().expect("a reader").expect("bytes");
     let lines = bytes.split(|byte| *byte == b'\n').filter(|line| !line.is_empty());

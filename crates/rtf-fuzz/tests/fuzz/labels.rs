@@ -13,6 +13,8 @@ pub type Read = fn(&SourceText, &mut Vec<Diagnostic>) -> bool;
 /// line break before the text moves all positions by a line.
 pub fn check(data: &[u8], read: Read) {
     let Ok(text) = std::str::from_utf8(data) else { return };
+    // As the reader of files does.
+    let text = text.trim_start_matches('\u{feff}');
     let problems = problems(text, read);
     if text.starts_with("<?xml") {
         // Only at the start of the text.

@@ -41,7 +41,8 @@ impl World {
         let (mut sealer, mut journal) = (LineSealer::default(), Vec::new());
         for line in stream.split(|byte| *byte == b'\n').filter(|line| !line.is_empty()) {
             let start = journal.len();
-            journal.extend_from_slice(line);
+            let line = String::from_utf8_lossy(line).replace("\"name\":\"", "\"name\":\"zebra-");
+            journal.extend_from_slice(line.as_bytes());
             sealer.seal(&mut journal, start);
         }
         std::fs::write(run.join("events.jsonl"), journal).expect("a journal");
@@ -144,7 +145,7 @@ pub fn check(data: &[u8]) {
     }
     let body = String::from_utf8_lossy(&body);
     assert!(!body.contains(SECRET) && !body.contains(routes.token()), "{method} {path}: {body}");
-    let is_data = body.contains("EncoderTest") || body.contains("<script>1</script>");
+    let is_data = body.contains("zebra-") || body.contains("<script>1</script>");
     assert!(first & 1 == 0 || !is_data, "{method} {path}: read without the token");
 }
 
