@@ -93,6 +93,12 @@ fn constraints() {
         "<campaign suite='s.xml' episodes='2'>CLAIM<constraint require='{deep}'/></campaign>"
     );
     assert!(problems(&text).contains("nested too deeply"));
+    // A longer chain once overflowed the stack.
+    let long = vec!["a"; 300_000].join("+") + " > 1";
+    let text = format!(
+        "<campaign suite='s.xml' episodes='2'>CLAIM<constraint require='{long}'/></campaign>"
+    );
+    assert!(problems(&text).contains("more than 1000 operations"));
 }
 
 #[test]

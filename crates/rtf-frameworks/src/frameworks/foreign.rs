@@ -106,9 +106,10 @@ fn feed(
         if reader.report(piece, reporter).is_err() {
             return false;
         }
-        if reader.holds_back() {
-            reader.release(reporter);
-        }
+    }
+    // Otherwise the size of the pieces would matter: cases are released when nothing arrives.
+    if reader.holds_back() {
+        reader.release(reporter);
     }
     for piece in written.document.chunks(written.piece) {
         reader.output(OutputStream::Stderr, piece, reporter);

@@ -29,6 +29,9 @@ const LINE_BYTES: usize = 16 << 20;
 /// The longest line that a message quotes, in characters.
 const QUOTED_CHARS: usize = 200;
 
+/// The part of a line of standard error that is kept: enough for [`QUOTED_CHARS`].
+const ERROR_LINE_BYTES: usize = 4096;
+
 /// The adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct Tap;
@@ -76,7 +79,10 @@ struct TapReader {
     has_problem: bool,
     has_ended: bool,
     first_line: Option<String>,
+    /// The last line of standard error that is no comment.
     last_error: String,
+    /// The part of a line of standard error that has arrived.
+    error_line: Vec<u8>,
 }
 
 struct OpenSubtest {
@@ -101,10 +107,13 @@ impl ReportReader for TapReader {
         if stream == OutputStream::Stdout {
             return;
         }
-        let text = String::from_utf8_lossy(bytes);
-        let is_own = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
-        if let Some(line) = text.lines().rev().find(is_own) {
-            self.last_error = line.trim().chars().take(QUOTED_CHARS).collect();
+        let mut lines = bytes.split(|byte| *byte == b'\n').peekable();
+        while let Some(line) = lines.next() {
+            let room = ERROR_LINE_BYTES.saturating_sub(self.error_line.len());
+            self.error_line.extend_from_slice(&line[..line.len().min(room)]);
+            if lines.peek().is_some() {
+                self.end_error_line();
+            }
         }
         if let Some(perl) = &mut self.perl {
             let events = perl.read(bytes);
@@ -120,6 +129,7 @@ impl ReportReader for TapReader {
         } else if !self.line.is_empty() {
             self.read_line(cases);
         }
+        self.end_error_line();
         self.has_ended = true;
         let events = self.parser.finish(!was_killed);
         self.add(events, cases);
@@ -140,6 +150,15 @@ impl ReportReader for TapReader {
 }
 
 impl TapReader {
+    /// A line of standard error is complete.
+    fn end_error_line(&mut self) {
+        let bytes = std::mem::take(&mut self.error_line);
+        let line = String::from_utf8_lossy(&bytes);
+        if !line.trim().is_empty() && !line.trim_start().starts_with('#') {
+            self.last_error = line.trim().chars().take(QUOTED_CHARS).collect();
+        }
+    }
+
     fn read_line(&mut self, cases: &mut CaseReporter<'_>) {
         let bytes = std::mem::take(&mut self.line);
         let text = String::from_utf8_lossy(&bytes);

@@ -63,27 +63,25 @@ fn print(filter: &Filter) -> String {
     }
 }
 
-/// The operands of a chain of one operator, which the parser nests to the left.
+/// The operands of a chain of one operator, which the parser nests as flat as possible.
 fn chain(filter: &Filter, operator: &str) -> String {
-    let (mut operands, mut rest) = (Vec::new(), filter);
-    loop {
-        match rest {
-            Filter::And(left, right) if operator == " & " => {
-                operands.push(print(right));
-                rest = left;
-            }
-            Filter::Or(left, right) if operator == " | " => {
-                operands.push(print(right));
-                rest = left;
-            }
-            first => {
-                operands.push(print(first));
-                break;
-            }
-        }
-    }
-    operands.reverse();
+    let mut operands = Vec::new();
+    collect(filter, operator, &mut operands);
     format!("({})", operands.join(operator))
+}
+
+fn collect(filter: &Filter, operator: &str, operands: &mut Vec<String>) {
+    match filter {
+        Filter::And(left, right) if operator == " & " => {
+            collect(left, operator, operands);
+            collect(right, operator, operands);
+        }
+        Filter::Or(left, right) if operator == " | " => {
+            collect(left, operator, operands);
+            collect(right, operator, operands);
+        }
+        other => operands.push(print(other)),
+    }
 }
 
 /// Escapes every character that has a meaning, also white space at the ends.

@@ -49,9 +49,9 @@ pub fn check_label(text: &str, label: &Label) {
     assert_eq!(label.file, NAME);
 }
 
-/// A problem one line and one byte before.
+/// A problem one line and one byte before. The start of the text stays where it is.
 fn up(mut problem: Diagnostic) -> Diagnostic {
-    for label in &mut problem.labels {
+    for label in problem.labels.iter_mut().filter(|label| label.start > 0) {
         label.line -= 1;
         label.start -= 1;
         label.end -= 1;

@@ -47,6 +47,23 @@ pub fn parse(source: &SourceText) -> Result<Filter, Box<Diagnostic>> {
 
 type Parsed<T> = Result<T, Box<Diagnostic>>;
 
+/// Joins operands, in order, to a tree that is as flat as possible: a filter is applied and dropped
+/// recursively, and may have thousands of operands.
+fn join(mut operands: Vec<Filter>, operator: fn(Box<Filter>, Box<Filter>) -> Filter) -> Filter {
+    while operands.len() > 1 {
+        let mut rest = operands.into_iter();
+        let mut pairs = Vec::with_capacity(rest.len().div_ceil(2));
+        while let Some(left) = rest.next() {
+            pairs.push(match rest.next() {
+                Some(right) => operator(Box::new(left), Box::new(right)),
+                None => left,
+            });
+        }
+        operands = pairs;
+    }
+    operands.pop().unwrap_or(Filter::None)
+}
+
 struct Parser<'s> {
     source: &'s SourceText,
     at: usize,
@@ -55,25 +72,28 @@ struct Parser<'s> {
 
 impl Parser<'_> {
     fn filter(&mut self) -> Parsed<Filter> {
-        let mut left = self.term()?;
+        let mut operands = vec![self.term()?];
         while self.take("|") || self.take_word("or") {
-            left = Filter::Or(Box::new(left), Box::new(self.term()?));
+            operands.push(self.term()?);
         }
-        Ok(left)
+        Ok(join(operands, Filter::Or))
     }
 
     fn term(&mut self) -> Parsed<Filter> {
-        let mut left = self.factor()?;
+        let first = self.factor()?;
+        let mut has_cases = first.has_cases();
+        let mut operands = vec![first];
         while self.take("&") || self.take_word("and") {
             let start = self.after_blanks();
             let right = self.factor()?;
-            if left.has_cases() && right.has_cases() {
+            if has_cases && right.has_cases() {
                 let what = "`&` cannot combine two conditions on cases";
                 return Err(self.problem(start..self.at, what).hint("use `|`").into());
             }
-            left = Filter::And(Box::new(left), Box::new(right));
+            has_cases |= right.has_cases();
+            operands.push(right);
         }
-        Ok(left)
+        Ok(join(operands, Filter::And))
     }
 
     fn factor(&mut self) -> Parsed<Filter> {

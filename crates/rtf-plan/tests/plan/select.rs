@@ -333,3 +333,19 @@ fn shards_know_whether_they_were_computed_from_equal_durations() {
     assert_ne!(assignment(by(50), 1), assignment(by(1), 1));
     assert_eq!(assignment(ShardBy::Hash, 1), None);
 }
+
+/// A chain of operands once was a tree of their depth, which overflowed the stack when it was
+/// applied or dropped.
+#[test]
+fn a_filter_may_have_many_operands() {
+    let check = || {
+        for (operator, expected) in [("|", 5), ("&", 0)] {
+            let filter = vec!["name(Joint)", "all()"].repeat(20_000).join(operator);
+            let filter = parse(&SourceText::new("filter", format!("{filter}{operator}none()")));
+            let selection = Selection { filters: vec![filter.unwrap()], ..Selection::default() };
+            assert_eq!(tests(&select(plan(), &selection).plan).len(), expected, "{operator}");
+        }
+    };
+    let thread = std::thread::Builder::new().stack_size(512 * 1024).spawn(check);
+    thread.unwrap().join().unwrap();
+}

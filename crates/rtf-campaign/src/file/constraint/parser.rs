@@ -9,6 +9,9 @@ use super::{Comparison, Expression, Operation};
 /// The deepest nesting of parentheses and signs.
 const MAX_DEPTH: usize = 64;
 
+/// The most operations: each one is a level of the tree, whose left side they share.
+const MAX_OPERATIONS: usize = 1000;
+
 /// An invalid text.
 #[derive(Debug)]
 pub(super) struct SyntaxError {
@@ -23,7 +26,7 @@ pub(super) fn parse(
     text: &str,
     span: &dyn Fn(Range<usize>) -> Span,
 ) -> Result<(Expression, Comparison, Expression), SyntaxError> {
-    let mut parser = Parser { text, at: 0, depth: 0, span };
+    let mut parser = Parser { text, at: 0, depth: 0, operations: 0, span };
     let left = parser.sum()?;
     let comparison = parser.comparison()?;
     let right = parser.sum()?;
@@ -38,6 +41,7 @@ struct Parser<'a> {
     text: &'a str,
     at: usize,
     depth: usize,
+    operations: usize,
     span: &'a dyn Fn(Range<usize>) -> Span,
 }
 
@@ -98,6 +102,10 @@ impl Parser<'_> {
     ) -> Result<Expression, SyntaxError> {
         let mut left = operand(self)?;
         while let Some((_, operation)) = operations.iter().find(|(token, _)| self.take(token)) {
+            self.operations += 1;
+            if self.operations > MAX_OPERATIONS {
+                return Err(self.error("more than 1000 operations at"));
+            }
             left = Expression::Binary(*operation, Box::new([left, operand(self)?]));
         }
         Ok(left)
