@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Gives arbitrary inputs to everything that reads bytes of others, with libFuzzer.
 
-fuzz.py [--seconds N] [--jobs N] [--profile PROFILE] [TARGET ...]
+fuzz.py [--seconds N] [--jobs N] [--profile PROFILE | --program FILE] [TARGET ...]
 
 Each target runs for this time, with the inputs of the repository and those of earlier runs, which
 are in build/fuzz. An input for which a property does not hold is stored in build/fuzz/found, and
@@ -48,9 +48,10 @@ def main() -> None:
     parser.add_argument("--seconds", type=int, default=60, help="for each target")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="targets at a time")
     parser.add_argument("--profile", default="fuzz", help="of Cargo.toml")
+    parser.add_argument("--program", type=Path, help="the compiled targets")
     parser.add_argument("targets", nargs="*", help="all without")
     options = parser.parse_args()
-    program = build(options.profile)
+    program = options.program or build(options.profile)
     inputs = list_targets(program)
     names = options.targets or list(inputs)
     unknown = [name for name in names if name not in inputs]
@@ -58,7 +59,9 @@ def main() -> None:
         raise SystemExit(f"error: there is no target {', '.join(unknown)}")
     FOUND.mkdir(parents=True, exist_ok=True)
     with ThreadPoolExecutor(options.jobs) as pool:
-        results = list(pool.map(lambda name: run(program, name, inputs[name], options.seconds), names))
+        results = list(
+            pool.map(lambda name: run(program, name, inputs[name], options.seconds), names)
+        )
     print_table(results)
     if any(result.problem for result in results):
         sys.exit(1)
@@ -113,7 +116,12 @@ def run(program: Path, name: str, inputs: list[str], seconds: int) -> Result:
     log = BUILD / f"{name}.log"
     with log.open("wb") as output:
         ended = subprocess.run(
-            command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=output, check=False
+            command,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=output,
+            check=False,
         )
     text = log.read_text(errors="replace")
     return Result(

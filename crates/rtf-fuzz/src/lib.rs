@@ -1,8 +1,12 @@
 //! A target: a function that gets arbitrary bytes and panics if a property does not hold, and the
 //! files with bytes that were interesting once.
 
+mod libfuzzer;
+
 use std::io;
 use std::path::{Path, PathBuf};
+
+pub use libfuzzer::run;
 
 /// A function that gets arbitrary bytes.
 #[derive(Clone, Copy, Debug)]

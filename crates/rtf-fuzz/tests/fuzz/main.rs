@@ -20,7 +20,6 @@ mod history;
 mod host_table;
 mod journal;
 mod labels;
-mod libfuzzer;
 mod protocol;
 mod suite;
 mod web;
@@ -63,7 +62,7 @@ const TARGETS: &[Target] = &[
 fn main() -> ExitCode {
     if let Ok(name) = std::env::var("RTF_FUZZ_TARGET") {
         let target = TARGETS.iter().find(|target| target.name == name);
-        return libfuzzer::run(target.unwrap_or_else(|| panic!("there is no target `{name}`")));
+        return rtf_fuzz::run(target.unwrap_or_else(|| panic!("there is no target `{name}`")));
     }
     if std::env::args().any(|arg| arg == "--list") {
         list();

@@ -6,7 +6,7 @@ use std::ffi::{CString, c_char, c_int};
 use std::process::ExitCode;
 use std::sync::OnceLock;
 
-use rtf_fuzz::Target;
+use crate::Target;
 
 static CHECK: OnceLock<fn(&[u8])> = OnceLock::new();
 
@@ -28,16 +28,18 @@ extern "C" fn rust_fuzzer_test_input(input: &[u8]) -> c_int {
 }
 
 /// Gives inputs to a target until it panics, or until a limit in the arguments of the program.
+/// Only one target runs in a process.
 pub fn run(target: &Target) -> ExitCode {
-    CHECK.set(target.check).expect("one target");
+    if CHECK.set(target.check).is_err() {
+        return ExitCode::FAILURE;
+    }
     // A panic ends the process, so that libFuzzer sees its stack and stores the input.
     libfuzzer_sys::initialize(std::ptr::null(), std::ptr::null());
-    let texts: Vec<CString> =
-        std::env::args().map(|arg| CString::new(arg).expect("an argument")).collect();
+    let texts: Vec<CString> = std::env::args().filter_map(|arg| CString::new(arg).ok()).collect();
     let mut pointers: Vec<*mut c_char> =
         texts.iter().map(|text| text.as_ptr().cast_mut()).collect();
     pointers.push(std::ptr::null_mut());
-    let mut count = c_int::try_from(texts.len()).expect("few arguments");
+    let mut count = c_int::try_from(texts.len()).unwrap_or(c_int::MAX);
     let mut arguments = pointers.as_mut_ptr();
     // SAFETY: the arguments live as long as the process, and end with a null pointer.
     let status =
