@@ -4,7 +4,7 @@ PREFIX ?= /usr/local
 DESTDIR ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help build wheels web screenshots docs demo icub test test-quick chaos bench counts install uninstall packages release clean
+.PHONY: help build wheels web screenshots docs demo icub test test-quick chaos fuzz bench counts install uninstall packages release clean
 
 help:
 	@echo "make demo       install requirements, build, and test a simulated robot arm"
@@ -16,6 +16,7 @@ help:
 	@echo "make test       run all checks: Rust, SDKs, examples, lints, installation"
 	@echo "make test-quick the same without steps that need middleware (ROS, YARP), which it lists"
 	@echo "make chaos      kill fixtures, hosts and runners at random moments, for half an hour"
+	@echo "make fuzz       give arbitrary bytes to all parsers, each for SECONDS (60)"
 	@echo "make bench      measure speed and memory"
 	@echo "make counts     record the instruction counts of the hot paths (make test compares them)"
 	@echo "make install    install into PREFIX=$(PREFIX), below DESTDIR if set"
@@ -59,6 +60,11 @@ test-quick:
 chaos:
 	@tools/bootstrap.sh test
 	@tools/chaos.sh
+
+SECONDS ?= 60
+fuzz:
+	@tools/bootstrap.sh test
+	@tools/fuzz.sh --seconds $(SECONDS)
 
 bench:
 	@tools/bench.sh

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Gives arbitrary inputs to everything that reads bytes of others, with libFuzzer.
 
-fuzz.py [--seconds N] [--jobs N] [--profile PROFILE | --program FILE] [TARGET ...]
+fuzz.py [--seconds N] [--jobs N] [--program FILE] [TARGET ...]
 
 Each target runs for this time, with the inputs of the repository and those of earlier runs, which
 are in build/fuzz. An input for which a property does not hold is stored in build/fuzz/found, and
@@ -47,11 +47,10 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--seconds", type=int, default=60, help="for each target")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="targets at a time")
-    parser.add_argument("--profile", default="fuzz", help="of Cargo.toml")
     parser.add_argument("--program", type=Path, help="the compiled targets")
     parser.add_argument("targets", nargs="*", help="all without")
     options = parser.parse_args()
-    program = options.program or build(options.profile)
+    program = options.program or build()
     inputs = list_targets(program)
     names = options.targets or list(inputs)
     unknown = [name for name in names if name not in inputs]
@@ -67,12 +66,12 @@ def main() -> None:
         sys.exit(1)
 
 
-def build(profile: str) -> Path:
+def build() -> Path:
     """Compiles the targets. Only the workspace's own libraries have counters."""
     environment = {**os.environ, "RUSTC_WORKSPACE_WRAPPER": str(ROOT / "tools" / "fuzz_rustc.sh")}
     # All packages, because the features of libraries are then those of `cargo test --workspace`.
     command = ["cargo", "test", "--workspace", "--locked", "--test", "fuzz", "--no-run"]
-    command += ["--profile", profile, "--message-format", "json-render-diagnostics"]
+    command += ["--release", "--message-format", "json-render-diagnostics"]
     built = subprocess.run(command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, check=True)
     messages = [json.loads(line) for line in built.stdout.splitlines()]
     programs = [

@@ -479,6 +479,8 @@ step 'lint versions' tools/version.py
 step 'lint ruby' lint_ruby
 step 'lint suites' suites_are_valid
 step 'lint language' lint_language
+step 'security promises' tools/check_security.py
+step 'supply chain' tools/supply_chain.sh
 step 'lint page' in_web check
 step 'lint rust' cargo clippy --workspace --all-targets --locked -- -D warnings
 step 'lint rust docs' rust_docs
@@ -548,6 +550,9 @@ robots=$!
 # Also builds the plug-ins in sdk/c and sdk/cpp, with cc and c++.
 # `nohup make test` passes an ignored SIGHUP on, and `rtf` respects it; some tests send SIGHUP.
 step 'rust tests' env --default-signal=HUP cargo test --workspace --locked --no-fail-fast
+# The libraries are compiled once more, with the counters of libFuzzer; what they depend on is that of
+# the release build.
+step 'fuzz' tools/fuzz.sh --seconds 10
 step 'web api' web_api
 step 'history change points' history_change_points
 step 'campaign oracle' campaign_oracle

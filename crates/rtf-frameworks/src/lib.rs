@@ -15,6 +15,7 @@ mod host;
 mod listing;
 mod preload;
 mod supervisor;
+mod utf8_pieces;
 mod wanted;
 mod xml_stream;
 

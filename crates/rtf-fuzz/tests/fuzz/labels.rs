@@ -49,9 +49,13 @@ pub fn check_label(text: &str, label: &Label) {
     assert_eq!(label.file, NAME);
 }
 
-/// A problem one line and one byte before. The start of the text stays where it is.
+/// A problem one line and one byte before. One about the whole text starts with it.
 fn up(mut problem: Diagnostic) -> Diagnostic {
-    for label in problem.labels.iter_mut().filter(|label| label.start > 0) {
+    for label in &mut problem.labels {
+        if label.start == 0 {
+            label.end = label.end.saturating_sub(1);
+            continue;
+        }
         label.line -= 1;
         label.start -= 1;
         label.end -= 1;

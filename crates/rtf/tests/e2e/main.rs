@@ -77,6 +77,7 @@ mod resources;
 mod run_inputs;
 mod scarce_resources;
 mod sdk_dirs;
+mod security;
 mod selection;
 mod shared_hosts;
 mod shown_parts;

@@ -7,6 +7,7 @@ use rtf_model::{ExitStatus, Location, MessageKind, Outcome};
 
 use crate::case_reporter::CaseReporter;
 use crate::framework::{CaseResult, Garbage, OutputStream, ReportReader};
+use crate::utf8_pieces::Utf8Pieces;
 
 /// How the summary begins. A test can print that, too: the last one counts.
 const SUMMARIES: [&str; 2] = ["ok\n\ntest result: ", "FAILED\n\nfailures:\n"];
@@ -35,9 +36,11 @@ pub(super) struct Reader {
     has_begun: bool,
     /// Output that can belong to the summary.
     held: String,
-    /// Bytes of an incomplete character.
-    rest: Vec<u8>,
+    /// What arrives for `held`.
+    pieces: Utf8Pieces,
     errors: String,
+    /// What arrives for `errors`.
+    error_pieces: Utf8Pieces,
     crash: Option<String>,
 }
 
@@ -49,8 +52,9 @@ impl Reader {
             workspace: workspace.to_owned(),
             has_begun: false,
             held: String::new(),
-            rest: Vec::new(),
+            pieces: Utf8Pieces::default(),
             errors: String::new(),
+            error_pieces: Utf8Pieces::default(),
             crash: None,
         }
     }
@@ -112,13 +116,7 @@ impl Reader {
 
 impl ReportReader for Reader {
     fn report(&mut self, bytes: &[u8], cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
-        self.rest.extend_from_slice(bytes);
-        let complete = match std::str::from_utf8(&self.rest) {
-            Err(error) if error.error_len().is_none() => error.valid_up_to(),
-            _ => self.rest.len(),
-        };
-        let bytes: Vec<u8> = self.rest.drain(..complete).collect();
-        self.held.push_str(&String::from_utf8_lossy(&bytes));
+        self.pieces.append(bytes, &mut self.held);
         if !self.has_begun {
             self.skip_header();
         }
@@ -130,11 +128,13 @@ impl ReportReader for Reader {
 
     fn output(&mut self, stream: OutputStream, bytes: &[u8], _cases: &mut CaseReporter<'_>) {
         if stream == OutputStream::Stderr && self.errors.len() < ERROR_BYTES {
-            self.errors.push_str(&String::from_utf8_lossy(bytes));
+            self.error_pieces.append(bytes, &mut self.errors);
         }
     }
 
     fn finish(&mut self, end: ExitStatus, cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
+        self.pieces.finish(&mut self.held);
+        self.error_pieces.finish(&mut self.errors);
         let start = SUMMARIES.iter().filter_map(|start| self.held.rfind(start)).max();
         let summary = self.held.split_off(start.unwrap_or(self.held.len()));
         cases.output(self.held.as_bytes());

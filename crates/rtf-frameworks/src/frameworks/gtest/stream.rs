@@ -8,6 +8,7 @@ use rtf_model::{ExitStatus, Location, MessageKind, Outcome};
 use super::Report;
 use crate::case_reporter::{CaseReporter, StartedCase};
 use crate::framework::{CaseResult, Garbage, ListedCase, OutputStream, ReportReader};
+use crate::utf8_pieces::Utf8Pieces;
 
 const SKIPPED: &str = "[  SKIPPED ] ";
 const FAILED: &str = "[  FAILED  ] ";
@@ -44,6 +45,8 @@ pub(super) struct Reader {
     running: Option<Running>,
     /// The end of standard output in which a mark may begin.
     output: String,
+    /// What arrives for `output`.
+    pieces: Utf8Pieces,
     /// Tests whose mark was seen, and whether they were skipped.
     marks: HashMap<String, bool>,
     /// Tests that were reported as skipped.
@@ -87,6 +90,7 @@ impl Reader {
             suite: String::new(),
             running: None,
             output: String::new(),
+            pieces: Utf8Pieces::default(),
             marks: HashMap::new(),
             skipped: HashSet::new(),
         }
@@ -198,7 +202,7 @@ impl ReportReader for Reader {
 
     fn output(&mut self, stream: OutputStream, bytes: &[u8], cases: &mut CaseReporter<'_>) {
         if stream == OutputStream::Stdout {
-            self.output.push_str(&String::from_utf8_lossy(bytes));
+            self.pieces.append(bytes, &mut self.output);
             self.find_marks();
             self.advance(false, cases);
         }

@@ -1,0 +1,6 @@
+#!/usr/bin/env bash
+# Gives arbitrary inputs to everything that reads bytes of others. Options: tools/fuzz.py --help.
+
+. "$(dirname "$0")/env.sh"
+
+exec python3 tools/fuzz.py "$@"
