@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Gives arbitrary inputs to everything that reads bytes of others, with libFuzzer.
 
-fuzz.py [--seconds N] [--jobs N] [--program FILE] [TARGET ...]
+fuzz.py [--seconds N] [--jobs N] [--seed N] [--program FILE] [TARGET ...]
 
 Each target runs for this time, with the inputs of the repository and those of earlier runs, which
 are in build/fuzz. An input for which a property does not hold is stored in build/fuzz/found, and
@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build" / "fuzz"
 FOUND = BUILD / "found"
 # One input may not take longer, in seconds.
-INPUT_SECONDS = 20
+INPUT_SECONDS = 60
 # Longer inputs are slower and find little more.
 INPUT_BYTES = 4096
 # In MiB.
@@ -47,6 +47,7 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--seconds", type=int, default=60, help="for each target")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="targets at a time")
+    parser.add_argument("--seed", type=int, default=0, help="0: another one each time")
     parser.add_argument("--program", type=Path, help="the compiled targets")
     parser.add_argument("targets", nargs="*", help="all without")
     options = parser.parse_args()
@@ -57,10 +58,9 @@ def main() -> None:
     if unknown:
         raise SystemExit(f"error: there is no target {', '.join(unknown)}")
     FOUND.mkdir(parents=True, exist_ok=True)
+    flags = [f"-max_total_time={options.seconds}", f"-seed={options.seed}"]
     with ThreadPoolExecutor(options.jobs) as pool:
-        results = list(
-            pool.map(lambda name: run(program, name, inputs[name], options.seconds), names)
-        )
+        results = list(pool.map(lambda name: run(program, name, inputs[name], flags), names))
     print_table(results)
     if any(result.problem for result in results):
         sys.exit(1)
@@ -91,7 +91,7 @@ def list_targets(program: Path) -> dict[str, list[str]]:
     return {name: inputs for name, *inputs in rows}
 
 
-def run(program: Path, name: str, inputs: list[str], seconds: int) -> Result:
+def run(program: Path, name: str, inputs: list[str], flags: list[str]) -> Result:
     """Runs a target."""
     corpus = BUILD / "corpus" / name
     corpus.mkdir(parents=True, exist_ok=True)
@@ -100,14 +100,13 @@ def run(program: Path, name: str, inputs: list[str], seconds: int) -> Result:
     directories = [path for path in inputs if Path(path).is_dir()]
     command = [
         str(program),
-        f"-max_total_time={seconds}",
+        *flags,
         f"-max_len={INPUT_BYTES}",
         f"-timeout={INPUT_SECONDS}",
         f"-rss_limit_mb={MEMORY}",
         f"-artifact_prefix={prefix}",
         "-print_final_stats=1",
         "-detect_leaks=0",
-        "-use_value_profile=1",
         str(corpus),
         *directories,
     ]

@@ -3,4 +3,7 @@
 
 . "$(dirname "$0")/env.sh"
 
+# As tools/build.sh, whose libraries are used.
+unset SOURCE_DATE_EPOCH
+
 exec python3 tools/fuzz.py "$@"

@@ -552,7 +552,7 @@ robots=$!
 step 'rust tests' env --default-signal=HUP cargo test --workspace --locked --no-fail-fast
 # The libraries are compiled once more, with the counters of libFuzzer; what they depend on is that of
 # the release build.
-step 'fuzz' tools/fuzz.sh --seconds 10
+step 'fuzz' tools/fuzz.sh --seconds 10 --seed 1
 step 'web api' web_api
 step 'history change points' history_change_points
 step 'campaign oracle' campaign_oracle

@@ -17,7 +17,7 @@ const CASE: &str = "Arm.moves";
 
 /// The directory for files of the process.
 static SCRATCH: LazyLock<tempfile::TempDir> =
-    LazyLock::new(|| tempfile::tempdir().expect("a directory"));
+    LazyLock::new(|| tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("a directory"));
 
 macro_rules! targets {
     ($($name:ident),*) => {

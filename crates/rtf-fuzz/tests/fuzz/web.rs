@@ -31,7 +31,7 @@ static WORLD: LazyLock<World> = LazyLock::new(World::new);
 
 impl World {
     fn new() -> Self {
-        let dir = tempfile::tempdir().expect("a directory");
+        let dir = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("a directory");
         let results = dir.path().join("results");
         let run = results.join("own");
         std::fs::create_dir_all(run.join("attachments")).expect("a directory");
