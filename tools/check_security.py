@@ -11,7 +11,7 @@ import re
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-TARGETS = ROOT / "crates/rtf-fuzz/tests/fuzz/main.rs"
+TARGETS = ROOT / "crates/rtf-fuzz/src/targets/mod.rs"
 ROW = re.compile(r"^\| (?P<promise>[^|]+) \| (?P<tests>[^|]+) \|$", re.M)
 NAMED = re.compile(r"\[`([^`]+)`\]\(([^)]+)\)")
 

@@ -1,12 +1,23 @@
 //! A target: a function that gets arbitrary bytes and panics if a property does not hold, and the
 //! files with bytes that were interesting once.
 
+#![expect(clippy::expect_used, reason = "a property that does not hold is a panic")]
+
+#[path = "../../rtf-host-native/src/abi.rs"]
+#[expect(dead_code, reason = "only the table is called")]
+mod abi;
+#[path = "../../rtf-host-native/src/host_table.rs"]
+mod host_table;
+#[cfg(feature = "libfuzzer")]
 mod libfuzzer;
+mod targets;
 
 use std::io;
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "libfuzzer")]
 pub use libfuzzer::run;
+pub use targets::TARGETS;
 
 /// A function that gets arbitrary bytes.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,7 @@
 
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 
 use axum::body::Body;
 use axum::http::{Request, StatusCode, header};
@@ -27,11 +27,13 @@ struct World {
     _dir: tempfile::TempDir,
 }
 
-static WORLD: LazyLock<World> = LazyLock::new(World::new);
+thread_local! {
+    static WORLD: World = World::new();
+}
 
 impl World {
     fn new() -> Self {
-        let dir = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("a directory");
+        let dir = tempfile::tempdir().expect("a directory");
         let results = dir.path().join("results");
         let run = results.join("own");
         std::fs::create_dir_all(run.join("attachments")).expect("a directory");
@@ -125,8 +127,12 @@ impl HistorySource for History {
 
 /// A request.
 pub fn check(data: &[u8]) {
-    let Some((first, rest)) = data.split_first() else { return };
-    let world = &*WORLD;
+    if let Some((first, rest)) = data.split_first() {
+        WORLD.with(|world| check_request(world, *first, rest));
+    }
+}
+
+fn check_request(world: &World, first: u8, rest: &[u8]) {
     let routes = if first & 1 == 0 { &world.local } else { &world.remote };
     let Some(request) = request(rest, routes) else { return };
     let (method, path) = (request.method().clone(), request.uri().path().to_owned());

@@ -6,7 +6,7 @@ use rtf_campaign::Campaign;
 use rtf_campaign::episodes::Resolution;
 use rtf_plan::suite::{SourceMap, SourceText};
 
-use crate::labels;
+use super::labels;
 
 /// Longer lists take too long for a target.
 const EPISODES: u32 = 50;

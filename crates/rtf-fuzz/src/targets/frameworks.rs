@@ -4,7 +4,7 @@
 use std::collections::HashSet;
 use std::io::Read as _;
 use std::os::unix::net::UnixStream;
-use std::sync::LazyLock;
+use std::path::Path;
 
 use rtf_frameworks::foreign::{LISTS, Written, count_listed, read_report};
 use rtf_host::Session;
@@ -14,10 +14,6 @@ use rtf_process::codec::{HostMessage, decode};
 
 /// The case that the process runs.
 const CASE: &str = "Arm.moves";
-
-/// The directory for files of the process.
-static SCRATCH: LazyLock<tempfile::TempDir> =
-    LazyLock::new(|| tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("a directory"));
 
 macro_rules! targets {
     ($($name:ident),*) => {
@@ -47,7 +43,9 @@ fn check(framework: &str, data: &[u8]) {
         1 => ExitStatus::Code(1),
         _ => ExitStatus::Signal(11),
     };
-    let in_pieces = |piece| run(framework, &Written { document, report, piece, end });
+    let scratch = tempfile::tempdir().expect("a directory");
+    let in_pieces =
+        |piece| run(framework, &Written { document, report, piece, end }, scratch.path());
     let whole = in_pieces(report.len().max(1));
     let pieces = in_pieces(usize::from(piece % 16) + 1);
     if whole.0 && pieces.0 {
@@ -56,14 +54,14 @@ fn check(framework: &str, data: &[u8]) {
 }
 
 /// Whether the report is good, and the notifications without what depends on the size of pieces.
-fn run(framework: &str, written: &Written<'_>) -> (bool, Vec<String>) {
+fn run(framework: &str, written: &Written<'_>, scratch: &Path) -> (bool, Vec<String>) {
     let (mut ours, theirs) = UnixStream::pair().expect("sockets");
     let received = std::thread::spawn(move || {
         let mut bytes = Vec::new();
         ours.read_to_end(&mut bytes).map(|_| bytes)
     });
     let session = Session::over(theirs);
-    let is_good = read_report(framework, CASE, written, &session, SCRATCH.path());
+    let is_good = read_report(framework, CASE, written, &session, scratch);
     drop(session);
     let bytes = received.join().expect("a reader").expect("bytes");
     let lines = bytes.split(|byte| *byte == b'\n').filter(|line| !line.is_empty());

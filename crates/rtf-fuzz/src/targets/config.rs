@@ -2,7 +2,7 @@
 
 use rtf_plan::config::parse;
 
-use crate::labels;
+use super::labels;
 
 /// A configuration file: its entries have the positions of their keys.
 pub fn check(data: &[u8]) {

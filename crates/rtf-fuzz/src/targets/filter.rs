@@ -5,7 +5,7 @@ use rtf_plan::select::filter::{FilterSubject, Matcher, Subject};
 use rtf_plan::select::{Filter, parse};
 use rtf_plan::suite::SourceText;
 
-use crate::labels::{NAME, check_label};
+use super::labels::{NAME, check_label};
 
 /// A filter expression.
 pub fn check(data: &[u8]) {

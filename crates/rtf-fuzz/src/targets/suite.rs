@@ -2,7 +2,7 @@
 
 use rtf_plan::suite::{parse, parse_duration};
 
-use crate::labels;
+use super::labels;
 
 /// A suite file.
 pub fn check(data: &[u8]) {

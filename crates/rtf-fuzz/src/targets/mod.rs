@@ -1,34 +1,21 @@
 //! The fuzz targets.
-//!
-//! Without `RTF_FUZZ_TARGET`, every target gets the inputs of the repository. With the name of a
-//! target there, libFuzzer runs it and reads the arguments; `tools/fuzz.py` does that. `--list`
-//! prints the targets, each with the directories of its inputs.
 
-#![expect(clippy::expect_used, reason = "a property that does not hold is a panic")]
-#![expect(clippy::print_stdout, reason = "the list of targets is data")]
-
-#[path = "../../../rtf-host-native/src/abi.rs"]
-#[expect(dead_code, reason = "only the table is called")]
-mod abi;
 mod abi_texts;
 mod campaign;
 mod config;
 mod filter;
 mod frameworks;
 mod history;
-#[path = "../../../rtf-host-native/src/host_table.rs"]
-mod host_table;
 mod journal;
 mod labels;
 mod protocol;
 mod suite;
 mod web;
 
-use std::process::ExitCode;
+use crate::Target;
 
-use rtf_fuzz::Target;
-
-const TARGETS: &[Target] = &[
+/// All targets.
+pub const TARGETS: &[Target] = &[
     Target { name: "abi", check: abi_texts::check, more: &[] },
     Target {
         name: "campaign",
@@ -58,29 +45,3 @@ const TARGETS: &[Target] = &[
     Target { name: "suite", check: suite::check, more: &["crates/rtf-plan/tests/data"] },
     Target { name: "web", check: web::check, more: &[] },
 ];
-
-fn main() -> ExitCode {
-    if let Ok(name) = std::env::var("RTF_FUZZ_TARGET") {
-        let target = TARGETS.iter().find(|target| target.name == name);
-        return rtf_fuzz::run(target.unwrap_or_else(|| panic!("there is no target `{name}`")));
-    }
-    if std::env::args().any(|arg| arg == "--list") {
-        list();
-        return ExitCode::SUCCESS;
-    }
-    for target in TARGETS {
-        let inputs = target.replay().expect("the inputs of the repository");
-        assert!(inputs > 0, "the target `{}` has no inputs", target.name);
-        println!("{:<20} {inputs} inputs", target.name);
-    }
-    ExitCode::SUCCESS
-}
-
-/// Prints a line for each target: its name and its inputs, separated by tabs.
-fn list() {
-    for target in TARGETS {
-        let inputs = target.inputs();
-        let inputs: Vec<_> = inputs.iter().map(|input| input.to_string_lossy()).collect();
-        println!("{}\t{}", target.name, inputs.join("\t"));
-    }
-}
