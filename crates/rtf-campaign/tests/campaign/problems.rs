@@ -94,7 +94,7 @@ fn constraints() {
     );
     assert!(problems(&text).contains("nested too deeply"));
     // A longer chain once overflowed the stack.
-    let long = vec!["a"; 300_000].join("+") + " > 1";
+    let long = ["a"; 300_000].join("+") + " > 1";
     let text = format!(
         "<campaign suite='s.xml' episodes='2'>CLAIM<constraint require='{long}'/></campaign>"
     );

@@ -340,7 +340,7 @@ fn shards_know_whether_they_were_computed_from_equal_durations() {
 fn a_filter_may_have_many_operands() {
     let check = || {
         for (operator, expected) in [("|", 5), ("&", 0)] {
-            let filter = vec!["name(Joint)", "all()"].repeat(20_000).join(operator);
+            let filter = ["name(Joint)", "all()"].repeat(20_000).join(operator);
             let filter = parse(&SourceText::new("filter", format!("{filter}{operator}none()")));
             let selection = Selection { filters: vec![filter.unwrap()], ..Selection::default() };
             assert_eq!(tests(&select(plan(), &selection).plan).len(), expected, "{operator}");
