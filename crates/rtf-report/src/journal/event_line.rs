@@ -61,9 +61,11 @@ impl Frequent {
 /// # Errors
 /// The line is not an event.
 pub fn parse_event(line: &[u8]) -> serde_json::Result<Event> {
+    // Otherwise an unknown field that is not UTF-8 would be skipped.
+    let text = str::from_utf8(line).map_err(|_| serde::de::Error::custom("it is not UTF-8"))?;
     // Another kind of event may use a field name with another type: then parse it as usual.
-    let frequent = serde_json::from_slice::<Frequent>(line).ok().and_then(Frequent::into_event);
-    frequent.map_or_else(|| serde_json::from_slice(line), Ok)
+    let frequent = serde_json::from_str::<Frequent>(text).ok().and_then(Frequent::into_event);
+    frequent.map_or_else(|| serde_json::from_str(text), Ok)
 }
 
 /// The fields that decide whether an event is needed, without parsing the rest.
@@ -99,6 +101,15 @@ impl EventHeader {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_unknown_field_that_is_not_utf8_is_no_event() {
+        let line = br#"{"seq":1,"at":2,"type":"output","source":{"test":0},"stream":"stdout","text":"a","new":{"?":1}}"#;
+        assert!(parse_event(line).is_ok());
+        let damaged: Vec<u8> =
+            line.iter().map(|byte| if *byte == b'?' { 0xcd } else { *byte }).collect();
+        assert!(parse_event(&damaged).is_err());
+    }
 
     #[test]
     fn both_parsers_agree_on_all_stored_streams() {
