@@ -18,11 +18,25 @@ pub(crate) const LINE_LIMIT: usize = 16 * 1024 * 1024;
 pub(crate) struct Writer {
     channel: Arc<UnixStream>,
     line: Mutex<Vec<u8>>,
+    /// The lines, if there is no runner that gets them.
+    kept: Option<Mutex<Vec<u8>>>,
 }
 
 impl Writer {
     pub(crate) fn new(channel: Arc<UnixStream>) -> Self {
-        Self { channel, line: Mutex::new(Vec::with_capacity(512)) }
+        Self { channel, line: Mutex::new(Vec::with_capacity(512)), kept: None }
+    }
+
+    /// A writer that keeps the lines.
+    pub(crate) fn keeping(channel: Arc<UnixStream>) -> Self {
+        Self { kept: Some(Mutex::default()), ..Self::new(channel) }
+    }
+
+    /// The lines that were kept since the last call.
+    pub(crate) fn take_kept(&self) -> Vec<u8> {
+        let kept =
+            self.kept.as_ref().map(|kept| kept.lock().unwrap_or_else(PoisonError::into_inner));
+        kept.map(|mut kept| std::mem::take(&mut *kept)).unwrap_or_default()
     }
 
     /// Sends a notification. A message that is too long for a line is sent in several
@@ -48,8 +62,12 @@ impl Writer {
         }
         line.push(b'\n');
         let fits = line.len() <= LINE_LIMIT;
-        if fits && unix::send_all(&self.channel, &line).is_err() {
-            unix::exit_now(1);
+        match &self.kept {
+            Some(kept) if fits => {
+                kept.lock().unwrap_or_else(PoisonError::into_inner).extend_from_slice(&line);
+            }
+            None if fits && unix::send_all(&self.channel, &line).is_err() => unix::exit_now(1),
+            _ => {}
         }
         if line.capacity() > 64 * 1024 {
             *line = Vec::with_capacity(512);

@@ -2,8 +2,6 @@
 //! byte separates the report from a file that the program writes at its end.
 
 use std::collections::HashSet;
-use std::io::Read as _;
-use std::os::unix::net::UnixStream;
 use std::path::Path;
 
 use rtf_frameworks::foreign::{LISTS, Written, count_listed, read_report};
@@ -55,15 +53,9 @@ fn check(framework: &str, data: &[u8]) {
 
 /// Whether the report is good, and the notifications without what depends on the size of pieces.
 fn run(framework: &str, written: &Written<'_>, scratch: &Path) -> (bool, Vec<String>) {
-    let (mut ours, theirs) = UnixStream::pair().expect("sockets");
-    let received = std::thread::spawn(move || {
-        let mut bytes = Vec::new();
-        ours.read_to_end(&mut bytes).map(|_| bytes)
-    });
-    let session = Session::over(theirs);
+    let session = Session::without_runner().expect("a session");
     let is_good = read_report(framework, CASE, written, &session, scratch);
-    drop(session);
-    let bytes = received.join().expect("a reader").expect("bytes");
+    let bytes = session.take_sent();
     let lines = bytes.split(|byte| *byte == b'\n').filter(|line| !line.is_empty());
     (is_good.expect("a type with reports"), check_notifications(lines))
 }

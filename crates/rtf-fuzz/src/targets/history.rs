@@ -7,6 +7,10 @@ const PASSWORD: &str = "Xq7-correct-horse";
 /// An address: it never shows its password.
 pub fn check(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
+    // libFuzzer finds texts with which the target compares.
+    if text.contains(PASSWORD) {
+        return;
+    }
     check_address(text);
     // The same with a password, before what follows the user, and as an option.
     check_address(&format!("postgres://me:{PASSWORD}@{text}"));
@@ -22,7 +26,5 @@ fn check_address(address: &str) {
         }
         Err(error) => format!("{error} {error:?}"),
     };
-    // A text in another place of the address is no password.
-    let is_password = !address.contains(&format!("/{PASSWORD}"));
-    assert!(!is_password || !shown.contains(PASSWORD), "`{address}` is shown as `{shown}`");
+    assert!(!shown.contains(PASSWORD), "`{address}` is shown as `{shown}`");
 }

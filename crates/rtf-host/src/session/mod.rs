@@ -98,8 +98,28 @@ impl Session {
     #[must_use]
     pub fn over(channel: UnixStream) -> Self {
         let channel = Arc::new(channel);
+        Self::new(Writer::new(Arc::clone(&channel)), channel)
+    }
+
+    /// A session without a runner: [`Self::take_sent`] returns its lines. For tests that need many
+    /// sessions.
+    ///
+    /// # Errors
+    /// The system has no more descriptors.
+    pub fn without_runner() -> std::io::Result<Self> {
+        let channel = Arc::new(UnixStream::pair()?.0);
+        Ok(Self::new(Writer::keeping(Arc::clone(&channel)), channel))
+    }
+
+    /// The lines that a session [without a runner](Self::without_runner) has sent since the last call.
+    #[must_use]
+    pub fn take_sent(&self) -> Vec<u8> {
+        self.0.writer.take_kept()
+    }
+
+    fn new(writer: Writer, channel: Arc<UnixStream>) -> Self {
         Self(Arc::new(SharedSession {
-            writer: Writer::new(Arc::clone(&channel)),
+            writer,
             channel,
             sampling: Mutex::default(),
             cases: Cases::default(),

@@ -93,7 +93,7 @@ fn explanation(error: &Error) -> String {
         other => {
             let text = other.to_string();
             let position = format!(" at {}", other.pos());
-            format!("malformed XML: {}", text.strip_suffix(&position).unwrap_or(&text))
+            format!("malformed XML: {}", text.replacen(&position, "", 1))
         }
     }
 }
