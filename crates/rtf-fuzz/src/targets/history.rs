@@ -14,8 +14,8 @@ pub fn check(data: &[u8]) {
     check_address(text);
     // The same with a password, before what follows the user, and as an option.
     check_address(&format!("postgres://me:{PASSWORD}@{text}"));
-    let option = if text.contains('?') { '&' } else { '?' };
-    check_address(&format!("{text}{option}password={PASSWORD}"));
+    check_address(&format!("{text}?password={PASSWORD}"));
+    check_address(&format!("{text}&password={PASSWORD}"));
 }
 
 fn check_address(address: &str) {

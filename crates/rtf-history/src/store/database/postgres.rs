@@ -69,7 +69,7 @@ impl PostgresUrl {
         }
         let address = [address, &rest.join("&")].join(if rest.is_empty() { "" } else { "?" });
         let mut config: Config = address.parse().map_err(|_| UrlError::Invalid)?;
-        if config.get_hosts().is_empty() {
+        if config.get_hosts().is_empty() || shows_options(&config) {
             return Err(UrlError::Invalid);
         }
         config.ssl_mode(encryption.ssl_mode());
@@ -77,6 +77,17 @@ impl PostgresUrl {
         config.connect_timeout(limit).tcp_user_timeout(SILENCE_TIMEOUT);
         Ok(Self { config, encryption })
     }
+}
+
+/// Whether options are part of a host or of the database's name, which are shown: an option may be
+/// a password. That is so if a `?` is missing, or an option contains an `@`.
+fn shows_options(config: &Config) -> bool {
+    let is_option = |text: &str| text.contains(['?', '&', '=', '@']);
+    let hosts = config.get_hosts().iter().map(|host| match host {
+        Host::Tcp(host) => host.clone(),
+        Host::Unix(path) => path.to_string_lossy().into_owned(),
+    });
+    hosts.chain(config.get_dbname().map(str::to_owned)).any(|text| is_option(&text))
 }
 
 impl std::fmt::Display for PostgresUrl {
@@ -217,6 +228,10 @@ mod tests {
             "postgres://team:s3cret@db/x?s3cret=1",
             "postgres://team:s3cret@db/x?sslmode=s3cret",
             "postgres://",
+            // With these, the driver reads the option as a part of a host or of the name.
+            "postgres://db/x?application_name=a@b&password=s3cret",
+            "postgres://db/x&password=s3cret",
+            "postgres://db&password=s3cret",
         ] {
             let error = PostgresUrl::parse(wrong).expect_err("an error");
             assert!(!format!("{error} {error:?}").contains("s3cret"), "{error}");
