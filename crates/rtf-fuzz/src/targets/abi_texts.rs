@@ -1,4 +1,4 @@
-//! Texts and numbers that a C or C++ plug-in passes to its host: whatever they are, the runner
+//! Texts and numbers that a C or C++ plug-in passes to its host: for all of them, the runner
 //! understands the host's lines.
 #![expect(unsafe_code, reason = "calls the table as foreign code does")]
 

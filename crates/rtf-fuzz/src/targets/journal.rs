@@ -18,7 +18,7 @@ pub fn check_event(line: &[u8]) {
     assert_eq!(parse_event(&printed).ok(), Some(event), "after it was printed");
 }
 
-/// A journal without check values: whatever it contains, reports can be made from it.
+/// A journal without check values: with any content, reports can be made from it.
 pub fn check(data: &[u8]) {
     let Some(Stored { record, torn }) = read(data) else { return };
     if record.is_green() {

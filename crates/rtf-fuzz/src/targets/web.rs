@@ -17,7 +17,7 @@ use rtf_web::{
     RunControl, Service, Settings, TestCondition,
 };
 
-/// Files below the results directory have this text; one beside it has the other one.
+/// Files below the results directory have this text; one next to it has the other one.
 const SECRET: &str = "text-outside-of-the-results";
 
 struct World {
@@ -83,7 +83,7 @@ fn service(results: &Path) -> Service<'_> {
     }
 }
 
-/// A run that nobody without the token may control.
+/// A run that only a request with the token may control.
 struct Forbidden;
 
 impl RunControl for Forbidden {
