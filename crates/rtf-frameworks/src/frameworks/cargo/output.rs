@@ -15,8 +15,11 @@ const SUMMARIES: [&str; 2] = ["ok\n\ntest result: ", "FAILED\n\nfailures:\n"];
 /// How much of standard error is kept for the reason of a failure.
 const ERROR_BYTES: usize = 1024 * 1024;
 
-/// The longest start of the output, before the test's own: its name follows.
-const HEADER_CHARS: usize = 100;
+/// What separates the name of the test from its output.
+const SEPARATOR: &str = " ... ";
+
+/// The longest text after the name of the test, with the separator: ` - should panic ... `.
+const HEADER_BYTES: usize = 100;
 
 /// A panic, as the standard library prints it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -63,13 +66,15 @@ impl Reader {
     fn skip_header(&mut self) {
         let header = format!("\nrunning 1 test\ntest {}", self.test);
         let is_possible = header.starts_with(&*self.held) || self.held.starts_with(&header);
-        let end = self.held.get(header.len()..).and_then(|rest| rest.find(" ... "));
-        match end {
-            Some(end) if is_possible => {
-                self.held.drain(..header.len() + end + " ... ".len());
+        let longest = header.len() + HEADER_BYTES;
+        let separator = self.held.get(header.len()..).and_then(|rest| rest.find(SEPARATOR));
+        let end = separator.map(|start| header.len() + start + SEPARATOR.len());
+        match end.filter(|end| is_possible && *end <= longest) {
+            Some(end) => {
+                self.held.drain(..end);
                 self.has_begun = true;
             }
-            _ => self.has_begun = !is_possible || self.held.len() > header.len() + HEADER_CHARS,
+            None => self.has_begun = !is_possible || self.held.len() >= longest,
         }
     }
 
