@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Every test that SECURITY.md names exists.
 
-A promise names tests as `[`name`](file)`: a function with the attribute of a test, or a fuzz
+A promise names tests as "`name` in `file`": a function with the attribute of a test, or a fuzz
 target.
 """
 
@@ -13,7 +13,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 TARGETS = ROOT / "crates/rtf-fuzz/src/targets/mod.rs"
 ROW = re.compile(r"^\| (?P<promise>[^|]+) \| (?P<tests>[^|]+) \|$", re.M)
-NAMED = re.compile(r"\[`([^`]+)`\]\(([^)]+)\)")
+NAMED = re.compile(r"`([^`]+)` in `([^`]+)`")
 
 
 def main() -> None:

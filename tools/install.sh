@@ -104,13 +104,13 @@ put_tree "$stage/man" share/man/man1 '*.1'
 put 644 "$stage/rtf.bash" share/bash-completion/completions/rtf
 put 644 "$stage/rtf.zsh" share/zsh/site-functions/_rtf
 put 644 "$stage/rtf.fish" share/fish/vendor_completions.d/rtf.fish
-for page in README.md ARCHITECTURE.md CHANGELOG.md CONTRIBUTING.md LICENSE; do
+for page in README.md ARCHITECTURE.md CHANGELOG.md CONTRIBUTING.md SECURITY.md LICENSE; do
   put 644 "$page" "share/doc/rtf/$page"
 done
 put_tree docs share/doc/rtf/docs '*.md' '*.png' '*.svg'
 put_tree spec share/doc/rtf/spec '*.md' '*.xsd'
 # What the pages lead to.
-for file in sdk/{ada,lua,python,ruby}/README.md sdk/c/include/rtf/plugin.h fixtures/needs.json schemas/openapi.json \
+for file in deny.toml sdk/{ada,lua,python,ruby}/README.md sdk/c/include/rtf/plugin.h fixtures/needs.json schemas/openapi.json \
   packaging/action/{action,example}.yml packaging/gitlab/rtf.yml packaging/jenkins/Jenkinsfile \
   packaging/container/{Containerfile,role.yaml}; do
   put 644 "$file" "share/doc/rtf/$file"
