@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from project import Executor
-from waiting import equal, expect, finish, until
+from waiting import EPISODES, equal, expect, finish, until
 
 # Half of the episodes fail. While the file `hold` exists, they wait.
 GRASP = """function TestCase.run()
@@ -30,8 +30,6 @@ CAMPAIGN = """<campaign suite="{suite}.xml" episodes="{episodes}" seed="3">
   {stop}
 </campaign>
 """
-
-EPISODES = 40
 
 Results = dict[int, tuple[str, str]]
 

@@ -5,7 +5,7 @@ tools/slurm.sh check_slurm.py RTF.
 A sharded suite has the verdicts of a local run, a task of a node that fails is run again, a
 cancelled submission leaves nothing, and a submission whose process was killed is resumed. The
 same for campaigns, in slurm_campaigns.py. A further argument selects the checks whose names
-contain it.
+contain it. RTF_TEST_EPISODES is the number of episodes of a campaign, 40 by default.
 """
 
 from __future__ import annotations

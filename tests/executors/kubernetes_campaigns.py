@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 import signal
 
-from campaigns import EPISODES, Campaigns
+from campaigns import Campaigns
 from kubernetes import NAMESPACE, Cluster
-from waiting import commands, equal, expect, finish, finish_with_output, until
+from waiting import EPISODES, commands, equal, expect, finish, finish_with_output, until
 
 HOOKED = """<suite name="hooked">
   <hook on="end"><command>false</command></hook>
@@ -43,7 +43,7 @@ def campaign_by_hand(cluster: Cluster, campaigns: Campaigns) -> None:
 
 def campaign_lost_node_and_killed_process(cluster: Cluster, campaigns: Campaigns) -> None:
     """A node fails, and the submitting process is killed: each episode has one final result."""
-    process = campaigns.start_and_hold(8)
+    process = campaigns.start_and_hold(EPISODES // 2)
     process.kill()
     process.communicate()
     before = campaigns.recorded()

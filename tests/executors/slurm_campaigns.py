@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 import signal
 
-from campaigns import EPISODES, Campaigns
+from campaigns import Campaigns
 from slurm import jobs, scontrol, start_waiting_tasks
-from waiting import commands, equal, expect, finish, finish_with_output, until
+from waiting import EPISODES, commands, equal, expect, finish, finish_with_output, until
 
 
 def same_results(campaigns: Campaigns) -> None:
@@ -29,7 +29,7 @@ def same_results(campaigns: Campaigns) -> None:
 
 def failed_node_and_killed_process(campaigns: Campaigns) -> None:
     """A node fails, and the submitting process is killed: each episode has one final result."""
-    process = campaigns.start_and_hold(8)
+    process = campaigns.start_and_hold(EPISODES // 2)
     process.kill()
     process.communicate()
     before = campaigns.recorded()

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 
-LIMIT = 240.0
+EPISODES = int(os.environ.get("RTF_TEST_EPISODES", "40"))
+"""How many episodes a campaign has."""
+
+LIMIT = 240.0 + EPISODES
 """Seconds in which each expected event must occur."""
 
 

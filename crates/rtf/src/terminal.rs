@@ -24,8 +24,10 @@ pub fn stderr(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()
 }
 
 /// Prints a line to standard error, for callers that can do nothing about an error.
+///
+/// It is written at once: other threads print to the same terminal through standard output.
 pub fn notice(line: impl Display) {
-    let _ = writeln!(anstream::stderr(), "{line}");
+    let _ = anstream::stderr().write_all(format!("{line}\n").as_bytes());
 }
 
 fn finish<W: Write>(
