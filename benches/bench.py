@@ -39,6 +39,7 @@ def main() -> int:
             print_lines(bench)
             return 0
         judgements = list(measure_all(bench, options.only, options.rounds))
+        groups = all_groups(bench)
     if not judgements:
         raise MeasuringError(f"no line matches `{options.only.pattern}`, see --list")
     print(about_machine())
@@ -48,7 +49,7 @@ def main() -> int:
     if options.json:
         options.json.write_text(table.as_json(judgements), encoding="utf-8")
     if options.page:
-        table.write_page(options.page, judgements)
+        table.write_page(options.page, judgements, groups)
     failed = sum(judgement.fails for judgement in judgements)
     print(f"{failed} of {len(judgements)} lines failed" if failed else "no line failed")
     return 1 if failed else 0
@@ -66,7 +67,7 @@ def parse() -> argparse.Namespace:
     )
     parser.add_argument("--rounds", type=positive, metavar="N", help="instead of each group's")
     parser.add_argument("--json", type=Path, metavar="FILE", help="also write all numbers as JSON")
-    parser.add_argument("--page", type=Path, metavar="FILE", help="update the table in this page")
+    parser.add_argument("--page", type=Path, metavar="FILE", help="update the rows in this page")
     parser.add_argument("--results", type=Path, metavar="DIR", help="directory for rtf's results")
     parser.add_argument("--rtf", type=Path, default=default_rtf(), help="the rtf to measure")
     parser.add_argument("--list", action="store_true", help="list the lines, measure nothing")

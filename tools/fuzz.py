@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Gives arbitrary inputs to everything that reads bytes of others, with libFuzzer.
 
-fuzz.py [--seconds N] [--jobs N] [--seed N] [--program FILE] [TARGET ...]
+fuzz.py [--seconds N | --runs N] [--jobs N] [--seed N] [--program FILE] [TARGET ...]
 
-Each target runs for this time, with the inputs of the repository and those of earlier runs, which
-are in build/fuzz. An input for which a property does not hold is stored in build/fuzz/found, and
-the exit code is 1. crates/rtf-fuzz contains the targets.
+Each target runs for this time, or so often, with the inputs of the repository and those of
+earlier runs, which are in build/fuzz. An input for which a property does not hold is stored in
+build/fuzz/found, and the exit code is 1. crates/rtf-fuzz contains the targets.
 """
 
 from __future__ import annotations
@@ -29,6 +29,8 @@ INPUT_SECONDS = 60
 INPUT_BYTES = 4096
 # In MiB.
 MEMORY = 2048
+# Targets write small files.
+IN_MEMORY = Path("/dev/shm")
 
 
 @dataclass
@@ -45,7 +47,9 @@ class Result:
 def main() -> None:
     """Builds the targets and runs them."""
     parser = argparse.ArgumentParser()
-    parser.add_argument("--seconds", type=int, default=60, help="for each target")
+    extent = parser.add_mutually_exclusive_group()
+    extent.add_argument("--seconds", type=int, default=60, help="for each target")
+    extent.add_argument("--runs", type=int, default=0, help="executions of each target")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="targets at a time")
     parser.add_argument("--seed", type=int, default=0, help="0: another one each time")
     parser.add_argument("--program", type=Path, help="the compiled targets")
@@ -58,7 +62,10 @@ def main() -> None:
     if unknown:
         raise SystemExit(f"error: there is no target {', '.join(unknown)}")
     FOUND.mkdir(parents=True, exist_ok=True)
-    flags = [f"-max_total_time={options.seconds}", f"-seed={options.seed}"]
+    extent_flag = f"-max_total_time={options.seconds}"
+    if options.runs:
+        extent_flag = f"-runs={options.runs}"
+    flags = [extent_flag, f"-seed={options.seed}"]
     with ThreadPoolExecutor(options.jobs) as pool:
         results = list(pool.map(lambda name: run(program, name, inputs[name], flags), names))
     print_table(results)
@@ -111,6 +118,8 @@ def run(program: Path, name: str, inputs: list[str], flags: list[str]) -> Result
         *directories,
     ]
     environment = {**os.environ, "RTF_FUZZ_TARGET": name, "RUST_BACKTRACE": "1"}
+    if IN_MEMORY.is_dir():
+        environment["TMPDIR"] = str(IN_MEMORY)
     log = BUILD / f"{name}.log"
     with log.open("wb") as output:
         ended = subprocess.run(

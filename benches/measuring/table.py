@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from measuring.judge import Judgement
-from measuring.model import MeasuringError
+from measuring.model import Group, MeasuringError
 from measuring.others import NOISY_SHARE
 
 TIMES = "\N{MULTIPLICATION SIGN}"
@@ -51,10 +51,14 @@ def text(judgements: Sequence[Judgement]) -> str:
     return "\n".join(lines)
 
 
-def markdown(judgements: Sequence[Judgement]) -> str:
+def markdown(rows: Iterable[str]) -> str:
     """The table for a page."""
-    rows = [list(HEADER), ["---"] * len(HEADER)] + [row(judgement) for judgement in judgements]
-    return "\n".join("| " + " | ".join(cells) + " |" for cells in rows)
+    return "\n".join([markdown_row(HEADER), markdown_row(["---"] * len(HEADER)), *rows])
+
+
+def markdown_row(texts: Sequence[str]) -> str:
+    """A row of Markdown."""
+    return "| " + " | ".join(texts) + " |"
 
 
 def notes(judgements: Sequence[Judgement]) -> list[str]:
@@ -70,16 +74,24 @@ def notes(judgements: Sequence[Judgement]) -> list[str]:
     return found
 
 
-def write_page(page: Path, judgements: Sequence[Judgement]) -> None:
-    """Replaces the table in a page, which is between two comments."""
+def write_page(page: Path, judgements: Sequence[Judgement], groups: Sequence[Group]) -> None:
+    """Replaces the table in a page, which is between two comments. Rows and notes of lines that
+    were not measured stay; rows of lines that no longer exist do not.
+    """
     before, begin, rest = page.read_text(encoding="utf-8").partition(BEGIN)
-    _, end, after = rest.partition(END)
+    written, end, after = rest.partition(END)
     if not (begin and end):
         raise MeasuringError(f"{page}: no `{BEGIN}` with a `{END}` after it")
-    below = "".join(f"\n- {note}" for note in notes(judgements))
-    below = f"\nDuring this measurement:\n{below}\n" if below else ""
-    table = f"{begin}\n{markdown(judgements)}\n{below}{end}"
-    page.write_text(before + table + after, encoding="utf-8")
+    written_lines = written.splitlines()
+    known = {line.split(" | ")[0].removeprefix("| "): line for line in written_lines}
+    known |= {judgement.line.what: markdown_row(row(judgement)) for judgement in judgements}
+    names = [line.what for group in groups for line in group.lines]
+    rows = [known[name] for name in names if name in known]
+    measured = tuple(f"- {name}: " for it in judgements for name in (it.group, it.line.what))
+    others = [it for it in written_lines if it.startswith("- ") and not it.startswith(measured)]
+    below = "\n".join(others + [f"- {note}" for note in notes(judgements)])
+    below = f"\nDuring this measurement:\n\n{below}\n" if below else ""
+    page.write_text(f"{before}{begin}\n{markdown(rows)}\n{below}{end}{after}", encoding="utf-8")
 
 
 def as_json(judgements: Sequence[Judgement]) -> str:
