@@ -4,7 +4,7 @@ PREFIX ?= /usr/local
 DESTDIR ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help build wheels web screenshots docs demo icub test test-quick chaos fuzz bench counts install uninstall packages release clean
+.PHONY: help build wheels web screenshots docs demo icub test test-quick chaos fuzz sanitizers coverage mutants soak bench counts install uninstall packages release clean
 
 help:
 	@echo "make demo       install requirements, build, and test a simulated robot arm"
@@ -17,6 +17,10 @@ help:
 	@echo "make test-quick the same without steps that need middleware (ROS, YARP), which it lists"
 	@echo "make chaos      kill fixtures, hosts and runners at random moments, for half an hour"
 	@echo "make fuzz       give arbitrary bytes to all parsers, each for SECONDS (60)"
+	@echo "make sanitizers run C++ and Lua tests with GCC's sanitizers and valgrind"
+	@echo "make coverage   measure which lines the tests of the core run"
+	@echo "make mutants    change the code that judges, and count which changes the tests notice"
+	@echo "make soak       run 200 000 tests and 5000 runs, and check that nothing grows"
 	@echo "make bench      measure speed and memory"
 	@echo "make counts     record the instruction counts of the hot paths (make test compares them)"
 	@echo "make install    install into PREFIX=$(PREFIX), below DESTDIR if set"
@@ -65,6 +69,21 @@ SECONDS ?= 60
 fuzz:
 	@tools/bootstrap.sh test
 	@tools/fuzz.sh --seconds $(SECONDS)
+
+sanitizers:
+	@tools/bootstrap.sh test
+	@tools/sanitizers.sh
+
+coverage:
+	@tools/bootstrap.sh test
+	@tools/coverage.sh
+
+mutants:
+	@tools/bootstrap.sh test
+	@tools/mutants.sh
+
+soak: build
+	@tools/soak.sh
 
 bench:
 	@tools/bench.sh

@@ -1,5 +1,6 @@
 //! Every scenario of `conformance/` in every language, with the real hosts.
 
+mod checkers;
 mod suites;
 
 use std::path::PathBuf;
@@ -13,7 +14,7 @@ use serde_json::{Value, json};
 use self::suites::{Plugins, suite};
 use crate::clock::SIMULATOR;
 use crate::host_modes::{FORKED, Mode, PROCESS, SHARED};
-use crate::support::{Folder, Journal, nothing_left, root};
+use crate::support::{Finished, Folder, Journal, nothing_left, root};
 
 struct Language {
     name: &'static str,
@@ -122,26 +123,36 @@ fn is_excepted(scenario: &str, language: &str) -> bool {
 }
 
 fn check(language: &Language, mode: Mode) {
-    let temp = Folder::new();
+    check_with(language, mode, &Folder::new(), "", Folder::rtf);
+}
+
+/// Builds C++ plug-ins with these compiler flags, and starts `rtf` with `start`.
+fn check_with(
+    language: &Language,
+    mode: Mode,
+    temp: &Folder,
+    flags: &str,
+    start: impl Fn(&Folder, &[&str]) -> Finished,
+) {
     let scenarios: Vec<String> =
         scenarios().into_iter().filter(|name| !is_excepted(name, language.name)).collect();
-    let plugins = Plugins::build(language, &scenarios);
+    let plugins = Plugins::build(language, &scenarios, flags);
     for scenario in &scenarios {
         temp.file(&format!("{scenario}.xml"), &suite(scenario, &plugins, mode.isolation));
     }
     temp.file("simulator.py", SIMULATOR);
-    let finished = temp.rtf(&["run", "--fork", mode.fork, "."]);
+    let finished = start(temp, &["run", "--fork", mode.fork, "."]);
     assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
     let journal = temp.journal();
     let problems: Vec<String> = scenarios
         .iter()
         .flat_map(|name| {
             let expected = expectations(name, language.name, mode);
-            check_scenario(name, (mode, expected), &journal, &temp)
+            check_scenario(name, (mode, expected), &journal, temp)
         })
         .collect();
     assert!(problems.is_empty(), "{}: \n{}", language.name, problems.join("\n"));
-    assert!(nothing_left(&temp), "processes are left");
+    assert!(nothing_left(temp), "processes are left");
 }
 
 fn check_scenario(

@@ -59,7 +59,12 @@ impl Folder {
     }
 
     pub fn command(&self, args: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_rtf"));
+        self.command_of(Path::new(env!("CARGO_BIN_EXE_rtf")), args)
+    }
+
+    /// A copy of `rtf` in this folder.
+    pub fn command_of(&self, program: &Path, args: &[&str]) -> Command {
+        let mut command = Command::new(program);
         command.args(args).current_dir(self.path()).stdin(Stdio::null());
         // Cargo sets the library path, in which plug-ins are searched.
         for variable in [
@@ -356,14 +361,21 @@ fn build_hosts() {
 /// Builds C++ plug-ins with the SDK's CMake package; returns the folder with
 /// `<name>.so`.
 pub fn build_cpp(sources: &Path, name: &str) -> PathBuf {
+    build_cpp_with(sources, name, "")
+}
+
+/// The same with further compiler flags, for each of which there is a folder.
+pub fn build_cpp_with(sources: &Path, name: &str, flags: &str) -> PathBuf {
     static ONE_AT_A_TIME: std::sync::Mutex<()> = std::sync::Mutex::new(());
     let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    let build = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let folder = format!("{name}{}", flags.replace([' ', '=', ','], "-"));
+    let build = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
     let package =
         root().canonicalize().expect("a path").join("sdk/cpp/cmake/RobotTestingFramework");
     let mut configure = Command::new("cmake");
     configure.arg("-S").arg(sources).arg("-B").arg(&build).arg("-DCMAKE_BUILD_TYPE=Debug");
     configure.arg(format!("-DRobotTestingFramework_DIR={}", package.display()));
+    configure.arg(format!("-DCMAKE_CXX_FLAGS={flags}"));
     run_quietly(&mut configure);
     run_quietly(Command::new("cmake").arg("--build").arg(&build).args(["--parallel", "2"]));
     build

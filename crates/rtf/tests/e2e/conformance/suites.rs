@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{Language, folder};
-use crate::support::{build_ada, build_cpp};
+use crate::support::{build_ada, build_cpp_with};
 
 /// The plug-in of the fixture that provides values.
 const FIXTURE: &str = "fixtures/simulator";
@@ -15,9 +15,9 @@ pub struct Plugins<'a> {
 }
 
 impl<'a> Plugins<'a> {
-    pub fn build(language: &'a Language, scenarios: &[String]) -> Self {
+    pub fn build(language: &'a Language, scenarios: &[String], flags: &str) -> Self {
         let built = match language.name {
-            "cpp" => Some(build_cpp(&folder(), "conformance")),
+            "cpp" => Some(build_cpp_with(&folder(), "conformance", flags)),
             "ada" => {
                 let mut plugins: Vec<String> =
                     scenarios.iter().map(|name| format!("scenarios/{name}")).collect();

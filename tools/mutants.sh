@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Changes the code that judges, one small change at a time, and runs the tests of its crate. A change that no test
+# notices is printed; the exit code is 1 if more than a tenth of a part is not noticed.
+#
+#   tools/mutants.sh [PART …] [-- OPTION …]     parts of tools/mutants.py; options of cargo-mutants, `--shard 1/8`
+
+. "$(dirname "$0")/env.sh"
+
+tool=$(tools/cargo_tool.sh cargo-mutants 27.1.0)
+export PATH=$tool:$PATH
+
+exec python3 tools/mutants.py "$@"
