@@ -19,7 +19,7 @@ case $goal in
   build) packages=(gcc) ;;
   demo) packages=(cmake g++ lua-socket python3-venv) ;;
   test) packages=(cmake g++ lua-socket python3-venv libxml2-utils gdb shellcheck clang-format
-    procps perl jq curl valgrind ruby ruby-minitest rubocop gnat gprbuild libcppunit-dev openssh-client openssh-server
+    procps perl jq curl valgrind stress-ng bindfs ruby ruby-minitest rubocop gnat gprbuild libcppunit-dev openssh-client openssh-server
     chromium fonts-dejavu-core) ;;
   docs) packages=(python3-venv doxygen yard lua-ldoc) ;;
   update) packages=() ;;

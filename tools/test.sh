@@ -562,6 +562,9 @@ step 'history in PostgreSQL' history_postgres
 step 'telemetry' telemetry
 step 'executor slurm' executor_slurm
 step 'debugging' debugging
+step 'degraded machine' python3 tests/degraded/check.py "$TARGET/release/rtf"
+# The tests with valgrind take minutes: `make sanitizers` runs all.
+step 'sanitizers' tools/sanitizers.sh sanitizer
 step 'ci helpers' ci_helpers
 step 'guide' env RTF_PYTHON="$checkers/python" tools/check_docs.py "$TARGET/release/rtf" README.md \
   docs/tutorials/{first-test,first-fixture,cpp-plugin}.md docs/explanation/isolation.md \

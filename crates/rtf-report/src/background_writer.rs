@@ -102,6 +102,12 @@ impl BackgroundWriter {
         self.shared.waiting.load(Ordering::Relaxed) > FULL
     }
 
+    /// Whether something is not written yet.
+    #[must_use]
+    pub fn is_waiting(&self) -> bool {
+        self.shared.waiting.load(Ordering::Relaxed) > 0
+    }
+
     /// Shows a progress bar below what is written.
     pub(crate) fn show(&self, bar: BarState) {
         self.shared.lock().bar = Some(bar);

@@ -1,6 +1,7 @@
 //! Runs a plan: connects engine, reporters and signals.
 
 use std::io;
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
@@ -22,7 +23,10 @@ use crate::error::Failure;
 use crate::plan::Planned;
 use crate::preflight::Prepared;
 use crate::request::RunRequest;
-use crate::{exit, history, origin, web};
+use crate::{exit, history, origin, terminal, web};
+
+/// How long the results may take to be written before the user is told why nothing happens.
+const LATE: Duration = Duration::from_secs(2);
 
 /// Runs, and serves the run for as long as requested.
 pub fn run(request: &RunRequest, planned: &Planned, prepared: Prepared, guard: Link) -> VerbResult {
@@ -39,7 +43,8 @@ pub fn run(request: &RunRequest, planned: &Planned, prepared: Prepared, guard: L
     let ended = options.and_then(|options| {
         run_plan(&runtime, planned, options, &control, fanout.handle()).map_err(Failure::internal)
     });
-    let finished = runtime.block_on(finish_reports(fanout, &stdout)).map_err(Failure::internal)?;
+    let finished =
+        runtime.block_on(finish_reports(fanout, &stdout, &dir.path)).map_err(Failure::internal)?;
     guard.finish();
     if let Some(history) = &request.history {
         history::import_run(history, &finished.record);
@@ -132,17 +137,37 @@ fn run_plan(
 
 /// Waits until the reporters have finished. A signal ends only the wait for the reader
 /// of standard output.
-async fn finish_reports(fanout: Fanout, stdout: &BackgroundWriter) -> io::Result<FanoutResult> {
+async fn finish_reports(
+    fanout: Fanout,
+    stdout: &BackgroundWriter,
+    dir: &Path,
+) -> io::Result<FanoutResult> {
     let mut signals = SignalListener::install()?;
     let mut joined = tokio::task::spawn_blocking(|| fanout.join());
-    let joined = tokio::select! {
-        joined = &mut joined => joined,
-        _ = signals.next() => {
-            stdout.abandon();
-            joined.await
+    let mut late = Box::pin(tokio::time::sleep(LATE));
+    let mut is_late = false;
+    let joined = loop {
+        tokio::select! {
+            joined = &mut joined => break joined,
+            _ = signals.next() => stdout.abandon(),
+            () = &mut late, if !is_late => {
+                is_late = true;
+                notify_late(stdout, dir);
+            }
         }
     };
     Ok(joined.unwrap_or_else(|error| std::panic::resume_unwind(error.into_panic())))
+}
+
+/// A slow disk delays no test and no verdict, but the end of the run.
+fn notify_late(stdout: &BackgroundWriter, dir: &Path) {
+    if !stdout.is_waiting() {
+        terminal::notice(format_args!(
+            "the run ended {} s ago, but its results are not yet written: the disk with `{}` is slow",
+            LATE.as_secs(),
+            dir.display()
+        ));
+    }
 }
 
 /// Prints the reporters' errors.
