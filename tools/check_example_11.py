@@ -28,10 +28,14 @@ def main() -> int:
         damped(Run(rtf, suite, results / "damped", "--set", "damping=1"))
         copy = results / "copy"
         shutil.copytree(example, copy)
-        text = (copy / "arm.xml").read_text()
-        expect_in("always(12rad/s >", text)
-        (copy / "arm.xml").write_text(text.replace("always(12rad/s >", "always(5rad/s >"))
-        stopped(Run(rtf, str(copy / "arm.xml"), results / "stopped"))
+        model = (copy / "arm.urdf").read_text()
+        expect_in('velocity="12"', model)
+        (copy / "arm.urdf").write_text(model.replace('velocity="12"', 'velocity="5"'))
+        stopped(Run(rtf, str(copy / "arm.xml"), results / "stopped"), "5rad/s")
+        simulation = results / "simulation"
+        stopped(
+            Run(rtf, str(copy / "arm.xml"), simulation, "--profile", "simulation"), "4.5rad/s"
+        )
     return 0
 
 
@@ -58,13 +62,14 @@ def damped(run: Run) -> None:
     expect("all monitors hold", all(value > 0 for value in all_measured(run)), True)
 
 
-def stopped(run: Run) -> None:
-    """The motion is interrupted."""
+def stopped(run: Run, limit: str) -> None:
+    """The motion is interrupted by a limit of the safety envelope."""
     expect("exit code", run.wait(), 1)
     expect("verdicts", run.verdicts(), {"near": "passed", "far": "failed"})
     [stopping] = run.events("test-stopping")
     expect("cause", stopping["cause"], "finding")
-    expect_in("monitor `torn cable`", stopping["reason"])
+    expect_in(f"monitor `arm: elbow velocity`: `abs(dq) <= {limit}`", stopping["reason"])
+    expect_in("arm.limits.yaml:7:5)", stopping["reason"])
 
 
 def samples(run: Run, test: str, signal: str) -> list[tuple[float, float]]:

@@ -99,6 +99,9 @@ impl MonitorReport<'_> {
         if part != formula {
             text += &format!("; its formula is `{formula}`");
         }
+        if let Some(origin) = &self.monitor.config.origin {
+            text += &format!(" (limit at {origin})");
+        }
         text
     }
 

@@ -28,6 +28,13 @@ impl FindingSeverity {
         ("critical", Self::Critical),
     ];
 
+    /// Its word in suites.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        let found = Self::ALL.iter().find(|(_, severity)| *severity == self);
+        found.map_or("", |(word, _)| word)
+    }
+
     /// The verdict of the test, if nothing worse happens.
     #[must_use]
     pub fn verdict(self) -> Verdict {

@@ -108,8 +108,11 @@ pub struct MonitorConfig {
     pub formula: String,
     /// What a violation means.
     pub severity: FindingSeverity,
-    /// Its position in the suite.
+    /// Its position in the suite, or of its limit in a file of limits.
     pub location: Location,
+    /// The file, line and column of its limit, for messages.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub origin: Option<String>,
     /// The names of the tests that it judges; `None`: all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tests: Option<Vec<String>>,

@@ -9,6 +9,7 @@
 //! plug-in loads, and passes the answers back to a [`plan::PlanDraft`].
 
 pub mod config;
+pub mod envelope;
 pub mod plan;
 pub mod select;
 pub mod suite;

@@ -79,6 +79,7 @@ fn all() -> Result<Vec<Named>, SchemaError> {
         ("initialized.json", schema::<Initialized>()?),
         ("answer.json", schema::<Answer>()?),
         ("config.json", text(&rtf_plan::config::json_schema())?),
+        ("limits.json", text(&rtf_plan::envelope::json_schema())?),
         ("openapi.json", openapi::description().map_err(SchemaError::Text)? + "\n"),
     ])
 }

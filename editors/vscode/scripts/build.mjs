@@ -12,6 +12,7 @@ await mkdir(new URL('schemas/', HERE));
 for (const [from, to] of [
     ['spec/suite.xsd', 'schemas/suite.xsd'],
     ['schemas/config.json', 'schemas/config.json'],
+    ['schemas/limits.json', 'schemas/limits.json'],
     ['LICENSE', 'LICENSE'],
 ]) {
     await cp(new URL(from, ROOT), new URL(to, HERE));

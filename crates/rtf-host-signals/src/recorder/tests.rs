@@ -28,6 +28,7 @@ fn monitor(name: &str, formula: &str, tests: Option<&str>) -> MonitorSettings {
             formula: formula.text().to_owned(),
             severity: FindingSeverity::Fail,
             location: rtf_model::Location { file: "s.xml".to_owned(), line: 4 },
+            origin: None,
             tests: tests.map(|test| vec![test.to_owned()]),
         },
         signals: formula.signals().iter().map(|signal| index(&signal.name)).collect(),

@@ -232,6 +232,9 @@ impl ParamSubstitution<'_> {
                 self.words(&mut command.value, command.span);
             }
         }
+        for envelope in &mut suite.envelopes {
+            self.text(&mut envelope.file.value, envelope.file.span);
+        }
         for hook in &mut suite.hooks {
             self.action(&mut hook.body);
             let span = match &hook.body {

@@ -19,6 +19,8 @@ pub(super) struct PlanContext<'a> {
     pub problems: Vec<Diagnostic>,
     /// The plug-ins to check.
     pub checks: PluginChecks,
+    /// The texts of further files to which problems refer.
+    pub sources: Vec<Arc<SourceText>>,
     /// The `rtf.toml` files.
     pub files: ConfigFiles,
     /// The quarantines of those files.
@@ -35,7 +37,8 @@ impl<'a> PlanContext<'a> {
         };
         let (problems, checks) = (Vec::new(), PluginChecks::default());
         let quarantines = Quarantines::default();
-        Self { options, problems, checks, files, quarantines, hosts: Vec::new() }
+        let (sources, hosts) = (Vec::new(), Vec::new());
+        Self { options, problems, checks, sources, files, quarantines, hosts }
     }
 
     /// Overlays the nearest `rtf.toml` on a suite.
@@ -72,6 +75,13 @@ impl<'a> PlanContext<'a> {
         if let Some(view) = self.profile_view(dir) {
             self.quarantines.apply(&view, suite, self.options.today);
         }
+    }
+
+    /// Returns the selected profile of a directory, and all of its profiles.
+    pub fn profiles(&mut self, dir: &Path) -> (Option<String>, Vec<String>) {
+        let Some(view) = self.profile_view(dir) else { return (None, Vec::new()) };
+        let known = view.file.profiles.iter().map(|(name, _)| name.value.clone()).collect();
+        (view.profile.map(|(name, _)| name), known)
     }
 
     fn profile_view(&mut self, dir: &Path) -> Option<ProfileView> {

@@ -192,6 +192,7 @@ fn suite_from_file(
         context.configure(&dir, &source, suite);
     }
     let mut draft = suite.map(|suite| plan_suite(context, file, &source, suite));
+    context.sources.drain(..).for_each(|source| sources.add(source));
     if let Some(draft) = &mut draft {
         context.quarantine(&parent_dir(&file.path), &mut draft.plan);
     }

@@ -15,6 +15,7 @@ mod context;
 pub(crate) mod defaults;
 mod dependencies;
 mod draft;
+mod envelopes;
 mod fixture;
 mod fixture_values;
 mod framework_search;

@@ -46,6 +46,7 @@ pub(super) fn plan(
             formula: monitor.formula.value.clone(),
             severity: monitor.severity,
             location,
+            origin: None,
             tests,
         });
     }

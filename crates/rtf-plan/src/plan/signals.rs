@@ -15,9 +15,10 @@ use super::monitors::{self, JudgedTests};
 use super::names::UniqueNames;
 use super::plugin_planner::PluginPlanner;
 use super::use_site::UseSite;
-use super::{FixtureBody, FixturePlan, defaults, middleware, program};
+use super::{FixtureBody, FixturePlan, defaults, envelopes, middleware, program};
 use crate::suite::{
-    DeclaredMonitor, DeclaredSignal, DeclaredSource, DeclaredSourceKind, SourceText, Spanned,
+    DeclaredEnvelope, DeclaredMonitor, DeclaredSignal, DeclaredSource, DeclaredSourceKind,
+    SourceText, Spanned,
 };
 use crate::wording::suggest;
 
@@ -32,6 +33,8 @@ pub(super) struct DeclaredSignals {
     pub sources: Vec<DeclaredSource>,
     /// The monitors of all tests.
     pub monitors: Vec<DeclaredMonitor>,
+    /// The files of limits.
+    pub envelopes: Vec<DeclaredEnvelope>,
     /// The monitors of single tests.
     pub of_tests: JudgedTests,
     /// The names that the suite gives to its fixtures.
@@ -52,12 +55,12 @@ pub(super) fn plan(
     let before = problems.len();
     let names = all().map(|signal| Some(&signal.name));
     UniqueNames::reserve("signal", names, source, problems);
-    let monitors = monitors::plan(
-        &declared.monitors,
-        &declared.of_tests,
-        &all().collect::<Vec<_>>(),
-        (source, problems),
-    );
+    let signals: Vec<_> = all().collect();
+    let mut monitors =
+        monitors::plan(&declared.monitors, &declared.of_tests, &signals, (source, problems));
+    let dir = planner.scope().dir.to_path_buf();
+    let envelopes = (dir.as_path(), declared.envelopes.as_slice());
+    envelopes::plan(planner.context, source, (envelopes, &signals), &mut monitors);
     let Some(first) = all().next().map(|signal| signal.name.span) else { return };
     let (sources, args) = SourcePlanner { planner, source, fixtures, declared: &declared }.plan();
     if planner.context.problems.len() > before {

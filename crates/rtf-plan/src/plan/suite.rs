@@ -58,6 +58,7 @@ pub(super) fn plan_suite(
     let declared = DeclaredSignals {
         sources: suite.signals,
         monitors: suite.monitors,
+        envelopes: suite.envelopes,
         of_tests: monitors,
         fixtures: fixture_names,
         has_clock: clock.is_some(),

@@ -1,11 +1,11 @@
-//! `<monitor>`: a formula over signals that judges tests.
+//! `<monitor>`: a formula over signals that judges tests; `<envelope>`: a file of them.
 
 use roxmltree::Node;
 use rtf_model::FindingSeverity;
 
-use super::DeclaredMonitor;
 use super::reader::ElementReader;
 use super::schema::{self, check};
+use super::{DeclaredEnvelope, DeclaredMonitor};
 
 /// Reads a `<monitor>`; `None` if it has no name or formula.
 pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredMonitor> {
@@ -21,6 +21,19 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option
     };
     let severity = severity.unwrap_or(FindingSeverity::Fail);
     Some(DeclaredMonitor { span: ElementReader::tag(node), name: name?, severity, formula })
+}
+
+/// Reads an `<envelope>`; `None` if it has no file.
+pub(super) fn read_envelope(
+    reader: &mut ElementReader<'_>,
+    node: Node<'_, '_>,
+) -> Option<DeclaredEnvelope> {
+    check(reader, node, &schema::ENVELOPE);
+    if !node.has_attribute("file") {
+        reader.missing(node, "the attribute `file`");
+    }
+    let file = reader.word(node, "file")?;
+    Some(DeclaredEnvelope { span: ElementReader::tag(node), file })
 }
 
 /// Reads the monitors of an element.

@@ -80,6 +80,7 @@ fn read_suite(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> DeclaredSui
         hooks: Vec::new(),
         signals: Vec::new(),
         monitors: Vec::new(),
+        envelopes: Vec::new(),
         tests: Vec::new(),
         fixture_references: super::FixtureReferences::default(),
     };
@@ -129,6 +130,7 @@ fn read_child(
         "signal" => suite.signals.extend(signal_source::read(reader, node)),
         "signals" => suite.signals.extend(signal_source::read_group(reader, node)),
         "monitor" => suite.monitors.extend(monitor::read(reader, node)),
+        "envelope" => suite.envelopes.extend(monitor::read_envelope(reader, node)),
         "test" => suite.tests.extend(test::read(reader, node, defaults)),
         _ => {}
     }

@@ -57,6 +57,7 @@ pub(super) const SUITE: ElementSchema = ElementSchema {
         "signal",
         "signals",
         "monitor",
+        "envelope",
         "test",
     ],
     text: false,
@@ -181,6 +182,9 @@ pub(super) const SIGNAL: ElementSchema = ElementSchema {
 /// `<monitor>`.
 pub(super) const MONITOR: ElementSchema =
     ElementSchema { name: "monitor", attributes: &["name", "severity"], elements: &[], text: true };
+
+/// `<envelope>`.
+pub(super) const ENVELOPE: ElementSchema = leaf("envelope", &["file"]);
 
 /// `<hook>`. `hook.rs` checks which attributes require a plug-in.
 pub(super) const HOOK: ElementSchema = ElementSchema {

@@ -49,6 +49,15 @@ pub struct DeclaredSignal {
     pub unit: Spanned<String>,
 }
 
+/// An `<envelope>`.
+#[derive(Clone, Debug)]
+pub struct DeclaredEnvelope {
+    /// The position of the tag.
+    pub span: Span,
+    /// The file of limits, relative to the suite.
+    pub file: Spanned<String>,
+}
+
 /// A `<monitor>`.
 #[derive(Clone, Debug)]
 pub struct DeclaredMonitor {

@@ -7,8 +7,8 @@ use jiff::civil::Date;
 use rtf_model::{Trigger, Verdict};
 
 use super::{
-    Combination, DeclaredFixture, DeclaredMatrix, DeclaredMonitor, DeclaredSource,
-    FixtureReferences, Span, Spanned,
+    Combination, DeclaredEnvelope, DeclaredFixture, DeclaredMatrix, DeclaredMonitor,
+    DeclaredSource, FixtureReferences, Span, Spanned,
 };
 
 /// The contents of a suite file.
@@ -36,6 +36,8 @@ pub struct DeclaredSuite {
     pub signals: Vec<DeclaredSource>,
     /// The monitors of all tests.
     pub monitors: Vec<DeclaredMonitor>,
+    /// The files of limits, in order.
+    pub envelopes: Vec<DeclaredEnvelope>,
     /// The tests, in order.
     pub tests: Vec<DeclaredTest>,
     /// The references to values of fixtures.

@@ -5,6 +5,7 @@
 mod bench;
 mod clock;
 mod depends;
+mod envelopes;
 mod fixture_values;
 mod frameworks;
 mod hooks;

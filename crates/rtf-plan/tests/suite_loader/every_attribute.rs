@@ -203,6 +203,7 @@ fn signals_and_monitors_are_read() {
     assert_eq!((&*monitor.name.value, monitor.severity), ("no overshoot", FindingSeverity::Stop));
     assert_eq!(monitor.formula.value, "always(elbow <= 1.05rad)");
     assert_eq!(suite.tests[0].monitors[0].severity, FindingSeverity::Fail);
+    assert_eq!(suite.envelopes[0].file.value, "arm.limits.yaml");
 }
 
 #[test]

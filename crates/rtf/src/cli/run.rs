@@ -96,6 +96,10 @@ pub struct ListArgs {
     /// Output format
     #[arg(long, value_name = "FORMAT", default_value = "text")]
     pub format: ListFormat,
+
+    /// Also list the monitors of each test: severity, name and formula
+    #[arg(long)]
+    pub monitors: bool,
 }
 
 /// The format of a list of tests.

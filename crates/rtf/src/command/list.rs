@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::ArgMatches;
-use rtf_model::{ExpectedFailure, Parameter};
+use rtf_model::{ExpectedFailure, FindingSeverity, MonitorConfig, Parameter};
 use rtf_plan::plan::{ListedCase, Plan, SuitePlan, TestPlan};
 use rtf_report::escape;
 use serde::Serialize;
@@ -21,32 +21,42 @@ pub fn run(mut args: ListArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_results(&mut args.input, matches)?;
     let request = TestsRequest::resolve(&args.input)?;
     let planned = plan::plan(&request)?;
-    print(&planned, args.format)
+    print(&planned, args.format, args.monitors)
 }
 
-/// Prints the tests of a plan.
-pub fn print(planned: &Planned, format: ListFormat) -> VerbResult {
+/// Prints the tests of a plan, and their monitors on request.
+pub fn print(planned: &Planned, format: ListFormat, monitors: bool) -> VerbResult {
     planned.print_warnings()?;
     terminal::stdout(|out| match format {
-        ListFormat::Text => write(&planned.plan, out),
-        ListFormat::Json => write_json(&planned.plan, out),
+        ListFormat::Text => write(&planned.plan, monitors, out),
+        ListFormat::Json => write_json(&planned.plan, monitors, out),
     })?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn tests(plan: &Plan) -> impl Iterator<Item = (&SuitePlan, &TestPlan)> {
-    plan.suites.iter().flat_map(|suite| suite.tests.iter().map(move |test| (suite, test)))
-}
-
-fn write(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
-    for (suite, test) in tests(plan) {
-        let name = format!("{}/{}", suite.name, test.name);
-        writeln!(out, "{}{}", escape::line(&name), notes(test))?;
-        for case in test.known_cases().unwrap_or_default() {
-            writeln!(out, "  {}{}", escape::line(&case.name), case_notes(&case))?;
+fn write(plan: &Plan, with_monitors: bool, out: &mut dyn Write) -> io::Result<()> {
+    for suite in &plan.suites {
+        let monitors = if with_monitors { suite.monitors() } else { Vec::new() };
+        for test in &suite.tests {
+            let name = format!("{}/{}", suite.name, test.name);
+            writeln!(out, "{}{}", escape::line(&name), notes(test))?;
+            for case in test.known_cases().unwrap_or_default() {
+                writeln!(out, "  {}{}", escape::line(&case.name), case_notes(&case))?;
+            }
+            for monitor in monitors.iter().filter(|monitor| monitor.judges(&test.name)) {
+                writeln!(out, "  {}", escape::line(&describe(monitor)))?;
+            }
         }
     }
     Ok(())
+}
+
+/// Describes a monitor: `stop  arm: elbow position: always(q <= 1.05rad)  (arm.limits.yaml:7:5)`.
+fn describe(monitor: &MonitorConfig) -> String {
+    let severity = monitor.severity.word();
+    let location = monitor.location.to_string();
+    let origin = monitor.origin.as_ref().unwrap_or(&location);
+    format!("{severity:<8}  {}: {}  ({origin})", monitor.name, monitor.formula)
 }
 
 fn case_notes(case: &ListedCase) -> String {
@@ -131,28 +141,64 @@ struct ListedTest<'p> {
     /// The cases that it runs, if they are known.
     #[serde(skip_serializing_if = "Option::is_none")]
     cases: Option<Vec<Cow<'p, ListedCase>>>,
+    /// The monitors that judge it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    monitors: Vec<ListedMonitor>,
 }
 
-fn write_json(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
-    let tests = tests(plan)
-        .map(|(suite, test)| ListedTest {
-            suite: &suite.name,
-            name: &test.name,
-            select: (!suite.file.is_empty()).then(|| format!("{}::{}", suite.file, test.name)),
-            file: &suite.file,
-            line: test.line,
-            r#type: &test.plugin.plugin_type,
-            plugin: test.plugin.file.to_string_lossy().into_owned(),
-            tags: &test.tags,
-            repetition: test.settings.repetitions,
-            critical: test.settings.critical,
-            exclusive: test.settings.exclusive,
-            parallel: suite.settings.parallel,
-            parameters: test.parameters(),
-            expected: test.expected.as_deref(),
-            cases: test.known_cases(),
-        })
-        .collect();
-    serde_json::to_writer_pretty(&mut *out, &TestList { tests })?;
+/// A monitor.
+#[derive(Serialize)]
+struct ListedMonitor {
+    name: String,
+    formula: String,
+    severity: FindingSeverity,
+    file: String,
+    line: u32,
+}
+
+fn write_json(plan: &Plan, with_monitors: bool, out: &mut dyn Write) -> io::Result<()> {
+    let tests = plan.suites.iter().flat_map(|suite| {
+        let monitors = if with_monitors { suite.monitors() } else { Vec::new() };
+        suite.tests.iter().map(move |test| listed(suite, test, &monitors)).collect::<Vec<_>>()
+    });
+    serde_json::to_writer_pretty(&mut *out, &TestList { tests: tests.collect() })?;
     writeln!(out)
+}
+
+fn listed<'p>(
+    suite: &'p SuitePlan,
+    test: &'p TestPlan,
+    monitors: &[MonitorConfig],
+) -> ListedTest<'p> {
+    let judging = monitors.iter().filter(|monitor| monitor.judges(&test.name));
+    ListedTest {
+        suite: &suite.name,
+        name: &test.name,
+        select: (!suite.file.is_empty()).then(|| format!("{}::{}", suite.file, test.name)),
+        file: &suite.file,
+        line: test.line,
+        r#type: &test.plugin.plugin_type,
+        plugin: test.plugin.file.to_string_lossy().into_owned(),
+        tags: &test.tags,
+        repetition: test.settings.repetitions,
+        critical: test.settings.critical,
+        exclusive: test.settings.exclusive,
+        parallel: suite.settings.parallel,
+        parameters: test.parameters(),
+        expected: test.expected.as_deref(),
+        cases: test.known_cases(),
+        monitors: judging.map(ListedMonitor::of).collect(),
+    }
+}
+
+impl ListedMonitor {
+    fn of(monitor: &MonitorConfig) -> Self {
+        Self {
+            name: monitor.name.clone(),
+            formula: monitor.formula.clone(),
+            severity: monitor.severity,
+            file: monitor.location.file.clone(),
+            line: monitor.location.line,
+        }
+    }
 }

@@ -44,7 +44,7 @@ pub fn run(args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
         request.history = request.history.filter(|_| request.debug.is_none());
         let mut planned = plan::plan_debugged(&request.tests, request.debug.as_ref())?;
         if args.dry_run {
-            return list::print(&planned, ListFormat::Text);
+            return list::print(&planned, ListFormat::Text, false);
         }
         if history::is_learning(&planned.plan) {
             let url = args.input.history.history.as_deref();
