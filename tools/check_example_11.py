@@ -33,9 +33,7 @@ def main() -> int:
         (copy / "arm.urdf").write_text(model.replace('velocity="12"', 'velocity="5"'))
         stopped(Run(rtf, str(copy / "arm.xml"), results / "stopped"), "5rad/s")
         simulation = results / "simulation"
-        stopped(
-            Run(rtf, str(copy / "arm.xml"), simulation, "--profile", "simulation"), "4.5rad/s"
-        )
+        stopped(Run(rtf, str(copy / "arm.xml"), simulation, "--profile", "simulation"), "4.5rad/s")
     return 0
 
 

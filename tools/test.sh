@@ -131,6 +131,7 @@ lint_python() {
   "$checkers/mypy" tests/history/*.py
   "$checkers/mypy" tests/campaign/*.py
   "$checkers/mypy" tests/monitor/*.py
+  "$checkers/mypy" tests/envelopes/*.py
   "$checkers/mypy" tests/telemetry/*.py
   "$checkers/mypy" tests/executors/*.py
 }
@@ -425,6 +426,11 @@ monitor_oracle() {
   "$python" tests/monitor/oracle.py "$TARGET/debug/examples/robustness"
 }
 
+# Limits of robot models, compared with those of MuJoCo.
+envelope_oracle() {
+  "$(tools/venv.sh icub)/python" tests/envelopes/oracle.py "$TARGET/debug/rtf"
+}
+
 # Parquet files of the history, read by Apache Arrow.
 history_export() {
   "$(tools/venv.sh export)/python" tests/history/export.py "$TARGET/debug/rtf"
@@ -557,6 +563,7 @@ step 'web api' web_api
 step 'history change points' history_change_points
 step 'campaign oracle' campaign_oracle
 step 'monitor oracle' monitor_oracle
+step 'envelope oracle' envelope_oracle
 step 'history export' history_export
 step 'history in PostgreSQL' history_postgres
 step 'telemetry' telemetry
@@ -568,7 +575,7 @@ step 'sanitizers' tools/sanitizers.sh sanitizer
 step 'ci helpers' ci_helpers
 step 'guide' env RTF_PYTHON="$checkers/python" tools/check_docs.py "$TARGET/release/rtf" README.md \
   docs/tutorials/{first-test,first-fixture,cpp-plugin}.md docs/explanation/isolation.md \
-  docs/how-to/{writing-tests,simulation-time,recorders,real-robot,signals}.md \
+  docs/how-to/{writing-tests,simulation-time,recorders,real-robot,signals,envelopes}.md \
   docs/how-to/migrating-{rtf2,launch-testing,pytest,robot-framework}.md docs/reference/junit.md
 step 'guide commands' tools/check_running.py "$TARGET/release/rtf" \
   docs/how-to/{running,flaky-tests,soak,parallel,profiles,doctor,sharding,history}.md

@@ -27,7 +27,9 @@ impl Bound {
         let end = text.char_indices().find(|it| !is_number(*it)).map_or(text.len(), |(at, _)| at);
         let value = text[..end].parse::<f64>().ok().filter(|value| value.is_finite())?;
         let unit = text[end..].trim().to_owned();
-        let is_unit = !unit.contains(char::is_whitespace);
+        let first = |c: char| c.is_alphabetic() || matches!(c, '%' | '°');
+        let other = |c: char| c.is_alphanumeric() || matches!(c, '%' | '°' | '/' | '*' | '^' | '-');
+        let is_unit = unit.is_empty() || (unit.starts_with(first) && unit.chars().all(other));
         is_unit.then_some(Self { value, unit, span: Some(span) })
     }
 
@@ -102,7 +104,7 @@ mod tests {
         assert_eq!(bound("60°C"), parsed(60.0, "°C"));
         assert_eq!(bound("1e3"), parsed(1000.0, ""));
         assert_eq!(bound("2eV"), parsed(2.0, "eV"));
-        for text in ["", "rad", "1-2", "1.2.3m", "inf", "nan", "1e999", "1 m m"] {
+        for text in ["", "rad", "1-2", "1.2.3m", "inf", "nan", "1e999", "1 m m", "1*q", "1)or(q"] {
             assert_eq!(bound(text), None, "{text}");
         }
         assert_eq!(Bound::of_model(1e-7, "m").constant(), "0.0000001m");

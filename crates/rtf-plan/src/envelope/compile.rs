@@ -264,9 +264,11 @@ impl Compiler<'_> {
         }
         let at = max.span.or(min.span).or(limit.span).unwrap_or(signal.span);
         if min.unit != max.unit {
-            let message = "`min` and `max` have different units".to_owned();
-            let label = self.source.label(at, "");
-            problems.push(Diagnostic::error("unit-mismatch", message).label(label));
+            if self.file.factor.is_some_and(|factor| factor < 1.0) {
+                let message = "`factor` needs the same unit for `min` and `max`";
+                let label = self.source.label(at, "");
+                problems.push(Diagnostic::error("unit-mismatch", message).label(label));
+            }
         } else if min.value > max.value {
             let message = format!("`min` is above `max`: {} > {}", min.constant(), max.constant());
             let label = self.source.label(at, "");

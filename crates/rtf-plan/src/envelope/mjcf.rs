@@ -23,7 +23,7 @@ pub(super) fn read(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> Vec<Mo
     }
     let compiler = |name: &str| {
         let compilers = root.children().filter(|node| node.has_tag_name("compiler"));
-        compilers.filter_map(|node| node.attribute(name)).last()
+        compilers.filter_map(|node| node.attribute(name)).next_back()
     };
     let settings = Settings {
         in_degrees: compiler("angle") != Some("radian"),
@@ -107,10 +107,10 @@ impl<'a, 'i> JointReader<'a, 'i> {
         }
         let mut class = self.class()?;
         loop {
-            let joint = class
+            let mut joint = class
                 .children()
                 .filter(|node| node.has_tag_name("joint") && node.has_attribute(attribute));
-            if let Some(found) = joint.last() {
+            if let Some(found) = joint.next_back() {
                 return Some(found);
             }
             class = class.parent().filter(|node| node.has_tag_name("default"))?;

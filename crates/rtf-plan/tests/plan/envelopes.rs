@@ -51,7 +51,7 @@ fn each_limit_is_a_monitor() {
         "severity: error
 joints:
   elbow:
-    position: {signal: elbow.q, min: -2rad, max: 1rad, severity: stop}
+    position: {signal: elbow.q, min: -2rad, max: 60deg, severity: stop}
     velocity: {rate-of: elbow.q, max: 3}
     acceleration: {rate-of: elbow.dq, max: 40rad/s^2, for: 20ms}
     torque: {signal: tau, max: 7Nm}
@@ -62,7 +62,7 @@ limits:
 ",
     );
     assert_snapshot!(monitors(&bench.plan(&["s.xml"])), @"
-    arm.limits.yaml:4:5 Stop elbow position: always(elbow.q >= -2rad and elbow.q <= 1rad)
+    arm.limits.yaml:4:5 Stop elbow position: always(elbow.q >= -2rad and elbow.q <= 60deg)
     arm.limits.yaml:5:5 Error elbow velocity: always(abs(rate(elbow.q)) <= 3)
     arm.limits.yaml:6:5 Error elbow acceleration: always(not(abs(rate(elbow.dq)) <= 40rad/s^2) -> eventually[0,20ms](abs(rate(elbow.dq)) <= 40rad/s^2))
     arm.limits.yaml:7:5 Error elbow torque: always(abs(tau) <= 7Nm)
@@ -123,28 +123,17 @@ profiles:
 }
 
 #[test]
-fn all_problems_of_a_file_are_reported_at_once() {
+fn all_problems_of_keys_are_reported_at_once() {
     let bench = bench(
         "robbot: ä
 model: arm.urdf
 severity: warn
-factor: 1.5
+factor: 0.5
 factor: 0.5
 signals: {position: '{joint}.q', speed: x, torque: tau}
 ignore: [wheel, wrist]
-joints:
-  elbow:
-    position: {signal: elbow.q, rate-of: elbow.q, min: 2kg}
-    velocity: {min: 1, max: fast}
-    temperature: {signal: heat}
-  elbo: {}
-limits:
-  cold: {min: 1}
-  many: {signal: cuont, max: 3, for: ever}
-  range: {signal: range, min: 2m, max: 1m}
-  mixed: {signal: range, min: 2m, max: 300cm}
 profiles:
-  simulation: {ignored: []}
+  simulation: {ignored: [], factor: 1.5}
 ",
     );
     assert_snapshot!(bench.shown(SUITE), @"
@@ -154,8 +143,6 @@ profiles:
       hint: did you mean `robot`?
     invalid-value: `severity` is `warn`, expected one of `fail`, `error`, `stop`, `critical`
       3:11 warn
-    invalid-value: `factor` is `1.5`, expected a number above 0, at most 1
-      4:9 1.5
     duplicate: the key `factor` twice
       5:1 factor the second one
       4:1 factor the first one
@@ -170,45 +157,69 @@ profiles:
     unknown-joint: `arm.urdf` has no joint `wrist` that moves
       7:17 wrist
       note: its joints are `elbow`, `rail`, `wheel`
+    unknown-key: unknown key `ignored`
+      9:16 ignored not known in the file
+      note: the keys are `robot`, `model`, `severity`, `factor`, `signals`, `ignore`, `joints`, `limits`, `profiles`
+      hint: did you mean `ignore`?
+    invalid-value: `factor` is `1.5`, expected a number above 0, at most 1
+      9:37 1.5
+    unknown-profile: there is no profile `simulation` in `rtf.toml`
+      9:3 simulation
+    ");
+}
+
+#[test]
+fn all_problems_of_limits_are_reported_at_once() {
+    let bench = bench(
+        "model: arm.urdf
+factor: 0.5
+joints:
+  elbow:
+    position: {signal: elbow.q, rate-of: elbow.q, min: 2kg}
+    velocity: {min: 1, max: fast}
+    temperature: {signal: heat}
+  elbo: {}
+limits:
+  cold: {min: 1}
+  many: {signal: cuont, max: 3, for: ever}
+  range: {signal: range, min: 2m, max: 1m}
+  mixed: {signal: range, min: 2m, max: 300cm}
+",
+    );
+    assert_snapshot!(bench.shown(SUITE), @"
     conflicting-keys: a limit has `signal` or `rate-of`, not both
-      10:33 rate-of
+      5:33 rate-of
     unit-mismatch: `elbow position`: the units do not match: `rad/s` and `rad`
-      10:42 elbow.q
+      5:42 elbow.q
     unit-mismatch: `elbow position`: the units do not match: `rad/s` and `kg`
-      10:56 2kg
+      5:56 2kg
     incomplete: the limit needs a signal
-      11:5 velocity
+      6:5 velocity
       hint: write `signal: …`, or `velocity` in `signals`
     unknown-key: unknown key `min`
-      11:16 min not known in the limit `velocity`
+      6:16 min not known in the limit `velocity`
       note: the keys are `signal`, `rate-of`, `max`, `for`, `severity`
     invalid-value: `max` is `fast`, expected a number, with or without a unit: `1.05rad`
-      11:29 fast
+      6:29 fast
     incomplete: the limit needs a value
-      12:5 temperature
+      7:5 temperature
       hint: write `max: …`
     unknown-joint: `arm.urdf` has no joint `elbo` that moves
-      13:3 elbo
+      8:3 elbo
       note: its joints are `elbow`, `rail`, `wheel`
       hint: did you mean `elbow`?
     incomplete: the limit needs a signal
-      15:3 cold
+      10:3 cold
       hint: write `signal: …`
     unknown-signal: there is no signal `cuont`
-      16:18 cuont
+      11:18 cuont
       hint: did you mean `count`?
     invalid-value: `for` is `ever`, expected a duration such as `80ms`
-      16:38 ever
+      11:38 ever
     empty-range: `min` is above `max`: 2m > 1m
-      17:40 1m
-    unit-mismatch: `min` and `max` have different units
-      18:40 300cm
-    unknown-key: unknown key `ignored`
-      20:16 ignored not known in the file
-      note: the keys are `robot`, `model`, `severity`, `factor`, `signals`, `ignore`, `joints`, `limits`, `profiles`
-      hint: did you mean `ignore`?
-    unknown-profile: there is no profile `simulation` in `rtf.toml`
-      20:3 simulation
+      12:40 1m
+    unit-mismatch: `factor` needs the same unit for `min` and `max`
+      13:40 300cm
     ");
 }
 

@@ -235,3 +235,46 @@ fn wrong_formulas_are_reported_before_anything_starts() {
         assert!(finished.stderr.contains(text), "{text}: {}", finished.stderr);
     }
 }
+
+const LIMITS: &str = "robot: arm\nsignals: {position: '{joint}'}\nmodel: arm.urdf\n\
+limits:\n  count: {signal: count, max: 100000}\n\
+profiles:\n  simulation:\n    factor: 0.5\n    severity: stop\n";
+const ARM: &str = "<robot name='arm'>\n<joint name='q' type='revolute'>\n\
+<limit lower='-1.4' upper='1.4' velocity='1' effort='1'/></joint></robot>\n";
+
+#[test]
+fn limits_of_a_file_and_a_model_judge_every_test() {
+    let folder = folder(&format!(
+        "{SIGNALS}<envelope file='arm.limits.yaml'/><test param='30'> High.lua </test>"
+    ));
+    folder.file("arm.limits.yaml", LIMITS).file("arm.urdf", ARM);
+    folder.file("rtf.toml", "[profile.simulation]\n");
+    let listed = folder.rtf(&["list", "s.xml", "--monitors"]);
+    let formula = "fail      arm: q position: always(q >= -1.4rad and q <= 1.4rad)  (arm.urdf:3:1)";
+    assert!(listed.stdout.contains(formula), "{}", listed.stdout);
+    let finished = folder.rtf(&["run", "s.xml", "--profile", "simulation"]);
+    assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
+    assert!(finished.stdout.contains("stopping"), "{}", finished.stdout);
+    let journal = folder.journal();
+    let failure = attempt(&journal, 0).failures().next().expect("a failure");
+    let part = "monitor `arm: q position`: `q <= 0.7rad` does not hold at ";
+    assert!(failure.text.starts_with(part), "{}", failure.text);
+    assert!(failure.text.ends_with("q <= 0.7rad)` (limit at arm.urdf:3:1)"), "{}", failure.text);
+    assert_eq!(failure.location.as_ref().unwrap().to_string(), "arm.urdf:3");
+    assert!((robustness(&journal, 0, "arm: q position") + 0.6).abs() < 1e-9);
+    assert!(robustness(&journal, 0, "arm: count") > 0.0);
+    assert!(nothing_left(&folder));
+}
+
+/// Each mistake of the file has its position.
+#[test]
+fn check_reports_all_mistakes_of_limits() {
+    let suite = format!("{SIGNALS}<envelope file='arm.limits.yaml'/><test> Quiet.lua </test>");
+    let folder = folder(&suite);
+    let limits = "limits:\n  a: {signal: Q, max: 1}\n  b: {signal: q, max: 1kg}\n";
+    folder.file("arm.limits.yaml", limits);
+    let finished = folder.rtf(&["check", "s.xml"]);
+    assert_eq!(finished.code, Some(2));
+    assert!(finished.stderr.contains("arm.limits.yaml:2:15"), "{}", finished.stderr);
+    assert!(finished.stderr.contains("arm.limits.yaml:3:23"), "{}", finished.stderr);
+}
