@@ -338,7 +338,7 @@ fn formula(limit: &Limit, bounds: &Bounds) -> String {
                 0 => format!("{}ms", micros / 1000),
                 _ => format!("{micros}us"),
             };
-            format!("always(not({inside}) -> eventually[0,{duration}]({inside}))")
+            format!("always(not({inside}) -> eventually[0,{duration}] ({inside}))")
         }
     }
 }

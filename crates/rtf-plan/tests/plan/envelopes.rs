@@ -64,7 +64,7 @@ limits:
     assert_snapshot!(monitors(&bench.plan(&["s.xml"])), @"
     arm.limits.yaml:4:5 Stop elbow position: always(elbow.q >= -2rad and elbow.q <= 60deg)
     arm.limits.yaml:5:5 Error elbow velocity: always(abs(rate(elbow.q)) <= 3)
-    arm.limits.yaml:6:5 Error elbow acceleration: always(not(abs(rate(elbow.dq)) <= 40rad/s^2) -> eventually[0,20ms](abs(rate(elbow.dq)) <= 40rad/s^2))
+    arm.limits.yaml:6:5 Error elbow acceleration: always(not(abs(rate(elbow.dq)) <= 40rad/s^2) -> eventually[0,20ms] (abs(rate(elbow.dq)) <= 40rad/s^2))
     arm.limits.yaml:7:5 Error elbow torque: always(abs(tau) <= 7Nm)
     arm.limits.yaml:8:5 Error elbow temperature: always(heat <= 60°C)
     arm.limits.yaml:10:3 Critical distance to the wall: always(range >= 0.1m)
