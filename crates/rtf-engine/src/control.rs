@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use rtf_model::{Episode, SuiteId, TestId};
+use rtf_model::{Episode, Respondent, SuiteId, TestId};
 use tokio::sync::watch;
 
 /// How quickly a suite must end.
@@ -45,10 +45,28 @@ pub enum Control {
         /// The user who requested it.
         by: String,
     },
+    /// Answer a question of a running test.
+    Answer {
+        /// The test.
+        test: TestId,
+        /// The answer.
+        reply: QuestionReply,
+    },
     /// Run a further episode: of the only suite, whose plan awaits them.
     Episode(Episode),
     /// No further episode follows.
     EndOfEpisodes,
+}
+
+/// What a person answers to a question.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct QuestionReply {
+    /// The number of the question, as in its event.
+    pub question: u32,
+    /// The answer; `None` declines to answer.
+    pub answer: Option<String>,
+    /// The person.
+    pub by: Respondent,
 }
 
 /// All requests of a run, the oldest first.

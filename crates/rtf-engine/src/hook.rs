@@ -20,6 +20,9 @@ pub const HOOK_NOT_RUN: &str = "it did not run: the end of the run was requested
 /// The problem of a test or hook that provides a value.
 pub const PROVIDED: &str = "values can be provided in the set-up of a fixture only";
 
+/// The problem of a hook that asks a person.
+pub const ASKED: &str = "a hook cannot ask a question: nobody may be there to answer";
+
 /// Returns the parameters of `run-test` for a hook's plug-in.
 pub fn request(suite: &SuitePlan, name: &str, plugin: &PluginPlan) -> Plugin {
     Plugin { is_last: true, ..plugin_request::plugin(suite, name, plugin, 1) }
@@ -77,6 +80,7 @@ impl HookJudgement {
             Notification::Measured(measurement) => measurement.problem(),
             Notification::Sampled(samples) => samples.problem(),
             Notification::Provided { .. } => Some(PROVIDED.to_owned()),
+            Notification::QuestionAsked(_) => Some(ASKED.to_owned()),
             _ => None,
         };
         problem.into_iter().for_each(|problem| self.fail(problem));

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use mlua::{Function, IntoLuaMulti, Lua, LuaString, Table, Value};
-use rtf_host::{Sample, Session};
+use rtf_host::{Inquiry, Sample, Session};
 use rtf_model::protocol::Plugin;
 use rtf_model::{Attachment, Comparison, Location, Measurement, Message, MessageKind};
 
@@ -119,9 +119,9 @@ fn functions(lua: &Lua) -> mlua::Result<Table> {
         Ok(())
     })?;
     add(lua, &host, "wait", |session, seconds: f64| {
-        let duration = Duration::try_from_secs_f64(seconds.max(0.0)).unwrap_or(LONGEST);
-        Ok(session.wait(duration.min(LONGEST)))
+        Ok(session.wait(duration(seconds)))
     })?;
+    add(lua, &host, "ask", |session, asked: Asked| Ok(session.ask(asked.0)))?;
     cases::add_functions(lua, &host)?;
     fixture_values::add_functions(lua, &host)?;
     add(lua, &host, "interrupted", |session, (): ()| Ok(session.interrupted()))?;
@@ -193,6 +193,37 @@ impl mlua::FromLuaMulti for Reported {
             case: None,
         }))
     }
+}
+
+/// `text, choices, timeout, default, picture, file, line`
+struct Asked(Inquiry);
+
+impl mlua::FromLuaMulti for Asked {
+    fn from_lua_multi(values: mlua::MultiValue, lua: &Lua) -> mlua::Result<Self> {
+        type Arguments = (
+            LuaString,
+            Vec<LuaString>,
+            f64,
+            Option<LuaString>,
+            Option<LuaString>,
+            Option<LuaString>,
+            Option<u32>,
+        );
+        let (text, choices, timeout, default, picture, file, line) =
+            Arguments::from_lua_multi(values, lua)?;
+        Ok(Self(Inquiry {
+            text: text.to_string_lossy(),
+            choices: choices.iter().map(LuaString::to_string_lossy).collect(),
+            default: default.as_ref().map(LuaString::to_string_lossy),
+            timeout: duration(timeout),
+            picture: picture.as_ref().map(LuaString::to_string_lossy),
+            location: location(file.as_ref(), line),
+        }))
+    }
+}
+
+fn duration(seconds: f64) -> Duration {
+    Duration::try_from_secs_f64(seconds.max(0.0)).unwrap_or(LONGEST).min(LONGEST)
 }
 
 /// `name, value, unit, low, high, file, line`

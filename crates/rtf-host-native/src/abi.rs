@@ -176,6 +176,31 @@ pub struct rtf_case {
     pub line: u32,
 }
 
+/// A question to a person.
+#[repr(C)]
+#[derive(Debug)]
+pub struct rtf_question {
+    /// `sizeof(rtf_question)`.
+    pub size: usize,
+    /// The text; may have several lines.
+    pub text: rtf_text,
+    /// The possible answers, may be null if `choice_count` is 0: then the answer is any line
+    /// of text.
+    pub choices: *const rtf_text,
+    /// The number of entries of `choices`.
+    pub choice_count: usize,
+    /// The answer if nobody answers, empty if that is an error.
+    pub default_answer: rtf_text,
+    /// How long it waits for an answer, in seconds.
+    pub timeout: f64,
+    /// The path of a PNG or JPEG file, empty for none. It is copied before the call returns.
+    pub picture: rtf_text,
+    /// The source file, null if unknown.
+    pub file: *const c_char,
+    /// The line in it, 0 if unknown.
+    pub line: u32,
+}
+
 /// An attempt of a test.
 #[repr(C)]
 #[derive(Debug)]
@@ -261,6 +286,15 @@ pub struct rtf_host {
     /// `simulator.port`. A value is its text: JSON, except for a text.
     pub fixture_values:
         unsafe extern "C" fn(context: *mut c_void, count: *mut usize) -> *const rtf_parameter,
+    /// Since 1.3: asks a person, and waits; in `setup` and `run` of a test. Returns `RTF_DONE`
+    /// with the answer, which stays valid until the process ends. Returns `RTF_STOPPED` after a
+    /// stop request, and without an answer, which the host has reported as an error: then
+    /// return from the step with `RTF_STOPPED`.
+    pub ask: unsafe extern "C" fn(
+        context: *mut c_void,
+        question: *const rtf_question,
+        answer: *mut rtf_text,
+    ) -> i32,
 }
 
 /// The plug-in's kind and functions. All functions are called on the

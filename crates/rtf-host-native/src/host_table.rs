@@ -4,7 +4,7 @@
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::time::Duration;
 
-use ::rtf_host::{CaseEnd, Sample, Session};
+use ::rtf_host::{CaseEnd, Inquiry, Sample, Session};
 use rtf_model::protocol::{FixtureValue, Plugin};
 use rtf_model::{
     Attachment, Comparison, Location, Measurement, Message, MessageKind, Parameter, value_text,
@@ -13,9 +13,9 @@ use serde_json::Value;
 
 use crate::abi::{
     RTF_ABI_MAJOR, RTF_ABI_MINOR, RTF_DONE, RTF_MESSAGE_CHECK, RTF_MESSAGE_ERROR,
-    RTF_MESSAGE_FAILURE, RTF_MESSAGE_REPORT, RTF_VALUE_JSON, RTF_VALUE_TEXT, rtf_attachment,
-    rtf_case, rtf_comparison, rtf_host, rtf_measurement, rtf_message, rtf_parameter, rtf_sample,
-    rtf_text,
+    RTF_MESSAGE_FAILURE, RTF_MESSAGE_REPORT, RTF_STOPPED, RTF_VALUE_JSON, RTF_VALUE_TEXT,
+    rtf_attachment, rtf_case, rtf_comparison, rtf_host, rtf_measurement, rtf_message,
+    rtf_parameter, rtf_question, rtf_sample, rtf_text,
 };
 
 /// The context of the functions: one per plug-in, never freed, because the plug-in's
@@ -60,6 +60,7 @@ pub(crate) fn for_plugin(session: &Session, plugin: &Plugin) -> &'static rtf_hos
         parameters: self::parameters,
         provide,
         fixture_values: self::fixture_values,
+        ask,
     }))
 }
 
@@ -172,10 +173,41 @@ unsafe extern "C" fn interrupted(context: *mut c_void) -> c_int {
 }
 
 unsafe extern "C" fn wait(context: *mut c_void, seconds: f64) -> c_int {
-    let at_least_zero = if seconds > 0.0 { seconds } else { 0.0 };
-    let duration = Duration::try_from_secs_f64(at_least_zero).unwrap_or(Duration::MAX);
     // SAFETY: the context is that of the table.
-    c_int::from(unsafe { self::context(context) }.session.wait(duration))
+    c_int::from(unsafe { self::context(context) }.session.wait(duration(seconds)))
+}
+
+fn duration(seconds: f64) -> Duration {
+    let at_least_zero = if seconds > 0.0 { seconds } else { 0.0 };
+    Duration::try_from_secs_f64(at_least_zero).unwrap_or(Duration::MAX)
+}
+
+unsafe extern "C" fn ask(
+    context: *mut c_void,
+    question: *const rtf_question,
+    answer: *mut rtf_text,
+) -> i32 {
+    // SAFETY: the pointers are valid by spec/plugin-abi.md.
+    unsafe {
+        let question = &*question;
+        let choices = slice(question.choices, question.choice_count);
+        let given = |value: rtf_text| Some(text(value)).filter(|value| !value.is_empty());
+        let answered = self::context(context).session.ask(Inquiry {
+            text: text(question.text),
+            choices: choices.iter().map(|choice| text(*choice)).collect(),
+            default: given(question.default_answer),
+            timeout: duration(question.timeout),
+            picture: given(question.picture),
+            location: location(question.file, question.line),
+        });
+        match answered {
+            Some(text) => {
+                *answer = lend(String::leak(text));
+                RTF_DONE
+            }
+            None => RTF_STOPPED,
+        }
+    }
 }
 
 unsafe extern "C" fn name(context: *mut c_void) -> rtf_text {

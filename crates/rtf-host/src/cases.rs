@@ -251,6 +251,10 @@ impl Cases {
 
     /// Whether this process was forked by the plug-in: it reports no cases and provides no
     /// values.
+    pub(crate) fn may_ask(&self) -> bool {
+        self.settings.read().unwrap_or_else(PoisonError::into_inner).may_plan_or_skip()
+    }
+
     pub(crate) fn is_forked_child(&self) -> bool {
         getpid() != self.process
     }

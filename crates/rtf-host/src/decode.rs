@@ -90,6 +90,7 @@ pub fn decode(line: &[u8]) -> Incoming {
         "tear-down-fixture" => Ok(Request::TearDownFixture {}),
         "interrupt" => parse::<Interrupt>(params)
             .map(|p| Request::Interrupt { reason: p.reason, request: p.request }),
+        "question-closed" => parse(params).map(Request::QuestionClosed),
         "dump-stack" => Ok(Request::DumpStack {}),
         unknown => return refused(id, METHOD_NOT_FOUND, format!("unknown method `{unknown}`")),
     };
@@ -112,7 +113,7 @@ fn refused(id: Option<u64>, code: i32, message: String) -> Incoming {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rtf_model::protocol::{Initialize, Plugin, RpcMessage};
+    use rtf_model::protocol::{Initialize, Plugin, QuestionEnd, RpcMessage};
 
     fn code(line: &str) -> (Option<u64>, i32) {
         match decode(line.as_bytes()) {
@@ -132,6 +133,11 @@ mod tests {
             Request::CheckFixture {},
             Request::TearDownFixture {},
             Request::Interrupt { reason: "Ctrl-C".into(), request: None },
+            Request::QuestionClosed(QuestionEnd {
+                question: 1,
+                answer: Some("yes".into()),
+                problem: None,
+            }),
             Request::DumpStack {},
         ];
         for request in requests {

@@ -30,4 +30,4 @@ pub use plugin::{HostPlugin, LoadError, PluginKind, Reaction, Step, StepEnd, Tes
 pub use program::HostProgram;
 pub use sampling::Sample;
 pub use serve::serve;
-pub use session::{OpenError, Session};
+pub use session::{Inquiry, OpenError, Session};

@@ -63,6 +63,7 @@ impl Reader {
                         stop(&self.session);
                     }
                 }
+                Some(Request::QuestionClosed(end)) => self.session.end_question(end),
                 Some(Request::DumpStack {}) => {
                     if let Some(dump) = &self.dumper {
                         dump(&self.session);

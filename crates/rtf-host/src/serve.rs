@@ -112,7 +112,10 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
             }
             Request::TearDownFixture {} => self.tear_down_fixture(),
             // Handled by the reader.
-            Request::Initialize(_) | Request::Interrupt { .. } | Request::DumpStack {} => {}
+            Request::Initialize(_)
+            | Request::Interrupt { .. }
+            | Request::QuestionClosed(_)
+            | Request::DumpStack {} => {}
         }
         // The runner may close the channel as soon as it has the answer. That ends the
         // process at once only if a fixture is still set up.

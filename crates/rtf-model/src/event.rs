@@ -25,8 +25,8 @@ pub use self::process::{ExitStatus, LeakedProcess, Output, Source, Stream, signa
 pub use self::provided::{FixtureProvided, value_text};
 pub use self::test::{Phase, StopCause, TestFinished};
 use crate::{
-    Attachment, Diagnostic, FixtureId, HookId, Measurement, Message, Micros, Samples, SuiteId,
-    SuitePrepared, TestId, Usage,
+    Attachment, Diagnostic, FixtureId, HookId, Measurement, Message, Micros, QuestionAsked,
+    QuestionClosed, Samples, SuiteId, SuitePrepared, TestId, Usage,
 };
 
 /// One event of a run.
@@ -206,6 +206,10 @@ pub enum EventKind {
     CaseStarted(Box<CaseStarted>),
     /// A case has finished.
     CaseFinished(CaseFinished),
+    /// A test asks a person a question. `question-closed` is the matching end.
+    QuestionAsked(Box<QuestionAsked>),
+    /// A question was answered, or nobody can answer it any more.
+    QuestionClosed(QuestionClosed),
     /// A process printed output.
     Output(Output),
     /// A test has exceeded its `slow` limit. It continues.

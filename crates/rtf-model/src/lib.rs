@@ -18,6 +18,7 @@ mod manifest;
 mod order;
 mod private_resources;
 pub mod protocol;
+mod question;
 mod record;
 mod report;
 mod samples;
@@ -40,10 +41,11 @@ pub use journal::{Damage, EventCheck, LineCheck, LineChecker, LineSealer, Stream
 pub use manifest::{Manifest, Origin, Revision};
 pub use order::{OrderChecker, OrderError};
 pub use private_resources::{SuiteNetwork, SuitePort, SuitePrepared, SuiteVariable};
+pub use question::{AnswerChannel, Question, QuestionAsked, QuestionClosed, Respondent};
 pub use record::{
     AttemptCases, AttemptCounts, AttemptRecord, CaseRecord, EpisodeOutcome, EpisodeRecord,
     FixtureLife, FixtureRecord, FixtureState, HookRecord, HookRunRecord, HostRecord, PlannedCases,
-    Record, RunState, SignalSummary, SuiteRecord, TestRecord, TestTotals,
+    QuestionRecord, Record, RunState, SignalSummary, SuiteRecord, TestRecord, TestTotals,
 };
 pub use report::{
     Attachment, Comparison, Location, Measurement, Message, MessageKind, format_number,

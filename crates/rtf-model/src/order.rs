@@ -5,6 +5,7 @@ mod cases;
 mod concurrency;
 mod episodes;
 mod progress;
+mod questions;
 mod shared_hosts;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -127,6 +128,8 @@ impl OrderChecker {
             | EventKind::Sampled { .. }
             | EventKind::Measured { .. }
             | EventKind::Attached { .. }
+            | EventKind::QuestionAsked(_)
+            | EventKind::QuestionClosed(_)
             | EventKind::Message { .. } => self.check_report(kind),
             EventKind::TestPhase { test, .. }
             | EventKind::TestSlow { test }
@@ -157,6 +160,8 @@ impl OrderChecker {
             EventKind::CasesPlanned { test, .. } => self.before_verdict(*test),
             EventKind::CaseStarted(started) => self.start_case(started),
             EventKind::CaseFinished(end) => self.finish_case(end),
+            EventKind::QuestionAsked(asked) => self.ask(asked),
+            EventKind::QuestionClosed(closed) => self.close_question(closed),
             EventKind::Sampled { test, samples } => {
                 self.inside_test(*test)?;
                 self.inside_case(*test, samples.case)

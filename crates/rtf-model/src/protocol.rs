@@ -15,7 +15,7 @@ use serde_json::Value;
 pub use self::rpc::{Reply, RpcError, RpcMessage};
 use crate::{
     Attachment, CaseId, CaseStart, Finding, Measurement, Message, Outcome, Parameter, Phase,
-    Samples, TestId, Verdict,
+    Question, Samples, TestId, Verdict,
 };
 
 /// The protocol version of this crate. Runner and host must agree on it.
@@ -125,6 +125,8 @@ pub enum Request {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         request: Option<u64>,
     },
+    /// A notification: the end of a question, unless the test is stopped.
+    QuestionClosed(QuestionEnd),
     /// A notification: send [`Notification::Stack`] if possible.
     DumpStack {},
 }
@@ -133,8 +135,25 @@ impl Request {
     /// Whether the host answers it.
     #[must_use]
     pub fn is_answered(&self) -> bool {
-        !matches!(self, Self::Interrupt { .. } | Self::DumpStack {})
+        !matches!(
+            self,
+            Self::Interrupt { .. } | Self::QuestionClosed(_) | Self::DumpStack {}
+        )
     }
+}
+
+/// The end of a question.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct QuestionEnd {
+    /// The number that the host has given it.
+    pub question: u32,
+    /// The answer.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub answer: Option<String>,
+    /// Why there is no answer: an error of the test.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub problem: Option<String>,
 }
 
 /// The first request.
@@ -404,6 +423,9 @@ pub enum Notification {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         duration_us: Option<u64>,
     },
+    /// A test asks a person a question. Ends with [`Request::QuestionClosed`] or
+    /// [`Request::Interrupt`].
+    QuestionAsked(Question),
     /// A fixture provides a value for tests, hooks and other fixtures, in its set-up.
     Provided {
         /// The name of the value.

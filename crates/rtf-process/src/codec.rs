@@ -100,7 +100,8 @@ pub fn decode_other(line: &[u8]) -> Option<Result<HostMessage, String>> {
             | Notification::Stack { .. }
             | Notification::CasesPlanned { .. }
             | Notification::CaseStarted(_)
-            | Notification::CaseFinished { .. },
+            | Notification::CaseFinished { .. }
+            | Notification::QuestionAsked(_),
         )) => None,
         Ok(HostMessage::Notification(_)) | Err(_) => Some(decoded),
     }

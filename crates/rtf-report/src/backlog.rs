@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use rtf_model::{CaseStart, Event, EventKind, Source};
+use rtf_model::{CaseStart, Event, EventKind, Question, Source};
 
 /// Approximate memory of an event without its texts, in bytes.
 const EVENT_BYTES: usize = 200;
@@ -87,6 +87,11 @@ fn size(kind: &EventKind) -> Option<(Source, usize)> {
         }
         EventKind::CaseFinished(end) => {
             (Source::Test(end.test), end.reason.as_ref().map_or(0, String::len))
+        }
+        EventKind::QuestionAsked(asked) => {
+            let Question { text, choices, .. } = &asked.question;
+            let choices: usize = choices.iter().map(String::len).sum();
+            (Source::Test(asked.test), text.len() + choices)
         }
         _ => return None,
     };

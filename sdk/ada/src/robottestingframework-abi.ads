@@ -95,6 +95,18 @@ private package RobotTestingFramework.ABI is
       Media_Type : Text;
    end record with Convention => C;
 
+   type Question is record
+      Size           : Interfaces.C.size_t;
+      Content        : Text;
+      Choices        : Address;
+      Choice_Count   : Interfaces.C.size_t;
+      Default_Answer : Text;
+      Timeout        : Interfaces.C.double;
+      Picture        : Text;
+      File           : Address;
+      Line           : Interfaces.Unsigned_32;
+   end record with Convention => C;
+
    type Test is record
       Size       : Interfaces.C.size_t;
       Id         : Interfaces.Unsigned_32;
@@ -144,6 +156,11 @@ private package RobotTestingFramework.ABI is
      (Context : Address; Name : Text; Kind : Interfaces.Integer_32; Value : Text)
      with Convention => C;
 
+   type Ask_Question is access function
+     (Context : Address; Value : Question; Answer : not null access Text)
+      return Interfaces.Integer_32
+     with Convention => C;
+
    type Host_Table is record
       Major       : Interfaces.Unsigned_32;
       Minor       : Interfaces.Unsigned_32;
@@ -167,6 +184,7 @@ private package RobotTestingFramework.ABI is
       Parameters  : Tell_Parameters;
       Provide     : Take_Value;
       Values      : Tell_Parameters;
+      Ask         : Ask_Question;
    end record with Convention => C;
 
    type Host_Access is access constant Host_Table with Convention => C;

@@ -17,16 +17,6 @@ package body RobotTestingFramework.Cases is
    function Named (Name : String; Value : Integer) return Named_Value is
      (Named (Name, Ada.Strings.Fixed.Trim (Value'Image, Ada.Strings.Left)));
 
-   --  The next text of this length in a string that outlives the result.
-   procedure Lend
-     (Content : aliased String; Next : in out Positive; Length : Natural; Text : out ABI.Text) is
-   begin
-      Text :=
-        (Data   => (if Length = 0 then System.Null_Address else Content (Next)'Address),
-         Length => Interfaces.C.size_t (Length));
-      Next := Next + Length;
-   end Lend;
-
    --  Starts a case, and returns whether it runs.
    function Starts
      (Table      : not null ABI.Host_Access;
@@ -48,8 +38,8 @@ package body RobotTestingFramework.Cases is
          Values      : array (Parameters'Range) of aliased ABI.Parameter;
       begin
          for Index in Parameters'Range loop
-            Lend (Content, Next, Length (Parameters (Index).Name), Values (Index).Name);
-            Lend (Content, Next, Length (Parameters (Index).Value), Values (Index).Value);
+            Host.Lend (Content, Next, Length (Parameters (Index).Name), Values (Index).Name);
+            Host.Lend (Content, Next, Length (Parameters (Index).Value), Values (Index).Value);
          end loop;
          return Table.Case_Begin
            (Table.Context,
@@ -104,7 +94,7 @@ package body RobotTestingFramework.Cases is
          Texts   : array (Names'Range) of aliased ABI.Text;
       begin
          for Index in Names'Range loop
-            Lend (Content, Next, Length (Names (Index)), Texts (Index));
+            Host.Lend (Content, Next, Length (Names (Index)), Texts (Index));
          end loop;
          Table.Plan_Cases (Table.Context, Texts'Address, Texts'Length);
       end;

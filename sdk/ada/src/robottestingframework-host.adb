@@ -75,6 +75,15 @@ package body RobotTestingFramework.Host is
       return (if Content.Length = 0 then "" else Bytes);
    end To_Ada;
 
+   procedure Lend
+     (Content : aliased String; Next : in out Positive; Length : Natural; Text : out ABI.Text) is
+   begin
+      Text :=
+        (Data   => (if Length = 0 then System.Null_Address else Content (Next)'Address),
+         Length => Interfaces.C.size_t (Length));
+      Next := Next + Length;
+   end Lend;
+
    function Print
      (Buffer : System.Address; Size : size_t; Format : char_array; Value : double) return int
      with Import, Convention => C_Variadic_3, External_Name => "snprintf";

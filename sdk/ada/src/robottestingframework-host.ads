@@ -29,6 +29,10 @@ private package RobotTestingFramework.Host is
    function To_C (Content : aliased String) return ABI.Text;
    function To_Ada (Content : ABI.Text) return String;
 
+   --  The next text of this length in a string that outlives the result.
+   procedure Lend
+     (Content : aliased String; Next : in out Positive; Length : Natural; Text : out ABI.Text);
+
    --  A number like C's %.6g, as in all SDKs (see conformance/texts.json).
    function Image (Number : Long_Float) return String;
 

@@ -13,16 +13,17 @@ package body RobotTestingFramework.Session is
 
    use type Interfaces.C.int;
    use type Interfaces.C.size_t;
+   use type Interfaces.Integer_32;
    use type Interfaces.Unsigned_32;
 
    Poll : constant Duration := 0.01;
 
-   function Ask (Tell : not null ABI.Tell_Text) return String is
+   function Told (Tell : not null ABI.Tell_Text) return String is
      (Host.To_Ada (Tell (Host.Table.Context)));
 
-   function Name return String is (Ask (Host.Table.Name));
+   function Name return String is (Told (Host.Table.Name));
 
-   function Parameters return String is (Ask (Host.Table.Param));
+   function Parameters return String is (Told (Host.Table.Param));
 
    function Listed
      (List : not null ABI.Tell_Parameters; Context : ABI.Address) return Cases.Named_Values
@@ -85,7 +86,7 @@ package body RobotTestingFramework.Session is
         (Listed (Table.Values, Table.Context), Name, "fixture value", "there are", File, Line);
    end Fixture_Value;
 
-   function Environment return String is (Ask (Host.Table.Environment));
+   function Environment return String is (Told (Host.Table.Environment));
 
    function Argument_Count return Natural is (Process.Argument_Count);
 
@@ -245,6 +246,73 @@ package body RobotTestingFramework.Session is
       end loop;
       Sleep (Time - Passed);
    end Sample_For;
+
+   function Ask
+     (Question : String;
+      Choices  : Cases.Case_Names := No_Choices;
+      Timeout  : Duration         := Answer_Time;
+      Default  : String           := "";
+      Picture  : String           := "";
+      File     : String           := Source.File;
+      Line     : Natural          := Source.Line) return String
+   is
+      Table         : constant not null ABI.Host_Access :=
+        Host.Table_Since_1_3 ("questions", File, Line);
+      Question_Text : aliased constant String := Question;
+      Default_Text  : aliased constant String := Default;
+      Picture_Text  : aliased constant String := Picture;
+      Source_Text   : aliased constant String := File & ASCII.NUL;
+      Given         : aliased ABI.Text;
+      All_Choices   : Unbounded_String;
+   begin
+      for Choice of Choices loop
+         Append (All_Choices, Choice);
+      end loop;
+      declare
+         Content : aliased constant String := To_String (All_Choices);
+         Next    : Positive                := 1;
+         Texts   : array (Choices'Range) of aliased ABI.Text;
+      begin
+         for Index in Choices'Range loop
+            Host.Lend (Content, Next, Length (Choices (Index)), Texts (Index));
+         end loop;
+         if Table.Ask
+           (Table.Context,
+            (Size           => ABI.Question'Size / System.Storage_Unit,
+             Content        => Host.To_C (Question_Text),
+             Choices        => Texts'Address,
+             Choice_Count   => Texts'Length,
+             Default_Answer => Host.To_C (Default_Text),
+             Timeout        => Interfaces.C.double (Timeout),
+             Picture        => Host.To_C (Picture_Text),
+             File           => Source_Text'Address,
+             Line           => Interfaces.Unsigned_32 (Line)),
+            Given'Access) = ABI.Done
+         then
+            return Host.To_Ada (Given);
+         elsif Interrupted then
+            raise Stop_Requested;
+         else
+            --  The host has reported the error.
+            raise Assertion_Ended with "no answer to """ & Question & """";
+         end if;
+      end;
+   end Ask;
+
+   procedure Instruct
+     (Text    : String;
+      Picture : String   := "";
+      Timeout : Duration := Answer_Time;
+      Default : String   := "";
+      File    : String   := Source.File;
+      Line    : Natural  := Source.Line)
+   is
+      Answers : constant Cases.Case_Names := (Cases."+" ("done"), Cases."+" ("cannot"));
+   begin
+      if Ask (Text, Answers, Timeout, Default, Picture, File, Line) /= "done" then
+         Asserter.Error ("the operator cannot do this: " & Text, File, Line);
+      end if;
+   end Instruct;
 
    procedure Attach (Path : String; Name : String := ""; Media_Type : String := "") is
       Table      : constant not null ABI.Host_Access := Host.Table;

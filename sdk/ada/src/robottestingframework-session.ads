@@ -103,6 +103,35 @@ package RobotTestingFramework.Session is
       File      : String     := Source.File;
       Line      : Natural    := Source.Line);
 
+   --  Answers that are not limited.
+   No_Choices : constant Cases.Case_Names (1 .. 0) := (others => <>);
+
+   --  How long a question waits for an answer.
+   Answer_Time : constant Duration := 300.0;
+
+   --  Asks a person, on the console, the page or the API, and returns the answer: one of
+   --  Choices, or without them any line of text: Ask ("Closed?", (+"yes", +"no")). If nobody
+   --  answers in this time, or nobody can, it is Default; without a default, this is an error.
+   --  Picture is a PNG or JPEG file. The time limit of the test is paused meanwhile.
+   function Ask
+     (Question : String;
+      Choices  : Cases.Case_Names := No_Choices;
+      Timeout  : Duration         := Answer_Time;
+      Default  : String           := "";
+      Picture  : String           := "";
+      File     : String           := Source.File;
+      Line     : Natural          := Source.Line) return String;
+
+   --  Gives a person an instruction, and waits until it is done. The answers are "done" and
+   --  "cannot", which is an error; Default is one of them.
+   procedure Instruct
+     (Text    : String;
+      Picture : String   := "";
+      Timeout : Duration := Answer_Time;
+      Default : String   := "";
+      File    : String   := Source.File;
+      Line    : Natural  := Source.Line);
+
    --  Adds a copy of a complete file to the results. The default name is the file's.
    procedure Attach (Path : String; Name : String := ""; Media_Type : String := "");
 

@@ -325,6 +325,45 @@ function rtf.wait_until(condition, timeout, what)
   end
 end
 
+-- How long a question waits for an answer.
+local ANSWER_SECONDS = 300
+
+-- Asks a person for a function that the plug-in called.
+local function ask(what, choices, timeout, default, picture)
+  timeout = timeout == nil and ANSWER_SECONDS or timeout
+  if not math.type(timeout) then
+    error(("the timeout of a question is not a number of seconds: %s"):format(tostring(timeout)), 3)
+  end
+  local file, line = guard.location(3)
+  local answer = host.ask(tostring(what), choices, timeout, default and tostring(default),
+    picture and tostring(picture), file, line)
+  if answer == nil then
+    unwind()
+  end
+  return answer, file, line
+end
+
+function rtf.ask(question, choices, timeout, default, picture)
+  choices = choices == nil and {} or choices
+  if type(choices) ~= "table" then
+    error(("the choices of a question are not a table: %s"):format(tostring(choices)), 2)
+  end
+  local texts = {}
+  for index, choice in ipairs(choices) do
+    texts[index] = tostring(choice)
+  end
+  local answer = ask(question, texts, timeout, default, picture)
+  return answer
+end
+
+function rtf.instruct(what, picture, timeout, default)
+  local answer, file, line = ask(what, { "done", "cannot" }, timeout, default, picture)
+  if answer ~= "done" then
+    host.message("error", "the operator cannot do this: " .. tostring(what), file, line, nil, false)
+    unwind()
+  end
+end
+
 rtf.interrupted = host.interrupted
 
 function rtf.collapsed(reason)

@@ -5,6 +5,11 @@ from __future__ import annotations
 import os
 import stat
 
+# As `typing.TYPE_CHECKING`, without the time that its import takes.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from rtf._session import Session
+
 _CHUNK_BYTES = 1 << 20
 
 
@@ -19,6 +24,15 @@ def check(path: str) -> None:
     types = {stat.S_IFDIR: "a directory", stat.S_IFIFO: "a FIFO"}
     file_type = types.get(stat.S_IFMT(mode), "a device or a socket")
     raise OSError(f"`{path}` cannot be attached: it is {file_type}, not a file")
+
+
+def attach(session: Session, path: str, name: str, media_type: str) -> str:
+    """Attach a file, and return the path of the copy."""
+    if session.task.attachments_dir:
+        path = copy(path, name, session.task.attachments_dir)
+    params: dict[str, object] = {"name": name, "path": path, "media_type": media_type}
+    session.notify_in_case("attached", params)
+    return path
 
 
 def copy(path: str, name: str, directory: str) -> str:

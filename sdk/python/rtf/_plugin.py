@@ -142,11 +142,7 @@ class Plugin:
         full = os.path.abspath(os.fspath(path))
         _attachment.check(full)
         name = name or os.path.basename(full)
-        session = _session.current()
-        if session.task.attachments_dir:
-            full = _attachment.copy(full, name, session.task.attachments_dir)
-        params: dict[str, object] = {"name": name, "path": full, "media_type": media_type or ""}
-        session.notify_in_case("attached", params)
+        _attachment.attach(_session.current(), full, name, media_type or "")
 
 
 def limit_of(name: str, limit: float | None) -> float | None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import os
 import threading
+from queue import SimpleQueue
 
 from rtf import _location
 from rtf._cases import Cases
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
             """Announce it."""
 
     _Value = TypeVar("_Value")
+    # An answer, or `None` and the problem.
+    QuestionEnd = tuple[str | None, str]
 
 
 class RequestState:
@@ -47,6 +50,8 @@ class RequestState:
         self._stop = threading.Event()
         self._stop_reason = ""
         self._is_signal_announced = False
+        # The ends of questions that threads of the plug-in wait for; `None` is a stop request.
+        self._questions: dict[int, SimpleQueue[QuestionEnd | None]] = {}
 
     def record(self, outcome: str, reason: str | None = None) -> None:
         """Record a problem; only the first one counts."""
@@ -73,6 +78,8 @@ class RequestState:
         self.record("interrupted", reason)
         self._stop_reason = reason
         self._stop.set()
+        for end in list(self._questions.values()):
+            end.put(None)
 
     def clear_stop(self) -> None:
         """Reset the request, so that a tear-down can wait until the runner asks again."""
@@ -85,6 +92,23 @@ class RequestState:
     def wait_for_stop(self, seconds: float) -> bool:
         """Wait for a stop request, for at most `seconds`."""
         return self._stop.wait(seconds)
+
+    def open_question(self, number: int) -> None:
+        """Expect the end of a question."""
+        self._questions[number] = SimpleQueue()
+
+    def close_question(self, number: int, answer: str | None, problem: str) -> None:
+        """Record the answer to a question, or the problem that there is none."""
+        end = self._questions.get(number)
+        if end is not None:
+            end.put((answer, problem))
+
+    def wait_for_answer(self, number: int) -> QuestionEnd | None:
+        """Wait for the end of a question; `None` after a stop request."""
+        try:
+            return None if self.stop_requested() else self._questions[number].get()
+        finally:
+            del self._questions[number]
 
     def announce_signal(self) -> None:
         """Announce the signal that ends a plug-in that does not poll the request."""
@@ -177,12 +201,12 @@ class Session:
         if case is not None:
             case.skip(reason)
             return
-        self._require_setup_or_run("`skip` is allowed in `setup` and `run` only")
+        self.require_setup_or_run("`skip` is allowed in `setup` and `run` only")
         self.request.skip(reason)
 
     def plan_cases(self, names: list[str]) -> None:
         """Announce those of the cases that are selected."""
-        self._require_setup_or_run("cases are planned in `setup` and `run` only")
+        self.require_setup_or_run("cases are planned in `setup` and `run` only")
         self.cases.plan([name for name in names if self.task.selects(name)])
 
     def value_of(self, values: dict[str, _Value], name: str, problem: str) -> _Value:
@@ -198,7 +222,8 @@ class Session:
         if not self.cases.is_forked():
             self.notify("provided", {"name": name, "value": value})
 
-    def _require_setup_or_run(self, text: str) -> None:
+    def require_setup_or_run(self, text: str) -> None:
+        """Report an error in any other step."""
         if self.phase not in {"setup", "run"}:
             self.error(text)
             raise AssertionEnded(text)

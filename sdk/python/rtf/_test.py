@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
 
-from rtf import _clock, _session
+from rtf import _clock, _questions, _session
 from rtf._cases import Case
 from rtf._near import Comparison
 from rtf._plugin import Plugin, limit_of
@@ -13,7 +14,7 @@ from rtf._stop import AssertionEnded, CriticalAssertionEnded, Skipped
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
     from typing import Any, Callable, NoReturn
 
 
@@ -56,6 +57,41 @@ class TestCase(Plugin):
         """End the innermost case, otherwise the test, as skipped: the bench lacks something."""
         _session.current().skip(str(reason))
         raise Skipped(str(reason))
+
+    def ask(
+        self,
+        question: object,
+        choices: Sequence[object] = (),
+        timeout: float = _questions.ANSWER_SECONDS,
+        default: object | None = None,
+        picture: str | os.PathLike[str] | None = None,
+    ) -> str:
+        """Ask a person, on the console, the page or the API, and return the answer.
+
+        It is one of `choices`, or without them any line of text. If nobody answers within
+        `timeout` seconds, or nobody can, it is `default`; without a default, this is an error.
+        `picture` is a PNG or JPEG file. The time limit of the test is paused meanwhile.
+        """
+        if isinstance(choices, str):
+            raise TypeError("`ask` needs a list of choices, not a text")
+        answer = None if default is None else str(default)
+        path = None if picture is None else os.fspath(picture)
+        return _questions.ask(str(question), [str(it) for it in choices], timeout, answer, path)
+
+    def instruct(
+        self,
+        text: object,
+        picture: str | os.PathLike[str] | None = None,
+        timeout: float = _questions.ANSWER_SECONDS,
+        default: object | None = None,
+    ) -> None:
+        """Give a person an instruction, and wait until it is done.
+
+        The answers are `done` and `cannot`, which is an error. `default` is one of them, as
+        in `ask`.
+        """
+        if self.ask(text, ("done", "cannot"), timeout, default, picture) != "done":
+            self.error(f"the operator cannot do this: {text}")
 
     @property
     def parameters(self) -> dict[str, str]:

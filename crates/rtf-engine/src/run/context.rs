@@ -23,6 +23,8 @@ pub struct RunContext {
     pub guard: Arc<Link>,
     /// How the only test is debugged.
     pub debug: Option<DebugOptions>,
+    /// Why nobody can answer questions of tests, if nobody can.
+    pub unattended: Option<String>,
 }
 
 /// How the only test of a run is debugged, see `spec/debugging.md`.

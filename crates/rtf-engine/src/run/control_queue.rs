@@ -14,12 +14,13 @@ pub struct ControlQueue {
 
 impl ControlQueue {
     /// Creates the queue of a suite that starts, and returns earlier requests. Those to stop its
-    /// tests are ignored.
+    /// tests, and answers, are ignored.
     pub fn new(mut controls: Controls, suite: &SuitePlan) -> (Self, Vec<Input>) {
         let earlier = controls.borrow_and_update().clone();
         let handled = earlier.len();
         let inputs = earlier.into_iter().filter_map(|control| input(control, suite));
-        let inputs = inputs.filter(|input| !matches!(input, Input::StopTest(..))).collect();
+        let is_of_test = |input: &Input| matches!(input, Input::StopTest(..) | Input::Answer(..));
+        let inputs = inputs.filter(|input| !is_of_test(input)).collect();
         (Self { controls, handled }, inputs)
     }
 
@@ -52,6 +53,10 @@ fn input(control: Control, suite: &SuitePlan) -> Option<Input> {
         Control::StopTest { test, by } => {
             let is_of_suite = suite.tests.iter().any(|plan| plan.id == test);
             is_of_suite.then_some(Input::StopTest(test, by))
+        }
+        Control::Answer { test, reply } => {
+            let is_of_suite = suite.tests.iter().any(|plan| plan.id == test);
+            is_of_suite.then_some(Input::Answer(test, reply))
         }
         Control::Episode(episode) => Some(Input::Episode(Some(episode))),
         Control::EndOfEpisodes => Some(Input::Episode(None)),

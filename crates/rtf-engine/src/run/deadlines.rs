@@ -1,12 +1,12 @@
 //! The deadlines of a suite. Those of a throttled process are paused: a slow disk must not fail
-//! a test.
+//! a test. The limits of a test that waits for a person are paused, too.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::time::Duration;
 
-use rtf_model::Source;
+use rtf_model::{Source, TestId};
 
-use super::machine::{Deadline, HostId};
+use super::machine::{Deadline, HostId, TestTimer};
 use rtf_plan::plan::SuitePlan;
 
 /// The pending deadlines, as times of the run.
@@ -17,6 +17,8 @@ pub(super) struct Deadlines {
     paused: HashMap<HostId, (Source, Duration)>,
     /// Hosts that are being stopped: their deadlines are not paused.
     stopping: HashSet<HostId>,
+    /// The tests that wait for an answer of a person, and since when: their limits are paused.
+    asking: BTreeMap<TestId, Duration>,
 }
 
 impl Deadlines {
@@ -77,8 +79,28 @@ impl Deadlines {
         self.stopping.remove(&host);
     }
 
+    /// Pauses the limits of a test, which asks a person a question.
+    pub(super) fn pause_limits(&mut self, test: TestId, now: Duration) {
+        self.asking.entry(test).or_insert(now);
+    }
+
+    /// Resumes the limits of a test.
+    pub(super) fn resume_limits(&mut self, test: TestId, now: Duration) {
+        let Some(since) = self.asking.remove(&test) else { return };
+        let late = now.saturating_sub(since);
+        for timer in [TestTimer::Limit, TestTimer::Slow] {
+            self.at.get_mut(&Deadline::Test(test, timer)).into_iter().for_each(|at| *at += late);
+        }
+    }
+
     fn is_paused(&self, deadline: Deadline, plan: &SuitePlan) -> bool {
-        self.paused.values().any(|(source, _)| is_of(deadline, *source, plan))
+        let is_asking = match deadline {
+            Deadline::Test(test, TestTimer::Limit | TestTimer::Slow) => {
+                self.asking.contains_key(&test)
+            }
+            _ => false,
+        };
+        is_asking || self.paused.values().any(|(source, _)| is_of(deadline, *source, plan))
     }
 }
 
@@ -94,10 +116,7 @@ fn is_of(deadline: Deadline, source: Source, plan: &SuitePlan) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use rtf_model::TestId;
-
     use super::*;
-    use crate::run::machine::TestTimer;
     use crate::run::machine::tests::world::suite;
 
     const SECOND: Duration = Duration::from_secs(1);
@@ -134,5 +153,18 @@ mod tests {
         deadlines.set(limit(1), 7 * SECOND);
         deadlines.pause(HOST, Source::Test(TestId(1)), 6 * SECOND);
         assert!(deadlines.take(limit(1), 7 * SECOND, &plan));
+    }
+
+    #[test]
+    fn the_time_of_a_person_does_not_count() {
+        let (mut deadlines, plan) = (two(), suite(0, 3));
+        let answer = Deadline::Test(TestId(1), TestTimer::Question(1));
+        deadlines.set(answer, 9 * SECOND);
+        deadlines.pause_limits(TestId(1), 2 * SECOND);
+        assert_eq!(deadlines.passed(9 * SECOND, &plan), [answer, limit(2)]);
+        deadlines.resume_limits(TestId(1), 8 * SECOND);
+        deadlines.clear(answer);
+        assert_eq!(deadlines.passed(11 * SECOND - SECOND / 2, &plan), [limit(2)]);
+        assert!(deadlines.take(limit(1), 11 * SECOND, &plan));
     }
 }

@@ -33,7 +33,7 @@ use plugin_hash::PluginHashes;
 use suite_queue::SuiteQueue;
 use suite_task::SuiteRequests;
 
-pub use crate::control::{Control, Controls, Stop, StopLevel};
+pub use crate::control::{Control, Controls, QuestionReply, Stop, StopLevel};
 pub use crate::events::{EventSink, Events};
 use crate::guard::Link;
 use crate::isolate::PreparedSuite;
@@ -72,6 +72,8 @@ pub struct RunOptions {
     pub locks: LockOptions,
     /// How the only test is debugged.
     pub debug: Option<DebugOptions>,
+    /// Why nobody can answer questions of tests, if nobody can.
+    pub unattended: Option<String>,
 }
 
 /// Runs every suite of a plan.
@@ -96,6 +98,7 @@ pub async fn execute(
         scratch_dir: scratch.clone(),
         guard: options.guard.clone(),
         debug: options.debug,
+        unattended: options.unattended,
     };
     let events = Events::new(options.started.run.clone(), sink);
     options.guard.run_started(&options.journal, scratch.clone(), events.start());

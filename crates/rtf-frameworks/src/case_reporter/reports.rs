@@ -49,7 +49,7 @@ impl CaseReporter<'_> {
         attachment.case = self.mark(path, false);
         let file = attachment.path.clone();
         match self.session.forward_attachment(attachment) {
-            Ok(()) => true,
+            Ok(_) => true,
             Err(error) => {
                 let text = format!("`{file}` cannot be attached: {error}");
                 self.message(path, MessageKind::Error, text, None);

@@ -3,15 +3,16 @@
 mod cases;
 mod findings;
 mod program;
+mod questions;
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use rtf_model::protocol::{Answer, CHANNEL_VARIABLE, Notification, Reply, RpcError};
+use rtf_model::protocol::{Answer, CHANNEL_VARIABLE, Notification, QuestionEnd, Reply, RpcError};
 use rtf_model::{Attachment, Location, Measurement, Message, MessageKind, Outcome, Phase};
 use serde::Serialize;
 use serde_json::Value;
@@ -22,6 +23,7 @@ use crate::outcome::RequestOutcome;
 use crate::sampling::{Sample, Sampling};
 use crate::unix;
 use crate::writer::Writer;
+pub use questions::Inquiry;
 
 /// Why there is no channel to the runner.
 #[derive(Debug, thiserror::Error)]
@@ -75,6 +77,9 @@ struct SessionState {
     attachments_dir: Option<PathBuf>,
     attached: u64,
     outcome: RequestOutcome,
+    /// Questions that a thread of the plug-in waits for, with their ends.
+    questions: BTreeMap<u32, Option<QuestionEnd>>,
+    last_question: u32,
 }
 
 impl Session {
@@ -174,14 +179,15 @@ impl Session {
     /// It cannot be copied.
     pub fn attach(&self, mut attachment: Attachment) -> std::io::Result<()> {
         attachment.case = self.0.cases.current();
-        self.forward_attachment(attachment)
+        self.forward_attachment(attachment).map(|_| ())
     }
 
-    /// Does the same for a program that the host started, which knows the case.
+    /// Does the same for a program that the host started, which knows the case. Returns the
+    /// path of the copy.
     ///
     /// # Errors
     /// It cannot be copied.
-    pub fn forward_attachment(&self, mut attachment: Attachment) -> std::io::Result<()> {
+    pub fn forward_attachment(&self, mut attachment: Attachment) -> std::io::Result<String> {
         let path = Path::new(&attachment.path);
         let mut source = unix::open_regular(path)?;
         // Without a directory, the runner copies the file as soon as it can.
@@ -190,8 +196,9 @@ impl Session {
             std::io::copy(&mut source, &mut std::fs::File::create(&copy)?)?;
             attachment.path = copy.to_string_lossy().into_owned();
         }
+        let copy = attachment.path.clone();
         self.notify(&Notification::Attached(attachment));
-        Ok(())
+        Ok(copy)
     }
 
     /// The path for the copy of an attached file: `3-plot.png`. A name without an

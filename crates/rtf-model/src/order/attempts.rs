@@ -34,6 +34,7 @@ impl OrderChecker {
     pub(super) fn judge_test(&mut self, id: TestId) -> Rule {
         self.inside_test(id)?;
         self.all_cases_finished(id)?;
+        self.all_questions_closed(id)?;
         let test = self.test(id)?;
         ensure(!test.judged, || format!("test {id} is judged twice"))?;
         test.judged = true;
@@ -45,6 +46,7 @@ impl OrderChecker {
     pub(super) fn finish_test(&mut self, id: TestId, rerun: bool) -> Rule {
         self.inside_test(id)?;
         self.all_cases_finished(id)?;
+        self.all_questions_closed(id)?;
         let test = self.test(id)?;
         test.open = false;
         test.rerun = rerun;

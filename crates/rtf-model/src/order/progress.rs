@@ -56,13 +56,15 @@ pub(super) struct TestProgress {
     /// It was skipped, or will not be repeated.
     pub ended: bool,
     pub cases: CaseProgress,
+    /// The numbers of the questions that wait for an answer.
+    pub open_questions: BTreeSet<u32>,
 }
 
 impl TestProgress {
     pub fn new(suite: SuiteId, repetitions: Option<u32>) -> Self {
         let (open, judged, rerun, ended) = (false, false, false, false);
-        let cases = CaseProgress::default();
-        Self { suite, repetitions, open, judged, last: None, rerun, ended, cases }
+        let (cases, open_questions) = (CaseProgress::default(), BTreeSet::new());
+        Self { suite, repetitions, open, judged, last: None, rerun, ended, cases, open_questions }
     }
 
     /// Whether its verdict is final.

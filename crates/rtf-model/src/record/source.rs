@@ -28,6 +28,8 @@ pub(crate) fn source_of(kind: &EventKind) -> Option<Source> {
         | EventKind::TestSkipped { test, .. } => Some(Source::Test(*test)),
         EventKind::CaseStarted(started) => Some(Source::Test(started.test)),
         EventKind::CaseFinished(end) => Some(Source::Test(end.test)),
+        EventKind::QuestionAsked(asked) => Some(Source::Test(asked.test)),
+        EventKind::QuestionClosed(closed) => Some(Source::Test(closed.test)),
         EventKind::TestFinished(finished) => Some(Source::Test(finished.test)),
         EventKind::Message { source, test, .. } => Some(test.map_or(*source, Source::Test)),
         EventKind::StackDumped { source, .. }

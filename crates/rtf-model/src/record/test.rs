@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use super::case::{AttemptCases, CaseRecord};
 use super::counts::{AttemptCounts, is_detail};
+use super::question::QuestionRecord;
 use super::signal::SignalSummary;
 use crate::{
     Attachment, CaseId, EventKind, LeakedProcess, Measurement, Message, MessageKind, Micros, Phase,
@@ -48,6 +49,9 @@ pub struct AttemptRecord {
     pub measurements: Vec<Measurement>,
     /// The signals that it sampled.
     pub series: Vec<SignalSummary>,
+    /// Its questions to a person, up to [`QuestionRecord::KEPT`]. A lean record keeps those that
+    /// wait for an answer.
+    pub questions: Vec<QuestionRecord>,
     /// Its attachments.
     pub attachments: Vec<Attachment>,
     /// Its output; dropped when it passed, the journal has it.
@@ -233,6 +237,7 @@ impl AttemptRecord {
             cases: AttemptCases::default(),
             measurements: Vec::new(),
             series: Vec::new(),
+            questions: Vec::new(),
             attachments: Vec::new(),
             output: String::new(),
             stacks: Vec::new(),
@@ -263,6 +268,12 @@ impl AttemptRecord {
             }
             EventKind::CasesPlanned { names, .. } => self.cases.plan(names),
             EventKind::CaseStarted(started) => self.cases.start(at, &started.start),
+            EventKind::QuestionAsked(asked) => {
+                QuestionRecord::ask(&mut self.questions, at, &asked.question);
+            }
+            EventKind::QuestionClosed(closed) => {
+                QuestionRecord::close(&mut self.questions, at, closed, !self.lean);
+            }
             EventKind::TestSlow { .. } => self.slow = true,
             EventKind::TestStopping { .. } => self.stopped = true,
             EventKind::StackDumped { text, .. } => self.stacks.push(text.clone()),

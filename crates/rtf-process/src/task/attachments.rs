@@ -1,6 +1,8 @@
 //! Stores the files that a process attaches in the run's directory.
 
-use rtf_model::Attachment;
+use std::path::Path;
+
+use rtf_model::{Attachment, Question};
 use tokio::sync::mpsc;
 
 use super::file_copy::{self, FileCopy};
@@ -42,6 +44,19 @@ impl ProcessTask {
             }
             Err(error) => self.report_attachment(attachment, &reported_path, Err(error)).await,
         }
+    }
+
+    /// Makes the path of a question's picture relative to the run's directory. Only a file in
+    /// the directory for attachments is a picture.
+    pub(super) fn with_picture(&self, mut question: Question) -> Question {
+        let relative = &self.job.attachments_dir;
+        let dir = self.context.run_dir.join(relative);
+        question.picture = question.picture.take().and_then(|path| {
+            let name = Path::new(&path).strip_prefix(&dir).ok()?.to_str()?;
+            let is_name = !name.is_empty() && !name.contains('/') && name != "..";
+            is_name.then(|| format!("{relative}/{name}"))
+        });
+        question
     }
 
     /// Reports the copied attachment, and delivers the messages held back.

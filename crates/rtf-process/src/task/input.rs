@@ -94,6 +94,9 @@ impl ProcessTask {
             Ok(HostMessage::Notification(Notification::Attached(attachment))) => {
                 return self.store_attachment(attachment).await;
             }
+            Ok(HostMessage::Notification(Notification::QuestionAsked(question))) => {
+                ProcessEvent::Notified(Notification::QuestionAsked(self.with_picture(question)))
+            }
             Ok(HostMessage::Notification(notification)) => ProcessEvent::Notified(notification),
             Ok(HostMessage::Reply(id, reply)) => ProcessEvent::Replied(id, reply),
             Err(what) => ProcessEvent::ProtocolViolated(what),

@@ -96,6 +96,14 @@ impl EventHeader {
             _ => None,
         }
     }
+
+    /// The test that asks a question, or whose question ends. These events are no details: each
+    /// reader of a running run gets them.
+    #[must_use]
+    pub fn questioner(&self) -> Option<Source> {
+        let is_question = matches!(&*self.kind, "question-asked" | "question-closed");
+        self.test.filter(|_| is_question).map(Source::Test)
+    }
 }
 
 #[cfg(test)]

@@ -63,6 +63,11 @@ impl Ids<'_> {
             | EventKind::CasesPlanned { test, .. } => Some(self.test(test)),
             EventKind::CaseStarted(started) => Some(self.test(&mut started.test)),
             EventKind::CaseFinished(end) => Some(self.test(&mut end.test)),
+            EventKind::QuestionAsked(asked) => {
+                asked.question.picture.iter_mut().for_each(|picture| self.attached_path(picture));
+                Some(self.test(&mut asked.test))
+            }
+            EventKind::QuestionClosed(closed) => Some(self.test(&mut closed.test)),
             EventKind::TestFinished(finished) => Some(self.test(&mut finished.test)),
             EventKind::Measured { test, fixture, .. } => {
                 self.reporter(fixture);
@@ -70,7 +75,7 @@ impl Ids<'_> {
             }
             EventKind::Attached { test, fixture, attachment } => {
                 self.reporter(fixture);
-                self.attachment(attachment);
+                self.attached_path(&mut attachment.path);
                 Some(self.test(test))
             }
             EventKind::HookStarted { hook, test, .. } => {
@@ -116,9 +121,9 @@ impl Ids<'_> {
         self.plan.tests[id.index()].suite
     }
 
-    fn attachment(&self, attachment: &mut Attachment) {
-        if let Some(path) = attachment_path(self.part, &attachment.path) {
-            attachment.path = path;
+    fn attached_path(&self, path: &mut String) {
+        if let Some(merged) = attachment_path(self.part, path) {
+            *path = merged;
         }
     }
 

@@ -14,6 +14,7 @@
 #include <rtf/Declare.hpp>
 #include <rtf/Plugin.hpp>
 #include <rtf/internal/Cases.hpp>
+#include <rtf/internal/Questions.hpp>
 #include <rtf/internal/Sampling.hpp>
 #include <rtf/internal/Values.hpp>
 
@@ -60,6 +61,28 @@ protected:
                     Location here = Location::current()) const
     {
         internal::plan_cases(here, names);
+    }
+
+    // Asks a person, on the console, the page or the API, and returns the answer: one of
+    // `choices`, or without them any line of text. If nobody answers in this time, or nobody
+    // can, it is the default answer; without one, this is an error. The picture is a PNG or JPEG
+    // file. The time limit of the test is paused meanwhile.
+    std::string ask(std::string_view question, const std::vector<std::string> &choices = {},
+                    std::chrono::duration<double> timeout = internal::kAnswerTime,
+                    std::string_view default_answer = "", std::string_view picture = "",
+                    Location here = Location::current()) const
+    {
+        return internal::ask(
+            here, internal::Question{question, choices, timeout, default_answer, picture});
+    }
+
+    // Gives a person an instruction, and waits until it is done. The answers are `done` and
+    // `cannot`, which is an error; the default answer is one of them.
+    void instruct(std::string_view text, std::string_view picture = "",
+                  std::chrono::duration<double> timeout = internal::kAnswerTime,
+                  std::string_view default_answer = "", Location here = Location::current()) const
+    {
+        internal::instruct(here, text, picture, timeout, default_answer);
     }
 
     // The test's value of a matrix. An unknown name is an error.

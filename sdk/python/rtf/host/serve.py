@@ -142,12 +142,24 @@ class Reader:
             params = message.get("params")
             params = params if isinstance(params, dict) else {}
             self._interrupt(str(params.get("reason") or "asked to stop"), params.get("request"))
+        elif message.get("method") == "question-closed":
+            self._close_question(message.get("params"))
         elif message.get("id") is not None:
             request = Request(message)
             with self._lock:
                 if not self._is_last_answered:
                     self._open.append(request)
             self._requests.put(request)
+
+    def _close_question(self, params: object) -> None:
+        with self._lock:
+            waiting = self._open[:1]
+        if isinstance(params, dict) and isinstance(params.get("question"), int):
+            answer = params.get("answer")
+            problem = str(params.get("problem") or "no answer")
+            for request in waiting:
+                text = None if answer is None else str(answer)
+                request.state.close_question(params["question"], text, problem)
 
     def _interrupt(self, reason: str, number: object) -> None:
         with self._lock:

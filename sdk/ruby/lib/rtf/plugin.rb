@@ -149,12 +149,7 @@ module RTF
     def attach(path, name: nil, media_type: nil)
       full = File.expand_path(path)
       Attachment.check(full)
-      name = Text.utf8(name || File.basename(full))
-      session = Session.current
-      directory = session.task.attachments_dir
-      full = Attachment.copy(full, name, directory) unless directory.empty?
-      params = { name: name, path: Text.utf8(full), media_type: Text.utf8(media_type) }
-      session.notify_in_case("attached", params)
+      Session.current.attach(full, name || File.basename(full), media_type)
     end
 
     private

@@ -21,6 +21,7 @@ module RTF
       @stop_reason = ""
       @inside = nil
       @done = false
+      @questions = {}
     end
 
     # Records a problem; only the first one counts. With a reason if no message reports it.
@@ -74,6 +75,29 @@ module RTF
     # Waits for a stop request, for at most `seconds`.
     def wait_for_stop(seconds)
       wait(seconds) { @stop }
+    end
+
+    # Expects the end of a question.
+    def open_question(number)
+      @lock.synchronize { @questions[number] = nil }
+    end
+
+    # Records the answer to a question, or the problem that there is none.
+    def close_question(number, answer:, problem:)
+      @lock.synchronize do
+        next unless @questions.key?(number)
+
+        @questions[number] = { answer: answer, problem: problem }
+        @changed.broadcast
+      end
+    end
+
+    # Waits for the end of a question; nil after a stop request.
+    def wait_for_answer(number)
+      @lock.synchronize do
+        @changed.wait(@lock, LONGEST_SECONDS) until @stop || @questions[number]
+        @questions.delete(number)
+      end
     end
 
     # Waits for the end of the request, for at most `seconds`.

@@ -1,7 +1,9 @@
 # frozen_string_literal: true
 
+require "rtf/attachment"
 require "rtf/cases"
 require "rtf/location"
+require "rtf/questions"
 require "rtf/request_state"
 require "rtf/sampling"
 require "rtf/stop"
@@ -61,6 +63,27 @@ module RTF
       number = @cases.current
       params[:case] = number if number
       notify(method, params)
+    end
+
+    # Attaches a file, and returns the path of the copy.
+    def attach(path, name, media_type)
+      name = Text.utf8(name)
+      directory = @task.attachments_dir
+      path = Attachment.copy(path, name, directory) unless directory.empty?
+      path = Text.utf8(path)
+      notify_in_case("attached", { name: name, path: path, media_type: Text.utf8(media_type) })
+      path
+    end
+
+    # Asks a person, and returns the answer.
+    def ask(text, choices, **options)
+      require_setup_or_run("questions are allowed in `setup` and `run` of a test only")
+      if @cases.forked?
+        text = "a process that the plug-in forked cannot ask"
+        error(text)
+        raise AssertionEnded, text
+      end
+      Questions.new(self).ask(text, choices, **options)
     end
 
     # Sends a message of the plug-in with its location.

@@ -35,6 +35,23 @@ module RTF
       Session.current.skip(reason)
     end
 
+    # Asks a person, on the console, the page or the API, and returns the answer: one of
+    # `choices`, or without them any line of text.
+    #
+    # If nobody answers within `timeout` seconds, or nobody can, it is `default`; without a
+    # default, this is an error. `picture` is a PNG or JPEG file. The time limit of the test is
+    # paused meanwhile.
+    def ask(question, choices = [], timeout: Questions::ANSWER_SECONDS, default: nil, picture: nil)
+      Session.current.ask(question, choices, timeout: timeout, default: default, picture: picture)
+    end
+
+    # Gives a person an instruction, and waits until it is done. The answers are `done` and
+    # `cannot`, which is an error; `default` is one of them, as in `ask`.
+    def instruct(text, picture: nil, timeout: Questions::ANSWER_SECONDS, default: nil)
+      answer = ask(text, %w[done cannot], timeout: timeout, default: default, picture: picture)
+      error("the operator cannot do this: #{text}") unless answer == "done"
+    end
+
     # The test's values of a matrix.
     def parameters
       Session.current.task.parameters.dup

@@ -17,7 +17,24 @@ pub struct Context<'a> {
     effects: &'a mut Vec<Effect>,
     last_host: &'a mut u64,
     values: &'a mut FixtureValues,
+    questions: &'a mut Questions,
     abandoned: Option<String>,
+}
+
+/// The questions of a suite.
+#[derive(Debug, Default)]
+pub struct Questions {
+    /// The number of the last one.
+    last: u32,
+    /// Why nobody can answer.
+    unattended: Option<String>,
+}
+
+impl Questions {
+    /// `unattended` is why nobody can answer, if nobody can.
+    pub fn new(unattended: Option<String>) -> Self {
+        Self { last: 0, unattended }
+    }
 }
 
 impl<'a> Context<'a> {
@@ -26,8 +43,9 @@ impl<'a> Context<'a> {
         effects: &'a mut Vec<Effect>,
         last_host: &'a mut u64,
         values: &'a mut FixtureValues,
+        questions: &'a mut Questions,
     ) -> Self {
-        Self { now, effects, last_host, values, abandoned: None }
+        Self { now, effects, last_host, values, questions, abandoned: None }
     }
 
     pub fn now(&self) -> Duration {
@@ -93,6 +111,17 @@ impl<'a> Context<'a> {
     /// The process that was given up, reported once.
     pub fn take_abandoned(&mut self) -> Option<String> {
         self.abandoned.take()
+    }
+
+    /// The number of the next question.
+    pub fn next_question(&mut self) -> u32 {
+        self.questions.last += 1;
+        self.questions.last
+    }
+
+    /// Why nobody can answer a question, if nobody can.
+    pub fn unattended(&self) -> Option<String> {
+        self.questions.unattended.clone()
     }
 
     pub fn next_host_id(&mut self) -> HostId {

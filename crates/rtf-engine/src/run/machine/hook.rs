@@ -1,14 +1,14 @@
 //! One run of a hook: a separate process that brings the robot into a safe state.
 
-use rtf_model::protocol::{Notification, Request};
-use rtf_model::{EventKind, ExitStatus, LeakedProcess, Source, TestId, Trigger};
+use rtf_model::protocol::{Notification, QuestionEnd, Request};
+use rtf_model::{EventKind, ExitStatus, LeakedProcess, Question, Source, TestId, Trigger};
 
 use super::context::Context;
 use super::io::{Deadline, Effect, HostId, ProcessEvent, Program, StartRequest, environment};
 use super::kill_escalation::{KILL_WAIT, MAX_KILLS, SIGTERM, TERM_GRACE};
 use super::output_capture::OutputCapture;
 use crate::fixture_values::FixtureValues;
-use crate::hook::{HookJudgement, RUN_REQUEST, request, trigger_variables};
+use crate::hook::{ASKED, HookJudgement, RUN_REQUEST, request, trigger_variables};
 use rtf_plan::plan::{HookBody, HookPlan, SuitePlan};
 
 /// A triggered hook.
@@ -70,9 +70,17 @@ impl<'p> RunningHook<'p> {
             }
             ProcessEvent::Notified(notification) => {
                 self.judgement.notified(&notification);
-                if let Notification::Message(message) = notification {
-                    let source = Source::Hook(self.plan.id);
-                    cx.emit(EventKind::Message { source, message, test: None });
+                match notification {
+                    Notification::Message(message) => {
+                        let source = Source::Hook(self.plan.id);
+                        cx.emit(EventKind::Message { source, message, test: None });
+                    }
+                    Notification::QuestionAsked(Question { question, .. }) => {
+                        let problem = Some(ASKED.to_owned());
+                        let end = QuestionEnd { question, answer: None, problem };
+                        cx.send(self.host, None, Request::QuestionClosed(end));
+                    }
+                    _ => {}
                 }
             }
             ProcessEvent::Replied(RUN_REQUEST, reply) => self.judgement.replied(reply),

@@ -11,7 +11,7 @@ use rtf_plan::plan::{HostPlan, ProbePlans, ProcessPlan, SuitePlan};
 
 use crate::fixture_values::FixtureValues;
 
-pub use crate::control::{Stop, StopLevel};
+pub use crate::control::{QuestionReply, Stop, StopLevel};
 pub use rtf_process::probe::ProbeSelection;
 pub use rtf_process::task::{HostId, ProcessEvent};
 
@@ -30,6 +30,8 @@ pub enum Input {
     Stop(Stop),
     /// A user stops this test, if it runs; the user's name.
     StopTest(TestId, String),
+    /// A person answers a question of a test, or declines to.
+    Answer(TestId, QuestionReply),
     /// A user skips the rest of the suite; the user's name.
     Skip(String),
     /// A further episode of a stream; `None` at its end.
@@ -62,6 +64,8 @@ pub enum TestTimer {
     Limit,
     /// From then on, it counts as slow.
     Slow,
+    /// The end of the question with this number.
+    Question(u32),
 }
 
 /// A timer of a fixture.
@@ -170,6 +174,10 @@ pub enum Effect {
     SetDeadline(Deadline, Duration),
     /// Clear a deadline.
     ClearDeadline(Deadline),
+    /// A person is asked: the limit and the `slow` limit of the test are paused.
+    PauseLimits(TestId),
+    /// They are resumed.
+    ResumeLimits(TestId),
     /// Keep these values of fixtures for hooks that the guard runs.
     KeepValues(FixtureValues),
     /// Report an event.

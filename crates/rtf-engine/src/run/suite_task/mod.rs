@@ -59,7 +59,9 @@ pub async fn run_suite(
         context,
         events,
         inputs,
-        machine: SuiteMachine::new(plan, requests.fails.clone()).until(requests.soak_until),
+        machine: SuiteMachine::new(plan, requests.fails.clone())
+            .until(requests.soak_until)
+            .unattended(context.unattended.clone()),
         effects: Vec::new(),
         commands: HashMap::new(),
         changing_ids: HashSet::new(),
@@ -229,6 +231,8 @@ impl SuiteTask<'_> {
             }
             Effect::SetDeadline(deadline, at) => self.deadlines.set(deadline, at),
             Effect::ClearDeadline(deadline) => self.deadlines.clear(deadline),
+            Effect::PauseLimits(test) => self.deadlines.pause_limits(test, self.events.now()),
+            Effect::ResumeLimits(test) => self.deadlines.resume_limits(test, self.events.now()),
             Effect::Spawn { host, source, start } => self.spawn(host, source, start),
             Effect::Join { host, on, source, request, plugin } => {
                 let leak_owner = format!("test {}/{}", self.plan.name, plugin.name);

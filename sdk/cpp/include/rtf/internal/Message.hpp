@@ -80,7 +80,7 @@ inline void require_critical(Location here, bool holds, std::string_view text)
 inline const rtf_host &host_since_1_3(Location here, std::string_view feature)
 {
     const rtf_host &table = host();
-    if (table.size < offsetof(rtf_host, fixture_values) + sizeof table.fixture_values) {
+    if (table.size < offsetof(rtf_host, ask) + sizeof table.ask) {
         error(here, "this rtf is too old for " + std::string(feature) +
                         ": its plug-in interface is 1." + std::to_string(table.abi_minor));
     }

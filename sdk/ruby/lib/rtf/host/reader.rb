@@ -81,6 +81,7 @@ module RTF
       def dispatch(message)
         case message["method"]
         when "interrupt" then interrupt(**interruption(message["params"]))
+        when "question-closed" then close_question(message["params"])
         when "dump-stack" then @channel.notify("stack", { text: Threads.stacks(@main) })
         else
           return if message["id"].nil?
@@ -89,6 +90,14 @@ module RTF
           @lock.synchronize { @open << request unless @last_answered }
           @requests.push(request)
         end
+      end
+
+      def close_question(params)
+        return unless params.is_a?(Hash)
+
+        request = @lock.synchronize { @open.first }
+        problem = params["problem"] || "no answer"
+        request&.state&.close_question(params["question"], answer: params["answer"], problem: problem)
       end
 
       def interruption(params)

@@ -3,11 +3,15 @@
 
 use std::collections::BTreeSet;
 
+use rtf_model::TestId;
+
 use crate::run::machine::io::{Deadline, Effect, FixtureTimer, Input, TestTimer};
 
 #[derive(Debug, Default)]
 pub(super) struct DeadlineInvariant {
     pending: BTreeSet<Deadline>,
+    /// Tests whose limits are paused.
+    asking: BTreeSet<TestId>,
 }
 
 impl DeadlineInvariant {
@@ -25,21 +29,24 @@ impl DeadlineInvariant {
             match effect {
                 Effect::SetDeadline(deadline, _) => drop(self.pending.insert(*deadline)),
                 Effect::ClearDeadline(deadline) => drop(self.pending.remove(deadline)),
+                Effect::PauseLimits(test) => drop(self.asking.insert(*test)),
+                Effect::ResumeLimits(test) => drop(self.asking.remove(test)),
                 _ => {}
             }
         }
-        let is_ok = !continues || self.pending.iter().any(makes_progress);
+        let is_ok = !continues || self.pending.iter().any(|deadline| self.makes_progress(deadline));
         assert!(is_ok, "no deadline is pending that makes progress: {:?}", self.pending);
     }
-}
 
-/// The limits of the whole do not count: each step needs its own limit.
-fn makes_progress(deadline: &Deadline) -> bool {
-    !matches!(
-        deadline,
-        Deadline::Suite
+    /// The limits of the whole do not count: each step needs its own limit.
+    fn makes_progress(&self, deadline: &Deadline) -> bool {
+        match deadline {
+            Deadline::Test(test, TestTimer::Limit) => !self.asking.contains(test),
+            Deadline::Suite
             | Deadline::Shutdown
             | Deadline::Test(_, TestTimer::Slow)
-            | Deadline::Fixture(_, FixtureTimer::CheckDue)
-    )
+            | Deadline::Fixture(_, FixtureTimer::CheckDue) => false,
+            _ => true,
+        }
+    }
 }

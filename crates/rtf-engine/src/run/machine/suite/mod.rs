@@ -19,7 +19,7 @@ use std::time::Duration;
 
 use rtf_model::{EventKind, Phase, StopCause, TestFinished, Trigger, Verdict};
 
-use super::context::Context;
+use super::context::{Context, Questions};
 use super::fixture::FixtureFailure;
 use super::fixture_graph::FixtureGraph;
 use super::hook_queue::HookQueue;
@@ -56,6 +56,7 @@ pub struct SuiteMachine<'p> {
     is_finished: bool,
     last_host: u64,
     values: FixtureValues,
+    questions: Questions,
     #[cfg(debug_assertions)]
     invariant: deadline_invariant::DeadlineInvariant,
 }
@@ -81,9 +82,17 @@ impl<'p> SuiteMachine<'p> {
             is_finished: false,
             last_host: 0,
             values: FixtureValues::new(plan),
+            questions: Questions::default(),
             #[cfg(debug_assertions)]
             invariant: deadline_invariant::DeadlineInvariant::default(),
         }
+    }
+
+    /// Nobody can answer the questions of its tests, for this reason.
+    #[must_use]
+    pub fn unattended(mut self, reason: Option<String>) -> Self {
+        self.questions = Questions::new(reason);
+        self
     }
 
     /// Whether a running test needs [`Input::Clock`].
@@ -98,7 +107,8 @@ impl<'p> SuiteMachine<'p> {
         let begin = self.invariant.begin(&input, effects);
         let mut last_host = self.last_host;
         let mut values = std::mem::take(&mut self.values);
-        let mut cx = Context::new(now, effects, &mut last_host, &mut values);
+        let mut questions = std::mem::take(&mut self.questions);
+        let mut cx = Context::new(now, effects, &mut last_host, &mut values, &mut questions);
         match input {
             Input::Start => self.start(&mut cx),
             Input::Host(host, input) => self.on_host_input(host, input, &mut cx),
@@ -106,13 +116,18 @@ impl<'p> SuiteMachine<'p> {
             Input::Clock(time) => self.scheduler.on_clock(time, &mut cx),
             Input::Stop(stop) => self.on_stop_request(stop, &mut cx),
             Input::StopTest(test, by) => self.stop_test(test, &by, &mut cx),
+            Input::Answer(test, reply) => {
+                if let Some(run) = self.scheduler.run_of(test) {
+                    run.on_reply(reply, &mut cx);
+                }
+            }
             Input::Skip(by) => self.skip_rest(&by, &mut cx),
             Input::Episode(episode) => self.episodes.add(episode),
         }
         self.end_if_abandoned(&mut cx);
         self.judge_tests(&mut cx);
         self.advance(&mut cx);
-        (self.last_host, self.values) = (last_host, values);
+        (self.last_host, self.values, self.questions) = (last_host, values, questions);
         #[cfg(debug_assertions)]
         let continues = self.is_started && !self.is_finished && !self.episodes.is_waiting();
         #[cfg(debug_assertions)]

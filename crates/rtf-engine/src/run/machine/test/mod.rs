@@ -4,6 +4,7 @@ mod carried_cases;
 mod cases;
 pub mod host;
 mod notifications;
+mod questions;
 mod stop;
 mod stopwatch;
 mod verdict;
@@ -21,6 +22,7 @@ use crate::run::machine::output_capture::OutputCapture;
 pub use carried_cases::CarriedCases;
 use cases::OpenCases;
 use host::{HostChoice, TestRequest};
+use questions::{ENDED, OpenQuestion};
 use rtf_plan::plan::{SuitePlan, TestPlan};
 use rtf_process::codec::INITIALIZE;
 use stop::StopStep;
@@ -57,6 +59,10 @@ pub struct TestRun<'p> {
     leak: Option<String>,
     output: OutputCapture,
     cases: OpenCases,
+    /// Its questions that wait for an answer.
+    questions: Vec<OpenQuestion>,
+    /// The runner reads its messages more slowly.
+    is_throttled: bool,
     /// Whether its host can select cases.
     selects_cases: bool,
     /// The cases that a rerun after a collapse does not run again.
@@ -99,6 +105,8 @@ impl<'p> TestRun<'p> {
             leak: None,
             output: OutputCapture::new(Source::Test(plan.id)),
             cases: OpenCases::new(plan),
+            questions: Vec::new(),
+            is_throttled: false,
             selects_cases: false,
             carried: None,
             critical: None,
@@ -155,8 +163,8 @@ impl<'p> TestRun<'p> {
                 let source = self.source();
                 cx.emit(EventKind::ResourcesMeasured { source, usage, tests_served });
             }
-            ProcessEvent::Throttled => self.pause_stopwatch(true),
-            ProcessEvent::Resumed => self.pause_stopwatch(false),
+            ProcessEvent::Throttled => self.set_throttled(true),
+            ProcessEvent::Resumed => self.set_throttled(false),
             ProcessEvent::NotStarted(_)
             | ProcessEvent::ValueRead { .. }
             | ProcessEvent::ProbesPassed
@@ -193,6 +201,7 @@ impl<'p> TestRun<'p> {
                 if !answer.as_ref().is_ok_and(|answer| answer.continues) {
                     cx.push(Effect::CloseChannel(self.host));
                 }
+                self.close_questions(ENDED, cx);
                 self.evidence.answer = Some(answer);
                 self.phase = Phase::Exit;
                 self.stopwatch = None;

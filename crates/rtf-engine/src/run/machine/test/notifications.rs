@@ -4,6 +4,7 @@ use rtf_model::protocol::Notification;
 use rtf_model::{CaseId, EventKind, Message, MessageKind, Phase, Verdict};
 
 use super::TestRun;
+use super::questions::ENDED;
 use crate::hook::PROVIDED;
 use crate::run::machine::context::{Context, error_message};
 use crate::run::machine::judge::TestProblem;
@@ -32,6 +33,7 @@ impl TestRun<'_> {
             Notification::CaseFinished { case, outcome, reason, duration_us } => {
                 self.finish_case(case, (outcome, reason), duration_us, cx);
             }
+            Notification::QuestionAsked(question) => self.ask_person(question, cx),
             Notification::Attached(_) => {}
             Notification::Provided { .. } => self.report_error(PROVIDED.to_owned(), cx),
             Notification::Collapsed { .. } => self.on_fixture_notification("collapsed", cx),
@@ -48,6 +50,9 @@ impl TestRun<'_> {
         if phase <= self.phase || phase >= Phase::Exit || self.evidence.answer.is_some() {
             let what = format!("entered {phase} after {}", self.phase);
             return self.on_protocol_error(what, cx);
+        }
+        if phase == Phase::TearDown {
+            self.close_questions(ENDED, cx);
         }
         self.phase = phase;
         cx.emit(EventKind::TestPhase { test: self.plan.id, phase });

@@ -39,6 +39,7 @@ impl TestRun<'_> {
             return;
         }
         cx.emit(EventKind::TestStopping { test: self.plan.id, cause, reason: reason.clone() });
+        self.close_questions(&reason, cx);
         self.clear(TestTimer::Slow, cx);
         self.stopwatch = None;
         self.evidence.stopped = Some((cause, reason, self.phase));
@@ -131,8 +132,10 @@ impl TestRun<'_> {
     }
 
     pub fn on_deadline(&mut self, timer: TestTimer, cx: &mut Context<'_>) {
-        if timer == TestTimer::Slow {
-            return cx.emit(EventKind::TestSlow { test: self.plan.id });
+        match timer {
+            TestTimer::Slow => return cx.emit(EventKind::TestSlow { test: self.plan.id }),
+            TestTimer::Question(number) => return self.on_question_timeout(number, cx),
+            TestTimer::Limit => {}
         }
         if self.has_exited() {
             if !self.is_judged() {

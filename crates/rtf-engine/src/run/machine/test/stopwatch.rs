@@ -21,7 +21,7 @@ pub struct Stopwatch {
     reading: Option<(Duration, Duration)>,
     /// Simulated time since the start; jumps back do not reduce it.
     elapsed: Duration,
-    /// The test is throttled by the runner: time does not count.
+    /// The runner or a person delays the test: time does not count.
     is_paused: bool,
 }
 
@@ -108,9 +108,17 @@ impl TestRun<'_> {
         let stopwatch = Stopwatch::new((limit, backstop), slow, cx.now());
         self.set_limit(stopwatch.backstop, cx);
         self.stopwatch = Some(stopwatch);
+        self.update_stopwatch();
     }
 
-    pub(super) fn pause_stopwatch(&mut self, is_paused: bool) {
+    pub(super) fn set_throttled(&mut self, is_throttled: bool) {
+        self.is_throttled = is_throttled;
+        self.update_stopwatch();
+    }
+
+    /// Pauses the stopwatch while the runner or a person delays the test.
+    pub(super) fn update_stopwatch(&mut self) {
+        let is_paused = self.is_throttled || !self.questions.is_empty();
         self.stopwatch.iter_mut().for_each(|stopwatch| stopwatch.is_paused = is_paused);
     }
 

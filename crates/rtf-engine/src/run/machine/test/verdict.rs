@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use rtf_model::{EventKind, ExitStatus, Finding, LeakedProcess, StopCause, TestFinished, Verdict};
 
+use super::questions::ENDED;
 use super::{CarriedCases, TestRun};
 use crate::run::machine::context::Context;
 use crate::run::machine::io::TestTimer;
@@ -47,6 +48,7 @@ impl TestRun<'_> {
         leaked: Vec<LeakedProcess>,
         cx: &mut Context<'_>,
     ) {
+        self.close_questions(ENDED, cx);
         self.stopwatch = None;
         self.clear(TestTimer::Slow, cx);
         self.output.finish(cx);

@@ -6,12 +6,12 @@ use std::time::Duration;
 use proptest::prelude::*;
 use rtf_model::protocol::{Notification, Reply};
 use rtf_model::{
-    CaseId, CaseStart, Episode, EventKind, ExitStatus, Finding, FindingSeverity, Message,
-    MessageKind, Phase, Source, TestId, Trigger, Verdict,
+    AnswerChannel, CaseId, CaseStart, Episode, EventKind, ExitStatus, Finding, FindingSeverity, Message,
+    MessageKind, Phase, Question, Respondent, Source, TestId, Trigger, Verdict,
 };
 
 use super::world::{SECOND, World, hook, suite};
-use crate::run::machine::{Input, ProcessEvent, StopLevel};
+use crate::run::machine::{Input, ProcessEvent, QuestionReply, StopLevel};
 use rtf_plan::plan::{AfterCollapse, HookBody, ResetPlan, Retries, SuitePlan};
 use rtf_process::codec::INITIALIZE;
 
@@ -91,6 +91,24 @@ fn about_test(number: u32) -> Notification {
     Notification::Finding(Finding { test, severity, text, location })
 }
 
+/// A question, with a default answer or without.
+fn question(which: usize) -> Notification {
+    let question = u32::try_from(which).unwrap_or_default();
+    let (text, timeout_ms) = ("Is it closed?".to_owned(), 2000);
+    let choices = vec!["yes".to_owned(), "no".to_owned()];
+    let default = which.is_multiple_of(2).then(|| "no".to_owned());
+    let asked = Question { question, text, timeout_ms, choices, default, ..Question::default() };
+    Notification::QuestionAsked(asked)
+}
+
+/// A person answers a question, or declines.
+fn reply(which: usize, choice: u8) -> Input {
+    let number = u32::try_from(which).unwrap_or_default();
+    let answer = (choice > 62).then(|| "yes".to_owned());
+    let by = Respondent { via: AnswerChannel::Api, who: None };
+    Input::Answer(TestId(number), QuestionReply { question: number + 1, answer, by })
+}
+
 pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool) {
     let alive: Vec<_> = world.hosts.iter().map(|(host, source)| (*host, *source)).collect();
     if act_idle(world, choice) {
@@ -139,6 +157,12 @@ pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool)
         10 => world.exit(source, ExitStatus::Signal(9)),
         11 | 12 => world.exit(source, ExitStatus::Code(0)),
         13 => world.feed(notify(report(choice))),
+        14 if choice < 48 => world.feed(notify(question(which))),
+        14 if choice < 80 => world.feed(reply(which, choice)),
+        14 if choice < 112 => {
+            let number = u32::try_from(which).unwrap_or_default() * 67 + u32::from(choice);
+            world.feed(notify(about_test(number % 256)));
+        }
         14 => drop((!world.deadlines.is_empty()).then(|| world.next_deadline())),
         _ if choice == 255 => world.stop(StopLevel::Kill),
         _ if choice == 239 => world.stop(StopLevel::TearDown),

@@ -15,6 +15,7 @@ mod hooks;
 mod limits;
 mod parallel;
 mod preparation;
+mod questions;
 mod retries;
 mod sequence;
 mod shared;

@@ -10,7 +10,7 @@ use std::time::Duration;
 use rtf_model::protocol::{Reply, Request};
 use rtf_model::{
     Event, EventKind, ExitStatus, FixturePlanned, HookPlanned, Micros, OrderChecker, Record,
-    RunStarted, Source, SuitePlanned, TestPlanned,
+    RunStarted, Source, SuitePlanned, TestId, TestPlanned,
 };
 
 use self::format::{effect_of, line_of};
@@ -19,6 +19,7 @@ pub use self::plans::{hook, suite};
 use crate::run::FailLimit;
 use crate::run::machine::{
     Deadline, Effect, HostId, Input, ProbeSelection, ProcessEvent, Stop, StopLevel, SuiteMachine,
+    TestTimer,
 };
 use rtf_plan::plan::SuitePlan;
 
@@ -35,6 +36,8 @@ pub struct World<'p> {
     transcript_start: usize,
     pub events: Vec<EventKind>,
     pub deadlines: BTreeMap<Deadline, Duration>,
+    /// The tests whose limits are paused, and since when.
+    asking: BTreeMap<TestId, Duration>,
     pub done: bool,
     /// Shared hosts without a test.
     pub idle: BTreeSet<HostId>,
@@ -73,6 +76,7 @@ impl<'p> World<'p> {
             transcript_start: 0,
             events: Vec::new(),
             deadlines: BTreeMap::new(),
+            asking: BTreeMap::new(),
             done: false,
             idle: BTreeSet::new(),
             answered: BTreeSet::new(),
@@ -181,6 +185,10 @@ impl<'p> World<'p> {
                 }
                 Effect::SetDeadline(deadline, at) => drop(self.deadlines.insert(deadline, at)),
                 Effect::ClearDeadline(deadline) => drop(self.deadlines.remove(&deadline)),
+                Effect::PauseLimits(test) => {
+                    assert!(self.asking.insert(test, self.now).is_none());
+                }
+                Effect::ResumeLimits(test) => self.resume_limits(test),
                 Effect::Done => self.done = true,
                 Effect::SpawnAhead(_) => {}
                 other => {
@@ -202,6 +210,15 @@ impl<'p> World<'p> {
         for (host, id) in checked {
             let answer = Reply::Result(serde_json::json!({ "outcome": "passed" }));
             self.feed(Input::Host(host, ProcessEvent::Replied(id, answer)));
+        }
+    }
+
+    fn resume_limits(&mut self, test: TestId) {
+        let since = self.asking.remove(&test).expect("its limits are paused");
+        for timer in [TestTimer::Limit, TestTimer::Slow] {
+            if let Some(at) = self.deadlines.get_mut(&Deadline::Test(test, timer)) {
+                *at += self.now - since;
+            }
         }
     }
 
@@ -235,7 +252,14 @@ impl<'p> World<'p> {
 
     /// Advances time to the next deadline.
     pub fn next_deadline(&mut self) -> Deadline {
-        let next = self.deadlines.iter().min_by_key(|(_, at)| **at);
+        let is_paused = |deadline: &Deadline| match deadline {
+            Deadline::Test(test, TestTimer::Limit | TestTimer::Slow) => {
+                self.asking.contains_key(test)
+            }
+            _ => false,
+        };
+        let due = self.deadlines.iter().filter(|(deadline, _)| !is_paused(deadline));
+        let next = due.min_by_key(|(_, at)| **at);
         let (deadline, at) = next.map(|(deadline, at)| (*deadline, *at)).expect("a deadline");
         self.now = self.now.max(at);
         self.deadlines.remove(&deadline);
@@ -245,6 +269,7 @@ impl<'p> World<'p> {
 
     pub fn finish(&mut self) {
         assert!(self.done, "the suite has not finished\n{:#?}", self.log);
+        assert!(self.asking.is_empty(), "limits are paused: {:?}", self.asking);
         assert!(self.deadlines.is_empty(), "deadlines are left: {:?}", self.deadlines);
         self.emit(EventKind::RunFinished { interrupted: None });
     }

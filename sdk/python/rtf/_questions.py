@@ -1,0 +1,76 @@
+"""Questions to a person."""
+
+from __future__ import annotations
+
+import itertools
+import os
+
+from rtf import _attachment, _location, _session
+from rtf._stop import AssertionEnded, Interrupted
+
+# As `typing.TYPE_CHECKING`, without the time that its import takes.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import NoReturn, Sequence
+
+ANSWER_SECONDS = 300.0
+
+_PNG = b"\x89PNG\r\n\x1a\n"
+_JPEG = b"\xff\xd8\xff"
+
+# Unique in the process: it may serve several tests.
+_numbers = itertools.count(1)
+
+
+def ask(
+    text: str, choices: Sequence[str], timeout: float, default: str | None, picture: str | None
+) -> str:
+    """Ask, and wait for the answer; without one, report an error and end the step."""
+    session = _session.current()
+    session.require_setup_or_run("questions are allowed in `setup` and `run` of a test only")
+    if session.cases.is_forked():
+        _fail(session, "a process that the plug-in forked cannot ask")
+    number = next(_numbers)
+    params: dict[str, object] = {
+        "question": number,
+        "text": text,
+        "choices": list(choices),
+        "timeout_ms": max(0, round(timeout * 1000)),
+    }
+    if default is not None:
+        params["default"] = default
+    if picture is not None:
+        params["picture"] = _attach(session, picture)
+    place = _location.caller()
+    if place is not None:
+        params["location"] = place.as_json()
+    request = session.request
+    request.open_question(number)
+    session.notify_in_case("question-asked", params)
+    end = request.wait_for_answer(number)
+    if end is None:
+        raise Interrupted(request.stop_reason())
+    answer, problem = end
+    if answer is None:
+        _fail(session, problem)
+    return answer
+
+
+def _fail(session: _session.Session, problem: str) -> NoReturn:
+    session.error(problem)
+    raise AssertionEnded(problem)
+
+
+def _attach(session: _session.Session, picture: str) -> str:
+    """Attach a picture, and return the path of the copy."""
+    full = os.path.abspath(picture)
+    _attachment.check(full)
+    with open(full, "rb") as file:
+        start = file.read(len(_PNG))
+    if start == _PNG:
+        media_type = "image/png"
+    elif start.startswith(_JPEG):
+        media_type = "image/jpeg"
+    else:
+        _fail(session, f"the picture `{picture}` is neither PNG nor JPEG")
+    return _attachment.attach(session, full, os.path.basename(full), media_type)
