@@ -39,7 +39,7 @@ const MAX_CHOICES: usize = 100;
 
 impl Question {
     /// The largest number of characters of an answer.
-    pub const MAX_ANSWER_CHARS: usize = 1000;
+    pub const MAX_ANSWER_CHARS: usize = 500;
     /// The largest number of characters of the text.
     pub const MAX_TEXT_CHARS: usize = 10_000;
     /// The longest time for an answer.
@@ -214,7 +214,7 @@ mod tests {
     fn any_line_is_an_answer_to_a_question_without_choices() {
         let question = question(&[], None);
         assert_eq!(question.answer_problem("SN-17 ä"), None);
-        for wrong in ["", " ", "two\nlines", "\u{1b}[2J", &"x".repeat(1001)] {
+        for wrong in ["", " ", "two\nlines", "\u{1b}[2J", &"x".repeat(501)] {
             assert!(question.answer_problem(wrong).is_some(), "{wrong:?}");
         }
     }

@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use rtf_model::{SuiteId, TestId};
+use rtf_model::{Respondent, SuiteId, TestId};
 
 /// Controls the run of this process.
 pub trait RunControl: Send + Sync {
@@ -14,6 +14,21 @@ pub trait RunControl: Send + Sync {
     fn stop_test(&self, test: TestId);
     /// Skip the rest of a suite.
     fn skip_suite(&self, suite: SuiteId);
+    /// Answer a question of a test that runs.
+    fn answer(&self, answer: AnswerRequest);
+}
+
+/// An answer to a question of a test.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AnswerRequest {
+    /// The test.
+    pub test: TestId,
+    /// The number of the question.
+    pub question: u32,
+    /// The answer.
+    pub answer: String,
+    /// Who answers.
+    pub by: Respondent,
 }
 
 /// Reruns runs of the results directory, one at a time.

@@ -2,8 +2,9 @@
 
 use std::time::Duration;
 
-use rtf_engine::run::{Control, Stop, StopLevel};
+use rtf_engine::run::{Control, QuestionReply, Stop, StopLevel};
 use rtf_model::{SuiteId, TestId};
+use rtf_web::AnswerRequest;
 use tokio::sync::watch;
 
 /// The origin of a request from the browser, in verdicts.
@@ -49,6 +50,12 @@ impl rtf_web::RunControl for ControlChannels {
     fn stop_test(&self, test: TestId) {
         let by = BROWSER.to_owned();
         self.controls.send_modify(|controls| controls.push(Control::StopTest { test, by }));
+    }
+
+    fn answer(&self, answer: AnswerRequest) {
+        let AnswerRequest { test, question, answer, by } = answer;
+        let reply = QuestionReply { question, answer: Some(answer), by };
+        self.controls.send_modify(|controls| controls.push(Control::Answer { test, reply }));
     }
 
     fn skip_suite(&self, suite: SuiteId) {

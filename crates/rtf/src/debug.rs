@@ -55,6 +55,11 @@ impl DebugRequest {
         DebugOptions { mode: self.mode, notify }
     }
 
+    /// Whether the test has the terminal.
+    pub fn takes_terminal(&self) -> bool {
+        self.mode == DebugMode::Terminal
+    }
+
     /// Removes the limits of the only test, and gives it its own process.
     pub fn prepare(&self, plan: &mut Plan) -> Result<(), Failure> {
         if plan.tests != 1 {

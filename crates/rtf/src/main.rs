@@ -15,6 +15,7 @@ mod executor;
 mod exit;
 mod guarded;
 mod history;
+mod operator;
 mod origin;
 mod outputs;
 mod plan;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use rtf_model::Record;
 use rtf_report::background_writer::BackgroundWriter;
-use rtf_report::console::{Console, ConsoleOptions, Verbosity};
+use rtf_report::console::{Console, ConsoleOptions, Operator, Verbosity};
 use rtf_report::event_stream::EventStream;
 use rtf_report::gitlab::Sections;
 use rtf_report::run_dir::RunDir;
@@ -22,6 +22,7 @@ pub fn reporters(
     request: &OutputRequest,
     dir: &RunDir,
     stdout: &BackgroundWriter,
+    operator: Option<Operator>,
 ) -> Vec<Box<dyn Reporter>> {
     let printer: Box<dyn Reporter> = match request.format {
         StdoutFormat::Json => Box::new(EventStream::new(Box::new(stdout.for_stream()))),
@@ -31,7 +32,11 @@ pub fn reporters(
                 progress: request.progress,
                 ..console_options(&dir.path, request.verbose)
             };
-            let console = Box::new(Console::over(stdout, options));
+            let console = Console::over(stdout, options);
+            let console = Box::new(match operator {
+                Some(operator) => console.with_operator(operator),
+                None => console,
+            });
             match request.annotations {
                 Annotations::Gitlab => {
                     Box::new(Sections::around(console, Box::new(stdout.clone())))

@@ -31,7 +31,11 @@ pub struct Prepared {
 pub fn prepare(
     request: &RunRequest,
     reports: Vec<ReportFile>,
-    console: impl FnOnce(&RunDir, &BackgroundWriter) -> Vec<Box<dyn Reporter>>,
+    console: impl FnOnce(
+        &RunDir,
+        &BackgroundWriter,
+        &Arc<ControlChannels>,
+    ) -> Result<Vec<Box<dyn Reporter>>, Failure>,
 ) -> Result<Prepared, Failure> {
     let bind =
         |web: &WebRequest| web::bind(&web.settings).map_err(|failure| failure.maybe_hint(web.hint));
@@ -65,6 +69,6 @@ pub fn prepare(
     }
     reporters.extend(server.as_ref().map(|server| Box::new(server.live()) as Box<dyn Reporter>));
     reporters.extend(reports.into_iter().map(|report| Box::new(report) as Box<dyn Reporter>));
-    reporters.extend(console(&dir, &stdout));
+    reporters.extend(console(&dir, &stdout, &control)?);
     Ok(Prepared { dir, reporters, stdout, server, control })
 }

@@ -83,6 +83,7 @@ fn run_options(
         locks: request.locks.clone(),
         jobs: request.jobs.into(),
         debug: request.debug.as_ref().map(DebugRequest::options),
+        unattended: request.attendance.unattended.clone(),
         soak_time: request.tests.manifest.for_ms.map(Duration::from_millis),
     })
 }

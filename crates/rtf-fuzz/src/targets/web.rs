@@ -13,7 +13,7 @@ use rtf_history::{Store, StoreError};
 use rtf_model::{LineSealer, SuiteId, TestId};
 use rtf_report::console::RerunCommand;
 use rtf_web::{
-    BoundServer, CampaignReport, CampaignSource, Capabilities, HistorySource, Limits, Routes,
+    AnswerRequest, BoundServer, CampaignReport, CampaignSource, Capabilities, HistorySource, Limits, Routes,
     RunControl, Service, Settings, TestCondition,
 };
 
@@ -97,6 +97,10 @@ impl RunControl for Forbidden {
 
     fn skip_suite(&self, _: SuiteId) {
         panic!("a suite was skipped without the token");
+    }
+
+    fn answer(&self, _: AnswerRequest) {
+        panic!("a question was answered without the token");
     }
 }
 

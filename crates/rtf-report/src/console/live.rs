@@ -7,7 +7,7 @@ use rtf_model::{
 
 use super::page::ConsoleLines;
 use super::style::{self, BAD, BOLD, DIM, LOUD};
-use super::{ConsoleOptions, Verbosity, fixture_values, hooks, results};
+use super::{ConsoleOptions, Verbosity, fixture_values, hooks, questions, results};
 use crate::explain::{self, Extent, Tone};
 use crate::{ReportError, cause, escape, logs, private_resources, words};
 
@@ -60,6 +60,12 @@ pub(super) fn show(
         EventKind::EpisodeStarted(started) if !quiet => episode(page, &started.episode),
         EventKind::Message { source: Source::Fixture(fixture), message, .. } => {
             live.fixture_message(page, *fixture, message);
+        }
+        EventKind::QuestionAsked(asked) if !quiet => {
+            questions::asked(page, options, record, (asked.test, &asked.question));
+        }
+        EventKind::QuestionClosed(closed) if !quiet => {
+            questions::closed(page, record, closed.test, &closed.summary());
         }
         EventKind::TestSlow { test } => live.slow(page, *test, event.at),
         EventKind::TestStopping { test, cause, reason } => {

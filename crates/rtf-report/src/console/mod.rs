@@ -14,6 +14,7 @@ mod live;
 mod options;
 mod page;
 mod progress;
+mod questions;
 mod results;
 mod style;
 mod summary;
@@ -23,11 +24,12 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Duration;
 
-use rtf_model::{Event, Micros, Record};
+use rtf_model::{Event, EventKind, Micros, Record};
 
 pub(crate) use progress::{Bar, BarState};
 
 pub use details::drop_details;
+pub use questions::{AskedHere, Operator};
 pub use options::{ConsoleOptions, ReplayCommand, RerunCommand, Verbosity, rerun_suite};
 
 use crate::background_writer::BackgroundWriter;
@@ -35,6 +37,7 @@ use crate::disconnect::UntilDisconnect;
 use crate::{ReportError, Reporter, words};
 use page::ConsoleLines;
 use progress::Progress;
+use questions::QuestionPrompt;
 use verbose::Verbose;
 
 /// Lines are written when this number of bytes is pending …
@@ -54,6 +57,7 @@ pub struct Console {
     written: Micros,
     progress: Progress,
     verbose: Verbose,
+    prompt: QuestionPrompt,
     /// Number of omitted lines that are not reported yet.
     left_out: u64,
 }
@@ -88,8 +92,28 @@ impl Console {
             written: Micros::default(),
             progress,
             verbose: Verbose::default(),
+            prompt: QuestionPrompt::default(),
             left_out: 0,
         }
+    }
+
+    /// Lets a person answer questions of tests at this terminal.
+    #[must_use]
+    pub fn with_operator(self, operator: Operator) -> Self {
+        Self { prompt: QuestionPrompt::new(operator), ..self }
+    }
+
+    /// Shows which question can be answered, and passes it to the person.
+    fn update_question(&mut self, event: &Event, record: &Record) -> Result<(), ReportError> {
+        let Self { prompt, page, options, .. } = self;
+        let Some(text) = prompt.update(page, options, (&event.kind, record)) else {
+            return Ok(());
+        };
+        self.flush(event.at)?;
+        let bar = self.progress.set_prompt(text);
+        self.show_bar(&bar);
+        self.prompt.pass();
+        Ok(())
     }
 
     fn flush(&mut self, at: Micros) -> Result<(), ReportError> {
@@ -143,6 +167,9 @@ impl Reporter for Console {
         live::show(&mut self.page, &self.options, event, record);
         let bar = self.progress.event(event, record);
         bar.iter().for_each(|state| self.show_bar(state));
+        if matches!(event.kind, EventKind::QuestionAsked(_) | EventKind::QuestionClosed(_)) {
+            self.update_question(event, record)?;
+        }
         let is_late = event.at.since(self.written) > PATIENCE;
         if is_late || self.page.len() > PAGE { self.flush(event.at) } else { Ok(()) }
     }
@@ -156,6 +183,7 @@ impl Reporter for Console {
     }
 
     fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
+        self.prompt.end();
         let bar = self.progress.end();
         bar.iter().for_each(|state| self.show_bar(state));
         self.report_left_out();

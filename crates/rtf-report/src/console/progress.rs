@@ -1,5 +1,6 @@
 //! The progress bar, on standard error when that is a terminal.
 
+use std::io::Write;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -18,6 +19,8 @@ pub(crate) struct BarState {
     done: u64,
     tests: u64,
     message: String,
+    /// In place of the bar: where a person types.
+    prompt: Option<String>,
     /// Taken away for good.
     is_over: bool,
 }
@@ -26,17 +29,22 @@ pub(crate) struct BarState {
 #[derive(Debug)]
 pub(crate) struct Bar {
     bar: Option<ProgressBar>,
+    prompt: Option<String>,
 }
+
+/// Removes what is in the line of the cursor.
+const ERASE_LINE: &str = "\r\x1b[K";
 
 impl Bar {
     /// No bar, until one is shown.
     pub fn hidden() -> Self {
-        Self { bar: None }
+        Self { bar: None, prompt: None }
     }
 
     /// Shows it.
     pub fn show(&mut self, state: &BarState) {
-        if state.is_over {
+        self.show_prompt(state.prompt.as_deref());
+        if state.is_over || self.prompt.is_some() {
             self.bar.take().into_iter().for_each(|bar| bar.finish_and_clear());
             return;
         }
@@ -53,13 +61,37 @@ impl Bar {
         bar.set_position(state.done);
     }
 
-    /// Takes the bar away while `write` writes to the same terminal.
+    /// Shows or removes the prompt. What was typed stays.
+    fn show_prompt(&mut self, prompt: Option<&str>) {
+        if self.prompt.as_deref() == prompt {
+            return;
+        }
+        self.prompt = prompt.map(str::to_owned);
+        self.bar.take().into_iter().for_each(|bar| bar.finish_and_clear());
+        print_here(ERASE_LINE);
+        prompt.into_iter().for_each(print_here);
+    }
+
+    /// Takes the bar or the prompt away while `write` writes to the same terminal.
     pub fn around<T>(&self, write: impl FnOnce() -> T) -> T {
+        if let Some(prompt) = &self.prompt {
+            print_here(ERASE_LINE);
+            let written = write();
+            print_here(prompt);
+            return written;
+        }
         match &self.bar {
             Some(bar) => bar.suspend(write),
             None => write(),
         }
     }
+}
+
+/// Prints to standard error, which is a terminal if there is a prompt.
+fn print_here(text: &str) {
+    let mut err = anstream::stderr().lock();
+    // A terminal that is gone shows nothing.
+    let _ = err.write_all(text.as_bytes()).and_then(|()| err.flush());
 }
 
 /// How far the run is, and what it does now.
@@ -98,6 +130,12 @@ impl Progress {
         let before = self.state.clone();
         self.take(event, record);
         Some(&self.state).filter(|state| self.begun && **state != before).cloned()
+    }
+
+    /// Shows a prompt in place of the bar, or the bar again.
+    pub fn set_prompt(&mut self, prompt: Option<String>) -> BarState {
+        self.state.prompt = prompt;
+        self.state.clone()
     }
 
     fn take(&mut self, event: &Event, record: &Record) {

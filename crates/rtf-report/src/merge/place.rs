@@ -1,6 +1,6 @@
 //! From the ids of a run to those of the merged run.
 
-use rtf_model::{Attachment, EventKind, FixtureId, HookId, Source, SuiteId, TestId};
+use rtf_model::{EventKind, FixtureId, HookId, Source, SuiteId, TestId};
 
 use super::attachment_path;
 use super::plan::MergedPlan;

@@ -35,14 +35,14 @@ pub struct Started {
     run: String,
 }
 
-type ControlResult = Result<Response, Problem>;
+pub(super) type ControlResult = Result<Response, Problem>;
 
 fn accepted<T: Serialize>(body: &T) -> ControlResult {
     Ok((StatusCode::ACCEPTED, JsonText::of(body)?).into_response())
 }
 
 /// Something about the run that this process makes.
-async fn act(
+pub(super) async fn act(
     app: App,
     run: String,
     act: impl FnOnce(&dyn RunControl, &Index) -> Result<(), Problem> + Send + 'static,

@@ -32,7 +32,15 @@ pub(super) struct DetailQuery {
     pub(super) page: PageQuery,
 }
 
+/// In place of a kind of event: the starts and ends of questions.
+const QUESTION: &str = "question";
+
 impl DetailQuery {
+    /// The questions of an attempt of a test.
+    pub(super) fn questions_of(source: Source, number: u32) -> Self {
+        Self { source, number, kind: QUESTION, page: PageQuery { after: None, limit: None } }
+    }
+
     /// The entries of the page, and the number after which the next one starts.
     fn read<T>(
         &self,
@@ -69,7 +77,10 @@ impl DetailQuery {
         let failed = crate::runs::unreadable;
         while let Some(line) = lines.next().map_err(failed)? {
             let Ok(header) = serde_json::from_slice::<EventHeader>(line.text) else { continue };
-            if *header.kind == *self.kind && header.detail_source() == Some(self.source) {
+            let is_detail = *header.kind == *self.kind
+                && header.detail_source() == Some(self.source);
+            let is_question = self.kind == QUESTION && header.questioner() == Some(self.source);
+            if is_detail || is_question {
                 parse_event(line.text).into_iter().for_each(&mut take);
             }
         }

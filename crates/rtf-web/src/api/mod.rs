@@ -11,6 +11,7 @@ mod logs;
 mod plan;
 mod problems;
 mod query;
+mod questions;
 mod runs;
 mod series;
 mod session;
@@ -24,7 +25,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 pub use types::{
-    Attached, Cases, Measured, Printed, RunInfo, Said, Signal, SignalList, Snapshot, Stack,
+    Asked, Attached, Cases, Measured, Printed, Questions, RunInfo, Said, Signal, SignalList, Snapshot, Stack,
     TestDetail, model,
 };
 
@@ -90,6 +91,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(series::series))
         .routes(routes!(details::attachments))
         .routes(routes!(details::stacks))
+        .routes(routes!(questions::questions))
         .routes(routes!(details::test_output))
         .routes(routes!(details::fixture_output))
         .routes(routes!(details::hook_output))
@@ -109,6 +111,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(control::stop_run))
         .routes(routes!(control::stop_test))
         .routes(routes!(control::skip_suite))
+        .routes(routes!(questions::answer))
         .routes(routes!(control::rerun));
     OpenApiRouter::with_openapi(ApiDescription::openapi()).nest(ROOT, api)
 }

@@ -38,7 +38,7 @@ impl<'c, 'w> Collector<'c, 'w> {
         while let Some(line) = lines.next()? {
             // Damage is described in the overview.
             let Ok(header) = serde_json::from_slice::<EventHeader>(line.text) else { continue };
-            if let Some(source) = header.detail_source() {
+            if let Some(source) = header.detail_source().or_else(|| header.questioner()) {
                 let Some(details) = self.open.get_mut(&source) else { continue };
                 if let Ok(event) = parse_event(line.text) {
                     details.add(event, &mut self.files)?;

@@ -7,7 +7,9 @@ use serde::Serialize;
 
 use super::attachments::AttachmentFiles;
 use super::excerpt::{Entry, Excerpt, Limits};
-use crate::api::{Attached, Cases, Measured, Printed, Said, Signal, SignalList, Stack};
+use crate::api::{
+    Asked, Attached, Cases, Measured, Printed, Questions, Said, Signal, SignalList, Stack,
+};
 
 const MESSAGES: Limits = Limits { end: 2000, important: 1000 };
 const MEASUREMENTS: Limits = Limits { end: 2500, important: 0 };
@@ -38,6 +40,7 @@ pub struct DetailsBuilder {
     signals: SignalList,
     attachments: Vec<Attached>,
     stacks: Vec<Stack>,
+    questions: Questions,
 }
 
 /// Details as the page reads them.
@@ -53,6 +56,8 @@ pub struct Details {
     attachments: Vec<Attached>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     stacks: Vec<Stack>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    questions: Vec<Asked>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     output: Vec<Printed>,
     /// Numbers of omitted entries, by list. Output states its omissions itself.
@@ -72,6 +77,7 @@ impl DetailsBuilder {
             signals: SignalList::default(),
             attachments: Vec::new(),
             stacks: Vec::new(),
+            questions: Questions::default(),
         }
     }
 
@@ -100,6 +106,11 @@ impl DetailsBuilder {
                     next.omitted_bytes = Some(next.omitted_bytes.unwrap_or(0) + bytes);
                 });
             }
+            kind @ (EventKind::QuestionAsked(_) | EventKind::QuestionClosed(_)) => {
+                let event = Event { kind, ..event };
+                // The page takes the picture from the attachments.
+                self.questions.take(event, |_| None);
+            }
             _ => {}
         }
         Ok(())
@@ -116,6 +127,7 @@ impl DetailsBuilder {
             series: self.signals.into_signals(),
             attachments: self.attachments,
             stacks: self.stacks,
+            questions: self.questions.questions,
             output: self.output.into_entries().0,
             omitted: omitted.into_iter().filter(|(_, number)| *number > 0).collect(),
             cases,

@@ -16,7 +16,7 @@ use rtf_report::console::RerunCommand;
 use rtf_report::journal::Journal;
 use rtf_report::logs::Logs;
 use rtf_web::{
-    BoundServer, CampaignReport, CampaignSource, Capabilities, FinishedRun, HistorySource,
+    AnswerRequest, BoundServer, CampaignReport, CampaignSource, Capabilities, FinishedRun, HistorySource,
     JournalNotifier, Limits, RerunRejected, RunControl, RunStarter, Service, Settings,
     TestCondition, WebServer, WrongToken,
 };
@@ -41,6 +41,12 @@ impl RunControl for Asked {
 
     fn skip_suite(&self, suite: SuiteId) {
         self.0.lock().unwrap().push(format!("skip suite {suite}"));
+    }
+
+    fn answer(&self, answer: AnswerRequest) {
+        let AnswerRequest { test, question, answer, by } = answer;
+        let what = format!("answer {answer} to question {question} of test {test} by {by}");
+        self.0.lock().unwrap().push(what);
     }
 }
 

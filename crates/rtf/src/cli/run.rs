@@ -46,6 +46,10 @@ pub struct RunArgs {
     #[arg(long)]
     pub end_with_stdin: bool,
 
+    /// Answer no questions of tests: they get their default answers, or are errors
+    #[arg(long)]
+    pub no_input: bool,
+
     /// Print every message, measurement and output as it arrives
     #[arg(short, long)]
     pub verbose: bool,

@@ -2,17 +2,20 @@
 
 use std::os::fd::AsFd;
 use std::path::Path;
+use std::sync::Arc;
 
 use clap::ArgMatches;
 use rtf_model::Record;
+use rtf_report::background_writer::BackgroundWriter;
 
 use super::{VerbResult, list};
 use crate::cli::{ExecutorOption, ListFormat, RunVerbArgs};
+use crate::control::ControlChannels;
 use crate::debug::DebugRequest;
 use crate::error::Failure;
 use crate::guarded::{self, Supervision};
 use crate::request::{self, OutputRequest, RunRequest, config, history_target};
-use crate::{executor, history, outputs, plan, preflight, reports, runner};
+use crate::{executor, history, operator, outputs, plan, preflight, reports, runner};
 
 /// Runs tests.
 pub fn run(args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
@@ -40,6 +43,9 @@ pub fn run(args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
     };
     let run = |guard| {
         let mut request = RunRequest { debug, ..RunRequest::resolve(&args)? };
+        if request.debug.as_ref().is_some_and(DebugRequest::takes_terminal) {
+            request.attendance = request.attendance.without_terminal(request.web.is_some());
+        }
         // A session with a debugger says nothing about the test.
         request.history = request.history.filter(|_| request.debug.is_none());
         let mut planned = plan::plan_debugged(&request.tests, request.debug.as_ref())?;
@@ -51,7 +57,12 @@ pub fn run(args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
             planned.learn(&history::resolve(url, &request.results)?, &request.tests);
         }
         let reports = reports::open_all(&output.reports, &output.results)?;
-        let print = |dir: &_, stdout: &_| outputs::reporters(&output, dir, stdout);
+        let can_answer = request.attendance.console;
+        let print = |dir: &_, stdout: &BackgroundWriter, control: &Arc<ControlChannels>| {
+            let operator = can_answer.then(|| operator::start(control.clone(), stdout.clone()));
+            let operator = operator.transpose().map_err(Failure::internal)?;
+            Ok(outputs::reporters(&output, dir, stdout, operator))
+        };
         let prepared = preflight::prepare(&request, reports, print)?;
         if let Some(stream) = request.tests.episode_stream.take() {
             stream.start(prepared.control.clone()).map_err(Failure::internal)?;

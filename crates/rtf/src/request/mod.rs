@@ -21,6 +21,7 @@ use crate::collector::Collector;
 use crate::debug::DebugRequest;
 use crate::error::Failure;
 use crate::history::{self, HistoryTarget};
+use crate::operator::Attendance;
 use crate::revision::RevisionQuery;
 use rtf_plan::plan::CaseListing;
 
@@ -44,6 +45,8 @@ pub struct RunRequest {
     pub shutdown_timeout: Duration,
     /// How the only test is debugged.
     pub debug: Option<DebugRequest>,
+    /// Who can answer questions of tests.
+    pub attendance: Attendance,
     /// Where the run is imported when it has ended.
     pub history: Option<HistoryTarget>,
     /// Which collectors get the trace of the run when it has ended.
@@ -116,6 +119,7 @@ impl RunRequest {
             jobs: args.jobs,
             shutdown_timeout: args.shutdown_timeout,
             debug: None,
+            attendance: Attendance::find(args),
             history: history_target(args)?,
             collectors: collectors(args)?,
             revision,

@@ -24,6 +24,7 @@ use rtf_report::{ReportError, ReportFile};
 use crate::cli::{ReportFormat, WebAccessArgs};
 use crate::command::VerbResult;
 use crate::error::Failure;
+use crate::operator::Attendance;
 use crate::guarded::{self, Supervision};
 use crate::request::{RunRequest, TestsRequest, WebRequest, locks_dir, web_settings};
 use crate::revision::RevisionQuery;
@@ -99,8 +100,8 @@ fn run(args: &Args) -> VerbResult {
         let report = open_result_file(args, &results.path).transpose().map_err(|error| {
             Failure::input(error).hint("choose another path with `--output FILE`")
         })?;
-        let prepared = preflight::prepare(&request, report.into_iter().collect(), |_, stdout| {
-            vec![Box::new(ResultList::over(stdout, console_options(args)))]
+        let prepared = preflight::prepare(&request, report.into_iter().collect(), |_, stdout, _| {
+            Ok(vec![Box::new(ResultList::over(stdout, console_options(args)))])
         })?;
         runner::run(&request, &planned, prepared, guard)
     };
@@ -150,6 +151,7 @@ fn request(args: &Args, results: &Path) -> Result<RunRequest, Failure> {
         jobs: NonZeroU16::MIN,
         shutdown_timeout: SHUTDOWN_TIMEOUT,
         debug: None,
+        attendance: Attendance::on_page(args.web_reporter, "there is no page"),
         history: None,
         collectors: Vec::new(),
         revision,

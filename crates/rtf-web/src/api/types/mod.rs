@@ -6,6 +6,7 @@ mod fixture;
 mod hook;
 mod info;
 pub mod model;
+mod question;
 mod signal;
 mod significance;
 mod suite;
@@ -19,6 +20,7 @@ pub use detail::{
 pub use fixture::{Fixture, Fixtures};
 pub use hook::{Hook, Hooks};
 pub use info::{RunInfo, RunList, Totals};
+pub use question::{Asked, Questions};
 pub use signal::{Signal, SignalList, Signals};
 pub use significance::Significance;
 pub use suite::{Snapshot, Suite, Suites};

@@ -34,5 +34,6 @@ macro_rules! model {
 
 model! {
     Attachment, Diagnostic, Event, ExitStatus, ExpectedFailure, LeakedProcess, Location,
-    Measurement, Message, Parameter, Phase, Stream, Revision, SuitePrepared, Trigger, Verdict,
+    Measurement, Message, Parameter, Phase, Question, Respondent, Revision, Stream, SuitePrepared,
+    Trigger, Verdict,
 }

@@ -7,7 +7,8 @@ use rtf_model::{
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::{CaseCounts, Significance, model};
+use super::{Asked, CaseCounts, Significance, model};
+use crate::api::files;
 
 /// The state of a test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -71,6 +72,10 @@ pub struct Test {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<model::Phase>)]
     pub phase: Option<Phase>,
+    /// Its questions to a person that wait for an answer.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schema(required = false)]
+    pub questions: Vec<Asked>,
     /// Microseconds in all attempts that ended.
     pub duration_us: u64,
     /// Whether an attempt took longer than its `slow` limit.
@@ -201,6 +206,13 @@ pub struct PhaseAt {
     pub at: u64,
 }
 
+/// The questions of an attempt that wait for an answer.
+fn open_questions(record: &Record, attempt: &AttemptRecord) -> Vec<Asked> {
+    let run = record.run.as_ref().map_or("", |run| &run.run);
+    let url = |path: &str| files::url(run, path);
+    attempt.questions.iter().filter(|it| it.is_open()).map(|it| Asked::open(it, url)).collect()
+}
+
 impl Test {
     /// A view of a test; `over`: its run has ended.
     #[must_use]
@@ -231,6 +243,7 @@ impl Test {
             green: verdict.map(|_| record.is_test_green(test)),
             reason: test.reason().map(str::to_owned),
             phase: running.and_then(|attempt| attempt.phases.last()).map(|(phase, _)| *phase),
+            questions: running.map_or_else(Vec::new, |attempt| open_questions(record, attempt)),
             duration_us: u64::try_from(test.duration().as_micros()).unwrap_or(u64::MAX),
             slow: test.attempts.iter().any(|attempt| attempt.slow),
             attempts: test.attempts.iter().zip(1..).map(|(a, n)| AttemptRow::of(a, n)).collect(),
