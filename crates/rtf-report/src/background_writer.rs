@@ -168,17 +168,24 @@ fn write_all(shared: &SharedBuffer, mut out: Box<dyn Write + Send>) {
             thread::sleep(rest);
         }
         let mut state = shared.lock();
+        if !state.text.is_empty() && !state.text.ends_with(b"\n") {
+            // The rest of the line follows: a bar must not be drawn in it.
+            drop(state);
+            thread::sleep(GATHERING);
+            state = shared.lock();
+        }
         if state.is_over || (state.text.is_empty() && state.bar.is_none()) {
             return;
         }
         let (text, shown) = (std::mem::take(&mut state.text), state.bar.take());
         state.is_writing = true;
         drop(state);
-        shown.into_iter().for_each(|shown| bar.show(&shown));
         let written = match text.is_empty() {
             true => Ok(()),
             false => bar.around(|| out.write_all(&text).and_then(|()| out.flush())),
         };
+        // The text came first.
+        shown.into_iter().for_each(|shown| bar.show(&shown));
         written_at = Some(Instant::now());
         shared.waiting.fetch_sub(text.len(), Ordering::Relaxed);
         let mut state = shared.lock();

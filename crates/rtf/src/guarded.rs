@@ -15,7 +15,7 @@ use rtf_report::journal;
 
 use crate::command::VerbResult;
 use crate::error::Failure;
-use crate::{exit, terminal};
+use crate::{exit, operator, terminal};
 
 /// How the guard supervises the runner.
 pub struct Supervision {
@@ -35,6 +35,7 @@ pub fn run(
     complete: impl FnOnce(&Path, &Record),
 ) -> VerbResult {
     let Supervision { lifeline, patience, keeps_journal } = supervision;
+    let had_foreground = operator::has_foreground();
     let ended = match guard::split(lifeline, patience).map_err(Failure::internal)? {
         Side::Runner(link) => return run(link),
         Side::Guard(guard) => guard.supervise(),
@@ -45,6 +46,7 @@ pub fn run(
             Ok(ExitCode::from(code))
         }
         GuardOutcome::RunnerDied(died) => {
+            operator::recover_terminal(had_foreground);
             terminal::stderr(|err| report_death(err, &died, keeps_journal))?;
             let hook_failed = died.hooks.iter().any(|hook| hook.problem.is_some());
             let code = if hook_failed { exit::HOOK_FAILED } else { exit::RUNNER_DIED };

@@ -1,17 +1,18 @@
 //! The person who can answer questions of tests: who is there, and the answers on the terminal.
 
 use std::io::{self, IsTerminal, Write};
-use std::os::fd::{AsFd, BorrowedFd};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use rtf_engine::guard;
 use rtf_engine::run::{Control, QuestionReply};
 use rtf_model::{AnswerChannel, Question, Respondent};
 use rtf_report::background_writer::BackgroundWriter;
 use rtf_report::console::{AskedHere, Operator};
 use rtf_report::escape;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use rustix::termios::{QueueSelector, tcflush, tcgetpgrp};
+use rustix::process::Pid;
+use rustix::termios::{QueueSelector, tcflush, tcgetpgrp, tcsetpgrp};
 
 use crate::cli::{RunArgs, StdoutFormat};
 use crate::control::ControlChannels;
@@ -111,10 +112,11 @@ impl Desk {
 /// The thread cannot be started.
 pub fn start(control: Arc<ControlChannels>, out: BackgroundWriter) -> io::Result<Operator> {
     let desk = Arc::new(Desk::default());
+    guard::survive_terminal_stop()?;
     let reader = AnswerReader { desk: desk.clone(), control, out, by: user() };
     std::thread::Builder::new().name("answers".to_owned()).spawn(move || reader.run())?;
     Ok(Box::new(move |current: Option<AskedHere>| {
-        if current.is_some() && has_terminal(io::stdin().as_fd()) {
+        if current.is_some() && foreground() != Foreground::Other {
             let _ = tcflush(io::stdin(), QueueSelector::IFlush);
         }
         *desk.lock() = current;
@@ -130,9 +132,67 @@ fn user() -> Respondent {
     Respondent { via: AnswerChannel::Console, who: Some(name.unwrap_or_else(number)) }
 }
 
-/// Whether this process is in the foreground of its terminal: otherwise reading would stop it.
-fn has_terminal(terminal: BorrowedFd<'_>) -> bool {
-    tcgetpgrp(terminal).is_ok_and(|group| group == rustix::process::getpgrp())
+/// Which process group has the foreground of the terminal, and so may read from it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Foreground {
+    /// That of the guard, which the user started.
+    Guard,
+    /// That of this process, the runner.
+    Runner,
+    /// Another one: the run is in the background of a shell.
+    Other,
+}
+
+/// The group of the guard, this process's parent.
+fn guard_group() -> Option<Pid> {
+    rustix::process::getpgid(rustix::process::getppid()).ok()
+}
+
+fn foreground() -> Foreground {
+    match tcgetpgrp(io::stdin()).ok() {
+        Some(group) if group == rustix::process::getpgrp() => Foreground::Runner,
+        group if group.is_some() && group == guard_group() => Foreground::Guard,
+        _ => Foreground::Other,
+    }
+}
+
+/// The foreground of the terminal while this process reads an answer. The guard blocks SIGTTOU in
+/// both processes. Ctrl-C then interrupts this process, which handles it like the guard.
+struct BorrowedForeground;
+
+impl BorrowedForeground {
+    /// Takes it from the guard; `None` if that does not have it.
+    fn take() -> Option<Self> {
+        let take = || tcsetpgrp(io::stdin(), rustix::process::getpgrp()).is_ok();
+        let has = match foreground() {
+            Foreground::Runner => true,
+            Foreground::Guard => take(),
+            Foreground::Other => false,
+        };
+        has.then_some(Self)
+    }
+}
+
+impl Drop for BorrowedForeground {
+    fn drop(&mut self) {
+        if let (Foreground::Runner, Some(guard)) = (foreground(), guard_group()) {
+            // Fails if the terminal is gone.
+            let _ = tcsetpgrp(io::stdin(), guard);
+        }
+    }
+}
+
+/// Takes the terminal back from a runner that has died while it read an answer.
+pub fn recover_terminal(had_foreground: bool) {
+    if had_foreground {
+        guard::permit_background_output();
+        let _ = tcsetpgrp(io::stdin(), rustix::process::getpgrp());
+    }
+}
+
+/// Whether this process is in the foreground of its terminal.
+pub fn has_foreground() -> bool {
+    foreground() == Foreground::Runner
 }
 
 struct AnswerReader {
@@ -202,8 +262,10 @@ impl AnswerReader {
 
     fn read(&self, asked: &AskedHere) -> io::Result<Typed> {
         let stdin = io::stdin();
+        let mut borrowed = None;
         while self.desk.is_current(asked) {
-            if !has_terminal(stdin.as_fd()) {
+            borrowed = borrowed.or_else(BorrowedForeground::take);
+            if borrowed.is_none() {
                 std::thread::sleep(BACKGROUND);
                 continue;
             }

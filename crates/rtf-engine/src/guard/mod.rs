@@ -38,7 +38,7 @@ pub(crate) use message::HookStart;
 pub use recovery::{RecoveredHook, Recovery};
 pub use stop_requests::{StopRequests, WINDOW};
 pub use supervisor::{Guard, GuardOutcome};
-pub use unix::survive_file_size_limit;
+pub use unix::{permit_background_output, survive_file_size_limit, survive_terminal_stop};
 
 /// Which of the two processes this is.
 #[derive(Debug)]

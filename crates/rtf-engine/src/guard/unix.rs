@@ -168,6 +168,14 @@ pub fn survive_file_size_limit() -> io::Result<()> {
     handle(libc::SIGXFSZ, ignore)
 }
 
+/// Makes Ctrl-Z have no effect on this process while it has the terminal, as on the guard.
+///
+/// # Errors
+/// The system refused.
+pub fn survive_terminal_stop() -> io::Result<()> {
+    handle(libc::SIGTSTP, ignore)
+}
+
 extern "C" fn ignore(_: libc::c_int) {}
 
 fn handle(signal: i32, handler: extern "C" fn(libc::c_int)) -> io::Result<()> {

@@ -111,8 +111,9 @@ impl Console {
         };
         self.flush(event.at)?;
         let bar = self.progress.set_prompt(text);
-        self.show_bar(&bar);
+        // Input for an earlier question is discarded before this one is visible.
         self.prompt.pass();
+        self.show_bar(&bar);
         Ok(())
     }
 

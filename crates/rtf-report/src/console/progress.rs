@@ -32,7 +32,7 @@ pub(crate) struct Bar {
     prompt: Option<String>,
 }
 
-/// Removes what is in the line of the cursor.
+/// Moves the cursor to the start of its line, and erases the line.
 const ERASE_LINE: &str = "\r\x1b[K";
 
 impl Bar {
@@ -68,16 +68,16 @@ impl Bar {
         }
         self.prompt = prompt.map(str::to_owned);
         self.bar.take().into_iter().for_each(|bar| bar.finish_and_clear());
-        print_here(ERASE_LINE);
-        prompt.into_iter().for_each(print_here);
+        erase_line();
+        prompt.into_iter().for_each(print_prompt);
     }
 
     /// Takes the bar or the prompt away while `write` writes to the same terminal.
     pub fn around<T>(&self, write: impl FnOnce() -> T) -> T {
         if let Some(prompt) = &self.prompt {
-            print_here(ERASE_LINE);
+            erase_line();
             let written = write();
-            print_here(prompt);
+            print_prompt(prompt);
             return written;
         }
         match &self.bar {
@@ -87,10 +87,16 @@ impl Bar {
     }
 }
 
-/// Prints to standard error, which is a terminal if there is a prompt.
-fn print_here(text: &str) {
+// Standard error is a terminal if there is a prompt. One that is gone shows nothing.
+
+fn erase_line() {
+    // Not a colour, which `NO_COLOR` removes.
+    let mut err = std::io::stderr().lock();
+    let _ = err.write_all(ERASE_LINE.as_bytes()).and_then(|()| err.flush());
+}
+
+fn print_prompt(text: &str) {
     let mut err = anstream::stderr().lock();
-    // A terminal that is gone shows nothing.
     let _ = err.write_all(text.as_bytes()).and_then(|()| err.flush());
 }
 

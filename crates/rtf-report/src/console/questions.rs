@@ -55,7 +55,7 @@ impl QuestionPrompt {
         Some(self.current.as_ref().map(|asked| prompt(record, asked.test)))
     }
 
-    /// Passes the question to the person, after it was written.
+    /// Passes the question to the person.
     pub fn pass(&mut self) {
         if let Some(operator) = &mut self.operator {
             operator(self.current.clone());

@@ -1,0 +1,277 @@
+#!/usr/bin/env python3
+"""Answers questions of tests on a pseudo-terminal, as an operator does.
+
+    tests/operator/check.py RTF
+"""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "debug"))
+
+import terminal  # noqa: E402 - next to this directory
+from terminal import Terminal  # noqa: E402
+
+terminal.LIMIT = 20.0
+
+# Less than a person takes: the limit is paused while a question is open.
+LIMIT = 2.0
+KINDS = ("choice", "text", "instruction", "default", "two", "forever")
+# An interrupted question, its tear-down and its reports: far less than its timeout.
+QUICK = 15.0
+
+
+def check(holds: bool, text: str) -> None:
+    """End with an explanation unless the condition holds."""
+    if not holds:
+        raise SystemExit(f"FAILED: {text}")
+
+
+def suite(name: str, kinds: tuple[str, ...] = KINDS, collapses: bool = False) -> str:
+    """A suite with a test per kind."""
+    test = '<test name="{0}" type="python" timeout="{1:g}s" param="{0}">{2}/questions.py</test>'
+    tests = "".join(test.format(kind, LIMIT, HERE) for kind in kinds)
+    fixture = '<fixture name="arm" type="process" restarts="0"><command>sleep 3</command></fixture>'
+    return f'<suite name="{name}">{fixture if collapses else ""}{tests}</suite>'
+
+
+class Bench:
+    """A directory with suites."""
+
+    def __init__(self, rtf: Path, directory: Path) -> None:
+        """Write the suites."""
+        self.rtf, self.directory = str(rtf), directory
+        (directory / "arm.xml").write_text(suite("arm"))
+        (directory / "leg.xml").write_text(suite("leg", ("choice",)))
+        (directory / "fragile.xml").write_text(suite("fragile", ("forever",), collapses=True))
+        self.environment = {k: v for k, v in os.environ.items() if k != "CI"} | {
+            "TERM": "xterm",
+            "NO_COLOR": "1",
+            "HOME": str(directory),
+            "LOGNAME": "alice",
+        }
+
+    def run(self, *arguments: str, **environment: str) -> Terminal:
+        """Start a run on a terminal."""
+        command = [self.rtf, "run", *arguments]
+        return Terminal(command, self.directory, self.environment | environment)
+
+    def finish(self, session: Terminal, code: int) -> list[dict[str, object]]:
+        """Check the end of a run; return the ends of its questions."""
+        check(session.finish() == code, f"exit code {code}\n{session.output}")
+        check(session.has_first_settings(), "the terminal has its settings")
+        journal = self.directory / "rtf-results" / "latest" / "events.jsonl"
+        events = [json.loads(line) for line in journal.read_text().splitlines()]
+        self.events = events
+        check(events[-1]["type"] == "run-finished", "the journal is complete")
+        asked = sum(event["type"] == "question-asked" for event in events)
+        closed = [event for event in events if event["type"] == "question-closed"]
+        check(asked == len(closed) > 0, f"{asked} questions, {len(closed)} ends")
+        return closed
+
+
+def only(closed: list[dict[str, object]]) -> dict[str, object]:
+    """The only question of a run."""
+    check(len(closed) == 1, f"one question: {closed}")
+    return closed[0]
+
+
+ALICE = {"via": "console", "who": "alice"}
+
+
+def a_choice(bench: Bench) -> None:
+    """Answers that are none are explained; the limit of the test is paused."""
+    with bench.run("arm.xml::choice") as session:
+        session.expect(r"   question  arm/choice\n +Is it \\x1b\[2Jclosed\?\n +1 yes, 2 no, within 1 min")
+        session.expect(r"answer  arm/choice> ")
+        session.send("maybe\n")
+        session.expect(r"`maybe` is none of yes, no, nor a number from 1 to 2")
+        session.expect(r"answer  arm/choice> ")
+        session.send("\n")
+        session.expect(r"type an answer; Ctrl-D declines to answer")
+        time.sleep(1.5 * LIMIT)
+        session.send("1\n")
+        session.expect(r"answer  arm/choice: yes \(alice, on the console\)")
+        closed = only(bench.finish(session, 0))
+        check(closed["answer"] == "yes" and closed["by"] == ALICE, f"{closed}")
+        check("\x1b[2J" not in session.output, "no text clears the screen")
+
+
+def a_text(bench: Bench) -> None:
+    """Any line, also with letters of other scripts."""
+    with bench.run("arm.xml::text") as session:
+        session.expect(r"a line of text, within 1 min")
+        session.expect(r"answer  arm/text> ")
+        session.send("SN-17 größe\n")
+        check(only(bench.finish(session, 0))["answer"] == "SN-17 größe", "the text")
+
+
+def an_instruction(bench: Bench) -> None:
+    """The path of the picture is shown; `cannot` is an error."""
+    with bench.run("arm.xml::instruction") as session:
+        picture = session.expect(r"^ +picture: (\S+button\.png)$")[1]
+        content = (bench.directory / picture).read_bytes()
+        check(content.startswith(b"\x89PNG"), picture)
+        session.expect(r"answer  arm/instruction> ")
+        session.send("cannot\n")
+        session.expect(r"error: the operator cannot do this: Push the button")
+        check(only(bench.finish(session, 1))["answer"] == "cannot", "the answer")
+
+
+def a_declined_question(bench: Bench) -> None:
+    """Ctrl-D: without a default, that is an error."""
+    with bench.run("arm.xml::text") as session:
+        session.expect(r"answer  arm/text> ")
+        session.send("\x04")
+        session.expect(r'no answer to "Serial number\?": declined by alice, on the console')
+        closed = only(bench.finish(session, 1))
+        check("answer" not in closed and closed["by"] == ALICE, f"{closed}")
+
+
+def a_default(bench: Bench) -> None:
+    """Nobody answers in time."""
+    with bench.run("arm.xml::default") as session:
+        session.expect(r"answer  arm/default> ")
+        session.expect(r"answer  arm/default: no \(default: nobody answered within 500ms\)")
+        closed = only(bench.finish(session, 0))
+        check(closed["answer"] == "no" and "by" not in closed, f"{closed}")
+
+
+def a_line_for_an_ended_question(bench: Bench) -> None:
+    """What was typed for a question that has ended answers no other one."""
+    with bench.run("arm.xml::two") as session:
+        session.expect(r"First\?")
+        session.expect(r"answer  arm/two> ")
+        session.send("yes")
+        session.expect(r"Second\?")
+        session.expect(r"answer  arm/two> ")
+        session.send("\n")
+        session.expect(r"type an answer")
+        session.send("no\n")
+        first, second = bench.finish(session, 0)
+        check((first["answer"], second["answer"]) == ("no", "no"), f"{first} {second}")
+        check("by" not in first and second["by"] == ALICE, f"{first} {second}")
+
+
+def two_suites(bench: Bench) -> None:
+    """Two questions wait: one is answered after the other."""
+    with bench.run("-j2", "arm.xml::choice", "leg.xml") as session:
+        first = session.expect(r"answer  (arm|leg)/choice> ")[1]
+        other = {"arm": "leg", "leg": "arm"}[first]
+        session.expect(rf"   question  {other}/choice")
+        session.send("yes\n")
+        session.expect(rf"answer  {first}/choice: yes")
+        session.expect(rf"   question  {other}/choice")
+        session.expect(rf"answer  {other}/choice> ")
+        session.send("no\n")
+        session.expect(rf"answer  {other}/choice: no")
+        check({it["answer"] for it in bench.finish(session, 0)} == {"yes", "no"}, "both")
+
+
+def interrupted(bench: Bench) -> None:
+    """Ctrl-C ends the question at once, and the test is torn down."""
+    with bench.run("arm.xml::forever") as session:
+        session.expect(r"answer  arm/forever> ")
+        start = time.monotonic()
+        session.interrupt()
+        session.expect(r"answer  arm/forever: not answered: stopped by SIGINT")
+        closed = only(bench.finish(session, 130))
+        check(time.monotonic() - start < QUICK, f"{time.monotonic() - start} s")
+        check(closed["reason"] == "stopped by SIGINT", f"{closed}")
+        output = "".join(e["text"] for e in bench.events if e["type"] == "output")
+        check(output == "the answer is no longer awaited\ntorn down\n", output)
+
+
+def a_collapse(bench: Bench) -> None:
+    """A fixture that collapses ends the question."""
+    with bench.run("fragile.xml") as session:
+        session.expect(r"answer  fragile/forever> ")
+        session.expect(r"answer  fragile/forever: not answered: fixture `arm` collapsed")
+        check("collapsed" in str(only(bench.finish(session, 1))["reason"]), "the reason")
+
+
+def in_the_background(bench: Bench) -> None:
+    """A run in the background of a shell asks, and is not stopped by the terminal."""
+    shell = "set -m; {0} run arm.xml::choice & sleep 3; kill -0 $! && jobs -l; fg >/dev/null"
+    command = ["bash", "-c", shell.format(bench.rtf)]
+    with Terminal(command, bench.directory, bench.environment) as session:
+        session.expect(r"Is it")
+        session.expect(r"Running")
+        session.send("yes\n")
+        session.expect(r"answer  arm/choice: yes \(alice, on the console\)")
+        check(only(bench.finish(session, 0))["answer"] == "yes", "the answer")
+
+
+def nobody(bench: Bench) -> None:
+    """Nobody is asked in CI, with --no-input, without a terminal; defaults count."""
+    for arguments, environment, reason in [
+        (["--no-input"], {}, "`--no-input` is set"),
+        ([], {"CI": "true"}, "the variable `CI` is set, and there is no page (`--web`)"),
+        (["--end-with-stdin"], {}, "standard input has another use, and there is no page (`--web`)"),
+    ]:
+        with bench.run("arm.xml::default", "arm.xml::forever", *arguments, **environment) as session:
+            default, forever = bench.finish(session, 1)
+            check(default["answer"] == "no", f"{default}")
+            for closed in (default, forever):
+                check(closed["reason"] == f"nobody can answer: {reason}", f"{closed}")
+            check("answer  arm" not in re.sub(r"answer  arm/\w+: ", "", session.output), "no prompt")
+    command = [bench.rtf, "run", "arm.xml::forever"]
+    piped = subprocess.run(
+        command, cwd=bench.directory, env=bench.environment, stdin=subprocess.DEVNULL,
+        capture_output=True, text=True, timeout=QUICK, check=False,
+    )
+    check(piped.returncode == 1, piped.stdout)
+    check("nobody can answer: standard input is no terminal" in piped.stdout, piped.stdout)
+
+
+def killed(bench: Bench) -> None:
+    """The guard ends a run whose runner dies while a question waits; the terminal is usable."""
+    with bench.run("arm.xml::forever") as session:
+        session.expect(r"answer  arm/forever> ")
+        children = Path(f"/proc/{session.pid}/task/{session.pid}/children").read_text().split()
+        os.kill(int(children[0]), signal.SIGKILL)
+        session.expect(r"the runner died")
+        check(session.finish() == 5, session.output)
+
+        check(session.has_first_settings(), "the terminal has its settings")
+
+
+CHECKS: list[Callable[[Bench], None]] = [
+    a_choice,
+    a_text,
+    an_instruction,
+    a_declined_question,
+    a_default,
+    a_line_for_an_ended_question,
+    two_suites,
+    interrupted,
+    a_collapse,
+    in_the_background,
+    nobody,
+    killed,
+]
+
+
+def main() -> None:
+    """Run all checks."""
+    rtf = Path(sys.argv[1]).resolve()
+    wanted = sys.argv[2:]
+    for each in CHECKS:
+        if wanted and each.__name__ not in wanted:
+            continue
+        with tempfile.TemporaryDirectory() as directory:
+            each(Bench(rtf, Path(directory)))
+        print(f"ok: {each.__name__.replace('_', ' ')}")
+
+
+if __name__ == "__main__":
+    main()
