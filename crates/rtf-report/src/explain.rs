@@ -3,7 +3,7 @@
 
 use rtf_model::{
     AttemptRecord, CaseId, Comparison, HookRunRecord, LeakedProcess, Measurement, Message,
-    MessageKind, SignalSummary,
+    MessageKind, QuestionRecord, SignalSummary,
 };
 
 use crate::cases::{CaseProblems, CaseResult, TestCases};
@@ -162,6 +162,12 @@ pub(crate) fn measurement(measurement: &Measurement) -> String {
         text += &format!(" at {}", escape::line(&location.to_string()));
     }
     text
+}
+
+/// A question to a person, and how it ended.
+pub(crate) fn question(question: &QuestionRecord, sink: Sink<'_>) {
+    block(Tone::Plain, &question.asked.text, "question: ", sink);
+    block(Tone::Plain, &question.answer_summary(), "  answer: ", sink);
 }
 
 /// `sampled elbow: 500 samples in 4.99 s, 0.1 … 0.6 rad, mean 0.31 rad at arm.py:12`,

@@ -4,6 +4,7 @@
 import type * as api from '../generated/api';
 
 export type {
+    Asked,
     Attached as AttachmentEntry,
     Case,
     Cases,
@@ -12,6 +13,7 @@ export type {
     Hook,
     Measured as MeasurementEntry,
     Printed as OutputEntry,
+    Questions,
     Parameter,
     ProvidedValue,
     Said as MessageEntry,

@@ -152,7 +152,8 @@ export const signIn = (token: string) => request('/session', { method: 'POST', b
 
 export const signOut = () => request('/session', { method: 'DELETE' });
 
-const post = (parts: (string | number)[]) => request(path(parts), { method: 'POST', body: {} });
+const post = (parts: (string | number)[], body: unknown = {}) =>
+    request(path(parts), { method: 'POST', body });
 
 export const stopRun = (run: string) => post(['runs', run, 'stop']);
 
@@ -163,5 +164,9 @@ export async function rerun(run: string): Promise<string> {
 }
 
 export const stopTest = (run: string, id: number) => post(['runs', run, 'tests', id, 'stop']);
+
+/** Answers a question that waits for an answer. */
+export const answer = (run: string, test: number, question: number, text: string) =>
+    post(['runs', run, 'tests', test, 'questions', question, 'answer'], { answer: text });
 
 export const skipSuite = (run: string, id: number) => post(['runs', run, 'suites', id, 'skip']);

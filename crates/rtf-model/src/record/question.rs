@@ -23,11 +23,11 @@ impl QuestionRecord {
         self.closed.is_none()
     }
 
-    /// The text and the answer: `Is the gripper closed? yes (alice, on the console)`.
+    /// The answer and who gave it, or why there is none, see [`QuestionClosed::summary`].
     #[must_use]
-    pub fn summary(&self) -> String {
-        let answer = self.closed.as_ref().map(|(_, closed)| closed.summary());
-        format!("{} {}", self.asked.text, answer.as_deref().unwrap_or("not answered"))
+    pub fn answer_summary(&self) -> String {
+        let closed = self.closed.as_ref().map(|(_, closed)| closed.summary());
+        closed.unwrap_or_else(|| "not answered".to_owned())
     }
 
     /// Adds a question. Only open questions are kept beyond the limit.

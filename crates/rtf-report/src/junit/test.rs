@@ -11,7 +11,7 @@ use super::{text, time};
 use crate::explain::{self, Extent};
 use crate::{known_failure, words};
 
-/// More measurements or series than this would drown the page that shows them.
+/// More measurements, questions or series than this would drown the page that shows them.
 const MEASUREMENTS: usize = 100;
 
 /// The reason of a test that was running when the run ended.
@@ -194,6 +194,12 @@ fn properties(case: &mut TestCase, test: &TestRecord) {
     });
     for measurement in measurements.take(MEASUREMENTS) {
         add_measurement(case, measurement);
+    }
+    let questions = test.deciding_attempts().flat_map(|attempt| &attempt.questions);
+    for question in questions.take(MEASUREMENTS) {
+        let title = question.asked.text.lines().next().unwrap_or_default();
+        let name = text(&format!("question.{title}"));
+        case.add_property((name, text(&question.answer_summary())));
     }
     let series = test.deciding_attempts().flat_map(|attempt| &attempt.series);
     for series in series.take(MEASUREMENTS) {

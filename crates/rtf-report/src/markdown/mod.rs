@@ -1,5 +1,5 @@
 //! A summary of a run in Markdown, for the page of a CI job: the outcome first, then what
-//! made it red, then the measurements.
+//! made it red, then the questions and the measurements.
 //!
 //! Text of plug-ins is shown literally. The length is limited,
 //! because code hosts refuse long summaries; each section states what it leaves out.
@@ -8,6 +8,7 @@ mod failed_tests;
 mod inline;
 mod measurements;
 mod problems;
+mod questions;
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -54,6 +55,7 @@ pub fn write(
     problems::known(&mut page, record);
     problems::skipped(&mut page, record);
     problems::leaked(&mut page, record);
+    questions::show(&mut page, record);
     measurements::show(&mut page, record);
     problems::hook_runs(&mut page, record);
     problems::warnings(&mut page, record);

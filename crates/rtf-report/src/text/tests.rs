@@ -102,6 +102,9 @@ fn details(lines: &mut TextLines, attempt: &AttemptRecord) {
         let more = words::plural(attempt.messages_omitted, "message");
         lines.at(6, &format!("… and {} more {more} in the journal", attempt.messages_omitted));
     }
+    for question in &attempt.questions {
+        explain::question(question, &mut |_, line| lines.at(6, line));
+    }
     for measurement in attempt.measurements.iter().filter(|m| m.is_within_limits()) {
         if cases::is_in_case(attempt, measurement.case) {
             continue;

@@ -174,6 +174,29 @@ typedef struct rtf_case {
     uint32_t line;
 } rtf_case;
 
+// A question to a person.
+typedef struct rtf_question {
+    // `sizeof(rtf_question)`.
+    size_t size;
+    // The text; may have several lines.
+    struct rtf_text text;
+    // The possible answers, may be null if `choice_count` is 0: then the answer is any line
+    // of text.
+    const struct rtf_text *choices;
+    // The number of entries of `choices`.
+    size_t choice_count;
+    // The answer if nobody answers, empty if that is an error.
+    struct rtf_text default_answer;
+    // How long it waits for an answer, in seconds.
+    double timeout;
+    // The path of a PNG or JPEG file, empty for none. It is copied before the call returns.
+    struct rtf_text picture;
+    // The source file, null if unknown.
+    const char *file;
+    // The line in it, 0 if unknown.
+    uint32_t line;
+} rtf_question;
+
 // The host's functions for a plug-in. Their first argument is `context`. They
 // may be called from any thread until the process ends.
 typedef struct rtf_host {
@@ -230,6 +253,11 @@ typedef struct rtf_host {
     // Since 1.3: the values that fixtures provided, `count` of them, by name:
     // `simulator.port`. A value is its text: JSON, except for a text.
     const struct rtf_parameter *(*fixture_values)(void *context, size_t *count);
+    // Since 1.3: asks a person, and waits; in `setup` and `run` of a test. Returns `RTF_DONE`
+    // with the answer, which stays valid until the process ends. Returns `RTF_STOPPED` after a
+    // stop request, and without an answer, which the host has reported as an error: then
+    // return from the step with `RTF_STOPPED`.
+    int32_t (*ask)(void *context, const struct rtf_question *question, struct rtf_text *answer);
 } rtf_host;
 
 // An attempt of a test.

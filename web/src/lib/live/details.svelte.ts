@@ -2,7 +2,7 @@
 // and keeps them up to date while the run continues.
 
 import { get, path } from '../api';
-import type { Cases, Said, Signal, Signals } from '../api-types';
+import type { Asked, Cases, Questions, Said, Signal, Signals } from '../api-types';
 import type { Event } from '../event';
 import { CaseList } from '../record/cases';
 import { addToLists, append, emptyLists, LIST_NAMES, type ListName } from '../record/detail';
@@ -45,6 +45,8 @@ export class Details {
     omitted: Partial<Record<ListName, number>> = $state.raw({});
     /** The signals of a test. */
     signals: readonly Signal[] = $state.raw([]);
+    /** The questions of a test to a person. */
+    questions: readonly Asked[] = $state.raw([]);
     /** The cases of a test. */
     cases = new CaseList();
     /** Where the next page of cases starts, if there is one. */
@@ -121,7 +123,11 @@ export class Details {
             await Promise.all([
                 ...LISTS[kind].map((list) => this.pages(list, undefined, FIRST_PAGES)),
                 ...(kind === 'test'
-                    ? [this.loadSignals(), this.casePages(undefined, FIRST_PAGES)]
+                    ? [
+                          this.loadSignals(),
+                          this.loadQuestions(),
+                          this.casePages(undefined, FIRST_PAGES),
+                      ]
                     : []),
             ]);
             const missed = this.waiting ?? [];
@@ -135,8 +141,8 @@ export class Details {
     }
 
     private keep(): void {
-        const { all: lists, more, signals, cases } = this;
-        this.run.keep(this.key, { lists, more, signals, cases });
+        const { all: lists, more, signals, questions, cases } = this;
+        this.run.keep(this.key, { lists, more, signals, questions, cases });
     }
 
     /** Restores details that were loaded before. */
@@ -146,6 +152,7 @@ export class Details {
         this.all = kept.lists;
         this.more = kept.more;
         this.signals = kept.signals;
+        this.questions = kept.questions;
         this.cases = kept.cases;
         this.isLoaded = true;
         this.problem = null;
@@ -158,6 +165,14 @@ export class Details {
         this.signals = (await get<Signals>(path(route), this.closing.signal)).series;
         const kept = this.run.kept.get(this.key);
         if (kept !== undefined) kept.signals = this.signals;
+    }
+
+    private async loadQuestions(): Promise<void> {
+        const { id, number } = this.subject;
+        const route = ['runs', this.run.name, 'tests', id, 'attempts', number, 'questions'];
+        this.questions = (await get<Questions>(path(route), this.closing.signal)).questions;
+        const kept = this.run.kept.get(this.key);
+        if (kept !== undefined) kept.questions = this.questions;
     }
 
     private renewSignals(): void {
@@ -210,6 +225,7 @@ export class Details {
         for (const event of events) {
             if (!this.isOurs(event)) continue;
             if (event.type === 'sampled') this.renewSignals();
+            else if (isOfQuestion(event)) void this.attempt(() => this.loadQuestions());
             else if (this.waiting !== null) this.waiting.push(event);
             else this.add(event);
             isChanged = true;
@@ -248,6 +264,10 @@ export class Details {
         if (kind === 'fixture') return fixtures[id]?.starts.at(-1)?.number ?? 0;
         return hooks[id]?.runs.length ?? 0;
     }
+}
+
+function isOfQuestion({ type }: Event): boolean {
+    return type === 'question-asked' || type === 'question-closed';
 }
 
 function listOf(event: Event): ListName | null {

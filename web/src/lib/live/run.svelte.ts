@@ -5,7 +5,7 @@
 
 import { flushSync } from 'svelte';
 import * as api from '../api';
-import type { Signal } from '../api-types';
+import type { Asked, Signal } from '../api-types';
 import type { Event } from '../event';
 import type { CaseList } from '../record/cases';
 import type { ListName, Lists } from '../record/detail';
@@ -17,6 +17,7 @@ export interface Kept {
     lists: Lists;
     more: Partial<Record<ListName, number>>;
     signals: readonly Signal[];
+    questions: readonly Asked[];
     cases: CaseList;
 }
 

@@ -62,6 +62,18 @@ export function applyToTest(test: Test, event: Event, suite?: Suite): void {
             if (event.phase === 'notify' && last !== undefined)
                 test.duration_us += event.at - last.started;
             break;
+        case 'question-asked': {
+            const { type: _, seq: __, at, test: ___, ...question } = event;
+            // New lists: components keep the previous ones.
+            test.questions = [...(test.questions ?? []), { at, question }];
+            break;
+        }
+        case 'question-closed':
+            test.questions = (test.questions ?? []).filter(
+                ({ question }) => question.question !== event.question,
+            );
+            if (test.questions.length === 0) delete test.questions;
+            break;
         case 'test-slow':
             test.slow = true;
             break;

@@ -1,7 +1,7 @@
 // Responds to the page's requests from the data of a report, as the server does.
 
 import { ApiError, type RunPage, type Source } from '../api';
-import type { ApiRoot, Cases, Signal, Snapshot } from '../api-types';
+import type { ApiRoot, Asked, Cases, Signal, Snapshot } from '../api-types';
 import { LIST_NAMES, type ListName } from '../record/detail';
 import type { Data } from './embedded';
 
@@ -18,6 +18,7 @@ type Lists = { [list in ListName]?: unknown[] };
 /** The details of one attempt of a test, start of a fixture or run of a hook. */
 interface Details extends Lists {
     series?: Signal[];
+    questions?: Asked[];
     cases?: Cases;
     omitted?: { [list in ListName]?: number };
 }
@@ -78,6 +79,8 @@ export class Answers {
         switch (list) {
             case 'series':
                 return { series: (details.series ?? []).map((signal) => part(signal, query)) };
+            case 'questions':
+                return { questions: details.questions ?? [] };
             case 'cases':
                 return details.cases ?? { cases: [] };
             default:

@@ -1,0 +1,15 @@
+// Questions of tests to a person, as text.
+
+import type { Asked } from './api-types';
+
+const PLACES = { console: 'on the console', page: 'on the page', api: 'over the API' } as const;
+
+/** The answer and who gave it, or why there is none; as `QuestionClosed::summary`. */
+export function answerText({ closed }: Asked): string {
+    if (closed === undefined) return 'waits for an answer';
+    const { answer, by, reason } = closed;
+    const place = by && (by.who == null ? PLACES[by.via] : `${by.who}, ${PLACES[by.via]}`);
+    if (answer !== undefined)
+        return place === undefined ? `${answer} (default: ${reason})` : `${answer} (${place})`;
+    return place === undefined ? `not answered: ${reason}` : `declined (${place})`;
+}
