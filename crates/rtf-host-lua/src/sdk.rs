@@ -118,9 +118,7 @@ fn functions(lua: &Lua) -> mlua::Result<Table> {
         session.collapsed(&reason.to_string_lossy());
         Ok(())
     })?;
-    add(lua, &host, "wait", |session, seconds: f64| {
-        Ok(session.wait(duration(seconds)))
-    })?;
+    add(lua, &host, "wait", |session, seconds: f64| Ok(session.wait(duration(seconds))))?;
     add(lua, &host, "ask", |session, asked: Asked| Ok(session.ask(asked.0)))?;
     cases::add_functions(lua, &host)?;
     fixture_values::add_functions(lua, &host)?;

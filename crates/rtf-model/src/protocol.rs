@@ -135,10 +135,7 @@ impl Request {
     /// Whether the host answers it.
     #[must_use]
     pub fn is_answered(&self) -> bool {
-        !matches!(
-            self,
-            Self::Interrupt { .. } | Self::QuestionClosed(_) | Self::DumpStack {}
-        )
+        !matches!(self, Self::Interrupt { .. } | Self::QuestionClosed(_) | Self::DumpStack {})
     }
 }
 

@@ -59,7 +59,10 @@ impl Question {
             return Some("its text is empty".to_owned());
         }
         if chars > Self::MAX_TEXT_CHARS {
-            return Some(format!("its text has {chars} characters, more than {}", Self::MAX_TEXT_CHARS));
+            return Some(format!(
+                "its text has {chars} characters, more than {}",
+                Self::MAX_TEXT_CHARS
+            ));
         }
         if self.choices.len() > MAX_CHOICES {
             return Some(format!("it has {} choices, more than {MAX_CHOICES}", self.choices.len()));
@@ -222,10 +225,7 @@ mod tests {
     #[test]
     fn a_question_that_nobody_can_answer_is_invalid() {
         let problem = |question: Question| question.problem().unwrap();
-        assert_eq!(
-            problem(question(&["yes"], Some("no"))),
-            "the default answer is none of yes"
-        );
+        assert_eq!(problem(question(&["yes"], Some("no"))), "the default answer is none of yes");
         assert_eq!(problem(question(&["a", "a"], None)), "the choice \"a\" occurs twice");
         assert_eq!(
             problem(question(&["a\n"], None)),

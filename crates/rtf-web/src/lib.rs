@@ -36,7 +36,9 @@ pub use campaign_report::{
     CampaignCell, CampaignMap, CampaignMapRow, CampaignParameter, CampaignProgress, CampaignReport,
     CampaignSource, EpisodeProblem,
 };
-pub use capabilities::{AnswerRequest, Capabilities, FinishedRun, RerunRejected, RunControl, RunStarter};
+pub use capabilities::{
+    AnswerRequest, Capabilities, FinishedRun, RerunRejected, RunControl, RunStarter,
+};
 pub use connections::Limits;
 pub use history_source::{HistorySource, TestCondition};
 pub use journal_notifier::JournalNotifier;

@@ -320,7 +320,11 @@ fn choose(question: &Question, line: &str) -> Result<String, String> {
     let number = line.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
     let numbered = number.and_then(|index| choices.get(index));
     exact.or(only).or(numbered).cloned().ok_or_else(|| {
-        format!("`{line}` is none of {}, nor a number from 1 to {}", choices.join(", "), choices.len())
+        format!(
+            "`{line}` is none of {}, nor a number from 1 to {}",
+            choices.join(", "),
+            choices.len()
+        )
     })
 }
 

@@ -3,7 +3,8 @@
 
 use rtf_model::{
     Attachment, Diagnostic, Event, ExitStatus, ExpectedFailure, LeakedProcess, Location,
-    Measurement, Message, Parameter, Phase, Stream, SuitePrepared, Trigger, Verdict,
+    Measurement, Message, Parameter, Phase, Question, Respondent, Stream, SuitePrepared, Trigger,
+    Verdict,
 };
 use schemars::SchemaGenerator;
 use schemars::generate::SchemaSettings;
@@ -55,6 +56,8 @@ fn model() -> Map<String, Value> {
     generator.subschema_for::<Message>();
     generator.subschema_for::<Parameter>();
     generator.subschema_for::<Phase>();
+    generator.subschema_for::<Question>();
+    generator.subschema_for::<Respondent>();
     generator.subschema_for::<Stream>();
     generator.subschema_for::<SuitePrepared>();
     generator.subschema_for::<Trigger>();

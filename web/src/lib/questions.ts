@@ -1,6 +1,7 @@
 // Questions of tests to a person, as text.
 
 import type { Asked } from './api-types';
+import type { Event } from './event';
 
 const PLACES = { console: 'on the console', page: 'on the page', api: 'over the API' } as const;
 
@@ -12,4 +13,20 @@ export function answerText({ closed }: Asked): string {
     if (answer !== undefined)
         return place === undefined ? `${answer} (default: ${reason})` : `${answer} (${place})`;
     return place === undefined ? `not answered: ${reason}` : `declined (${place})`;
+}
+
+/** The question of an event, which waits for an answer. */
+export function askedIn(event: Extract<Event, { type: 'question-asked' }>): Asked {
+    const { at, question, text, choices, default: usual, timeout_ms, picture } = event;
+    return {
+        at,
+        question: {
+            question,
+            text,
+            timeout_ms,
+            ...(choices === undefined ? {} : { choices }),
+            ...(usual == null ? {} : { default: usual }),
+            ...(picture == null ? {} : { picture }),
+        },
+    };
 }

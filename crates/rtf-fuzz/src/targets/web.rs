@@ -13,8 +13,8 @@ use rtf_history::{Store, StoreError};
 use rtf_model::{LineSealer, SuiteId, TestId};
 use rtf_report::console::RerunCommand;
 use rtf_web::{
-    AnswerRequest, BoundServer, CampaignReport, CampaignSource, Capabilities, HistorySource, Limits, Routes,
-    RunControl, Service, Settings, TestCondition,
+    AnswerRequest, BoundServer, CampaignReport, CampaignSource, Capabilities, HistorySource,
+    Limits, Routes, RunControl, Service, Settings, TestCondition,
 };
 
 /// Files below the results directory have this text; one next to it has the other one.

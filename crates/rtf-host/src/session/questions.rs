@@ -54,16 +54,8 @@ impl Session {
         let Inquiry { text, choices, default, timeout, location, .. } = inquiry;
         let question = self.next_question();
         let (case, timeout_ms) = (self.0.cases.current(), milliseconds(timeout));
-        let asked = Question {
-            question,
-            text,
-            choices,
-            default,
-            timeout_ms,
-            picture,
-            location,
-            case,
-        };
+        let asked =
+            Question { question, text, choices, default, timeout_ms, picture, location, case };
         self.notify(&Notification::QuestionAsked(asked));
         let Some(QuestionEnd { answer, problem, .. }) = self.wait_for_end(question) else {
             return Ok(None);

@@ -36,8 +36,14 @@ impl QuestionRecord {
     }
 
     /// Records the end of a question, which `keep` says whether to keep.
-    pub(super) fn close(questions: &mut Vec<Self>, at: Micros, closed: &QuestionClosed, keep: bool) {
-        let is_it = |question: &Self| question.is_open() && question.asked.question == closed.question;
+    pub(super) fn close(
+        questions: &mut Vec<Self>,
+        at: Micros,
+        closed: &QuestionClosed,
+        keep: bool,
+    ) {
+        let is_it =
+            |question: &Self| question.is_open() && question.asked.question == closed.question;
         let Some(index) = questions.iter().rposition(is_it) else { return };
         if keep && questions.len() <= Self::KEPT {
             questions[index].closed = Some((at, closed.clone()));

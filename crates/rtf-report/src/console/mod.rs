@@ -29,8 +29,8 @@ use rtf_model::{Event, EventKind, Micros, Record};
 pub(crate) use progress::{Bar, BarState};
 
 pub use details::drop_details;
-pub use questions::{AskedHere, Operator};
 pub use options::{ConsoleOptions, ReplayCommand, RerunCommand, Verbosity, rerun_suite};
+pub use questions::{AskedHere, Operator};
 
 use crate::background_writer::BackgroundWriter;
 use crate::disconnect::UntilDisconnect;

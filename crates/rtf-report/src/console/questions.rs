@@ -82,7 +82,8 @@ fn oldest(record: &Record) -> Option<AskedHere> {
         let questions = test.attempts.last().map_or(&[][..], |attempt| &attempt.questions);
         questions.iter().filter(|it| it.is_open()).map(|it| (test.plan.test, it))
     });
-    let when = |(_, it): &(TestId, &QuestionRecord)| -> (Micros, u32) { (it.at, it.asked.question) };
+    let when =
+        |(_, it): &(TestId, &QuestionRecord)| -> (Micros, u32) { (it.at, it.asked.question) };
     let (test, question) = open.min_by_key(when)?;
     Some(AskedHere { test, question: question.asked.clone() })
 }

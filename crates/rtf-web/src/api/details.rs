@@ -77,8 +77,8 @@ impl DetailQuery {
         let failed = crate::runs::unreadable;
         while let Some(line) = lines.next().map_err(failed)? {
             let Ok(header) = serde_json::from_slice::<EventHeader>(line.text) else { continue };
-            let is_detail = *header.kind == *self.kind
-                && header.detail_source() == Some(self.source);
+            let is_detail =
+                *header.kind == *self.kind && header.detail_source() == Some(self.source);
             let is_question = self.kind == QUESTION && header.questioner() == Some(self.source);
             if is_detail || is_question {
                 parse_event(line.text).into_iter().for_each(&mut take);

@@ -25,8 +25,8 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 pub use types::{
-    Asked, Attached, Cases, Measured, Printed, Questions, RunInfo, Said, Signal, SignalList, Snapshot, Stack,
-    TestDetail, model,
+    Asked, Attached, Cases, Measured, Printed, Questions, RunInfo, Said, Signal, SignalList,
+    Snapshot, Stack, TestDetail, model,
 };
 
 use crate::app::App;

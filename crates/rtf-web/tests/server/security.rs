@@ -2,6 +2,7 @@
 
 use crate::client::{ask, get};
 use crate::world::{STARTED, World, Writer, settings};
+use rtf_model::{AnswerChannel, EventKind, Question, QuestionAsked, QuestionClosed, Respondent};
 use rtf_web::{BoundServer, ServeError};
 
 const STOP: &str = "/api/v1/runs/own/stop";
@@ -41,6 +42,82 @@ fn control_needs_the_token() {
     assert_eq!(world.post("/api/v1/runs/own/suites/0/skip", &[&bearer], "").status, 202);
     assert_eq!(world.asked(), ["stop", "stop test 0", "skip suite 0"]);
     assert_eq!(world.post("/api/v1/runs/own/tests/7/stop", &[&bearer], "").status, 404);
+}
+
+/// A test that asks, with the number of its question in the journal.
+fn asking() -> (World, Writer) {
+    let (world, mut run) = running();
+    let question = Question {
+        question: 3,
+        text: "Is it <b>closed</b>?".to_owned(),
+        choices: vec!["yes".to_owned(), "no".to_owned()],
+        default: Some("no".to_owned()),
+        timeout_ms: 60_000,
+        picture: Some("attachments/0/1/1-hand.png".to_owned()),
+        ..Question::default()
+    };
+    let asked = QuestionAsked { test: crate::world::TEST, question };
+    run.emit(EventKind::QuestionAsked(Box::new(asked)));
+    run.flush();
+    (world, run)
+}
+
+const ANSWER: &str = "/api/v1/runs/own/tests/0/questions/3/answer";
+
+#[test]
+fn a_question_is_answered_with_the_token_only() {
+    let (world, mut run) = asking();
+    let (json, body) = ("Content-Type: application/json", "{\"answer\":\"yes\"}");
+    let bearer = format!("Authorization: Bearer {}", world.token());
+    let (cookie, own) = (session(&world), format!("Origin: http://{}", world.address()));
+    for lines in [&[json][..], &[json, "Authorization: Bearer guess"], &[json, "Cookie: rtf=1"]] {
+        assert_eq!(world.post(ANSWER, lines, body).status, 401, "{lines:?}");
+    }
+    assert_eq!(world.post(ANSWER, &[json, &cookie], body).status, 403, "a cookie alone");
+    assert_eq!(
+        world.post(ANSWER, &[json, &cookie, "Origin: http://evil.example"], body).status,
+        403
+    );
+    for wrong in ["{}", "{\"answer\":\"maybe\"}", "{\"answer\":\"yes\\n\"}", "{\"answer\":7}", "x"]
+    {
+        assert_eq!(world.post(ANSWER, &[json, &bearer], wrong).status, 400, "{wrong}");
+    }
+    let elsewhere = |path: &str| world.post(path, &[json, &bearer], body).status;
+    assert_eq!(elsewhere("/api/v1/runs/own/tests/0/questions/4/answer"), 409);
+    assert_eq!(elsewhere("/api/v1/runs/own/tests/7/questions/3/answer"), 404);
+    assert!(world.asked().is_empty());
+    assert_eq!(world.post(ANSWER, &[json, &bearer], body).status, 202);
+    assert_eq!(world.post(ANSWER, &[json, &cookie, &own], body).status, 202);
+    let answer = "answer yes to question 3 of test 0 by 127.0.0.1";
+    let expected = [format!("{answer}, over the API"), format!("{answer}, on the page")];
+    assert_eq!(world.asked(), expected);
+    let (answer, reason) = (Some("yes".to_owned()), None);
+    let test = crate::world::TEST;
+    let closed = QuestionClosed { test, question: 3, answer, by: None, reason };
+    run.emit(EventKind::QuestionClosed(closed));
+    run.flush();
+    assert_eq!(elsewhere(ANSWER), 409, "it was answered");
+}
+
+#[test]
+fn a_question_is_in_the_snapshot_while_it_waits_and_in_the_details_later() {
+    let (world, mut run) = asking();
+    let snapshot = || get(world.address(), "/api/v1/runs/own/snapshot").json();
+    let asked = snapshot()["tests"][0]["questions"][0].clone();
+    assert_eq!(asked["question"]["text"], "Is it <b>closed</b>?");
+    assert_eq!(asked["url"], "/api/v1/runs/own/files/attachments/0/1/1-hand.png");
+    let by = Respondent { via: AnswerChannel::Console, who: Some("alice".to_owned()) };
+    let (answer, by) = (Some("yes".to_owned()), Some(by));
+    let test = crate::world::TEST;
+    let closed = QuestionClosed { test, question: 3, answer, by, reason: None };
+    run.emit(EventKind::QuestionClosed(closed));
+    run.flush();
+    assert!(snapshot()["tests"][0].get("questions").is_none());
+    let route = "/api/v1/runs/own/tests/0/attempts/1/questions";
+    let details = get(world.address(), route).json();
+    let closed = &details["questions"][0]["closed"];
+    assert_eq!((&closed["answer"], &closed["by"]["who"]), (&"yes".into(), &"alice".into()));
+    assert_eq!(get(world.address(), "/api/v1/runs/own/tests/0/attempts/2/questions").status, 404);
 }
 
 #[test]

@@ -16,9 +16,9 @@ use rtf_report::console::RerunCommand;
 use rtf_report::journal::Journal;
 use rtf_report::logs::Logs;
 use rtf_web::{
-    AnswerRequest, BoundServer, CampaignReport, CampaignSource, Capabilities, FinishedRun, HistorySource,
-    JournalNotifier, Limits, RerunRejected, RunControl, RunStarter, Service, Settings,
-    TestCondition, WebServer, WrongToken,
+    AnswerRequest, BoundServer, CampaignReport, CampaignSource, Capabilities, FinishedRun,
+    HistorySource, JournalNotifier, Limits, RerunRejected, RunControl, RunStarter, Service,
+    Settings, TestCondition, WebServer, WrongToken,
 };
 
 use crate::client::{self, Answer};

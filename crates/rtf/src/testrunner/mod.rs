@@ -24,8 +24,8 @@ use rtf_report::{ReportError, ReportFile};
 use crate::cli::{ReportFormat, WebAccessArgs};
 use crate::command::VerbResult;
 use crate::error::Failure;
-use crate::operator::Attendance;
 use crate::guarded::{self, Supervision};
+use crate::operator::Attendance;
 use crate::request::{RunRequest, TestsRequest, WebRequest, locks_dir, web_settings};
 use crate::revision::RevisionQuery;
 use crate::{exit, plan, preflight, reports, runner, terminal};
@@ -100,9 +100,10 @@ fn run(args: &Args) -> VerbResult {
         let report = open_result_file(args, &results.path).transpose().map_err(|error| {
             Failure::input(error).hint("choose another path with `--output FILE`")
         })?;
-        let prepared = preflight::prepare(&request, report.into_iter().collect(), |_, stdout, _| {
-            Ok(vec![Box::new(ResultList::over(stdout, console_options(args)))])
-        })?;
+        let prepared =
+            preflight::prepare(&request, report.into_iter().collect(), |_, stdout, _| {
+                Ok(vec![Box::new(ResultList::over(stdout, console_options(args)))])
+            })?;
         runner::run(&request, &planned, prepared, guard)
     };
     let outcome = guarded::run(supervision, run, |_, record| complete(args, &results.path, record));

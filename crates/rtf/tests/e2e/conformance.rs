@@ -245,9 +245,23 @@ fn told(events: &[Event], suite: SuiteId, record: &Record, temp: &Folder) -> Vec
             }
             EventKind::Attached { test: of, attachment, .. } if *of == test => {
                 let path = temp.path().join("rtf-results/latest").join(&attachment.path);
-                let content = std::fs::read_to_string(path).expect("the attached file");
+                let content = std::fs::read(path).expect("the attached file");
+                let content = String::from_utf8_lossy(&content);
                 let (name, kind) = (&attachment.name, &attachment.media_type);
                 told.push(json!({"attached": name, "media_type": kind, "content": content}));
+            }
+            EventKind::QuestionAsked(asked) if asked.test == test => {
+                let mut line = serde_json::to_value(&asked.question).expect("a question");
+                let case = asked.question.case.and_then(|case| attempt.cases.get(case));
+                line["asked"] = line["text"].take();
+                line["case"] = json!(case.map(|case| &case.path));
+                line["has_picture"] = json!(asked.question.picture.is_some());
+                told.push(line);
+            }
+            EventKind::QuestionClosed(closed) if closed.test == test => {
+                let mut line = serde_json::to_value(closed).expect("an end");
+                line["answer"] = json!(closed.answer);
+                told.push(line);
             }
             _ => {}
         }
@@ -280,7 +294,9 @@ fn add_samples(told: &mut Vec<Value>, samples: &rtf_model::Samples) {
 
 fn compare_told(scenario: &str, expected: &[Value], told: &[Value]) -> Vec<String> {
     let is_told = |line: &&Value| {
-        ["message", "measured", "sampled", "attached"].iter().any(|key| line.get(*key).is_some())
+        ["message", "measured", "sampled", "attached", "asked", "answer"]
+            .iter()
+            .any(|key| line.get(*key).is_some())
     };
     let expected: Vec<&Value> = expected.iter().filter(is_told).collect();
     let mut problems = Vec::new();

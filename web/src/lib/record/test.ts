@@ -3,6 +3,7 @@
 
 import type { AttemptRow, Suite, Test } from '../api-types';
 import type { Event, TestPlanned, TestState, Verdict } from '../event';
+import { askedIn } from '../questions';
 import { isGreenVerdict, significanceOf } from '../known-failure';
 
 const NO_COUNTS = {
@@ -62,12 +63,10 @@ export function applyToTest(test: Test, event: Event, suite?: Suite): void {
             if (event.phase === 'notify' && last !== undefined)
                 test.duration_us += event.at - last.started;
             break;
-        case 'question-asked': {
-            const { type: _, seq: __, at, test: ___, ...question } = event;
+        case 'question-asked':
             // New lists: components keep the previous ones.
-            test.questions = [...(test.questions ?? []), { at, question }];
+            test.questions = [...(test.questions ?? []), askedIn(event)];
             break;
-        }
         case 'question-closed':
             test.questions = (test.questions ?? []).filter(
                 ({ question }) => question.question !== event.question,

@@ -41,12 +41,8 @@ impl TestRun<'_> {
         let number = cx.next_question();
         let case = self.cases.open(asked.case);
         let in_host = asked.question;
-        let asked = Question {
-            question: number,
-            case,
-            timeout_ms: milliseconds(asked.timeout()),
-            ..asked
-        };
+        let asked =
+            Question { question: number, case, timeout_ms: milliseconds(asked.timeout()), ..asked };
         let test = self.plan.id;
         let event = QuestionAsked { test, question: asked.clone() };
         cx.emit(EventKind::QuestionAsked(Box::new(event)));
@@ -156,12 +152,7 @@ impl TestRun<'_> {
         Some(open)
     }
 
-    fn end_in_host(
-        &self,
-        question: u32,
-        result: Result<String, String>,
-        cx: &mut Context<'_>,
-    ) {
+    fn end_in_host(&self, question: u32, result: Result<String, String>, cx: &mut Context<'_>) {
         let (answer, problem) = match result {
             Ok(answer) => (Some(answer), None),
             Err(problem) => (None, Some(problem)),

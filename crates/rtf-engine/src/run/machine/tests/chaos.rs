@@ -6,8 +6,8 @@ use std::time::Duration;
 use proptest::prelude::*;
 use rtf_model::protocol::{Notification, Reply};
 use rtf_model::{
-    AnswerChannel, CaseId, CaseStart, Episode, EventKind, ExitStatus, Finding, FindingSeverity, Message,
-    MessageKind, Phase, Question, Respondent, Source, TestId, Trigger, Verdict,
+    AnswerChannel, CaseId, CaseStart, Episode, EventKind, ExitStatus, Finding, FindingSeverity,
+    Message, MessageKind, Phase, Question, Respondent, Source, TestId, Trigger, Verdict,
 };
 
 use super::world::{SECOND, World, hook, suite};

@@ -2,7 +2,9 @@
 
 use insta::assert_snapshot;
 use rtf_model::protocol::{Notification, QuestionEnd, Request};
-use rtf_model::{AnswerChannel, ExitStatus, Phase, Question, Respondent, Source, TestId, Trigger, Verdict};
+use rtf_model::{
+    AnswerChannel, ExitStatus, Phase, Question, Respondent, Source, TestId, Trigger, Verdict,
+};
 
 use super::world::{FIXTURE, HOOK, SECOND, TEST, World, hook, suite};
 use crate::run::FailLimit;
@@ -236,7 +238,8 @@ fn a_hook_cannot_ask() {
     world.phase(TEST, Phase::TearDown);
     world.end(TEST, "failed");
     ask(&mut world, HOOK, question(1, Some("no")));
-    let refused = "hook `hook0` on failure: a hook cannot ask a question: nobody may be there to answer";
+    let refused =
+        "hook `hook0` on failure: a hook cannot ask a question: nobody may be there to answer";
     assert_eq!(ends(&world), [problem(1, crate::hook::ASKED)]);
     world.exit(HOOK, ExitStatus::Code(0));
     world.finish();
