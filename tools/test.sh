@@ -122,6 +122,7 @@ lint_python() {
   "$checkers/mypy" tests/import/*.py
   "$checkers/mypy" tests/ci/*.py
   "$checkers/mypy" tests/debug/*.py
+  MYPYPATH=tests/debug "$checkers/mypy" tests/operator/*.py
   "$checkers/mypy" tests/ctest/*.py
   "$checkers/mypy" tests/colcon/*.py
   "$checkers/mypy" tests/frameworks/*.py
@@ -386,6 +387,11 @@ debugging() {
   python3 tests/debug/check.py "$TARGET/release/rtf" "$BUILD/debug"
 }
 
+# Questions of tests, answered on a pseudo-terminal.
+operator() {
+  python3 tests/operator/check.py "$TARGET/release/rtf"
+}
+
 # Metrics and traces, read by Prometheus and by OpenTelemetry's collector and its decoder.
 telemetry() {
   local prometheus collector decoder=$BUILD/telemetry/telemetry
@@ -572,6 +578,7 @@ step 'debugging' debugging
 step 'degraded machine' python3 tests/degraded/check.py "$TARGET/release/rtf"
 # The tests with valgrind take minutes: `make sanitizers` runs all.
 step 'sanitizers' tools/sanitizers.sh sanitizer
+step 'operator' operator
 step 'ci helpers' ci_helpers
 step 'guide' env RTF_PYTHON="$checkers/python" tools/check_docs.py "$TARGET/release/rtf" README.md \
   docs/tutorials/{first-test,first-fixture,cpp-plugin}.md docs/explanation/isolation.md \

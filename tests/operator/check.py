@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Answers questions of tests on a pseudo-terminal, as an operator does.
 
-    tests/operator/check.py RTF
+tests/operator/check.py RTF
 """
 
 import json
@@ -91,7 +91,9 @@ ALICE = {"via": "console", "who": "alice"}
 def a_choice(bench: Bench) -> None:
     """Answers that are none are explained; the limit of the test is paused."""
     with bench.run("arm.xml::choice") as session:
-        session.expect(r"   question  arm/choice\n +Is it \\x1b\[2Jclosed\?\n +1 yes, 2 no, within 1 min")
+        session.expect(
+            r"   question  arm/choice\n +Is it \\x1b\[2Jclosed\?\n +1 yes, 2 no, within 1 min"
+        )
         session.expect(r"answer  arm/choice> ")
         session.send("maybe\n")
         session.expect(r"`maybe` is none of yes, no, nor a number from 1 to 2")
@@ -216,18 +218,32 @@ def nobody(bench: Bench) -> None:
     for arguments, environment, reason in [
         (["--no-input"], {}, "`--no-input` is set"),
         ([], {"CI": "true"}, "the variable `CI` is set, and there is no page (`--web`)"),
-        (["--end-with-stdin"], {}, "standard input has another use, and there is no page (`--web`)"),
+        (
+            ["--end-with-stdin"],
+            {},
+            "standard input has another use, and there is no page (`--web`)",
+        ),
     ]:
-        with bench.run("arm.xml::default", "arm.xml::forever", *arguments, **environment) as session:
+        with bench.run(
+            "arm.xml::default", "arm.xml::forever", *arguments, **environment
+        ) as session:
             default, forever = bench.finish(session, 1)
             check(default["answer"] == "no", f"{default}")
             for closed in (default, forever):
                 check(closed["reason"] == f"nobody can answer: {reason}", f"{closed}")
-            check("answer  arm" not in re.sub(r"answer  arm/\w+: ", "", session.output), "no prompt")
+            check(
+                "answer  arm" not in re.sub(r"answer  arm/\w+: ", "", session.output), "no prompt"
+            )
     command = [bench.rtf, "run", "arm.xml::forever"]
     piped = subprocess.run(
-        command, cwd=bench.directory, env=bench.environment, stdin=subprocess.DEVNULL,
-        capture_output=True, text=True, timeout=QUICK, check=False,
+        command,
+        cwd=bench.directory,
+        env=bench.environment,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=QUICK,
+        check=False,
     )
     check(piped.returncode == 1, piped.stdout)
     check("nobody can answer: standard input is no terminal" in piped.stdout, piped.stdout)

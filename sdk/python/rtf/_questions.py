@@ -11,7 +11,8 @@ from rtf._stop import AssertionEnded, Interrupted
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import NoReturn, Sequence
+    from collections.abc import Sequence
+    from typing import NoReturn
 
 ANSWER_SECONDS = 300.0
 
