@@ -108,6 +108,41 @@ def a_choice(bench: Bench) -> None:
         check("\x1b[2J" not in session.output, "no text clears the screen")
 
 
+def reports(bench: Bench) -> None:
+    """Each report names the question, its answer, and who gave it; also of a merged run."""
+    with bench.run("arm.xml::instruction") as session:
+        session.expect(r"answer  arm/instruction> ")
+        session.send("done\n")
+        bench.finish(session, 0)
+    first = (bench.directory / "rtf-results" / "latest").resolve()
+    with bench.run("leg.xml") as session:
+        session.expect(r"answer  leg/choice> ")
+        session.send("2\n")
+        bench.finish(session, 0)
+    second = (bench.directory / "rtf-results" / "latest").resolve()
+    merge = [bench.rtf, "merge", str(first), str(second)]
+    subprocess.run(
+        merge, cwd=bench.directory, env=bench.environment, check=True, capture_output=True
+    )
+    merged = (bench.directory / "rtf-results" / "latest").resolve()
+    check(merged not in (first, second), "the merged run is the latest")
+    for form, expected in {
+        "text": "question: Push the button\n        answer: done (alice, on the console)",
+        "junit": 'name="question.Push the button" value="done (alice, on the console)"',
+        "markdown": "| <code>arm/instruction</code> | <code>Push the button</code> | "
+        "<code>done (alice, on the console)</code> |",
+    }.items():
+        for run in (first, merged):
+            command = [bench.rtf, "report", str(run), "--format", form]
+            report = subprocess.run(
+                command, env=bench.environment, check=False, capture_output=True, text=True
+            )
+            check(expected in report.stdout, f"{form}\n{report.stdout}{report.stderr}")
+    lines = (merged / "events.jsonl").read_text().splitlines()
+    asked = next(e for e in map(json.loads, lines) if e["type"] == "question-asked")
+    check((merged / asked["picture"]).is_file(), f"{asked}")
+
+
 def a_text(bench: Bench) -> None:
     """Any line, also with letters of other scripts."""
     with bench.run("arm.xml::text") as session:
@@ -263,6 +298,7 @@ def killed(bench: Bench) -> None:
 
 CHECKS: list[Callable[[Bench], None]] = [
     a_choice,
+    reports,
     a_text,
     an_instruction,
     a_declined_question,

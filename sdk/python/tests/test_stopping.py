@@ -20,6 +20,7 @@ TEAR_DOWN = "    def tearDown(self):\n        self.sleep(0.01)\n        self.rep
     [
         "self.sleep(1000)",
         "self.wait_until(lambda: False, 1000, 'the end of days')",
+        "self.ask('Does it end?', timeout=1000)",
         "import time; time.sleep(1000)",
         "while not self.interrupted(): pass",
         "import threading; threading.Event().wait()",

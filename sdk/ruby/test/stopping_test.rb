@@ -10,6 +10,7 @@ class StoppingTest < HostTest
     "sleep(1000)",
     "sleep",
     'wait_until(1000, "the end of days") { false }',
+    'ask("Does it end?", timeout: 1000)',
     "Kernel.sleep(1000)",
     "nil until interrupted?",
     "Queue.new.pop",

@@ -96,8 +96,8 @@ module RTF
         return unless params.is_a?(Hash)
 
         request = @lock.synchronize { @open.first }
-        problem = params["problem"] || "no answer"
-        request&.state&.close_question(params["question"], answer: params["answer"], problem: problem)
+        ended = { answer: params["answer"], problem: params["problem"] || "no answer" }
+        request&.state&.close_question(params["question"], **ended)
       end
 
       def interruption(params)
