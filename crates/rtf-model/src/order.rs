@@ -93,10 +93,7 @@ impl OrderChecker {
 
     fn check_kind(&mut self, kind: &EventKind) -> Rule {
         match kind {
-            EventKind::RunStarted(_) => {
-                self.stage = StreamStage::Planning;
-                Ok(())
-            }
+            EventKind::RunStarted(_) => self.enter(StreamStage::Planning),
             EventKind::SuitePlanned(plan) => self.plan_suite(plan.suite, plan.parallel),
             EventKind::FixturePlanned(plan) => self.plan_fixture(plan.fixture, plan.suite),
             EventKind::HookPlanned(plan) => self.plan_hook(plan.hook, plan.suite),
@@ -147,12 +144,14 @@ impl OrderChecker {
             EventKind::HookStarted { hook, .. } => self.toggle_hook(*hook, true),
             EventKind::HookFinished { hook, .. } => self.toggle_hook(*hook, false),
             EventKind::SuiteFinished { suite } => self.finish_suite(*suite),
-            EventKind::RunnerDied { .. } => {
-                self.stage = StreamStage::After;
-                Ok(())
-            }
+            EventKind::RunnerDied { .. } => self.enter(StreamStage::After),
             EventKind::RunFinished { .. } => self.finish_run(),
         }
+    }
+
+    fn enter(&mut self, stage: StreamStage) -> Rule {
+        self.stage = stage;
+        Ok(())
     }
 
     fn check_report(&mut self, kind: &EventKind) -> Rule {

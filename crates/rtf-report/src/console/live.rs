@@ -39,10 +39,8 @@ pub(super) fn show(
         EventKind::SuiteFinished { suite } if !quiet => live.suite_over(page, *suite),
         EventKind::SuitePrepared(prepared) if !quiet => live.prepared(page, prepared),
         EventKind::FixtureStarting { fixture, attempt } if *attempt > 1 => {
-            page.remark(
-                (LOUD, "restart"),
-                &format!("{} (start {attempt})", live.fixture(*fixture)),
-            );
+            let text = format!("{} (start {attempt})", live.fixture(*fixture));
+            page.remark((LOUD, "restart"), &text);
         }
         EventKind::FixtureReady { fixture } if !quiet => live.ready(page, *fixture),
         EventKind::FixtureCollapsed { fixture, reason, log_tail } => {
@@ -61,11 +59,8 @@ pub(super) fn show(
         EventKind::Message { source: Source::Fixture(fixture), message, .. } => {
             live.fixture_message(page, *fixture, message);
         }
-        EventKind::QuestionAsked(asked) if !quiet => {
-            questions::asked(page, options, record, (asked.test, &asked.question));
-        }
-        EventKind::QuestionClosed(closed) if !quiet => {
-            questions::closed(page, record, closed.test, &closed.summary());
+        kind @ (EventKind::QuestionAsked(_) | EventKind::QuestionClosed(_)) if !quiet => {
+            questions::show(page, options, record, kind);
         }
         EventKind::TestSlow { test } => live.slow(page, *test, event.at),
         EventKind::TestStopping { test, cause, reason } => {

@@ -89,7 +89,7 @@ fn oldest(record: &Record) -> Option<AskedHere> {
 }
 
 /// Shows a question.
-pub(super) fn asked(
+fn asked(
     page: &mut ConsoleLines,
     options: &ConsoleOptions,
     record: &Record,
@@ -119,8 +119,21 @@ fn answers(question: &Question) -> String {
     text + &format!(", within {}", words::time(question.timeout()).trim_start())
 }
 
-/// Shows how a question ended.
-pub(super) fn closed(page: &mut ConsoleLines, record: &Record, test: TestId, summary: &str) {
+/// Shows the start or the end of a question.
+pub(super) fn show(
+    page: &mut ConsoleLines,
+    options: &ConsoleOptions,
+    record: &Record,
+    kind: &EventKind,
+) {
+    match kind {
+        EventKind::QuestionAsked(it) => asked(page, options, record, (it.test, &it.question)),
+        EventKind::QuestionClosed(it) => closed(page, record, it.test, &it.summary()),
+        _ => {}
+    }
+}
+
+fn closed(page: &mut ConsoleLines, record: &Record, test: TestId, summary: &str) {
     let name = record.full_name(test);
     page.remark((BOLD, "answer"), &escape::line(&format!("{name}: {summary}")));
 }

@@ -1,6 +1,6 @@
 //! From the ids of a run to those of the merged run.
 
-use rtf_model::{EventKind, FixtureId, HookId, Source, SuiteId, TestId};
+use rtf_model::{EventKind, FixtureId, HookId, QuestionAsked, Source, SuiteId, TestId};
 
 use super::attachment_path;
 use super::plan::MergedPlan;
@@ -63,10 +63,7 @@ impl Ids<'_> {
             | EventKind::CasesPlanned { test, .. } => Some(self.test(test)),
             EventKind::CaseStarted(started) => Some(self.test(&mut started.test)),
             EventKind::CaseFinished(end) => Some(self.test(&mut end.test)),
-            EventKind::QuestionAsked(asked) => {
-                asked.question.picture.iter_mut().for_each(|picture| self.attached_path(picture));
-                Some(self.test(&mut asked.test))
-            }
+            EventKind::QuestionAsked(asked) => Some(self.question(asked)),
             EventKind::QuestionClosed(closed) => Some(self.test(&mut closed.test)),
             EventKind::TestFinished(finished) => Some(self.test(&mut finished.test)),
             EventKind::Measured { test, fixture, .. } => {
@@ -119,6 +116,11 @@ impl Ids<'_> {
     fn test(&self, id: &mut TestId) -> SuiteId {
         *id = self.plan.maps[self.part].tests[id.index()];
         self.plan.tests[id.index()].suite
+    }
+
+    fn question(&self, asked: &mut QuestionAsked) -> SuiteId {
+        asked.question.picture.iter_mut().for_each(|picture| self.attached_path(picture));
+        self.test(&mut asked.test)
     }
 
     fn attached_path(&self, path: &mut String) {

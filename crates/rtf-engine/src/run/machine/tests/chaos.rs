@@ -11,7 +11,7 @@ use rtf_model::{
 };
 
 use super::world::{SECOND, World, hook, suite};
-use crate::run::machine::{Input, ProcessEvent, QuestionReply, StopLevel};
+use crate::run::machine::{HostId, Input, ProcessEvent, QuestionReply, StopLevel};
 use rtf_plan::plan::{AfterCollapse, HookBody, ResetPlan, Retries, SuitePlan};
 use rtf_process::codec::INITIALIZE;
 
@@ -109,6 +109,23 @@ fn reply(which: usize, choice: u8) -> Input {
     Input::Answer(TestId(number), QuestionReply { question: number + 1, answer, by })
 }
 
+fn stop_test(which: usize) -> Input {
+    Input::StopTest(TestId(u32::try_from(which).unwrap_or_default()), "a user".to_owned())
+}
+
+/// A question, an answer, or what a fixture reports about a test.
+fn question_or_finding(host: HostId, which: usize, choice: u8) -> Input {
+    let notification = match choice {
+        0..48 => question(which),
+        48..80 => return reply(which, choice),
+        _ => {
+            let number = u32::try_from(which).unwrap_or_default() * 67 + u32::from(choice);
+            about_test(number % 256)
+        }
+    };
+    Input::Host(host, ProcessEvent::Notified(notification))
+}
+
 pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool) {
     let alive: Vec<_> = world.hosts.iter().map(|(host, source)| (*host, *source)).collect();
     if act_idle(world, choice) {
@@ -157,21 +174,13 @@ pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool)
         10 => world.exit(source, ExitStatus::Signal(9)),
         11 | 12 => world.exit(source, ExitStatus::Code(0)),
         13 => world.feed(notify(report(choice))),
-        14 if choice < 48 => world.feed(notify(question(which))),
-        14 if choice < 80 => world.feed(reply(which, choice)),
-        14 if choice < 112 => {
-            let number = u32::try_from(which).unwrap_or_default() * 67 + u32::from(choice);
-            world.feed(notify(about_test(number % 256)));
-        }
+        14 if choice < 112 => world.feed(question_or_finding(host, which, choice)),
         14 => drop((!world.deadlines.is_empty()).then(|| world.next_deadline())),
         _ if choice == 255 => world.stop(StopLevel::Kill),
         _ if choice == 239 => world.stop(StopLevel::TearDown),
         _ if choice == 207 => world.stop(StopLevel::KillHooks),
         _ if choice == 223 => world.feed(Input::Skip("a user".to_owned())),
-        _ if choice % 32 == 15 => {
-            let test = TestId(u32::try_from(which).unwrap_or_default());
-            world.feed(Input::StopTest(test, "a user".to_owned()));
-        }
+        _ if choice % 32 == 15 => world.feed(stop_test(which)),
         _ => {
             world.feed(Input::Host(host, ProcessEvent::ProtocolViolated("it wrote `x`".to_owned())))
         }
