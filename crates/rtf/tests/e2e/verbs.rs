@@ -187,8 +187,8 @@ fn help_of_run() {
                                          rtf kills all leftover processes [default: [TIME]]
           --end-with-stdin               End the run, as SIGTERM does, when standard input closes: for
                                          programs that start rtf
-          --no-input                     Answer no questions of tests: they get their default answers, or
-                                         are errors
+          --no-input                     Answer no questions of tests: they get their default answers,
+                                         or are errors
       -v, --verbose                      Print every message, measurement and output as it arrives
       -j, --jobs <N>                     Run up to N suites in parallel, each with separate fixtures
                                          [default: 1]
