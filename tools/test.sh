@@ -133,6 +133,7 @@ lint_python() {
   "$checkers/mypy" tests/campaign/*.py
   "$checkers/mypy" tests/monitor/*.py
   "$checkers/mypy" tests/envelopes/*.py
+  "$checkers/mypy" tests/golden/*.py
   "$checkers/mypy" tests/telemetry/*.py
   "$checkers/mypy" tests/executors/*.py
 }
@@ -437,6 +438,14 @@ envelope_oracle() {
   "$(tools/venv.sh icub)/python" tests/envelopes/oracle.py "$TARGET/debug/rtf"
 }
 
+# Distances of dynamic time warping, compared with those of dtaidistance.
+golden_oracle() {
+  local python
+  python=$(tools/venv.sh golden)/python
+  cargo build --quiet --locked -p rtf-golden --example warp
+  "$python" tests/golden/oracle.py "$TARGET/debug/examples/warp"
+}
+
 # Parquet files of the history, read by Apache Arrow.
 history_export() {
   "$(tools/venv.sh export)/python" tests/history/export.py "$TARGET/debug/rtf"
@@ -570,6 +579,7 @@ step 'history change points' history_change_points
 step 'campaign oracle' campaign_oracle
 step 'monitor oracle' monitor_oracle
 step 'envelope oracle' envelope_oracle
+step 'golden oracle' golden_oracle
 step 'history export' history_export
 step 'history in PostgreSQL' history_postgres
 step 'telemetry' telemetry
@@ -582,7 +592,7 @@ step 'operator' operator
 step 'ci helpers' ci_helpers
 step 'guide' env RTF_PYTHON="$checkers/python" tools/check_docs.py "$TARGET/release/rtf" README.md \
   docs/tutorials/{first-test,first-fixture,cpp-plugin}.md docs/explanation/isolation.md \
-  docs/how-to/{writing-tests,simulation-time,recorders,real-robot,signals,envelopes}.md \
+  docs/how-to/{writing-tests,simulation-time,recorders,real-robot,signals,envelopes,golden}.md \
   docs/how-to/migrating-{rtf2,launch-testing,pytest,robot-framework}.md docs/reference/junit.md
 step 'guide commands' tools/check_running.py "$TARGET/release/rtf" \
   docs/how-to/{running,flaky-tests,soak,parallel,profiles,doctor,sharding,history}.md

@@ -181,6 +181,15 @@ function rtf.provide(name, value) end
 ---@return rtf.Value
 function rtf.fixture_value(name) end
 
+---Checks that a signal, as sampled so far, stays within `tolerance` of a stored trajectory, which
+---`rtf golden accept` writes. The runner compares: the test continues, and a deviation is a failure.
+---@param name string The signal.
+---@param reference string A file below the directory of the suite.
+---@param tolerance number In the unit of the signal.
+---@param align? "time"|"dtw" By time, or by dynamic time warping.
+---@param band? number By how many seconds times may differ with "dtw".
+function rtf.check_trajectory(name, reference, tolerance, align, band) end
+
 ---Adds a copy of a complete file to the results. The file may be deleted afterwards.
 ---@param path string
 ---@param name? string The default is the file's name.

@@ -81,6 +81,9 @@ impl HookJudgement {
             Notification::Sampled(samples) => samples.problem(),
             Notification::Provided { .. } => Some(PROVIDED.to_owned()),
             Notification::QuestionAsked(_) => Some(ASKED.to_owned()),
+            Notification::Trajectory(check) => {
+                Some(format!("it checks the trajectory `{}`, which only tests can", check.name))
+            }
             _ => None,
         };
         problem.into_iter().for_each(|problem| self.fail(problem));

@@ -8,7 +8,9 @@ use std::time::Duration;
 use mlua::{Function, IntoLuaMulti, Lua, LuaString, Table, Value};
 use rtf_host::{Inquiry, Sample, Session};
 use rtf_model::protocol::Plugin;
-use rtf_model::{Attachment, Comparison, Location, Measurement, Message, MessageKind};
+use rtf_model::{
+    Alignment, Attachment, Comparison, Location, Measurement, Message, MessageKind, TrajectoryCheck,
+};
 
 use crate::cases;
 use crate::chunk::SdkChunk;
@@ -106,6 +108,10 @@ fn functions(lua: &Lua) -> mlua::Result<Table> {
     })?;
     add(lua, &host, "measure", |session, measured: MeasureArgs| Ok(session.measure(measured.0)))?;
     add(lua, &host, "sample", |session, sampled: Sampled| Ok(sampled.send(session)))?;
+    add(lua, &host, "trajectory", |session, checked: Trajectory| {
+        session.check_trajectory(checked.0);
+        Ok(())
+    })?;
     add(
         lua,
         &host,
@@ -284,6 +290,27 @@ impl Sampled {
             time,
             place: file.as_deref().map(|file| (file, self.place.1.unwrap_or(0))),
         })
+    }
+}
+
+/// A check of a trajectory: name, reference, tolerance, alignment, band, place.
+struct Trajectory(TrajectoryCheck);
+
+impl mlua::FromLuaMulti for Trajectory {
+    fn from_lua_multi(values: mlua::MultiValue, lua: &Lua) -> mlua::Result<Self> {
+        type Arguments =
+            (LuaString, LuaString, f64, bool, Option<f64>, Option<LuaString>, Option<u32>);
+        let (name, reference, tolerance, warps, band, file, line) =
+            Arguments::from_lua_multi(values, lua)?;
+        Ok(Self(TrajectoryCheck {
+            name: name.to_string_lossy(),
+            reference: reference.to_string_lossy(),
+            tolerance,
+            align: if warps { Alignment::Dtw } else { Alignment::Time },
+            band,
+            location: location(file.as_ref(), line),
+            case: None,
+        }))
     }
 }
 

@@ -9,7 +9,7 @@ use std::ffi::{c_char, c_int, c_void};
 /// The version that a plug-in and its host must share.
 pub const RTF_ABI_MAJOR: u32 = 1;
 /// Counts the fields that were appended since the major version began.
-pub const RTF_ABI_MINOR: u32 = 3;
+pub const RTF_ABI_MINOR: u32 = 4;
 
 /// The plug-in is a test: `setup`, `run`, `tear_down`.
 pub const RTF_KIND_TEST: i32 = 1;
@@ -132,6 +132,34 @@ pub struct rtf_sample {
     pub file: *const c_char,
     /// The line in it, 0 if unknown.
     pub line: u32,
+}
+
+/// Times start at the first sample of both trajectories.
+pub const RTF_ALIGN_TIME: i32 = 0;
+
+/// Times are aligned by dynamic time warping.
+pub const RTF_ALIGN_DTW: i32 = 1;
+
+/// A check of a signal against a stored trajectory.
+#[repr(C)]
+#[derive(Debug)]
+pub struct rtf_trajectory {
+    /// `sizeof(rtf_trajectory)`.
+    pub size: usize,
+    /// The signal.
+    pub name: rtf_text,
+    /// The file of the stored trajectory, relative to the directory of the suite.
+    pub reference: rtf_text,
+    /// The largest accepted difference.
+    pub tolerance: f64,
+    /// With `RTF_ALIGN_DTW`, by how many seconds times may differ; null: the default.
+    pub band: *const f64,
+    /// The source file, null if unknown.
+    pub file: *const c_char,
+    /// The line in it, 0 if unknown.
+    pub line: u32,
+    /// `RTF_ALIGN_TIME` or `RTF_ALIGN_DTW`.
+    pub align: i32,
 }
 
 /// A file to be added to the results.
@@ -295,6 +323,9 @@ pub struct rtf_host {
         question: *const rtf_question,
         answer: *mut rtf_text,
     ) -> i32,
+    /// Since 1.4: checks a signal, as sampled so far, against a stored trajectory. The runner
+    /// compares: a deviation is a failure, and the test continues. Only for tests.
+    pub check_trajectory: unsafe extern "C" fn(context: *mut c_void, check: *const rtf_trajectory),
 }
 
 /// The plug-in's kind and functions. All functions are called on the

@@ -7,15 +7,16 @@ use std::time::Duration;
 use ::rtf_host::{CaseEnd, Inquiry, Sample, Session};
 use rtf_model::protocol::{FixtureValue, Plugin};
 use rtf_model::{
-    Attachment, Comparison, Location, Measurement, Message, MessageKind, Parameter, value_text,
+    Alignment, Attachment, Comparison, Location, Measurement, Message, MessageKind, Parameter,
+    TrajectoryCheck, value_text,
 };
 use serde_json::Value;
 
 use crate::abi::{
-    RTF_ABI_MAJOR, RTF_ABI_MINOR, RTF_DONE, RTF_MESSAGE_CHECK, RTF_MESSAGE_ERROR,
-    RTF_MESSAGE_FAILURE, RTF_MESSAGE_REPORT, RTF_STOPPED, RTF_VALUE_JSON, RTF_VALUE_TEXT,
-    rtf_attachment, rtf_case, rtf_comparison, rtf_host, rtf_measurement, rtf_message,
-    rtf_parameter, rtf_question, rtf_sample, rtf_text,
+    RTF_ABI_MAJOR, RTF_ABI_MINOR, RTF_ALIGN_DTW, RTF_ALIGN_TIME, RTF_DONE, RTF_MESSAGE_CHECK,
+    RTF_MESSAGE_ERROR, RTF_MESSAGE_FAILURE, RTF_MESSAGE_REPORT, RTF_STOPPED, RTF_VALUE_JSON,
+    RTF_VALUE_TEXT, rtf_attachment, rtf_case, rtf_comparison, rtf_host, rtf_measurement,
+    rtf_message, rtf_parameter, rtf_question, rtf_sample, rtf_text, rtf_trajectory,
 };
 
 /// The context of the functions: one per plug-in, never freed, because the plug-in's
@@ -61,6 +62,7 @@ pub(crate) fn for_plugin(session: &Session, plugin: &Plugin) -> &'static rtf_hos
         provide,
         fixture_values: self::fixture_values,
         ask,
+        check_trajectory,
     }))
 }
 
@@ -135,6 +137,37 @@ unsafe extern "C" fn sample(context: *mut c_void, sample: *const rtf_sample) -> 
             place: place.as_ref().map(|place| (place.file.as_str(), place.line)),
         });
         c_int::from(holds)
+    }
+}
+
+unsafe extern "C" fn check_trajectory(context: *mut c_void, check: *const rtf_trajectory) {
+    // SAFETY: the pointers are valid by spec/plugin-abi.md.
+    unsafe {
+        let check = &*check;
+        let session = &self::context(context).session;
+        let align = match check.align {
+            RTF_ALIGN_TIME => Alignment::Time,
+            RTF_ALIGN_DTW => Alignment::Dtw,
+            other => {
+                return session.message(Message {
+                    kind: MessageKind::Error,
+                    text: format!("a trajectory has the unknown alignment {other}"),
+                    location: location(check.file, check.line),
+                    comparison: None,
+                    critical: false,
+                    case: None,
+                });
+            }
+        };
+        session.check_trajectory(TrajectoryCheck {
+            name: text(check.name),
+            reference: text(check.reference),
+            tolerance: check.tolerance,
+            align,
+            band: check.band.as_ref().copied(),
+            location: location(check.file, check.line),
+            case: None,
+        });
     }
 }
 

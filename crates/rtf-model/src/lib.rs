@@ -23,6 +23,7 @@ mod record;
 mod report;
 mod samples;
 mod signals;
+mod trajectory;
 mod trend;
 mod usage;
 mod verdict;
@@ -56,6 +57,7 @@ pub use signals::{
     MeasuredFixture, MonitorConfig, ProcessQuantity, SignalConfig, SignalProgram, SignalSource,
     SignalTime, SignalsConfig,
 };
+pub use trajectory::{Alignment, TrajectoryCheck};
 pub use usage::{Growth, Resource, Usage, UsageSeries};
 pub use verdict::{Outcome, Verdict};
 

@@ -15,7 +15,7 @@ use serde_json::Value;
 pub use self::rpc::{Reply, RpcError, RpcMessage};
 use crate::{
     Attachment, CaseId, CaseStart, Finding, Measurement, Message, Outcome, Parameter, Phase,
-    Question, Samples, TestId, Verdict,
+    Question, Samples, TestId, TrajectoryCheck, Verdict,
 };
 
 /// The protocol version of this crate. Runner and host must agree on it.
@@ -391,6 +391,8 @@ pub enum Notification {
     },
     /// A fixture found a problem of a running test.
     Finding(Finding),
+    /// A test checks a signal against a stored trajectory. The runner compares.
+    Trajectory(TrajectoryCheck),
     /// A test attaches a file, or a fixture does for the test that it was notified of.
     Attached(Attachment),
     /// A fixture has failed. May arrive at any time.

@@ -76,6 +76,7 @@ fn run(verb: Verb, matches: &ArgMatches) -> VerbResult {
         Verb::Report(args) => command::report::run(args, matches),
         Verb::Merge(args) => command::merge::run(args, matches),
         Verb::History { verb } => command::history::run(*verb, matches),
+        Verb::Golden { verb } => command::golden::run(verb, matches),
         Verb::Serve(args) => command::serve::run(args, matches),
         Verb::Import { verb } => command::import::run(&verb),
         Verb::Config { verb: ConfigVerb::Show(args) } => command::config::show(&args),

@@ -12,7 +12,7 @@ private package RobotTestingFramework.ABI is
    subtype Address is System.Address;
 
    Major : constant := 1;
-   Minor : constant := 3;
+   Minor : constant := 4;
 
    Kind_Test    : constant := 1;
    Kind_Fixture : constant := 2;
@@ -118,6 +118,17 @@ private package RobotTestingFramework.ABI is
       Reason     : Text;
    end record with Convention => C;
 
+   type Trajectory is record
+      Size      : Interfaces.C.size_t;
+      Name      : Text;
+      Reference : Text;
+      Tolerance : Interfaces.C.double;
+      Band      : Address;
+      File      : Address;
+      Line      : Interfaces.Unsigned_32;
+      Align     : Interfaces.Integer_32;
+   end record with Convention => C;
+
    type Take_Message is access procedure (Context : Address; Value : Message)
      with Convention => C;
    type Take_Measurement is access function
@@ -125,6 +136,8 @@ private package RobotTestingFramework.ABI is
      with Convention => C;
    type Take_Sample is access function
      (Context : Address; Value : Sample) return Interfaces.C.int
+     with Convention => C;
+   type Take_Trajectory is access procedure (Context : Address; Value : Trajectory)
      with Convention => C;
    type Take_Attachment is access procedure (Context : Address; Value : Attachment)
      with Convention => C;
@@ -185,6 +198,7 @@ private package RobotTestingFramework.ABI is
       Provide     : Take_Value;
       Values      : Tell_Parameters;
       Ask         : Ask_Question;
+      Trajectory  : Take_Trajectory;
    end record with Convention => C;
 
    type Host_Access is access constant Host_Table with Convention => C;

@@ -220,6 +220,37 @@ package body RobotTestingFramework.Session is
           Line  => Interfaces.Unsigned_32 (Line)));
    end Sample;
 
+   procedure Check_Trajectory
+     (Name      : String;
+      Reference : String;
+      Tolerance : Long_Float;
+      Align     : Alignment  := By_Time;
+      Band      : Long_Float := Default_Band;
+      File      : String     := Source.File;
+      Line      : Natural    := Source.Line)
+   is
+      Table          : constant not null ABI.Host_Access := Host.Table;
+      Name_Text      : aliased constant String := Name;
+      Reference_Text : aliased constant String := Reference;
+      Given_Band     : aliased constant Long_Float := Band;
+      Source_Text    : aliased constant String := File & ASCII.NUL;
+   begin
+      if Table.Minor < 4 then
+         raise Program_Error with "this rtf is too old for trajectories";
+      end if;
+      Table.Trajectory
+        (Table.Context,
+         (Size      => ABI.Trajectory'Size / System.Storage_Unit,
+          Name      => Host.To_C (Name_Text),
+          Reference => Host.To_C (Reference_Text),
+          Tolerance => Interfaces.C.double (Tolerance),
+          Band      =>
+            (if Band = Default_Band then System.Null_Address else Given_Band'Address),
+          File      => Source_Text'Address,
+          Line      => Interfaces.Unsigned_32 (Line),
+          Align     => Alignment'Pos (Align)));
+   end Check_Trajectory;
+
    procedure Sample_For
      (Name      : String;
       Time      : Duration;

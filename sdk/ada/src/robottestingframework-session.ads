@@ -90,6 +90,26 @@ package RobotTestingFramework.Session is
       File      : String     := Source.File;
       Line      : Natural    := Source.Line);
 
+   --  How the times of a signal and of a stored trajectory are aligned: both start at their
+   --  first sample, or by dynamic time warping.
+   type Alignment is (By_Time, By_Warping);
+
+   --  Without a band, times may differ by a tenth of the reference.
+   Default_Band : constant Long_Float := Long_Float'First;
+
+   --  Checks that a signal, as sampled so far, stays within the tolerance of a stored
+   --  trajectory: a file below the directory of the suite, which `rtf golden accept` writes.
+   --  With By_Warping, times may differ by this band in seconds. The runner compares: the
+   --  test continues, and a deviation is a failure.
+   procedure Check_Trajectory
+     (Name      : String;
+      Reference : String;
+      Tolerance : Long_Float;
+      Align     : Alignment  := By_Time;
+      Band      : Long_Float := Default_Band;
+      File      : String     := Source.File;
+      Line      : Natural    := Source.Line);
+
    --  Samples the result of Read at this rate in Hz. A slow Read skips samples.
    generic
       with function Read return Long_Float;

@@ -290,6 +290,18 @@ function rtf.fixture_value(name)
   return copy(value)
 end
 
+function rtf.check_trajectory(name, reference, tolerance, align, band)
+  if type(tolerance) ~= "number" then
+    error(("the tolerance of a trajectory is a number, not %s"):format(tostring(tolerance)), 2)
+  end
+  align = align or "time"
+  if align ~= "time" and align ~= "dtw" then
+    error(('align is "%s", expected "time" or "dtw"'):format(tostring(align)), 2)
+  end
+  local file, line = guard.location(2)
+  host.trajectory(tostring(name), tostring(reference), tolerance, align == "dtw", band, file, line)
+end
+
 function rtf.attach(path, name, media_type)
   local problem = host.attach(tostring(path), name and tostring(name), media_type and tostring(media_type))
   if problem then

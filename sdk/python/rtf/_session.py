@@ -190,6 +190,15 @@ class Session:
         self.sampling.add(signal, value, at, case=self.cases.current(), is_within=is_within)
         return is_within
 
+    def check_trajectory(self, params: dict[str, object], band: float | None) -> None:
+        """Ask the runner to compare a signal with a stored trajectory."""
+        if band is not None:
+            params["band"] = band
+        place = _location.caller()
+        if place is not None:
+            params["location"] = place.as_json()
+        self.notify_in_case("trajectory", params)
+
     def error(self, text: str, **more: object) -> None:
         """Send an error."""
         self.request.record("error")

@@ -148,6 +148,27 @@ class TestCase(Plugin):
         self.sleep(max(0.0, seconds - watch.passed()))
         return good
 
+    def check_trajectory(
+        self,
+        name: str,
+        reference: str,
+        tolerance: float,
+        align: str = "time",
+        band: float | None = None,
+    ) -> None:
+        """Check that a signal, as sampled so far, stays within `tolerance` of a stored trajectory.
+
+        `reference` is a file below the directory of the suite, which `rtf golden accept` writes.
+        `align` is "time" or, for dynamic time warping by at most `band` seconds, "dtw". The runner
+        compares: the test continues, and a deviation is a failure.
+        """
+        if align not in {"time", "dtw"}:
+            raise ValueError(f'`align` is "{align}", expected "time" or "dtw"')
+        _session.current().check_trajectory(
+            {"name": name, "reference": reference, "tolerance": float(tolerance), "align": align},
+            None if band is None else float(band),
+        )
+
     def check(self, condition: object, text: object) -> bool:
         """Check that `condition` holds, and continue in either case."""
         if condition:

@@ -13,7 +13,9 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use rtf_model::protocol::{Answer, CHANNEL_VARIABLE, Notification, QuestionEnd, Reply, RpcError};
-use rtf_model::{Attachment, Location, Measurement, Message, MessageKind, Outcome, Phase};
+use rtf_model::{
+    Attachment, Location, Measurement, Message, MessageKind, Outcome, Phase, TrajectoryCheck,
+};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -170,6 +172,13 @@ impl Session {
         }
         sampling.send_due(&self.0.writer);
         is_within
+    }
+
+    /// Checks the samples of a signal so far against a stored trajectory. The runner compares, so
+    /// the plug-in does not learn the result.
+    pub fn check_trajectory(&self, mut check: TrajectoryCheck) {
+        check.case = self.0.cases.current();
+        self.notify(&Notification::Trajectory(check));
     }
 
     /// Copies a file into the test's results. Afterwards the plug-in may change or remove

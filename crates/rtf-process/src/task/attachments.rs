@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use rtf_model::protocol::Notification;
 use rtf_model::{Attachment, Question};
 use tokio::sync::mpsc;
 
@@ -59,13 +60,21 @@ impl ProcessTask {
         question
     }
 
-    /// Reports the copied attachment, and delivers the messages held back.
-    pub(super) async fn copy_finished(&mut self, result: std::io::Result<()>) {
+    /// Reports the copied attachment and the results of its job, and delivers the messages held
+    /// back.
+    pub(super) async fn copy_finished(&mut self, result: std::io::Result<Vec<Notification>>) {
         let Some(copy) = self.copy.take() else { return };
         if !self.throttle.is_throttled {
             self.report(ProcessEvent::Resumed).await;
         }
+        let (result, reports) = match result {
+            Ok(reports) => (Ok(()), reports),
+            Err(error) => (Err(error), Vec::new()),
+        };
         self.report_attachment(copy.attachment.clone(), &copy.reported_path, result).await;
+        for report in reports {
+            self.report(ProcessEvent::Notified(report)).await;
+        }
         self.deliver().await;
     }
 
@@ -109,7 +118,7 @@ impl ProcessTask {
     }
 }
 
-fn replace_unsafe(character: char) -> char {
+pub(super) fn replace_unsafe(character: char) -> char {
     if character.is_alphanumeric() || matches!(character, '.' | '-' | '_') {
         character
     } else {

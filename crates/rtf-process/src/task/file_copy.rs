@@ -1,5 +1,5 @@
-//! Copies an attached file in a dedicated thread: a disk that does not respond blocks no
-//! task, and the copy can be abandoned.
+//! Copies an attached file, or writes one, in a dedicated thread: a disk that does not respond
+//! blocks no task, and the copy can be abandoned.
 
 use std::fs::{File, OpenOptions};
 use std::io;
@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use rtf_model::Attachment;
+use rtf_model::protocol::Notification;
 use rustix::fs::OFlags;
 use tokio::sync::oneshot;
 use tokio::time::Instant;
@@ -29,7 +30,7 @@ pub(super) struct FileCopy {
     /// The path that the process reported.
     pub(super) reported_path: String,
     deadline: Instant,
-    done: oneshot::Receiver<io::Result<()>>,
+    done: oneshot::Receiver<io::Result<Vec<Notification>>>,
     abandoned: Arc<AtomicBool>,
 }
 
@@ -40,28 +41,42 @@ impl FileCopy {
         (reported_path, from): (&str, PathBuf),
         to: PathBuf,
     ) -> io::Result<Self> {
-        let (finished, done) = oneshot::channel();
         let abandoned = Arc::new(AtomicBool::new(false));
         let is_abandoned = Arc::clone(&abandoned);
-        // Not a thread of tokio: its runtime would wait for a disk that does not respond.
-        std::thread::Builder::new().name("attachment".into()).spawn(move || {
+        let copy = move || {
             let copied = copy(&from, &to, &is_abandoned);
             if copied.is_err() {
                 let _ = std::fs::remove_file(&to);
             }
-            let _ = finished.send(copied);
+            copied.map(|()| Vec::new())
+        };
+        let mut started = Self::start_job(attachment, reported_path, copy)?;
+        started.abandoned = abandoned;
+        Ok(started)
+    }
+
+    /// Starts a job that writes the file of an attachment and returns what else is reported.
+    pub(super) fn start_job(
+        attachment: Attachment,
+        reported_path: &str,
+        job: impl FnOnce() -> io::Result<Vec<Notification>> + Send + 'static,
+    ) -> io::Result<Self> {
+        let (finished, done) = oneshot::channel();
+        // Not a thread of tokio: its runtime would wait for a disk that does not respond.
+        std::thread::Builder::new().name("attachment".into()).spawn(move || {
+            let _ = finished.send(job());
         })?;
         Ok(Self {
             attachment,
             reported_path: reported_path.to_owned(),
             deadline: Instant::now() + TIME_LIMIT,
             done,
-            abandoned,
+            abandoned: Arc::default(),
         })
     }
 
     /// Waits for the end. Cancel safe.
-    pub(super) async fn wait(&mut self) -> io::Result<()> {
+    pub(super) async fn wait(&mut self) -> io::Result<Vec<Notification>> {
         match tokio::time::timeout_at(self.deadline, &mut self.done).await {
             Ok(Ok(copied)) => copied,
             Ok(Err(_)) => Err(io::Error::other("the thread that copies it has ended")),

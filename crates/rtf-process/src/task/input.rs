@@ -9,6 +9,7 @@ use super::streams::{Buffers, Received, read, receive};
 use super::{DRAIN_LIMIT, ProcessEvent, ProcessTask};
 use crate::codec::{self, HostMessage, LINE_LIMIT};
 use crate::process::StartedProcess;
+use crate::spawn_request::ProcessRole;
 
 /// The number of reads after the limit: enough for the contents of a socket and two
 /// pipes, but not for an endless flood.
@@ -85,6 +86,10 @@ impl ProcessTask {
         }
     }
 
+    fn is_test(&self) -> bool {
+        self.role() == Some(ProcessRole::Test)
+    }
+
     fn has_no_assignment(&self) -> bool {
         self.shared.as_ref().is_some_and(SharedHost::has_replied)
     }
@@ -97,7 +102,15 @@ impl ProcessTask {
             Ok(HostMessage::Notification(Notification::QuestionAsked(question))) => {
                 ProcessEvent::Notified(Notification::QuestionAsked(self.with_picture(question)))
             }
-            Ok(HostMessage::Notification(notification)) => ProcessEvent::Notified(notification),
+            Ok(HostMessage::Notification(Notification::Trajectory(check))) if self.is_test() => {
+                return self.check_trajectory(check).await;
+            }
+            Ok(HostMessage::Notification(notification)) => {
+                if self.is_test() {
+                    self.samples.record(&notification);
+                }
+                ProcessEvent::Notified(notification)
+            }
             Ok(HostMessage::Reply(id, reply)) => ProcessEvent::Replied(id, reply),
             Err(what) => ProcessEvent::ProtocolViolated(what),
         };

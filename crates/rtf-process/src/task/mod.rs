@@ -17,6 +17,7 @@ mod probing;
 mod shared_host;
 mod streams;
 mod throttle;
+mod trajectories;
 mod write_queue;
 
 use std::collections::VecDeque;
@@ -24,7 +25,7 @@ use std::os::fd::AsFd;
 use std::sync::Arc;
 use std::time::Duration;
 
-use rtf_model::protocol::{Request, StackSupport, TestFinishedParams};
+use rtf_model::protocol::{Notification, Request, StackSupport, TestFinishedParams};
 use rtf_model::{ExitStatus, Stream};
 use tokio::io::AsyncWriteExt;
 use tokio::sync::mpsc;
@@ -47,6 +48,7 @@ use line_assembly::LineAssembly;
 use shared_host::SharedHost;
 use streams::{Buffers, read, receive, wait};
 use throttle::Throttle;
+use trajectories::SampledSignals;
 use write_queue::WriteQueue;
 
 /// How long the end of a test's process by a signal of others waits for a stop of the run: who
@@ -94,7 +96,7 @@ fn is_stop(status: ExitStatus) -> bool {
     matches!(status, ExitStatus::Signal(1 | 2 | 15) | ExitStatus::Code(129 | 130 | 143))
 }
 
-async fn copied(copy: &mut Option<FileCopy>) -> std::io::Result<()> {
+async fn copied(copy: &mut Option<FileCopy>) -> std::io::Result<Vec<Notification>> {
     match copy {
         Some(copy) => copy.wait().await,
         None => std::future::pending().await,
@@ -114,6 +116,10 @@ struct ProcessTask {
     /// The messages received after an attachment that is being copied.
     held_back: VecDeque<Result<HostMessage, String>>,
     copy: Option<FileCopy>,
+    /// The samples of the test, for comparisons.
+    samples: SampledSignals,
+    /// The number of compared trajectories.
+    trajectories: u32,
     /// Whether requests wait for a debugger.
     debugger: DebuggerWait,
     /// The requested liveness check.
@@ -144,6 +150,8 @@ impl ProcessTask {
             throttle: Throttle::default(),
             held_back: VecDeque::new(),
             copy: None,
+            samples: SampledSignals::default(),
+            trajectories: 0,
             debugger,
             check: None,
             background: JoinSet::new(),

@@ -6,6 +6,7 @@ mod doctor;
 mod executor;
 mod formats;
 mod gate;
+mod golden;
 mod history;
 mod import;
 mod inputs;
@@ -30,6 +31,7 @@ pub use doctor::{DoctorArgs, DoctorFormat};
 pub use executor::{CampaignTaskArgs, ClusterArgs, ExecutorArgs, ExecutorOption};
 pub use formats::{Annotations, ReportFormat, ReportTarget, StdoutFormat, parse_report};
 pub use gate::{GateFormat, HistoryGateArgs};
+pub use golden::{GoldenAcceptArgs, GoldenVerb};
 pub use history::{
     ExportFormat, ExportTable, HistoryAcceptArgs, HistoryArgs, HistoryCampaignsArgs,
     HistoryChangesArgs, HistoryCompareArgs, HistoryDoctorArgs, HistoryExportArgs, HistoryFileArgs,
@@ -121,6 +123,12 @@ pub enum Verb {
         /// The question
         #[command(subcommand)]
         verb: Box<HistoryVerb>,
+    },
+    /// Store trajectories of a run, with which later runs are compared
+    Golden {
+        /// What to do
+        #[command(subcommand)]
+        verb: GoldenVerb,
     },
     /// Show active and past runs in a browser
     Serve(ServeArgs),

@@ -21,6 +21,7 @@ pub mod check;
 pub mod completions;
 pub mod config;
 pub mod doctor;
+pub mod golden;
 pub mod history;
 pub mod import;
 pub mod init;

@@ -36,6 +36,7 @@ mod fixture_values;
 mod forked_children;
 mod forked_hosts;
 mod framework_programs;
+mod golden;
 mod guard;
 mod history;
 mod history_campaigns;

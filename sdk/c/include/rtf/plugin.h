@@ -16,7 +16,7 @@
 #define RTF_ABI_MAJOR 1
 
 // Counts the fields that were appended since the major version began.
-#define RTF_ABI_MINOR 3
+#define RTF_ABI_MINOR 4
 
 // The plug-in is a test: `setup`, `run`, `tear_down`.
 #define RTF_KIND_TEST 1
@@ -51,6 +51,12 @@
 
 // The text is JSON: a number, `true`, `[1, 2]`, …
 #define RTF_VALUE_JSON 1
+
+// Times start at the first sample of both trajectories.
+#define RTF_ALIGN_TIME 0
+
+// Times are aligned by dynamic time warping.
+#define RTF_ALIGN_DTW 1
 
 // A UTF-8 text, not necessarily terminated by zero. Invalid bytes become `U+FFFD`.
 typedef struct rtf_text {
@@ -191,11 +197,26 @@ typedef struct rtf_question {
     double timeout;
     // The path of a PNG or JPEG file, empty for none. It is copied before the call returns.
     struct rtf_text picture;
+// A check of a signal against a stored trajectory.
+typedef struct rtf_trajectory {
+    // `sizeof(rtf_trajectory)`.
+    size_t size;
+    // The signal.
+    struct rtf_text name;
+    // The file of the stored trajectory, relative to the directory of the suite.
+    struct rtf_text reference;
+    // The largest accepted difference.
+    double tolerance;
+    // With `RTF_ALIGN_DTW`, by how many seconds times may differ; null: the default.
+    const double *band;
     // The source file, null if unknown.
     const char *file;
     // The line in it, 0 if unknown.
     uint32_t line;
 } rtf_question;
+    // `RTF_ALIGN_TIME` or `RTF_ALIGN_DTW`.
+    int32_t align;
+} rtf_trajectory;
 
 // The host's functions for a plug-in. Their first argument is `context`. They
 // may be called from any thread until the process ends.
@@ -258,6 +279,9 @@ typedef struct rtf_host {
     // stop request, and without an answer, which the host has reported as an error: then
     // return from the step with `RTF_STOPPED`.
     int32_t (*ask)(void *context, const struct rtf_question *question, struct rtf_text *answer);
+    // Since 1.4: checks a signal, as sampled so far, against a stored trajectory. The runner
+    // compares: a deviation is a failure, and the test continues. Only for tests.
+    void (*check_trajectory)(void *context, const struct rtf_trajectory *check);
 } rtf_host;
 
 // An attempt of a test.

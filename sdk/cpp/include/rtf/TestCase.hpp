@@ -16,6 +16,7 @@
 #include <rtf/internal/Cases.hpp>
 #include <rtf/internal/Questions.hpp>
 #include <rtf/internal/Sampling.hpp>
+#include <rtf/internal/Trajectory.hpp>
 #include <rtf/internal/Values.hpp>
 
 namespace rtf {
@@ -35,6 +36,17 @@ protected:
                 Location here = Location::current()) const
     {
         return internal::sample(here, internal::Measurement{name, value, unit, low, high}, time);
+    }
+
+    // Checks that a signal, as sampled so far, stays within `tolerance` of a stored trajectory: a
+    // file below the directory of the suite, which `rtf golden accept` writes. With Align::dtw, times
+    // may differ by `band`. The runner compares: the test continues, a deviation is a failure.
+    void check_trajectory(std::string_view name, std::string_view reference, double tolerance,
+                          Align align = Align::time,
+                          std::optional<std::chrono::duration<double>> band = std::nullopt,
+                          Location here = Location::current()) const
+    {
+        internal::check_trajectory(here, name, reference, tolerance, align, band);
     }
 
     // Samples the result of read() at `rate` Hz, and returns whether all are within

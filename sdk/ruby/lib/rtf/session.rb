@@ -153,6 +153,12 @@ module RTF
       signal.accept?(value)
     end
 
+    # Asks the runner to compare a signal with a stored trajectory.
+    def check_trajectory(params)
+      params = params.merge(location: Location.caller_place)
+      notify_in_case("trajectory", params.compact)
+    end
+
     # Adds a sample, and returns whether it is within its limits.
     def sampled(signal, value, at)
       accepted = signal.accept?(value)

@@ -34,7 +34,8 @@ impl TestRun<'_> {
                 self.finish_case(case, (outcome, reason), duration_us, cx);
             }
             Notification::QuestionAsked(question) => self.ask_person(question, cx),
-            Notification::Attached(_) => {}
+            // Handled by the task of the process.
+            Notification::Attached(_) | Notification::Trajectory(_) => {}
             Notification::Provided { .. } => self.report_error(PROVIDED.to_owned(), cx),
             Notification::Collapsed { .. } => self.on_fixture_notification("collapsed", cx),
             Notification::Finding(_) => self.on_fixture_notification("finding", cx),

@@ -1,0 +1,17 @@
+//! Golden trajectories: what a signal did in a run that was accepted, as a text for review, and the
+//! comparison of another run with it.
+//!
+//! `spec/golden.md` specifies the text, the comparisons and their sources. No I/O, no threads, no
+//! clock; depends on no other crate of the project.
+
+mod reference;
+mod thin;
+mod time;
+mod trajectory;
+mod warp;
+
+pub use reference::{MEDIA_TYPE, ParseError, Reference};
+pub use thin::{Thinned, thin};
+pub use time::by_time;
+pub use trajectory::{Comparison, Deviation, Trajectory, TrajectoryError};
+pub use warp::{Warp, by_warp, warp};
