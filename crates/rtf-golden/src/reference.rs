@@ -97,7 +97,7 @@ impl std::fmt::Display for Reference {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut text = format!("{HEADER}\n");
         for (name, value) in &self.fields {
-            // A line of its own for each field.
+            // A text with line breaks would be several comments.
             let value = value.replace(char::is_control, " ");
             writeln!(text, "# {name}: {value}")?;
         }

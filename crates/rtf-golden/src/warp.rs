@@ -38,9 +38,10 @@ pub fn warp(first: &[f64], second: &[f64], radius: usize) -> Option<Warp> {
     for (row, value) in first.iter().enumerate() {
         let mut costs = vec![f64::INFINITY; width + 1];
         let from = row.saturating_sub(radius);
-        for column in from..(row + radius + 1).min(columns) {
+        let to = (row + radius + 1).min(columns);
+        for (column, other) in second.iter().enumerate().take(to).skip(from) {
             let at = column + radius - row;
-            let difference = value - second[column];
+            let difference = value - other;
             // One row up, the same column is one further to the right.
             let both = above[at];
             let up = above[at + 1];
