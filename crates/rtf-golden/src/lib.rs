@@ -13,5 +13,5 @@ mod warp;
 pub use reference::{MEDIA_TYPE, ParseError, Reference};
 pub use thin::{Thinned, thin};
 pub use time::by_time;
-pub use trajectory::{Comparison, Deviation, Trajectory, TrajectoryError};
+pub use trajectory::{Aligned, Comparison, Deviation, Trajectory, TrajectoryError};
 pub use warp::{Warp, by_warp, warp};

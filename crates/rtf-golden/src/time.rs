@@ -1,6 +1,6 @@
 //! Alignment by time: both trajectories start at their first point.
 
-use crate::{Comparison, Deviation, Trajectory};
+use crate::{Aligned, Comparison, Deviation, Trajectory};
 
 /// Compares at all times; beyond its end, a trajectory keeps its last value.
 ///
@@ -28,7 +28,13 @@ pub fn by_time(got: &Trajectory, expected: &Trajectory) -> Comparison {
     let duration = got.duration().max(expected.duration());
     let worst = worst.unwrap_or(Deviation { time: 0.0, got: 0.0, expected: 0.0 });
     let rms = if duration > 0.0 { (integral / duration).sqrt() } else { worst.size() };
-    Comparison { rms, worst }
+    let held = (duration > expected.duration()).then_some(duration);
+    let times = expected.points().iter().map(|(time, _)| *time).chain(held);
+    let aligned = times.map(|time| {
+        let value = expected.at(time);
+        Aligned { time, low: value, high: value }
+    });
+    Comparison { rms, worst, aligned: aligned.collect() }
 }
 
 #[cfg(test)]
@@ -56,6 +62,9 @@ mod tests {
         let expected = trajectory(&[(0.0, 1.0), (1.0, 1.0), (3.0, 4.0)]);
         let comparison = by_time(&got, &expected);
         assert_eq!((comparison.worst.time, comparison.worst.size()), (3.0, 3.0));
+        let aligned: Vec<_> =
+            by_time(&expected, &got).aligned.iter().map(|it| (it.time, it.low, it.high)).collect();
+        assert_eq!(aligned, [(0.0, 1.0, 1.0), (3.0, 1.0, 1.0)]);
         assert_eq!(by_time(&got, &trajectory(&[(2.0, 4.0)])).rms, 3.0);
     }
 }

@@ -39,13 +39,26 @@ impl Deviation {
     }
 }
 
-/// The result of a comparison.
+/// The values of the reference that are aligned with a time of the trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aligned {
+    /// The time since the start of the trajectory, in seconds.
+    pub time: f64,
+    /// The least value.
+    pub low: f64,
+    /// The greatest value.
+    pub high: f64,
+}
+
+/// The result of a comparison.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// The root of the mean squared difference.
     pub rms: f64,
     /// The largest difference; the first of several.
     pub worst: Deviation,
+    /// The reference, as it was aligned.
+    pub aligned: Vec<Aligned>,
 }
 
 impl Comparison {

@@ -2,7 +2,7 @@
 //! for spoken word recognition*, IEEE Transactions on Acoustics, Speech, and Signal Processing 26,
 //! 1978, with steps of (1, 0), (0, 1) and (1, 1), the squared difference as cost, and a band.
 
-use crate::{Comparison, Deviation, Trajectory, by_time};
+use crate::{Aligned, Comparison, Deviation, Trajectory, by_time};
 
 /// The fewest and the most values that are compared of each trajectory.
 const MIN_VALUES: usize = 1000;
@@ -95,13 +95,19 @@ pub fn by_warp(got: &Trajectory, expected: &Trajectory, band: f64) -> Option<Com
     let path = warp(&first, &second, radius)?.path;
     let mut worst = None;
     let mut sum = 0.0;
+    let mut aligned: Vec<Aligned> = Vec::with_capacity(first.len());
     for (row, column) in &path {
         let time = step * *row as f64;
+        let value = second[*column];
+        match aligned.last_mut().filter(|last| last.time >= time) {
+            Some(last) => (last.low, last.high) = (last.low.min(value), last.high.max(value)),
+            None => aligned.push(Aligned { time, low: value, high: value }),
+        }
         let deviation = Deviation { time, got: first[*row], expected: second[*column] };
         sum += deviation.size() * deviation.size();
         worst = Comparison::worse(worst, deviation);
     }
-    Some(Comparison { rms: (sum / path.len() as f64).sqrt(), worst: worst? })
+    Some(Comparison { rms: (sum / path.len() as f64).sqrt(), worst: worst?, aligned })
 }
 
 #[cfg(test)]
@@ -132,7 +138,12 @@ mod tests {
             Trajectory::new(&points).unwrap()
         };
         let (got, expected) = (shape(0.5), shape(0.3));
-        assert!(by_warp(&got, &expected, 0.25).unwrap().worst.size() < 1e-9);
+        let wide = by_warp(&got, &expected, 0.25).unwrap();
+        // At most half a step of the grid.
+        assert!(wide.worst.size() < 0.002, "{wide:?}");
+        // The reference is where the trajectory is, 0.2 s later than it was.
+        let near = wide.aligned.iter().find(|it| it.time >= 1.0).unwrap();
+        assert!((near.low - 0.5).abs() < 0.01 && (near.high - 0.5).abs() < 0.01, "{near:?}");
         let narrow = by_warp(&got, &expected, 0.1).unwrap();
         assert!((narrow.worst.size() - 0.1).abs() < 0.011, "{narrow:?}");
         assert!((by_time(&got, &expected).worst.size() - 0.2).abs() < 1e-9);

@@ -107,7 +107,7 @@ impl ProcessTask {
             }
             Ok(HostMessage::Notification(notification)) => {
                 if self.is_test() {
-                    self.samples.record(&notification);
+                    self.record_samples(&notification);
                 }
                 ProcessEvent::Notified(notification)
             }

@@ -118,8 +118,8 @@ struct ProcessTask {
     copy: Option<FileCopy>,
     /// The samples of the test, for comparisons.
     samples: SampledSignals,
-    /// The number of compared trajectories.
-    trajectories: u32,
+    /// The signals that were compared, in order.
+    trajectories: Vec<String>,
     /// Whether requests wait for a debugger.
     debugger: DebuggerWait,
     /// The requested liveness check.
@@ -151,7 +151,7 @@ impl ProcessTask {
             held_back: VecDeque::new(),
             copy: None,
             samples: SampledSignals::default(),
-            trajectories: 0,
+            trajectories: Vec::new(),
             debugger,
             check: None,
             background: JoinSet::new(),

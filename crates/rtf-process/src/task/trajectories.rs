@@ -43,17 +43,16 @@ struct SampledSignal {
     points: Vec<(f64, Option<f64>)>,
 }
 
-impl SampledSignals {
-    /// Handles a notification that concerns the samples.
-    pub(super) fn record(&mut self, notification: &Notification) {
-        match notification {
-            // A host can run several tests.
-            Notification::Phase { phase: Phase::Setup } => *self = Self::default(),
-            Notification::Sampled(samples) => self.add(samples),
-            _ => {}
-        }
-    }
+/// The trajectory of a signal.
+#[derive(Debug)]
+struct SampledTrajectory {
+    trajectory: Trajectory,
+    /// The time of its first sample.
+    start: f64,
+    unit: String,
+}
 
+impl SampledSignals {
     fn add(&mut self, samples: &Samples) {
         self.count += samples.points.len();
         if self.count > MAX_SAMPLES {
@@ -72,7 +71,7 @@ impl SampledSignals {
     }
 
     /// The trajectory of a signal and its unit, or why there is none.
-    fn trajectory(&self, name: &str) -> Result<(Trajectory, String), String> {
+    fn trajectory(&self, name: &str) -> Result<SampledTrajectory, String> {
         if self.count > MAX_SAMPLES {
             return Err(format!("the test took more than {MAX_SAMPLES} samples"));
         }
@@ -89,19 +88,37 @@ impl SampledSignals {
             }
         }
         let trajectory = Trajectory::new(&points).map_err(|error| error.to_string())?;
-        Ok((trajectory, signal.unit.clone()))
+        let start = points.first().map_or(0.0, |(time, _)| *time);
+        Ok(SampledTrajectory { trajectory, start, unit: signal.unit.clone() })
     }
 }
 
 impl ProcessTask {
+    /// Keeps the samples of the test.
+    pub(super) fn record_samples(&mut self, notification: &Notification) {
+        match notification {
+            // A host can run several tests.
+            Notification::Phase { phase: Phase::Setup } => {
+                self.samples = SampledSignals::default();
+                self.trajectories.clear();
+            }
+            Notification::Sampled(samples) => self.samples.add(samples),
+            _ => {}
+        }
+    }
+
     /// Compares a signal, attaches it as a candidate for the stored trajectory, and reports the
     /// result.
     pub(super) async fn check_trajectory(&mut self, check: TrajectoryCheck) {
         let relative = &self.job.attachments_dir;
         let name: String = check.name.chars().map(replace_unsafe).collect();
-        let number = self.trajectories;
-        self.trajectories += 1;
-        let file = format!("{name}-{number}.trajectory.csv");
+        self.trajectories.push(check.name.clone());
+        let file = format!("{name}-{}.trajectory.csv", self.trajectories.len());
+        let earlier = self.trajectories.iter().filter(|other| **other == check.name).count();
+        let label = match earlier {
+            1 => format!("trajectory/{}", check.name),
+            number => format!("trajectory/{}#{number}", check.name),
+        };
         let attachment = Attachment {
             name: format!("trajectory {}", check.name),
             path: format!("{relative}/{file}"),
@@ -113,15 +130,9 @@ impl ProcessTask {
         let working_dir = self.job.launch.request.working_dir.clone().unwrap_or_default();
         let run =
             self.context.run_dir.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let started = self.samples.trajectory(&check.name).and_then(|(trajectory, unit)| {
-            let job = TrajectoryJob {
-                check: check.clone(),
-                trajectory,
-                unit,
-                working_dir,
-                candidate,
-                run,
-            };
+        let started = self.samples.trajectory(&check.name).and_then(|sampled| {
+            let job =
+                TrajectoryJob { check: check.clone(), sampled, label, working_dir, candidate, run };
             let reported = attachment.path.clone();
             FileCopy::start_job(attachment, &reported, move || job.run())
                 .map_err(|error| error.to_string())
@@ -154,8 +165,9 @@ fn message(check: &TrajectoryCheck, kind: MessageKind, text: String) -> Notifica
 /// A comparison in its thread.
 struct TrajectoryJob {
     check: TrajectoryCheck,
-    trajectory: Trajectory,
-    unit: String,
+    sampled: SampledTrajectory,
+    /// The prefix of measurements and signals.
+    label: String,
     working_dir: PathBuf,
     candidate: PathBuf,
     /// The name of the run.
@@ -180,9 +192,10 @@ impl TrajectoryJob {
             Err(why) => return Ok(error(why)),
         };
         if let Some(unit) = reference.field("unit")
-            && unit != self.unit
+            && unit != self.sampled.unit
         {
-            let why = format!("its unit is `{}`, that of the reference `{unit}`", self.unit);
+            let why =
+                format!("its unit is `{}`, that of the reference `{unit}`", self.sampled.unit);
             return Ok(error(why));
         }
         Ok(self.compare(&reference.trajectory))
@@ -204,14 +217,14 @@ impl TrajectoryJob {
     }
 
     fn write_candidate(&self, error: f64) -> std::io::Result<()> {
-        let thinned = thin(&self.trajectory, error);
+        let thinned = thin(&self.sampled.trajectory, error);
         let mut fields = vec![("signal".to_owned(), self.check.name.clone())];
-        fields.push(("unit".to_owned(), self.unit.clone()));
+        fields.push(("unit".to_owned(), self.sampled.unit.clone()));
         fields.push(("tolerance".to_owned(), self.check.tolerance.to_string()));
         fields.push(("reference".to_owned(), self.check.reference.clone()));
         if self.check.align == Alignment::Dtw {
             fields.push(("align".to_owned(), "dtw".to_owned()));
-            let band = self.check.band.unwrap_or(self.trajectory.duration() * DEFAULT_BAND);
+            let band = self.check.band.unwrap_or(self.sampled.trajectory.duration() * DEFAULT_BAND);
             fields.push(("band".to_owned(), band.to_string()));
         }
         let reference = Reference::new(fields, &thinned).map_err(std::io::Error::other)?;
@@ -242,14 +255,14 @@ impl TrajectoryJob {
     fn compare(&self, expected: &Trajectory) -> Vec<Notification> {
         let TrajectoryCheck { name, reference, tolerance, align, band, .. } = &self.check;
         let compared = match align {
-            Alignment::Time => Some(rtf_golden::by_time(&self.trajectory, expected)),
+            Alignment::Time => Some(rtf_golden::by_time(&self.sampled.trajectory, expected)),
             Alignment::Dtw => {
                 let band = band.unwrap_or(expected.duration() * DEFAULT_BAND);
-                rtf_golden::by_warp(&self.trajectory, expected, band)
+                rtf_golden::by_warp(&self.sampled.trajectory, expected, band)
             }
         };
-        let Some(Comparison { rms, worst }) = compared else {
-            let (got, wanted) = (self.trajectory.duration(), expected.duration());
+        let Some(Comparison { rms, worst, aligned }) = compared else {
+            let (got, wanted) = (self.sampled.trajectory.duration(), expected.duration());
             let text = format!(
                 "trajectory `{name}` takes {} s, the reference `{reference}` {} s: their difference \
                  is more than the band",
@@ -261,7 +274,8 @@ impl TrajectoryJob {
         let text = |what: &str| {
             let Deviation { time, got, expected } = worst;
             let decimals = (-(tolerance * SHOWN_PART).log10()).ceil().clamp(0.0, 12.0) as usize;
-            let with_unit = |value: f64| format!("{:.decimals$} {}", value + 0.0, self.unit);
+            let with_unit =
+                |value: f64| format!("{:.decimals$} {}", value + 0.0, self.sampled.unit);
             format!(
                 "trajectory `{name}` {what} `{reference}`: it is {}, the reference {} at {} s, \
                  {} apart (tolerance {}, RMS {})",
@@ -278,14 +292,33 @@ impl TrajectoryJob {
         } else {
             message(&self.check, MessageKind::Failure, text("leaves the tube around"))
         };
-        vec![self.measured("worst", worst.size()), self.measured("rms", rms), result]
+        let sides = [
+            self.side("low", aligned.iter().map(|it| (it.time, it.low - tolerance))),
+            self.side("high", aligned.iter().map(|it| (it.time, it.high + tolerance))),
+        ];
+        let measured = [self.measured("worst", worst.size()), self.measured("rms", rms)];
+        sides.into_iter().chain(measured).chain([result]).collect()
+    }
+
+    /// A side of the tube, as a signal: plots show it with the trajectory.
+    fn side(&self, what: &str, points: impl Iterator<Item = (f64, f64)>) -> Notification {
+        let start = self.sampled.start;
+        Notification::Sampled(Samples {
+            name: format!("{}/{what}", self.label),
+            unit: self.sampled.unit.clone(),
+            low: None,
+            high: None,
+            location: self.check.location.clone(),
+            case: self.check.case,
+            points: points.map(|(time, value)| (start + time, Some(value))).collect(),
+        })
     }
 
     fn measured(&self, what: &str, value: f64) -> Notification {
         Notification::Measured(Measurement {
-            name: format!("trajectory/{}/{what}", self.check.name),
+            name: format!("{}/{what}", self.label),
             value: Some(value).filter(|value| value.is_finite()),
-            unit: self.unit.clone(),
+            unit: self.sampled.unit.clone(),
             low: None,
             high: None,
             learned: false,

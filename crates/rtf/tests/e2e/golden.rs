@@ -95,6 +95,12 @@ fn a_deviation_is_a_failure_at_its_worst_point() {
     let text = "trajectory `q` leaves the tube around `golden/reach.csv`: it is 1.5000 rad, the \
                 reference 1.0000 rad at 1.5 s, 0.5000 rad apart (tolerance 0.05, RMS ";
     assert!(failure.text.starts_with(text), "{}", failure.text);
+    // The tube, for plots.
+    let names: Vec<_> = attempt.series.iter().map(|it| (it.name.as_str(), it.max)).collect();
+    let close = |found: Option<f64>, wanted: f64| (found.unwrap_or(f64::NAN) - wanted).abs() < 1e-9;
+    assert_eq!(names[1].0, "trajectory/q/low");
+    assert_eq!(names[2].0, "trajectory/q/high");
+    assert!(close(names[1].1, 0.95) && close(names[2].1, 1.05), "{names:?}");
     // A delay is no deviation within the band.
     let (_, attempt, verdict) = run(&folder, "1 0.7");
     assert_eq!(verdict, Some(Verdict::Failed));
