@@ -8,6 +8,7 @@ mod frameworks;
 mod history;
 mod journal;
 mod labels;
+mod limits;
 mod protocol;
 mod suite;
 mod web;
@@ -41,7 +42,9 @@ pub const TARGETS: &[Target] = &[
     Target { name: "host-line", check: protocol::check_request, more: &[] },
     Target { name: "journal", check: journal::check, more: &["crates/rtf-report/tests/streams"] },
     Target { name: "journal-torn", check: journal::check_torn, more: &[] },
+    Target { name: "limits", check: limits::check, more: &["examples/11-signals/arm.limits.yaml"] },
     Target { name: "runner-line", check: protocol::check_host_message, more: &[] },
     Target { name: "suite", check: suite::check, more: &["crates/rtf-plan/tests/data"] },
+    Target { name: "trajectory", check: limits::check_trajectory, more: &[] },
     Target { name: "web", check: web::check, more: &[] },
 ];

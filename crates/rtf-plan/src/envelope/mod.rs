@@ -66,6 +66,18 @@ pub(crate) struct CompiledEnvelope {
     pub sources: Vec<Arc<SourceText>>,
 }
 
+/// Parses the text of a file of limits with all of its profiles, and reports every problem that needs
+/// neither signals nor a model.
+pub fn check_text(source: &SourceText, problems: &mut Vec<Diagnostic>) {
+    let Some(mut root) = yaml::parse(source, problems) else { return };
+    let parts = patch::take_profiles(&mut root, source, problems);
+    file::read(&root, source, problems);
+    for (_, part) in parts {
+        file::read(&part, source, problems);
+        patch::apply(&mut root, part);
+    }
+}
+
 impl EnvelopeRequest<'_> {
     /// Reads and compiles the file.
     pub fn compile(&self) -> CompiledEnvelope {

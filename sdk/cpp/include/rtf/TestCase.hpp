@@ -39,8 +39,9 @@ protected:
     }
 
     // Checks that a signal, as sampled so far, stays within `tolerance` of a stored trajectory: a
-    // file below the directory of the suite, which `rtf golden accept` writes. With Align::dtw, times
-    // may differ by `band`. The runner compares: the test continues, a deviation is a failure.
+    // file below the directory of the suite, which `rtf golden accept` writes. With Align::dtw,
+    // times may differ by `band`. The runner compares: the test continues, a deviation is a
+    // failure.
     void check_trajectory(std::string_view name, std::string_view reference, double tolerance,
                           Align align = Align::time,
                           std::optional<std::chrono::duration<double>> band = std::nullopt,

@@ -92,10 +92,10 @@ module RTF
       good
     end
 
-    # Checks that a signal, as sampled so far, stays within `tolerance` of a stored trajectory: a file
-    # below the directory of the suite, which `rtf golden accept` writes. `align` is "time" or, for
-    # dynamic time warping by at most `band` seconds, "dtw". The runner compares: the test continues,
-    # and a deviation is a failure.
+    # Checks that a signal, as sampled so far, stays within `tolerance` of a stored trajectory: a
+    # file below the directory of the suite, which `rtf golden accept` writes. `align` is "time"
+    # or, for dynamic time warping by at most `band` seconds, "dtw". The runner compares: the test
+    # continues, and a deviation is a failure.
     def check_trajectory(name, reference, tolerance, align: "time", band: nil)
       unless %w[time dtw].include?(align.to_s)
         raise ArgumentError, "`align` is \"#{align}\", expected \"time\" or \"dtw\""

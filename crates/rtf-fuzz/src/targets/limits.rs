@@ -1,0 +1,30 @@
+//! Files of limits, and stored trajectories.
+
+use rtf_golden::{Reference, by_time, by_warp};
+use rtf_plan::envelope::check_text;
+
+use super::labels;
+
+/// A file of limits: problems have positions in it.
+pub fn check(data: &[u8]) {
+    labels::check(data, |source, problems| {
+        check_text(source, problems);
+        problems.is_empty()
+    });
+}
+
+/// A stored trajectory: it is read as it was written, and equals itself.
+pub fn check_trajectory(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    let Ok(reference) = Reference::parse(text) else { return };
+    let written = reference.to_string();
+    // Decimals beyond those that a number has are not kept.
+    if let Ok(again) = Reference::parse(&written) {
+        assert_eq!(again.to_string(), written);
+    }
+    let trajectory = &reference.trajectory;
+    assert_eq!(by_time(trajectory, trajectory).worst.size(), 0.0);
+    if trajectory.points().len() < 100 {
+        assert!(by_warp(trajectory, trajectory, 0.0).is_some());
+    }
+}
