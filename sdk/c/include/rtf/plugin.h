@@ -197,6 +197,12 @@ typedef struct rtf_question {
     double timeout;
     // The path of a PNG or JPEG file, empty for none. It is copied before the call returns.
     struct rtf_text picture;
+    // The source file, null if unknown.
+    const char *file;
+    // The line in it, 0 if unknown.
+    uint32_t line;
+} rtf_question;
+
 // A check of a signal against a stored trajectory.
 typedef struct rtf_trajectory {
     // `sizeof(rtf_trajectory)`.
@@ -213,7 +219,6 @@ typedef struct rtf_trajectory {
     const char *file;
     // The line in it, 0 if unknown.
     uint32_t line;
-} rtf_question;
     // `RTF_ALIGN_TIME` or `RTF_ALIGN_DTW`.
     int32_t align;
 } rtf_trajectory;
