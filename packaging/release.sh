@@ -35,7 +35,7 @@ tar -xf "$dist/rtf-$version.tar.gz" -C "$work"
 )
 sources=$work/rtf-$version
 packaging/bom.py "$sources" "$sources/web/bom.json" \
-  "$sources"/crates/{rtf,rtf-host-native,rtf-host-lua,rtf-frameworks,rtf-host-signals}/bom.json >"$dist/rtf-$version.cdx.json"
+  "$sources"/crates/{rtf,rtf-host-native,rtf-host-lua,rtf-frameworks,rtf-host-signals,rtf-host-faults}/bom.json >"$dist/rtf-$version.cdx.json"
 
 cd "$dist"
 sha256sum -- * >"$work/SHA256SUMS"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Runs example 11 as a user does: a monitor finds an overshoot in a test that would pass, more
-damping avoids it, and a violated limit stops a test.
+damping avoids it, and a violated limit stops a test. A camera is cut off for half a second.
 
 check_example_11.py RTF DIRECTORY
 """
@@ -34,6 +34,9 @@ def main() -> int:
         stopped(Run(rtf, str(copy / "arm.xml"), results / "stopped"), "5rad/s")
         simulation = results / "simulation"
         stopped(Run(rtf, str(copy / "arm.xml"), simulation, "--profile", "simulation"), "4.5rad/s")
+        camera = str(example / "camera.xml")
+        cut_off(Run(rtf, camera, results / "camera"))
+        blind(Run(rtf, camera, results / "blind", "--set", "patience=10"))
     return 0
 
 
@@ -68,6 +71,25 @@ def stopped(run: Run, limit: str) -> None:
     expect("cause", stopping["cause"], "finding")
     expect_in(f"monitor `arm: elbow velocity`: `abs(dq) <= {limit}`", stopping["reason"])
     expect_in("arm.limits.yaml:7:5)", stopping["reason"])
+
+
+def cut_off(run: Run) -> None:
+    """The robot stops while the camera is cut off, and drives again."""
+    expect("exit code", run.wait(), 0)
+    [injected] = run.events("fault-injected")
+    [removed] = run.events("fault-removed")
+    expect("test", run.name(injected), "is blind for a moment")
+    expect("fault", (injected["name"], injected["kind"]), ("cut off", "stop"))
+    expect("half a second", 0.5e6 <= removed["at"] - injected["at"] < 1e6, True)
+    expect("stops", 0.0 in {speed for _, speed in samples(run, run.name(injected), "speed")}, True)
+
+
+def blind(run: Run) -> None:
+    """A robot with more patience drives on."""
+    expect("exit code", run.wait(), 1)
+    expect("verdicts", run.verdicts(), {"sees": "passed", "is blind for a moment": "failed"})
+    [failure] = [event for event in run.events("message") if event["message"]["kind"] == "failure"]
+    expect_in("monitor `does not drive blindly`", str(failure))
 
 
 def samples(run: Run, test: str, signal: str) -> list[tuple[float, float]]:

@@ -43,7 +43,7 @@ ZIG=$("$tools/python" -c 'import ziglang, pathlib; print(pathlib.Path(ziglang.__
 export ZIG CARGO_ZIGBUILD_ZIG_PATH=$ROOT/tools/zig.sh CARGO_ZIGBUILD_PYTHON_PATH=/bin/false
 PATH=$tools:$PATH "${CARGO:-cargo}" zigbuild --release --locked --target "$target.2.28" --bins \
   -p rtf -p rtf-host-native -p rtf-host-lua -p rtf-frameworks \
-  -p rtf-host-signals >&2
+  -p rtf-host-signals -p rtf-host-faults >&2
 programs=$TARGET/$target/release
 CC="tools/zig.sh cc --target=$processor-linux-gnu.2.28" tools/preload.sh "$programs" fork_server
 printf '%s\n' "$programs"

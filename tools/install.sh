@@ -65,7 +65,7 @@ if [ -z "${SUDO_USER:-}${PROGRAMS:-}" ]; then
 fi
 printer=$programs/rtf
 "$printer" --version >/dev/null 2>&1 || printer=$release/rtf
-for program in "$printer" "$programs"/{rtf,rtf-host-native,rtf-host-lua,rtf-host-framework,rtf-host-signals}; do
+for program in "$printer" "$programs"/{rtf,rtf-host-native,rtf-host-lua,rtf-host-framework,rtf-host-signals,rtf-host-faults}; do
   [ -x "$program" ] || die "$program is missing" "run \`make build\` first"
 done
 if [ -e "$top" ] && [ ! -w "$top" ]; then
@@ -85,6 +85,7 @@ put 755 "$programs/rtf-host-native" libexec/rtf/rtf-host-native
 put 755 "$programs/rtf-host-lua" libexec/rtf/rtf-host-lua
 put 755 "$programs/rtf-host-framework" libexec/rtf/rtf-host-framework
 put 755 "$programs/rtf-host-signals" libexec/rtf/rtf-host-signals
+put 755 "$programs/rtf-host-faults" libexec/rtf/rtf-host-faults
 for library in librtf-fork-server.so librtf-cppunit.so; do
   if [ -e "$libraries/$library" ]; then
     put 644 "$libraries/$library" "libexec/rtf/$library"

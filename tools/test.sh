@@ -592,7 +592,7 @@ step 'operator' operator
 step 'ci helpers' ci_helpers
 step 'guide' env RTF_PYTHON="$checkers/python" tools/check_docs.py "$TARGET/release/rtf" README.md \
   docs/tutorials/{first-test,first-fixture,cpp-plugin}.md docs/explanation/isolation.md \
-  docs/how-to/{writing-tests,simulation-time,recorders,real-robot,signals,envelopes,golden}.md \
+  docs/how-to/{writing-tests,simulation-time,recorders,real-robot,signals,envelopes,golden,faults}.md \
   docs/how-to/migrating-{rtf2,launch-testing,pytest,robot-framework}.md docs/reference/junit.md
 step 'guide commands' tools/check_running.py "$TARGET/release/rtf" \
   docs/how-to/{running,flaky-tests,soak,parallel,profiles,doctor,sharding,history}.md

@@ -21,7 +21,7 @@ git -C "$work/source" add .
 git -C "$work/source" -c user.name=test -c user.email=test@example.org commit --quiet --message=SDK
 
 for file in bin/rtf libexec/rtf/rtf-host-native libexec/rtf/rtf-host-lua \
-  libexec/rtf/rtf-host-framework libexec/rtf/rtf-host-signals share/man/man1/rtf.1 \
+  libexec/rtf/rtf-host-framework libexec/rtf/rtf-host-signals libexec/rtf/rtf-host-faults share/man/man1/rtf.1 \
   share/man/man1/rtf-run.1 share/bash-completion/completions/rtf share/zsh/site-functions/_rtf \
   share/fish/vendor_completions.d/rtf.fish share/doc/rtf/spec/suite.md share/rtf/spec/suite.xsd share/rtf/schemas/event.json \
   lib/cmake/rtf/rtf-config.cmake include/robottestingframework/TestCase.h include/rtf1/TestCase.h \

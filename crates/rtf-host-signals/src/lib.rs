@@ -7,7 +7,6 @@
 //! ([`test_run`]) with their batches ([`batches`]) and monitors ([`judge`]).
 
 mod batches;
-mod clock;
 mod host;
 mod judge;
 mod line;

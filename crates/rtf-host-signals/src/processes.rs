@@ -1,12 +1,11 @@
-//! Measures the processes of a fixture in `/proc`. They have its name in `RTF_OWNER`, which
-//! their children inherit, also those that detach themselves.
+//! Measures the processes of a fixture in `/proc`.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use rtf_host::ProcessMarks;
 use rtf_model::ProcessQuantity;
-use rtf_model::protocol::{OWNER_VARIABLE, RUN_DIR_VARIABLE};
 
 /// How long a list of processes is used. Finding them takes longer than measuring them.
 const SEARCH_INTERVAL: Duration = Duration::from_secs(1);
@@ -14,8 +13,7 @@ const SEARCH_INTERVAL: Duration = Duration::from_secs(1);
 /// The processes of a fixture.
 #[derive(Debug)]
 pub(crate) struct FixtureProcesses {
-    /// Variables in their environment, each `NAME=value`.
-    marks: Vec<Vec<u8>>,
+    marks: ProcessMarks,
     pids: Vec<u32>,
     searched: Option<Instant>,
     /// Processor time of each process, in clock ticks, at the last measurement.
@@ -25,10 +23,7 @@ pub(crate) struct FixtureProcesses {
 
 impl FixtureProcesses {
     pub fn new(owner: &str) -> Self {
-        let mut marks = vec![format!("{OWNER_VARIABLE}={owner}").into_bytes()];
-        if let Ok(run) = std::env::var(RUN_DIR_VARIABLE) {
-            marks.push(format!("{RUN_DIR_VARIABLE}={run}").into_bytes());
-        }
+        let marks = ProcessMarks::new(owner);
         let (pids, searched, ticks, measured) = (Vec::new(), None, HashMap::new(), None);
         Self { marks, pids, searched, ticks, measured }
     }
@@ -38,19 +33,13 @@ impl FixtureProcesses {
         let now = Instant::now();
         if self.searched.is_none_or(|searched| now - searched >= SEARCH_INTERVAL) {
             self.searched = Some(now);
-            self.pids = all_pids().filter(|pid| self.is_marked(*pid)).collect();
+            self.pids = self.marks.find().collect();
         }
         match quantity {
             ProcessQuantity::Cpu => self.processor_time(now),
             ProcessQuantity::Rss => self.sum(resident_mebibytes),
             ProcessQuantity::Fds => self.sum(descriptors),
         }
-    }
-
-    fn is_marked(&self, pid: u32) -> bool {
-        let Ok(environment) = std::fs::read(process_dir(pid).join("environ")) else { return false };
-        let mut marks = self.marks.iter();
-        marks.all(|mark| environment.split(|byte| *byte == 0).any(|variable| variable == mark))
     }
 
     fn sum(&self, of: fn(u32) -> Option<f64>) -> Option<f64> {
@@ -80,11 +69,6 @@ fn process_dir(pid: u32) -> PathBuf {
     PathBuf::from(format!("/proc/{pid}"))
 }
 
-fn all_pids() -> impl Iterator<Item = u32> {
-    let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
-    entries.filter_map(|entry| entry.file_name().to_str()?.parse().ok())
-}
-
 /// User and system time.
 fn ticks(pid: u32) -> Option<u64> {
     let stat = std::fs::read_to_string(process_dir(pid).join("stat")).ok()?;
@@ -109,6 +93,7 @@ mod tests {
     use std::os::unix::process::CommandExt;
     use std::process::{Child, Command};
 
+    use rtf_model::protocol::OWNER_VARIABLE;
     use rustix::process::{Pid, Signal, kill_process_group};
 
     use super::*;
@@ -135,7 +120,6 @@ mod tests {
     fn the_processes_of_an_owner_are_measured() {
         let owner = format!("fixture signals-test-{}/sim", std::process::id());
         let mut processes = FixtureProcesses::new(&owner);
-        processes.marks.truncate(1);
         assert_eq!(processes.measure(ProcessQuantity::Rss), None);
         let _busy = busy(&owner);
         let deadline = Instant::now() + Duration::from_secs(60);

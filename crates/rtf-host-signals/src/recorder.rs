@@ -3,11 +3,10 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use rtf_host::Session;
+use rtf_host::{Session, SuiteClock};
 use rtf_model::protocol::TestAttempt;
 use rtf_model::{SignalTime, TestId};
 
-use crate::clock::SuiteClock;
 use crate::settings::Settings;
 use crate::source_time::{Origin, SampleTime, TestStart};
 use crate::test_run::{SignalSample, TestRun};

@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use rtf_model::protocol::{OWNER_VARIABLE, Plugin};
+use rtf_host::fixture_owner;
+use rtf_model::protocol::Plugin;
 use rtf_model::{
     MonitorConfig, ProcessQuantity, SignalConfig, SignalSource, SignalTime, SignalsConfig,
 };
@@ -63,7 +64,6 @@ impl Settings {
         let config: SignalsConfig = serde_json::from_str(&plugin.param)
             .map_err(|error| format!("the fixture's parameters are invalid: {error}"))?;
         let mut settings = Self { has_clock: config.has_clock, ..Self::default() };
-        let suite = owner_prefix(&plugin.name)?;
         let mut args = plugin.args.iter();
         for source in config.sources {
             let first_signal = settings.signals.len();
@@ -81,7 +81,7 @@ impl Settings {
                 SignalSource::Fixture(measured) => {
                     settings.processes.push(ProcessSettings {
                         signal: first_signal,
-                        owner: format!("{suite}{}", measured.fixture),
+                        owner: fixture_owner(&plugin.name, &measured.fixture)?,
                         quantity: measured.quantity,
                         every: Duration::from_millis(measured.every_ms),
                     });
@@ -115,11 +115,4 @@ impl Settings {
     fn index_of(&self, signal: &str) -> Option<usize> {
         self.signals.iter().position(|known| known.name == signal)
     }
-}
-
-/// The value of `RTF_OWNER` of the suite's fixtures, without the name of the fixture.
-fn owner_prefix(own_name: &str) -> Result<String, String> {
-    let owner = std::env::var(OWNER_VARIABLE).unwrap_or_default();
-    let prefix = owner.strip_suffix(own_name);
-    prefix.map(str::to_owned).ok_or_else(|| format!("`{OWNER_VARIABLE}` is `{owner}`"))
 }

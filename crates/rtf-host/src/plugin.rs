@@ -138,4 +138,10 @@ pub trait HostPlugin {
     fn stopper(&self) -> Option<Reaction> {
         None
     }
+
+    /// The reaction to the end of the channel while a plug-in is loaded, before the process
+    /// ends: what no other process would undo.
+    fn closer(&self) -> Option<Reaction> {
+        None
+    }
 }

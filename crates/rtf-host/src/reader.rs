@@ -10,7 +10,7 @@ use rtf_model::protocol::Request;
 use crate::decode::{Incoming, decode};
 use crate::session::Session;
 use crate::writer::LINE_LIMIT;
-use crate::{Reaction, unix};
+use crate::{HostPlugin, Reaction, unix};
 
 /// Enough for decoding a line and for a host's stack dumper.
 const STACK_BYTES: usize = 256 * 1024;
@@ -27,20 +27,18 @@ pub(crate) struct Reader {
     line: Vec<u8>,
     dumper: Option<Reaction>,
     stopper: Option<Reaction>,
+    closer: Option<Reaction>,
 }
 
 impl Reader {
-    pub(crate) fn new(
-        session: &Session,
-        dumper: Option<Reaction>,
-        stopper: Option<Reaction>,
-    ) -> Self {
+    pub(crate) fn new(session: &Session, host: &impl HostPlugin) -> Self {
         Self {
             session: session.clone(),
             input: BufReader::with_capacity(BUFFER_BYTES, Channel(session.channel())),
             line: Vec::with_capacity(BUFFER_BYTES),
-            dumper,
-            stopper,
+            dumper: host.stack_dumper(),
+            stopper: host.stopper(),
+            closer: host.closer(),
         }
     }
 
@@ -84,6 +82,9 @@ impl Reader {
         let read = move || {
             while let Some(incoming) = self.next() {
                 self.session.push(incoming);
+            }
+            if let Some(undo) = self.closer {
+                undo(&self.session);
             }
             self.session.close();
         };

@@ -19,7 +19,7 @@ use crate::{HostPlugin, PluginKind, Session, Step, StepEnd, TestNotification, un
 /// # Errors
 /// The thread that reads the channel cannot be started.
 pub fn serve(session: &Session, host: impl HostPlugin) -> std::io::Result<()> {
-    let reader = Reader::new(session, host.stack_dumper(), host.stopper());
+    let reader = Reader::new(session, &host);
     let process = rustix::process::getpid();
     let mut server =
         RequestLoop { session, host, process, initialized: false, loaded: None, shared: None };

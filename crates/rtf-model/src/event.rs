@@ -25,8 +25,8 @@ pub use self::process::{ExitStatus, LeakedProcess, Output, Source, Stream, signa
 pub use self::provided::{FixtureProvided, value_text};
 pub use self::test::{Phase, StopCause, TestFinished};
 use crate::{
-    Attachment, Diagnostic, FixtureId, HookId, Measurement, Message, Micros, QuestionAsked,
-    QuestionClosed, Samples, SuiteId, SuitePrepared, TestId, Usage,
+    Attachment, Diagnostic, FaultInjected, FixtureId, HookId, Measurement, Message, Micros,
+    QuestionAsked, QuestionClosed, Samples, SuiteId, SuitePrepared, TestId, Usage,
 };
 
 /// One event of a run.
@@ -184,6 +184,15 @@ pub enum EventKind {
         test: TestId,
         /// Some samples of the signal; more may follow.
         samples: Samples,
+    },
+    /// A fault was injected while a test runs.
+    FaultInjected(FaultInjected),
+    /// A fault that lasts was removed. It may be missing: no fault outlives its test.
+    FaultRemoved {
+        /// The test.
+        test: TestId,
+        /// The name of the fault.
+        name: String,
     },
     /// A test attaches a file to its result.
     Attached {

@@ -11,6 +11,7 @@
 mod clock;
 mod diagnostic;
 mod event;
+mod fault;
 mod finding;
 mod ids;
 mod journal;
@@ -35,6 +36,10 @@ pub use event::{
     ExpectedFailure, FixturePlanned, FixtureProvided, HookPlanned, LeakedProcess, LearnedLimits,
     Output, Parameter, Phase, RunStarted, Significance, Source, StopCause, Stream, SuitePlanned,
     TestFinished, TestPlanned, Trigger, signal_name, value_text,
+};
+pub use fault::{
+    FaultAction, FaultAmount, FaultConfig, FaultInjected, FaultKind, FaultRecord, FaultTarget,
+    FaultTime, FaultsConfig, NetworkFault,
 };
 pub use finding::{Finding, FindingSeverity};
 pub use ids::{CaseId, FixtureId, HookId, Micros, SuiteId, TestId};

@@ -4,6 +4,7 @@ mod attempts;
 mod cases;
 mod concurrency;
 mod episodes;
+mod faults;
 mod progress;
 mod questions;
 mod shared_hosts;
@@ -127,6 +128,8 @@ impl OrderChecker {
             | EventKind::Attached { .. }
             | EventKind::QuestionAsked(_)
             | EventKind::QuestionClosed(_)
+            | EventKind::FaultInjected(_)
+            | EventKind::FaultRemoved { .. }
             | EventKind::Message { .. } => self.check_report(kind),
             EventKind::TestPhase { test, .. }
             | EventKind::TestSlow { test }
@@ -169,6 +172,8 @@ impl OrderChecker {
                 self.inside_both(fixture.map(Source::Fixture), Source::Test(*test))?;
                 self.inside_case(*test, measurement.case)
             }
+            EventKind::FaultInjected(fault) => self.inject_fault(fault),
+            EventKind::FaultRemoved { test, name } => self.remove_fault(*test, name),
             EventKind::Attached { test, fixture, attachment } => {
                 self.inside_both(fixture.map(Source::Fixture), Source::Test(*test))?;
                 self.inside_case(*test, attachment.case)

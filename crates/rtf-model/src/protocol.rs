@@ -14,8 +14,8 @@ use serde_json::Value;
 
 pub use self::rpc::{Reply, RpcError, RpcMessage};
 use crate::{
-    Attachment, CaseId, CaseStart, Finding, Measurement, Message, Outcome, Parameter, Phase,
-    Question, Samples, TestId, TrajectoryCheck, Verdict,
+    Attachment, CaseId, CaseStart, FaultInjected, Finding, Measurement, Message, Outcome, Parameter,
+    Phase, Question, Samples, TestId, TrajectoryCheck, Verdict,
 };
 
 /// The protocol version of this crate. Runner and host must agree on it.
@@ -393,6 +393,15 @@ pub enum Notification {
     Finding(Finding),
     /// A test checks a signal against a stored trajectory. The runner compares.
     Trajectory(TrajectoryCheck),
+    /// A fixture injected a fault while a test runs.
+    FaultInjected(FaultInjected),
+    /// A fixture removed such a fault.
+    FaultRemoved {
+        /// The test.
+        test: TestId,
+        /// The name of the fault.
+        name: String,
+    },
     /// A test attaches a file, or a fixture does for the test that it was notified of.
     Attached(Attachment),
     /// A fixture has failed. May arrive at any time.

@@ -24,6 +24,9 @@ pub use sweep::Effort;
 use sweep::sweep_if;
 
 const SIGKILL: i32 = 9;
+const SIGCONT: i32 = 18;
+/// How long [`kill_program`] waits.
+const KILL_LIMIT: Duration = Duration::from_secs(1);
 /// The time between polls for processes that are ending.
 const POLL_INTERVAL: Duration = Duration::from_millis(1);
 /// Lists the children of this process.
@@ -129,6 +132,30 @@ pub fn kill_owned(prefix: &str) -> Vec<LeakedProcess> {
             return left;
         }
     }
+}
+
+/// Kills the processes below this one with this program, and waits for their end. Returns
+/// whether there were some.
+pub fn kill_program(name: &str) -> bool {
+    let own = rustix::process::getpid().as_raw_nonzero().get();
+    let is_named = |pid: &i32| {
+        let comm = std::fs::read_to_string(format!("/proc/{pid}/comm")).unwrap_or_default();
+        comm.trim_end() == name
+    };
+    let found: Vec<i32> = descendants(own).into_iter().filter(is_named).collect();
+    found.iter().for_each(|pid| unix::signal_process(*pid, SIGKILL));
+    let end = Instant::now() + KILL_LIMIT;
+    let runs = |pid: &i32| state_of(*pid).is_some_and(|state| state != 'Z');
+    while found.iter().any(runs) && Instant::now() < end {
+        std::thread::sleep(POLL_INTERVAL);
+    }
+    !found.is_empty()
+}
+
+/// Continues all processes below this one. A process that is about to stop does not show it yet.
+pub fn continue_all() {
+    let own = rustix::process::getpid().as_raw_nonzero().get();
+    descendants(own).into_iter().for_each(|pid| unix::signal_process(pid, SIGCONT));
 }
 
 /// Kills and reaps a child of this process.

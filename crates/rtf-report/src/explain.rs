@@ -2,8 +2,8 @@
 //! use the same lines with their own style and indentation.
 
 use rtf_model::{
-    AttemptRecord, CaseId, Comparison, HookRunRecord, LeakedProcess, Measurement, Message,
-    MessageKind, QuestionRecord, SignalSummary,
+    AttemptRecord, CaseId, Comparison, FaultRecord, HookRunRecord, LeakedProcess, Measurement,
+    Message, MessageKind, QuestionRecord, SignalSummary,
 };
 
 use crate::cases::{CaseProblems, CaseResult, TestCases};
@@ -49,8 +49,30 @@ pub(crate) fn explain(attempt: &AttemptRecord, extent: Extent, sink: Sink<'_>) {
     let violations = attempt.violations().filter(|value| !is_in_case(attempt, value.case));
     problems(&failures.collect::<Vec<_>>(), &violations.collect::<Vec<_>>(), extent, sink);
     attempt.series.iter().filter(|s| s.outside > 0).for_each(|s| sink(Tone::Bad, &series(s)));
+    for fault in attempt.faults.iter().take(extent.items) {
+        sink(Tone::Dim, &self::fault(attempt, fault));
+    }
+    left_out(attempt.faults.len(), extent.items, "fault", sink);
     for stack in &attempt.stacks {
         self::stack(stack, extent, sink);
+    }
+}
+
+/// `fault drop-camera (stop) from 0.201 s to 0.702 s: stopped …`, in the time of the attempt.
+pub(crate) fn fault(attempt: &AttemptRecord, record: &FaultRecord) -> String {
+    let FaultRecord { fault, .. } = record;
+    let times = fault_times(attempt, record);
+    let (name, effect) = (escape::line(&fault.name), escape::line(&fault.effect));
+    format!("fault {name} ({}) {times}: {effect}", fault.kind.as_str())
+}
+
+/// When a fault began and ended, since the start of the attempt.
+pub(crate) fn fault_times(attempt: &AttemptRecord, record: &FaultRecord) -> String {
+    let time = |at: rtf_model::Micros| words::time(at.since(attempt.started));
+    match record.removed {
+        None if record.fault.kind.lasts() => format!("from {} on", time(record.injected)),
+        None => format!("at {}", time(record.injected)),
+        Some(removed) => format!("from {} to {}", time(record.injected), time(removed)),
     }
 }
 

@@ -7,6 +7,7 @@ import os
 
 from rtf import _clock, _questions, _session
 from rtf._cases import Case
+from rtf._fault import Fault
 from rtf._near import Comparison
 from rtf._plugin import Plugin, limit_of
 from rtf._stop import AssertionEnded, CriticalAssertionEnded, Skipped
@@ -92,6 +93,13 @@ class TestCase(Plugin):
         """
         if self.ask(text, ("done", "cannot"), timeout, default, picture) != "done":
             self.error(f"the operator cannot do this: {text}")
+    def fault(self, name: str) -> Fault:
+        """Inject a fault of the suite, and return when it has begun.
+
+        It ends with the test at the latest; `remove()` of the result, or the end of a `with`
+        block, removes it earlier.
+        """
+        return Fault(name)
 
     @property
     def parameters(self) -> dict[str, str]:

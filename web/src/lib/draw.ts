@@ -45,6 +45,7 @@ export function palette(element: Element, isDark: boolean): Palette {
             stopping: read('lane-stopping'),
             hook: read('bar-interrupted'),
             'hook-failed': read('bar-failed'),
+            fault: read('bar-fault'),
         },
     };
 }

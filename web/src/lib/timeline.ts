@@ -1,12 +1,13 @@
 // The timeline of a run: lanes with bars and marks,
 // independent of drawing.
 
+import type { AttemptRow } from './api-types';
 import type { TestState } from './event';
 import { marks, spans, type Mark, type Span } from './record/fixture';
 import type { RunRecord } from './record/record';
 import type { Shown } from './route';
 
-export type BarState = TestState | Span['state'] | 'hook' | 'hook-failed';
+export type BarState = TestState | Span['state'] | 'hook' | 'hook-failed' | 'fault';
 
 export interface Bar {
     from: number;
@@ -19,7 +20,7 @@ export interface Bar {
 }
 
 export interface Lane {
-    kind: 'suite' | 'fixture' | 'hook';
+    kind: 'suite' | 'fixture' | 'hook' | 'fault';
     id: number;
     name: string;
     /** A suite whose tests overlap has several lanes, from 0. */
@@ -28,9 +29,10 @@ export interface Lane {
     marks: Mark[];
 }
 
-/** The lanes of a run: for each suite its tests, its fixtures, its hooks. */
+/** The lanes of a run: for each suite its tests, its faults, its fixtures, its hooks. */
 export function lanes(record: RunRecord): Lane[] {
     const bars = record.suites.map(() => [] as Bar[]);
+    const faults = record.suites.map(() => [] as Bar[]);
     for (const test of record.tests) {
         for (const attempt of test.attempts) {
             const { started, finished, verdict, number } = attempt;
@@ -41,6 +43,7 @@ export function lanes(record: RunRecord): Lane[] {
                 label: test.attempts.length > 1 ? `${test.name} (${number})` : test.name,
                 target: { what: 'test', id: test.id, attempt: number },
             });
+            faults[test.suite]?.push(...faultBars(test.id, attempt));
         }
     }
     return record.suites.flatMap((suite) => {
@@ -55,6 +58,16 @@ export function lanes(record: RunRecord): Lane[] {
                 bars: each,
                 marks: [],
             })),
+            ...apart(faults[suite.id] ?? [])
+                .filter((each) => each.length > 0)
+                .map((each, row): Lane => ({
+                    kind: 'fault',
+                    id: suite.id,
+                    name: 'faults',
+                    row,
+                    bars: each,
+                    marks: [],
+                })),
             ...fixtures.map((fixture): Lane => ({
                 kind: 'fixture',
                 id: fixture.id,
@@ -85,6 +98,17 @@ export function lanes(record: RunRecord): Lane[] {
                 })),
         ];
     });
+}
+
+/** The faults of an attempt. One that was not removed ends with it; a kill lasts for a moment. */
+function faultBars(test: number, attempt: AttemptRow): Bar[] {
+    return (attempt.faults ?? []).map(({ name, kind, effect, injected, removed }): Bar => ({
+        from: injected,
+        to: kind === 'kill' ? injected : (removed ?? attempt.finished ?? null),
+        state: 'fault',
+        label: `${name}: ${effect}`,
+        target: { what: 'test', id: test, attempt: attempt.number },
+    }));
 }
 
 /** Distributes bars to rows without overlaps: each to the first free row. */

@@ -23,6 +23,9 @@ use super::unix::GuardSignals;
 /// a driver, is reported and left.
 pub(super) const SWEEP_LIMIT: Duration = Duration::from_secs(5);
 
+/// The host that stops processes of fixtures, as `/proc/PID/comm` shows it.
+const FAULTS_PROGRAM: &str = "rtf-host-faults";
+
 /// The result of a run whose runner died.
 #[derive(Debug)]
 pub struct Recovery {
@@ -56,8 +59,11 @@ pub fn recover(
 ) -> Recovery {
     // The guard starts processes only now: its descriptors must not leak into hooks.
     let _ = prepare_process();
-    // No hook runs in parallel with a test.
+    // No hook runs in parallel with a test, or with an injected fault.
     let mut left = tree::kill_owned("test ");
+    if tree::kill_program(FAULTS_PROGRAM) {
+        tree::continue_all();
+    }
     drain_streams(state.fixtures.into_values().flatten().map(|(_, end)| end).collect());
     let run_dir = state.run.as_ref().and_then(|run| run.journal.parent());
     let hook_reason = format!("the runner died: {reason}");

@@ -1,7 +1,7 @@
 //! What a fixture reports about a running test.
 
 use rtf_model::protocol::Notification;
-use rtf_model::{Finding, Samples, TestId};
+use rtf_model::{FaultInjected, Finding, Samples, TestId};
 
 use super::Session;
 
@@ -14,5 +14,15 @@ impl Session {
     /// Reports samples that were taken while a test runs.
     pub fn observed(&self, test: TestId, samples: Samples) {
         self.notify(&Notification::Observed { test, samples });
+    }
+
+    /// Reports that a fault was injected while a test runs.
+    pub fn fault_injected(&self, fault: FaultInjected) {
+        self.notify(&Notification::FaultInjected(fault));
+    }
+
+    /// Reports that such a fault was removed.
+    pub fn fault_removed(&self, test: TestId, name: String) {
+        self.notify(&Notification::FaultRemoved { test, name });
     }
 }

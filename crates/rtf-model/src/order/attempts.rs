@@ -26,6 +26,7 @@ impl OrderChecker {
         })?;
         test.last = Some(number);
         test.open = true;
+        test.faults.clear();
         let suite = test.suite.index();
         self.concurrency.test_running(suite, true);
         Ok(())

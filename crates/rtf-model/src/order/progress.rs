@@ -58,13 +58,27 @@ pub(super) struct TestProgress {
     pub cases: CaseProgress,
     /// The numbers of the questions that wait for an answer.
     pub open_questions: BTreeSet<u32>,
+    /// The faults that last.
+    pub faults: BTreeSet<String>,
 }
 
 impl TestProgress {
     pub fn new(suite: SuiteId, repetitions: Option<u32>) -> Self {
         let (open, judged, rerun, ended) = (false, false, false, false);
         let (cases, open_questions) = (CaseProgress::default(), BTreeSet::new());
-        Self { suite, repetitions, open, judged, last: None, rerun, ended, cases, open_questions }
+        let faults = BTreeSet::new();
+        Self {
+            faults,
+            suite,
+            repetitions,
+            open,
+            judged,
+            last: None,
+            rerun,
+            ended,
+            cases,
+            open_questions,
+        }
     }
 
     /// Whether its verdict is final.

@@ -22,10 +22,12 @@ pub(crate) fn source_of(kind: &EventKind) -> Option<Source> {
         | EventKind::Measured { test, .. }
         | EventKind::Sampled { test, .. }
         | EventKind::Attached { test, .. }
+        | EventKind::FaultRemoved { test, .. }
         | EventKind::TestSlow { test }
         | EventKind::TestStopping { test, .. }
         | EventKind::TestRepeated { test, .. }
         | EventKind::TestSkipped { test, .. } => Some(Source::Test(*test)),
+        EventKind::FaultInjected(fault) => Some(Source::Test(fault.test)),
         EventKind::CaseStarted(started) => Some(Source::Test(started.test)),
         EventKind::CaseFinished(end) => Some(Source::Test(end.test)),
         EventKind::QuestionAsked(asked) => Some(Source::Test(asked.test)),

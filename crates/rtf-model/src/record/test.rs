@@ -7,8 +7,8 @@ use super::counts::{AttemptCounts, is_detail};
 use super::question::QuestionRecord;
 use super::signal::SignalSummary;
 use crate::{
-    Attachment, CaseId, EventKind, LeakedProcess, Measurement, Message, MessageKind, Micros, Phase,
-    Significance, TestFinished, TestPlanned, Verdict,
+    Attachment, CaseId, EventKind, FaultRecord, LeakedProcess, Measurement, Message, MessageKind,
+    Micros, Phase, Significance, TestFinished, TestPlanned, Verdict,
 };
 
 /// The state of one test.
@@ -52,6 +52,8 @@ pub struct AttemptRecord {
     /// Its questions to a person, up to [`QuestionRecord::KEPT`]. A lean record keeps those that
     /// wait for an answer.
     pub questions: Vec<QuestionRecord>,
+    /// The faults that were injected while it ran.
+    pub faults: Vec<FaultRecord>,
     /// Its attachments.
     pub attachments: Vec<Attachment>,
     /// Its output; dropped when it passed, the journal has it.
@@ -224,6 +226,9 @@ impl AttemptRecord {
     /// Maximum number of messages of each kind that are kept in memory.
     pub const MESSAGES_KEPT: u32 = 1000;
 
+    /// Maximum number of faults that are kept in memory.
+    pub const FAULTS_KEPT: usize = 1000;
+
     fn new(repetition: u32, attempt: u32, started: Micros) -> Self {
         Self {
             repetition,
@@ -238,6 +243,7 @@ impl AttemptRecord {
             measurements: Vec::new(),
             series: Vec::new(),
             questions: Vec::new(),
+            faults: Vec::new(),
             attachments: Vec::new(),
             output: String::new(),
             stacks: Vec::new(),
@@ -258,6 +264,15 @@ impl AttemptRecord {
             EventKind::Measured { measurement, .. } => self.measurements.push(measurement.clone()),
             EventKind::Sampled { samples, .. } => {
                 SignalSummary::extend_one_of(&mut self.series, samples);
+            }
+            EventKind::FaultInjected(fault) if self.faults.len() < Self::FAULTS_KEPT => {
+                let (fault, removed) = (fault.clone(), None);
+                self.faults.push(FaultRecord { fault, injected: at, removed });
+            }
+            EventKind::FaultRemoved { name, .. } => {
+                let mut faults = self.faults.iter_mut().rev();
+                let lasting = faults.find(|it| it.fault.name == *name && it.removed.is_none());
+                lasting.into_iter().for_each(|it| it.removed = Some(at));
             }
             EventKind::Attached { attachment, .. } => self.attachments.push(attachment.clone()),
             EventKind::Output(output) => {

@@ -2,6 +2,7 @@
 
 mod cases;
 mod concurrency;
+mod faults;
 mod hooks;
 mod order;
 mod record;

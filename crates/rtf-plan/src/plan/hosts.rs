@@ -169,6 +169,22 @@ pub(super) static SIGNALS: HostKind = HostKind {
     },
 };
 
+/// The host of the fixture `faults`, which no suite names.
+pub(super) static FAULTS: HostKind = HostKind {
+    name: "faults",
+    extensions: &[],
+    prefixes: &[],
+    library_path: None,
+    class_prefix: None,
+    framework: None,
+    start: HostStart::Shipped {
+        program: "rtf-host-faults",
+        arguments: &[],
+        sdk: None,
+        forks: false,
+    },
+};
+
 const fn shipped(program: &'static str) -> HostStart {
     HostStart::Shipped { program, arguments: &[], sdk: None, forks: true }
 }

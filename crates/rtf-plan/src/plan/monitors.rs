@@ -5,38 +5,18 @@ use std::ops::Range;
 use rtf_model::{Diagnostic, Location, MonitorConfig};
 use rtf_monitor::Formula;
 
-use super::names::UniqueNames;
+use super::of_tests::OfTests;
 use crate::suite::{DeclaredMonitor, DeclaredSignal, SourceText, position_of};
 use crate::wording::{quoted, suggest};
-
-/// The monitors of tests. The combinations of a matrix share theirs.
-#[derive(Debug, Default)]
-pub(super) struct JudgedTests {
-    monitors: Vec<(DeclaredMonitor, Vec<String>)>,
-}
-
-impl JudgedTests {
-    /// Adds the monitors of a test with this name.
-    pub fn add(&mut self, test: &str, monitors: Vec<DeclaredMonitor>) {
-        for monitor in monitors {
-            match self.monitors.iter_mut().find(|(known, _)| known.span == monitor.span) {
-                Some((_, tests)) => tests.push(test.to_owned()),
-                None => self.monitors.push((monitor, vec![test.to_owned()])),
-            }
-        }
-    }
-}
 
 /// Plans the monitors of a suite and of its tests, and reports invalid ones.
 pub(super) fn plan(
     of_suite: &[DeclaredMonitor],
-    of_tests: &JudgedTests,
+    of_tests: &OfTests<DeclaredMonitor>,
     signals: &[&DeclaredSignal],
     (source, problems): (&SourceText, &mut Vec<Diagnostic>),
 ) -> Vec<MonitorConfig> {
-    report_duplicates(of_suite, of_tests, source, problems);
-    let of_tests = of_tests.monitors.iter().map(|(monitor, tests)| (monitor, Some(tests.clone())));
-    let all = of_suite.iter().map(|monitor| (monitor, None)).chain(of_tests);
+    let all = of_tests.with_suite(of_suite, source, problems);
     let mut plans = Vec::new();
     for (monitor, tests) in all {
         problems.extend(FormulaCheck { monitor, signals, source }.problems());
@@ -51,29 +31,6 @@ pub(super) fn plan(
         });
     }
     plans
-}
-
-/// A name is unique in the suite, and among the monitors that judge one test.
-fn report_duplicates(
-    of_suite: &[DeclaredMonitor],
-    of_tests: &JudgedTests,
-    source: &SourceText,
-    problems: &mut Vec<Diagnostic>,
-) {
-    let of_suite: Vec<_> = of_suite.iter().map(|monitor| Some(&monitor.name)).collect();
-    UniqueNames::reserve("monitor", of_suite.iter().copied(), source, problems);
-    let mut tests: Vec<&[String]> =
-        of_tests.monitors.iter().map(|(_, tests)| tests.as_slice()).collect();
-    tests.dedup();
-    for tests in tests {
-        let own = of_tests.monitors.iter().filter(|(_, judged)| judged == tests);
-        let own: Vec<_> = own.map(|(monitor, _)| Some(&monitor.name)).collect();
-        let mut found = Vec::new();
-        UniqueNames::reserve("monitor", of_suite.iter().chain(&own).copied(), source, &mut found);
-        // Those of the suite alone were reported.
-        found.retain(|problem| !problems.contains(problem));
-        problems.append(&mut found);
-    }
 }
 
 struct FormulaCheck<'a> {

@@ -5,22 +5,23 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_model::{
-    Diagnostic, FixtureId, MeasuredFixture, SignalConfig, SignalProgram, SignalSource, SignalTime,
+    FixtureId, MeasuredFixture, SignalConfig, SignalProgram, SignalSource, SignalTime,
     SignalsConfig,
 };
 
 use super::fixture::{RESTART_DELAY, RESTARTS};
 use super::hosts::SIGNALS;
-use super::monitors::{self, JudgedTests};
+use super::monitors;
 use super::names::UniqueNames;
+use super::of_tests::OfTests;
+use super::own_processes::SuiteFixtures;
 use super::plugin_planner::PluginPlanner;
 use super::use_site::UseSite;
 use super::{FixtureBody, FixturePlan, defaults, envelopes, middleware, program};
 use crate::suite::{
     DeclaredEnvelope, DeclaredMonitor, DeclaredSignal, DeclaredSource, DeclaredSourceKind,
-    SourceText, Spanned,
+    SourceText,
 };
-use crate::wording::suggest;
 
 /// The name of the fixture and of its type.
 const NAME: &str = "signals";
@@ -36,7 +37,7 @@ pub(super) struct DeclaredSignals {
     /// The files of limits.
     pub envelopes: Vec<DeclaredEnvelope>,
     /// The monitors of single tests.
-    pub of_tests: JudgedTests,
+    pub of_tests: OfTests<DeclaredMonitor>,
     /// The names that the suite gives to its fixtures.
     pub fixtures: Vec<String>,
     /// Whether the suite has a simulated clock.
@@ -150,7 +151,9 @@ impl SourcePlanner<'_, '_, '_> {
             }
             DeclaredSourceKind::Ros(_) => None,
             DeclaredSourceKind::Fixture { name, quantity, every } => {
-                if let Some(problem) = self.fixture_problem(name) {
+                let fixtures =
+                    SuiteFixtures { planned: self.fixtures, declared: &self.declared.fixtures };
+                if let Some(problem) = fixtures.process_problem(name, "measured") {
                     let label = self.source.label(name.span, "");
                     self.planner.context.problems.push(problem.label(label));
                 }
@@ -163,31 +166,6 @@ impl SourcePlanner<'_, '_, '_> {
                 }))
             }
         }
-    }
-
-    /// Why the processes of a fixture cannot be measured.
-    fn fixture_problem(&self, name: &Spanned<String>) -> Option<Diagnostic> {
-        let Some(plan) = self.fixtures.iter().find(|plan| plan.name == name.value) else {
-            // One that could not be planned was reported.
-            if self.declared.fixtures.contains(&name.value) {
-                return None;
-            }
-            let message = format!("there is no fixture `{}`", name.value);
-            let known = self.fixtures.iter().map(|plan| plan.name.as_str());
-            return Some(suggest(
-                Diagnostic::error("unknown-fixture", message),
-                &name.value,
-                known,
-            ));
-        };
-        let what = match &plan.body {
-            FixtureBody::Plugin(_) => return None,
-            FixtureBody::Process(process) if process.remote.is_none() => return None,
-            FixtureBody::Process(_) => "runs on another machine",
-            FixtureBody::Attached(_) => "is attached: `rtf` does not know its processes",
-        };
-        let message = format!("`{}` cannot be measured: it {what}", name.value);
-        Some(Diagnostic::error("wrong-type", message))
     }
 }
 

@@ -7,6 +7,7 @@ use rtf_model::{SuiteId, TestId};
 
 use super::context::{PlanContext, parent_dir};
 use super::draft::SuiteDraft;
+use super::faults::DeclaredFaults;
 use super::hosts::HostKind;
 use super::inputs::InputFile;
 use super::names::UniqueNames;
@@ -17,7 +18,7 @@ use super::signals::DeclaredSignals;
 use super::test_planner::{PlannedTests, SharedLimits, TestPlanner};
 use super::{
     Compatibility, Isolation, OwnMiddleware, Preparation, SuitePlan, SuiteSettings, TestPlan,
-    TestSettings, clock, fixture, hook, middleware, signals,
+    TestSettings, clock, faults, fixture, hook, middleware, signals,
 };
 use crate::config;
 use crate::suite::{DeclaredMiddleware, DeclaredSuite, DeclaredTest, FixtureKind, SourceText};
@@ -45,7 +46,7 @@ pub(super) fn plan_suite(
     let declared = named.map(|test| test.name.as_ref());
     let mut names = UniqueNames::reserve("test", declared, source, &mut context.problems);
     let fixture_names = suite.fixtures.iter().filter_map(|fixture| fixture.name.as_ref());
-    let fixture_names = fixture_names.map(|name| name.value.clone()).collect();
+    let fixture_names: Vec<String> = fixture_names.map(|name| name.value.clone()).collect();
     let fallback_dir = fallback_dir.as_deref();
     let scope = SearchScope { runner, dir: &dir, fallback_dir, suite_env: &env, own_env: &[] };
     let mut planner = PluginPlanner::new(context, scope);
@@ -54,7 +55,16 @@ pub(super) fn plan_suite(
     let clock = clock::plan(&mut planner, source, suite.clock, &mut fixtures);
     let hooks = hook::plan_all(&mut planner, source, suite.hooks);
     let tests = TestPlanner::new(&mut planner, source, &mut names);
-    let PlannedTests { tests, frameworks, monitors } = tests.plan(&suite.tags, suite.tests);
+    let PlannedTests { tests, frameworks, monitors, faults: of_tests } =
+        tests.plan(&suite.tags, suite.tests);
+    let declared = DeclaredFaults {
+        of_suite: suite.faults,
+        of_tests,
+        fixtures: fixture_names.clone(),
+        has_clock: clock.is_some(),
+        has_network: isolate.network,
+    };
+    faults::plan(&mut planner, source, &declared, &mut fixtures);
     let declared = DeclaredSignals {
         sources: suite.signals,
         monitors: suite.monitors,

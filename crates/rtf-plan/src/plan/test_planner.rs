@@ -6,15 +6,16 @@ use std::sync::Arc;
 use rtf_model::TestId;
 
 use super::framework_tests::{self, FrameworkTest, FrameworkTests};
-use super::monitors::JudgedTests;
 use super::names::UniqueNames;
+use super::of_tests::OfTests;
 use super::plugin_planner::PluginPlanner;
 use super::plugin_search::base_name;
 use super::search_scope::{Env, search_variables};
 use super::use_site::PluginRole;
 use super::{CombinationPlan, PluginPlan, TestLimits, TestPlan, defaults, known_failure, matrix};
 use crate::suite::{
-    Combination, DeclaredLimits, DeclaredPlugin, DeclaredTest, SourceText, Spanned, split_param,
+    Combination, DeclaredFault, DeclaredLimits, DeclaredMonitor, DeclaredPlugin, DeclaredTest,
+    SourceText, Spanned, split_param,
 };
 
 /// The limits of tests; tests with equal limits share them.
@@ -59,7 +60,8 @@ pub(super) struct TestPlanner<'p, 'a, 'c> {
     matrix: Option<(Arc<str>, Option<PluginPlan>)>,
     plans: Vec<TestPlan>,
     frameworks: FrameworkTests,
-    monitors: JudgedTests,
+    monitors: OfTests<DeclaredMonitor>,
+    faults: OfTests<DeclaredFault>,
 }
 
 /// The planned tests of a suite.
@@ -69,7 +71,9 @@ pub(super) struct PlannedTests {
     /// Those of other frameworks.
     pub frameworks: FrameworkTests,
     /// Their monitors.
-    pub monitors: JudgedTests,
+    pub monitors: OfTests<DeclaredMonitor>,
+    /// Their faults.
+    pub faults: OfTests<DeclaredFault>,
 }
 
 impl<'p, 'a, 'c> TestPlanner<'p, 'a, 'c> {
@@ -87,7 +91,8 @@ impl<'p, 'a, 'c> TestPlanner<'p, 'a, 'c> {
             matrix: None,
             plans: Vec::new(),
             frameworks: FrameworkTests::default(),
-            monitors: JudgedTests::default(),
+            monitors: OfTests::default(),
+            faults: OfTests::default(),
         }
     }
 
@@ -95,8 +100,8 @@ impl<'p, 'a, 'c> TestPlanner<'p, 'a, 'c> {
     pub fn plan(mut self, suite_tags: &[String], tests: Vec<DeclaredTest>) -> PlannedTests {
         self.plans.reserve_exact(tests.len());
         tests.into_iter().for_each(|test| self.add(suite_tags, test));
-        let Self { plans: tests, frameworks, monitors, .. } = self;
-        PlannedTests { tests, frameworks, monitors }
+        let Self { plans: tests, frameworks, monitors, faults, .. } = self;
+        PlannedTests { tests, frameworks, monitors, faults }
     }
 
     fn add(&mut self, suite_tags: &[String], mut test: DeclaredTest) {
@@ -118,6 +123,7 @@ impl<'p, 'a, 'c> TestPlanner<'p, 'a, 'c> {
             Some(combination) => self.combination(combination, declared, framework.as_ref()),
         };
         self.monitors.add(&name, test.monitors);
+        self.faults.add(&name, test.faults);
         let Some(plugin) = plugin else { return };
         let was = was.map(|was| match &combination {
             Some(combination) => matrix::combination_name(&was, &combination.parameters),

@@ -8,8 +8,8 @@ use super::schema::{self, check};
 use super::test::{self, TestDefaults};
 use super::{
     DeclaredIsolation, DeclaredMiddleware, DeclaredSuite, ReferenceUser, SourceText, Spanned,
-    SuiteSettings, TestSettings, clock, env, fixture, hook, monitor, read_document, reference,
-    requires, signal_source,
+    SuiteSettings, TestSettings, clock, env, fault, fixture, hook, monitor, read_document,
+    reference, requires, signal_source,
 };
 
 /// Parses the text of a suite file and adds every problem to `problems`.
@@ -81,14 +81,15 @@ fn read_suite(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> DeclaredSui
         signals: Vec::new(),
         monitors: Vec::new(),
         envelopes: Vec::new(),
+        faults: Vec::new(),
         tests: Vec::new(),
         fixture_references: super::FixtureReferences::default(),
     };
     for node in root.children().filter(Node::is_element) {
         reader.user = match node.tag_name().name() {
             "fixture" => ReferenceUser::Fixture(suite.fixtures.len()),
-            // Signals are read after all fixtures are set up.
-            "hook" | "test" | "signal" | "signals" => ReferenceUser::TestOrHook,
+            // Signals are read, and faults injected, after all fixtures are set up.
+            "hook" | "test" | "signal" | "signals" | "fault" => ReferenceUser::TestOrHook,
             _ => ReferenceUser::Suite,
         };
         read_child(reader, node, &mut suite, defaults);
@@ -129,6 +130,7 @@ fn read_child(
         "hook" => suite.hooks.extend(hook::read(reader, node)),
         "signal" => suite.signals.extend(signal_source::read(reader, node)),
         "signals" => suite.signals.extend(signal_source::read_group(reader, node)),
+        "fault" => suite.faults.extend(fault::read(reader, node)),
         "monitor" => suite.monitors.extend(monitor::read(reader, node)),
         "envelope" => suite.envelopes.extend(monitor::read_envelope(reader, node)),
         "test" => suite.tests.extend(test::read(reader, node, defaults)),

@@ -58,6 +58,7 @@ pub(super) const SUITE: ElementSchema = ElementSchema {
         "signals",
         "monitor",
         "envelope",
+        "fault",
         "test",
     ],
     text: false,
@@ -93,7 +94,7 @@ pub(super) const TEST: ElementSchema = ElementSchema {
         "until",
         "was",
     ],
-    elements: &["env", "matrix", "matrix-exclude", "learn", "monitor"],
+    elements: &["env", "matrix", "matrix-exclude", "learn", "monitor", "fault"],
     text: true,
 };
 
@@ -185,6 +186,30 @@ pub(super) const MONITOR: ElementSchema =
 
 /// `<envelope>`.
 pub(super) const ENVELOPE: ElementSchema = leaf("envelope", &["file"]);
+/// `<fault>`. `fault.rs` checks which attributes its kind has.
+pub(super) const FAULT: ElementSchema = leaf(
+    "fault",
+    &[
+        "name",
+        "kind",
+        "at",
+        "for",
+        "seed",
+        "fixture",
+        "process",
+        "cpu",
+        "size",
+        "leave",
+        "dir",
+        "port",
+        "delay",
+        "jitter",
+        "loss",
+        "duplicate",
+        "reorder",
+        "rate",
+    ],
+);
 
 /// `<hook>`. `hook.rs` checks which attributes require a plug-in.
 pub(super) const HOOK: ElementSchema = ElementSchema {

@@ -9,7 +9,7 @@ use super::reader::ElementReader;
 use super::schema::{self, check};
 use super::{
     AfterCollapse, DeclaredCases, DeclaredLimits, DeclaredPlugin, DeclaredTest, ForkPoint, Leaks,
-    Retries, Span, Spanned, TestIsolation, TestSettings, env, known_failure, learn, matrix,
+    Retries, Span, Spanned, TestIsolation, TestSettings, env, fault, known_failure, learn, matrix,
     monitor, reference,
 };
 
@@ -57,6 +57,7 @@ pub(super) fn read(
     let env = env::read(reader, node);
     let learn = learn::read(reader, node);
     let monitors = monitor::read_all(reader, node);
+    let faults = fault::read_all(reader, node);
     let known_failure = known_failure::read(reader, node).map(Box::new);
     let matrix = matrix::read(reader, node).map(Box::new);
     let plugin = plugin(reader, node)?;
@@ -74,6 +75,7 @@ pub(super) fn read(
         env,
         learn,
         monitors,
+        faults,
         known_failure,
         matrix,
         combination,

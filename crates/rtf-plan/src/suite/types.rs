@@ -7,7 +7,7 @@ use jiff::civil::Date;
 use rtf_model::{Trigger, Verdict};
 
 use super::{
-    Combination, DeclaredEnvelope, DeclaredFixture, DeclaredMatrix, DeclaredMonitor,
+    Combination, DeclaredEnvelope, DeclaredFault, DeclaredFixture, DeclaredMatrix, DeclaredMonitor,
     DeclaredSource, FixtureReferences, Span, Spanned,
 };
 
@@ -38,6 +38,8 @@ pub struct DeclaredSuite {
     pub monitors: Vec<DeclaredMonitor>,
     /// The files of limits, in order.
     pub envelopes: Vec<DeclaredEnvelope>,
+    /// The faults of all tests.
+    pub faults: Vec<DeclaredFault>,
     /// The tests, in order.
     pub tests: Vec<DeclaredTest>,
     /// The references to values of fixtures.
@@ -171,6 +173,8 @@ pub struct DeclaredTest {
     pub learn: Vec<LearnPlan>,
     /// The monitors of this test.
     pub monitors: Vec<DeclaredMonitor>,
+    /// The faults of this test.
+    pub faults: Vec<DeclaredFault>,
     /// Its known failure.
     pub known_failure: Option<Box<DeclaredKnownFailure>>,
     /// The values with which it runs; `None` for a test without a matrix.

@@ -30,9 +30,9 @@ impl Bench {
         };
         let options = Options::new(runner);
         let bench = Self { _dir: dir, root, options };
-        for host in
-            ["rtf-host-native", "rtf-host-lua", "rtf-host-framework", "rtf-host-signals", "python3"]
-        {
+        let hosts = ["native", "lua", "framework", "signals", "faults"];
+        let hosts = hosts.map(|host| format!("rtf-host-{host}"));
+        for host in hosts.iter().map(String::as_str).chain(["python3"]) {
             bench.program(&format!("bin/{host}"), "exit 0");
         }
         bench

@@ -205,7 +205,7 @@ fn hooks_belong_to_suites_and_have_unique_names() {
       hint: `<hook>` is written directly in `<suite>`
     unknown-element: unknown element `<hook>`
       5:24 <hook not known in `<test>`
-      note: `<test>` can have the elements `env`, `matrix`, `matrix-exclude`, `learn`, `monitor`
+      note: `<test>` can have the elements `env`, `matrix`, `matrix-exclude`, `learn`, `monitor`, `fault`
       hint: `<hook>` is written directly in `<suite>`
     ");
 }

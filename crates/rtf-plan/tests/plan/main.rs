@@ -6,6 +6,7 @@ mod bench;
 mod clock;
 mod depends;
 mod envelopes;
+mod faults;
 mod fixture_values;
 mod frameworks;
 mod hooks;

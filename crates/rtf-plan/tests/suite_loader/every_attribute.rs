@@ -2,9 +2,12 @@
 
 use std::time::Duration;
 
-use rtf_model::{FindingSeverity, ProcessQuantity, SignalTime, Trigger, Verdict};
+use rtf_model::{
+    FaultAmount, FaultTime, FindingSeverity, NetworkFault, ProcessQuantity, SignalTime, Trigger,
+    Verdict,
+};
 use rtf_plan::suite::{
-    AfterCollapse, ClockSource, DeclaredLimits, DeclaredProbe, DeclaredProbeKind,
+    AfterCollapse, ClockSource, DeclaredEffect, DeclaredLimits, DeclaredProbe, DeclaredProbeKind,
     DeclaredSourceKind, DeclaredValueSource, FixtureKind, ForkPoint, HookKind, Leaks,
     MatrixDimension, MiddlewareProbe, ReferenceUser, TestIsolation,
 };
@@ -179,7 +182,8 @@ fn every_value_of_a_fixture_is_read() {
     let (driver, remote) = (ReferenceUser::Fixture(1), ReferenceUser::Fixture(4));
     let remote = ["host", "host", "port"].map(|value| ("sim", value, remote));
     let later = ("sim", "port", ReferenceUser::TestOrHook);
-    assert_eq!(users, [&[("sim", "port", driver)], &remote[..], &[later, later]].concat());
+    let dir = ("sim", "dir", ReferenceUser::TestOrHook);
+    assert_eq!(users, [&[("sim", "port", driver)], &remote[..], &[later, later, dir]].concat());
 }
 
 #[test]
@@ -204,6 +208,38 @@ fn signals_and_monitors_are_read() {
     assert_eq!(monitor.formula.value, "always(elbow <= 1.05rad)");
     assert_eq!(suite.tests[0].monitors[0].severity, FindingSeverity::Fail);
     assert_eq!(suite.envelopes[0].file.value, "arm.limits.yaml");
+}
+
+#[test]
+fn faults_are_read() {
+    let (suite, _) = file("valid/everything.xml");
+    let [drop, busy, far, crash, memory] = &*suite.faults else { panic!("{:?}", suite.faults) };
+    let time = |from_us, to_us| Some(FaultTime { from_us, to_us });
+    let DeclaredEffect::Stop(target) = &drop.effect else { panic!("{drop:?}") };
+    assert_eq!((&*target.fixture.value, target.process.as_deref()), ("sim", Some("arm.py")));
+    assert_eq!((drop.at, drop.duration), (None, time(500_000, 500_000)));
+    assert!(matches!(busy.effect, DeclaredEffect::Slow { percent: 20, .. }), "{busy:?}");
+    assert_eq!((busy.at, busy.seed), (time(1_000_000, 3_000_000), 7));
+    let DeclaredEffect::Network { fault, port } = &far.effect else { panic!("{far:?}") };
+    assert_eq!(port.as_ref().unwrap().value, "${port:sim}");
+    let expected = NetworkFault {
+        has_port: true,
+        delay_us: 50_000,
+        jitter_us: 10_000,
+        loss_ppm: 5_000,
+        duplicate_ppm: 10_000,
+        reorder_ppm: 20_000,
+        rate_bits: Some(10_000_000),
+    };
+    assert_eq!(*fault, expected);
+    assert!(matches!(crash.effect, DeclaredEffect::Kill(_)), "{crash:?}");
+    assert_eq!((crash.at, crash.duration), (time(0, 0), None));
+    assert_eq!(memory.name.value, "full memory");
+    let DeclaredEffect::Memory(FaultAmount::Leave(leave)) = memory.effect else { panic!() };
+    assert_eq!(leave, 64 << 20);
+    let DeclaredEffect::Disk { dir, amount } = &suite.tests[0].faults[0].effect else { panic!() };
+    assert_eq!(dir.value, "${fixture:sim.dir}/log");
+    assert_eq!(*amount, FaultAmount::Size(2_000_000_000));
 }
 
 #[test]

@@ -7,11 +7,10 @@ use std::time::{Duration, Instant};
 use rtf_model::LeakedProcess;
 
 use super::{
-    OWN_TASKS, SIGKILL, STARTS, children_of, descendants, describe, has_known_environ, is_exiting,
-    is_fork_server, is_own_child, is_stopped, is_zombie, unix,
+    OWN_TASKS, SIGCONT, SIGKILL, STARTS, children_of, descendants, describe, has_known_environ,
+    is_exiting, is_fork_server, is_own_child, is_stopped, is_zombie, unix,
 };
 
-const SIGCONT: i32 = 18;
 const SIGSTOP: i32 = 19;
 /// How long a sweep continues while it finds new orphans.
 const SWEEP_LIMIT: Duration = Duration::from_millis(500);

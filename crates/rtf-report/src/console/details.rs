@@ -40,6 +40,7 @@ fn drop_shown(attempt: &mut AttemptRecord) {
     drop_output(&mut attempt.output);
     if attempt.verdict().is_some_and(Verdict::is_green) && attempt.cases.total() == 0 {
         attempt.messages = Vec::new();
+        attempt.faults = Vec::new();
         attempt.measurements = Vec::new();
     }
 }

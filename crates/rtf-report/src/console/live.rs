@@ -1,8 +1,9 @@
 //! Console output during the run.
 
 use rtf_model::{
-    Episode, Event, EventKind, FixtureId, LeakedProcess, Manifest, Message, MessageKind, Micros,
-    Parameter, Record, Source, StopCause, SuiteId, SuitePrepared, TestId, Verdict,
+    Episode, Event, EventKind, FaultInjected, FixtureId, LeakedProcess, Manifest, Message,
+    MessageKind, Micros, Parameter, Record, Source, StopCause, SuiteId, SuitePrepared, TestId,
+    Verdict,
 };
 
 use super::page::ConsoleLines;
@@ -49,9 +50,7 @@ pub(super) fn show(
         EventKind::FixtureStopped { fixture, problem: Some(problem), log_tail } => {
             live.stopped(page, *fixture, (problem, log_tail));
         }
-        EventKind::FixtureBroken { fixture, reason } => {
-            live.broken(page, *fixture, reason);
-        }
+        EventKind::FixtureBroken { fixture, reason } => live.broken(page, *fixture, reason),
         EventKind::FixtureReset { fixture, problem: Some(problem) } => {
             live.not_reset(page, *fixture, problem);
         }
@@ -62,6 +61,7 @@ pub(super) fn show(
         kind @ (EventKind::QuestionAsked(_) | EventKind::QuestionClosed(_)) if !quiet => {
             questions::show(page, options, record, kind);
         }
+        EventKind::FaultInjected(fault) if !quiet => live.fault(page, fault, event.at),
         EventKind::TestSlow { test } => live.slow(page, *test, event.at),
         EventKind::TestStopping { test, cause, reason } => {
             live.stopping(page, *test, *cause, reason);
@@ -283,6 +283,14 @@ impl Live<'_> {
             page.remark((BAD, "fixture"), &self.fixture(id));
             explain::message(message, &mut |tone, line| page.detail(tone, line));
         }
+    }
+
+    fn fault(&self, page: &mut ConsoleLines, fault: &FaultInjected, now: Micros) {
+        let attempt = self.record.tests.get(fault.test.index()).and_then(|it| it.attempts.last());
+        let time = attempt.map_or(String::new(), |it| words::time(now.since(it.started)));
+        let (name, effect) = (escape::line(&fault.name), escape::line(&fault.effect));
+        let text = format!("{}, {name}: {effect}", self.test(fault.test));
+        page.entry((LOUD, "fault"), &time, &text);
     }
 
     fn slow(&self, page: &mut ConsoleLines, id: TestId, now: Micros) {

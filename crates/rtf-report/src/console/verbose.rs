@@ -95,6 +95,10 @@ impl Verbose {
                 let name = name_in_case(record, teller(*test, *fixture), attachment.case);
                 lines_of(page, &name, &[(Tone::Plain, text)]);
             }
+            EventKind::FaultRemoved { test, name } => {
+                let text = format!("removed the fault {}", escape::line(name));
+                lines_of(page, &self::name(record, Source::Test(*test)), &[(Tone::Plain, text)]);
+            }
             EventKind::Output(output) => self.output(page, output, record),
             EventKind::TestFinished(finished) => {
                 sampled(page, record, finished.test);
@@ -117,7 +121,9 @@ impl Verbose {
         let lines = |text: &str| text.lines().count() as u64;
         match &event.kind {
             EventKind::Message { message, .. } => Some(lines(&message.text).max(1)),
-            EventKind::Measured { .. } | EventKind::Attached { .. } => Some(1),
+            EventKind::Measured { .. }
+            | EventKind::Attached { .. }
+            | EventKind::FaultRemoved { .. } => Some(1),
             EventKind::CaseFinished(end) if !end.verdict.is_problem() => {
                 (!end.carried).then_some(1)
             }

@@ -201,6 +201,14 @@ fn properties(case: &mut TestCase, test: &TestRecord) {
         let name = text(&format!("question.{title}"));
         case.add_property((name, text(&question.answer_summary())));
     }
+    let faults = test.deciding_attempts();
+    let faults = faults.flat_map(|attempt| attempt.faults.iter().map(move |it| (attempt, it)));
+    for (attempt, fault) in faults.take(MEASUREMENTS) {
+        let times = explain::fault_times(attempt, fault);
+        let (kind, effect) = (fault.fault.kind.as_str(), &fault.fault.effect);
+        let name = text(&format!("fault.{}", fault.fault.name));
+        case.add_property((name, text(&format!("{kind} {times}: {effect}"))));
+    }
     let series = test.deciding_attempts().flat_map(|attempt| &attempt.series);
     for series in series.take(MEASUREMENTS) {
         let name = text(&format!("series.{}", series.name));

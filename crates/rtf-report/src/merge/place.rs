@@ -56,20 +56,19 @@ impl Ids<'_> {
             EventKind::TestStarted { test, .. }
             | EventKind::TestPhase { test, .. }
             | EventKind::Sampled { test, .. }
+            | EventKind::FaultRemoved { test, .. }
             | EventKind::TestSlow { test }
             | EventKind::TestStopping { test, .. }
             | EventKind::TestRepeated { test, .. }
             | EventKind::TestSkipped { test, .. }
             | EventKind::CasesPlanned { test, .. } => Some(self.test(test)),
+            EventKind::FaultInjected(fault) => Some(self.test(&mut fault.test)),
             EventKind::CaseStarted(started) => Some(self.test(&mut started.test)),
             EventKind::CaseFinished(end) => Some(self.test(&mut end.test)),
             EventKind::QuestionAsked(asked) => Some(self.question(asked)),
             EventKind::QuestionClosed(closed) => Some(self.test(&mut closed.test)),
             EventKind::TestFinished(finished) => Some(self.test(&mut finished.test)),
-            EventKind::Measured { test, fixture, .. } => {
-                self.reporter(fixture);
-                Some(self.test(test))
-            }
+            EventKind::Measured { test, fixture, .. } => Some(self.reported(test, fixture)),
             EventKind::Attached { test, fixture, attachment } => {
                 self.reporter(fixture);
                 self.attached_path(&mut attachment.path);
@@ -99,6 +98,11 @@ impl Ids<'_> {
     fn about(&self, test: &mut Option<TestId>) {
         let tests = &self.plan.maps[self.part].tests;
         *test = test.and_then(|test| tests.get(test.index()).copied());
+    }
+
+    fn reported(&self, test: &mut TestId, fixture: &mut Option<FixtureId>) -> SuiteId {
+        self.reporter(fixture);
+        self.test(test)
     }
 
     /// The fixture that reports about a test.

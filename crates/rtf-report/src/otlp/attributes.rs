@@ -1,7 +1,9 @@
 //! Attributes: names of OpenTelemetry's semantic conventions where there is one, otherwise
 //! `rtf.…`.
 
-use rtf_model::{Measurement, Message, MessageKind, RunStarted, SignalSummary, Verdict};
+use rtf_model::{
+    FaultRecord, Measurement, Message, MessageKind, RunStarted, SignalSummary, Verdict,
+};
 use serde_json::{Value, json};
 
 /// Attributes while they are collected.
@@ -85,6 +87,15 @@ pub fn of_measurement(measurement: &Measurement) -> Attributes {
         .text("rtf.unit", &measurement.unit)
         .number("rtf.low", measurement.low)
         .number("rtf.high", measurement.high)
+}
+
+/// Of a fault that was injected.
+pub fn of_fault(record: &FaultRecord) -> Attributes {
+    let fault = &record.fault;
+    Attributes::default()
+        .text("rtf.fault", &fault.name)
+        .text("rtf.fault.kind", fault.kind.as_str())
+        .text("rtf.fault.effect", &fault.effect)
 }
 
 /// A signal in numbers, for an event.

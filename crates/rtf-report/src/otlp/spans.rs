@@ -181,5 +181,6 @@ fn events(attempt: &AttemptRecord, end: Micros) -> Vec<(Micros, &'static str, At
     let signals = attempt.series.iter();
     let signals = signals.map(|it| (end, "signal", attributes::of_signal(it)));
     let reports = messages.filter(|it| !is_problem(it)).map(message);
-    phases.chain(problems).chain(measured).chain(signals).chain(reports).collect()
+    let faults = attempt.faults.iter().map(|it| (it.injected, "fault", attributes::of_fault(it)));
+    phases.chain(faults).chain(problems).chain(measured).chain(signals).chain(reports).collect()
 }

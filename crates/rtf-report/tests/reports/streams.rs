@@ -70,6 +70,7 @@ fn verbose_console() {
         "parallel",
         "cases",
         "carried-cases",
+        "faults",
     ];
     for name in names {
         insta::assert_snapshot!(format!("verbose-{name}"), plain(name, Verbosity::Verbose));

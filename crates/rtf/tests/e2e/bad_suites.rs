@@ -14,7 +14,7 @@ fn an_unknown_element() {
     2 |   <tets>EncoderTest.lua</tets>
       |   ^^^^^ not known in `<suite>`
       |
-      = note: `<suite>` can have the elements `description`, `environment`, `env`, `fixture`, `hook`, `signal`, `signals`, `monitor`, `envelope`, `test`
+      = note: `<suite>` can have the elements `description`, `environment`, `env`, `fixture`, `hook`, `signal`, `signals`, `monitor`, `envelope`, `fault`, `test`
       = help: did you mean `test`?
 
     1 error; nothing was started
@@ -144,7 +144,7 @@ fn five_mistakes_are_five_messages() {
     2 |   <fixtures/>
       |   ^^^^^^^^^ not known in `<suite>`
       |
-      = note: `<suite>` can have the elements `description`, `environment`, `env`, `fixture`, `hook`, `signal`, `signals`, `monitor`, `envelope`, `test`
+      = note: `<suite>` can have the elements `description`, `environment`, `env`, `fixture`, `hook`, `signal`, `signals`, `monitor`, `envelope`, `fault`, `test`
       = help: did you mean `fixture`?
 
     error: `timeout` is not a duration: `soon`

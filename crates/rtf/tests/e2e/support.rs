@@ -352,7 +352,7 @@ fn build_hosts() {
         let release = bins.ends_with("release");
         let mut cargo = Command::new(env!("CARGO"));
         cargo.args(["build", "--quiet", "-p", "rtf-host-native", "-p", "rtf-host-lua"]);
-        cargo.args(["-p", "rtf-frameworks", "-p", "rtf-host-signals"]);
+        cargo.args(["-p", "rtf-frameworks", "-p", "rtf-host-signals", "-p", "rtf-host-faults"]);
         cargo.args(release.then_some("--release")).current_dir(root());
         assert!(cargo.status().expect("cargo").success(), "the hosts build");
     });

@@ -15,6 +15,7 @@
 #include <rtf/Plugin.hpp>
 #include <rtf/internal/Cases.hpp>
 #include <rtf/internal/Questions.hpp>
+#include <rtf/internal/Faults.hpp>
 #include <rtf/internal/Sampling.hpp>
 #include <rtf/internal/Trajectory.hpp>
 #include <rtf/internal/Values.hpp>
@@ -96,6 +97,12 @@ protected:
                   std::string_view default_answer = "", Location here = Location::current()) const
     {
         internal::instruct(here, text, picture, timeout, default_answer);
+    }
+
+    // Injects a fault of the suite, and returns when it has begun.
+    Fault fault(std::string_view name, Location here = Location::current()) const
+    {
+        return Fault(std::string(name), here);
     }
 
     // The test's value of a matrix. An unknown name is an error.

@@ -73,6 +73,19 @@ export function applyToTest(test: Test, event: Event, suite?: Suite): void {
             );
             if (test.questions.length === 0) delete test.questions;
             break;
+        case 'fault-injected': {
+            const { name, kind, effect, at } = event;
+            if (last !== undefined)
+                last.faults = [...(last.faults ?? []), { name, kind, effect, injected: at }];
+            break;
+        }
+        case 'fault-removed': {
+            const lasts = last?.faults?.findLast(
+                (fault) => fault.name === event.name && fault.removed === undefined,
+            );
+            if (lasts !== undefined) lasts.removed = event.at;
+            break;
+        }
         case 'test-slow':
             test.slow = true;
             break;

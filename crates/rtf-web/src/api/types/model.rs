@@ -33,7 +33,7 @@ macro_rules! model {
 }
 
 model! {
-    Attachment, Diagnostic, Event, ExitStatus, ExpectedFailure, LeakedProcess, Location,
+    Attachment, Diagnostic, Event, ExitStatus, ExpectedFailure, FaultKind, LeakedProcess, Location,
     Measurement, Message, Parameter, Phase, Question, Respondent, Revision, Stream, SuitePrepared,
     Trigger, Verdict,
 }

@@ -1,8 +1,8 @@
 //! Tests and their attempts.
 
 use rtf_model::{
-    AttemptRecord, ExitStatus, ExpectedFailure, LeakedProcess, Parameter, Phase, Record,
-    TestRecord, Verdict,
+    AttemptRecord, ExitStatus, ExpectedFailure, FaultKind, FaultRecord, LeakedProcess, Parameter,
+    Phase, Record, TestRecord, Verdict,
 };
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -110,6 +110,39 @@ pub struct AttemptRow {
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     #[schema(required = false)]
     pub rerun: bool,
+    /// The faults that were injected while it ran.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schema(required = false)]
+    pub faults: Vec<Fault>,
+}
+
+/// A fault that was injected.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Fault {
+    /// Its name.
+    pub name: String,
+    /// Its kind.
+    #[schema(value_type = model::FaultKind)]
+    pub kind: FaultKind,
+    /// What was done.
+    pub effect: String,
+    /// When it was injected.
+    pub injected: u64,
+    /// When it was removed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub removed: Option<u64>,
+}
+
+impl Fault {
+    fn of(record: &FaultRecord) -> Self {
+        Self {
+            name: record.fault.name.clone(),
+            kind: record.fault.kind,
+            effect: record.fault.effect.clone(),
+            injected: record.injected.0,
+            removed: record.removed.map(|at| at.0),
+        }
+    }
 }
 
 /// How much was reported.
@@ -263,6 +296,7 @@ impl AttemptRow {
             finished: finished.map(|(at, _)| at.0),
             verdict: attempt.verdict(),
             rerun: finished.is_some_and(|(_, finished)| finished.rerun),
+            faults: attempt.faults.iter().map(Fault::of).collect(),
         }
     }
 }

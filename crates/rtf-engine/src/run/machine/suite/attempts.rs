@@ -50,6 +50,7 @@ impl<'p> SuiteMachine<'p> {
             self.fails.count(&event);
         }
         cx.emit(EventKind::TestFinished(event));
+        self.faults.clear(test);
         self.is_checked = self.close_examination(test);
         self.end_if_critical(plan, &finished, rerun);
         let soak = &mut self.scheduler.soak;

@@ -7,6 +7,7 @@ mod attempts;
 #[cfg(debug_assertions)]
 mod deadline_invariant;
 mod episodes;
+mod faults;
 mod findings;
 mod fixture_examinations;
 mod scheduler;
@@ -27,6 +28,8 @@ use super::io::{Deadline, Effect, HostId, Input, ProcessEvent};
 use crate::fixture_values::FixtureValues;
 use crate::run::FailLimit;
 use episodes::Episodes;
+use faults::LastingFaults;
+use findings::TestReport;
 use fixture_examinations::Examinations;
 use rtf_plan::plan::{Preparation, SuitePlan};
 use scheduler::Scheduler;
@@ -39,6 +42,8 @@ pub struct SuiteMachine<'p> {
     hooks: HookQueue<'p>,
     scheduler: Scheduler<'p>,
     examinations: Examinations,
+    faults: LastingFaults,
+    early_reports: Vec<(usize, TestReport)>,
     episodes: Episodes<'p>,
     /// Whether `check` was requested for the next tests.
     is_checked: bool,
@@ -73,6 +78,8 @@ impl<'p> SuiteMachine<'p> {
             hooks: HookQueue::new(plan),
             scheduler: Scheduler::new(plan),
             examinations: Examinations::default(),
+            faults: LastingFaults::default(),
+            early_reports: Vec::new(),
             episodes: Episodes::new(plan),
             is_checked: false,
             shutdown: None,
@@ -127,6 +134,7 @@ impl<'p> SuiteMachine<'p> {
         self.end_if_abandoned(&mut cx);
         self.judge_tests(&mut cx);
         self.advance(&mut cx);
+        self.take_early_reports(&mut cx);
         (self.last_host, self.values, self.questions) = (last_host, values, questions);
         #[cfg(debug_assertions)]
         let continues = self.is_started && !self.is_finished && !self.episodes.is_waiting();

@@ -40,6 +40,8 @@ impl TestRun<'_> {
             Notification::Collapsed { .. } => self.on_fixture_notification("collapsed", cx),
             Notification::Finding(_) => self.on_fixture_notification("finding", cx),
             Notification::Observed { .. } => self.on_fixture_notification("observed", cx),
+            Notification::FaultInjected(_) => self.on_fixture_notification("fault-injected", cx),
+            Notification::FaultRemoved { .. } => self.on_fixture_notification("fault-removed", cx),
         }
     }
 

@@ -6,8 +6,9 @@ use std::time::Duration;
 use proptest::prelude::*;
 use rtf_model::protocol::{Notification, Reply};
 use rtf_model::{
-    AnswerChannel, CaseId, CaseStart, Episode, EventKind, ExitStatus, Finding, FindingSeverity,
-    Message, MessageKind, Phase, Question, Respondent, Source, TestId, Trigger, Verdict,
+    AnswerChannel, CaseId, CaseStart, Episode, EventKind, ExitStatus, FaultInjected, FaultKind,
+    Finding, FindingSeverity, Message, MessageKind, Phase, Question, Respondent, Source, TestId,
+    Trigger, Verdict,
 };
 
 use super::world::{SECOND, World, hook, suite};
@@ -79,9 +80,17 @@ fn report(choice: u8) -> Notification {
     }
 }
 
-/// A finding about a test, or samples that a fixture took.
+/// A finding about a test, a fault, or samples that a fixture took.
 fn about_test(number: u32) -> Notification {
     let test = TestId(number / 4 % 4);
+    if number & 32 != 0 {
+        let (name, effect) = ("drop".to_owned(), "stopped it".to_owned());
+        let (_, kind) = FaultKind::ALL[number as usize / 16 % FaultKind::ALL.len()];
+        return match number & 1 {
+            0 => Notification::FaultInjected(FaultInjected { test, name, kind, effect }),
+            _ => Notification::FaultRemoved { test, name },
+        };
+    }
     if number & 2 == 0 {
         let samples = serde_json::json!({ "name": "q", "points": [[0.5, 1.5]], "case": 1 });
         return Notification::Observed { test, samples: serde_json::from_value(samples).unwrap() };

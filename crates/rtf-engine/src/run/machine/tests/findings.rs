@@ -14,12 +14,27 @@ use rtf_plan::plan::SuitePlan;
 const WATCHER: Source = Source::Fixture(FixtureId(0));
 
 /// A suite whose fixture watches its first test, which runs.
-fn watched(plan: &SuitePlan) -> World<'_> {
+pub(super) fn watched(plan: &SuitePlan) -> World<'_> {
+    let mut world = notified(plan);
+    answer_notifications(&mut world);
+    world.phase(TEST, Phase::Setup);
+    world.phase(TEST, Phase::Run);
+    world.restart_transcript();
+    world
+}
+
+/// A suite whose fixture is being notified that its first test is about to start.
+pub(super) fn notified(plan: &SuitePlan) -> World<'_> {
     let mut world = World::started(plan);
     let topics = ["test-started", "test-ended"];
     let value = serde_json::json!({ "outcome": "passed", "subscriptions": topics });
     world.input(WATCHER, ProcessEvent::Replied(2, Reply::Result(value)));
     world.answer(WATCHER, "passed");
+    world
+}
+
+/// Answers that it was notified.
+pub(super) fn answer_notifications(world: &mut World<'_>) {
     let is_start = |request: &Request| matches!(request, Request::TestStarted(_));
     let starts = world.sent.iter().filter(|(_, _, request)| is_start(request));
     let starts: Vec<u64> = starts.filter_map(|(_, id, _)| *id).collect();
@@ -27,10 +42,6 @@ fn watched(plan: &SuitePlan) -> World<'_> {
         let passed = serde_json::json!({ "outcome": "passed" });
         world.input(WATCHER, ProcessEvent::Replied(start, Reply::Result(passed)));
     }
-    world.phase(TEST, Phase::Setup);
-    world.phase(TEST, Phase::Run);
-    world.restart_transcript();
-    world
 }
 
 fn find(world: &mut World<'_>, test: u32, severity: FindingSeverity) {

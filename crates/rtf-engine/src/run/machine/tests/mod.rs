@@ -10,6 +10,7 @@ mod clock;
 mod collapse;
 mod dependencies;
 mod episodes;
+mod faults;
 mod findings;
 mod hooks;
 mod limits;

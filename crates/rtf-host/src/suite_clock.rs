@@ -8,18 +8,21 @@ use rtf_model::protocol::CLOCK_FILE_VARIABLE;
 
 /// The clock of the suite.
 #[derive(Debug)]
-pub(crate) struct SuiteClock {
+pub struct SuiteClock {
     /// The file with the simulated time.
     file: Option<PathBuf>,
 }
 
 impl SuiteClock {
+    /// The simulated time, or that of the day.
+    #[must_use]
     pub fn new(is_simulated: bool) -> Self {
         let file = std::env::var_os(CLOCK_FILE_VARIABLE).filter(|_| is_simulated);
         Self { file: file.map(PathBuf::from) }
     }
 
     /// Its time in seconds; `None` while the file is being written.
+    #[must_use]
     pub fn now(&self) -> Option<f64> {
         let Some(file) = &self.file else {
             return Some(SystemTime::now().duration_since(UNIX_EPOCH).ok()?.as_secs_f64());
@@ -29,6 +32,7 @@ impl SuiteClock {
     }
 
     /// How its times are described to a user.
+    #[must_use]
     pub fn description(&self) -> &'static str {
         match self.file {
             Some(_) => "seconds of the suite's clock",

@@ -1,0 +1,41 @@
+//! The host of the fixture `faults`: it injects faults while tests run, and removes them.
+//! `spec/faults.md` specifies it.
+//!
+//! [`host`] implements the functions of a fixture. The [`injector`] knows the running tests and
+//! the faults that last. Its [`scheduler`] thread injects the faults whose time has come and
+//! removes those whose time has elapsed; [`requests`] does what tests ask for. A fault is a [`lasting`]
+//! effect: [`pauses`] of processes that [`targets`] finds, filled memory or disks ([`fill`]), or an
+//! [`impairment`] of the packets of the private [`network`], which come over the [`loopback`].
+//!
+//! Memory and files without a name belong to this process, so the kernel frees them when it ends.
+
+mod clock;
+mod fill;
+mod host;
+mod impairment;
+mod injector;
+mod lasting;
+mod loopback;
+mod network;
+mod pauses;
+mod requests;
+mod running_test;
+mod scheduler;
+mod settings;
+mod targets;
+mod unix;
+
+use std::path::Path;
+
+use rtf_host::{CheckedFile, HostProgram, Session, serve};
+
+/// The program. It has no plug-ins: `--check` accepts every file.
+pub const PROGRAM: HostProgram<()> = HostProgram { check, prepare: || (), serve: serve_faults };
+
+fn check(file: &Path) -> CheckedFile {
+    CheckedFile::good(file, None)
+}
+
+fn serve_faults(session: &Session, (): ()) -> std::io::Result<()> {
+    serve(session, host::FaultsHost::new(session.clone()))
+}

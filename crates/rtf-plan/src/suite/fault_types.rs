@@ -1,0 +1,74 @@
+//! The declarations of faults, before any name is resolved.
+
+use rtf_model::{FaultAmount, FaultTime, NetworkFault};
+
+use super::{Span, Spanned};
+
+/// A `<fault>`.
+#[derive(Clone, Debug)]
+pub struct DeclaredFault {
+    /// The position of the tag.
+    pub span: Span,
+    /// The name.
+    pub name: Spanned<String>,
+    /// What is done.
+    pub effect: DeclaredEffect,
+    /// When it is injected, since the start of the test; `None`: when a test does it.
+    pub at: Option<FaultTime>,
+    /// How long it lasts; `None`: until the end of the test.
+    pub duration: Option<FaultTime>,
+    /// The seed for random times.
+    pub seed: u32,
+}
+
+/// What a fault does.
+#[derive(Clone, Debug)]
+pub enum DeclaredEffect {
+    /// Kills processes.
+    Kill(DeclaredTarget),
+    /// Stops processes.
+    Stop(DeclaredTarget),
+    /// Stops processes for a part of the time.
+    Slow {
+        /// The processes.
+        target: DeclaredTarget,
+        /// The share of the time in which they may run, from 1 to 99.
+        percent: u32,
+    },
+    /// Allocates memory.
+    Memory(FaultAmount),
+    /// Allocates space of a file system.
+    Disk {
+        /// A directory on it.
+        dir: Spanned<String>,
+        /// How much.
+        amount: FaultAmount,
+    },
+    /// Impairs the packets of the suite's private network.
+    Network {
+        /// What happens to the packets.
+        fault: NetworkFault,
+        /// The port from or to which they are; `None`: all.
+        port: Option<Spanned<String>>,
+    },
+}
+
+/// The processes of a fixture that a fault affects.
+#[derive(Clone, Debug)]
+pub struct DeclaredTarget {
+    /// The name of the fixture.
+    pub fixture: Spanned<String>,
+    /// The name of the processes; `None`: all.
+    pub process: Option<String>,
+}
+
+impl DeclaredEffect {
+    /// The processes, if it affects some.
+    #[must_use]
+    pub fn target(&self) -> Option<&DeclaredTarget> {
+        match self {
+            Self::Kill(target) | Self::Stop(target) | Self::Slow { target, .. } => Some(target),
+            Self::Memory(_) | Self::Disk { .. } | Self::Network { .. } => None,
+        }
+    }
+}
