@@ -1,22 +1,44 @@
 #!/usr/bin/env python3
-"""Runs example 02 as a user does, and a second time while the runner is killed.
+"""Runs example 02 as a user does, a second time while the runner is killed, and with a monitor.
 
     check_example_02.py RTF SUITE
 
 The first run shows a collapse, a rerun and a parked arm. In the second, the runner gets a
-SIGKILL while the arm moves, and the guard must park the arm.
+SIGKILL while the arm moves, and the guard must park the arm. In the third, a monitor stops a test
+during its motion.
 """
 
 from __future__ import annotations
 
+import shutil
 import sys
 import tempfile
 from pathlib import Path
 
 from processes import children, kill, running
-from run import Event, Run, expect, is_a
+from run import Event, Run, expect, expect_in, is_a
 
 RUNNER_DIED = 5
+SWEEP_SECS = 6
+"""How long the first test moves the arm, unless it is stopped."""
+
+LIMIT_RAD = 0.5
+"""The monitor's limit: the sweep goes farther, and is there after 0.4 s."""
+
+READER = """
+import time
+import lesson_1
+from arm_client import Arm
+
+arm = Arm()
+while True:
+    print(f"{time.time():.6f} {arm.position('shoulder')}", flush=True)
+    time.sleep(0.002)
+"""
+WATCHED = f"""
+  <signal name="shoulder" unit="rad"><command>python3 read_shoulder.py</command></signal>
+  <monitor name="stays low" severity="stop">always({LIMIT_RAD}rad > shoulder)</monitor>
+</suite>"""
 
 
 def main() -> int:
@@ -25,6 +47,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as directory:
         undisturbed(rtf, suite, Path(directory) / "undisturbed")
         runner_killed(rtf, suite, Path(directory) / "killed")
+        monitored(rtf, Path(suite), Path(directory))
     return 0
 
 
@@ -54,6 +77,44 @@ def runner_killed(rtf: str, suite: str, directory: Path) -> None:
     expect("hooks", triggers(run), ["collapse", "interrupt"])
     expect("parked", "parked: " in hook_output(run), True)
     expect("arms left", arms(), [])
+
+
+def monitored(rtf: str, suite: Path, directory: Path) -> None:
+    """A monitor with `stop` interrupts the motion, and the hook parks the arm at once."""
+    lessons = suite.parent.parent
+    for lesson in ("01-simulated-arm", suite.parent.name):
+        shutil.copytree(lessons / lesson, directory / "lessons" / lesson)
+    copy = directory / "lessons" / suite.parent.name
+    (copy / "read_shoulder.py").write_text(READER)
+    change(copy / suite.name, "</suite>", WATCHED)
+    # On a busy machine, the cable would break before the motion.
+    change(copy / "loose_arm.py", "DIES_AFTER_SECS = 4.0", "DIES_AFTER_SECS = 1e4")
+    run = Run(rtf, f"{copy / suite.name}::SweepTest", directory / "monitored")
+    expect("exit code", run.wait(), 1)
+    expect("verdicts", run.attempts(), ["failed"])
+    expect("cause", [event["cause"] for event in run.events("test-stopping")], ["finding"])
+    expect_in("monitor `stays low`: `0.5rad > shoulder` does not hold", run.reason("test-stopping"))
+    # Nothing moves it afterwards, so that the hook does not run at the end.
+    expect("hooks", triggers(run), ["failure"])
+    expect("parked", "parked: " in hook_output(run), True)
+    expect("it was stopped in the middle", seconds_until(run, "hook-started") < SWEEP_SECS, True)
+    batches = [event["samples"]["points"] for event in run.events("sampled")]
+    values = [value for points in batches for _, value in points]
+    expect("the arm was beyond the limit", max(values) > LIMIT_RAD, True)
+    expect("arms left", arms(), [])
+
+
+def change(file: Path, old: str, new: str) -> None:
+    """Replaces a text in a file."""
+    text = file.read_text()
+    expect(f"`{old}` in {file.name}", old in text, True)
+    file.write_text(text.replace(old, new))
+
+
+def seconds_until(run: Run, kind: str) -> float:
+    """The time from the start of the first test to the first event of this kind."""
+    started, reached = (next(run.events(each))["at"] for each in ("test-started", kind))
+    return float(reached - started) / 1e6
 
 
 def is_rerun(event: Event) -> bool:

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""Runs example 11 as a user does: a monitor finds an overshoot in a test that would pass, more
-damping avoids it, and a violated limit stops a test. A camera is cut off for half a second.
+"""Runs example 11 as a user does: a monitor finds an overshoot in a test that would pass, its
+recording is replayed, more damping avoids it, and a violated limit stops a test. A camera is cut
+off for half a second.
 
 check_example_11.py RTF DIRECTORY
 """
 
 from __future__ import annotations
 
+import shlex
 import shutil
 import sys
 import tempfile
@@ -24,7 +26,9 @@ def main() -> int:
     suite = str(example / "arm.xml")
     with tempfile.TemporaryDirectory() as directory:
         results = Path(directory)
-        overshoot(Run(rtf, suite, results / "overshoot"))
+        run = Run(rtf, suite, results / "overshoot")
+        overshoot(run)
+        replayed(run, rtf, results)
         damped(Run(rtf, suite, results / "damped", "--set", "damping=1"))
         copy = results / "copy"
         shutil.copytree(example, copy)
@@ -44,7 +48,7 @@ def overshoot(run: Run) -> None:
     """The test itself reports no failure; the samples show how long the arm was at the shelf."""
     expect("exit code", run.wait(), 1)
     expect("verdicts", run.verdicts(), {"near": "passed", "far": "failed"})
-    [failure] = [event for event in run.events("message") if event["message"]["kind"] == "failure"]
+    [failure] = failures(run)
     expect("test", run.name({"test": failure["source"]["test"]}), "far")
     expect_in("monitor `does not touch the shelf`: `1.05rad > q` does not hold", str(failure))
     points = samples(run, "far", "q")
@@ -55,6 +59,29 @@ def overshoot(run: Run) -> None:
     robustness = measured(run, "monitor/does not touch the shelf")
     expect("near the shelf", robustness["near"] > 0.4, True)
     expect("in the shelf", -0.1 < robustness["far"] < 0, True)
+
+
+def replayed(run: Run, rtf: str, results: Path) -> None:
+    """The command in the summary repeats the failure without the arm; a farther shelf does not."""
+    lines = run.output.read_text().splitlines()
+    [line] = [line for line in lines if line.startswith("    replay ")]
+    words = shlex.split(line)[1:]
+    expect("command", words[:2], ["rtf", "run"])
+    repeated = Run(rtf, words[2], results / "repeated", *words[3:])
+    expect("exit code", repeated.wait(), 1)
+    expect("verdicts", repeated.verdicts(), {"far": "failed"})
+    [failure] = [
+        event for event in repeated.events("message") if event["message"]["kind"] == "failure"
+    ]
+    expect_in("monitor `does not touch the shelf`: `1.05rad > q` does not hold", str(failure))
+    interval = failure["message"]["interval"]
+    expect("interval", interval["signals"], ["q"])
+    expect("its start", 0 < interval["start"] <= interval["end"] < 1.5, True)
+    name = "monitor/does not touch the shelf"
+    robustness = [measured(each, name)["far"] for each in (run, repeated)]
+    expect("the same robustness", abs(robustness[0] - robustness[1]) < 1e-6, True)
+    farther = Run(rtf, words[2], results / "farther", *words[3:], "--set", "shelf=1.1")
+    expect("exit code", farther.wait(), 0)
 
 
 def damped(run: Run) -> None:
@@ -90,6 +117,11 @@ def blind(run: Run) -> None:
     expect("verdicts", run.verdicts(), {"sees": "passed", "is blind for a moment": "failed"})
     [failure] = [event for event in run.events("message") if event["message"]["kind"] == "failure"]
     expect_in("monitor `does not drive blindly`", str(failure))
+
+
+def failures(run: Run) -> list[Event]:
+    """All failures of tests."""
+    return [event for event in run.events("message") if event["message"]["kind"] == "failure"]
 
 
 def samples(run: Run, test: str, signal: str) -> list[tuple[float, float]]:

@@ -249,6 +249,14 @@ fixture_replay_yarp() {
     tests/fixtures/replay yarp
 }
 
+# The guide to replaying, with real nodes.
+guide_replay() {
+  local library
+  library=$(PATH=/usr/bin:$PATH tools/venv.sh mcap)
+  PYTHONPATH=$("$library/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))') \
+    /usr/bin/python3 tools/check_docs.py "$TARGET/release/rtf" docs/how-to/replay.md
+}
+
 example_03() {
   export RTF_DIR=$ROOT/sdk/cpp/cmake/rtf RTF_PLUGIN_PATH=$BUILD/examples/03-yarp
   PATH=$RTF_PLUGIN_PATH:$PATH
@@ -287,12 +295,20 @@ example_10() {
     examples/10-campaign "$search/python"
 }
 
-signals_ros1() {
-  python3 tools/check_signals_ros1.py "$TARGET/release/rtf" tests/fixtures/signals
+signals_of() {
+  python3 tools/check_signals.py "$TARGET/release/rtf" tests/fixtures/signals "$1"
+}
+
+signals_of_tests() {
+  local library
+  library=$(tools/venv.sh mcap)
+  PATH="$library:$PATH" signals_of own
 }
 
 example_11() {
-  python3 tools/check_example_11.py "$TARGET/release/rtf" examples/11-signals
+  local library
+  library=$(tools/venv.sh mcap)
+  PATH="$library:$PATH" python3 tools/check_example_11.py "$TARGET/release/rtf" examples/11-signals
 }
 
 # The tests of a package on PyPI, compared with pytest's own report.
@@ -529,16 +545,20 @@ robots_and_frameworks() {
   step_with 'example 05' ros1 example_05
   step_with 'clock ros1' ros1 clock_ros1
   step_with 'fixture replay ros1' ros1 fixture_replay_ros1
-  step_with 'signals ros1' ros1 signals_ros1
+  step_with 'guide replay' ros1 guide_replay
+  step_with 'signals ros1' ros1 signals_of ros
+  step_with 'signals yarp' yarp signals_of yarp
   step_with 'example 06' ros2 example_06
   step 'example 07' example_07
   step 'example 08' example_08
   step 'example 10' example_10
   step 'example 11' example_11
+  step 'signals of tests' signals_of_tests
   # The first step builds Kubernetes, which takes minutes.
   step 'kubernetes manifests' kubernetes_manifests
   step 'executor kubernetes' executor_kubernetes
   step_with 'clock ros2' ros2 clock_ros2
+  step_with 'signals ros2' ros2 signals_of ros2
   step_with 'fixture ros2launch' ros2 fixture_ros2launch
   step_with 'fixture orocos' orocos fixture_orocos
   step 'framework gtest' framework gtest

@@ -138,6 +138,12 @@ function rtf.ask(question, choices, timeout, default, picture) end
 ---@param default? string
 function rtf.instruct(text, picture, timeout, default) end
 
+---Judges the rest of the test by a formula over the signals of the suite.
+---@param formula string
+---@param name? string The default is the formula.
+---@param severity? "fail"|"error"|"stop"|"critical" What a violation means; the default is "fail".
+function rtf.monitor(formula, name, severity) end
+
 ---Runs the body as a case: a named result of the test. An assertion, an error or `skip` ends
 ---the case, and the test continues after it.
 ---@param name any

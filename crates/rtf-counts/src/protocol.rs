@@ -31,6 +31,7 @@ pub fn run() -> Result<(), Box<dyn Error>> {
             comparison: None,
             critical: false,
             case: None,
+            interval: None,
         };
         let answer = Answer {
             outcome: Outcome::Passed,

@@ -93,8 +93,15 @@ fn test(number: u32) -> Vec<EventKind> {
         let kind = if failed && is_last { MessageKind::Failure } else { MessageKind::Report };
         let text = format!("joint {report} is at {number}");
         let location = Some(Location { file: "T.lua".into(), line: report });
-        let message =
-            Message { kind, text, location, comparison: None, critical: false, case: None };
+        let message = Message {
+            kind,
+            text,
+            location,
+            comparison: None,
+            critical: false,
+            case: None,
+            interval: None,
+        };
         kinds.push(EventKind::Message { source, message, test: None });
     }
     let text = format!("a line of test {number}\n");

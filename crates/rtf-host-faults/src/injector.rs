@@ -105,8 +105,15 @@ impl Injector {
                 config.name
             );
             let (kind, location) = (MessageKind::Report, Some(config.location.clone()));
-            let message =
-                Message { kind, text, location, comparison: None, critical: false, case: None };
+            let message = Message {
+                kind,
+                text,
+                location,
+                comparison: None,
+                critical: false,
+                case: None,
+                interval: None,
+            };
             self.session.message(message);
         }
     }
@@ -165,7 +172,7 @@ impl Injector {
         let config = &self.settings_of(fault).config;
         let text = format!("fault `{}` was not injected: {problem}", config.name);
         let (severity, location) = (FindingSeverity::Error, Some(config.location.clone()));
-        self.session.finding(Finding { test, severity, text, location });
+        self.session.finding(Finding { test, severity, text, location, interval: None });
     }
 
     /// Removes a fault of a test; false if it does not last.

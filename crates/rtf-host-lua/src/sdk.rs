@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use mlua::{Function, IntoLuaMulti, Lua, LuaString, Table, Value};
 use rtf_host::{Inquiry, Sample, Session};
-use rtf_model::protocol::Plugin;
+use rtf_model::protocol::{MonitorDeclaration, Plugin};
 use rtf_model::{
     Alignment, Attachment, Comparison, Location, Measurement, Message, MessageKind, TrajectoryCheck,
 };
@@ -112,6 +112,7 @@ fn functions(lua: &Lua) -> mlua::Result<Table> {
         session.check_trajectory(checked.0);
         Ok(())
     })?;
+    add(lua, &host, "monitor", |session, declared: MonitorArgs| Ok(monitor(session, &declared)))?;
     add(
         lua,
         &host,
@@ -195,6 +196,7 @@ impl mlua::FromLuaMulti for Reported {
             comparison: comparison.map(|numbers| comparison_of(&numbers)).transpose()?,
             critical: critical.unwrap_or(false),
             case: None,
+            interval: None,
         }))
     }
 }
@@ -311,6 +313,25 @@ impl mlua::FromLuaMulti for Trajectory {
             location: location(file.as_ref(), line),
             case: None,
         }))
+    }
+}
+
+/// `formula, name, severity, file, line`
+type MonitorArgs = (LuaString, LuaString, LuaString, Option<LuaString>, Option<u32>);
+
+/// Declares a monitor; returns why it cannot.
+fn monitor(
+    session: &Session,
+    (formula, name, severity, file, line): &MonitorArgs,
+) -> Option<String> {
+    let texts = [formula, name, severity].map(LuaString::to_string_lossy);
+    let place = location(file.as_ref(), *line);
+    match MonitorDeclaration::new(&texts[0], &texts[1], &texts[2], place) {
+        Ok(declared) => {
+            session.monitor(declared);
+            None
+        }
+        Err(problem) => Some(problem),
     }
 }
 

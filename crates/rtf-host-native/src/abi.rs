@@ -162,6 +162,24 @@ pub struct rtf_trajectory {
     pub align: i32,
 }
 
+/// A formula over signals that judges the rest of a test.
+#[repr(C)]
+#[derive(Debug)]
+pub struct rtf_monitor {
+    /// `sizeof(rtf_monitor)`.
+    pub size: usize,
+    /// The formula.
+    pub formula: rtf_text,
+    /// Its name; empty: the formula.
+    pub name: rtf_text,
+    /// `fail`, `error`, `stop` or `critical`; empty: `fail`.
+    pub severity: rtf_text,
+    /// The source file, null if unknown.
+    pub file: *const c_char,
+    /// The line in it, 0 if unknown.
+    pub line: u32,
+}
+
 /// A file to be added to the results.
 #[repr(C)]
 #[derive(Debug)]
@@ -326,6 +344,8 @@ pub struct rtf_host {
     /// Since 1.4: checks a signal, as sampled so far, against a stored trajectory. The runner
     /// compares: a deviation is a failure, and the test continues. Only for tests.
     pub check_trajectory: unsafe extern "C" fn(context: *mut c_void, check: *const rtf_trajectory),
+    /// Since 1.4: declares a formula that judges the rest of the test. Only for tests.
+    pub monitor: unsafe extern "C" fn(context: *mut c_void, monitor: *const rtf_monitor),
 }
 
 /// The plug-in's kind and functions. All functions are called on the

@@ -5,7 +5,7 @@ use std::ffi::{CStr, c_char, c_int, c_void};
 use std::time::Duration;
 
 use ::rtf_host::{CaseEnd, Inquiry, Sample, Session};
-use rtf_model::protocol::{FixtureValue, Plugin};
+use rtf_model::protocol::{FixtureValue, MonitorDeclaration, Plugin};
 use rtf_model::{
     Alignment, Attachment, Comparison, Location, Measurement, Message, MessageKind, Parameter,
     TrajectoryCheck, value_text,
@@ -16,7 +16,7 @@ use crate::abi::{
     RTF_ABI_MAJOR, RTF_ABI_MINOR, RTF_ALIGN_DTW, RTF_ALIGN_TIME, RTF_DONE, RTF_MESSAGE_CHECK,
     RTF_MESSAGE_ERROR, RTF_MESSAGE_FAILURE, RTF_MESSAGE_REPORT, RTF_STOPPED, RTF_VALUE_JSON,
     RTF_VALUE_TEXT, rtf_attachment, rtf_case, rtf_comparison, rtf_host, rtf_measurement,
-    rtf_message, rtf_parameter, rtf_question, rtf_sample, rtf_text, rtf_trajectory,
+    rtf_message, rtf_monitor, rtf_parameter, rtf_question, rtf_sample, rtf_text, rtf_trajectory,
 };
 
 /// The context of the functions: one per plug-in, never freed, because the plug-in's
@@ -63,6 +63,7 @@ pub(crate) fn for_plugin(session: &Session, plugin: &Plugin) -> &'static rtf_hos
         fixture_values: self::fixture_values,
         ask,
         check_trajectory,
+        monitor,
     }))
 }
 
@@ -100,6 +101,7 @@ unsafe extern "C" fn message(context: *mut c_void, message: *const rtf_message) 
             comparison: message.comparison.as_ref().map(|numbers| comparison(numbers)),
             critical: message.critical != 0,
             case: None,
+            interval: None,
         });
     }
 }
@@ -156,6 +158,7 @@ unsafe extern "C" fn check_trajectory(context: *mut c_void, check: *const rtf_tr
                     comparison: None,
                     critical: false,
                     case: None,
+                    interval: None,
                 });
             }
         };
@@ -168,6 +171,24 @@ unsafe extern "C" fn check_trajectory(context: *mut c_void, check: *const rtf_tr
             location: location(check.file, check.line),
             case: None,
         });
+    }
+}
+
+unsafe extern "C" fn monitor(context: *mut c_void, monitor: *const rtf_monitor) {
+    // SAFETY: the pointers are valid by spec/plugin-abi.md.
+    unsafe {
+        let monitor = &*monitor;
+        let declared = MonitorDeclaration::new(
+            &text(monitor.formula),
+            &text(monitor.name),
+            &text(monitor.severity),
+            location(monitor.file, monitor.line),
+        );
+        let session = &self::context(context).session;
+        match declared {
+            Ok(declared) => session.monitor(declared),
+            Err(problem) => report_error(session, problem),
+        }
     }
 }
 
@@ -337,7 +358,15 @@ unsafe fn list_entries(entries: &[rtf_parameter], count: *mut usize) -> *const r
 /// Reports an error of a call that the plug-in made.
 fn report_error(session: &Session, text: String) {
     let (kind, location, comparison) = (MessageKind::Error, None, None);
-    session.message(Message { kind, text, location, comparison, critical: false, case: None });
+    session.message(Message {
+        kind,
+        text,
+        location,
+        comparison,
+        critical: false,
+        case: None,
+        interval: None,
+    });
 }
 
 /// # Safety

@@ -4,7 +4,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use rtf_host::{HostPlugin, LoadError, PluginKind, Session, Step, StepEnd, TestNotification};
-use rtf_model::protocol::{Initialized, PROTOCOL_VERSION, Plugin, StackSupport, Subscription};
+use rtf_model::protocol::{
+    Initialized, PROTOCOL_VERSION, Plugin, StackSupport, Subscription, TestReportedParams,
+};
 
 use crate::settings::Settings;
 use crate::watch::Watch;
@@ -95,7 +97,13 @@ impl HostPlugin for SignalsHost {
     }
 
     fn subscriptions(&self) -> Vec<Subscription> {
-        vec![Subscription::TestStarted, Subscription::TestEnded]
+        vec![Subscription::TestStarted, Subscription::TestEnded, Subscription::TestReported]
+    }
+
+    fn reported(&mut self, reported: TestReportedParams) {
+        if let Some(watch) = &self.watch {
+            watch.reported(reported.test, reported.report);
+        }
     }
 
     fn notify(&mut self, notification: TestNotification<'_>) -> StepEnd {

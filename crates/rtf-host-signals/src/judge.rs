@@ -1,9 +1,11 @@
 //! The monitors of a running test.
 
+use std::sync::Arc;
+
 use rtf_host::Session;
 use rtf_model::{
-    Finding, FindingSeverity, Measurement, Message, MessageKind, SignalConfig, TestId,
-    format_rounded,
+    Finding, FindingSeverity, Location, Measurement, Message, MessageKind, SignalConfig,
+    SignalInterval, TestId, format_rounded,
 };
 use rtf_monitor::{Monitor, Outcome, Verdict, Violation};
 
@@ -12,8 +14,7 @@ use crate::settings::{MonitorSettings, Settings};
 /// A monitor that judges a test.
 #[derive(Debug)]
 pub(crate) struct RunningMonitor {
-    /// Its index in the settings.
-    index: usize,
+    settings: Arc<MonitorSettings>,
     monitor: Monitor,
     has_reported: bool,
 }
@@ -21,19 +22,19 @@ pub(crate) struct RunningMonitor {
 impl RunningMonitor {
     /// The monitors that judge a test.
     pub fn of_test(settings: &Settings, test: &str) -> Vec<Self> {
-        let all = settings.monitors.iter().enumerate();
-        let judging = all.filter(|(_, monitor)| monitor.config.judges(test));
-        // The units of all formulas are converted.
-        let running = judging.filter_map(|(index, settings)| {
-            let monitor = Monitor::new(&settings.formula).ok()?;
-            Some(Self { index, monitor, has_reported: false })
-        });
-        running.collect()
+        let judging = settings.monitors.iter().filter(|monitor| monitor.judges(test));
+        judging.filter_map(|settings| Self::new(Arc::clone(settings))).collect()
     }
 
-    /// The index of the monitor in the settings.
-    pub fn index(&self) -> usize {
-        self.index
+    /// A monitor that judges the samples from now on.
+    pub fn new(settings: Arc<MonitorSettings>) -> Option<Self> {
+        // The units of all formulas are converted.
+        let monitor = Monitor::new(&settings.formula).ok()?;
+        Some(Self { settings, monitor, has_reported: false })
+    }
+
+    pub fn settings(&self) -> &MonitorSettings {
+        &self.settings
     }
 
     /// Takes a sample of the signal with this index in the formula; returns a violation once.
@@ -44,7 +45,8 @@ impl RunningMonitor {
 
     /// Ends the test at this time, and reports its result. The end of a test that was stopped
     /// violates nothing.
-    pub fn finish(mut self, end: f64, was_stopped: bool, report: &MonitorReport<'_>) {
+    pub fn finish(mut self, end: f64, was_stopped: bool, test: &ReportedTest<'_>) {
+        let report = MonitorReport { test, monitor: &self.settings };
         let outcome = self.monitor.finish(end);
         if !self.has_reported && !was_stopped {
             match (&outcome.violation, outcome.verdict) {
@@ -60,22 +62,46 @@ impl RunningMonitor {
     }
 }
 
-/// Reports the results of a monitor.
-pub(crate) struct MonitorReport<'a> {
+/// A test that is reported about.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ReportedTest<'a> {
     pub session: &'a Session,
-    pub test: TestId,
-    pub monitor: &'a MonitorSettings,
+    pub id: TestId,
     pub signals: &'a [SignalConfig],
+}
+
+impl ReportedTest<'_> {
+    /// Reports a problem.
+    pub fn finding(&self, severity: FindingSeverity, text: String, location: Option<Location>) {
+        let test = self.id;
+        self.session.finding(Finding { test, severity, text, location, interval: None });
+    }
+}
+
+/// Reports the results of a monitor.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MonitorReport<'a> {
+    pub test: &'a ReportedTest<'a>,
+    pub monitor: &'a MonitorSettings,
 }
 
 impl MonitorReport<'_> {
     pub fn violation(&self, violation: &Violation) {
-        self.finding(self.monitor.config.severity, self.describe(violation));
+        let (start, end) = violation.interval;
+        let signals = violation.values.iter().filter_map(|value| self.signal(value.signal));
+        let signals = signals.map(|signal| signal.name.clone()).collect();
+        let is_finite = start.is_finite() && end.is_finite();
+        self.test.session.finding(Finding {
+            test: self.test.id,
+            severity: self.monitor.severity,
+            text: self.describe(violation),
+            location: self.monitor.location.clone(),
+            interval: is_finite.then_some(SignalInterval { start, end, signals }),
+        });
     }
 
     fn finding(&self, severity: FindingSeverity, text: String) {
-        let location = Some(self.monitor.config.location.clone());
-        self.session.finding(Finding { test: self.test, severity, text, location });
+        self.test.finding(severity, text, self.monitor.location.clone());
     }
 
     /// "monitor `no overshoot`: `q <= 1.05` does not hold at 0.42 s: q = 1.08 rad (robustness
@@ -87,7 +113,7 @@ impl MonitorReport<'_> {
         let at = violation.values.first().map_or(violation.time, |value| value.time);
         let mut text = format!(
             "monitor `{}`: `{part}` does not hold at {} s",
-            self.monitor.config.name,
+            self.monitor.name,
             format_rounded(at)
         );
         if !values.is_empty() {
@@ -99,14 +125,14 @@ impl MonitorReport<'_> {
         if part != formula {
             text += &format!("; its formula is `{formula}`");
         }
-        if let Some(origin) = &self.monitor.config.origin {
+        if let Some(origin) = &self.monitor.origin {
             text += &format!(" (limit at {origin})");
         }
         text
     }
 
     fn value(&self, value: &rtf_monitor::SignalValue) -> String {
-        let signal = self.monitor.signals.get(value.signal).map(|index| &self.signals[*index]);
+        let signal = self.signal(value.signal);
         let (name, unit) = signal.map_or(("", ""), |signal| (&signal.name, &signal.unit));
         let measured = Measurement {
             name: String::new(),
@@ -121,32 +147,45 @@ impl MonitorReport<'_> {
         format!("{name} = {}", measured.for_display().0)
     }
 
+    /// The signal with this index in the formula.
+    fn signal(&self, in_formula: usize) -> Option<&SignalConfig> {
+        self.monitor.signals.get(in_formula).map(|index| &self.test.signals[*index])
+    }
+
     fn not_judged(&self, outcome: &Outcome) {
-        let name = &self.monitor.config.name;
+        let name = &self.monitor.name;
         let missing = outcome.missing.iter().filter_map(|index| self.monitor.signals.get(*index));
         let missing: Vec<_> =
-            missing.map(|index| format!("`{}`", self.signals[*index].name)).collect();
+            missing.map(|index| format!("`{}`", self.test.signals[*index].name)).collect();
         if !missing.is_empty() {
             let missing = missing.join(", ");
             let text = format!("monitor `{name}` was not judged: no sample of {missing}");
             return self.finding(FindingSeverity::Error, text);
         }
         let text = format!("monitor `{name}` was not judged: the test was too short for it");
-        let location = Some(self.monitor.config.location.clone());
+        let location = self.monitor.location.clone();
         let (kind, comparison) = (MessageKind::Report, None);
-        let message = Message { kind, text, location, comparison, critical: false, case: None };
-        self.session.message(message);
+        let message = Message {
+            kind,
+            text,
+            location,
+            comparison,
+            critical: false,
+            case: None,
+            interval: None,
+        };
+        self.test.session.message(message);
     }
 
     fn robustness(&self, robustness: f64) {
-        self.session.measure(Measurement {
-            name: format!("monitor/{}", self.monitor.config.name),
+        self.test.session.measure(Measurement {
+            name: format!("monitor/{}", self.monitor.name),
             value: Some(robustness),
             unit: String::new(),
             low: None,
             high: None,
             learned: false,
-            location: Some(self.monitor.config.location.clone()),
+            location: self.monitor.location.clone(),
             case: None,
         });
     }

@@ -3,8 +3,8 @@
 //!
 //! [`host`] implements the functions of a fixture. One thread ([`watch`]) reads the programs that
 //! write samples ([`program`], [`mod@line`]), one for each measured fixture reads `/proc`
-//! ([`processes`]). Both pass samples to the [`recorder`], which knows the running tests
-//! ([`test_run`]) with their batches ([`batches`]) and monitors ([`judge`]).
+//! ([`processes`]), and one plays recordings ([`recording`]). All pass samples to the [`recorder`],
+//! which knows the running tests ([`test_run`]) with their batches ([`batches`]) and monitors ([`judge`]).
 
 mod batches;
 mod host;
@@ -13,6 +13,7 @@ mod line;
 mod processes;
 mod program;
 mod recorder;
+mod recording;
 mod settings;
 mod source_time;
 mod test_run;

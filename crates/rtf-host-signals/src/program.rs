@@ -222,6 +222,6 @@ impl Program {
     }
 }
 
-fn shown(words: &[String]) -> String {
+pub(crate) fn shown(words: &[String]) -> String {
     format!("`{}`", words.join(" "))
 }

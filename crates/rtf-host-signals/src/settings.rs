@@ -1,11 +1,13 @@
 //! The signals and monitors of the suite, as the runner passes them.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_host::fixture_owner;
-use rtf_model::protocol::Plugin;
+use rtf_model::protocol::{MonitorDeclaration, Plugin};
 use rtf_model::{
-    MonitorConfig, ProcessQuantity, SignalConfig, SignalSource, SignalTime, SignalsConfig,
+    FindingSeverity, Location, MonitorConfig, ProcessQuantity, SignalConfig, SignalSource,
+    SignalTime, SignalsConfig, TestQuantity,
 };
 use rtf_monitor::Formula;
 
@@ -37,11 +39,28 @@ pub(crate) struct ProcessSettings {
     pub every: Duration,
 }
 
+/// A recording.
+#[derive(Debug)]
+pub(crate) struct RecordingSettings {
+    /// The program that reads it, and its arguments.
+    pub words: Vec<String>,
+    /// The index of its first signal; the others follow.
+    pub first_signal: usize,
+    /// The number of its signals.
+    pub count: usize,
+}
+
 /// A monitor with its formula.
 #[derive(Debug)]
 pub(crate) struct MonitorSettings {
-    /// As the suite declares it.
-    pub config: MonitorConfig,
+    pub name: String,
+    pub severity: FindingSeverity,
+    /// Its position in the suite or in the plug-in.
+    pub location: Option<Location>,
+    /// The file, line and column of its limit, for messages.
+    pub origin: Option<String>,
+    /// The names of the tests that it judges; `None`: all.
+    pub tests: Option<Vec<String>>,
     /// The formula, with the units of the signals.
     pub formula: Formula,
     /// The indices of the formula's signals.
@@ -54,7 +73,10 @@ pub(crate) struct Settings {
     pub signals: Vec<SignalConfig>,
     pub programs: Vec<ProgramSettings>,
     pub processes: Vec<ProcessSettings>,
-    pub monitors: Vec<MonitorSettings>,
+    pub recordings: Vec<RecordingSettings>,
+    /// The signals that tests report themselves.
+    pub of_tests: Vec<(usize, TestQuantity)>,
+    pub monitors: Vec<Arc<MonitorSettings>>,
     pub has_clock: bool,
 }
 
@@ -87,18 +109,43 @@ impl Settings {
                     });
                     settings.signals.push(measured.signal);
                 }
+                SignalSource::Recording(recording) => {
+                    settings.recordings.push(RecordingSettings {
+                        words: args.by_ref().take(recording.words).cloned().collect(),
+                        first_signal,
+                        count: recording.signals.len(),
+                    });
+                    settings.signals.extend(recording.signals);
+                }
+                SignalSource::Test(reported) => {
+                    settings.of_tests.push((first_signal, reported.quantity));
+                    settings.signals.push(reported.signal);
+                }
             }
         }
         for monitor in config.monitors {
-            let monitor = settings.monitor(monitor)?;
-            settings.monitors.push(monitor);
+            let MonitorConfig { name, formula, severity, location, origin, tests } = monitor;
+            let location = Some(location);
+            let declared = MonitorDeclaration { name, formula, severity, location };
+            let monitor = MonitorSettings { origin, tests, ..settings.monitor(declared)? };
+            settings.monitors.push(Arc::new(monitor));
         }
         Ok(settings)
     }
 
-    fn monitor(&self, config: MonitorConfig) -> Result<MonitorSettings, String> {
-        let invalid = |why: String| format!("the monitor `{}` is invalid: {why}", config.name);
-        let formula = Formula::parse(&config.formula).map_err(|error| invalid(error.message))?;
+    /// The number of the source of what a test reports; it follows the recordings.
+    pub fn test_source(&self) -> usize {
+        self.programs.len() + self.processes.len() + self.recordings.len()
+    }
+
+    /// A monitor of all tests.
+    ///
+    /// # Errors
+    /// Why its formula is invalid.
+    pub fn monitor(&self, declared: MonitorDeclaration) -> Result<MonitorSettings, String> {
+        let MonitorDeclaration { name, formula, severity, location } = declared;
+        let invalid = |why: String| format!("the monitor `{name}` is invalid: {why}");
+        let formula = Formula::parse(&formula).map_err(|error| invalid(error.message))?;
         let unit_of = |name: &str| Some(self.signals[self.index_of(name)?].unit.clone());
         let formula = formula.check_units(&unit_of).map_err(|errors| {
             let messages: Vec<_> = errors.into_iter().map(|error| error.message).collect();
@@ -109,10 +156,18 @@ impl Settings {
             index.ok_or_else(|| invalid(format!("there is no signal `{}`", signal.name)))
         });
         let signals = signals.collect::<Result<_, _>>()?;
-        Ok(MonitorSettings { config, formula, signals })
+        let (origin, tests) = (None, None);
+        Ok(MonitorSettings { name, severity, location, origin, tests, formula, signals })
     }
 
     fn index_of(&self, signal: &str) -> Option<usize> {
         self.signals.iter().position(|known| known.name == signal)
+    }
+}
+
+impl MonitorSettings {
+    /// Whether it judges the test with this name.
+    pub fn judges(&self, test: &str) -> bool {
+        self.tests.as_ref().is_none_or(|tests| tests.iter().any(|name| name == test))
     }
 }

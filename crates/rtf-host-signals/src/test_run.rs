@@ -1,11 +1,14 @@
 //! A running test: its samples, and the monitors that judge it.
 
+use std::sync::Arc;
+
 use rtf_host::Session;
-use rtf_model::protocol::TestAttempt;
-use rtf_model::{Finding, FindingSeverity, TestId};
+use rtf_model::protocol::{TestAttempt, TestReport};
+use rtf_model::{FindingSeverity, Samples, TestId, TestQuantity};
 
 use crate::batches::Batches;
-use crate::judge::{MonitorReport, RunningMonitor};
+use crate::judge::{MonitorReport, ReportedTest, RunningMonitor};
+use crate::recording::Recording;
 use crate::settings::Settings;
 use crate::source_time::{Origin, SampleTime, TestStart};
 
@@ -26,6 +29,11 @@ pub(crate) struct TestRun {
     /// The time of the last sample of each signal.
     last: Vec<Option<f64>>,
     has_time_error: bool,
+    /// How much of each recording was played.
+    played: Vec<usize>,
+    /// When its set-up began.
+    setup: f64,
+    has_unit_error: bool,
 }
 
 /// A sample of a signal.
@@ -47,52 +55,186 @@ impl TestRun {
         settings: &Settings,
     ) -> Self {
         let monitors = RunningMonitor::of_test(settings, &test.name);
-        let mut judges = vec![Vec::new(); settings.signals.len()];
-        for (index, monitor) in monitors.iter().enumerate() {
-            for (in_formula, signal) in
-                settings.monitors[monitor.index()].signals.iter().enumerate()
-            {
-                judges[*signal].push((index, in_formula));
-            }
-        }
-        Self {
+        let mut run = Self {
             id: test.id,
             start,
             origins,
             batches: Batches::new(test.id, &settings.signals),
-            monitors,
-            judges,
+            monitors: Vec::new(),
+            judges: vec![Vec::new(); settings.signals.len()],
             last: vec![None; settings.signals.len()],
             has_time_error: false,
+            played: vec![0; settings.recordings.len()],
+            setup: 0.0,
+            has_unit_error: false,
+        };
+        monitors.into_iter().for_each(|monitor| run.add(monitor));
+        run
+    }
+
+    fn add(&mut self, monitor: RunningMonitor) {
+        for (in_formula, signal) in monitor.settings().signals.iter().enumerate() {
+            self.judges[*signal].push((self.monitors.len(), in_formula));
         }
+        self.monitors.push(monitor);
     }
 
     /// Takes a sample, unless it was taken before the test. A violation is reported first.
     pub fn sample(&mut self, sample: SignalSample, settings: &Settings, session: &Session) {
+        if let Some(time) = self.judge(sample, settings, session) {
+            self.batches.add(sample.signal, time, sample.value, session);
+        }
+    }
+
+    /// Plays the recordings up to a time.
+    pub fn play(
+        &mut self,
+        recordings: &[Recording],
+        now: TestStart,
+        settings: &Settings,
+        session: &Session,
+    ) {
+        let elapsed = self.elapsed(now);
+        let first_source = settings.programs.len() + settings.processes.len();
+        for (index, recording) in recordings.iter().enumerate() {
+            while let Some(recorded) = recording.sample(self.played[index], elapsed) {
+                self.played[index] += 1;
+                let written = Some(recorded.time);
+                let time = SampleTime { written, arrival: now.instant };
+                let (signal, value) = (recorded.signal, recorded.value);
+                let source = first_source + index;
+                self.sample(SignalSample { source, signal, time, value }, settings, session);
+            }
+        }
+    }
+
+    /// The time of the next sample of a recording after now, in seconds from now.
+    pub fn next_recorded(&self, recordings: &[Recording], now: TestStart) -> Option<f64> {
+        let next = recordings.iter().zip(&self.played);
+        let next = next.filter_map(|(recording, played)| recording.sample(*played, f64::INFINITY));
+        next.map(|sample| sample.time - self.elapsed(now)).reduce(f64::min)
+    }
+
+    fn elapsed(&self, now: TestStart) -> f64 {
+        now.clock - self.start.clock
+    }
+
+    /// Handles what the test itself reports.
+    pub fn reported(
+        &mut self,
+        report: TestReport,
+        now: TestStart,
+        settings: &Settings,
+        session: &Session,
+    ) {
+        match report {
+            TestReport::SetupStarted {} => self.setup = self.elapsed(now),
+            TestReport::Sampled(samples) => {
+                let points = samples.points.iter().map(|(time, value)| (self.setup + time, *value));
+                let points: Vec<_> = points.collect();
+                self.take(&samples, (TestQuantity::Sample, &points), settings, session);
+            }
+            TestReport::Measured(measured) => {
+                let points = [(self.elapsed(now), measured.value)];
+                let samples = Samples {
+                    name: measured.name,
+                    unit: measured.unit,
+                    low: None,
+                    high: None,
+                    location: measured.location,
+                    case: None,
+                    points: Vec::new(),
+                };
+                self.take(&samples, (TestQuantity::Measurement, &points), settings, session);
+            }
+            TestReport::Monitor(declared) => {
+                let location = declared.location.clone();
+                let is_known = |other: &RunningMonitor| other.settings().name == declared.name;
+                let monitor = if self.monitors.iter().any(is_known) {
+                    Err(format!("another monitor of this test is named `{}`", declared.name))
+                } else {
+                    settings.monitor(declared)
+                };
+                match monitor.map(|monitor| RunningMonitor::new(Arc::new(monitor))) {
+                    Ok(monitor) => monitor.into_iter().for_each(|monitor| self.add(monitor)),
+                    Err(text) => {
+                        let test = self.described(settings, session);
+                        test.finding(FindingSeverity::Error, text, location);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Judges what the test reports under the name of a signal; it is part of its results already.
+    fn take(
+        &mut self,
+        reported: &Samples,
+        (quantity, points): (TestQuantity, &[(f64, Option<f64>)]),
+        settings: &Settings,
+        session: &Session,
+    ) {
+        let is_meant = |(signal, of): &&(usize, TestQuantity)| {
+            *of == quantity && settings.signals[*signal].name == reported.name
+        };
+        let Some((signal, _)) = settings.of_tests.iter().find(is_meant) else { return };
+        let unit = &settings.signals[*signal].unit;
+        if reported.unit != *unit {
+            if !std::mem::replace(&mut self.has_unit_error, true) {
+                let text = format!(
+                    "the test reports `{}` in {}, but its unit in the suite is {}",
+                    reported.name,
+                    quoted_unit(&reported.unit),
+                    quoted_unit(unit)
+                );
+                let location = reported.location.clone();
+                self.described(settings, session).finding(FindingSeverity::Error, text, location);
+            }
+            return;
+        }
+        let (source, signal) = (settings.test_source(), *signal);
+        for (time, value) in points {
+            let time = SampleTime { written: Some(*time), arrival: self.start.instant };
+            let value = value.unwrap_or(f64::NAN);
+            self.judge(SignalSample { source, signal, time, value }, settings, session);
+        }
+    }
+
+    fn described<'a>(&self, settings: &'a Settings, session: &'a Session) -> ReportedTest<'a> {
+        ReportedTest { session, id: self.id, signals: &settings.signals }
+    }
+
+    /// Passes a sample to the monitors. Returns its time, unless it is ignored.
+    fn judge(
+        &mut self,
+        sample: SignalSample,
+        settings: &Settings,
+        session: &Session,
+    ) -> Option<f64> {
         let mut time = self.origins[sample.source].time_of(sample.time, self.start);
         if time < 0.0 {
-            return;
+            return None;
         }
         if let Some(last) = self.last[sample.signal].filter(|last| *last >= time) {
             if sample.time.written.is_none() {
                 // Lines that arrive together.
                 time = last + RESOLUTION;
             } else if last > time {
-                return self.report_earlier_time((sample.signal, last, time), settings, session);
+                self.report_earlier_time((sample.signal, last, time), settings, session);
+                return None;
             } else {
-                return;
+                return None;
             }
         }
         for (monitor, in_formula) in &self.judges[sample.signal] {
             let monitor = &mut self.monitors[*monitor];
             if let Some(violation) = monitor.sample(*in_formula, time, sample.value) {
-                let monitor = &settings.monitors[monitor.index()];
-                let signals = &settings.signals;
-                MonitorReport { session, test: self.id, monitor, signals }.violation(&violation);
+                let test = ReportedTest { session, id: self.id, signals: &settings.signals };
+                MonitorReport { test: &test, monitor: monitor.settings() }.violation(&violation);
             }
         }
         self.last[sample.signal] = Some(time);
-        self.batches.add(sample.signal, time, sample.value, session);
+        Some(time)
     }
 
     /// Reports the first time that is before an earlier one.
@@ -107,8 +249,7 @@ impl TestRun {
         }
         let name = &settings.signals[signal].name;
         let text = format!("the time of signal `{name}` went back from {last} s to {time} s");
-        let (severity, location) = (FindingSeverity::Error, None);
-        session.finding(Finding { test: self.id, severity, text, location });
+        self.described(settings, session).finding(FindingSeverity::Error, text, None);
     }
 
     /// Its zero on the clock of a source.
@@ -132,11 +273,11 @@ impl TestRun {
         self.send(session);
         let last = self.last.iter().flatten().copied().fold(0.0, f64::max);
         let end = (now.clock - self.start.clock).max(last);
-        for monitor in self.monitors {
-            let settings_of = &settings.monitors[monitor.index()];
-            let signals = &settings.signals;
-            let report = MonitorReport { session, test: self.id, monitor: settings_of, signals };
-            monitor.finish(end, was_stopped, &report);
-        }
+        let test = self.described(settings, session);
+        self.monitors.into_iter().for_each(|monitor| monitor.finish(end, was_stopped, &test));
     }
+}
+
+fn quoted_unit(unit: &str) -> String {
+    if unit.is_empty() { "no unit".to_owned() } else { format!("`{unit}`") }
 }

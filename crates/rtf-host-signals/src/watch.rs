@@ -9,18 +9,22 @@ use std::time::{Duration, Instant};
 
 use rtf_host::Session;
 use rtf_model::TestId;
-use rtf_model::protocol::TestAttempt;
+use rtf_model::protocol::{TestAttempt, TestReport};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::processes::FixtureProcesses;
 use crate::program::Program;
 use crate::recorder::Recorder;
+use crate::recording::Recording;
 use crate::settings::{ProcessSettings, Settings};
 use crate::source_time::SampleTime;
 use crate::test_run::SignalSample;
 
 /// Samples are sent at this interval.
 const SEND_INTERVAL: Duration = Duration::from_millis(100);
+
+/// The shortest wait for the next sample of a recording.
+const MIN_WAIT: Duration = Duration::from_millis(1);
 
 /// The running threads and programs.
 #[derive(Debug)]
@@ -36,6 +40,7 @@ struct Shared {
     session: Session,
     state: Mutex<WatchState>,
     has_ended: AtomicBool,
+    /// Notified at the end, and when a test starts.
     ending: Condvar,
 }
 
@@ -81,7 +86,9 @@ impl Watch {
     /// # Errors
     /// A program or thread cannot be started.
     pub fn start(settings: &Arc<Settings>, session: &Session) -> Result<Self, String> {
-        let recorder = Recorder::new(Arc::clone(settings), session.clone());
+        let recordings = settings.recordings.iter().map(Recording::read);
+        let recordings = recordings.collect::<Result<_, _>>()?;
+        let recorder = Recorder::new(Arc::clone(settings), recordings, session.clone());
         let all = settings.programs.iter().enumerate();
         let programs: Vec<Program> =
             all.map(|(index, program)| Program::start(index, program)).collect::<Result<_, _>>()?;
@@ -99,6 +106,10 @@ impl Watch {
         if !settings.processes.is_empty() {
             let (for_processes, settings) = (Arc::clone(&shared), Arc::clone(settings));
             threads.push(std::thread::spawn(move || measure(&for_processes, &settings)));
+        }
+        if !settings.recordings.is_empty() {
+            let shared = Arc::clone(&shared);
+            threads.push(std::thread::spawn(move || play_recordings(&shared)));
         }
         Ok(Self { shared, threads, stop })
     }
@@ -128,7 +139,13 @@ impl Watch {
     }
 
     pub fn start_test(&self, test: &TestAttempt) -> Result<(), String> {
-        self.shared.state().recorder.start(test)
+        let result = self.shared.state().recorder.start(test);
+        self.shared.ending.notify_all();
+        result
+    }
+
+    pub fn reported(&self, test: TestId, report: TestReport) {
+        self.shared.state().recorder.reported(test, report);
     }
 
     pub fn finish_test(&self, test: TestId, was_stopped: bool) -> Result<(), String> {
@@ -175,6 +192,19 @@ fn read_programs(shared: &Shared, outputs: Vec<OwnedFd>, wake: &OwnedFd) {
             next_send = Instant::now() + SEND_INTERVAL;
             shared.state().recorder.send();
         }
+    }
+}
+
+/// Plays recordings while tests run.
+fn play_recordings(shared: &Shared) {
+    let mut state = shared.state();
+    while !shared.has_ended.load(Ordering::Acquire) {
+        let due = state.recorder.play().unwrap_or(SEND_INTERVAL);
+        // Simulated time may be faster than real time.
+        let most = if state.recorder.clock().is_simulated() { MIN_WAIT } else { SEND_INTERVAL };
+        let wait = due.clamp(MIN_WAIT, most);
+        let waited = shared.ending.wait_timeout(state, wait);
+        state = waited.unwrap_or_else(PoisonError::into_inner).0;
     }
 }
 

@@ -87,6 +87,7 @@ pub fn decode(line: &[u8]) -> Incoming {
         "test-started" => parse(params).map(Request::TestStarted),
         "test-ended" => parse(params).map(Request::TestEnded),
         "test-finished" => parse(params).map(Request::TestFinished),
+        "test-reported" => parse(params).map(Request::TestReported),
         "tear-down-fixture" => Ok(Request::TearDownFixture {}),
         "interrupt" => parse::<Interrupt>(params)
             .map(|p| Request::Interrupt { reason: p.reason, request: p.request }),

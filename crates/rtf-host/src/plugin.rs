@@ -3,7 +3,7 @@
 use rtf_model::Location;
 use rtf_model::protocol::{
     Initialize, Initialized, Plugin, Subscription, TestEndedParams, TestFinishedParams,
-    TestStartedParams,
+    TestReportedParams, TestStartedParams,
 };
 
 use crate::Session;
@@ -118,6 +118,9 @@ pub trait HostPlugin {
     fn subscriptions(&self) -> Vec<Subscription> {
         Vec::new()
     }
+
+    /// Passes a report of a running test to the loaded fixture.
+    fn reported(&mut self, _reported: TestReportedParams) {}
 
     /// Notifies the loaded fixture of a test.
     fn notify(&mut self, _notification: TestNotification<'_>) -> StepEnd {

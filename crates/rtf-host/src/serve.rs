@@ -1,7 +1,7 @@
 //! Carries out the runner's requests in order.
 
 use rtf_model::protocol::{
-    Initialize, PROTOCOL_VERSION, Plugin, Request, RpcError, VERSION_MISMATCH,
+    Initialize, PROTOCOL_VERSION, Plugin, Request, RpcError, TestReportedParams, VERSION_MISMATCH,
 };
 use rtf_model::{Outcome, Phase};
 use rustix::process::Pid;
@@ -73,7 +73,21 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
                 self.session.refuse(id, error);
                 false
             }
-            Incoming::Request { id, request } => self.carry_out(id, *request),
+            Incoming::Request { id, request } => match *request {
+                Request::TestReported(reported) => {
+                    self.pass_on(reported);
+                    false
+                }
+                request => self.carry_out(id, request),
+            },
+        }
+    }
+
+    /// Passes a report of a running test to the fixture.
+    fn pass_on(&mut self, reported: TestReportedParams) {
+        self.session.end_without_plugin();
+        if self.loaded == Some(PluginKind::Fixture) {
+            self.host.reported(reported);
         }
     }
 
@@ -113,6 +127,7 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
             Request::TearDownFixture {} => self.tear_down_fixture(),
             // Handled by the reader.
             Request::Initialize(_)
+            | Request::TestReported(_)
             | Request::Interrupt { .. }
             | Request::QuestionClosed(_)
             | Request::DumpStack {} => {}

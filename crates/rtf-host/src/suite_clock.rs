@@ -21,6 +21,11 @@ impl SuiteClock {
         Self { file: file.map(PathBuf::from) }
     }
 
+    /// Whether it is a simulated clock.
+    pub fn is_simulated(&self) -> bool {
+        self.file.is_some()
+    }
+
     /// Its time in seconds; `None` while the file is being written.
     #[must_use]
     pub fn now(&self) -> Option<f64> {

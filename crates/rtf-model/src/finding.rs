@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Location, Message, MessageKind, TestId, Verdict};
+use crate::{Location, Message, MessageKind, SignalInterval, TestId, Verdict};
 
 /// The effect of a [`Finding`] on the test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -52,7 +52,7 @@ impl FindingSeverity {
 }
 
 /// A problem of a running test that a fixture has found.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Finding {
     /// The test.
@@ -64,6 +64,9 @@ pub struct Finding {
     /// Where the violated rule is written: in the suite, or in the plug-in.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub location: Option<Location>,
+    /// When it holds, if that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interval: Option<SignalInterval>,
 }
 
 impl Finding {
@@ -78,6 +81,14 @@ impl Finding {
         };
         let (text, location) = (self.text.clone(), self.location.clone());
         let critical = self.severity == FindingSeverity::Critical;
-        Message { kind, text, location, comparison: None, critical, case: None }
+        Message {
+            kind,
+            text,
+            location,
+            comparison: None,
+            critical,
+            case: None,
+            interval: self.interval.clone(),
+        }
     }
 }

@@ -54,13 +54,13 @@ pub use record::{
     QuestionRecord, Record, RunState, SignalSummary, SuiteRecord, TestRecord, TestTotals,
 };
 pub use report::{
-    Attachment, Comparison, Location, Measurement, Message, MessageKind, format_number,
-    format_rounded,
+    Attachment, Comparison, Location, Measurement, Message, MessageKind, SignalInterval,
+    format_number, format_rounded,
 };
 pub use samples::{Samples, SignalOutline};
 pub use signals::{
-    MeasuredFixture, MonitorConfig, ProcessQuantity, SignalConfig, SignalProgram, SignalSource,
-    SignalTime, SignalsConfig,
+    MeasuredFixture, MonitorConfig, ProcessQuantity, SignalConfig, SignalProgram, SignalRecording,
+    SignalSource, SignalTime, SignalsConfig, TestQuantity, TestSignal,
 };
 pub use trajectory::{Alignment, TrajectoryCheck};
 pub use usage::{Growth, Resource, Usage, UsageSeries};

@@ -14,8 +14,8 @@ use serde_json::Value;
 
 pub use self::rpc::{Reply, RpcError, RpcMessage};
 use crate::{
-    Attachment, CaseId, CaseStart, FaultInjected, Finding, Measurement, Message, Outcome, Parameter,
-    Phase, Question, Samples, TestId, TrajectoryCheck, Verdict,
+    Attachment, CaseId, CaseStart, FaultInjected, Finding, FindingSeverity, Location, Measurement,
+    Message, Outcome, Parameter, Phase, Question, Samples, TestId, TrajectoryCheck, Verdict,
 };
 
 /// The protocol version of this crate. Runner and host must agree on it.
@@ -94,8 +94,9 @@ pub enum ForkReply {
     Error(String),
 }
 
-/// A request of the runner. The host answers all but `interrupt` and `dump-stack`.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// A request of the runner. The host answers all but `test-reported`, `interrupt`,
+/// `question-closed` and `dump-stack`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "method", content = "params", rename_all = "kebab-case")]
 pub enum Request {
@@ -115,6 +116,8 @@ pub enum Request {
     TestEnded(TestEndedParams),
     /// Notify the fixture of the verdict of an attempt, in the same way.
     TestFinished(TestFinishedParams),
+    /// A notification: a running test reported something that the fixture has subscribed to.
+    TestReported(TestReportedParams),
     /// Tear the fixture down. Answered with [`Answer`].
     TearDownFixture {},
     /// A notification: stop soon, and report that in the answer.
@@ -135,7 +138,13 @@ impl Request {
     /// Whether the host answers it.
     #[must_use]
     pub fn is_answered(&self) -> bool {
-        !matches!(self, Self::Interrupt { .. } | Self::QuestionClosed(_) | Self::DumpStack {})
+        !matches!(
+            self,
+            Self::TestReported(_)
+                | Self::Interrupt { .. }
+                | Self::QuestionClosed(_)
+                | Self::DumpStack {}
+        )
     }
 }
 
@@ -296,6 +305,8 @@ pub enum Subscription {
     TestEnded,
     /// An attempt was judged: [`Request::TestFinished`].
     TestFinished,
+    /// A running test reports: [`Request::TestReported`].
+    TestReported,
 }
 
 /// The attempt of a test that a fixture is notified of.
@@ -329,6 +340,70 @@ pub struct TestEndedParams {
     /// Whether the runner stopped it, which decides the verdict: it did not run to its end.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub stopped: bool,
+}
+
+/// A running test has reported something.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct TestReportedParams {
+    /// The test, as in events.
+    pub test: TestId,
+    /// The report.
+    pub report: TestReport,
+}
+
+/// What a test reports to fixtures that subscribe to it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum TestReport {
+    /// The phase `setup` begins: times of samples count from now.
+    SetupStarted {},
+    /// Samples of a signal.
+    Sampled(Samples),
+    /// A measurement.
+    Measured(Measurement),
+    /// A monitor that judges the rest of the test.
+    Monitor(MonitorDeclaration),
+}
+
+/// A monitor that a test declares.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct MonitorDeclaration {
+    /// The name, unique in the test and the suite.
+    pub name: String,
+    /// The formula (`spec/monitors.md`).
+    pub formula: String,
+    /// What a violation means.
+    pub severity: FindingSeverity,
+    /// The position in the plug-in.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub location: Option<Location>,
+}
+
+impl MonitorDeclaration {
+    /// A declaration as plug-ins write it. Without a name, it is the formula; without a severity,
+    /// it is a failure.
+    ///
+    /// # Errors
+    /// The severity is unknown.
+    pub fn new(
+        formula: &str,
+        name: &str,
+        severity: &str,
+        location: Option<Location>,
+    ) -> Result<Self, String> {
+        let name = if name.is_empty() { formula } else { name };
+        let mut all = FindingSeverity::ALL.into_iter();
+        let known = all.find(|(known, _)| *known == severity).map(|(_, severity)| severity);
+        let severity = known.or(severity.is_empty().then_some(FindingSeverity::Fail));
+        let severity = severity.ok_or_else(|| {
+            format!("the severity of the monitor `{name}` has to be fail, error, stop or critical")
+        })?;
+        let (name, formula) = (name.to_owned(), formula.to_owned());
+        Ok(Self { name, formula, severity, location })
+    }
 }
 
 /// An attempt of a test was judged.
@@ -402,6 +477,8 @@ pub enum Notification {
         /// The name of the fault.
         name: String,
     },
+    /// A test declares a formula that judges the rest of it.
+    Monitor(MonitorDeclaration),
     /// A test attaches a file, or a fixture does for the test that it was notified of.
     Attached(Attachment),
     /// A fixture has failed. May arrive at any time.

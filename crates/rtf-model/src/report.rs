@@ -60,6 +60,21 @@ pub struct Message {
     /// The case in which it was reported.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub case: Option<CaseId>,
+    /// When a monitor is violated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interval: Option<SignalInterval>,
+}
+
+/// A part of a test's time, and the signals that a problem in it is about.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SignalInterval {
+    /// Its start, in the time of the signals' samples, in seconds.
+    pub start: f64,
+    /// Its end, in the same time.
+    pub end: f64,
+    /// The names of the signals.
+    pub signals: Vec<String>,
 }
 
 /// The numbers behind a near-equality check of a scalar (one entry) or a vector.

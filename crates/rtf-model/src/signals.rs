@@ -24,6 +24,38 @@ pub enum SignalSource {
     Program(SignalProgram),
     /// The processes of a fixture.
     Fixture(MeasuredFixture),
+    /// A recording, which a program reads before the first test.
+    Recording(SignalRecording),
+    /// What the test itself reports.
+    Test(TestSignal),
+}
+
+/// A recording that is played while a test runs. Its program writes all samples, and ends.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SignalRecording {
+    /// How many arguments of the plug-in are the program and its arguments.
+    pub words: usize,
+    /// The signals, in the order of the values on a line.
+    pub signals: Vec<SignalConfig>,
+}
+
+/// A value that tests report.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TestSignal {
+    /// The signal; the test uses the same name.
+    pub signal: SignalConfig,
+    /// The kind of report.
+    pub quantity: TestQuantity,
+}
+
+/// The reports of a test that are samples of a signal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TestQuantity {
+    /// Samples, with their times.
+    Sample,
+    /// Measurements, at the time when they arrive.
+    Measurement,
 }
 
 /// A program that writes a line for each sample.

@@ -107,6 +107,7 @@ fn report(number: u64) -> EventKind {
         comparison: None,
         critical: false,
         case: None,
+        interval: None,
     };
     EventKind::Message { source: Source::Test(TEST), message, test: None }
 }

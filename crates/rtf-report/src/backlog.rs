@@ -108,8 +108,15 @@ mod tests {
 
     fn message(source: Source) -> Event {
         let (text, kind) = ("x".repeat(100), MessageKind::Report);
-        let message =
-            Message { kind, text, location: None, comparison: None, critical: false, case: None };
+        let message = Message {
+            kind,
+            text,
+            location: None,
+            comparison: None,
+            critical: false,
+            case: None,
+            interval: None,
+        };
         let kind = EventKind::Message { source, message, test: None };
         Event { seq: 0, at: Micros::default(), kind }
     }

@@ -6,7 +6,7 @@ use std::time::Instant;
 use axum::body::Bytes;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use rtf_report::console::RerunCommand;
+use rtf_report::console::TestCommands;
 use serde::Serialize;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
 
@@ -36,8 +36,8 @@ pub struct App {
     pub access: Arc<Access>,
     /// What the server can do in addition to showing runs.
     pub role: Capabilities,
-    /// Creates the function that returns the command for rerunning a test.
-    pub rerun: fn() -> RerunCommand,
+    /// Creates the functions that return the commands for rerunning and replaying a test.
+    pub commands: fn() -> TestCommands,
     /// Changes when the journal of that run has grown.
     pub grown: watch::Receiver<u64>,
     /// Becomes true when the server shuts down.

@@ -40,7 +40,7 @@ impl Prepared {
         limits: Limits,
         service: Service<'_>,
     ) -> Result<Self, ServeError> {
-        let Service { results, history, campaigns, metrics, role, rerun, wrong_token } = service;
+        let Service { results, history, campaigns, metrics, role, commands, wrong_token } = service;
         let log = AccessLog::start(wrong_token).map_err(ServeError::Start)?;
         let access = Access::new(token, hosts, rules, log)?;
         let (ending, ends) = watch::channel(false);
@@ -52,7 +52,7 @@ impl Prepared {
             metrics,
             access: Arc::new(access),
             role,
-            rerun,
+            commands,
             grown: grows,
             ending: ends,
             streams: App::streams(),

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use axum_server::tls_rustls::RustlsAcceptor;
 use axum_server::{Handle, Server as HttpServer};
 use hyper_util::rt::TokioTimer;
-use rtf_report::console::RerunCommand;
+use rtf_report::console::TestCommands;
 use tokio::sync::watch;
 
 use crate::access::{self, Hosts, Rules, Secret, TokenError, WrongToken};
@@ -104,8 +104,8 @@ pub struct Service<'a> {
     pub metrics: bool,
     /// What this server can do in addition to showing them.
     pub role: Capabilities,
-    /// Creates the function that returns the command for rerunning a test.
-    pub rerun: fn() -> RerunCommand,
+    /// Creates the functions that return the commands for rerunning and replaying a test.
+    pub commands: fn() -> TestCommands,
     /// Reports a wrong token.
     pub wrong_token: Box<dyn Fn(WrongToken) + Send>,
 }

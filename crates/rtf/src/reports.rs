@@ -100,15 +100,15 @@ pub fn write(
                 repository: repository().as_deref(),
                 dir: place.dir(),
                 url: place.url,
-                rerun: rerun_command::for_run(),
+                commands: rerun_command::for_tests(),
             },
         ),
         ReportFormat::Otlp => otlp::write(out, record),
         ReportFormat::Html => {
             let missing = || io::Error::other("the run has no journal");
             let journal = place.journal.ok_or_else(missing)?;
-            let rerun = &rerun_command::for_run();
-            html_report::write(out, &ReportSource { journal, output: place.output, rerun })
+            let (commands, output, dir) = (&rerun_command::for_tests(), place.output, place.dir());
+            html_report::write(out, &ReportSource { journal, output, commands, dir })
         }
         ReportFormat::Json => Err(io::Error::other("a record contains no events")),
     }

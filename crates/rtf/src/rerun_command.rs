@@ -6,10 +6,15 @@ use std::sync::OnceLock;
 
 use rtf_model::{Record, TestId};
 use rtf_plan::suite::replay_suite;
-use rtf_report::console::{ReplayCommand, RerunCommand, rerun_suite};
+use rtf_report::console::{ReplayCommand, RerunCommand, TestCommands, rerun_suite};
 
 /// The parameter of a suite that replays: the path of the recording.
 const RECORDING: &str = "recording";
+
+/// Both commands.
+pub fn for_tests() -> TestCommands {
+    TestCommands { rerun: for_run(), replay: for_replay() }
+}
 
 /// A command that names the suite or the plug-in, with the options without which it
 /// would be another test.

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use rtf_engine::signal::SignalListener;
 use rtf_history::Location;
-use rtf_report::console::RerunCommand;
+use rtf_report::console::TestCommands;
 use rtf_web::{BoundServer, Capabilities, ServeError, Service, Settings, WebServer, WrongToken};
 
 use crate::campaign::report::ServedCampaigns;
@@ -38,10 +38,10 @@ pub fn serve(bound: BoundServer, served: Served<'_>) -> Result<WebServer, Failur
     let Served { results, history, metrics, role } = served;
     let history = Arc::new(ServedHistory { database: history });
     let campaigns = Arc::new(ServedCampaigns { results: results.to_owned() });
-    let rerun: fn() -> RerunCommand = rerun_command::for_run;
+    let commands: fn() -> TestCommands = rerun_command::for_tests;
     let wrong_token = Box::new(report_wrong_token);
     let server = bound
-        .serve(Service { results, history, campaigns, metrics, role, rerun, wrong_token })
+        .serve(Service { results, history, campaigns, metrics, role, commands, wrong_token })
         .map_err(failure)?;
     terminal::stderr(|err| {
         if let Some(taken) = server.taken() {

@@ -74,6 +74,15 @@ private package RobotTestingFramework.ABI is
       Line  : Interfaces.Unsigned_32;
    end record with Convention => C;
 
+   type Monitor is record
+      Size     : Interfaces.C.size_t;
+      Formula  : Text;
+      Name     : Text;
+      Severity : Text;
+      File     : Address;
+      Line     : Interfaces.Unsigned_32;
+   end record with Convention => C;
+
    type Parameter is record
       Name  : Text;
       Value : Text;
@@ -174,6 +183,9 @@ private package RobotTestingFramework.ABI is
       return Interfaces.Integer_32
      with Convention => C;
 
+   type Take_Monitor is access procedure (Context : Address; Value : Monitor)
+     with Convention => C;
+
    type Host_Table is record
       Major       : Interfaces.Unsigned_32;
       Minor       : Interfaces.Unsigned_32;
@@ -199,6 +211,7 @@ private package RobotTestingFramework.ABI is
       Values      : Tell_Parameters;
       Ask         : Ask_Question;
       Trajectory  : Take_Trajectory;
+      Monitor     : Take_Monitor;
    end record with Convention => C;
 
    type Host_Access is access constant Host_Table with Convention => C;

@@ -251,6 +251,37 @@ package body RobotTestingFramework.Session is
           Align     => Alignment'Pos (Align)));
    end Check_Trajectory;
 
+   procedure Monitor
+     (Formula : String;
+      Name    : String   := "";
+      Meaning : Severity := Fail;
+      File    : String   := Source.File;
+      Line    : Natural  := Source.Line)
+   is
+      Table         : constant not null ABI.Host_Access := Host.Table;
+      Formula_Text  : aliased constant String := Formula;
+      Name_Text     : aliased constant String := Name;
+      Severity_Text : aliased constant String :=
+        (case Meaning is
+           when Fail     => "fail",
+           when Error    => "error",
+           when Stop     => "stop",
+           when Critical => "critical");
+      Source_Text   : aliased constant String := File & ASCII.NUL;
+   begin
+      if Table.Minor < 4 then
+         raise Program_Error with "this rtf is too old for monitors";
+      end if;
+      Table.Monitor
+        (Table.Context,
+         (Size     => ABI.Monitor'Size / System.Storage_Unit,
+          Formula  => Host.To_C (Formula_Text),
+          Name     => Host.To_C (Name_Text),
+          Severity => Host.To_C (Severity_Text),
+          File     => Source_Text'Address,
+          Line     => Interfaces.Unsigned_32 (Line)));
+   end Monitor;
+
    procedure Sample_For
      (Name      : String;
       Time      : Duration;

@@ -110,6 +110,19 @@ package RobotTestingFramework.Session is
       File      : String     := Source.File;
       Line      : Natural    := Source.Line);
 
+   --  What the violation of a monitor means: a failure or an error, and whether it stops
+   --  the test, or also the rest of the suite.
+   type Severity is (Fail, Error, Stop, Critical);
+
+   --  Judges the rest of the test by a formula over the signals of the suite. The
+   --  default name is the formula.
+   procedure Monitor
+     (Formula : String;
+      Name    : String   := "";
+      Meaning : Severity := Fail;
+      File    : String   := Source.File;
+      Line    : Natural  := Source.Line);
+
    --  Samples the result of Read at this rate in Hz. A slow Read skips samples.
    generic
       with function Read return Long_Float;

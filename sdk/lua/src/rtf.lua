@@ -131,6 +131,16 @@ function rtf.sample(name, value, unit, low, high, time)
   return within
 end
 
+function rtf.monitor(formula, name, severity)
+  local file, line = guard.location(2)
+  name = name == nil and "" or tostring(name)
+  severity = severity == nil and "" or tostring(severity)
+  local problem = host.monitor(tostring(formula), name, severity, file, line)
+  if problem then
+    error(problem, 2)
+  end
+end
+
 -- Sleeps by the wall clock.
 local function pause(seconds)
   if host.wait(seconds) then

@@ -199,6 +199,14 @@ class Session:
             params["location"] = place.as_json()
         self.notify_in_case("trajectory", params)
 
+    def monitor(self, name: str, formula: str, severity: str) -> None:
+        """Declare a formula that judges the rest of the test."""
+        params: dict[str, object] = {"name": name, "formula": formula, "severity": severity}
+        place = _location.caller()
+        if place is not None:
+            params["location"] = place.as_json()
+        self.notify("monitor", params)
+
     def error(self, text: str, **more: object) -> None:
         """Send an error."""
         self.request.record("error")

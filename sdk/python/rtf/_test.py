@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from typing import Any, Callable, NoReturn
 
 
+# The severities of a monitor.
+_SEVERITIES = ("fail", "error", "stop", "critical")
+
+
 class TestCase(Plugin):
     """A test: derive from it, and write `run`, and `setup` and `tearDown` where needed.
 
@@ -130,6 +134,17 @@ class TestCase(Plugin):
             raise ValueError(f"the time of a sample of `{name}` is not finite")
         at = None if time is None else float(time)
         return _session.current().sampled(signal, float(value), at)
+
+    def monitor(self, formula: str, name: str | None = None, severity: str = "fail") -> None:
+        """Judge the rest of the test by a formula over the signals of the suite.
+
+        `severity` is `fail`, `error`, `stop` or `critical`: what a violation means. The
+        default name is the formula.
+        """
+        if severity not in _SEVERITIES:
+            known = ", ".join(_SEVERITIES)
+            raise ValueError(f"the severity of a monitor is one of {known}, not `{severity}`")
+        _session.current().monitor(name or formula, formula, severity)
 
     def sample_for(  # noqa: PLR0913, PLR0917 - as in all languages
         self,

@@ -99,13 +99,7 @@ def test_a_picture_is_attached_before_the_question(tmp_path: Path) -> None:
 
 
 def test_a_forked_child_cannot_ask(tmp_path: Path) -> None:
-    body = (
-        "import os\n"
-        "child = os.fork()\n"
-        "if child == 0:\n"
-        "    self.ask('?')\n"
-        "os.waitpid(child, 0)"
-    )
+    body = "import os\nchild = os.fork()\nif child == 0:\n    self.ask('?')\nos.waitpid(child, 0)"
     ran = run(tmp_path, arm(body))
     assert ran.problem == ("error", "a process that the plug-in forked cannot ask")
     assert ran.host.of("question-asked") == []

@@ -129,7 +129,7 @@ export const snapshot = (run: string, signal: AbortSignal | null = null) =>
     get<Snapshot>(path(['runs', run, 'snapshot']), signal);
 
 export const test = (run: string, id: number, signal: AbortSignal | null = null) =>
-    get<{ test: Test; attempts: Attempt[]; command?: string }>(
+    get<{ test: Test; attempts: Attempt[]; command?: string; replay?: string }>(
         path(['runs', run, 'tests', id]),
         signal,
     );

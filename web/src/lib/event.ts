@@ -20,6 +20,7 @@ export type {
     TestFinished,
     TestPlanned,
     RunStarted,
+    SignalInterval,
 } from '../generated/event';
 
 export type Verdict = Extract<Event, { type: 'test-finished' }>['verdict'];

@@ -48,6 +48,29 @@ export function drawMarks(plot: uPlot, marks: readonly number[], colour: string)
     context.restore();
 }
 
+/** A part of the x axis. */
+export interface Interval {
+    from: number;
+    to: number;
+}
+
+/** Shades parts of the x axis; a single point is a line. */
+export function drawIntervals(plot: uPlot, intervals: readonly Interval[], colour: string): void {
+    const { ctx: context, bbox } = plot;
+    const end = bbox.left + bbox.width;
+    context.save();
+    context.fillStyle = colour;
+    context.globalAlpha = 0.25;
+    for (const { from, to } of intervals) {
+        const left = Math.max(bbox.left, Math.round(plot.valToPos(from, 'x', true)));
+        const right = Math.min(end, Math.round(plot.valToPos(to, 'x', true)));
+        if (left > end || right < bbox.left) continue;
+        const width = Math.max(right - left, 2 * devicePixelRatio);
+        context.fillRect(left, bbox.top, width, bbox.height);
+    }
+    context.restore();
+}
+
 /** Plots that are reset together, by link. */
 class Linked {
     private readonly resets = new Map<string, Set<() => void>>();

@@ -18,8 +18,15 @@ impl CaseReporter<'_> {
         location: Option<Location>,
     ) {
         let text = text.into();
-        let message =
-            Message { kind, text, location, comparison: None, critical: false, case: None };
+        let message = Message {
+            kind,
+            text,
+            location,
+            comparison: None,
+            critical: false,
+            case: None,
+            interval: None,
+        };
         self.full_message(path, message);
     }
 
@@ -90,7 +97,15 @@ impl CaseReporter<'_> {
     /// Reports an error of the test, outside of its cases.
     pub fn test_error(&mut self, text: String) {
         let (kind, location, comparison) = (MessageKind::Error, None, None);
-        let message = Message { kind, text, location, comparison, critical: false, case: None };
+        let message = Message {
+            kind,
+            text,
+            location,
+            comparison,
+            critical: false,
+            case: None,
+            interval: None,
+        };
         self.session.forward(&Notification::Message(message));
     }
 

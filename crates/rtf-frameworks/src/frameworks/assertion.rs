@@ -11,7 +11,7 @@ use crate::xml_stream::Attributes;
 /// A failure, an error or a passed check.
 pub(super) fn message(kind: MessageKind, text: &str, location: Option<Location>) -> Message {
     let text = text.trim().to_owned();
-    Message { kind, text, location, comparison: None, critical: false, case: None }
+    Message { kind, text, location, comparison: None, critical: false, case: None, interval: None }
 }
 
 /// The location in an element's attributes.

@@ -302,7 +302,15 @@ fn report(found: Diagnostics, kind: MessageKind, path: &str, cases: &mut CaseRep
     if !lines.is_empty() {
         let text = lines.join("\n");
         let comparison = comparison.filter(|_| is_failure);
-        let message = Message { kind, text, location, comparison, critical: false, case: None };
+        let message = Message {
+            kind,
+            text,
+            location,
+            comparison,
+            critical: false,
+            case: None,
+            interval: None,
+        };
         cases.full_message(Some(path), message);
     }
     for (key, text) in other {

@@ -11,7 +11,7 @@ use axum::response::Response;
 use futures_util::StreamExt as _;
 use rtf_history::{Store, StoreError};
 use rtf_model::{LineSealer, SuiteId, TestId};
-use rtf_report::console::RerunCommand;
+use rtf_report::console::TestCommands;
 use rtf_web::{
     AnswerRequest, BoundServer, CampaignReport, CampaignSource, Capabilities, HistorySource,
     Limits, Routes, RunControl, Service, Settings, TestCondition,
@@ -78,7 +78,10 @@ fn service(results: &Path) -> Service<'_> {
         campaigns: Arc::new(NoCampaigns),
         metrics: true,
         role: Capabilities::Runner("own".to_owned(), Arc::new(Forbidden)),
-        rerun: || -> RerunCommand { Box::new(|_, test, _| Some(format!("rtf run s.xml::{test}"))) },
+        commands: || {
+            let rerun = |_: &_, test, _: Option<&str>| Some(format!("rtf run s.xml::{test}"));
+            TestCommands::without_replay(Box::new(rerun))
+        },
         wrong_token: Box::new(|_| ()),
     }
 }

@@ -5,7 +5,7 @@ use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
 use rtf_model::protocol::{Notification, RpcMessage};
-use rtf_model::{FindingSeverity, MonitorConfig, SignalConfig};
+use rtf_model::{FindingSeverity, SignalConfig};
 use rtf_monitor::Formula;
 
 use super::*;
@@ -18,26 +18,23 @@ struct Bench {
     start: Instant,
 }
 
-fn monitor(name: &str, formula: &str, tests: Option<&str>) -> MonitorSettings {
+fn monitor(name: &str, formula: &str, tests: Option<&str>) -> Arc<MonitorSettings> {
     let formula = Formula::parse(formula).unwrap();
     let names = ["q", "limit"];
     let index = |name: &str| names.iter().position(|known| *known == name).unwrap();
-    MonitorSettings {
-        config: MonitorConfig {
-            name: name.to_owned(),
-            formula: formula.text().to_owned(),
-            severity: FindingSeverity::Fail,
-            location: rtf_model::Location { file: "s.xml".to_owned(), line: 4 },
-            origin: None,
-            tests: tests.map(|test| vec![test.to_owned()]),
-        },
+    Arc::new(MonitorSettings {
+        name: name.to_owned(),
+        severity: FindingSeverity::Fail,
+        location: Some(rtf_model::Location { file: "s.xml".to_owned(), line: 4 }),
+        origin: None,
+        tests: tests.map(|test| vec![test.to_owned()]),
         signals: formula.signals().iter().map(|signal| index(&signal.name)).collect(),
         formula,
-    }
+    })
 }
 
 impl Bench {
-    fn new(time: SignalTime, monitors: Vec<MonitorSettings>) -> Self {
+    fn new(time: SignalTime, monitors: Vec<Arc<MonitorSettings>>) -> Self {
         let signal = |name: &str| SignalConfig { name: name.to_owned(), unit: String::new() };
         let (words, first_signal, count, wait) = (Vec::new(), 0, 2, true);
         let program = ProgramSettings { words, first_signal, count, time, wait };
@@ -48,7 +45,7 @@ impl Bench {
             ..Settings::default()
         };
         let (host, runner) = UnixStream::pair().unwrap();
-        let recorder = Recorder::new(Arc::new(settings), Session::over(host));
+        let recorder = Recorder::new(Arc::new(settings), Vec::new(), Session::over(host));
         Self { recorder, runner: BufReader::new(runner), start: Instant::now() }
     }
 

@@ -1,6 +1,6 @@
-//! What a fixture reports about a running test.
+//! What a fixture reports about a running test, and the monitors of a test.
 
-use rtf_model::protocol::Notification;
+use rtf_model::protocol::{MonitorDeclaration, Notification};
 use rtf_model::{FaultInjected, Finding, Samples, TestId};
 
 use super::Session;
@@ -9,6 +9,11 @@ impl Session {
     /// Reports a problem of a running test.
     pub fn finding(&self, finding: Finding) {
         self.notify(&Notification::Finding(finding));
+    }
+
+    /// Declares a formula that judges the rest of the test.
+    pub fn monitor(&self, monitor: MonitorDeclaration) {
+        self.notify(&Notification::Monitor(monitor));
     }
 
     /// Reports samples that were taken while a test runs.

@@ -232,7 +232,15 @@ impl Session {
     /// Reports an error of the plug-in that it did not report itself.
     pub(crate) fn error(&self, text: String, location: Option<Location>) {
         let (kind, comparison) = (MessageKind::Error, None);
-        self.message(Message { kind, text, location, comparison, critical: false, case: None });
+        self.message(Message {
+            kind,
+            text,
+            location,
+            comparison,
+            critical: false,
+            case: None,
+            interval: None,
+        });
     }
 
     /// Reports that the fixture collapsed.

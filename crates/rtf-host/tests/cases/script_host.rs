@@ -106,7 +106,15 @@ fn describe(line: &Value) -> String {
 pub fn send(session: &Session, kind: MessageKind, text: &str) {
     let text = text.to_owned();
     let (location, comparison, case) = (None, None, None);
-    session.message(Message { kind, text, location, comparison, critical: false, case });
+    session.message(Message {
+        kind,
+        text,
+        location,
+        comparison,
+        critical: false,
+        case,
+        interval: None,
+    });
 }
 
 pub fn report(session: &Session, text: &str) {

@@ -134,6 +134,7 @@ fn a_text_longer_than_a_line_arrives_in_several_messages() {
             comparison,
             critical: false,
             case: None,
+            interval: None,
         });
     });
     let mut arrived = String::new();

@@ -27,6 +27,7 @@ impl Script {
             comparison: None,
             critical: false,
             case: None,
+            interval: None,
         });
     }
 

@@ -36,7 +36,15 @@ fn case_ends_after(number: u32, verdict: Verdict, carried_after_us: Option<u64>)
 
 fn report(case: u32) -> EventKind {
     let (kind, text, case) = (MessageKind::Report, "x".to_owned(), Some(CaseId(case)));
-    let message = Message { kind, text, location: None, comparison: None, critical: false, case };
+    let message = Message {
+        kind,
+        text,
+        location: None,
+        comparison: None,
+        critical: false,
+        case,
+        interval: None,
+    };
     EventKind::Message { source: Source::Test(TEST), message, test: None }
 }
 

@@ -32,8 +32,15 @@ fn printed(text: &str, omitted_bytes: u64) -> EventKind {
 
 fn told(kind: MessageKind, text: &str) -> EventKind {
     let text = text.to_owned();
-    let message =
-        Message { kind, text, location: None, comparison: None, critical: false, case: None };
+    let message = Message {
+        kind,
+        text,
+        location: None,
+        comparison: None,
+        critical: false,
+        case: None,
+        interval: None,
+    };
     EventKind::Message { source: Source::Hook(PARK), message, test: None }
 }
 

@@ -28,6 +28,7 @@ fn message(kind: MessageKind) -> EventKind {
         comparison: None,
         critical: false,
         case: None,
+        interval: None,
     };
     EventKind::Message { source: Source::Test(TEST), message, test: None }
 }

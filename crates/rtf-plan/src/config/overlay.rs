@@ -9,9 +9,9 @@ use super::param_reference;
 use super::profile_view::{ConfigRequest, ProfileView};
 use crate::plan::defaults;
 use crate::suite::{
-    DeclaredLimits, DeclaredPlugin, DeclaredProbeKind, DeclaredProbes, DeclaredProvide,
-    DeclaredSourceKind, DeclaredSuite, DeclaredValueSource, FixtureKind, HookKind, MAX_DURATION,
-    SourceText, Span,
+    DeclaredLimits, DeclaredMonitor, DeclaredPlugin, DeclaredProbeKind, DeclaredProbes,
+    DeclaredProvide, DeclaredSourceKind, DeclaredSuite, DeclaredValueSource, FixtureKind, HookKind,
+    MAX_DURATION, SourceText, Span,
 };
 use crate::wording::nearest;
 
@@ -199,6 +199,7 @@ impl ParamSubstitution<'_> {
             let reported = self.problems.len();
             self.env(&mut test.env, test.span);
             self.plugin(&mut test.plugin);
+            self.monitors(&mut test.monitors);
             if let Some(patterns) = test.cases.as_mut().and_then(|cases| cases.patterns.as_mut()) {
                 self.text(&mut patterns.value, patterns.span);
             }
@@ -208,6 +209,7 @@ impl ParamSubstitution<'_> {
             }
         }
         self.own.clear();
+        self.monitors(&mut suite.monitors);
         for fixture in &mut suite.fixtures {
             self.env(&mut fixture.env, fixture.span);
             self.provides(&mut fixture.provides);
@@ -227,11 +229,7 @@ impl ParamSubstitution<'_> {
                 FixtureKind::Attached(probes) => self.probes(probes),
             }
         }
-        for source in &mut suite.signals {
-            if let DeclaredSourceKind::Program { command, .. } = &mut source.kind {
-                self.words(&mut command.value, command.span);
-            }
-        }
+        suite.signals.iter_mut().for_each(|source| self.source(&mut source.kind));
         for envelope in &mut suite.envelopes {
             self.text(&mut envelope.file.value, envelope.file.span);
         }
@@ -281,6 +279,25 @@ impl ParamSubstitution<'_> {
 
     fn plugin(&mut self, plugin: &mut DeclaredPlugin) {
         self.text(&mut plugin.param, plugin.name.span);
+    }
+
+    /// The source of signals.
+    fn source(&mut self, source: &mut DeclaredSourceKind) {
+        match source {
+            DeclaredSourceKind::Program { command, .. } => {
+                self.words(&mut command.value, command.span);
+            }
+            DeclaredSourceKind::Recording { file, .. } => self.text(&mut file.value, file.span),
+            DeclaredSourceKind::Topic { .. }
+            | DeclaredSourceKind::Test(_)
+            | DeclaredSourceKind::Fixture { .. } => {}
+        }
+    }
+
+    fn monitors(&mut self, monitors: &mut [DeclaredMonitor]) {
+        for monitor in monitors {
+            self.text(&mut monitor.formula.value, monitor.formula.span);
+        }
     }
 
     fn env(&mut self, env: &mut [(String, String)], span: Span) {

@@ -11,7 +11,7 @@ use super::hosts;
 use super::plugin_search::shipped_dir;
 use super::program::utf8;
 use super::search_scope::SearchScope;
-use crate::suite::{DeclaredPlugin, MiddlewareProbe};
+use crate::suite::{DeclaredPlugin, MiddlewareProbe, SignalMiddleware};
 
 /// The default limit for one answer.
 pub(super) const TIMEOUT: Duration = Duration::from_secs(5);
@@ -19,8 +19,8 @@ pub(super) const TIMEOUT: Duration = Duration::from_secs(5);
 pub(super) const STARTUP_TIME: Duration = Duration::from_secs(2);
 /// The probe program, relative to the directory of the shipped fixture managers.
 const PROGRAM: &str = "rtf_fixtures/probe.py";
-/// The program that reads fields of ROS 1 topics.
-const ROS_SIGNALS: &str = "rtf_fixtures/ros1_signals.py";
+/// The program that reads recordings.
+const RECORDED_SIGNALS: &str = "rtf_fixtures/recorded_signals.py";
 /// Options that speed up the interpreter; the ROS 2 probes need installed packages.
 const ISOLATED: [&str; 2] = ["-E", "-S"];
 
@@ -34,9 +34,32 @@ pub(super) fn starts_middleware(plugin: &DeclaredPlugin) -> bool {
     plugin.plugin_type.is_none() && STARTING_MIDDLEWARE.contains(&plugin.name.value.as_str())
 }
 
-/// Returns the program and first arguments of a command that writes fields of ROS 1 topics.
-pub(super) fn signals(scope: &SearchScope<'_>) -> Result<Vec<String>, Box<Diagnostic>> {
-    let program = shipped_program(ROS_SIGNALS, "topics of ROS 1 cannot be read", scope)?;
+/// Returns the program and first arguments of a command that writes values of topics or ports.
+pub(super) fn signals(
+    middleware: SignalMiddleware,
+    scope: &SearchScope<'_>,
+) -> Result<Vec<String>, Box<Diagnostic>> {
+    let (program, consequence) = match middleware {
+        SignalMiddleware::Ros => ("rtf_fixtures/ros1_signals.py", "topics of ROS 1 cannot be read"),
+        SignalMiddleware::Ros2 => {
+            ("rtf_fixtures/ros2_signals.py", "topics of ROS 2 cannot be read")
+        }
+        SignalMiddleware::Yarp => ("rtf_fixtures/yarp_signals.py", "ports of YARP cannot be read"),
+    };
+    python_program(program, consequence, scope)
+}
+
+/// Returns the program and first arguments of a command that writes values of a recording.
+pub(super) fn recorded_signals(scope: &SearchScope<'_>) -> Result<Vec<String>, Box<Diagnostic>> {
+    python_program(RECORDED_SIGNALS, "recordings cannot be read", scope)
+}
+
+fn python_program(
+    program: &str,
+    consequence: &str,
+    scope: &SearchScope<'_>,
+) -> Result<Vec<String>, Box<Diagnostic>> {
+    let program = shipped_program(program, consequence, scope)?;
     Ok(vec![utf8(&hosts::python(scope)?)?, utf8(&program)?])
 }
 

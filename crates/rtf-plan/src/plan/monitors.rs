@@ -6,7 +6,7 @@ use rtf_model::{Diagnostic, Location, MonitorConfig};
 use rtf_monitor::Formula;
 
 use super::of_tests::OfTests;
-use crate::suite::{DeclaredMonitor, DeclaredSignal, SourceText, position_of};
+use crate::suite::{DeclaredMonitor, DeclaredSignal, SourceText, episode_reference, position_of};
 use crate::wording::{quoted, suggest};
 
 /// Plans the monitors of a suite and of its tests, and reports invalid ones.
@@ -19,7 +19,10 @@ pub(super) fn plan(
     let all = of_tests.with_suite(of_suite, source, problems);
     let mut plans = Vec::new();
     for (monitor, tests) in all {
-        problems.extend(FormulaCheck { monitor, signals, source }.problems());
+        // Combinations of a matrix have the same problems.
+        let mut found = FormulaCheck { monitor, signals, source }.problems();
+        found.retain(|problem| !problems.contains(problem));
+        problems.append(&mut found);
         let location = Location { file: source.name().to_owned(), line: source.line(monitor.span) };
         plans.push(MonitorConfig {
             name: monitor.name.value.clone(),
@@ -41,7 +44,9 @@ struct FormulaCheck<'a> {
 
 impl FormulaCheck<'_> {
     fn problems(&self) -> Vec<Diagnostic> {
-        let formula = match Formula::parse(&self.monitor.formula.value) {
+        // A parameter of a campaign is a number, which is not known yet.
+        let text = episode_reference::replace(&self.monitor.formula.value, "1");
+        let formula = match Formula::parse(&text) {
             Ok(formula) => formula,
             Err(error) => {
                 let problem = Diagnostic::error("invalid-formula", error.message);
@@ -81,8 +86,15 @@ impl FormulaCheck<'_> {
     }
 
     fn at(&self, problem: Diagnostic, range: Range<usize>, hint: Option<String>) -> Diagnostic {
-        let span = position_of(self.source, &self.monitor.formula, range);
-        let problem = problem.label(self.source.label(span, ""));
+        let formula = &self.monitor.formula;
+        let written = self.source.text().get(formula.span.range()).unwrap_or_default();
+        let problem = if written.contains("${") {
+            let note = format!("with its parameters, the formula is `{}`", formula.value);
+            problem.label(self.source.label(formula.span, "")).note(note)
+        } else {
+            let span = position_of(self.source, formula, range);
+            problem.label(self.source.label(span, ""))
+        };
         match hint {
             Some(hint) => problem.hint(hint),
             None => problem,

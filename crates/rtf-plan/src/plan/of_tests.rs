@@ -13,6 +13,10 @@ pub(super) trait OfTest {
     fn span(&self) -> Span;
     /// Its name.
     fn name(&self) -> &Spanned<String>;
+    /// Whether this is the same declaration, of another combination of a matrix.
+    fn is_same(&self, other: &Self) -> bool {
+        self.span() == other.span()
+    }
 }
 
 impl OfTest for DeclaredMonitor {
@@ -22,6 +26,9 @@ impl OfTest for DeclaredMonitor {
     }
     fn name(&self) -> &Spanned<String> {
         &self.name
+    }
+    fn is_same(&self, other: &Self) -> bool {
+        self.span == other.span && self.formula.value == other.formula.value
     }
 }
 
@@ -36,7 +43,7 @@ impl OfTest for DeclaredFault {
 }
 
 /// The declarations of tests, each with the names of its tests. The combinations of a matrix
-/// share theirs.
+/// share those that are the same.
 #[derive(Debug)]
 pub(super) struct OfTests<T>(Vec<(T, Vec<String>)>);
 
@@ -50,7 +57,7 @@ impl<T: OfTest> OfTests<T> {
     /// Adds the declarations of a test with this name.
     pub fn add(&mut self, test: &str, declared: Vec<T>) {
         for one in declared {
-            match self.0.iter_mut().find(|(known, _)| known.span() == one.span()) {
+            match self.0.iter_mut().find(|(known, _)| known.is_same(&one)) {
                 Some((_, tests)) => tests.push(test.to_owned()),
                 None => self.0.push((one, vec![test.to_owned()])),
             }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_model::{
-    FixtureId, MeasuredFixture, SignalConfig, SignalProgram, SignalSource, SignalTime,
-    SignalsConfig,
+    Diagnostic, FixtureId, MeasuredFixture, SignalConfig, SignalProgram, SignalRecording,
+    SignalSource, SignalTime, SignalsConfig, TestSignal,
 };
 
 use super::fixture::{RESTART_DELAY, RESTARTS};
@@ -17,14 +17,18 @@ use super::of_tests::OfTests;
 use super::own_processes::SuiteFixtures;
 use super::plugin_planner::PluginPlanner;
 use super::use_site::UseSite;
-use super::{FixtureBody, FixturePlan, defaults, envelopes, middleware, program};
+use super::{
+    FixtureBody, FixturePlan, HookBody, ResetPlan, defaults, envelopes, middleware, program,
+};
 use crate::suite::{
     DeclaredEnvelope, DeclaredMonitor, DeclaredSignal, DeclaredSource, DeclaredSourceKind,
-    SourceText,
+    SignalMiddleware, SourceText, Spanned, episode_reference,
 };
 
 /// The name of the fixture and of its type.
 const NAME: &str = "signals";
+/// The limit of its reset between two episodes.
+const RESET_TIMEOUT: Duration = Duration::from_secs(10);
 /// The interval at which the processes of a fixture are measured.
 const MEASURE_EVERY: Duration = Duration::from_millis(100);
 
@@ -69,6 +73,7 @@ pub(super) fn plan(
     }
     let config = SignalsConfig { sources, monitors, has_clock: declared.has_clock };
     let Ok(param) = serde_json::to_string(&config) else { return };
+    let reset = reset(planner, &param, &args);
     let site = UseSite::Suite(Arc::clone(source), first);
     let Some(plugin) = planner.plan_built_in(&SIGNALS, source.name(), (param, args), &site) else {
         return;
@@ -84,11 +89,25 @@ pub(super) fn plan(
         body: FixtureBody::Plugin(plugin),
         env: Vec::new(),
         limits: defaults::FIXTURE,
-        reset: None,
+        reset,
         restarts: RESTARTS,
         restart_delay: RESTART_DELAY,
         check_every: None,
     });
+}
+
+/// Between two episodes of a campaign, nothing has to be done, unless the fixture or its programs
+/// depend on the parameters of the episode: then it is restarted.
+fn reset(planner: &PluginPlanner<'_, '_>, param: &str, args: &[String]) -> Option<ResetPlan> {
+    let scope = planner.scope();
+    let env = scope.suite_env.iter().map(|(_, value)| value.as_str());
+    let mut texts = args.iter().map(String::as_str).chain([param]).chain(env);
+    if texts.any(episode_reference::mentions) {
+        return None;
+    }
+    let nothing = program::find("true", &scope).and_then(|file| program::utf8(&file)).ok()?;
+    let body = HookBody::Command(vec![nothing]);
+    Some(ResetPlan { body, timeout: RESET_TIMEOUT, restart_every: None })
 }
 
 struct SourcePlanner<'p, 'a, 'c> {
@@ -106,36 +125,95 @@ impl SourcePlanner<'_, '_, '_> {
         let mut args = Vec::new();
         let mut sources: Vec<_> =
             declared.sources.iter().filter_map(|one| self.one(one, &mut args)).collect();
-        sources.extend(self.topics(&mut args));
+        for (_, middleware) in SignalMiddleware::ALL {
+            sources.extend(self.topics(middleware, &mut args));
+        }
+        sources.extend(self.recordings(&mut args));
         (sources, args)
     }
 
-    /// One program reads the fields of all topics.
-    fn topics(&mut self, args: &mut Vec<String>) -> Option<SignalSource> {
+    /// One program reads the values of all topics, or ports, of a middleware.
+    fn topics(&mut self, wanted: SignalMiddleware, args: &mut Vec<String>) -> Option<SignalSource> {
         let of_topics = self.declared.sources.iter().filter_map(|source| match &source.kind {
-            DeclaredSourceKind::Ros(field) => Some((field, source.signals.first()?)),
+            DeclaredSourceKind::Topic { middleware, field } if *middleware == wanted => {
+                Some((field, source.signals.first()?))
+            }
             _ => None,
         });
         let (fields, signals): (Vec<_>, Vec<_>) = of_topics.unzip();
-        let first = fields.first()?;
-        match middleware::signals(&self.planner.scope()) {
-            Ok(words) => {
-                let all = words.into_iter().chain(fields.iter().map(|field| field.value.clone()));
-                let before = args.len();
-                args.extend(all);
-                Some(SignalSource::Program(SignalProgram {
-                    words: args.len() - before,
-                    signals: signals.into_iter().map(config_of).collect(),
-                    time: SignalTime::Clock,
-                    wait: true,
-                }))
+        let program = middleware::signals(wanted, &self.planner.scope());
+        let mut words = self.found(program, fields.first()?)?;
+        // ROS 1 has a parameter for it.
+        if self.declared.has_clock && wanted != SignalMiddleware::Ros {
+            words.push("--clock".to_owned());
+        }
+        words.extend(fields.iter().map(|field| field.value.clone()));
+        let source = SignalSource::Program(SignalProgram {
+            words: words.len(),
+            signals: signals.into_iter().map(config_of).collect(),
+            time: SignalTime::Clock,
+            wait: true,
+        });
+        args.append(&mut words);
+        Some(source)
+    }
+
+    /// One program for each file.
+    fn recordings(&mut self, args: &mut Vec<String>) -> Vec<SignalSource> {
+        let recorded = self.declared.sources.iter().filter_map(|source| match &source.kind {
+            DeclaredSourceKind::Recording { file, field } => {
+                Some((file, field, source.signals.first()?))
             }
-            Err(problem) => {
-                let label = self.source.label(first.span, "");
-                self.planner.context.problems.push(problem.label(label));
-                None
+            _ => None,
+        });
+        let recorded: Vec<_> = recorded.collect();
+        let mut files: Vec<&Spanned<String>> = Vec::new();
+        for (file, ..) in &recorded {
+            if !files.iter().any(|known| known.value == file.value) {
+                files.push(file);
             }
         }
+        let mut sources = Vec::new();
+        for file in files {
+            self.report_missing(file);
+            let program = middleware::recorded_signals(&self.planner.scope());
+            let Some(mut words) = self.found(program, file) else { continue };
+            words.push(file.value.clone());
+            let of_file = recorded.iter().filter(|(other, ..)| other.value == file.value);
+            let (fields, signals) =
+                of_file.map(|(_, field, signal)| (field.value.clone(), config_of(signal))).unzip();
+            let fields: Vec<String> = fields;
+            words.extend(fields);
+            sources.push(SignalSource::Recording(SignalRecording { words: words.len(), signals }));
+            args.append(&mut words);
+        }
+        sources
+    }
+
+    /// Reports a file that does not exist. References are replaced when the suite runs.
+    fn report_missing(&mut self, file: &Spanned<String>) {
+        let path = self.planner.scope().dir.join(&file.value);
+        if file.value.contains("${") || path.exists() {
+            return;
+        }
+        let message = format!("there is no recording `{}`", file.value);
+        let problem = Diagnostic::error("no-such-file", message)
+            .note(format!("looked for {}", path.display()))
+            .label(self.source.label(file.span, ""));
+        self.planner.context.problems.push(problem);
+    }
+
+    /// A program, or reports at this place that it is missing.
+    fn found(
+        &mut self,
+        program: Result<Vec<String>, Box<Diagnostic>>,
+        place: &Spanned<String>,
+    ) -> Option<Vec<String>> {
+        let report = |problem: Box<Diagnostic>| {
+            let label = self.source.label(place.span, "");
+            self.planner.context.problems.push(problem.label(label));
+        };
+        program.map_err(report).ok()
     }
 
     fn one(&mut self, declared: &DeclaredSource, args: &mut Vec<String>) -> Option<SignalSource> {
@@ -149,7 +227,12 @@ impl SourcePlanner<'_, '_, '_> {
                 args.extend(words);
                 Some(SignalSource::Program(program))
             }
-            DeclaredSourceKind::Ros(_) => None,
+            // Several of them share a program.
+            DeclaredSourceKind::Topic { .. } | DeclaredSourceKind::Recording { .. } => None,
+            DeclaredSourceKind::Test(quantity) => {
+                let signal = declared.signals.first().map(config_of)?;
+                Some(SignalSource::Test(TestSignal { signal, quantity: *quantity }))
+            }
             DeclaredSourceKind::Fixture { name, quantity, every } => {
                 let fixtures =
                     SuiteFixtures { planned: self.fixtures, declared: &self.declared.fixtures };

@@ -21,6 +21,20 @@ pub fn mentions(text: &str) -> bool {
     text.contains(OPEN)
 }
 
+/// Replaces each reference by a text.
+#[must_use]
+pub fn replace(text: &str, with: &str) -> String {
+    let mut replaced = String::with_capacity(text.len());
+    for segment in segments(text, OPEN) {
+        match segment {
+            Segment::Text(text) => replaced += text,
+            Segment::Placeholder(..) => replaced += with,
+            Segment::Unclosed(start) => replaced += &text[start..],
+        }
+    }
+    replaced
+}
+
 /// Replaces the references to these parameters; others are kept.
 #[must_use]
 pub fn expand(text: &str, parameters: &[Parameter]) -> String {
@@ -51,6 +65,7 @@ mod tests {
         let text = format!("--mass {} {}", to("payload"), to("other"));
         assert_eq!(expand(&text, &parameters), "--mass 0.5 ${episode:other}");
         assert_eq!(expand("${episode:payload", &parameters), "${episode:payload");
+        assert_eq!(replace(&text, "1"), "--mass 1 1");
         assert!(mentions(&text) && !mentions("${param:payload}"));
     }
 }

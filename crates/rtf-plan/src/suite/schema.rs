@@ -176,7 +176,10 @@ pub(super) const COLUMN: ElementSchema = leaf("signal", &["name", "unit"]);
 /// `<signal>` with its own source.
 pub(super) const SIGNAL: ElementSchema = ElementSchema {
     name: "signal",
-    attributes: &["name", "unit", "time", "wait", "ros", "fixture", "of", "every"],
+    attributes: &[
+        "name", "unit", "time", "wait", "ros", "ros2", "yarp", "file", "topic", "test", "fixture",
+        "of", "every",
+    ],
     elements: &["command"],
     text: false,
 };

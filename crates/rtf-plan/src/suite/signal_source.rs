@@ -2,11 +2,13 @@
 
 use regex::Regex;
 use roxmltree::Node;
-use rtf_model::{Diagnostic, ProcessQuantity, SignalTime};
+use rtf_model::{Diagnostic, ProcessQuantity, SignalTime, TestQuantity};
 
 use super::reader::ElementReader;
 use super::schema::{self, check};
-use super::{DeclaredSignal, DeclaredSource, DeclaredSourceKind, Span, Spanned, command};
+use super::{
+    DeclaredSignal, DeclaredSource, DeclaredSourceKind, SignalMiddleware, Span, Spanned, command,
+};
 
 /// Reads a `<signals>`; `None` if it declares no signal.
 pub(super) fn read_group(
@@ -29,10 +31,39 @@ pub(super) fn read_group(
 }
 
 /// The sources of a `<signal>`.
-const SOURCES: &str = "a source: a `<command>`, `ros`, or `fixture` and `of`";
+const SOURCES: &str = "a source: a `<command>`, `ros`, `ros2`, `yarp`, `file` and `topic`, `test`, or `fixture` and `of`";
 
-/// A field of a topic: the topic, and names with an index or not.
-const FIELD: &str = r"^/[^.]*(\.[A-Za-z][A-Za-z0-9_]*(\[[^\]]+\])?)+$";
+/// The attributes that are sources.
+const SOURCE_ATTRIBUTES: [&str; 6] = ["ros", "ros2", "yarp", "file", "test", "fixture"];
+
+/// The syntax of values in messages. `fixtures/rtf_fixtures/signal_fields.py` has the same.
+struct FieldSyntax {
+    pattern: &'static str,
+    what: &'static str,
+    hint: &'static str,
+}
+
+/// A topic, and names with an index or not.
+const ROS_FIELD: FieldSyntax = FieldSyntax {
+    pattern: r"^/[^.\s]*(\.[A-Za-z][A-Za-z0-9_]*(\[[^\]]+\])?)+$",
+    what: "is not a field of a topic",
+    hint: "write a topic and a field: `/joint_states.position[elbow]`, `/odom.twist.twist.linear.x`",
+};
+
+/// A port, and the positions in its bottle and in lists in it.
+const YARP_FIELD: FieldSyntax = FieldSyntax {
+    pattern: r"^/[^\s\[\]]+(\[[0-9]+\])+$",
+    what: "is not a value of a port",
+    hint: "write a port and the position of a value in its bottle: `/arm/state:o[3]`, `/imu:o[0][2]`",
+};
+
+/// Any of them; numbers that tests sampled or measured have no field.
+const RECORDED_FIELD: FieldSyntax = FieldSyntax {
+    pattern: r"^/[^\s\[\]]*((\.[A-Za-z][A-Za-z0-9_]*(\[[^\]]+\])?)+|(\[[0-9]+\])+)?$",
+    what: "is not a value in a recording",
+    hint: "write a topic, and the field of a message or the position in a bottle: `/level`, \
+           `/joint_states.position[elbow]`, `/arm/state:o[3]`",
+};
 
 /// The attributes of a `<signal>` that only signals with certain sources have.
 const OF_COMMAND: [(&str, &str); 2] = [
@@ -43,23 +74,37 @@ const OF_FIXTURE: [(&str, &str); 2] = [
     ("of", "is only for a signal with `fixture`"),
     ("every", "is only for a signal with `fixture`"),
 ];
+const OF_FILE: [(&str, &str); 1] = [("topic", "is only for a signal with `file`")];
 
 /// Reads a `<signal>` that has its own source; `None` if it has no name or source.
 pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredSource> {
     check(reader, node, &schema::SIGNAL);
     report_second_source(reader, node);
-    let kind = if node.has_attribute("fixture") {
+    let attribute = SOURCE_ATTRIBUTES.into_iter().find(|name| node.has_attribute(*name));
+    if attribute.is_some() {
         report_without_effect(reader, node, &OF_COMMAND);
-        report_without_effect(reader, node, &[("unit", "is fixed for a signal with `fixture`")]);
-        fixture(reader, node)
-    } else {
+    }
+    if attribute != Some("fixture") {
         report_without_effect(reader, node, &OF_FIXTURE);
-        if node.has_attribute("ros") {
-            report_without_effect(reader, node, &OF_COMMAND);
-            topic(reader, node)
-        } else if node.children().any(|child| child.has_tag_name("command")) {
-            program(reader, node)
-        } else {
+    }
+    if attribute != Some("file") {
+        report_without_effect(reader, node, &OF_FILE);
+    }
+    let kind = match attribute {
+        Some("fixture") => {
+            let unit = [("unit", "is fixed for a signal with `fixture`")];
+            report_without_effect(reader, node, &unit);
+            fixture(reader, node)
+        }
+        Some("file") => recording(reader, node),
+        Some("test") => {
+            let quantities =
+                [("sample", TestQuantity::Sample), ("measurement", TestQuantity::Measurement)];
+            reader.choice(node, "test", &quantities).map(DeclaredSourceKind::Test)
+        }
+        Some(_) => topic(reader, node),
+        None if node.children().any(|child| child.has_tag_name("command")) => program(reader, node),
+        None => {
             reader.missing(node, SOURCES);
             None
         }
@@ -76,9 +121,9 @@ fn report_second_source(reader: &mut ElementReader<'_>, node: Node<'_, '_>) {
     let command = node.children().find(|child| child.has_tag_name("command"));
     let command = command.map(ElementReader::tag);
     let attribute = |name| Some(Span::new(node.attribute_node(name)?.range_qname()));
-    let sources = [command, attribute("ros"), attribute("fixture")];
-    if let Some(second) = sources.into_iter().flatten().nth(1) {
-        let message = "a signal has one source: a `<command>`, `ros` or `fixture`";
+    let sources = std::iter::once(command).chain(SOURCE_ATTRIBUTES.map(attribute));
+    if let Some(second) = sources.flatten().nth(1) {
+        let message = "a signal has one source: a `<command>`, `ros`, `ros2`, `yarp`, `file`, `test` or `fixture`";
         let label = reader.source.label(second, "a second source");
         reader.report(Diagnostic::error("several-sources", message).label(label));
     }
@@ -96,15 +141,36 @@ fn report_without_effect(
     }
 }
 
-/// Reads the field of a topic; `fixtures/rtf_fixtures/ros1_signals.py` has the same syntax.
+/// Reads the value of a topic or port.
 fn topic(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredSourceKind> {
-    let field = reader.word(node, "ros")?;
-    if !Regex::new(FIELD).is_ok_and(|pattern| pattern.is_match(&field.value)) {
-        let hint = "write a topic and a field: `/joint_states.position[elbow]`, `/odom.twist.twist.linear.x`";
-        reader.wrong("ros", &field, "is not a field of a topic", Some(hint));
+    let mut all = SignalMiddleware::ALL.into_iter();
+    let (name, middleware) = all.find(|(name, _)| node.has_attribute(*name))?;
+    let syntax = if middleware == SignalMiddleware::Yarp { YARP_FIELD } else { ROS_FIELD };
+    let field = field(reader, node, name, &syntax)?;
+    Some(DeclaredSourceKind::Topic { middleware, field })
+}
+
+fn recording(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredSourceKind> {
+    if !node.has_attribute("topic") {
+        reader.missing(node, "the attribute `topic`: the value in the recording");
+    }
+    let file = reader.word(node, "file");
+    let field = field(reader, node, "topic", &RECORDED_FIELD);
+    Some(DeclaredSourceKind::Recording { file: file?, field: field? })
+}
+
+fn field(
+    reader: &mut ElementReader<'_>,
+    node: Node<'_, '_>,
+    name: &str,
+    syntax: &FieldSyntax,
+) -> Option<Spanned<String>> {
+    let field = reader.word(node, name)?;
+    if !Regex::new(syntax.pattern).is_ok_and(|pattern| pattern.is_match(&field.value)) {
+        reader.wrong(name, &field, syntax.what, Some(syntax.hint));
         return None;
     }
-    Some(DeclaredSourceKind::Ros(field))
+    Some(field)
 }
 
 fn program(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredSourceKind> {

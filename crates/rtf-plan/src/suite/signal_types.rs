@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use rtf_model::{FindingSeverity, ProcessQuantity, SignalTime};
+use rtf_model::{FindingSeverity, ProcessQuantity, SignalTime, TestQuantity};
 
 use super::{Span, Spanned};
 
@@ -27,8 +27,22 @@ pub enum DeclaredSourceKind {
         /// Whether the first test waits for its first line.
         wait: bool,
     },
-    /// A field of a ROS 1 topic: `/joint_states.position[elbow]`.
-    Ros(Spanned<String>),
+    /// A value in the messages of a topic or port: `/joint_states.position[elbow]`.
+    Topic {
+        /// The middleware.
+        middleware: SignalMiddleware,
+        /// The topic or port, and the value.
+        field: Spanned<String>,
+    },
+    /// A value in a recording.
+    Recording {
+        /// The file, relative to the suite's directory.
+        file: Spanned<String>,
+        /// The topic or port, and the value.
+        field: Spanned<String>,
+    },
+    /// What the test reports under the name of the signal.
+    Test(TestQuantity),
     /// The processes of a fixture.
     Fixture {
         /// The name of the fixture.
@@ -38,6 +52,23 @@ pub enum DeclaredSourceKind {
         /// The interval.
         every: Option<Duration>,
     },
+}
+
+/// The middleware of a topic or port.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SignalMiddleware {
+    /// ROS 1.
+    Ros,
+    /// ROS 2.
+    Ros2,
+    /// YARP.
+    Yarp,
+}
+
+impl SignalMiddleware {
+    /// All, with the attribute that names a topic or port.
+    pub(crate) const ALL: [(&str, Self); 3] =
+        [("ros", Self::Ros), ("ros2", Self::Ros2), ("yarp", Self::Yarp)];
 }
 
 /// A `<signal>`.

@@ -1,7 +1,9 @@
 //! Signals and monitors, and the additional fixture of a suite that has some.
 
 use insta::assert_snapshot;
-use rtf_model::{FindingSeverity, ProcessQuantity, SignalSource, SignalTime, SignalsConfig};
+use rtf_model::{
+    FindingSeverity, ProcessQuantity, SignalSource, SignalTime, SignalsConfig, TestQuantity,
+};
 use rtf_plan::plan::{FixtureBody, Plan, PluginPlan};
 
 use crate::bench::Bench;
@@ -117,7 +119,7 @@ fn all_problems_of_signals_are_reported() {
          <test>A.lua</test></suite>"
     ));
     assert_snapshot!(shown, @r#"
-    incomplete: `<signal>` needs a source: a `<command>`, `ros`, or `fixture` and `of`
+    incomplete: `<signal>` needs a source: a `<command>`, `ros`, `ros2`, `yarp`, `file` and `topic`, `test`, or `fixture` and `of`
       3:10 <signal
     unknown-fixture: there is no fixture `simm`
       4:36 simm
@@ -128,7 +130,7 @@ fn all_problems_of_signals_are_reported() {
       5:59 unit
     wrong-type: `robot` cannot be measured: it is attached: `rtf` does not know its processes
       6:36 robot
-    several-sources: a signal has one source: a `<command>`, `ros` or `fixture`
+    several-sources: a signal has one source: a `<command>`, `ros`, `ros2`, `yarp`, `file`, `test` or `fixture`
       7:30 fixture a second source
     invalid-value: `name` is not the name of a signal: `"a`
       8:24 &quot;a
@@ -203,5 +205,139 @@ fn a_monitor_needs_signals() {
     unknown-signal: there is no signal `q`
       1:44 q
       hint: declare it with `<signal>` in the suite
+    ");
+}
+
+#[test]
+fn formulas_have_parameters() {
+    let bench = bench();
+    bench.program("bin/true", "");
+    bench.file(
+        "cell/s.xml",
+        "<suite><signal name='q' unit='rad' test='sample'/>
+         <monitor name='low'>always(q &lt; ${param:limit=2}rad)</monitor>
+         <test>A.lua<matrix name='limit' values='1 3'/>
+         <monitor name='own'>always(q &lt; ${param:limit}rad)</monitor></test></suite>",
+    );
+    let plan = bench.plan(&["s.xml"]);
+    let (_, config) = signals(&plan);
+    let monitors: Vec<_> =
+        config.monitors.iter().map(|it| (&*it.formula, it.tests.as_deref())).collect();
+    let test = |name: &str| vec![name.to_owned()];
+    assert_eq!(
+        monitors,
+        [
+            ("always(q < 2rad)", None),
+            ("always(q < 1rad)", Some(&*test("A[limit=1]"))),
+            ("always(q < 3rad)", Some(&*test("A[limit=3]"))),
+        ]
+    );
+    let shown = bench.shown(
+        "<suite><signal name='q' unit='rad' test='sample'/>
+         <test>A.lua<matrix name='limit' values='1 3'/>
+         <monitor name='own'>always(q &lt; ${param:limit}kg)</monitor></test></suite>",
+    );
+    assert_snapshot!(shown, @"
+    unit-mismatch: the units do not match: `rad` and `kg`
+      3:30 always(q &lt; ${param:limit}kg)
+      note: with its parameters, the formula is `always(q < 1kg)`
+    unit-mismatch: the units do not match: `rad` and `kg`
+      3:30 always(q &lt; ${param:limit}kg)
+      note: with its parameters, the formula is `always(q < 3kg)`
+    ");
+}
+
+#[test]
+fn sources_of_other_kinds_are_planned() {
+    let bench = bench();
+    for program in ["ros2_signals", "yarp_signals", "recorded_signals"] {
+        bench.file(&format!("share/rtf/fixtures/rtf_fixtures/{program}.py"), "");
+    }
+    bench.file("cell/run.mcap", "");
+    bench.file("share/rtf/fixtures/clock.py", "");
+    bench.file(
+        "cell/s.xml",
+        "<suite clock='ros2'><signal name='v' unit='m/s' ros2='/odom.twist.twist.linear.x'/>
+         <signal name='roll' yarp='/imu:o[0][2]'/>
+         <signal name='level' file='run.mcap' topic='/level'/>
+         <signal name='pitch' yarp='/imu:o[0][3]'/>
+         <signal name='limit' file='run.mcap' topic='/limits.data[0]'/>
+         <signal name='lag' test='measurement'/><test>A.lua</test></suite>",
+    );
+    let plan = bench.plan(&["s.xml"]);
+    let (plugin, config) = signals(&plan);
+    let words: Vec<_> = plugin
+        .args
+        .iter()
+        .map(|word| word.rsplit_once("/rtf_fixtures/").map_or(&**word, |(_, name)| name))
+        .filter(|word| !word.ends_with("python3"))
+        .collect();
+    assert_eq!(
+        words,
+        [
+            "ros2_signals.py",
+            "--clock",
+            "/odom.twist.twist.linear.x",
+            "yarp_signals.py",
+            "--clock",
+            "/imu:o[0][2]",
+            "/imu:o[0][3]",
+            "recorded_signals.py",
+            "run.mcap",
+            "/level",
+            "/limits.data[0]",
+        ]
+    );
+    let [SignalSource::Test(lag), SignalSource::Program(_), SignalSource::Program(imu), recorded] =
+        &*config.sources
+    else {
+        panic!("{config:?}")
+    };
+    assert_eq!((&*lag.signal.name, lag.quantity), ("lag", TestQuantity::Measurement));
+    assert_eq!((imu.words, imu.signals.len()), (5, 2));
+    let SignalSource::Recording(recorded) = recorded else { panic!("{recorded:?}") };
+    assert_eq!((recorded.words, recorded.signals.len()), (5, 2));
+}
+
+#[test]
+fn all_problems_of_sources_are_reported() {
+    let bench = bench();
+    for program in ["ros1_signals", "recorded_signals"] {
+        bench.file(&format!("share/rtf/fixtures/rtf_fixtures/{program}.py"), "");
+    }
+    let shown = bench.shown(
+        "<suite><signal name='a' ros2='/odom'/>
+         <signal name='b' yarp='/arm/state:o'/>
+         <signal name='c' file='run.mcap'/>
+         <signal name='d' file='run.mcap' topic='level' time='own'/>
+         <signal name='e' test='samples' topic='/level'/>
+         <signal name='f' file='run.mcap' topic='/level'/>
+         <signal name='g' yarp='/arm/state:o[0]' ros='/a.b'/>
+         <test>A.lua</test></suite>",
+    );
+    assert_snapshot!(shown, @"
+    invalid-value: `ros2` is not a field of a topic: `/odom`
+      1:31 /odom
+      hint: write a topic and a field: `/joint_states.position[elbow]`, `/odom.twist.twist.linear.x`
+    invalid-value: `yarp` is not a value of a port: `/arm/state:o`
+      2:33 /arm/state:o
+      hint: write a port and the position of a value in its bottle: `/arm/state:o[3]`, `/imu:o[0][2]`
+    incomplete: `<signal>` needs the attribute `topic`: the value in the recording
+      3:10 <signal
+    invalid-value: `topic` is not a value in a recording: `level`
+      4:50 level
+      hint: write a topic, and the field of a message or the position in a bottle: `/level`, `/joint_states.position[elbow]`, `/arm/state:o[3]`
+    wrong-type: `time` is only for a signal with a `<command>`
+      4:57 time
+    invalid-value: `test` has to be `sample` or `measurement`: `samples`
+      5:33 samples
+      hint: did you mean `sample`?
+    wrong-type: `topic` is only for a signal with `file`
+      5:42 topic
+    no-such-file: there is no recording `run.mcap`
+      6:33 run.mcap
+      note: looked for [ROOT]/cell/run.mcap
+    several-sources: a signal has one source: a `<command>`, `ros`, `ros2`, `yarp`, `file`, `test` or `fixture`
+      7:27 yarp a second source
     ");
 }

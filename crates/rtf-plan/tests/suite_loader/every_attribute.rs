@@ -3,13 +3,13 @@
 use std::time::Duration;
 
 use rtf_model::{
-    FaultAmount, FaultTime, FindingSeverity, NetworkFault, ProcessQuantity, SignalTime, Trigger,
-    Verdict,
+    FaultAmount, FaultTime, FindingSeverity, NetworkFault, ProcessQuantity, SignalTime,
+    TestQuantity, Trigger, Verdict,
 };
 use rtf_plan::suite::{
     AfterCollapse, ClockSource, DeclaredEffect, DeclaredLimits, DeclaredProbe, DeclaredProbeKind,
     DeclaredSourceKind, DeclaredValueSource, FixtureKind, ForkPoint, HookKind, Leaks,
-    MatrixDimension, MiddlewareProbe, ReferenceUser, TestIsolation,
+    MatrixDimension, MiddlewareProbe, ReferenceUser, SignalMiddleware, TestIsolation,
 };
 
 use crate::file;
@@ -189,7 +189,9 @@ fn every_value_of_a_fixture_is_read() {
 #[test]
 fn signals_and_monitors_are_read() {
     let (suite, _) = file("valid/everything.xml");
-    let [elbow, load, wrist, arm] = &*suite.signals else { panic!("{:?}", suite.signals) };
+    let [elbow, load, wrist, others @ .., arm] = &*suite.signals else {
+        panic!("{:?}", suite.signals)
+    };
     let DeclaredSourceKind::Program { command, time, wait } = &elbow.kind else { panic!() };
     assert_eq!(command.value[2..], ["--port", "${fixture:sim.port}"]);
     assert_eq!((*time, *wait), (SignalTime::Arrival, false));
@@ -197,8 +199,20 @@ fn signals_and_monitors_are_read() {
     let DeclaredSourceKind::Fixture { name, quantity, every } = &load.kind else { panic!() };
     assert_eq!((&*name.value, *quantity), ("sim", ProcessQuantity::Cpu));
     assert_eq!(*every, Some(Duration::from_secs(1)));
-    let DeclaredSourceKind::Ros(field) = &wrist.kind else { panic!() };
+    let DeclaredSourceKind::Topic { middleware, field } = &wrist.kind else { panic!() };
+    assert_eq!(*middleware, SignalMiddleware::Ros);
     assert_eq!(field.value, "/joint_states.position[wrist_1.x]");
+    let [ros2, yarp, recorded, sampled] = others else { panic!("{others:?}") };
+    for (source, expected, value) in [
+        (ros2, SignalMiddleware::Ros2, "/odom.twist.twist.linear.x"),
+        (yarp, SignalMiddleware::Yarp, "/imu:o[0][2]"),
+    ] {
+        let DeclaredSourceKind::Topic { middleware, field } = &source.kind else { panic!() };
+        assert_eq!((*middleware, &*field.value), (expected, value));
+    }
+    let DeclaredSourceKind::Recording { file, field } = &recorded.kind else { panic!() };
+    assert_eq!((&*file.value, &*field.value), ("${param:recording}", "/level"));
+    let DeclaredSourceKind::Test(TestQuantity::Measurement) = &sampled.kind else { panic!() };
     let DeclaredSourceKind::Program { time, wait, .. } = &arm.kind else { panic!() };
     assert_eq!((*time, *wait), (SignalTime::Own, true));
     let names: Vec<_> = arm.signals.iter().map(|it| (&*it.name.value, &*it.unit.value)).collect();

@@ -159,6 +159,7 @@ fn message(check: &TrajectoryCheck, kind: MessageKind, text: String) -> Notifica
         comparison: None,
         critical: false,
         case: check.case,
+        interval: None,
     })
 }
 

@@ -1,10 +1,12 @@
 //! The tests that did not pass, in the summary.
 
+use std::path::Path;
+
 use rtf_model::{Phase, Record, Significance, TestRecord, Verdict};
 
 use super::page::ConsoleLines;
 use super::style::{self, BOLD};
-use super::{ConsoleOptions, case_summary};
+use super::{ConsoleOptions, ReplayCommand, case_summary};
 use crate::cases::TestCases;
 use crate::{escape, explain, known_failure, logs, words};
 
@@ -66,7 +68,8 @@ fn failed_test(
     if let Some(command) = (options.rerun)(record, id, None) {
         page.fact("rerun", &escape::line(&command));
     }
-    if let Some(command) = replay(options, record, test) {
+    let dir = options.folder.as_deref();
+    if let Some(command) = dir.and_then(|dir| replay_test(&options.replay, record, test, dir)) {
         page.fact("replay", &escape::line(&command));
     }
     if let Some(cases) = &cases {
@@ -74,13 +77,22 @@ fn failed_test(
     }
 }
 
-/// Returns the command that replays the recording of the attempt that failed.
-fn replay(options: &ConsoleOptions, record: &Record, test: &TestRecord) -> Option<String> {
+/// Returns the command that replays the recording of the attempt that failed; `dir` is the run's
+/// directory for display.
+#[must_use]
+pub fn replay_test(
+    replay: &ReplayCommand,
+    record: &Record,
+    test: &TestRecord,
+    dir: &Path,
+) -> Option<String> {
+    if record.is_test_green(test) {
+        return None;
+    }
     let attachments = &test.decisive_attempt()?.attachments;
     let is_recording = |path: &str| RECORDINGS.iter().any(|ending| path.ends_with(ending));
     let recording = attachments.iter().find(|each| !each.omitted && is_recording(&each.path))?;
-    let path = options.folder.as_ref()?.join(&recording.path);
-    (options.replay)(record, test.plan.test, &path)
+    replay(record, test.plan.test, &dir.join(&recording.path))
 }
 
 /// `  arm/MoveTest  failed in set-up`.

@@ -29,7 +29,10 @@ use rtf_model::{Event, EventKind, Micros, Record};
 pub(crate) use progress::{Bar, BarState};
 
 pub use details::drop_details;
-pub use options::{ConsoleOptions, ReplayCommand, RerunCommand, Verbosity, rerun_suite};
+pub use failed_tests::replay_test;
+pub use options::{
+    ConsoleOptions, ReplayCommand, RerunCommand, TestCommands, Verbosity, rerun_suite,
+};
 pub use questions::{AskedHere, Operator};
 
 use crate::background_writer::BackgroundWriter;

@@ -26,6 +26,22 @@ pub type RerunCommand = Box<dyn Fn(&Record, TestId, Option<&str>) -> Option<Stri
 /// the path is that of the recording. `None` if there is no suite for that.
 pub type ReplayCommand = Box<dyn Fn(&Record, TestId, &Path) -> Option<String> + Send>;
 
+/// Both commands.
+pub struct TestCommands {
+    /// The command that reruns a test.
+    pub rerun: RerunCommand,
+    /// The command that replays the recording of a failed test.
+    pub replay: ReplayCommand,
+}
+
+impl TestCommands {
+    /// Only commands that rerun tests.
+    #[must_use]
+    pub fn without_replay(rerun: RerunCommand) -> Self {
+        Self { rerun, replay: Box::new(|_, _, _| None) }
+    }
+}
+
 /// Options of the console.
 pub struct ConsoleOptions {
     /// How much is shown during the run.

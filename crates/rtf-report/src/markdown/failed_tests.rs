@@ -4,6 +4,7 @@ use rtf_model::{AttemptRecord, MessageKind, Record, TestRecord};
 
 use super::inline::{block, code, first_line};
 use super::{MarkdownOptions, heading, list};
+use crate::console::replay_test;
 use crate::explain;
 use crate::finding::{self, Finding, Roots};
 use crate::{logs, words};
@@ -94,8 +95,12 @@ fn facts(
         let log = dir.join(logs::attempt_log(record, test.plan.test, id));
         *page += &format!("- log {}\n", code(&log.to_string_lossy()));
     }
-    if let Some(command) = (options.rerun)(record, test.plan.test, None) {
+    if let Some(command) = (options.commands.rerun)(record, test.plan.test, None) {
         *page += &format!("- rerun {}\n", code(&command));
+    }
+    let replay = &options.commands.replay;
+    if let Some(command) = options.dir.and_then(|dir| replay_test(replay, record, test, dir)) {
+        *page += &format!("- replay {}\n", code(&command));
     }
     *page += "\n";
 }

@@ -15,7 +15,7 @@ use std::path::Path;
 
 use rtf_model::Record;
 
-use crate::console::RerunCommand;
+use crate::console::TestCommands;
 use crate::finding::Roots;
 use crate::{finding, outcome, words as phrases};
 use inline::link;
@@ -32,8 +32,8 @@ pub struct MarkdownOptions<'a> {
     pub dir: Option<&'a Path>,
     /// The address of the run's results: an artefact, or a page.
     pub url: Option<&'a str>,
-    /// Returns the command that reruns a failed test.
-    pub rerun: RerunCommand,
+    /// Returns the commands that rerun and replay a failed test.
+    pub commands: TestCommands,
 }
 
 /// Writes the summary of a record.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 use rtf_model::{Event, LineSealer, Record};
-use rtf_report::console::{Console, ConsoleOptions};
+use rtf_report::console::{Console, ConsoleOptions, TestCommands};
 use rtf_report::journal::{self, Stored};
 use rtf_report::markdown::MarkdownOptions;
 
@@ -93,6 +93,6 @@ pub fn markdown_options() -> MarkdownOptions<'static> {
         repository: None,
         dir: Some(Path::new("rtf-results/run")),
         url: Some("https://ci.example/results/7"),
-        rerun: Box::new(rtf_report::console::rerun_suite),
+        commands: TestCommands::without_replay(Box::new(rtf_report::console::rerun_suite)),
     }
 }

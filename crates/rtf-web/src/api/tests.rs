@@ -2,6 +2,7 @@
 
 use axum::extract::State;
 use rtf_model::{CaseRecord, Record, TestRecord, Verdict};
+use rtf_report::console::replay_test;
 use serde::Deserialize;
 use utoipa::IntoParams;
 
@@ -115,11 +116,16 @@ pub async fn test(
     State(app): State<App>,
     At((run, test)): At<(String, u32)>,
 ) -> Result<JsonText, Problem> {
-    let rerun = app.rerun;
-    app.read(run, move |_, index| {
-        let test = entry(&index.record().tests, test, "test")?;
-        let command = rerun()(index.record(), test.plan.test, None);
-        Ok(TestDetail::of(test, index.record(), index.state().is_over(), command))
+    let commands = app.commands;
+    app.read(run, move |run, index| {
+        let record = index.record();
+        let test = entry(&record.tests, test, "test")?;
+        let commands = commands();
+        let command = (commands.rerun)(record, test.plan.test, None);
+        // It is for the working directory of the run, which is not the server's.
+        let dir = std::path::absolute(run.dir()).unwrap_or_else(|_| run.dir());
+        let replay = replay_test(&commands.replay, record, test, &dir);
+        Ok(TestDetail::of(test, record, index.state().is_over(), (command, replay)))
     })
     .await
 }

@@ -15,7 +15,7 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
 
-use rtf_report::console::RerunCommand;
+use rtf_report::console::{TestCommands, replay_test};
 use serde::Serialize;
 
 use crate::api::{Snapshot, TestDetail};
@@ -36,8 +36,10 @@ pub struct ReportSource<'a> {
     pub journal: &'a Path,
     /// The report's file, next to which large attachments are; `None`: standard output.
     pub output: Option<&'a Path>,
-    /// The command that reruns a test.
-    pub rerun: &'a RerunCommand,
+    /// The commands that rerun and replay a test.
+    pub commands: &'a TestCommands,
+    /// The run directory for display.
+    pub dir: Option<&'a Path>,
 }
 
 /// Everything that is needed to draw the run, without details.
@@ -94,8 +96,11 @@ fn fill(template: &Template, out: &mut dyn Write, source: &ReportSource<'_>) -> 
     Collector::new(record, files, &mut chunks).read(journal, index.offset())?;
     for test in &record.tests {
         let id = test.plan.test;
-        let command = (source.rerun)(record, id, None);
-        let detail = TestDetail::of(test, record, index.state().is_over(), command);
+        let command = (source.commands.rerun)(record, id, None);
+        let replay = &source.commands.replay;
+        let replay = source.dir.and_then(|dir| replay_test(replay, record, test, dir));
+        let is_over = index.state().is_over();
+        let detail = TestDetail::of(test, record, is_over, (command, replay));
         chunks.add(format!("tests/{id}"), &detail)?;
     }
     let run = record.run.as_ref().map_or("run", |run| &*run.run);

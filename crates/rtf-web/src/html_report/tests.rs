@@ -14,9 +14,11 @@ const STREAMS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../rtf-report/tests/
 
 fn report(journal: &Path, output: Option<&Path>) -> String {
     let template = Template::split("<html>\n<!--rtf-data--></html>").unwrap();
-    let rerun: RerunCommand = Box::new(|_, test, _| Some(format!("rtf run {test}")));
+    let rerun =
+        Box::new(|_: &rtf_model::Record, test, _: Option<&str>| Some(format!("rtf run {test}")));
+    let commands = &TestCommands::without_replay(rerun);
     let mut out = Vec::new();
-    fill(&template, &mut out, &ReportSource { journal, output, rerun: &rerun }).unwrap();
+    fill(&template, &mut out, &ReportSource { journal, output, commands, dir: None }).unwrap();
     String::from_utf8(out).unwrap()
 }
 

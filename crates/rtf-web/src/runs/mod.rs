@@ -42,6 +42,12 @@ impl Run {
         Ok(Self { name: name.to_owned(), results: results.to_owned(), index })
     }
 
+    /// Its directory.
+    #[must_use]
+    pub fn dir(&self) -> PathBuf {
+        self.results.join(&self.name)
+    }
+
     /// Its index, read as far as the journal is written. Takes as long as that
     /// takes: not to be called from the threads that serve.
     ///

@@ -42,6 +42,7 @@ fn fail_in(run: &mut Writer, case: u32) {
         comparison: None,
         critical: false,
         case: Some(CaseId(case)),
+        interval: None,
     };
     run.emit(EventKind::Message { source: Source::Test(TEST), message, test: None });
 }

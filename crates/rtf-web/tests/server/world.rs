@@ -12,7 +12,7 @@ use rtf_model::{
     Verdict,
 };
 use rtf_report::Reporter;
-use rtf_report::console::RerunCommand;
+use rtf_report::console::TestCommands;
 use rtf_report::journal::Journal;
 use rtf_report::logs::Logs;
 use rtf_web::{
@@ -184,8 +184,15 @@ impl Writer {
     pub fn say(&mut self, kind: MessageKind, text: &str) {
         let source = Source::Test(TEST);
         let text = text.to_owned();
-        let message =
-            Message { kind, text, location: None, comparison: None, critical: false, case: None };
+        let message = Message {
+            kind,
+            text,
+            location: None,
+            comparison: None,
+            critical: false,
+            case: None,
+            interval: None,
+        };
         self.emit(EventKind::Message { source, message, test: None });
     }
 
@@ -299,12 +306,14 @@ fn served<'a>(results: &'a Path, role: Capabilities, asked: &Arc<Asked>) -> Serv
     let wrong_token = Box::new(move |wrong: WrongToken| {
         asked.1.lock().unwrap().push((wrong.client, wrong.count));
     });
-    let rerun: fn() -> RerunCommand =
-        || Box::new(|_, test, _| Some(format!("rtf run suite.xml::{test}")));
+    let commands: fn() -> TestCommands = || TestCommands {
+        rerun: Box::new(|_, test, _| Some(format!("rtf run suite.xml::{test}"))),
+        replay: Box::new(|_, test, path| Some(format!("replay {test} {}", path.display()))),
+    };
     let history = Arc::new(History(results.join("history.db")));
     let metrics = role.own().is_none();
     let campaigns = Arc::new(NoCampaigns);
-    Service { results, history, campaigns, metrics, role, rerun, wrong_token }
+    Service { results, history, campaigns, metrics, role, commands, wrong_token }
 }
 
 pub fn settings() -> Settings {

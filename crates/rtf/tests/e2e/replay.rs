@@ -42,6 +42,12 @@ fn a_recording_is_replayed_by_the_suite_next_to_that_of_the_test() {
     assert_eq!(folder.read(recording), "data");
     let replay = folder.rtf(&words[1..]);
     assert!(replay.stdout.contains(&format!("replaying {recording} 1")), "{}", replay.stdout);
+    // So does the summary for a CI job.
+    let summary = folder.rtf(&["run", "my arm.xml", "--report", "markdown=summary.md"]);
+    assert_eq!(summary.code, Some(1));
+    let summary = folder.read("summary.md");
+    let line = summary.lines().find(|line| line.starts_with("- replay ")).expect("a command");
+    assert!(line.contains("my arm.replay.xml::recorded"), "{line}");
     // `rtf show` prints it, too, with the options without which it would be another test.
     let shown = folder.rtf(&["run", "my arm.xml", "--set", "speed=2"]).stdout;
     let command = replay_command(&shown).expect("a command");

@@ -223,6 +223,22 @@ typedef struct rtf_trajectory {
     int32_t align;
 } rtf_trajectory;
 
+// A formula over signals that judges the rest of a test.
+typedef struct rtf_monitor {
+    // `sizeof(rtf_monitor)`.
+    size_t size;
+    // The formula.
+    struct rtf_text formula;
+    // Its name; empty: the formula.
+    struct rtf_text name;
+    // `fail`, `error`, `stop` or `critical`; empty: `fail`.
+    struct rtf_text severity;
+    // The source file, null if unknown.
+    const char *file;
+    // The line in it, 0 if unknown.
+    uint32_t line;
+} rtf_monitor;
+
 // The host's functions for a plug-in. Their first argument is `context`. They
 // may be called from any thread until the process ends.
 typedef struct rtf_host {
@@ -287,6 +303,8 @@ typedef struct rtf_host {
     // Since 1.4: checks a signal, as sampled so far, against a stored trajectory. The runner
     // compares: a deviation is a failure, and the test continues. Only for tests.
     void (*check_trajectory)(void *context, const struct rtf_trajectory *check);
+    // Since 1.4: declares a formula that judges the rest of the test. Only for tests.
+    void (*monitor)(void *context, const struct rtf_monitor *monitor);
 } rtf_host;
 
 // An attempt of a test.

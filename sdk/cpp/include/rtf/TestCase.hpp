@@ -14,6 +14,7 @@
 #include <rtf/Declare.hpp>
 #include <rtf/Plugin.hpp>
 #include <rtf/internal/Cases.hpp>
+#include <rtf/internal/Monitor.hpp>
 #include <rtf/internal/Questions.hpp>
 #include <rtf/internal/Faults.hpp>
 #include <rtf/internal/Sampling.hpp>
@@ -49,6 +50,14 @@ protected:
                           Location here = Location::current()) const
     {
         internal::check_trajectory(here, name, reference, tolerance, align, band);
+    }
+
+    // Judges the rest of the test by a formula over the signals of the suite. The default name
+    // is the formula.
+    void monitor(std::string_view formula, std::string_view name = "",
+                 Severity severity = Severity::fail, Location here = Location::current()) const
+    {
+        internal::monitor(here, formula, name, severity);
     }
 
     // Samples the result of read() at `rate` Hz, and returns whether all are within

@@ -167,6 +167,12 @@ module RTF
       accepted
     end
 
+    # Declares a formula that judges the rest of the test.
+    def monitor(name, formula, severity)
+      params = { name: name.to_s, formula: formula.to_s, severity: severity }
+      notify("monitor", params.merge(location: Location.caller_place).compact)
+    end
+
     private
 
     def require_setup_or_run(text)

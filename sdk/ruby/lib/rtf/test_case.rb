@@ -11,6 +11,9 @@ module RTF
   # robot is wrong, an error that the bench is; a problem in `setup` or in
   # `tear_down` is always an error.
   class TestCase < Plugin
+    # What the violation of a monitor means.
+    SEVERITIES = %w[fail error stop critical].freeze
+
     # Runs the test.
     def run
       raise NotImplementedError, "#{self.class} has no `run`"
@@ -72,6 +75,17 @@ module RTF
       raise ArgumentError, "the time of `#{name}` is not finite" unless (time || 0).finite?
 
       Session.current.sampled(signal, Float(value), time)
+    end
+
+    # Judges the rest of the test by a formula over the signals of the suite. `severity` is
+    # "fail", "error", "stop" or "critical"; the default name is the formula.
+    def monitor(formula, name: nil, severity: "fail")
+      unless SEVERITIES.include?(severity.to_s)
+        known = SEVERITIES.join(", ")
+        raise ArgumentError, "the severity of a monitor is one of #{known}, not `#{severity}`"
+      end
+
+      Session.current.monitor(name || formula, formula, severity.to_s)
     end
 
     # Samples the block's result at `rate` Hz; returns whether all are within the

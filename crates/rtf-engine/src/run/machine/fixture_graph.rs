@@ -4,7 +4,7 @@
 //! depend on it have stopped. Independent fixtures start and stop in parallel.
 
 use rtf_model::TestId;
-use rtf_model::protocol::{Request, Subscription};
+use rtf_model::protocol::{Request, Subscription, TestReportedParams};
 
 use super::context::Context;
 use super::fixture::{FixturePhase, FixtureRun};
@@ -201,6 +201,11 @@ impl<'p> FixtureGraph<'p> {
         cx: &mut Context<'_>,
     ) {
         self.runs.iter_mut().for_each(|fixture| fixture.notify(topic, notification.clone(), cx));
+    }
+
+    /// Passes a report of a running test to each subscriber.
+    pub fn forward(&self, report: &TestReportedParams, cx: &mut Context<'_>) {
+        self.runs.iter().for_each(|fixture| fixture.forward(report, cx));
     }
 
     /// Whether any fixture has not replied to a notification of this test.

@@ -285,6 +285,7 @@ impl Run {
                 comparison: None,
                 critical: false,
                 case: None,
+                interval: None,
             };
             self.push(EventKind::Message { source, message, test: None });
         }

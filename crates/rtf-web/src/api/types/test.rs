@@ -184,14 +184,24 @@ pub struct TestDetail {
     /// The command that reruns it, in the working directory of its run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub command: Option<String>,
+    /// The command that replays the recording of its decisive attempt, if it failed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub replay: Option<String>,
 }
 
 impl TestDetail {
-    /// A view of a test with its attempts; `over`: its run has ended.
+    /// A view of a test with its attempts; `over`: its run has ended. The commands rerun and
+    /// replay it.
     #[must_use]
-    pub fn of(test: &TestRecord, record: &Record, over: bool, command: Option<String>) -> Self {
+    pub fn of(
+        test: &TestRecord,
+        record: &Record,
+        over: bool,
+        commands: (Option<String>, Option<String>),
+    ) -> Self {
+        let (command, replay) = commands;
         let attempts = test.attempts.iter().zip(1..).map(|(a, number)| Attempt::of(a, number));
-        Self { test: Test::of(test, record, over), attempts: attempts.collect(), command }
+        Self { test: Test::of(test, record, over), attempts: attempts.collect(), command, replay }
     }
 }
 

@@ -68,7 +68,7 @@ fn test_attributes(scenario: &str) -> &'static str {
     }
 }
 
-/// A clock that is faster than the world, or a fixture that provides values.
+/// A clock that is faster than the world, a fixture that provides values, or a signal.
 fn clock_and_fixture(scenario: &str, plugins: &Plugins<'_>) -> (&'static str, String) {
     match scenario {
         "simulated-time" => {
@@ -86,6 +86,10 @@ fn clock_and_fixture(scenario: &str, plugins: &Plugins<'_>) -> (&'static str, St
                 path.display()
             );
             ("", fixture)
+        }
+        "monitor" => {
+            let signal = "<signal name=\"level\" unit=\"m\" test=\"sample\"/>\n  ";
+            ("", signal.to_owned())
         }
         _ => ("", String::new()),
     }

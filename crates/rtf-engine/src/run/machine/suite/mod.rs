@@ -187,6 +187,9 @@ impl<'p> SuiteMachine<'p> {
     }
 
     fn on_host_input(&mut self, host: HostId, input: ProcessEvent, cx: &mut Context<'_>) {
+        if let ProcessEvent::Notified(notification) = &input {
+            self.forward_report(host, notification, cx);
+        }
         if let Some(run) = self.scheduler.run_of_host(host) {
             let test = run.id();
             match input {

@@ -4,14 +4,42 @@
 //! never delays parking the robot.
 
 use rtf_model::protocol::{
-    Request, Subscription, TestEndedParams, TestFinishedParams, TestStartedParams,
+    Notification, Request, Subscription, TestEndedParams, TestFinishedParams, TestReport,
+    TestReportedParams, TestStartedParams,
 };
 use rtf_model::{EventKind, Phase};
 
 use super::SuiteMachine;
 use crate::run::machine::context::Context;
+use crate::run::machine::io::HostId;
+
+/// Why a monitor of a test is not evaluated.
+const NO_SIGNALS: &str = "there are no signals: declare one with `<signal>` in the suite";
 
 impl SuiteMachine<'_> {
+    /// Passes a report of a running test to the fixtures that subscribe to reports.
+    pub(super) fn forward_report(
+        &mut self,
+        host: HostId,
+        notification: &Notification,
+        cx: &mut Context<'_>,
+    ) {
+        let Some(run) = self.scheduler.run_of_host(host) else { return };
+        let is_subscribed = self.fixtures.any_subscribes_to(Subscription::TestReported);
+        let report = match (notification, is_subscribed) {
+            (Notification::Phase { phase: Phase::Setup }, true) => TestReport::SetupStarted {},
+            (Notification::Sampled(samples), true) => TestReport::Sampled(samples.clone()),
+            (Notification::Measured(measured), true) => TestReport::Measured(measured.clone()),
+            (Notification::Monitor(monitor), true) => TestReport::Monitor(monitor.clone()),
+            (Notification::Monitor(monitor), false) => {
+                let text = format!("the monitor `{}` is not evaluated: {NO_SIGNALS}", monitor.name);
+                return run.report_error(text, cx);
+            }
+            _ => return,
+        };
+        self.fixtures.forward(&TestReportedParams { test: run.id(), report }, cx);
+    }
+
     /// Notifies of the next tests, each once, and starts those of which no reply is
     /// pending; false if none was started.
     pub(super) fn notify_then_start(&mut self, cx: &mut Context<'_>) -> bool {

@@ -38,6 +38,8 @@ impl TestRun<'_> {
             Notification::Attached(_) | Notification::Trajectory(_) => {}
             Notification::Provided { .. } => self.report_error(PROVIDED.to_owned(), cx),
             Notification::Collapsed { .. } => self.on_fixture_notification("collapsed", cx),
+            // `SuiteMachine::forward_report` passes it to a fixture, or reports why not.
+            Notification::Monitor(_) => {}
             Notification::Finding(_) => self.on_fixture_notification("finding", cx),
             Notification::Observed { .. } => self.on_fixture_notification("observed", cx),
             Notification::FaultInjected(_) => self.on_fixture_notification("fault-injected", cx),
@@ -100,7 +102,7 @@ impl TestRun<'_> {
         cx.emit(result);
     }
 
-    pub(super) fn report_error(&mut self, text: String, cx: &mut Context<'_>) {
+    pub(in crate::run::machine) fn report_error(&mut self, text: String, cx: &mut Context<'_>) {
         self.report(error_message(text), cx);
     }
 

@@ -51,7 +51,8 @@ impl World<'_> {
     pub(super) fn message_in(&mut self, case: u32, kind: MessageKind, text: &str) {
         let (text, case) = (text.to_owned(), Some(CaseId(case)));
         let (location, comparison) = (None, None);
-        let message = Message { kind, text, location, comparison, critical: false, case };
+        let message =
+            Message { kind, text, location, comparison, critical: false, case, interval: None };
         self.notified(Notification::Message(message));
     }
 

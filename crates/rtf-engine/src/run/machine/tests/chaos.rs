@@ -75,6 +75,7 @@ fn report(choice: u8) -> Notification {
                 comparison,
                 critical,
                 case: None,
+                interval: None,
             })
         }
     }
@@ -97,7 +98,7 @@ fn about_test(number: u32) -> Notification {
     }
     let (_, severity) = FindingSeverity::ALL[number as usize / 64];
     let (text, location) = ("`q` is 2".to_owned(), None);
-    Notification::Finding(Finding { test, severity, text, location })
+    Notification::Finding(Finding { test, severity, text, location, interval: None })
 }
 
 /// A question, with a default answer or without.

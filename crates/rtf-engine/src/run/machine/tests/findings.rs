@@ -1,7 +1,7 @@
 //! Problems of running tests that a fixture finds, and samples that it takes.
 
 use insta::assert_snapshot;
-use rtf_model::protocol::{Notification, Reply, Request};
+use rtf_model::protocol::{MonitorDeclaration, Notification, Reply, Request, TestReport};
 use rtf_model::{
     ExitStatus, Finding, FindingSeverity, FixtureId, HookId, Measurement, Phase, Source, TestId,
     Trigger, Verdict,
@@ -26,7 +26,7 @@ pub(super) fn watched(plan: &SuitePlan) -> World<'_> {
 /// A suite whose fixture is being notified that its first test is about to start.
 pub(super) fn notified(plan: &SuitePlan) -> World<'_> {
     let mut world = World::started(plan);
-    let topics = ["test-started", "test-ended"];
+    let topics = ["test-started", "test-ended", "test-reported"];
     let value = serde_json::json!({ "outcome": "passed", "subscriptions": topics });
     world.input(WATCHER, ProcessEvent::Replied(2, Reply::Result(value)));
     world.answer(WATCHER, "passed");
@@ -46,7 +46,7 @@ pub(super) fn answer_notifications(world: &mut World<'_>) {
 
 fn find(world: &mut World<'_>, test: u32, severity: FindingSeverity) {
     let text = "`q` is 1.3 rad at 0.42 s".to_owned();
-    let finding = Finding { test: TestId(test), severity, text, location: None };
+    let finding = Finding { test: TestId(test), severity, text, location: None, interval: None };
     world.input(WATCHER, ProcessEvent::Notified(Notification::Finding(finding)));
 }
 
@@ -280,4 +280,64 @@ fn a_test_cannot_report_as_a_fixture() {
     tear_down(&mut world);
     let reason = world.record.tests[0].reason();
     assert_eq!(reason, Some("the host broke the protocol: sent `observed`, which is for fixtures"));
+}
+
+fn monitor() -> MonitorDeclaration {
+    let (name, formula) = ("low".to_owned(), "always(q < 1)".to_owned());
+    MonitorDeclaration { name, formula, severity: FindingSeverity::Fail, location: None }
+}
+
+#[test]
+fn subscribers_get_what_a_test_reports_in_its_order() {
+    let plan = suite(1, 1);
+    let mut world = watched(&plan);
+    let samples: rtf_model::Samples =
+        serde_json::from_str(r#"{"name":"q","points":[[0.1,1.0]]}"#).unwrap();
+    let measurement: Measurement = serde_json::from_str(r#"{"name":"lag","value":1}"#).unwrap();
+    for notification in [
+        Notification::Monitor(monitor()),
+        Notification::Sampled(samples.clone()),
+        Notification::Measured(measurement.clone()),
+    ] {
+        world.input(TEST, ProcessEvent::Notified(notification));
+    }
+    // What a fixture reports is not passed on.
+    observe(&mut world, 0);
+    let reports: Vec<_> = world
+        .sent
+        .iter()
+        .filter_map(|(_, id, request)| match request {
+            Request::TestReported(reported) => Some((*id, reported.test, &reported.report)),
+            _ => None,
+        })
+        .collect();
+    let reported = [
+        TestReport::SetupStarted {},
+        TestReport::Monitor(monitor()),
+        TestReport::Sampled(samples),
+        TestReport::Measured(measurement),
+    ];
+    let expected: Vec<_> = reported.iter().map(|report| (None, TestId(0), report)).collect();
+    assert_eq!(reports, expected);
+    world.phase(TEST, Phase::TearDown);
+    world.end(TEST, "passed");
+    answer_ended(&mut world);
+    tear_down(&mut world);
+    assert_eq!(world.record.tests[0].verdict(), Some(Verdict::Passed));
+}
+
+#[test]
+fn a_monitor_without_signals_is_an_error_of_the_test() {
+    let plan = suite(0, 1);
+    let mut world = World::started(&plan);
+    world.phase(TEST, Phase::Setup);
+    world.phase(TEST, Phase::Run);
+    world.input(TEST, ProcessEvent::Notified(Notification::Monitor(monitor())));
+    world.phase(TEST, Phase::TearDown);
+    world.end(TEST, "passed");
+    world.finish();
+    let reason = "the monitor `low` is not evaluated: there are no signals: declare one with \
+                  `<signal>` in the suite";
+    assert_eq!(world.record.tests[0].reason(), Some(reason));
+    assert_eq!(world.record.tests[0].verdict(), Some(Verdict::Error));
 }

@@ -38,8 +38,15 @@ fn notified<'p>(plan: &'p rtf_plan::plan::SuitePlan) -> World<'p> {
 
 fn report(world: &mut World<'_>, kind: MessageKind, text: &str) {
     let (location, comparison) = (None, None);
-    let message =
-        Message { kind, text: text.to_owned(), location, comparison, critical: false, case: None };
+    let message = Message {
+        kind,
+        text: text.to_owned(),
+        location,
+        comparison,
+        critical: false,
+        case: None,
+        interval: None,
+    };
     world.input(RECORDER, ProcessEvent::Notified(Notification::Message(message)));
 }
 

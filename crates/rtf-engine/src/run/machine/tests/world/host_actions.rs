@@ -80,6 +80,7 @@ impl<'p> World<'p> {
             comparison: None,
             critical,
             case: None,
+            interval: None,
         };
         self.input(source, ProcessEvent::Notified(Notification::Message(message)));
     }

@@ -1,0 +1,3 @@
+function TestCase.run()
+  rtf.monitor("always(level < 2m)")
+end

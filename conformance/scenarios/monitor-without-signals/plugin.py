@@ -1,0 +1,6 @@
+import rtf
+
+
+class Monitor(rtf.TestCase):
+    def run(self):
+        self.monitor("always(level < 2m)")
