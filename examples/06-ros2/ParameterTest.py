@@ -28,4 +28,4 @@ class ParameterTest(StationTest):
         """Set the limit, in rad/s."""
         value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=speed)
         request = SetParameters.Request(parameters=[Parameter(name="speed_limit", value=value)])
-        return self.ask(SetParameters, "joint/set_parameters", request).results[0]
+        return self.call(SetParameters, "joint/set_parameters", request).results[0]

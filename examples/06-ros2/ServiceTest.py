@@ -21,6 +21,6 @@ class ServiceTest(StationTest):
 
     def switch(self, on: bool) -> str:
         """Switch the motor, and return what it says."""
-        answer = self.ask(SetBool, "motor", SetBool.Request(data=on))
+        answer = self.call(SetBool, "motor", SetBool.Request(data=on))
         self.require(answer.success, answer.message)
         return str(answer.message)

@@ -66,7 +66,7 @@ class StationTest(rtf.TestCase):
         what = f"the joint at {goal} rad"
         self.wait_until(lambda: abs(self.position() - goal) < 1e-6, timeout, what)
 
-    def ask(self, kind: Any, service: str, request: Any) -> Any:
+    def call(self, kind: Any, service: str, request: Any) -> Any:
         """Call a service and return its answer."""
         client = self.node.create_client(kind, service)
         self.require(client.wait_for_service(ANSWER_SECS), f"{service} is there")

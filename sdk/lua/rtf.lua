@@ -119,8 +119,8 @@ function rtf.sample(name, value, unit, low, high, time) end
 ---@return boolean within Whether all samples were.
 function rtf.sample_for(name, seconds, rate, read, unit, low, high) end
 
----Asks a person, on the console, the page or the API, and returns the answer: one of the
----choices, or without them any line of text. If nobody answers in time, or nobody can, it is the
+---Asks an operator, on the console, the page or the API, and returns the answer: one of the
+---choices, or without them any line of text. If no operator answers in time, or none can, it is the
 ---default; without a default, this is an error.
 ---@param question any
 ---@param choices? any[]
@@ -130,7 +130,7 @@ function rtf.sample_for(name, seconds, rate, read, unit, low, high) end
 ---@return string answer
 function rtf.ask(question, choices, timeout, default, picture) end
 
----Gives a person an instruction, and waits until it is done. The answers are `done` and `cannot`,
+---Gives an operator an instruction, and waits until it is done. The answers are `done` and `cannot`,
 ---which is an error; the default is one of them.
 ---@param text any
 ---@param picture? string The path of a PNG or JPEG file.

@@ -23,7 +23,7 @@ from terminal import Terminal  # noqa: E402
 
 terminal.LIMIT = 20.0
 
-# Less than a person takes: the limit is paused while a question is open.
+# Less than an operator takes: the limit is paused while a question is open.
 LIMIT = 2.0
 KINDS = ("choice", "text", "instruction", "default", "two", "forever")
 # An interrupted question, its tear-down and its reports: far less than its timeout.
@@ -178,7 +178,7 @@ def a_default(bench: Bench) -> None:
     """Nobody answers in time."""
     with bench.run("arm.xml::default") as session:
         session.expect(r"answer  arm/default> ")
-        session.expect(r"answer  arm/default: no \(default: nobody answered within 500ms\)")
+        session.expect(r"answer  arm/default: no \(default: no operator answered within 500ms\)")
         closed = only(bench.finish(session, 0))
         check(closed["answer"] == "no" and "by" not in closed, f"{closed}")
 
@@ -265,7 +265,7 @@ def nobody(bench: Bench) -> None:
             default, forever = bench.finish(session, 1)
             check(default["answer"] == "no", f"{default}")
             for closed in (default, forever):
-                check(closed["reason"] == f"nobody can answer: {reason}", f"{closed}")
+                check(closed["reason"] == f"no operator can answer: {reason}", f"{closed}")
             check(
                 "answer  arm" not in re.sub(r"answer  arm/\w+: ", "", session.output), "no prompt"
             )
@@ -281,7 +281,7 @@ def nobody(bench: Bench) -> None:
         check=False,
     )
     check(piped.returncode == 1, piped.stdout)
-    check("nobody can answer: standard input is no terminal" in piped.stdout, piped.stdout)
+    check("no operator can answer: standard input is no terminal" in piped.stdout, piped.stdout)
 
 
 def killed(bench: Bench) -> None:

@@ -1,4 +1,4 @@
-"""Tests that ask a person."""
+"""Tests that ask an operator."""
 
 from pathlib import Path
 

@@ -58,7 +58,7 @@ pub enum Control {
     EndOfEpisodes,
 }
 
-/// What a person answers to a question.
+/// What an operator answers to a question.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct QuestionReply {
     /// The number of the question, as in its event.

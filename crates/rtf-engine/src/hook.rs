@@ -20,8 +20,8 @@ pub const HOOK_NOT_RUN: &str = "it did not run: the end of the run was requested
 /// The problem of a test or hook that provides a value.
 pub const PROVIDED: &str = "values can be provided in the set-up of a fixture only";
 
-/// The problem of a hook that asks a person.
-pub const ASKED: &str = "a hook cannot ask a question: nobody may be there to answer";
+/// The problem of a hook that asks an operator.
+pub const ASKED: &str = "a hook cannot ask a question: there may be no operator";
 
 /// Returns the parameters of `run-test` for a hook's plug-in.
 pub fn request(suite: &SuitePlan, name: &str, plugin: &PluginPlan) -> Plugin {

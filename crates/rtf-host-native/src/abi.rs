@@ -222,7 +222,7 @@ pub struct rtf_case {
     pub line: u32,
 }
 
-/// A question to a person.
+/// A question to an operator.
 #[repr(C)]
 #[derive(Debug)]
 pub struct rtf_question {
@@ -235,7 +235,7 @@ pub struct rtf_question {
     pub choices: *const rtf_text,
     /// The number of entries of `choices`.
     pub choice_count: usize,
-    /// The answer if nobody answers, empty if that is an error.
+    /// The answer if no operator answers, empty if that is an error.
     pub default_answer: rtf_text,
     /// How long it waits for an answer, in seconds.
     pub timeout: f64,
@@ -332,7 +332,7 @@ pub struct rtf_host {
     /// `simulator.port`. A value is its text: JSON, except for a text.
     pub fixture_values:
         unsafe extern "C" fn(context: *mut c_void, count: *mut usize) -> *const rtf_parameter,
-    /// Since 1.3: asks a person, and waits; in `setup` and `run` of a test. Returns `RTF_DONE`
+    /// Since 1.3: asks an operator, and waits; in `setup` and `run` of a test. Returns `RTF_DONE`
     /// with the answer, which stays valid until the process ends. Returns `RTF_STOPPED` after a
     /// stop request, and without an answer, which the host has reported as an error: then
     /// return from the step with `RTF_STOPPED`.

@@ -215,9 +215,9 @@ pub enum EventKind {
     CaseStarted(Box<CaseStarted>),
     /// A case has finished.
     CaseFinished(CaseFinished),
-    /// A test asks a person a question. `question-closed` is the matching end.
+    /// A test asks an operator a question. `question-closed` is the matching end.
     QuestionAsked(Box<QuestionAsked>),
-    /// A question was answered, or nobody can answer it any more.
+    /// A question was answered, or no operator can answer it any more.
     QuestionClosed(QuestionClosed),
     /// A process printed output.
     Output(Output),

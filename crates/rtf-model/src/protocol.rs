@@ -508,7 +508,7 @@ pub enum Notification {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         duration_us: Option<u64>,
     },
-    /// A test asks a person a question. Ends with [`Request::QuestionClosed`] or
+    /// A test asks an operator a question. Ends with [`Request::QuestionClosed`] or
     /// [`Request::Interrupt`].
     QuestionAsked(Question),
     /// A fixture provides a value for tests, hooks and other fixtures, in its set-up.

@@ -1,4 +1,4 @@
-//! Questions of a test to a person, and their answers.
+//! Questions of a test to an operator, and their answers.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{CaseId, Location, TestId};
 
-/// A question of a running test to a person.
+/// A question of a running test to an operator.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Question {
@@ -17,7 +17,7 @@ pub struct Question {
     /// The possible answers. Without them, the answer is any line of text.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub choices: Vec<String>,
-    /// The answer if nobody answers; without it, this is an error of the test.
+    /// The answer if no operator answers; without it, this is an error of the test.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub default: Option<String>,
     /// How long it waits for an answer, in milliseconds.
@@ -51,7 +51,7 @@ impl Question {
         Duration::from_millis(self.timeout_ms).min(Self::MAX_TIMEOUT)
     }
 
-    /// Why nobody could answer it; `None` if it is valid.
+    /// Why it cannot be answered; `None` if it is valid.
     #[must_use]
     pub fn problem(&self) -> Option<String> {
         let chars = self.text.chars().count();
@@ -118,7 +118,7 @@ pub struct QuestionAsked {
     pub question: Question,
 }
 
-/// A question was answered, or nobody can answer it any more.
+/// A question was answered, or no operator can answer it any more.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct QuestionClosed {
@@ -133,7 +133,7 @@ pub struct QuestionClosed {
     /// another reason.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by: Option<Respondent>,
-    /// Why nobody answered.
+    /// Why no operator answered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
 }
@@ -176,7 +176,7 @@ impl std::fmt::Display for Respondent {
 }
 
 impl QuestionClosed {
-    /// The result on one line: `yes (alice, on the console)`, `no (default: nobody answered
+    /// The result on one line: `yes (alice, on the console)`, `no (default: no operator answered
     /// within 5s)`, `not answered: the test was stopped`.
     #[must_use]
     pub fn summary(&self) -> String {

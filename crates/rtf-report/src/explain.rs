@@ -186,7 +186,7 @@ pub(crate) fn measurement(measurement: &Measurement) -> String {
     text
 }
 
-/// A question to a person, and how it ended.
+/// A question to an operator, and how it ended.
 pub(crate) fn question(question: &QuestionRecord, sink: Sink<'_>) {
     block(Tone::Plain, &question.asked.text, "question: ", sink);
     block(Tone::Plain, &question.answer_summary(), "  answer: ", sink);

@@ -29,14 +29,14 @@ const BACKGROUND: Duration = Duration::from_millis(500);
 /// Who can answer questions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attendance {
-    /// Whether a person can answer on the terminal.
+    /// Whether an operator can answer on the terminal.
     pub console: bool,
-    /// Why nobody can answer, if nobody can.
+    /// Why no operator can answer, if none can.
     pub unattended: Option<String>,
 }
 
 impl Attendance {
-    /// Nobody can answer, unless there is a page.
+    /// No operator can answer, unless there is a page.
     pub fn on_page(has_page: bool, reason: &str) -> Self {
         let unattended = (!has_page).then(|| reason.to_owned());
         Self { console: false, unattended }
@@ -65,7 +65,7 @@ impl Attendance {
     }
 }
 
-/// Why a person cannot answer on the terminal.
+/// Why an operator cannot answer on the terminal.
 fn no_console(args: &RunArgs) -> Option<&'static str> {
     let reads_episodes = args.episodes.as_deref() == Some("-".as_ref());
     if args.format != StdoutFormat::Console {

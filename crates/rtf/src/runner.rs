@@ -25,7 +25,7 @@ use crate::preflight::Prepared;
 use crate::request::RunRequest;
 use crate::{exit, history, origin, terminal, web};
 
-/// How long the results may take to be written before the user is told why nothing happens.
+/// How long the results may take to be written before the reason is printed.
 const LATE: Duration = Duration::from_secs(2);
 
 /// Runs, and serves the run for as long as requested.

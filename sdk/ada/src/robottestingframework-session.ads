@@ -142,9 +142,9 @@ package RobotTestingFramework.Session is
    --  How long a question waits for an answer.
    Answer_Time : constant Duration := 300.0;
 
-   --  Asks a person, on the console, the page or the API, and returns the answer: one of
-   --  Choices, or without them any line of text: Ask ("Closed?", (+"yes", +"no")). If nobody
-   --  answers in this time, or nobody can, it is Default; without a default, this is an error.
+   --  Asks an operator, on the console, the page or the API, and returns the answer: one of
+   --  Choices, or without them any line of text: Ask ("Closed?", (+"yes", +"no")). If no operator
+   --  answers in this time, or none can, it is Default; without a default, this is an error.
    --  Picture is a PNG or JPEG file. The time limit of the test is paused meanwhile.
    function Ask
      (Question : String;
@@ -155,7 +155,7 @@ package RobotTestingFramework.Session is
       File     : String           := Source.File;
       Line     : Natural          := Source.Line) return String;
 
-   --  Gives a person an instruction, and waits until it is done. The answers are "done" and
+   --  Gives an operator an instruction, and waits until it is done. The answers are "done" and
    --  "cannot", which is an error; Default is one of them.
    procedure Instruct
      (Text    : String;

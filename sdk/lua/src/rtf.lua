@@ -350,7 +350,7 @@ end
 -- How long a question waits for an answer.
 local ANSWER_SECONDS = 300
 
--- Asks a person for a function that the plug-in called.
+-- Asks an operator for a function that the plug-in called.
 local function ask(what, choices, timeout, default, picture)
   timeout = timeout == nil and ANSWER_SECONDS or timeout
   if not math.type(timeout) then

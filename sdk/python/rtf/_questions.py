@@ -1,4 +1,4 @@
-"""Questions to a person."""
+"""Questions to an operator."""
 
 from __future__ import annotations
 

@@ -71,10 +71,10 @@ class TestCase(Plugin):
         default: object | None = None,
         picture: str | os.PathLike[str] | None = None,
     ) -> str:
-        """Ask a person, on the console, the page or the API, and return the answer.
+        """Ask an operator, on the console, the page or the API, and return the answer.
 
-        It is one of `choices`, or without them any line of text. If nobody answers within
-        `timeout` seconds, or nobody can, it is `default`; without a default, this is an error.
+        It is one of `choices`, or without them any line of text. If no operator answers within
+        `timeout` seconds, or none can, it is `default`; without a default, this is an error.
         `picture` is a PNG or JPEG file. The time limit of the test is paused meanwhile.
         """
         if isinstance(choices, str):
@@ -90,7 +90,7 @@ class TestCase(Plugin):
         timeout: float = _questions.ANSWER_SECONDS,
         default: object | None = None,
     ) -> None:
-        """Give a person an instruction, and wait until it is done.
+        """Give an operator an instruction, and wait until it is done.
 
         The answers are `done` and `cannot`, which is an error. `default` is one of them, as
         in `ask`.

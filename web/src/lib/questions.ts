@@ -1,4 +1,4 @@
-// Questions of tests to a person, as text.
+// Questions of tests to an operator, as text.
 
 import type { Asked } from './api-types';
 import type { Event } from './event';

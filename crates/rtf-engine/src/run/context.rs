@@ -23,7 +23,7 @@ pub struct RunContext {
     pub guard: Arc<Link>,
     /// How the only test is debugged.
     pub debug: Option<DebugOptions>,
-    /// Why nobody can answer questions of tests, if nobody can.
+    /// Why no operator can answer questions of tests, if none can.
     pub unattended: Option<String>,
 }
 

@@ -1,5 +1,5 @@
 //! The deadlines of a suite. Those of a throttled process are paused: a slow disk must not fail
-//! a test. The limits of a test that waits for a person are paused, too.
+//! a test. The limits of a test that waits for an operator are paused, too.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::time::Duration;
@@ -17,7 +17,7 @@ pub(super) struct Deadlines {
     paused: HashMap<HostId, (Source, Duration)>,
     /// Hosts that are being stopped: their deadlines are not paused.
     stopping: HashSet<HostId>,
-    /// The tests that wait for an answer of a person, and since when: their limits are paused.
+    /// The tests that wait for an answer of an operator, and since when: their limits are paused.
     asking: BTreeMap<TestId, Duration>,
 }
 
@@ -79,7 +79,7 @@ impl Deadlines {
         self.stopping.remove(&host);
     }
 
-    /// Pauses the limits of a test, which asks a person a question.
+    /// Pauses the limits of a test, which asks an operator a question.
     pub(super) fn pause_limits(&mut self, test: TestId, now: Duration) {
         self.asking.entry(test).or_insert(now);
     }

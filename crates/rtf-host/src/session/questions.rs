@@ -1,4 +1,4 @@
-//! Questions of the plug-in to a person.
+//! Questions of the plug-in to an operator.
 
 use std::fs::File;
 use std::io::Read;
@@ -18,7 +18,7 @@ pub struct Inquiry {
     pub text: String,
     /// The possible answers; without them, the answer is any line of text.
     pub choices: Vec<String>,
-    /// The answer if nobody answers.
+    /// The answer if no operator answers.
     pub default: Option<String>,
     /// How long it waits for an answer.
     pub timeout: Duration,
@@ -29,7 +29,7 @@ pub struct Inquiry {
 }
 
 impl Session {
-    /// Asks a person, and waits. `None` after a stop request, and without an answer, which it
+    /// Asks an operator, and waits. `None` after a stop request, and without an answer, which it
     /// has reported as an error: the plug-in then leaves the step.
     #[must_use]
     pub fn ask(&self, inquiry: Inquiry) -> Option<String> {

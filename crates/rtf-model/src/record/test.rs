@@ -49,7 +49,7 @@ pub struct AttemptRecord {
     pub measurements: Vec<Measurement>,
     /// The signals that it sampled.
     pub series: Vec<SignalSummary>,
-    /// Its questions to a person, up to [`QuestionRecord::KEPT`]. A lean record keeps those that
+    /// Its questions to an operator, up to [`QuestionRecord::KEPT`]. A lean record keeps those that
     /// wait for an answer.
     pub questions: Vec<QuestionRecord>,
     /// The faults that were injected while it ran.

@@ -100,7 +100,7 @@ impl Console {
         }
     }
 
-    /// Lets a person answer questions of tests at this terminal.
+    /// Lets an operator answer questions of tests at this terminal.
     #[must_use]
     pub fn with_operator(self, operator: Operator) -> Self {
         Self { prompt: QuestionPrompt::new(operator), ..self }

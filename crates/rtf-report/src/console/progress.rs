@@ -19,7 +19,7 @@ pub(crate) struct BarState {
     done: u64,
     tests: u64,
     message: String,
-    /// In place of the bar: where a person types.
+    /// In place of the bar: where an operator types.
     prompt: Option<String>,
     /// Taken away for good.
     is_over: bool,

@@ -1,4 +1,4 @@
-//! Questions of tests to a person: shown when they are asked and answered, and one at a time with a
+//! Questions of tests to an operator: shown when they are asked and answered, and one at a time with a
 //! prompt if the person can answer here.
 
 use rtf_model::{EventKind, Micros, Question, QuestionRecord, Record, TestId};

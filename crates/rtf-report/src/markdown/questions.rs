@@ -1,4 +1,4 @@
-//! The questions of the deciding attempts to a person, with their answers.
+//! The questions of the deciding attempts to an operator, with their answers.
 
 use rtf_model::Record;
 
@@ -9,7 +9,7 @@ use crate::words;
 /// Maximum number of questions in the table.
 const ROWS: usize = 200;
 
-/// Shows the table, if a person was asked.
+/// Shows the table, if an operator was asked.
 pub(super) fn show(page: &mut String, record: &Record) {
     let mut rows = Vec::new();
     for test in &record.tests {

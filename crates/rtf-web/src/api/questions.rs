@@ -1,4 +1,4 @@
-//! The questions of an attempt, and the answers of a person or a program.
+//! The questions of an attempt, and the answers of an operator or a program.
 
 use axum::Json;
 use axum::extract::rejection::JsonRejection;

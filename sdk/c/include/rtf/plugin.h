@@ -180,7 +180,7 @@ typedef struct rtf_case {
     uint32_t line;
 } rtf_case;
 
-// A question to a person.
+// A question to an operator.
 typedef struct rtf_question {
     // `sizeof(rtf_question)`.
     size_t size;
@@ -191,7 +191,7 @@ typedef struct rtf_question {
     const struct rtf_text *choices;
     // The number of entries of `choices`.
     size_t choice_count;
-    // The answer if nobody answers, empty if that is an error.
+    // The answer if no operator answers, empty if that is an error.
     struct rtf_text default_answer;
     // How long it waits for an answer, in seconds.
     double timeout;
@@ -295,7 +295,7 @@ typedef struct rtf_host {
     // Since 1.3: the values that fixtures provided, `count` of them, by name:
     // `simulator.port`. A value is its text: JSON, except for a text.
     const struct rtf_parameter *(*fixture_values)(void *context, size_t *count);
-    // Since 1.3: asks a person, and waits; in `setup` and `run` of a test. Returns `RTF_DONE`
+    // Since 1.3: asks an operator, and waits; in `setup` and `run` of a test. Returns `RTF_DONE`
     // with the answer, which stays valid until the process ends. Returns `RTF_STOPPED` after a
     // stop request, and without an answer, which the host has reported as an error: then
     // return from the step with `RTF_STOPPED`.

@@ -14,9 +14,9 @@
 #include <rtf/Declare.hpp>
 #include <rtf/Plugin.hpp>
 #include <rtf/internal/Cases.hpp>
+#include <rtf/internal/Faults.hpp>
 #include <rtf/internal/Monitor.hpp>
 #include <rtf/internal/Questions.hpp>
-#include <rtf/internal/Faults.hpp>
 #include <rtf/internal/Sampling.hpp>
 #include <rtf/internal/Trajectory.hpp>
 #include <rtf/internal/Values.hpp>
@@ -86,8 +86,8 @@ protected:
         internal::plan_cases(here, names);
     }
 
-    // Asks a person, on the console, the page or the API, and returns the answer: one of
-    // `choices`, or without them any line of text. If nobody answers in this time, or nobody
+    // Asks an operator, on the console, the page or the API, and returns the answer: one of
+    // `choices`, or without them any line of text. If no operator answers in this time, or none
     // can, it is the default answer; without one, this is an error. The picture is a PNG or JPEG
     // file. The time limit of the test is paused meanwhile.
     std::string ask(std::string_view question, const std::vector<std::string> &choices = {},
@@ -99,7 +99,7 @@ protected:
             here, internal::Question{question, choices, timeout, default_answer, picture});
     }
 
-    // Gives a person an instruction, and waits until it is done. The answers are `done` and
+    // Gives an operator an instruction, and waits until it is done. The answers are `done` and
     // `cannot`, which is an error; the default answer is one of them.
     void instruct(std::string_view text, std::string_view picture = "",
                   std::chrono::duration<double> timeout = internal::kAnswerTime,

@@ -6,7 +6,7 @@ require "rtf/stop"
 require "rtf/text"
 
 module RTF
-  # Questions to a person.
+  # Questions to an operator.
   class Questions
     ANSWER_SECONDS = 300
     SIGNATURES = { "\x89PNG\r\n\x1A\n".b => "image/png", "\xFF\xD8\xFF".b => "image/jpeg" }.freeze

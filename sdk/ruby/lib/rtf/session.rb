@@ -75,7 +75,7 @@ module RTF
       path
     end
 
-    # Asks a person, and returns the answer.
+    # Asks an operator, and returns the answer.
     def ask(text, choices, **options)
       require_setup_or_run("questions are allowed in `setup` and `run` of a test only")
       if @cases.forked?

@@ -38,17 +38,17 @@ module RTF
       Session.current.skip(reason)
     end
 
-    # Asks a person, on the console, the page or the API, and returns the answer: one of
+    # Asks an operator, on the console, the page or the API, and returns the answer: one of
     # `choices`, or without them any line of text.
     #
-    # If nobody answers within `timeout` seconds, or nobody can, it is `default`; without a
+    # If no operator answers within `timeout` seconds, or none can, it is `default`; without a
     # default, this is an error. `picture` is a PNG or JPEG file. The time limit of the test is
     # paused meanwhile.
     def ask(question, choices = [], timeout: Questions::ANSWER_SECONDS, default: nil, picture: nil)
       Session.current.ask(question, choices, timeout: timeout, default: default, picture: picture)
     end
 
-    # Gives a person an instruction, and waits until it is done. The answers are `done` and
+    # Gives an operator an instruction, and waits until it is done. The answers are `done` and
     # `cannot`, which is an error; `default` is one of them, as in `ask`.
     def instruct(text, picture: nil, timeout: Questions::ANSWER_SECONDS, default: nil)
       answer = ask(text, %w[done cannot], timeout: timeout, default: default, picture: picture)

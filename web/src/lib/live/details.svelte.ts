@@ -45,7 +45,7 @@ export class Details {
     omitted: Partial<Record<ListName, number>> = $state.raw({});
     /** The signals of a test. */
     signals: readonly Signal[] = $state.raw([]);
-    /** The questions of a test to a person. */
+    /** The questions of a test to an operator. */
     questions: readonly Asked[] = $state.raw([]);
     /** The cases of a test. */
     cases = new CaseList();

@@ -26,12 +26,12 @@ pub struct Context<'a> {
 pub struct Questions {
     /// The number of the last one.
     last: u32,
-    /// Why nobody can answer.
+    /// Why no operator can answer.
     unattended: Option<String>,
 }
 
 impl Questions {
-    /// `unattended` is why nobody can answer, if nobody can.
+    /// `unattended` is why no operator can answer, if none can.
     pub fn new(unattended: Option<String>) -> Self {
         Self { last: 0, unattended }
     }
@@ -119,7 +119,7 @@ impl<'a> Context<'a> {
         self.questions.last
     }
 
-    /// Why nobody can answer a question, if nobody can.
+    /// Why no operator can answer a question, if none can.
     pub fn unattended(&self) -> Option<String> {
         self.questions.unattended.clone()
     }

@@ -30,7 +30,7 @@ pub enum Input {
     Stop(Stop),
     /// A user stops this test, if it runs; the user's name.
     StopTest(TestId, String),
-    /// A person answers a question of a test, or declines to.
+    /// An operator answers a question of a test, or declines to.
     Answer(TestId, QuestionReply),
     /// A user skips the rest of the suite; the user's name.
     Skip(String),
@@ -174,7 +174,7 @@ pub enum Effect {
     SetDeadline(Deadline, Duration),
     /// Clear a deadline.
     ClearDeadline(Deadline),
-    /// A person is asked: the limit and the `slow` limit of the test are paused.
+    /// An operator is asked: the limit and the `slow` limit of the test are paused.
     PauseLimits(TestId),
     /// They are resumed.
     ResumeLimits(TestId),

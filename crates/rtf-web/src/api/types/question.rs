@@ -1,4 +1,4 @@
-//! Questions of tests to a person.
+//! Questions of tests to an operator.
 
 use rtf_model::{Event, EventKind, Question, QuestionClosed, QuestionRecord, Respondent};
 use serde::Serialize;
@@ -34,7 +34,7 @@ pub struct Closed {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<model::Respondent>)]
     pub by: Option<Respondent>,
-    /// Why nobody answered.
+    /// Why no operator answered.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
 }

@@ -72,7 +72,7 @@ pub struct Test {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<model::Phase>)]
     pub phase: Option<Phase>,
-    /// Its questions to a person that wait for an answer.
+    /// Its questions to an operator that wait for an answer.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub questions: Vec<Asked>,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Questions to a person.
+// Questions to an operator.
 #ifndef RTF_INTERNAL_QUESTIONS_HPP
 #define RTF_INTERNAL_QUESTIONS_HPP
 

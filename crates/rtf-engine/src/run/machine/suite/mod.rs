@@ -95,7 +95,7 @@ impl<'p> SuiteMachine<'p> {
         }
     }
 
-    /// Nobody can answer the questions of its tests, for this reason.
+    /// No operator can answer the questions of its tests, for this reason.
     #[must_use]
     pub fn unattended(mut self, reason: Option<String>) -> Self {
         self.questions = Questions::new(reason);

@@ -1,4 +1,4 @@
-//! The questions of a test to a person. Each ends with an answer, its time-out, or with the test's
+//! The questions of a test to an operator. Each ends with an answer, its time-out, or with the test's
 //! `run`: a question never delays a tear-down.
 
 use rtf_model::protocol::{QuestionEnd, Request};
@@ -22,7 +22,7 @@ pub(super) struct OpenQuestion {
     asked: Question,
 }
 
-/// How a question ends without an answer of a person.
+/// How a question ends without an answer of an operator.
 struct Unanswered<'a> {
     reason: &'a str,
     by: Option<Respondent>,
@@ -53,7 +53,7 @@ impl TestRun<'_> {
         self.questions.push(OpenQuestion { in_host, asked });
         self.update_stopwatch();
         if let Some(reason) = cx.unattended() {
-            let reason = format!("nobody can answer: {reason}");
+            let reason = format!("no operator can answer: {reason}");
             self.close_unanswered(number, &Unanswered { reason: &reason, by: None }, cx);
         }
     }
@@ -72,7 +72,7 @@ impl TestRun<'_> {
         problem.map(|problem| format!("the question \"{}\" is not valid: {problem}", title(asked)))
     }
 
-    /// A person replies. A late reply, and one that is no answer, have no effect.
+    /// An operator replies. A late reply, and one that is no answer, have no effect.
     pub fn on_reply(&mut self, reply: QuestionReply, cx: &mut Context<'_>) {
         let QuestionReply { question, answer, by } = reply;
         match answer {
@@ -96,7 +96,7 @@ impl TestRun<'_> {
         let Some(open) = self.questions.iter().find(|open| open.asked.question == number) else {
             return;
         };
-        let reason = format!("nobody answered within {:?}", open.asked.timeout());
+        let reason = format!("no operator answered within {:?}", open.asked.timeout());
         self.close_unanswered(number, &Unanswered { reason: &reason, by: None }, cx);
     }
 

@@ -21,7 +21,7 @@ pub struct Stopwatch {
     reading: Option<(Duration, Duration)>,
     /// Simulated time since the start; jumps back do not reduce it.
     elapsed: Duration,
-    /// The runner or a person delays the test: time does not count.
+    /// The runner or an operator delays the test: time does not count.
     is_paused: bool,
 }
 
@@ -116,7 +116,7 @@ impl TestRun<'_> {
         self.update_stopwatch();
     }
 
-    /// Pauses the stopwatch while the runner or a person delays the test.
+    /// Pauses the stopwatch while the runner or an operator delays the test.
     pub(super) fn update_stopwatch(&mut self) {
         let is_paused = self.is_throttled || !self.questions.is_empty();
         self.stopwatch.iter_mut().for_each(|stopwatch| stopwatch.is_paused = is_paused);

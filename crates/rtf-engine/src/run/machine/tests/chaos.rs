@@ -111,7 +111,7 @@ fn question(which: usize) -> Notification {
     Notification::QuestionAsked(asked)
 }
 
-/// A person answers a question, or declines.
+/// An operator answers a question, or declines.
 fn reply(which: usize, choice: u8) -> Input {
     let number = u32::try_from(which).unwrap_or_default();
     let answer = (choice > 62).then(|| "yes".to_owned());

@@ -1,4 +1,4 @@
-//! Questions of tests to a person.
+//! Questions of tests to an operator.
 
 use insta::assert_snapshot;
 use rtf_model::protocol::{Notification, QuestionEnd, Request};
@@ -108,7 +108,7 @@ fn without_an_answer_the_default_counts_or_it_is_a_problem() {
     reply(&mut world, 4, None);
     let expected = [
         answered(1, "no"),
-        problem(2, "no answer to \"Is it closed?\": nobody answered within 60s"),
+        problem(2, "no answer to \"Is it closed?\": no operator answered within 60s"),
         problem(3, "no answer to \"Is it closed?\": declined by alice, on the console"),
         answered(4, "yes"),
     ];
@@ -120,8 +120,8 @@ fn without_an_answer_the_default_counts_or_it_is_a_problem() {
     assert_eq!(
         summaries,
         [
-            "no (default: nobody answered within 60s)",
-            "not answered: nobody answered within 60s",
+            "no (default: no operator answered within 60s)",
+            "not answered: no operator answered within 60s",
             "declined (alice, on the console)",
             "yes (default: declined by alice, on the console)",
         ]
@@ -138,7 +138,7 @@ fn a_run_without_a_person_answers_at_once() {
     world.phase(TEST, Phase::Run);
     ask(&mut world, TEST, question(1, Some("no")));
     ask(&mut world, TEST, question(2, None));
-    let reason = "no answer to \"Is it closed?\": nobody can answer: it is a machine";
+    let reason = "no answer to \"Is it closed?\": no operator can answer: it is a machine";
     assert_eq!(ends(&world), [answered(1, "no"), problem(2, reason)]);
     finish(&mut world);
 }
@@ -238,8 +238,7 @@ fn a_hook_cannot_ask() {
     world.phase(TEST, Phase::TearDown);
     world.end(TEST, "failed");
     ask(&mut world, HOOK, question(1, Some("no")));
-    let refused =
-        "hook `hook0` on failure: a hook cannot ask a question: nobody may be there to answer";
+    let refused = "hook `hook0` on failure: a hook cannot ask a question: there may be no operator";
     assert_eq!(ends(&world), [problem(1, crate::hook::ASKED)]);
     world.exit(HOOK, ExitStatus::Code(0));
     world.finish();
