@@ -97,6 +97,7 @@ class TestCase(Plugin):
         """
         if self.ask(text, ("done", "cannot"), timeout, default, picture) != "done":
             self.error(f"the operator cannot do this: {text}")
+
     def fault(self, name: str) -> Fault:
         """Inject a fault of the suite, and return when it has begun.
 

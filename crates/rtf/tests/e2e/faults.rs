@@ -227,6 +227,38 @@ fn a_test_injects_a_fault_and_removes_it_early() {
     }
 }
 
+/// Sends the request of a test to the fixture, as another user.
+const STRANGER: &str = r##"import rtf, subprocess
+REQUEST = """import socket, sys
+with socket.socket(socket.AF_UNIX) as connection:
+    connection.connect(chr(0) + sys.argv[1])
+    connection.sendall(bytes("inject#drop#T#".replace("#", chr(10)), "ascii"))
+    try:
+        print(connection.recv(1000))
+    except ConnectionResetError:
+        print(b"")
+"""
+OTHER = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", "/usr/bin/python3", "-c"]
+
+class T(rtf.TestCase):
+    def run(self):
+        command = [*OTHER, REQUEST, self.fixture_value("faults.socket")]
+        done = subprocess.run(command, capture_output=True, text=True)
+        self.check(done.stdout == "b''\n", done.stdout + done.stderr)
+"##;
+
+#[test]
+fn another_user_injects_no_fault() {
+    assert!(rustix::process::geteuid().is_root(), "this test acts as another user, as root");
+    let folder = folder(
+        "<fault name='drop' kind='stop' fixture='camera'/>\n<test type='python'> T.py </test>",
+        "",
+    );
+    folder.file("T.py", STRANGER);
+    passes(&folder.rtf(&["run", "s.xml"]));
+    assert!(faults(&folder.journal()).is_empty(), "a fault was injected");
+}
+
 #[test]
 fn a_fault_that_is_not_declared_is_an_error_of_the_test() {
     for (inside, problem) in [
