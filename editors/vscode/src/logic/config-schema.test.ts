@@ -69,7 +69,12 @@ test('the catalogues name files of this release', () => {
         expect(release).toBe(version);
         return path;
     });
-    const files = ['schemas/config.json', 'schemas/limits.json', 'spec/suite.xsd', 'spec/suite.xsd'];
+    const files = [
+        'schemas/config.json',
+        'schemas/limits.json',
+        'spec/suite.xsd',
+        'spec/suite.xsd',
+    ];
     expect(paths.sort()).toEqual(files);
     for (const path of paths) expect(existsSync(new URL(path, ROOT)), path).toBe(true);
 });
