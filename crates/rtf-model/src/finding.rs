@@ -66,7 +66,7 @@ pub struct Finding {
     pub location: Option<Location>,
     /// When it holds, if that is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub interval: Option<SignalInterval>,
+    pub interval: Option<Box<SignalInterval>>,
 }
 
 impl Finding {

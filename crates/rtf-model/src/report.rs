@@ -62,7 +62,7 @@ pub struct Message {
     pub case: Option<CaseId>,
     /// When a monitor is violated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub interval: Option<SignalInterval>,
+    pub interval: Option<Box<SignalInterval>>,
 }
 
 /// A part of a test's time, and the signals that a problem in it is about.
