@@ -99,7 +99,7 @@ impl std::fmt::Display for Reference {
         for (name, value) in &self.fields {
             // A text with line breaks would be several comments.
             let value = value.replace(char::is_control, " ");
-            writeln!(text, "# {name}: {value}")?;
+            writeln!(text, "# {name}: {}", value.trim())?;
         }
         writeln!(text, "{COLUMNS}")?;
         let (time_decimals, decimals) = (self.time_decimals, self.decimals);
@@ -123,7 +123,7 @@ mod tests {
         let fields = vec![
             ("signal".to_owned(), "q".to_owned()),
             ("unit".to_owned(), "rad".to_owned()),
-            ("test".to_owned(), "a\nb: c".to_owned()),
+            ("test".to_owned(), "a\nb: c\u{11}".to_owned()),
         ];
         let reference = Reference::new(fields, &thin(&trajectory, 0.01)).unwrap();
         let text = reference.to_string();
