@@ -139,6 +139,9 @@ impl Checker {
             std::fs::write(&wrapper, text).expect("a script");
             std::fs::set_permissions(&wrapper, Permissions::from_mode(0o755)).expect("a script");
         }
+        for host in ["rtf-host-signals", "rtf-host-faults"] {
+            symlink(built.with_file_name(host), bin.join(host)).expect("a link");
+        }
         let rtf = bin.join("rtf");
         std::fs::copy(built, &rtf).expect("a copy of rtf");
         rtf
