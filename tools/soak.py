@@ -108,6 +108,16 @@ class Bench:
         (directory / "short.xml").write_text(SHORT)
         self.environment = {**os.environ, "TMPDIR": str(self.temporary)}
 
+    @contextmanager
+    def started(self, output: Path, *args: str) -> Iterator[subprocess.Popen[bytes]]:
+        """Starts rtf, and ends it if it is still there at the end."""
+        process = self.start(output, *args)
+        try:
+            yield process
+        finally:
+            process.terminate()
+            process.wait()
+
     def start(self, output: Path, *args: str) -> subprocess.Popen[bytes]:
         """Starts rtf in the directory."""
         with output.open("wb") as file:
@@ -126,8 +136,11 @@ def one_run(bench: Bench, minutes: float) -> list[str]:
     output = bench.directory / "run.log"
     limit = f"{round(minutes * 60)}s"
     options = ["--jobs", "2", "--web=127.0.0.1:0", "--for", limit]
-    process = bench.start(output, "run", *options, "arm.xml", "hand.xml")
-    with browser(address(process, output)), Meter(bench, process.pid) as meter:
+    with (
+        bench.started(output, "run", *options, "arm.xml", "hand.xml") as process,
+        browser(address(process, output)),
+        Meter(bench, process.pid) as meter,
+    ):
         code = process.wait()
     journal = bench.directory / "rtf-results" / "latest" / "events.jsonl"
     verdicts: Counter[str] = Counter()
@@ -138,7 +151,7 @@ def one_run(bench: Bench, minutes: float) -> list[str]:
                 verdicts[event["verdict"]] += 1
     tests = verdicts.total()
     size = journal.stat().st_size / 1e6
-    print(f"one run: {tests} tests, {dict(verdicts)}, journal {size:.0f} MB")
+    print(f"one run: {tests} tests, {dict(verdicts)}, journal {size:.0f} MB", flush=True)
     rounds = verdicts["failed"]
     wanted = {"passed": 240 * rounds, "failed": rounds, "collapsed": rounds}
     problems = [] if code == 1 else [f"exit code {code} of the run"]
@@ -156,17 +169,17 @@ def many_runs(bench: Bench, runs: int) -> list[str]:
     # The page shows a search among several runs.
     for _ in range(2):
         bench.start(bench.directory / "short.log", "run", "short.xml").wait()
-    server = bench.start(output, "serve", "--web=127.0.0.1:0")
     problems = []
-    with browser(address(server, output)), Meter(bench, server.pid) as meter:
+    with (
+        bench.started(output, "serve", "--web=127.0.0.1:0") as server,
+        browser(address(server, output)),
+        Meter(bench, server.pid) as meter,
+    ):
         for number in range(runs):
             run = bench.start(bench.directory / "short.log", "run", "short.xml")
             if run.wait() != 0:
                 problems.append(f"exit code {run.returncode} of run {number}")
                 break
-        meter.close()
-        server.terminate()
-        server.wait()
     print(f"rtf serve: {runs} runs of 20 tests")
     return problems + meter.judge("rtf serve")
 
