@@ -84,9 +84,11 @@ impl MainThread {
             robust_list: std::ptr::null_mut(),
             robust_list_bytes: 0,
         };
+        // The C library passes on all arguments, also those that this operation does not use.
+        let unused: libc::c_ulong = 0;
         // SAFETY: both calls write to variables of the right size.
         let refused = unsafe {
-            libc::prctl(libc::PR_GET_TID_ADDRESS, &raw mut thread.tid) != 0
+            libc::prctl(libc::PR_GET_TID_ADDRESS, &raw mut thread.tid, unused, unused, unused) != 0
                 || libc::syscall(
                     libc::SYS_get_robust_list,
                     0,
@@ -113,8 +115,11 @@ impl MainThread {
         // The order of the last two arguments depends on the processor; the one for
         // thread-local storage is ignored without its flag.
         let child_tid = self.tid;
+        // The same stack, and no address for the id in the parent. The system call reads 64 bits.
+        let none: libc::c_long = 0;
         // SAFETY: copies the memory and the stack, like `fork`.
-        let pid = unsafe { libc::syscall(libc::SYS_clone, flags, 0, 0, child_tid, child_tid) };
+        let pid =
+            unsafe { libc::syscall(libc::SYS_clone, flags, none, none, child_tid, child_tid) };
         match i32::try_from(pid) {
             Ok(0) => {
                 let (list, bytes) = (self.robust_list, self.robust_list_bytes);
