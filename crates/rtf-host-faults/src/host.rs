@@ -4,8 +4,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use rtf_host::{
     HostPlugin, LoadError, PluginKind, Reaction, Session, Step, StepEnd, TestNotification,
+    added_fixture,
 };
-use rtf_model::protocol::{Initialized, PROTOCOL_VERSION, Plugin, StackSupport, Subscription};
+use rtf_model::protocol::{Initialized, Plugin, Subscription};
 use rustix::process::Signal;
 
 use crate::injector::Injector;
@@ -76,22 +77,11 @@ impl FaultsHost {
 
 impl HostPlugin for FaultsHost {
     fn describe(&self) -> Initialized {
-        Initialized {
-            protocol: PROTOCOL_VERSION,
-            host: format!("faults {}", env!("CARGO_PKG_VERSION")),
-            stack: StackSupport::None,
-            supports_shared: false,
-            selects_cases: false,
-        }
+        added_fixture::describe("faults")
     }
 
     fn load(&mut self, kind: PluginKind, plugin: &Plugin) -> Result<(), LoadError> {
-        let settings = match kind {
-            PluginKind::Fixture => Settings::read(plugin),
-            PluginKind::Test => Err("`faults` is a fixture, not a test".to_owned()),
-        };
-        let settings = settings.map_err(|message| LoadError { message, location: None })?;
-        self.settings = Arc::new(settings);
+        self.settings = Arc::new(added_fixture::settings("faults", kind, plugin, Settings::read)?);
         Ok(())
     }
 

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use rtf_host::{HostPlugin, LoadError, PluginKind, Session, Step, StepEnd, TestNotification};
-use rtf_model::protocol::{
-    Initialized, PROTOCOL_VERSION, Plugin, StackSupport, Subscription, TestReportedParams,
+use rtf_host::{
+    HostPlugin, LoadError, PluginKind, Session, Step, StepEnd, TestNotification, added_fixture,
 };
+use rtf_model::protocol::{Initialized, Plugin, Subscription, TestReportedParams};
 
 use crate::settings::Settings;
 use crate::watch::Watch;
@@ -65,22 +65,11 @@ impl SignalsHost {
 
 impl HostPlugin for SignalsHost {
     fn describe(&self) -> Initialized {
-        Initialized {
-            protocol: PROTOCOL_VERSION,
-            host: format!("signals {}", env!("CARGO_PKG_VERSION")),
-            stack: StackSupport::None,
-            supports_shared: false,
-            selects_cases: false,
-        }
+        added_fixture::describe("signals")
     }
 
     fn load(&mut self, kind: PluginKind, plugin: &Plugin) -> Result<(), LoadError> {
-        let settings = match kind {
-            PluginKind::Fixture => Settings::read(plugin),
-            PluginKind::Test => Err("`signals` is a fixture, not a test".to_owned()),
-        };
-        let settings = settings.map_err(|message| LoadError { message, location: None })?;
-        self.settings = Arc::new(settings);
+        self.settings = Arc::new(added_fixture::settings("signals", kind, plugin, Settings::read)?);
         Ok(())
     }
 

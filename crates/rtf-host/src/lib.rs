@@ -8,6 +8,7 @@
 //!
 //! This crate knows no language: the host loads and calls the plug-in.
 
+pub mod added_fixture;
 mod cases;
 mod check;
 mod decode;

@@ -19,22 +19,8 @@ const AMOUNT: [&str; 2] = ["size", "leave"];
 const NETWORK: [&str; 7] = ["port", "delay", "jitter", "loss", "duplicate", "reorder", "rate"];
 /// Those that have an effect alone.
 const NETWORK_EFFECTS: [&str; 4] = ["delay", "loss", "duplicate", "rate"];
-/// The attributes that only some kinds have.
-const SPECIAL: [&str; 13] = [
-    "fixture",
-    "process",
-    "cpu",
-    "size",
-    "leave",
-    "dir",
-    "port",
-    "delay",
-    "jitter",
-    "loss",
-    "duplicate",
-    "reorder",
-    "rate",
-];
+/// The attributes that all kinds have.
+const COMMON: [&str; 5] = ["name", "kind", "at", "for", "seed"];
 
 /// Units of sizes.
 const UNITS: [(&str, u64); 8] = [
@@ -115,7 +101,8 @@ fn report_without_effect(reader: &mut ElementReader<'_>, node: Node<'_, '_>, kin
         FaultKind::Network => &[&NETWORK],
     };
     let used = used.concat();
-    let unused = SPECIAL.iter().filter(|name| !used.contains(name));
+    let known = schema::FAULT.attributes.iter();
+    let unused = known.filter(|name| !COMMON.contains(name) && !used.contains(name));
     let unused = unused.chain((!kind.lasts()).then_some(&"for"));
     for name in unused {
         let Some(attribute) = node.attribute_node(*name) else { continue };

@@ -472,9 +472,8 @@ fn rules() -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
-/// The hooks need the fixtures.
-#[test]
-fn a_fixture_that_a_fault_stopped_is_continued_before_the_hooks_of_the_guard() {
+/// A test during which the camera is stopped, and a hook that parks.
+fn stopped_camera() -> Folder {
     let folder = folder(
         &format!(
             "{PARK}<test> T.lua <fault name='drop' kind='stop' fixture='camera' at='0'/></test>"
@@ -482,6 +481,13 @@ fn a_fixture_that_a_fault_stopped_is_continued_before_the_hooks_of_the_guard() {
         "function TestCase.run() rtf.sleep(60) end\n",
     );
     folder.file("park.py", PARK_PROGRAM);
+    folder
+}
+
+/// The hooks need the fixtures.
+#[test]
+fn a_fixture_that_a_fault_stopped_is_continued_before_the_hooks_of_the_guard() {
+    let folder = stopped_camera();
     let running = folder.start(&["run", "s.xml"]);
     running.wait_for(|kind| matches!(kind, EventKind::FaultInjected(_)));
     running.wait_for(|kind| matches!(kind, EventKind::TestPhase { phase: Phase::Run, .. }));
@@ -496,13 +502,7 @@ fn a_fixture_that_a_fault_stopped_is_continued_before_the_hooks_of_the_guard() {
 /// Ctrl-C during a fault.
 #[test]
 fn an_interrupted_run_leaves_no_fault() {
-    let folder = folder(
-        &format!(
-            "{PARK}<test> T.lua <fault name='drop' kind='stop' fixture='camera' at='0'/></test>"
-        ),
-        "function TestCase.run() rtf.sleep(60) end\n",
-    );
-    folder.file("park.py", PARK_PROGRAM);
+    let folder = stopped_camera();
     let running = folder.start(&["run", "s.xml"]);
     running.wait_for(|kind| matches!(kind, EventKind::FaultInjected(_)));
     running.signal("INT");
