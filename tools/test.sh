@@ -238,8 +238,10 @@ fixture_yarp() {
 fixture_replay_ros1() {
   local library
   library=$(PATH=/usr/bin:$PATH tools/venv.sh mcap)
-  PYTHONPATH=$("$library/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))') \
-    /usr/bin/python3 tools/check_fixture_replay.py "$TARGET/release/rtf" tests/fixtures/replay ros1
+  PYTHONPATH=$("$library/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
+  export PYTHONPATH
+  /usr/bin/python3 tools/check_fixture_replay.py "$TARGET/release/rtf" tests/fixtures/replay ros1
+  /usr/bin/python3 tools/check_ended_subscriber.py
 }
 
 fixture_replay_yarp() {
