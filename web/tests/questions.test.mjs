@@ -99,7 +99,7 @@ test('a stopped test takes its question along', async () => {
     await guarded.button('Yes, stop the test').click();
     await form(guarded, 'choice').waitFor({ state: 'detached' });
     await guarded.rowIs('choice', 'interrupted');
-    await guarded.see('not answered: stopped by an operator, in the browser');
+    await guarded.see('not answered: stopped by a person, in the browser');
     await form(guarded, 'text').waitFor();
     await guarded.close();
 });
