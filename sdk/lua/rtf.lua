@@ -196,6 +196,20 @@ function rtf.fixture_value(name) end
 ---@param band? number By how many seconds times may differ with "dtw".
 function rtf.check_trajectory(name, reference, tolerance, align, band) end
 
+---A fault that the test has injected. It ends with the test at the latest.
+---@class rtf.Fault
+---@field name string
+local Fault = {}
+
+---Removes it. No effect if it has ended already.
+function Fault:remove() end
+
+---Injects a fault of the suite that has no `at`, and returns when it has begun. With `local lost <close> =
+---rtf.fault("drop")`, it is removed at the end of the block.
+---@param name string
+---@return rtf.Fault
+function rtf.fault(name) end
+
 ---Adds a copy of a complete file to the results. The file may be deleted afterwards.
 ---@param path string
 ---@param name? string The default is the file's name.

@@ -15,6 +15,7 @@ mod cases;
 mod check;
 mod chunk;
 mod clock;
+mod faults;
 mod fixture_values;
 mod host;
 mod interruption;

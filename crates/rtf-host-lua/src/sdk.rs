@@ -15,6 +15,7 @@ use rtf_model::{
 use crate::cases;
 use crate::chunk::SdkChunk;
 use crate::clock::Clock;
+use crate::faults;
 use crate::fixture_values;
 
 /// The name in Lua's registry of the value that unwinds a step.
@@ -28,6 +29,7 @@ static LINES: SdkChunk = SdkChunk::new("io.stdout:setvbuf('line')");
 static TEXT: SdkChunk = SdkChunk::new(include_str!("../../../sdk/lua/src/text.lua"));
 static NEAR: SdkChunk = SdkChunk::new(include_str!("../../../sdk/lua/src/near.lua"));
 static GUARD: SdkChunk = SdkChunk::new(include_str!("../../../sdk/lua/src/guard.lua"));
+static FAULT: SdkChunk = SdkChunk::new(include_str!("../../../sdk/lua/src/fault.lua"));
 static RTF: SdkChunk = SdkChunk::new(include_str!("../../../sdk/lua/src/rtf.lua"));
 static PREDECESSOR: SdkChunk = SdkChunk::new(include_str!("../../../sdk/lua/src/predecessor.lua"));
 
@@ -47,7 +49,9 @@ pub(crate) fn install(lua: &Lua) -> mlua::Result<InstalledSdk> {
     let near: Table = NEAR.run(lua, &text)?;
     let guard: Table = GUARD.run(lua, (&text, &stop))?;
     let host = functions(lua)?;
+    let fault: Function = FAULT.run(lua, (&host, &guard, &stop))?;
     let rtf: Table = RTF.run(lua, (&host, near, text, &guard, stop))?;
+    rtf.set("fault", fault)?;
     lua.globals().set("rtf", &rtf)?;
     let predecessor: Table = PREDECESSOR.run(lua, &rtf)?;
     for name in ["robottestingframework", "RTF"] {
@@ -63,6 +67,7 @@ impl InstalledSdk {
     /// Assigns the state to a plug-in and its session.
     pub(crate) fn assign(&self, lua: &Lua, session: &Session, plugin: &Plugin) -> mlua::Result<()> {
         lua.set_app_data(session.clone());
+        lua.set_app_data(plugin.clone());
         self.host.set("plugin", about(lua, plugin)?)
     }
 }
@@ -127,6 +132,7 @@ fn functions(lua: &Lua) -> mlua::Result<Table> {
     })?;
     add(lua, &host, "wait", |session, seconds: f64| Ok(session.wait(duration(seconds))))?;
     add(lua, &host, "ask", |session, asked: Asked| Ok(session.ask(asked.0)))?;
+    faults::add_functions(lua, &host)?;
     cases::add_functions(lua, &host)?;
     fixture_values::add_functions(lua, &host)?;
     add(lua, &host, "interrupted", |session, (): ()| Ok(session.interrupted()))?;

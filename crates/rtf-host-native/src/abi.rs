@@ -140,6 +140,12 @@ pub const RTF_ALIGN_TIME: i32 = 0;
 /// Times are aligned by dynamic time warping.
 pub const RTF_ALIGN_DTW: i32 = 1;
 
+/// The fault begins.
+pub const RTF_FAULT_INJECT: i32 = 0;
+
+/// The fault ends. No effect if it has ended already.
+pub const RTF_FAULT_REMOVE: i32 = 1;
+
 /// A check of a signal against a stored trajectory.
 #[repr(C)]
 #[derive(Debug)]
@@ -346,6 +352,17 @@ pub struct rtf_host {
     pub check_trajectory: unsafe extern "C" fn(context: *mut c_void, check: *const rtf_trajectory),
     /// Since 1.4: declares a formula that judges the rest of the test. Only for tests.
     pub monitor: unsafe extern "C" fn(context: *mut c_void, monitor: *const rtf_monitor),
+    /// Since 1.4: injects or removes a fault of the suite (`RTF_FAULT_INJECT`,
+    /// `RTF_FAULT_REMOVE`), and returns `RTF_DONE` when it has begun or ended. Returns
+    /// `RTF_STOPPED` if that is not possible, which the host has reported as an error: then return
+    /// from the step with `RTF_STOPPED`. Only for tests. `file` may be null.
+    pub fault: unsafe extern "C" fn(
+        context: *mut c_void,
+        action: i32,
+        name: rtf_text,
+        file: *const c_char,
+        line: u32,
+    ) -> i32,
 }
 
 /// The plug-in's kind and functions. All functions are called on the

@@ -1,23 +1,25 @@
 //! The table of functions that a plug-in gets from its host.
 #![expect(unsafe_code, reason = "called by foreign code with its pointers")]
 
-use std::ffi::{CStr, c_char, c_int, c_void};
+use std::ffi::{c_char, c_int, c_void};
 use std::time::Duration;
 
-use ::rtf_host::{CaseEnd, Inquiry, Sample, Session};
+use ::rtf_host::{CaseEnd, FaultRequest, Inquiry, Sample, Session};
 use rtf_model::protocol::{FixtureValue, MonitorDeclaration, Plugin};
 use rtf_model::{
-    Alignment, Attachment, Comparison, Location, Measurement, Message, MessageKind, Parameter,
-    TrajectoryCheck, value_text,
+    Alignment, Attachment, Measurement, Message, MessageKind, Parameter, TrajectoryCheck,
+    value_text,
 };
 use serde_json::Value;
 
 use crate::abi::{
-    RTF_ABI_MAJOR, RTF_ABI_MINOR, RTF_ALIGN_DTW, RTF_ALIGN_TIME, RTF_DONE, RTF_MESSAGE_CHECK,
-    RTF_MESSAGE_ERROR, RTF_MESSAGE_FAILURE, RTF_MESSAGE_REPORT, RTF_STOPPED, RTF_VALUE_JSON,
-    RTF_VALUE_TEXT, rtf_attachment, rtf_case, rtf_comparison, rtf_host, rtf_measurement,
-    rtf_message, rtf_monitor, rtf_parameter, rtf_question, rtf_sample, rtf_text, rtf_trajectory,
+    RTF_ABI_MAJOR, RTF_ABI_MINOR, RTF_ALIGN_DTW, RTF_ALIGN_TIME, RTF_DONE, RTF_FAULT_INJECT,
+    RTF_FAULT_REMOVE, RTF_MESSAGE_CHECK, RTF_MESSAGE_ERROR, RTF_MESSAGE_FAILURE,
+    RTF_MESSAGE_REPORT, RTF_STOPPED, RTF_VALUE_JSON, RTF_VALUE_TEXT, rtf_attachment, rtf_case,
+    rtf_host, rtf_measurement, rtf_message, rtf_monitor, rtf_parameter, rtf_question, rtf_sample,
+    rtf_text, rtf_trajectory,
 };
+use crate::conversion::{comparison, finite, lend, location, slice, text};
 
 /// The context of the functions: one per plug-in, never freed, because the plug-in's
 /// threads may still use it.
@@ -64,6 +66,7 @@ pub(crate) fn for_plugin(session: &Session, plugin: &Plugin) -> &'static rtf_hos
         ask,
         check_trajectory,
         monitor,
+        fault,
     }))
 }
 
@@ -189,6 +192,30 @@ unsafe extern "C" fn monitor(context: *mut c_void, monitor: *const rtf_monitor) 
             Ok(declared) => session.monitor(declared),
             Err(problem) => report_error(session, problem),
         }
+    }
+}
+
+unsafe extern "C" fn fault(
+    context: *mut c_void,
+    action: i32,
+    name: rtf_text,
+    file: *const c_char,
+    line: u32,
+) -> i32 {
+    // SAFETY: the pointers are valid by spec/plugin-abi.md.
+    let (context, name, location) =
+        unsafe { (self::context(context), text(name), location(file, line)) };
+    let request = match action {
+        RTF_FAULT_INJECT => FaultRequest::Inject,
+        RTF_FAULT_REMOVE => FaultRequest::Remove,
+        other => {
+            report_error(&context.session, format!("unknown action {other} of a fault"));
+            return RTF_STOPPED;
+        }
+    };
+    match context.session.fault(context.plugin, request, &name, location) {
+        true => RTF_DONE,
+        false => RTF_STOPPED,
     }
 }
 
@@ -374,65 +401,4 @@ fn report_error(session: &Session, text: String) {
 unsafe fn context(context: *mut c_void) -> &'static HostContext {
     // SAFETY: it was made from such a box, which is never freed.
     unsafe { &*context.cast::<HostContext>() }
-}
-
-/// # Safety
-/// `text` points to `length` bytes, or `length` is 0.
-unsafe fn text(text: rtf_text) -> String {
-    if text.length == 0 || text.data.is_null() {
-        return String::new();
-    }
-    // SAFETY: the caller's promise.
-    let bytes = unsafe { std::slice::from_raw_parts(text.data.cast::<u8>(), text.length) };
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
-fn lend(text: &'static str) -> rtf_text {
-    rtf_text { data: text.as_ptr().cast(), length: text.len() }
-}
-
-/// # Safety
-/// `file` is null or a string that ends with a zero.
-unsafe fn location(file: *const c_char, line: u32) -> Option<Location> {
-    if file.is_null() {
-        return None;
-    }
-    // SAFETY: the caller's promise.
-    let file = unsafe { CStr::from_ptr(file) }.to_string_lossy().into_owned();
-    Some(Location { file, line })
-}
-
-/// # Safety
-/// The arrays have as many entries as they say.
-unsafe fn comparison(numbers: &rtf_comparison) -> Comparison {
-    // SAFETY: the caller's promise.
-    let (expected, got) = unsafe {
-        (list(numbers.expected, numbers.expected_count), list(numbers.got, numbers.got_count))
-    };
-    // JSON has only finite numbers. An infinite tolerance accepts any value.
-    let tolerance = if numbers.tolerance.is_nan() { 0.0 } else { numbers.tolerance };
-    let tolerance = tolerance.clamp(f64::MIN, f64::MAX);
-    Comparison { expected, got, tolerance, worst: u64::try_from(numbers.worst).ok() }
-}
-
-/// # Safety
-/// `numbers` points to `count` numbers, or `count` is 0.
-unsafe fn list(numbers: *const f64, count: usize) -> Vec<Option<f64>> {
-    // SAFETY: the caller's promise.
-    unsafe { slice(numbers, count) }.iter().copied().map(finite).collect()
-}
-
-/// # Safety
-/// `data` points to `count` entries that are valid as long as the caller uses the slice, or
-/// it is null.
-unsafe fn slice<'a, T>(data: *const T, count: usize) -> &'a [T] {
-    if count == 0 || data.is_null() {
-        return &[];
-    }
-    // SAFETY: the caller's promise.
-    unsafe { std::slice::from_raw_parts(data, count) }
-}
-
-fn finite(value: f64) -> Option<f64> {
-    value.is_finite().then_some(value)
 }

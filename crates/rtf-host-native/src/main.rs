@@ -9,6 +9,7 @@
 #![expect(unsafe_code, reason = "the program's entry point is C's")]
 
 mod abi;
+mod conversion;
 mod host_table;
 mod library;
 mod plugin;

@@ -34,5 +34,5 @@ pub use process_marks::{ProcessMarks, fixture_owner};
 pub use program::HostProgram;
 pub use sampling::Sample;
 pub use serve::serve;
-pub use session::{Inquiry, OpenError, Session};
+pub use session::{FaultRequest, Inquiry, OpenError, Session};
 pub use suite_clock::SuiteClock;

@@ -24,6 +24,9 @@ private package RobotTestingFramework.ABI is
    Value_Text : constant := 0;
    Value_JSON : constant := 1;
 
+   Fault_Inject : constant := 0;
+   Fault_Remove : constant := 1;
+
    type Message_Kind is (Report, Check, Failure, Error) with Convention => C;
 
    type Text is record
@@ -186,6 +189,14 @@ private package RobotTestingFramework.ABI is
    type Take_Monitor is access procedure (Context : Address; Value : Monitor)
      with Convention => C;
 
+   type Request_Fault is access function
+     (Context : Address;
+      Action  : Interfaces.Integer_32;
+      Name    : Text;
+      File    : Address;
+      Line    : Interfaces.Unsigned_32) return Interfaces.Integer_32
+     with Convention => C;
+
    type Host_Table is record
       Major       : Interfaces.Unsigned_32;
       Minor       : Interfaces.Unsigned_32;
@@ -212,6 +223,7 @@ private package RobotTestingFramework.ABI is
       Ask         : Ask_Question;
       Trajectory  : Take_Trajectory;
       Monitor     : Take_Monitor;
+      Fault       : Request_Fault;
    end record with Convention => C;
 
    type Host_Access is access constant Host_Table with Convention => C;

@@ -1,6 +1,7 @@
 //! The host's end of the channel, which its threads share.
 
 mod cases;
+mod faults;
 mod findings;
 mod program;
 mod questions;
@@ -25,6 +26,7 @@ use crate::outcome::RequestOutcome;
 use crate::sampling::{Sample, Sampling};
 use crate::unix;
 use crate::writer::Writer;
+pub use faults::FaultRequest;
 pub use questions::Inquiry;
 
 /// Why there is no channel to the runner.

@@ -1,6 +1,7 @@
 //! Every scenario of `conformance/` in every language, with the real hosts.
 
 mod checkers;
+mod faults;
 mod suites;
 
 use std::path::PathBuf;
@@ -140,7 +141,7 @@ fn check_with(
     for scenario in &scenarios {
         temp.file(&format!("{scenario}.xml"), &suite(scenario, &plugins, mode.isolation));
     }
-    temp.file("simulator.py", SIMULATOR);
+    temp.file("simulator.py", SIMULATOR).file("camera.py", faults::CAMERA);
     let finished = start(temp, &["run", "--fork", mode.fork, "."]);
     assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
     let journal = temp.journal();
@@ -174,6 +175,7 @@ fn check_scenario(
         &expected,
         &finished_cases(events, scenarios, attempt),
     ));
+    problems.extend(faults::compare(scenario, &expected, &attempt.faults));
     problems.extend(check_before(scenario, mode, &record.tests[before_it.index()]));
     let mut after = "passed";
     for line in &expected {

@@ -58,6 +58,12 @@
 // Times are aligned by dynamic time warping.
 #define RTF_ALIGN_DTW 1
 
+// The fault begins.
+#define RTF_FAULT_INJECT 0
+
+// The fault ends. No effect if it has ended already.
+#define RTF_FAULT_REMOVE 1
+
 // A UTF-8 text, not necessarily terminated by zero. Invalid bytes become `U+FFFD`.
 typedef struct rtf_text {
     // The first byte; may be null if `length` is 0.
@@ -305,6 +311,15 @@ typedef struct rtf_host {
     void (*check_trajectory)(void *context, const struct rtf_trajectory *check);
     // Since 1.4: declares a formula that judges the rest of the test. Only for tests.
     void (*monitor)(void *context, const struct rtf_monitor *monitor);
+    // Since 1.4: injects or removes a fault of the suite (`RTF_FAULT_INJECT`,
+    // `RTF_FAULT_REMOVE`), and returns `RTF_DONE` when it has begun or ended. Returns
+    // `RTF_STOPPED` if that is not possible, which the host has reported as an error: then return
+    // from the step with `RTF_STOPPED`. Only for tests. `file` may be null.
+    int32_t (*fault)(void *context,
+                     int32_t action,
+                     struct rtf_text name,
+                     const char *file,
+                     uint32_t line);
 } rtf_host;
 
 // An attempt of a test.

@@ -1,5 +1,6 @@
 # frozen_string_literal: true
 
+require "rtf/fault"
 require "rtf/near"
 require "rtf/plugin"
 
@@ -53,6 +54,19 @@ module RTF
     def instruct(text, picture: nil, timeout: Questions::ANSWER_SECONDS, default: nil)
       answer = ask(text, %w[done cannot], timeout: timeout, default: default, picture: picture)
       error("the operator cannot do this: #{text}") unless answer == "done"
+    end
+
+    # Injects a fault of the suite that has no `at`, and returns it when it has begun: `remove`
+    # removes it before the end of the test. With a block, it is removed at the end of the block.
+    def fault(name)
+      fault = Fault.new(Session.current, name)
+      return fault unless block_given?
+
+      begin
+        yield fault
+      ensure
+        fault.remove
+      end
     end
 
     # The test's values of a matrix.

@@ -87,6 +87,7 @@ fn clock_and_fixture(scenario: &str, plugins: &Plugins<'_>) -> (&'static str, St
             );
             ("", fixture)
         }
+        "fault" => ("", super::faults::ELEMENTS.to_owned()),
         "monitor" => {
             let signal = "<signal name=\"level\" unit=\"m\" test=\"sample\"/>\n  ";
             ("", signal.to_owned())

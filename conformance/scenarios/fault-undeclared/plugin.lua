@@ -1,0 +1,4 @@
+function TestCase.run()
+  rtf.fault("drop")
+  rtf.report("not reached")
+end
