@@ -114,7 +114,7 @@ lint_python() {
   "$checkers/mypy" tests/fixtures/*.py tests/fixtures/ros2launch/*.py \
     tests/fixtures/orocos/*.py tests/fixtures/yarp/*.py
   "$checkers/mypy" tests/fixtures/clock/*.py tests/fixtures/replay/*.py
-  "$checkers/mypy" tests/fixtures/signals/*.py
+  "$checkers/mypy" tests/fixtures/signals/*.py tests/fixtures/proxies/*.py
   "$checkers/mypy" packaging/*.py
   "$checkers/mypy" benches/bench.py
   "$checkers/mypy" tests/predecessor/*.py
@@ -183,7 +183,7 @@ suites_are_valid() {
   suites=$(files ':(glob)examples/*/*.xml' 'crates/rtf/templates/*.xml' 'tests/install/*.xml' 'tests/wheel/*.xml' 'tests/fixtures/*/suite.xml' 'tests/frameworks/*/suite.xml' \
     'tests/ctest/project/arm.xml' 'tests/colcon/workspace/src/*/test/*.xml' \
     'tests/fixtures/yarp/suites/*.xml' 'tests/fixtures/ros1/*.xml' 'tests/fixtures/clock/*.xml' \
-    'tests/fixtures/replay/*.xml' 'tests/fixtures/signals/*.xml')
+    'tests/fixtures/replay/*.xml' 'tests/fixtures/signals/*.xml' 'tests/fixtures/proxies/*.xml')
   campaigns=$(xargs -d '\n' grep -l '^<campaign' <<<"$suites")
   grep -vxF "$campaigns" <<<"$suites" | xargs -d '\n' xmllint --noout --schema spec/suite.xsd
   xargs -d '\n' xmllint --noout --schema spec/campaign.xsd <<<"$campaigns"
@@ -299,6 +299,10 @@ example_10() {
 
 signals_of() {
   python3 tools/check_signals.py "$TARGET/release/rtf" tests/fixtures/signals "$1"
+}
+
+proxies_of() {
+  python3 tools/check_proxies.py "$TARGET/release/rtf" tests/fixtures/proxies "$1"
 }
 
 signals_of_tests() {
@@ -550,6 +554,8 @@ robots_and_frameworks() {
   step_with 'guide replay' ros1 guide_replay
   step_with 'signals ros1' ros1 signals_of ros
   step_with 'signals yarp' yarp signals_of yarp
+  step_with 'proxies ros1' ros1 proxies_of ros
+  step_with 'proxies yarp' yarp proxies_of yarp
   step_with 'example 06' ros2 example_06
   step 'example 07' example_07
   step 'example 08' example_08
@@ -561,6 +567,7 @@ robots_and_frameworks() {
   step 'executor kubernetes' executor_kubernetes
   step_with 'clock ros2' ros2 clock_ros2
   step_with 'signals ros2' ros2 signals_of ros2
+  step_with 'proxies ros2' ros2 proxies_of ros2
   step_with 'fixture ros2launch' ros2 fixture_ros2launch
   step_with 'fixture orocos' orocos fixture_orocos
   step 'framework gtest' framework gtest

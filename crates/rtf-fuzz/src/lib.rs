@@ -6,6 +6,8 @@
 #[path = "../../rtf-host-native/src/abi.rs"]
 #[expect(dead_code, reason = "only the table is called")]
 mod abi;
+#[path = "../../rtf-host-native/src/conversion.rs"]
+mod conversion;
 #[path = "../../rtf-host-native/src/host_table.rs"]
 mod host_table;
 #[cfg(feature = "libfuzzer")]

@@ -5,6 +5,8 @@ use std::time::{Duration, Instant};
 use rtf_model::NetworkFault;
 use rtf_statistics::RandomStream;
 
+use crate::refusal;
+
 const TCP: u8 = 6;
 const UDP: u8 = 17;
 /// Packets that wait for bandwidth; more are lost, as in a switch.
@@ -29,9 +31,20 @@ impl Impairment {
         Self { fault, port, random, draws: 0, free_at: Instant::now() }
     }
 
+    /// The answers to a packet that is refused, and does not arrive; `None` if it may pass.
+    pub fn answers(&self, packet: &[u8]) -> Option<Vec<Vec<u8>>> {
+        (self.fault.refuses && self.concerns(packet))
+            .then(|| refusal::answers(packet, self.port))
+            .flatten()
+    }
+
+    fn concerns(&self, packet: &[u8]) -> bool {
+        self.port.is_none_or(|port| has_port(packet, port))
+    }
+
     /// When the copies of a packet arrive that is sent at `sent`; none if it is lost.
     pub fn arrivals(&mut self, packet: &[u8], sent: Instant) -> Vec<Instant> {
-        if self.port.is_some_and(|port| !has_port(packet, port)) {
+        if !self.concerns(packet) {
             return vec![sent];
         }
         if self.happens(self.fault.loss_ppm) {

@@ -12,6 +12,7 @@ use crate::fill::{self, Memory};
 use crate::impairment::Impairment;
 use crate::network::{self, Impaired};
 use crate::pauses::{self, Pauses};
+use crate::proxy::{self, ChangedValues};
 use crate::settings::EffectSettings;
 use crate::targets::{Target, Targets};
 
@@ -34,6 +35,9 @@ pub(crate) enum Effect {
     },
     Network {
         _impaired: Impaired,
+    },
+    Values {
+        _changed: ChangedValues,
     },
 }
 
@@ -72,6 +76,12 @@ pub(crate) fn begin(
             let done = format!("impaired the packets{port}: {fault}");
             Ok((Effect::Network { _impaired: impaired }, done))
         }
+        EffectSettings::Values { fixture, socket, fault } => {
+            let changed = proxy::change(socket, fault)?;
+            let field = fault.field.as_ref().map_or("messages".to_owned(), |it| format!("`{it}`"));
+            let done = format!("changed {field} of `{fixture}`: {fault}");
+            Ok((Effect::Values { _changed: changed }, done))
+        }
         EffectSettings::Disk { dir, amount } => {
             let file = fill::disk(dir, *amount, is_cancelled)?;
             let size = file.metadata().map_or(0, |metadata| metadata.len());
@@ -86,7 +96,11 @@ impl Effect {
     pub fn advance(&mut self, now: Instant, pauses: &mut Pauses) -> Option<Instant> {
         match self {
             Self::Paused(paused) => Some(paused.advance(now, pauses)),
-            Self::None | Self::Memory { .. } | Self::Disk { .. } | Self::Network { .. } => None,
+            Self::None
+            | Self::Memory { .. }
+            | Self::Disk { .. }
+            | Self::Network { .. }
+            | Self::Values { .. } => None,
         }
     }
 

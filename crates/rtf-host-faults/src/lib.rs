@@ -5,7 +5,8 @@
 //! the faults that last. Its [`scheduler`] thread injects the faults whose time has come and
 //! removes those whose time has elapsed; [`requests`] does what tests ask for. A fault is a [`lasting`]
 //! effect: [`pauses`] of processes that [`targets`] finds, filled memory or disks ([`fill`]), or an
-//! [`impairment`] of the packets of the private [`network`], which come over the [`loopback`].
+//! [`impairment`] or [`refusal`] of the packets of the private [`network`], which come over the
+//! [`loopback`], or changes that a [`proxy`] makes.
 //!
 //! Memory and files without a name belong to this process, so the kernel frees them when it ends.
 
@@ -18,6 +19,8 @@ mod lasting;
 mod loopback;
 mod network;
 mod pauses;
+mod proxy;
+mod refusal;
 mod requests;
 mod running_test;
 mod scheduler;

@@ -132,7 +132,12 @@ fn pass_on(tun: &File, wake: &PipeReader, impairments: &Mutex<Vec<(u64, Impairme
         let mut reader = tun;
         while let Ok(length @ 1..) = reader.read(&mut bytes) {
             let packet = &bytes[..length];
-            for at in arrivals(packet, &mut lock(impairments)) {
+            let impairments = &mut lock(impairments);
+            if let Some(answers) = impairments.iter().find_map(|(_, it)| it.answers(packet)) {
+                answers.into_iter().for_each(|answer| queue.push(Instant::now(), answer));
+                continue;
+            }
+            for at in arrivals(packet, impairments) {
                 queue.push(at, packet.to_vec());
             }
         }

@@ -37,10 +37,10 @@ fn take_due(injector: &Injector, state: &mut InjectorState) -> Vec<(TestId, usiz
     tests.flat_map(|test| test.take_due(now).into_iter().map(|fault| (test.id, fault))).collect()
 }
 
-/// Filling takes a while, in which other faults begin and end.
+/// Filling, and the answer of a proxy, take a while, in which other faults begin and end.
 fn inject(injector: &Arc<Injector>, test: TestId, fault: usize) {
     match &injector.settings.faults[fault].effect {
-        EffectSettings::Memory(_) | EffectSettings::Disk { .. } => {
+        EffectSettings::Memory(_) | EffectSettings::Disk { .. } | EffectSettings::Values { .. } => {
             let injector = Arc::clone(injector);
             std::thread::spawn(move || injector.inject_due(test, fault));
         }

@@ -6,6 +6,7 @@ use rtf_host::fixture_owner;
 use rtf_model::protocol::Plugin;
 use rtf_model::{
     FaultAction, FaultAmount, FaultConfig, FaultKind, FaultTarget, FaultsConfig, NetworkFault,
+    ValuesFault, value_text,
 };
 
 use crate::targets::Targets;
@@ -29,10 +30,26 @@ impl FaultSettings {
 pub(crate) enum EffectSettings {
     Kill(Targets),
     Stop(Targets),
-    Slow { targets: Targets, percent: u32 },
+    Slow {
+        targets: Targets,
+        percent: u32,
+    },
     Memory(FaultAmount),
-    Disk { dir: PathBuf, amount: FaultAmount },
-    Network { fault: NetworkFault, port: Option<u16>, seed: u32 },
+    Disk {
+        dir: PathBuf,
+        amount: FaultAmount,
+    },
+    Network {
+        fault: NetworkFault,
+        port: Option<u16>,
+        seed: u32,
+    },
+    /// The socket is that of the fixture, a proxy.
+    Values {
+        fixture: String,
+        socket: String,
+        fault: ValuesFault,
+    },
 }
 
 /// Everything that the suite declares.
@@ -70,6 +87,11 @@ impl Settings {
                     let port = if fault.has_port { Some(port(args.next())?) } else { None };
                     EffectSettings::Network { fault: *fault, port, seed: config.seed }
                 }
+                FaultAction::Values { fixture, fault } => EffectSettings::Values {
+                    fixture: fixture.clone(),
+                    socket: socket_of(plugin, fixture)?,
+                    fault: fault.clone(),
+                },
             };
             faults.push(FaultSettings { config, effect });
         }
@@ -80,6 +102,16 @@ impl Settings {
     pub fn has_requested(&self) -> bool {
         self.faults.iter().any(|fault| fault.config.at.is_none())
     }
+}
+
+/// The socket of a proxy.
+fn socket_of(plugin: &Plugin, fixture: &str) -> Result<String, String> {
+    let name = format!("{fixture}.fault-socket");
+    let socket = plugin.fixture_values.iter().find(|value| value.name == name);
+    let socket = socket.ok_or_else(|| {
+        format!("the fixture `{fixture}` is no proxy: it provides no value `fault-socket`")
+    })?;
+    Ok(value_text(&socket.value).into_owned())
 }
 
 fn port(argument: Option<&String>) -> Result<u16, String> {

@@ -75,6 +75,13 @@ pub enum FaultAction {
     Disk(FaultAmount),
     /// Impairs the packets of the suite's private network.
     Network(NetworkFault),
+    /// Changes the messages that a proxy passes on.
+    Values {
+        /// The name of the fixture, a proxy.
+        fixture: String,
+        /// What happens to the messages.
+        fault: ValuesFault,
+    },
 }
 
 impl FaultAction {
@@ -88,6 +95,7 @@ impl FaultAction {
             Self::Memory(_) => FaultKind::Memory,
             Self::Disk(_) => FaultKind::Disk,
             Self::Network(_) => FaultKind::Network,
+            Self::Values { .. } => FaultKind::Values,
         }
     }
 }
@@ -137,6 +145,9 @@ pub struct NetworkFault {
     /// The bandwidth in bits per second.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_bits: Option<u64>,
+    /// TCP and UDP are refused, as if no process had the port.
+    #[serde(default)]
+    pub refuses: bool,
 }
 
 impl std::fmt::Display for NetworkFault {
@@ -152,7 +163,52 @@ impl std::fmt::Display for NetworkFault {
         let shares = shares.into_iter().filter(|(_, ppm)| *ppm > 0);
         let shares = shares.map(|(name, ppm)| format!("{name} {} %", f64::from(ppm) / 1e4));
         let rate = self.rate_bits.map(|bits| format!("rate {} kbit/s", bits as f64 / 1e3));
-        let all: Vec<String> = times.chain(shares).chain(rate).collect();
+        let refused = self.refuses.then(|| "refused".to_owned());
+        let all: Vec<String> = times.chain(shares).chain(rate).chain(refused).collect();
+        f.write_str(&all.join(", "))
+    }
+}
+
+/// What happens to the messages of a proxy, and its request to the proxy. Numbers are texts,
+/// because JSON has none that is not finite.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ValuesFault {
+    /// The numbers that are changed; `None`: none.
+    pub field: Option<String>,
+    /// What they are.
+    pub set: Option<String>,
+    /// By what they are multiplied afterwards.
+    pub scale: Option<String>,
+    /// What is added afterwards.
+    pub offset: Option<String>,
+    /// The standard deviation of noise, which is added at the end.
+    pub noise: Option<String>,
+    /// They stay what they were before the fault.
+    pub freezes: bool,
+    /// How many messages are lost, in parts per million.
+    pub loss_ppm: u32,
+    /// How much later messages come, in microseconds.
+    pub delay_us: u64,
+    /// The seed for noise and loss.
+    pub seed: u32,
+}
+
+impl std::fmt::Display for ValuesFault {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let numbers = [
+            ("set", &self.set),
+            ("scale", &self.scale),
+            ("offset", &self.offset),
+            ("noise", &self.noise),
+        ];
+        let numbers = numbers
+            .into_iter()
+            .filter_map(|(name, number)| number.as_ref().map(|number| format!("{name} {number}")));
+        let frozen = self.freezes.then(|| "frozen".to_owned());
+        let loss =
+            (self.loss_ppm > 0).then(|| format!("loss {} %", f64::from(self.loss_ppm) / 1e4));
+        let delay = (self.delay_us > 0).then(|| format!("delay {} ms", self.delay_us as f64 / 1e3));
+        let all: Vec<String> = numbers.chain(frozen).chain(loss).chain(delay).collect();
         f.write_str(&all.join(", "))
     }
 }
@@ -172,19 +228,22 @@ pub enum FaultKind {
     Memory,
     /// A file system is filled.
     Disk,
-    /// Packets of the suite's private network are delayed, lost, doubled or reordered.
+    /// Packets of the suite's private network are delayed, lost, doubled, reordered or refused.
     Network,
+    /// Messages that pass a proxy have other numbers, are lost or late.
+    Values,
 }
 
 impl FaultKind {
     /// Every kind, with its word in suites.
-    pub const ALL: [(&'static str, Self); 6] = [
+    pub const ALL: [(&'static str, Self); 7] = [
         ("kill", Self::Kill),
         ("stop", Self::Stop),
         ("slow", Self::Slow),
         ("memory", Self::Memory),
         ("disk", Self::Disk),
         ("network", Self::Network),
+        ("values", Self::Values),
     ];
 
     /// Its word.

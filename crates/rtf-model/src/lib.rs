@@ -39,7 +39,7 @@ pub use event::{
 };
 pub use fault::{
     FaultAction, FaultAmount, FaultConfig, FaultInjected, FaultKind, FaultRecord, FaultTarget,
-    FaultTime, FaultsConfig, NetworkFault,
+    FaultTime, FaultsConfig, NetworkFault, ValuesFault,
 };
 pub use finding::{Finding, FindingSeverity};
 pub use ids::{CaseId, FixtureId, HookId, Micros, SuiteId, TestId};

@@ -48,6 +48,11 @@ pub(super) fn plan(
         let problem = known.process_problem(&target.fixture, "broken by a fault");
         problems.extend(problem.map(|it| it.label(source.label(target.fixture.span, ""))));
     }
+    for effect in all.iter().map(|(fault, _)| &fault.effect) {
+        let DeclaredEffect::Values { fixture, .. } = effect else { continue };
+        let problem = known.plugin_problem(fixture, "a proxy");
+        problems.extend(problem.map(|it| it.label(source.label(fixture.span, ""))));
+    }
     let of_network = |it: &DeclaredFault| matches!(it.effect, DeclaredEffect::Network { .. });
     for (fault, _) in all.iter().filter(|(fault, _)| of_network(fault) && !declared.has_network) {
         let message = "a fault of the kind `network` needs a suite with a private network";
@@ -113,6 +118,9 @@ fn config(
         DeclaredEffect::Network { fault, port } => {
             args.extend(port.iter().map(|port| port.value.clone()));
             FaultAction::Network(*fault)
+        }
+        DeclaredEffect::Values { fixture, fault } => {
+            FaultAction::Values { fixture: fixture.value.clone(), fault: fault.clone() }
         }
     };
     let DeclaredFault { span, name, at, duration, seed, .. } = fault;

@@ -9,16 +9,17 @@ use super::reader::ElementReader;
 use super::schema::{self, check};
 use super::{
     DeclaredEffect, DeclaredFault, DeclaredTarget, DurationError, Span, Spanned, parse_duration,
-    reference,
+    reference, value_fault,
 };
 use crate::wording::quoted;
 
 /// The attributes of each kind, and their meaning where one is missing.
 const PROCESSES: [&str; 2] = ["fixture", "process"];
 const AMOUNT: [&str; 2] = ["size", "leave"];
-const NETWORK: [&str; 7] = ["port", "delay", "jitter", "loss", "duplicate", "reorder", "rate"];
+const NETWORK: [&str; 8] =
+    ["port", "delay", "jitter", "loss", "duplicate", "reorder", "rate", "refuse"];
 /// Those that have an effect alone.
-const NETWORK_EFFECTS: [&str; 4] = ["delay", "loss", "duplicate", "rate"];
+const NETWORK_EFFECTS: [&str; 5] = ["delay", "loss", "duplicate", "rate", "refuse"];
 /// The attributes that all kinds have.
 const COMMON: [&str; 5] = ["name", "kind", "at", "for", "seed"];
 
@@ -89,6 +90,7 @@ fn effect(
             Some(DeclaredEffect::Disk { dir, amount: amount? })
         }
         FaultKind::Network => network(reader, node),
+        FaultKind::Values => value_fault::read(reader, node),
     }
 }
 
@@ -99,6 +101,7 @@ fn report_without_effect(reader: &mut ElementReader<'_>, node: Node<'_, '_>, kin
         FaultKind::Memory => &[&AMOUNT],
         FaultKind::Disk => &[&AMOUNT, &["dir"]],
         FaultKind::Network => &[&NETWORK],
+        FaultKind::Values => &[&value_fault::ATTRIBUTES],
     };
     let used = used.concat();
     let known = schema::FAULT.attributes.iter();
@@ -112,7 +115,7 @@ fn report_without_effect(reader: &mut ElementReader<'_>, node: Node<'_, '_>, kin
         reader.report(Diagnostic::error("wrong-type", message).label(label).note(note));
     }
     let range = |name| node.attribute(name).is_some_and(|value: &str| value.contains(".."));
-    if kind != FaultKind::Network
+    if !matches!(kind, FaultKind::Network | FaultKind::Values)
         && let Some(seed) = node.attribute_node("seed")
         && !range("at")
         && !range("for")
@@ -183,15 +186,23 @@ fn parse_size(text: &str) -> Option<u64> {
 
 fn network(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredEffect> {
     if !NETWORK_EFFECTS.iter().any(|name| node.has_attribute(*name)) {
-        reader.missing(node, "one of the attributes `delay`, `loss`, `duplicate` and `rate`");
+        reader.missing(
+            node,
+            "one of the attributes `delay`, `loss`, `duplicate`, `rate` and `refuse`",
+        );
         return None;
     }
-    for name in ["jitter", "reorder"] {
-        if let (Some(attribute), false) = (node.attribute_node(name), node.has_attribute("delay")) {
-            let label = reader.source.label(Span::new(attribute.range_qname()), "");
-            let message = format!("`{name}` has no effect without `delay`");
-            reader.report(Diagnostic::error("wrong-type", message).label(label));
-        }
+    let refuses = reader.boolean(node, "refuse").unwrap_or(false);
+    let unused = |name: &&str| match *name {
+        "jitter" | "reorder" if !node.has_attribute("delay") => Some("without `delay`"),
+        "port" | "refuse" => None,
+        _ => refuses.then_some("with `refuse`"),
+    };
+    for (name, reason) in NETWORK.iter().filter_map(|name| Some((name, unused(name)?))) {
+        let Some(attribute) = node.attribute_node(*name) else { continue };
+        let label = reader.source.label(Span::new(attribute.range_qname()), "");
+        let message = format!("`{name}` has no effect {reason}");
+        reader.report(Diagnostic::error("wrong-type", message).label(label));
     }
     let port = reader.word(node, "port");
     if let Some(port) = &port
@@ -211,12 +222,13 @@ fn network(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Declare
         duplicate_ppm: share(reader, node, "duplicate"),
         reorder_ppm: share(reader, node, "reorder"),
         rate_bits: rate(reader, node),
+        refuses,
     };
     Some(DeclaredEffect::Network { fault, port })
 }
 
 /// A percentage, in parts per million.
-fn share(reader: &mut ElementReader<'_>, node: Node<'_, '_>, name: &str) -> u32 {
+pub(super) fn share(reader: &mut ElementReader<'_>, node: Node<'_, '_>, name: &str) -> u32 {
     let Some(text) = reader.word(node, name) else { return 0 };
     let percent = text.value.strip_suffix('%').and_then(|it| it.trim_end().parse::<f64>().ok());
     match percent.filter(|percent| (0.0..=100.0).contains(percent)) {

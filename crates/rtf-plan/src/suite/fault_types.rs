@@ -1,6 +1,6 @@
 //! The declarations of faults, before any name is resolved.
 
-use rtf_model::{FaultAmount, FaultTime, NetworkFault};
+use rtf_model::{FaultAmount, FaultTime, NetworkFault, ValuesFault};
 
 use super::{Span, Spanned};
 
@@ -51,6 +51,13 @@ pub enum DeclaredEffect {
         /// The port from or to which they are; `None`: all.
         port: Option<Spanned<String>>,
     },
+    /// Changes the messages that a proxy passes on.
+    Values {
+        /// The name of the proxy.
+        fixture: Spanned<String>,
+        /// What happens to the messages.
+        fault: ValuesFault,
+    },
 }
 
 /// The processes of a fixture that a fault affects.
@@ -68,7 +75,9 @@ impl DeclaredEffect {
     pub fn target(&self) -> Option<&DeclaredTarget> {
         match self {
             Self::Kill(target) | Self::Stop(target) | Self::Slow { target, .. } => Some(target),
-            Self::Memory(_) | Self::Disk { .. } | Self::Network { .. } => None,
+            Self::Memory(_) | Self::Disk { .. } | Self::Network { .. } | Self::Values { .. } => {
+                None
+            }
         }
     }
 }

@@ -45,6 +45,7 @@ mod source_file;
 mod test;
 mod text_position;
 mod types;
+mod value_fault;
 mod xml;
 
 pub use document::read_document;

@@ -210,7 +210,14 @@ pub(super) const FAULT: ElementSchema = leaf(
         "loss",
         "duplicate",
         "reorder",
+        "refuse",
         "rate",
+        "field",
+        "set",
+        "scale",
+        "offset",
+        "noise",
+        "freeze",
     ],
 );
 

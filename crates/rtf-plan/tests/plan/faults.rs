@@ -104,3 +104,73 @@ fn every_problem_is_reported_at_its_place() {
       9:3 <fault
     ");
 }
+
+#[test]
+fn attributes_of_a_network_that_have_no_effect_are_reported() {
+    let bench = bench();
+    let shown = bench.shown(
+        "<suite isolate='network'>
+  <fault name='a' kind='network' jitter='1ms' loss='1%'/>
+  <fault name='b' kind='network' refuse='true' port='80' delay='1ms' rate='1Mbit'/>
+  <fault name='c' kind='network' port='80'/>
+  <fault name='d' kind='network' refuse='perhaps'/>
+  <test>A.lua</test>
+</suite>",
+    );
+    assert_snapshot!(shown, @"
+    wrong-type: `jitter` has no effect without `delay`
+      2:34 jitter
+    wrong-type: `delay` has no effect with `refuse`
+      3:58 delay
+    wrong-type: `rate` has no effect with `refuse`
+      3:70 rate
+    incomplete: `<fault>` needs one of the attributes `delay`, `loss`, `duplicate`, `rate` and `refuse`
+      4:3 <fault
+    invalid-value: `refuse` has to be `true` or `false`: `perhaps`
+      5:42 perhaps
+    ");
+}
+
+#[test]
+fn a_fault_of_values_needs_a_proxy_and_a_change() {
+    let bench = bench();
+    bench.file("cell/proxy.py", "");
+    let shown = bench.shown(
+        "<suite>
+  <fixture type='process' name='sim'><command>./sim</command></fixture>
+  <fixture type='python' name='proxy'>proxy.py</fixture>
+  <fault name='a' kind='values' fixture='sim' field='x' set='1'/>
+  <fault name='b' kind='values' fixture='prox' loss='1%'/>
+  <fault name='c' kind='values' fixture='proxy' field='x' loss='1%'/>
+  <fault name='d' kind='values' fixture='proxy' field='x' freeze='true' offset='1'/>
+  <fault name='e' kind='values' fixture='proxy' offset='much' delay='1s'/>
+  <fault name='f' kind='values' fixture='proxy' field='x' noise='-1' scale='INF'/>
+  <fault name='g' kind='values'/>
+  <fault name='h' kind='values' fixture='proxy' field='x' set='NaN' seed='3'/>
+  <test>A.lua</test>
+</suite>",
+    );
+    assert_snapshot!(shown, @"
+    wrong-type: `sim` is not a proxy: it is no plug-in
+      4:42 sim
+    unknown-fixture: there is no fixture `prox`
+      5:42 prox
+      hint: did you mean `proxy`?
+    incomplete: `<fault>` needs one of the attributes `set`, `scale`, `offset`, `noise` and `freeze` for `field`
+      6:3 <fault
+    wrong-type: `offset` has no effect with `freeze`
+      7:73 offset
+    wrong-type: `offset` has no effect without `field`
+      8:49 offset
+    invalid-value: `offset` is not a finite number: `much`
+      8:57 much
+    invalid-value: `noise` is not a standard deviation, 0 or more: `-1`
+      9:66 -1
+    invalid-value: `scale` is not a finite number: `INF`
+      9:77 INF
+    incomplete: `<fault>` needs the attribute `fixture`: the proxy whose messages are changed
+      10:3 <fault
+    incomplete: `<fault>` needs one of the attributes `field`, `loss` and `delay`
+      10:3 <fault
+    ");
+}

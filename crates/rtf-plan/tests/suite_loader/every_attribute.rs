@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use rtf_model::{
     FaultAmount, FaultTime, FindingSeverity, NetworkFault, ProcessQuantity, SignalTime,
-    TestQuantity, Trigger, Verdict,
+    TestQuantity, Trigger, ValuesFault, Verdict,
 };
 use rtf_plan::suite::{
     AfterCollapse, ClockSource, DeclaredEffect, DeclaredLimits, DeclaredProbe, DeclaredProbeKind,
@@ -227,7 +227,9 @@ fn signals_and_monitors_are_read() {
 #[test]
 fn faults_are_read() {
     let (suite, _) = file("valid/everything.xml");
-    let [drop, busy, far, crash, memory] = &*suite.faults else { panic!("{:?}", suite.faults) };
+    let [drop, busy, far, off, slipped, stuck, crash, memory] = &*suite.faults else {
+        panic!("{:?}", suite.faults)
+    };
     let time = |from_us, to_us| Some(FaultTime { from_us, to_us });
     let DeclaredEffect::Stop(target) = &drop.effect else { panic!("{drop:?}") };
     assert_eq!((&*target.fixture.value, target.process.as_deref()), ("sim", Some("arm.py")));
@@ -244,8 +246,27 @@ fn faults_are_read() {
         duplicate_ppm: 10_000,
         reorder_ppm: 20_000,
         rate_bits: Some(10_000_000),
+        refuses: false,
     };
     assert_eq!(*fault, expected);
+    let DeclaredEffect::Network { fault, .. } = &off.effect else { panic!("{off:?}") };
+    assert!(fault.refuses && fault.has_port, "{fault:?}");
+    let DeclaredEffect::Values { fixture, fault } = &slipped.effect else { panic!("{slipped:?}") };
+    let text = |text: &str| Some(text.to_owned());
+    let expected = ValuesFault {
+        field: text("position[elbow]"),
+        set: text("NaN"),
+        scale: text("-1"),
+        offset: text("0.3"),
+        noise: text("1e-3"),
+        freezes: false,
+        loss_ppm: 10_000,
+        delay_us: 20_000,
+        seed: 5,
+    };
+    assert_eq!((&*fixture.value, fault), ("sim", &expected));
+    let DeclaredEffect::Values { fault, .. } = &stuck.effect else { panic!("{stuck:?}") };
+    assert!(fault.freezes && fault.set.is_none(), "{fault:?}");
     assert!(matches!(crash.effect, DeclaredEffect::Kill(_)), "{crash:?}");
     assert_eq!((crash.at, crash.duration), (time(0, 0), None));
     assert_eq!(memory.name.value, "full memory");
