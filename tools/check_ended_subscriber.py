@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Ends a subscriber of a replay in ROS 1: the next one of its name is not there yet.
+"""Ends a subscriber of a replay in ROS 1: the next one of its name has not come yet.
 
     check_ended_subscriber.py
 
