@@ -460,12 +460,14 @@ envelope_oracle() {
   "$(tools/venv.sh icub)/python" tests/envelopes/oracle.py "$TARGET/debug/rtf"
 }
 
-# Distances of dynamic time warping, compared with those of dtaidistance.
+# Distances of dynamic time warping, compared with those of dtaidistance, and differences of
+# pictures, compared with those of scikit-image.
 golden_oracle() {
   local python
   python=$(tools/venv.sh golden)/python
-  cargo build --quiet --locked -p rtf-golden --example warp
+  cargo build --quiet --locked -p rtf-golden --examples
   "$python" tests/golden/oracle.py "$TARGET/debug/examples/warp"
+  "$python" tests/golden/pictures.py "$TARGET/debug/examples/similarity"
 }
 
 # Parquet files of the history, read by Apache Arrow.

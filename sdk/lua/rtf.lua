@@ -210,6 +210,14 @@ function Fault:remove() end
 ---@return rtf.Fault
 function rtf.fault(name) end
 
+---Checks that a picture differs by at most `tolerance` from a stored one, which `rtf golden accept`
+---writes. The runner compares: the test continues, and a difference is a failure.
+---@param name string The name of the attachment.
+---@param picture string A PNG or JPEG file, which is copied.
+---@param reference string A file below the directory of the suite.
+---@param tolerance number 1 minus the structural similarity, at least 0.
+function rtf.check_picture(name, picture, reference, tolerance) end
+
 ---Adds a copy of a complete file to the results. The file may be deleted afterwards.
 ---@param path string
 ---@param name? string The default is the file's name.

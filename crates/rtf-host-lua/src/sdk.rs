@@ -2,14 +2,15 @@
 //! that it calls; and the tables of the predecessor.
 
 use std::ffi::CStr;
-use std::path::Path;
+use std::path::PathBuf;
 use std::time::Duration;
 
 use mlua::{Function, IntoLuaMulti, Lua, LuaString, Table, Value};
 use rtf_host::{Inquiry, Sample, Session};
 use rtf_model::protocol::{MonitorDeclaration, Plugin};
 use rtf_model::{
-    Alignment, Attachment, Comparison, Location, Measurement, Message, MessageKind, TrajectoryCheck,
+    Alignment, Attachment, Comparison, Location, Measurement, Message, MessageKind, PictureCheck,
+    TrajectoryCheck,
 };
 
 use crate::cases;
@@ -117,6 +118,7 @@ fn functions(lua: &Lua) -> mlua::Result<Table> {
         session.check_trajectory(checked.0);
         Ok(())
     })?;
+    add(lua, &host, "picture", |session, check: PictureArgs| Ok(check_picture(session, check)))?;
     add(lua, &host, "monitor", |session, declared: MonitorArgs| Ok(monitor(session, &declared)))?;
     add(
         lua,
@@ -157,6 +159,14 @@ where
     host.set(name, function)
 }
 
+/// The absolute path of an existing file.
+fn existing(path: &LuaString) -> Result<PathBuf, String> {
+    let path = path.to_string_lossy();
+    let full = std::path::absolute(&path).unwrap_or_else(|_| PathBuf::from(&path));
+    let is_there = full.exists();
+    is_there.then(|| full.clone()).ok_or(format!("there is no file `{}` to attach", full.display()))
+}
+
 /// Attaches a file; returns the problem, if there is one.
 fn attach(
     session: &Session,
@@ -164,17 +174,17 @@ fn attach(
     name: Option<&LuaString>,
     media_type: Option<&LuaString>,
 ) -> Option<String> {
-    let path = path.to_string_lossy();
-    let full = std::path::absolute(&path).unwrap_or_else(|_| Path::new(&path).to_owned());
-    if !full.exists() {
-        return Some(format!("there is no file `{}` to attach", full.display()));
-    }
+    let full = match existing(path) {
+        Ok(full) => full,
+        Err(problem) => return Some(problem),
+    };
     let own_name = || full.file_name().map(|name| name.to_string_lossy().into_owned());
     let attached = session.attach(Attachment {
         name: name.map(LuaString::to_string_lossy).or_else(own_name).unwrap_or_default(),
         path: full.to_string_lossy().into_owned(),
         media_type: media_type.map(LuaString::to_string_lossy).unwrap_or_default(),
         case: None,
+        picture: None,
         omitted: false,
     });
     attached.err().map(|error| format!("`{}` cannot be attached: {error}", full.display()))
@@ -320,6 +330,25 @@ impl mlua::FromLuaMulti for Trajectory {
             case: None,
         }))
     }
+}
+
+/// `name, picture, reference, tolerance, file, line`
+type PictureArgs = (LuaString, LuaString, LuaString, f64, Option<LuaString>, Option<u32>);
+
+/// Attaches a picture that is compared; returns the problem, if there is one.
+fn check_picture(
+    session: &Session,
+    (name, picture, reference, tolerance, file, line): PictureArgs,
+) -> Option<String> {
+    let full = match existing(&picture) {
+        Ok(full) => full,
+        Err(problem) => return Some(problem),
+    };
+    let reference = reference.to_string_lossy();
+    let check = PictureCheck { reference, tolerance, location: location(file.as_ref(), line) };
+    let path = full.to_string_lossy().into_owned();
+    let attached = session.check_picture((name.to_string_lossy(), path), check);
+    attached.err().map(|error| format!("`{}` cannot be attached: {error}", full.display()))
 }
 
 /// `formula, name, severity, file, line`

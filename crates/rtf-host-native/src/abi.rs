@@ -168,6 +168,26 @@ pub struct rtf_trajectory {
     pub align: i32,
 }
 
+/// A picture that is compared with a stored one.
+#[repr(C)]
+#[derive(Debug)]
+pub struct rtf_picture {
+    /// `sizeof(rtf_picture)`.
+    pub size: usize,
+    /// The name of the attachment.
+    pub name: rtf_text,
+    /// A PNG or JPEG file.
+    pub picture: rtf_text,
+    /// The file of the stored picture, relative to the directory of the suite.
+    pub reference: rtf_text,
+    /// The largest accepted difference: 1 minus the structural similarity.
+    pub tolerance: f64,
+    /// The source file, null if unknown.
+    pub file: *const c_char,
+    /// The line in it, 0 if unknown.
+    pub line: u32,
+}
+
 /// A formula over signals that judges the rest of a test.
 #[repr(C)]
 #[derive(Debug)]
@@ -363,6 +383,9 @@ pub struct rtf_host {
         file: *const c_char,
         line: u32,
     ) -> i32,
+    /// Since 1.4: attaches a picture, which the runner compares with a stored one: a difference is a
+    /// failure, and the test continues. Only for tests.
+    pub check_picture: unsafe extern "C" fn(context: *mut c_void, check: *const rtf_picture),
 }
 
 /// The plug-in's kind and functions. All functions are called on the

@@ -7,8 +7,8 @@ use std::time::Duration;
 use ::rtf_host::{CaseEnd, FaultRequest, Inquiry, Sample, Session};
 use rtf_model::protocol::{FixtureValue, MonitorDeclaration, Plugin};
 use rtf_model::{
-    Alignment, Attachment, Measurement, Message, MessageKind, Parameter, TrajectoryCheck,
-    value_text,
+    Alignment, Attachment, Measurement, Message, MessageKind, Parameter, PictureCheck,
+    TrajectoryCheck, value_text,
 };
 use serde_json::Value;
 
@@ -16,8 +16,8 @@ use crate::abi::{
     RTF_ABI_MAJOR, RTF_ABI_MINOR, RTF_ALIGN_DTW, RTF_ALIGN_TIME, RTF_DONE, RTF_FAULT_INJECT,
     RTF_FAULT_REMOVE, RTF_MESSAGE_CHECK, RTF_MESSAGE_ERROR, RTF_MESSAGE_FAILURE,
     RTF_MESSAGE_REPORT, RTF_STOPPED, RTF_VALUE_JSON, RTF_VALUE_TEXT, rtf_attachment, rtf_case,
-    rtf_host, rtf_measurement, rtf_message, rtf_monitor, rtf_parameter, rtf_question, rtf_sample,
-    rtf_text, rtf_trajectory,
+    rtf_host, rtf_measurement, rtf_message, rtf_monitor, rtf_parameter, rtf_picture, rtf_question,
+    rtf_sample, rtf_text, rtf_trajectory,
 };
 use crate::conversion::{comparison, finite, lend, location, slice, text};
 
@@ -67,6 +67,7 @@ pub(crate) fn for_plugin(session: &Session, plugin: &Plugin) -> &'static rtf_hos
         check_trajectory,
         monitor,
         fault,
+        check_picture,
     }))
 }
 
@@ -236,8 +237,26 @@ unsafe extern "C" fn attach(context: *mut c_void, attachment: *const rtf_attachm
             path: path.clone(),
             media_type,
             case: None,
+            picture: None,
             omitted: false,
         }) {
+            report_error(session, format!("`{path}` cannot be attached: {error}"));
+        }
+    }
+}
+
+unsafe extern "C" fn check_picture(context: *mut c_void, check: *const rtf_picture) {
+    // SAFETY: the pointers are valid by spec/plugin-abi.md.
+    unsafe {
+        let check = &*check;
+        let path = text(check.picture);
+        let session = &self::context(context).session;
+        let reference = PictureCheck {
+            reference: text(check.reference),
+            tolerance: check.tolerance,
+            location: location(check.file, check.line),
+        };
+        if let Err(error) = session.check_picture((text(check.name), path.clone()), reference) {
             report_error(session, format!("`{path}` cannot be attached: {error}"));
         }
     }

@@ -54,8 +54,8 @@ pub use record::{
     QuestionRecord, Record, RunState, SignalSummary, SuiteRecord, TestRecord, TestTotals,
 };
 pub use report::{
-    Attachment, Comparison, Location, Measurement, Message, MessageKind, SignalInterval,
-    format_number, format_rounded,
+    Attachment, Comparison, Location, Measurement, Message, MessageKind, PictureCheck,
+    SignalInterval, format_number, format_rounded,
 };
 pub use samples::{Samples, SignalOutline};
 pub use signals::{

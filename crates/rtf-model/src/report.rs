@@ -208,7 +208,7 @@ pub fn format_rounded(number: f64) -> String {
 }
 
 /// A file that a test attaches to its result.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Attachment {
     /// Its name in reports.
@@ -221,7 +221,23 @@ pub struct Attachment {
     /// The case in which it was reported.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub case: Option<CaseId>,
+    /// The stored picture that it is compared with.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub picture: Option<Box<PictureCheck>>,
     /// In a merged run: the file was not kept (`rtf merge --keep`).
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub omitted: bool,
+}
+
+/// A check that a picture resembles a stored one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct PictureCheck {
+    /// The file of the stored picture, relative to the working directory.
+    pub reference: String,
+    /// The largest accepted difference, at least 0: 1 minus the structural similarity.
+    pub tolerance: f64,
+    /// Where in the plug-in the check is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub location: Option<Location>,
 }

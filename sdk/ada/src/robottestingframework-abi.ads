@@ -141,6 +141,16 @@ private package RobotTestingFramework.ABI is
       Align     : Interfaces.Integer_32;
    end record with Convention => C;
 
+   type Picture is record
+      Size      : Interfaces.C.size_t;
+      Name      : Text;
+      Picture   : Text;
+      Reference : Text;
+      Tolerance : Interfaces.C.double;
+      File      : Address;
+      Line      : Interfaces.Unsigned_32;
+   end record with Convention => C;
+
    type Take_Message is access procedure (Context : Address; Value : Message)
      with Convention => C;
    type Take_Measurement is access function
@@ -197,6 +207,9 @@ private package RobotTestingFramework.ABI is
       Line    : Interfaces.Unsigned_32) return Interfaces.Integer_32
      with Convention => C;
 
+   type Take_Picture is access procedure (Context : Address; Value : Picture)
+     with Convention => C;
+
    type Host_Table is record
       Major       : Interfaces.Unsigned_32;
       Minor       : Interfaces.Unsigned_32;
@@ -224,6 +237,7 @@ private package RobotTestingFramework.ABI is
       Trajectory  : Take_Trajectory;
       Monitor     : Take_Monitor;
       Fault       : Request_Fault;
+      Picture     : Take_Picture;
    end record with Convention => C;
 
    type Host_Access is access constant Host_Table with Convention => C;

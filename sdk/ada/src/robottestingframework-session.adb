@@ -251,6 +251,34 @@ package body RobotTestingFramework.Session is
           Align     => Alignment'Pos (Align)));
    end Check_Trajectory;
 
+   procedure Check_Picture
+     (Name      : String;
+      Picture   : String;
+      Reference : String;
+      Tolerance : Long_Float;
+      File      : String  := Source.File;
+      Line      : Natural := Source.Line)
+   is
+      Table          : constant not null ABI.Host_Access := Host.Table;
+      Name_Text      : aliased constant String := Name;
+      Picture_Text   : aliased constant String := Picture;
+      Reference_Text : aliased constant String := Reference;
+      Source_Text    : aliased constant String := File & ASCII.NUL;
+   begin
+      if Table.Size < ABI.Host_Table'Size / System.Storage_Unit then
+         raise Program_Error with "this rtf is too old for pictures";
+      end if;
+      Table.Picture
+        (Table.Context,
+         (Size      => ABI.Picture'Size / System.Storage_Unit,
+          Name      => Host.To_C (Name_Text),
+          Picture   => Host.To_C (Picture_Text),
+          Reference => Host.To_C (Reference_Text),
+          Tolerance => Interfaces.C.double (Tolerance),
+          File      => Source_Text'Address,
+          Line      => Interfaces.Unsigned_32 (Line)));
+   end Check_Picture;
+
    procedure Monitor
      (Formula : String;
       Name    : String   := "";

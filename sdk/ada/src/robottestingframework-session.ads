@@ -110,6 +110,18 @@ package RobotTestingFramework.Session is
       File      : String     := Source.File;
       Line      : Natural    := Source.Line);
 
+   --  Checks that a picture, a PNG or JPEG file, differs by at most the tolerance (1 minus the
+   --  structural similarity) from a stored one: a file below the directory of the suite, which
+   --  `rtf golden accept` writes. The runner compares a copy: the test continues, and a
+   --  difference is a failure.
+   procedure Check_Picture
+     (Name      : String;
+      Picture   : String;
+      Reference : String;
+      Tolerance : Long_Float;
+      File      : String  := Source.File;
+      Line      : Natural := Source.Line);
+
    --  What the violation of a monitor means: a failure or an error, and whether it stops
    --  the test, or also the rest of the suite.
    type Severity is (Fail, Error, Stop, Critical);

@@ -312,6 +312,18 @@ function rtf.check_trajectory(name, reference, tolerance, align, band)
   host.trajectory(tostring(name), tostring(reference), tolerance, align == "dtw", band, file, line)
 end
 
+function rtf.check_picture(name, picture, reference, tolerance)
+  if type(tolerance) ~= "number" then
+    error(("the tolerance of a picture is a number, not %s"):format(tostring(tolerance)), 2)
+  end
+  local file, line = guard.location(2)
+  local problem =
+    host.picture(tostring(name), tostring(picture), tostring(reference), tolerance, file, line)
+  if problem then
+    error(problem, 2)
+  end
+end
+
 function rtf.attach(path, name, media_type)
   local problem = host.attach(tostring(path), name and tostring(name), media_type and tostring(media_type))
   if problem then

@@ -26,11 +26,11 @@ def check(path: str) -> None:
     raise OSError(f"`{path}` cannot be attached: it is {file_type}, not a file")
 
 
-def attach(session: Session, path: str, name: str, media_type: str) -> str:
+def attach(session: Session, path: str, name: str, media_type: str, **more: object) -> str:
     """Attach a file, and return the path of the copy."""
     if session.task.attachments_dir:
         path = copy(path, name, session.task.attachments_dir)
-    params: dict[str, object] = {"name": name, "path": path, "media_type": media_type}
+    params: dict[str, object] = {"name": name, "path": path, "media_type": media_type, **more}
     session.notify_in_case("attached", params)
     return path
 

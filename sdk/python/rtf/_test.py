@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 
-from rtf import _clock, _questions, _session
+from rtf import _attachment, _clock, _location, _questions, _session
 from rtf._cases import Case
 from rtf._fault import Fault
 from rtf._near import Comparison
@@ -192,6 +192,23 @@ class TestCase(Plugin):
             {"name": name, "reference": reference, "tolerance": float(tolerance), "align": align},
             None if band is None else float(band),
         )
+
+    def check_picture(
+        self, name: str, picture: str | os.PathLike[str], reference: str, tolerance: float
+    ) -> None:
+        """Check that a picture differs by at most `tolerance` from a stored one.
+
+        `picture` is a PNG or JPEG file, which is copied. `reference` is a file below the directory
+        of the suite, which `rtf golden accept` writes. The difference is 1 minus the structural
+        similarity. The runner compares: the test continues, and a difference is a failure.
+        """
+        full = os.path.abspath(os.fspath(picture))
+        _attachment.check(full)
+        check: dict[str, object] = {"reference": reference, "tolerance": float(tolerance)}
+        place = _location.caller()
+        if place is not None:
+            check["location"] = place.as_json()
+        _attachment.attach(_session.current(), full, name, "", picture=check)
 
     def check(self, condition: object, text: object) -> bool:
         """Check that `condition` holds, and continue in either case."""

@@ -15,7 +15,8 @@ use std::time::Duration;
 
 use rtf_model::protocol::{Answer, CHANNEL_VARIABLE, Notification, QuestionEnd, Reply, RpcError};
 use rtf_model::{
-    Attachment, Location, Measurement, Message, MessageKind, Outcome, Phase, TrajectoryCheck,
+    Attachment, Location, Measurement, Message, MessageKind, Outcome, Phase, PictureCheck,
+    TrajectoryCheck,
 };
 use serde::Serialize;
 use serde_json::Value;
@@ -191,6 +192,26 @@ impl Session {
     pub fn attach(&self, mut attachment: Attachment) -> std::io::Result<()> {
         attachment.case = self.0.cases.current();
         self.forward_attachment(attachment).map(|_| ())
+    }
+
+    /// Does the same with a picture, and has it compared with a stored one. The runner compares,
+    /// so the plug-in does not learn the result.
+    ///
+    /// # Errors
+    /// It cannot be copied.
+    pub fn check_picture(
+        &self,
+        (name, picture): (String, String),
+        check: PictureCheck,
+    ) -> std::io::Result<()> {
+        self.attach(Attachment {
+            name,
+            path: picture,
+            media_type: String::new(),
+            case: None,
+            picture: Some(Box::new(check)),
+            omitted: false,
+        })
     }
 
     /// Does the same for a program that the host started, which knows the case. Returns the

@@ -102,6 +102,7 @@ impl Session {
                 path: path.to_owned(),
                 media_type: media_type.to_owned(),
                 case: self.0.cases.current(),
+                picture: None,
                 omitted: false,
             };
             self.forward_attachment(attachment).map(Some)

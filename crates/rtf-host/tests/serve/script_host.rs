@@ -43,8 +43,8 @@ impl Script {
     fn attach(&self, text: &str) {
         let (name, path) = text.split_once('@').unwrap();
         let (name, path) = (name.to_owned(), path.to_owned());
-        let (media_type, case, omitted) = (String::new(), None, false);
-        self.session.attach(Attachment { name, path, media_type, case, omitted }).unwrap();
+        let (media_type, case, picture, omitted) = (String::new(), None, None, false);
+        self.session.attach(Attachment { name, path, media_type, case, picture, omitted }).unwrap();
     }
 
     fn act(&self, word: &str) -> Option<StepEnd> {

@@ -16,9 +16,14 @@ impl ProcessTask {
     }
 
     /// Reports an attachment with its path relative to the run's directory, and copies the
-    /// file if the host did not. The process's later messages and its deadlines wait for
+    /// file if the host did not. A picture of a test is compared. The process's later messages and its deadlines wait for
     /// the copy.
     pub(super) async fn store_attachment(&mut self, attachment: Attachment) {
+        if attachment.picture.is_some() && !self.is_test() {
+            let why =
+                format!("it compares the picture `{}`, which only tests can", attachment.name);
+            return self.report(ProcessEvent::Attached(Err(why))).await;
+        }
         let relative = &self.job.attachments_dir;
         let dir = self.context.run_dir.join(relative);
         let working_dir = self.job.launch.request.working_dir.clone().unwrap_or_default();
@@ -31,11 +36,18 @@ impl ProcessTask {
         let reported_path = attachment.path.clone();
         let attachment =
             Attachment { path: format!("{relative}/{name}"), omitted: false, ..attachment };
-        let started = if is_copied {
-            file_copy::open(&source).map(|_| None)
-        } else {
-            let from = (reported_path.as_str(), source);
-            FileCopy::start(attachment.clone(), from, dir.join(&name)).map(Some)
+        let picture = self.picture_job(&attachment);
+        let started = match (is_copied, picture) {
+            (true, None) => file_copy::open(&source).map(|_| None),
+            (true, Some(picture)) => file_copy::open(&source).and_then(|_| {
+                let compare = move || Ok(picture.run());
+                FileCopy::start_job(attachment.clone(), &reported_path, compare).map(Some)
+            }),
+            (false, picture) => {
+                let from = (reported_path.as_str(), source);
+                let compare = move || picture.map(|it| it.run()).unwrap_or_default();
+                FileCopy::start(attachment.clone(), from, (dir.join(&name), compare)).map(Some)
+            }
         };
         match started {
             Ok(None) => self.report_attachment(attachment, &reported_path, Ok(())).await,
@@ -73,7 +85,11 @@ impl ProcessTask {
         };
         self.report_attachment(copy.attachment.clone(), &copy.reported_path, result).await;
         for report in reports {
-            self.report(ProcessEvent::Notified(report)).await;
+            let event = match report {
+                Notification::Attached(attachment) => ProcessEvent::Attached(Ok(attachment)),
+                other => ProcessEvent::Notified(other),
+            };
+            self.report(event).await;
         }
         self.deliver().await;
     }

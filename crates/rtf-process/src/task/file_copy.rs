@@ -35,11 +35,11 @@ pub(super) struct FileCopy {
 }
 
 impl FileCopy {
-    /// Starts to copy a file.
+    /// Starts to copy a file. Then `next` returns what else is reported.
     pub(super) fn start(
         attachment: Attachment,
         (reported_path, from): (&str, PathBuf),
-        to: PathBuf,
+        (to, next): (PathBuf, impl FnOnce() -> Vec<Notification> + Send + 'static),
     ) -> io::Result<Self> {
         let abandoned = Arc::new(AtomicBool::new(false));
         let is_abandoned = Arc::clone(&abandoned);
@@ -48,14 +48,14 @@ impl FileCopy {
             if copied.is_err() {
                 let _ = std::fs::remove_file(&to);
             }
-            copied.map(|()| Vec::new())
+            copied.map(|()| next())
         };
         let mut started = Self::start_job(attachment, reported_path, copy)?;
         started.abandoned = abandoned;
         Ok(started)
     }
 
-    /// Starts a job that writes the file of an attachment and returns what else is reported.
+    /// Starts a job that writes or examines the file of an attachment and returns what else is reported.
     pub(super) fn start_job(
         attachment: Attachment,
         reported_path: &str,

@@ -86,7 +86,7 @@ impl ProcessTask {
         }
     }
 
-    fn is_test(&self) -> bool {
+    pub(super) fn is_test(&self) -> bool {
         self.role() == Some(ProcessRole::Test)
     }
 

@@ -13,7 +13,9 @@ mod file_copy;
 mod input;
 mod job;
 mod line_assembly;
+mod pictures;
 mod probing;
+mod references;
 mod shared_host;
 mod streams;
 mod throttle;
@@ -120,6 +122,8 @@ struct ProcessTask {
     samples: SampledSignals,
     /// The signals that were compared, in order.
     trajectories: Vec<String>,
+    /// The pictures that were compared, in order.
+    pictures: Vec<String>,
     /// Whether requests wait for a debugger.
     debugger: DebuggerWait,
     /// The requested liveness check.
@@ -152,6 +156,7 @@ impl ProcessTask {
             copy: None,
             samples: SampledSignals::default(),
             trajectories: Vec::new(),
+            pictures: Vec::new(),
             debugger,
             check: None,
             background: JoinSet::new(),

@@ -1,7 +1,7 @@
 //! Compares the signals of a test with stored trajectories. The comparison runs in a thread, as the
 //! copy of an attachment does: the test's later messages and its deadlines wait for it.
 
-use std::path::{Component, Path, PathBuf};
+use std::path::PathBuf;
 
 use rtf_golden::{Comparison, Deviation, MEDIA_TYPE, Reference, Trajectory, thin};
 use rtf_model::protocol::Notification;
@@ -12,6 +12,7 @@ use rtf_model::{
 
 use super::attachments::replace_unsafe;
 use super::file_copy::FileCopy;
+use super::references::{open_reference, outside_of_suite};
 use super::{ProcessEvent, ProcessTask};
 
 /// The most samples of a test that are kept for comparisons: 16 MB.
@@ -101,6 +102,7 @@ impl ProcessTask {
             Notification::Phase { phase: Phase::Setup } => {
                 self.samples = SampledSignals::default();
                 self.trajectories.clear();
+                self.pictures.clear();
             }
             Notification::Sampled(samples) => self.samples.add(samples),
             _ => {}
@@ -124,6 +126,7 @@ impl ProcessTask {
             path: format!("{relative}/{file}"),
             media_type: MEDIA_TYPE.to_owned(),
             case: check.case,
+            picture: None,
             omitted: false,
         };
         let candidate = self.context.run_dir.join(relative).join(&file);
@@ -210,11 +213,7 @@ impl TrajectoryJob {
         if band.is_some_and(|band| !(band.is_finite() && band >= 0.0)) {
             return Some("the band is not a number of seconds".to_owned());
         }
-        let path = Path::new(reference);
-        let is_below = path.components().all(|part| matches!(part, Component::Normal(_)));
-        (!is_below || reference.is_empty()).then(|| {
-            format!("the reference `{reference}` is not a path below the directory of the suite")
-        })
+        outside_of_suite(reference)
     }
 
     fn write_candidate(&self, error: f64) -> std::io::Result<()> {
@@ -235,21 +234,11 @@ impl TrajectoryJob {
 
     fn reference(&self) -> Result<Reference, String> {
         let name = &self.check.reference;
-        let path = self.working_dir.join(name);
-        let unreadable = |error: std::io::Error| format!("cannot read `{name}`: {error}");
-        let file = match super::file_copy::open(&path) {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-                return Err(format!(
-                    "there is no reference `{name}`; hint: if the trajectory is right, store it with \
-                     `rtf golden accept {}`",
-                    self.run
-                ));
-            }
-            other => other.map_err(unreadable)?,
-        };
+        let file = open_reference(&self.working_dir, name, ("trajectory", &self.run))?;
         let mut text = String::new();
         let mut limited = std::io::Read::take(file, MAX_REFERENCE_BYTES);
-        std::io::Read::read_to_string(&mut limited, &mut text).map_err(unreadable)?;
+        std::io::Read::read_to_string(&mut limited, &mut text)
+            .map_err(|error| format!("cannot read `{name}`: {error}"))?;
         Reference::parse(&text).map_err(|error| format!("`{name}` is not a trajectory: {error}"))
     }
 

@@ -238,7 +238,8 @@ impl Writer {
         std::fs::create_dir_all(self.folder.join("attachments")).unwrap();
         std::fs::write(self.folder.join(&path), what).unwrap();
         let (name, media_type) = (name.to_owned(), media_type.to_owned());
-        let attachment = Attachment { name, path, media_type, case: None, omitted: false };
+        let attachment =
+            Attachment { name, path, media_type, case: None, picture: None, omitted: false };
         self.emit(EventKind::Attached { test: TEST, fixture: None, attachment });
     }
 

@@ -4,10 +4,10 @@ use clap::{Args, Subcommand};
 
 use super::ResultsArgs;
 
-/// What to do with stored trajectories.
+/// What to do with stored trajectories and pictures.
 #[derive(Debug, Subcommand)]
 pub enum GoldenVerb {
-    /// Store the trajectories of a run as references of later runs
+    /// Store the trajectories and pictures of a run as references of later runs
     Accept(GoldenAcceptArgs),
 }
 
@@ -25,7 +25,7 @@ pub struct GoldenAcceptArgs {
     #[command(flatten)]
     pub results: ResultsArgs,
 
-    /// Also replace references whose tube contains the trajectory
+    /// Also replace references that still fit
     #[arg(long)]
     pub all: bool,
 

@@ -124,7 +124,7 @@ pub enum Verb {
         #[command(subcommand)]
         verb: Box<HistoryVerb>,
     },
-    /// Store trajectories of a run, with which later runs are compared
+    /// Store trajectories and pictures of a run, with which later runs are compared
     Golden {
         /// What to do
         #[command(subcommand)]

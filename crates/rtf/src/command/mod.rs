@@ -22,6 +22,7 @@ pub mod completions;
 pub mod config;
 pub mod doctor;
 pub mod golden;
+mod golden_picture;
 pub mod history;
 pub mod import;
 pub mod init;

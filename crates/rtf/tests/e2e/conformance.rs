@@ -142,6 +142,10 @@ fn check_with(
         temp.file(&format!("{scenario}.xml"), &suite(scenario, &plugins, mode.isolation));
     }
     temp.file("simulator.py", SIMULATOR).file("camera.py", faults::CAMERA);
+    for picture in ["scene.png", "stored.png"] {
+        let path = folder().join("scenarios/picture").join(picture);
+        std::fs::copy(path, temp.path().join(picture)).expect("a picture");
+    }
     let finished = start(temp, &["run", "--fork", mode.fork, "."]);
     assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
     let journal = temp.journal();

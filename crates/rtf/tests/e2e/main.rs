@@ -64,6 +64,7 @@ mod new_projects;
 mod output_before_crash;
 mod parallel_suites;
 mod parallel_tests;
+mod pictures;
 mod predecessor_defects;
 mod predecessor_scripts;
 mod process_fixture;

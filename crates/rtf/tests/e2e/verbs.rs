@@ -103,7 +103,7 @@ fn help_lists_the_exit_codes() {
       report       Write a report of a past run
       merge        Merge several runs into one, for example the shards of `--shard`
       history      Show results of many runs: flaky and slow tests, trends, comparisons
-      golden       Store trajectories of a run, with which later runs are compared
+      golden       Store trajectories and pictures of a run, with which later runs are compared
       serve        Show active and past runs in a browser
       import       Write a suite with the tests of a build directory or workspace
       config       Show the configuration from `rtf.toml`, the command line and variables

@@ -245,6 +245,24 @@ typedef struct rtf_monitor {
     uint32_t line;
 } rtf_monitor;
 
+// A picture that is compared with a stored one.
+typedef struct rtf_picture {
+    // `sizeof(rtf_picture)`.
+    size_t size;
+    // The name of the attachment.
+    struct rtf_text name;
+    // A PNG or JPEG file.
+    struct rtf_text picture;
+    // The file of the stored picture, relative to the directory of the suite.
+    struct rtf_text reference;
+    // The largest accepted difference: 1 minus the structural similarity.
+    double tolerance;
+    // The source file, null if unknown.
+    const char *file;
+    // The line in it, 0 if unknown.
+    uint32_t line;
+} rtf_picture;
+
 // The host's functions for a plug-in. Their first argument is `context`. They
 // may be called from any thread until the process ends.
 typedef struct rtf_host {
@@ -320,6 +338,9 @@ typedef struct rtf_host {
                      struct rtf_text name,
                      const char *file,
                      uint32_t line);
+    // Since 1.4: attaches a picture, which the runner compares with a stored one: a difference is a
+    // failure, and the test continues. Only for tests.
+    void (*check_picture)(void *context, const struct rtf_picture *check);
 } rtf_host;
 
 // An attempt of a test.

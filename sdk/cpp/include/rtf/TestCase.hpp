@@ -16,6 +16,7 @@
 #include <rtf/internal/Cases.hpp>
 #include <rtf/internal/Faults.hpp>
 #include <rtf/internal/Monitor.hpp>
+#include <rtf/internal/Picture.hpp>
 #include <rtf/internal/Questions.hpp>
 #include <rtf/internal/Sampling.hpp>
 #include <rtf/internal/Trajectory.hpp>
@@ -50,6 +51,16 @@ protected:
                           Location here = Location::current()) const
     {
         internal::check_trajectory(here, name, reference, tolerance, align, band);
+    }
+
+    // Checks that a picture, a PNG or JPEG file, differs by at most `tolerance` (1 minus the
+    // structural similarity) from a stored one: a file below the directory of the suite, which
+    // `rtf golden accept` writes. The runner compares a copy: the test continues, a difference is
+    // a failure.
+    void check_picture(std::string_view name, std::string_view picture, std::string_view reference,
+                       double tolerance, Location here = Location::current()) const
+    {
+        internal::check_picture(here, name, picture, reference, tolerance);
     }
 
     // Judges the rest of the test by a formula over the signals of the suite. The default name

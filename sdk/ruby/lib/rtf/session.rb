@@ -66,12 +66,13 @@ module RTF
     end
 
     # Attaches a file, and returns the path of the copy.
-    def attach(path, name, media_type)
+    def attach(path, name, media_type, picture: nil)
       name = Text.utf8(name)
       directory = @task.attachments_dir
       path = Attachment.copy(path, name, directory) unless directory.empty?
       path = Text.utf8(path)
-      notify_in_case("attached", { name: name, path: path, media_type: Text.utf8(media_type) })
+      params = { name: name, path: path, media_type: Text.utf8(media_type), picture: picture }
+      notify_in_case("attached", params.compact)
       path
     end
 

@@ -134,6 +134,18 @@ module RTF
       Session.current.check_trajectory(params)
     end
 
+    # Checks that a picture, a PNG or JPEG file, differs by at most `tolerance` (1 minus the
+    # structural similarity) from a stored one: a file below the directory of the suite, which
+    # `rtf golden accept` writes. The runner compares a copy: the test continues, and a difference
+    # is a failure.
+    def check_picture(name, picture, reference, tolerance)
+      full = File.expand_path(picture)
+      Attachment.check(full)
+      check = { reference: reference.to_s, tolerance: Float(tolerance),
+                location: Location.caller_place }
+      Session.current.attach(full, name.to_s, "", picture: check.compact)
+    end
+
     # Checks that `condition` holds, and continues in either case.
     def check(condition, text)
       if condition

@@ -86,6 +86,7 @@ impl<'p> RunningHook<'p> {
             ProcessEvent::Replied(RUN_REQUEST, reply) => self.judgement.replied(reply),
             ProcessEvent::ProtocolViolated(what) => self.judgement.protocol_violated(&what),
             ProcessEvent::Printed(stream, bytes) => self.output.push(stream, &bytes, cx),
+            ProcessEvent::Attached(Err(why)) => self.judgement.fail(why),
             _ => {}
         }
         false

@@ -306,6 +306,7 @@ impl Run {
                 path: format!("attachments/{test}/1/plot.png"),
                 media_type: "image/png".into(),
                 case: None,
+                picture: None,
                 omitted: false,
             };
             self.push(EventKind::Attached { test, fixture: None, attachment });

@@ -57,14 +57,22 @@ inline bool measure(Location here, const Measurement &measured)
     return host().measure(host().context, &message) != 0;
 }
 
+// The absolute path of a file, or an error of the test.
+inline std::unique_ptr<char, void (*)(void *)> existing_file(Location here,
+                                                             const std::string &given)
+{
+    std::unique_ptr<char, void (*)(void *)> full(realpath(given.c_str(), nullptr), std::free);
+    if (!full) {
+        error(here, "there is no file `" + given + "` to attach");
+    }
+    return full;
+}
+
 inline void attach(Location here, std::string_view path, std::string_view name,
                    std::string_view media_type)
 {
     const std::string given(path);
-    const std::unique_ptr<char, void (*)(void *)> full(realpath(given.c_str(), nullptr), std::free);
-    if (!full) {
-        error(here, "there is no file `" + given + "` to attach");
-    }
+    const auto full = existing_file(here, given);
     const std::string own_name = given.substr(given.find_last_of('/') + 1);
     rtf_attachment attachment;
     attachment.size = sizeof attachment;

@@ -56,6 +56,7 @@ fn attach(world: &mut World<'_>) {
         path: "attachments/fixture-0/1/1-run.mcap".to_owned(),
         media_type: String::new(),
         case: None,
+        picture: None,
         omitted: false,
     };
     world.input(RECORDER, ProcessEvent::Attached(Ok(attachment)));

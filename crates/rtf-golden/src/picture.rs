@@ -1,0 +1,135 @@
+//! Pictures of tests, decoded within limits.
+
+use std::io::Cursor;
+
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbImage};
+
+/// The largest file of a picture, in bytes.
+pub const MAX_PICTURE_BYTES: u64 = 64 * 1024 * 1024;
+
+/// The most pixels of a picture.
+const MAX_PIXELS: u64 = 1 << 24;
+
+/// The fewest pixels of a row or a column: the size of a window.
+const MIN_SIDE: u32 = 11;
+
+/// The most memory for decoding, in bytes: each pixel has at most four channels of 16 bits.
+const MAX_MEMORY: u64 = 3 * 8 * MAX_PIXELS;
+
+/// A picture with 8 bits for red, green and blue.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    pub(crate) pixels: RgbImage,
+    format: ImageFormat,
+}
+
+/// Why pictures cannot be compared.
+#[derive(Debug, thiserror::Error)]
+pub enum PictureError {
+    /// The file is neither PNG nor JPEG.
+    #[error("it is neither PNG nor JPEG")]
+    Format,
+    /// The file is damaged.
+    #[error("it is damaged: {0}")]
+    Damaged(ImageError),
+    /// It has too many pixels.
+    #[error("it has {0} × {1} pixels, the limit is {MAX_PIXELS} pixels")]
+    TooLarge(u32, u32),
+    /// It is smaller than a window.
+    #[error("it has {0} × {1} pixels, expected at least {MIN_SIDE} × {MIN_SIDE}")]
+    TooSmall(u32, u32),
+    /// The sizes differ.
+    #[error("it has {} × {} pixels, the reference {} × {}", .got.0, .got.1, .expected.0, .expected.1)]
+    Sizes {
+        /// The width and the height of the picture.
+        got: (u32, u32),
+        /// Those of the reference.
+        expected: (u32, u32),
+    },
+    /// A picture cannot be written.
+    #[error("the difference cannot be written: {0}")]
+    Write(ImageError),
+}
+
+impl Picture {
+    /// Decodes a file, PNG or JPEG. Its size is checked before pixels are decoded.
+    ///
+    /// # Errors
+    /// It has another format, is damaged, too large or too small.
+    pub fn decode(file: &[u8]) -> Result<Self, PictureError> {
+        let format = match image::guess_format(file) {
+            Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => format,
+            _ => return Err(PictureError::Format),
+        };
+        let mut reader = ImageReader::with_format(Cursor::new(file), format);
+        let mut limits = Limits::default();
+        limits.max_alloc = Some(MAX_MEMORY);
+        reader.limits(limits);
+        let decoder = reader.into_decoder().map_err(PictureError::Damaged)?;
+        let (width, height) = decoder.dimensions();
+        if u64::from(width) * u64::from(height) > MAX_PIXELS {
+            return Err(PictureError::TooLarge(width, height));
+        }
+        if width.min(height) < MIN_SIDE {
+            return Err(PictureError::TooSmall(width, height));
+        }
+        let decoded = DynamicImage::from_decoder(decoder).map_err(PictureError::Damaged)?;
+        Ok(Self { pixels: decoded.into_rgb8(), format })
+    }
+
+    /// The media type of its file: `image/png` or `image/jpeg`.
+    #[must_use]
+    pub fn media_type(&self) -> &'static str {
+        self.format.to_mime_type()
+    }
+
+    /// The usual ending of its file: `png` or `jpg`.
+    #[must_use]
+    pub fn ending(&self) -> &'static str {
+        if self.format == ImageFormat::Png { "png" } else { "jpg" }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn png(width: u32, height: u32) -> Vec<u8> {
+        let mut file = Cursor::new(Vec::new());
+        RgbImage::new(width, height).write_to(&mut file, ImageFormat::Png).unwrap();
+        file.into_inner()
+    }
+
+    fn error(file: &[u8]) -> String {
+        Picture::decode(file).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn formats_and_sizes_are_checked() {
+        assert_eq!(error(b"GIF89a"), "it is neither PNG nor JPEG");
+        assert_eq!(error(&png(10, 20)), "it has 10 × 20 pixels, expected at least 11 × 11");
+        let whole = png(20, 20);
+        assert!(error(&whole[..whole.len() / 2]).starts_with("it is damaged: "));
+        assert_eq!(Picture::decode(&whole).unwrap().media_type(), "image/png");
+    }
+
+    #[test]
+    fn a_huge_picture_is_refused_before_its_pixels_are_decoded() {
+        let mut file = png(20, 20);
+        // The header claims 65535 × 65535 pixels; its check value is that of the new header.
+        file[16..24].copy_from_slice(&[0, 0, 0xff, 0xff, 0, 0, 0xff, 0xff]);
+        let check = crc32(&file[12..29]);
+        file[29..33].copy_from_slice(&check.to_be_bytes());
+        let refused = error(&file);
+        assert!(refused.contains("65535 × 65535 pixels, the limit"), "{refused}");
+    }
+
+    /// The check value of a chunk of a PNG file.
+    fn crc32(bytes: &[u8]) -> u32 {
+        !bytes.iter().fold(!0u32, |crc, byte| {
+            (0..8).fold(crc ^ u32::from(*byte), |crc, _| {
+                if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 }
+            })
+        })
+    }
+}
