@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use rtf_model::{Phase, Record, Significance, TestRecord, Verdict};
+use rtf_model::{Attachment, Phase, Record, Significance, TestRecord, Verdict};
 
 use super::page::ConsoleLines;
 use super::style::{self, BOLD};
@@ -90,9 +90,15 @@ pub fn replay_test(
         return None;
     }
     let attachments = &test.decisive_attempt()?.attachments;
-    let is_recording = |path: &str| RECORDINGS.iter().any(|ending| path.ends_with(ending));
-    let recording = attachments.iter().find(|each| !each.omitted && is_recording(&each.path))?;
+    let recording = attachments.iter().find(|it| is_recording(it))?;
     replay(record, test.plan.test, &dir.join(&recording.path))
+}
+
+/// Whether a fixture can replay this attachment.
+#[must_use]
+pub fn is_recording(attachment: &Attachment) -> bool {
+    let path = &attachment.path;
+    !attachment.omitted && RECORDINGS.iter().any(|ending| path.ends_with(ending))
 }
 
 /// `  arm/MoveTest  failed in set-up`.

@@ -29,7 +29,7 @@ use rtf_model::{Event, EventKind, Micros, Record};
 pub(crate) use progress::{Bar, BarState};
 
 pub use details::drop_details;
-pub use failed_tests::replay_test;
+pub use failed_tests::{is_recording, replay_test};
 pub use options::{
     ConsoleOptions, ReplayCommand, RerunCommand, TestCommands, Verbosity, rerun_suite,
 };

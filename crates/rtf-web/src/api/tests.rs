@@ -2,7 +2,6 @@
 
 use axum::extract::State;
 use rtf_model::{CaseRecord, Record, TestRecord, Verdict};
-use rtf_report::console::replay_test;
 use serde::Deserialize;
 use utoipa::IntoParams;
 
@@ -124,7 +123,7 @@ pub async fn test(
         let command = (commands.rerun)(record, test.plan.test, None);
         // It is for the working directory of the run, which is not the server's.
         let dir = std::path::absolute(run.dir()).unwrap_or_else(|_| run.dir());
-        let replay = replay_test(&commands.replay, record, test, &dir);
+        let replay = index.replay_command(&commands.replay, test, &dir);
         Ok(TestDetail::of(test, record, index.state().is_over(), (command, replay)))
     })
     .await

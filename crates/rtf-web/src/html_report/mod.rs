@@ -15,7 +15,7 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
 
-use rtf_report::console::{TestCommands, replay_test};
+use rtf_report::console::TestCommands;
 use serde::Serialize;
 
 use crate::api::{Snapshot, TestDetail};
@@ -98,7 +98,7 @@ fn fill(template: &Template, out: &mut dyn Write, source: &ReportSource<'_>) -> 
         let id = test.plan.test;
         let command = (source.commands.rerun)(record, id, None);
         let replay = &source.commands.replay;
-        let replay = source.dir.and_then(|dir| replay_test(replay, record, test, dir));
+        let replay = source.dir.and_then(|dir| index.replay_command(replay, test, dir));
         let is_over = index.state().is_over();
         let detail = TestDetail::of(test, record, is_over, (command, replay));
         chunks.add(format!("tests/{id}"), &detail)?;

@@ -2,11 +2,20 @@
 
 use std::collections::HashMap;
 
-use rtf_model::{Event, EventKind};
+use rtf_model::{Event, EventKind, Record, TestId, TestRecord};
+use rtf_report::console::is_recording;
 
-/// Names and media types of attachments, by their paths in the run's directory.
+/// Names and media types of attachments, by their paths in the run's directory, and which of them
+/// are recordings.
 #[derive(Debug, Default)]
-pub struct AttachmentIndex(HashMap<Box<str>, AttachmentInfo>);
+pub struct AttachmentIndex {
+    files: HashMap<Box<str>, AttachmentInfo>,
+    /// The first recording of each attempt.
+    recordings: HashMap<AttemptKey, Box<str>>,
+}
+
+/// The test, the repetition and the attempt.
+type AttemptKey = (TestId, u32, u32);
 
 /// The name and media type of an attachment.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,19 +27,31 @@ pub struct AttachmentInfo {
 }
 
 impl AttachmentIndex {
-    /// Adds the attachment of an event.
-    pub(super) fn take(&mut self, event: &Event) {
-        let EventKind::Attached { attachment, .. } = &event.kind else { return };
+    /// Adds the attachment of an event, which the record contains.
+    pub(super) fn take(&mut self, event: &Event, record: &Record) {
+        let EventKind::Attached { test, attachment, .. } = &event.kind else { return };
+        let attempt = record.tests.get(test.index()).and_then(|test| test.attempts.last());
+        if let Some(attempt) = attempt.filter(|_| is_recording(attachment)) {
+            let key = (*test, attempt.repetition, attempt.attempt);
+            self.recordings.entry(key).or_insert_with(|| attachment.path.as_str().into());
+        }
         let description = AttachmentInfo {
             name: attachment.name.as_str().into(),
             media_type: attachment.media_type.as_str().into(),
         };
-        self.0.insert(attachment.path.as_str().into(), description);
+        self.files.insert(attachment.path.as_str().into(), description);
+    }
+
+    /// The recording of the attempt that decided about a test.
+    pub(crate) fn recording(&self, test: &TestRecord) -> Option<&str> {
+        let attempt = test.decisive_attempt()?;
+        let key = (test.plan.test, attempt.repetition, attempt.attempt);
+        self.recordings.get(&key).map(|path| &**path)
     }
 
     /// The description of the file at this path.
     #[must_use]
     pub fn of(&self, path: &str) -> Option<&AttachmentInfo> {
-        self.0.get(path)
+        self.files.get(path)
     }
 }

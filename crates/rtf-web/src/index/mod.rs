@@ -10,9 +10,11 @@ mod positions;
 
 use std::fs::{File, Metadata};
 use std::io;
+use std::path::Path;
 use std::time::{Duration, SystemTime};
 
-use rtf_model::{Damage, Record, RunState};
+use rtf_model::{Damage, Record, RunState, TestRecord};
+use rtf_report::console::ReplayCommand;
 use rtf_report::journal::{self, JournalLines};
 
 pub use attachments::{AttachmentIndex, AttachmentInfo};
@@ -123,7 +125,7 @@ impl Index {
             let newer = |error| io::Error::new(io::ErrorKind::InvalidData, error);
             if let Some(event) = taken.map_err(newer)? {
                 self.positions.take(&event, line.start, line.end);
-                self.attached.take(&event);
+                self.attached.take(&event, &self.record);
             }
             self.offset = line.end;
         }
@@ -165,6 +167,19 @@ impl Index {
     #[must_use]
     pub fn attached(&self) -> &AttachmentIndex {
         &self.attached
+    }
+
+    /// The command that replays the recording of a test that is not green; `dir` is the run's
+    /// directory. The record has no attachments.
+    pub(crate) fn replay_command(
+        &self,
+        replay: &ReplayCommand,
+        test: &TestRecord,
+        dir: &Path,
+    ) -> Option<String> {
+        let recording = self.attached.recording(test)?;
+        let is_red = !self.record.is_test_green(test);
+        is_red.then(|| replay(&self.record, test.plan.test, &dir.join(recording))).flatten()
     }
 
     /// The damage of the journal.
