@@ -54,19 +54,22 @@ export interface Interval {
     to: number;
 }
 
-/** Shades parts of the x axis; a single point is a line. */
+/** Shades parts of the x axis between two lines, which are visible if the part is narrow. */
 export function drawIntervals(plot: uPlot, intervals: readonly Interval[], colour: string): void {
     const { ctx: context, bbox } = plot;
     const end = bbox.left + bbox.width;
     context.save();
     context.fillStyle = colour;
-    context.globalAlpha = 0.25;
     for (const { from, to } of intervals) {
         const left = Math.max(bbox.left, Math.round(plot.valToPos(from, 'x', true)));
         const right = Math.min(end, Math.round(plot.valToPos(to, 'x', true)));
         if (left > end || right < bbox.left) continue;
-        const width = Math.max(right - left, 2 * devicePixelRatio);
-        context.fillRect(left, bbox.top, width, bbox.height);
+        context.globalAlpha = 0.2;
+        context.fillRect(left, bbox.top, right - left, bbox.height);
+        context.globalAlpha = 0.8;
+        const line = Math.round(devicePixelRatio);
+        context.fillRect(left, bbox.top, line, bbox.height);
+        context.fillRect(right - line, bbox.top, line, bbox.height);
     }
     context.restore();
 }

@@ -52,3 +52,10 @@ export const BROKEN = `<suite name="broken">
   <test type="python" name="Works" param="through">Step</test>
   <test type="python" name="Breaks" param="fail">Ends</test>
 </suite>`;
+
+/** A violated monitor, a trajectory and a picture that differ from stored ones, a recording. */
+export const WATCHED = `<suite name="watched">
+  <signal name="level" unit="m" test="sample"/>
+  <monitor name="not too high">always(level &lt; 2m)</monitor>
+  <test type="python" name="Watched">Watched</test>
+</suite>`;
